@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! What a query answers.
+
+use crate::math::{Real, Vec3};
+
+/// How much work a query may do, and how exact its depth must be.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Largest error of the depth, metres; already checked to be finite and not
+    /// negative. Solvers floor it at a few ulps of the size they see.
+    pub tolerance: Real,
+    /// Cap on the iterations of any one loop; at most the library's own cap.
+    pub max_iterations: u64,
+}
+
+/// An overlap: how far, which way, where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Penetration {
+    /// Metres, >= 0. Moving obj2 by `depth * dir` separates the objects.
+    pub depth: Real,
+    /// Proven lower bound on the global minimum depth; 0 where none is proven.
+    pub depth_lower: Real,
+    /// Unit; the way obj2 moves.
+    pub dir: Vec3,
+    /// Unit; normal of the separating plane (equal to `dir` but in a query along
+    /// a given direction).
+    pub normal: Vec3,
+    /// Witness point on obj1.
+    pub point1: Vec3,
+    /// Witness point on obj2.
+    pub point2: Vec3,
+    /// Iterations of the solver.
+    pub iterations: u64,
+}
+
+/// The outcome of a query whose input was good.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Answer {
+    /// The objects overlap or touch.
+    Hit(Penetration),
+    /// They overlap, and the iteration cap came before the tolerance: the best
+    /// sound answer.
+    Limit(Penetration),
+    /// They are apart: the support plane of this unit direction has the origin
+    /// strictly outside, n·s(n) < 0.
+    Miss(Vec3),
+}

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Scalars and vectors, and the policies that every solver shares: how small a
+//! tolerance may be, how many iterations are allowed, what counts as a unit vector.
+
+/// The scalar of the whole library: `f64`, or `f32` with feature `single`.
+#[cfg(not(feature = "single"))]
+pub type Real = f64;
+/// The scalar of the whole library: `f64`, or `f32` with feature `single`.
+#[cfg(feature = "single")]
+pub type Real = f32;
+
+/// A point or direction in three dimensions, metres.
+pub type Vec3 = nalgebra::Vector3<Real>;
+
+/// Distance from 1 to the next larger [`Real`].
+pub const EPSILON: Real = Real::EPSILON;
+
+/// `v / |v|`, or `None` when `v` is zero or not finite.
+///
+/// Scaled by the largest coordinate first, so that neither tiny nor huge
+/// vectors under- or overflow when squared.
+#[inline]
+pub fn unit(v: &Vec3) -> Option<Vec3> {
+    let scale = v.amax();
+    // NaN fails the first comparison, infinity the second.
+    if !(scale > 0.0 && scale < Real::INFINITY) {
+        return None;
+    }
+    let scaled = v / scale;
+    Some(scaled / scaled.norm())
+}
+
+/// A unit vector perpendicular to the unit vector `n`.
+#[inline]
+pub fn perpendicular(n: &Vec3) -> Vec3 {
+    let a = n.abs();
+    // The axis least aligned with n keeps the cross product at least sqrt(2/3) long.
+    let axis = if a.x <= a.y && a.x <= a.z {
+        Vec3::x()
+    } else if a.y <= a.z {
+        Vec3::y()
+    } else {
+        Vec3::z()
+    };
+    let p = n.cross(&axis);
+    p / p.norm()
+}

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Support mappings, and the Minkowski difference D = obj1 − obj2 that every
+//! solver works on (paper, Sec. II-A and II-B).
+
+use core::cell::Cell;
+
+use crate::math::{Real, Vec3};
+
+/// A convex object, known only by its support mapping.
+pub trait SupportMap {
+    /// A point of the object farthest along `dir` (unit, finite).
+    fn support(&self, dir: &Vec3) -> Vec3;
+}
+
+impl<F: Fn(&Vec3) -> Vec3> SupportMap for F {
+    #[inline]
+    fn support(&self, dir: &Vec3) -> Vec3 {
+        self(dir)
+    }
+}
+
+/// A support point of D together with the two points it is the difference of.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct SupportPoint {
+    /// `v1 - v2`, a boundary point of D.
+    pub v: Vec3,
+    /// The support point of obj1 in the queried direction.
+    pub v1: Vec3,
+    /// The support point of obj2 in the opposite direction.
+    pub v2: Vec3,
+}
+
+impl SupportPoint {
+    /// Largest absolute coordinate of the two witnesses: the size against which
+    /// the rounding error of `v` is measured.
+    #[inline]
+    pub fn magnitude(&self) -> Real {
+        self.v1.amax().max(self.v2.amax())
+    }
+}
+
+/// Why a query has no answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// A support mapping returned a point that is not finite.
+    NonFinite,
+    /// Memory was needed and not to be had.
+    NoMemory,
+}
+
+/// D = obj1 − obj2, seen through its support mapping. Counts its evaluations.
+pub struct MinkowskiDifference<A, B> {
+    obj1: A,
+    obj2: B,
+    supports: Cell<u64>,
+}
+
+impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
+    /// The difference of two objects, nothing evaluated yet.
+    pub fn new(obj1: A, obj2: B) -> Self {
+        Self {
+            obj1,
+            obj2,
+            supports: Cell::new(0),
+        }
+    }
+
+    /// The support point of D along `dir` (unit, finite): obj1 is asked first,
+    /// then obj2 along `-dir`.
+    #[inline]
+    pub fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault> {
+        self.supports.set(self.supports.get() + 1);
+        let v1 = self.obj1.support(dir);
+        let v2 = self.obj2.support(&-dir);
+        let v = v1 - v2;
+        // A sum is finite only if every term is (overflow of finite terms is refused too).
+        if !(v.x + v.y + v.z).is_finite() {
+            return Err(Fault::NonFinite);
+        }
+        Ok(SupportPoint { v, v1, v2 })
+    }
+
+    /// Support points evaluated so far (one = one call of each object's mapping).
+    #[inline]
+    pub fn supports(&self) -> u64 {
+        self.supports.get()
+    }
+}
