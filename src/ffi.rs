@@ -8,6 +8,8 @@
 
 use core::ffi::c_char;
 
+pub mod types;
+
 /// Which library a process really runs, and in which precision, as a
 /// zero-terminated string: `"warmccd 0.1.0 double"` (or `single`).
 #[unsafe(no_mangle)]
