@@ -1,0 +1,80 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* How a test names this library's functions.
+ *
+ * A program that holds system libccd beside this library links this one's archive
+ * with every symbol renamed to rs_...: OURS(ccdMPRPenetration) is then
+ * rs_ccdMPRPenetration, and the plain name is libccd's. A program that holds this
+ * library alone (also every single-precision one: Debian's libccd is double) is
+ * compiled with -DOURS_ALONE, and OURS(name) is the plain name. */
+
+#ifndef TESTS_OURS_H
+#define TESTS_OURS_H
+
+#include <ccd/ccd.h>
+#include <stddef.h>
+
+#ifdef OURS_ALONE
+#define OURS(name) name
+#else
+#define OURS(name) rs_##name
+#endif
+
+/* The extension's types: from its header where that is on the path. */
+#if defined(__has_include)
+#if __has_include(<ccd/warm.h>)
+#include <ccd/warm.h>
+#define TESTS_HAVE_WARM_H 1
+#endif
+#endif
+#ifndef TESTS_HAVE_WARM_H
+typedef struct _ccd_warm_t {
+    ccd_real_t opaque[256 / sizeof(ccd_real_t)];
+} ccd_warm_t;
+typedef struct _ccd_penetration_t {
+    ccd_real_t depth, depth_lower;
+    ccd_vec3_t dir, normal, pos, point1, point2;
+    unsigned long supports, iterations;
+} ccd_penetration_t;
+enum { CCD_HIT = 0, CCD_MISS = -1, CCD_NO_MEMORY = -2, CCD_BAD_INPUT = -3, CCD_LIMIT = -4 };
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+int OURS(ccdGJKIntersect)(const void *obj1, const void *obj2, const ccd_t *ccd);
+int OURS(ccdGJKSeparate)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_vec3_t *sep);
+int OURS(ccdGJKPenetration)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
+                            ccd_vec3_t *dir, ccd_vec3_t *pos);
+int OURS(ccdMPRIntersect)(const void *obj1, const void *obj2, const ccd_t *ccd);
+int OURS(ccdMPRPenetration)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
+                            ccd_vec3_t *dir, ccd_vec3_t *pos);
+void OURS(ccdFirstDirDefault)(const void *obj1, const void *obj2, ccd_vec3_t *dir);
+ccd_real_t OURS(ccdVec3PointSegmentDist2)(const ccd_vec3_t *p, const ccd_vec3_t *x0, const ccd_vec3_t *b,
+                                          ccd_vec3_t *witness);
+ccd_real_t OURS(ccdVec3PointTriDist2)(const ccd_vec3_t *p, const ccd_vec3_t *x0, const ccd_vec3_t *b,
+                                      const ccd_vec3_t *c, ccd_vec3_t *witness);
+
+#if !defined(OURS_ALONE) || !defined(TESTS_HAVE_WARM_H)
+int OURS(ccdMPRPenetrationWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+                                ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
+int OURS(ccdMPRIntersectWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
+void OURS(ccdWarmGuess)(ccd_warm_t *warm, const ccd_vec3_t *dir);
+int OURS(ccdPenetrationLocal)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+                              ccd_penetration_t *out);
+int OURS(ccdPenetrationMinimum)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+                                ccd_penetration_t *out);
+int OURS(ccdPenetrationAlong)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *dir,
+                              ccd_warm_t *warm, ccd_penetration_t *out);
+int OURS(ccdPenetrationPlanar)(const void *obj1, const void *obj2, const ccd_t *ccd,
+                               const ccd_vec3_t *plane_normal, ccd_warm_t *warm, ccd_penetration_t *out);
+const char *OURS(ccdImplementation)(void);
+#endif
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,356 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Convex shapes for the C tests, as support functions over <ccd/ccd.h>. Header
+ * only, C99 and C++11, computes in ccd_real_t.
+ *
+ * A shape is a value: copy it, place it, hand its address to a query. Its
+ * support function writes into it (it counts its calls and remembers the last
+ * vertex of a hill climb), as callbacks in the field do. Only polytopes refer to
+ * memory that they do not own: their vertices and, for hill climbing, the graph
+ * of their edges. */
+
+#ifndef TESTS_SHAPES_H
+#define TESTS_SHAPES_H
+
+#include <ccd/ccd.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SHAPE_SPHERE,    /* p = radius */
+    SHAPE_CAPSULE,   /* p = radius, half length of the core segment along z */
+    SHAPE_BOX,       /* p = half extents */
+    SHAPE_CYLINDER,  /* p = radius, half height along z */
+    SHAPE_CONE,      /* p = radius, half height; apex at +z, the base at -z */
+    SHAPE_ELLIPSOID, /* p = half axes */
+    SHAPE_POLYTOPE   /* the hull of verts: also a polygon, a segment or a point */
+};
+
+/* Which point a face or an edge answers with when the direction is exactly
+ * perpendicular to it. */
+enum {
+    SHAPE_TIE_SIGN,  /* the vertex that the sign of the zero names, +0 and -0 apart */
+    SHAPE_TIE_CENTRE /* the middle of the tied face or edge */
+};
+
+typedef struct {
+    int type;
+    int tie;
+    ccd_real_t p[3];
+    int nverts;
+    const ccd_real_t *verts; /* 3 * nverts coordinates in the local frame */
+    const int *first;        /* NULL: linear scan. Else vertex i's neighbours are */
+    const int *neighbours;   /* neighbours[first[i]] ... neighbours[first[i+1]-1] */
+    ccd_real_t centre[3];    /* an inner point in the local frame */
+    ccd_real_t pos[3];       /* pose: world = rot * local + pos, rot row-major */
+    ccd_real_t rot[9];
+    int last;                /* where the next hill climb starts */
+    unsigned long calls;     /* support calls so far */
+    unsigned long not_unit;  /* calls with a direction that was not unit (with SHAPES_CHECK_UNIT) */
+} shape_t;
+
+/* --- making and placing ---------------------------------------------------- */
+
+static inline shape_t shape_make(int type, double p0, double p1, double p2)
+{
+    shape_t s;
+    memset(&s, 0, sizeof s);
+    s.type = type;
+    s.p[0] = (ccd_real_t)p0;
+    s.p[1] = (ccd_real_t)p1;
+    s.p[2] = (ccd_real_t)p2;
+    s.rot[0] = s.rot[4] = s.rot[8] = (ccd_real_t)1;
+    return s;
+}
+
+static inline shape_t shape_sphere(double r) { return shape_make(SHAPE_SPHERE, r, 0, 0); }
+static inline shape_t shape_capsule(double r, double half) { return shape_make(SHAPE_CAPSULE, r, half, 0); }
+static inline shape_t shape_box(double x, double y, double z) { return shape_make(SHAPE_BOX, x, y, z); }
+static inline shape_t shape_cylinder(double r, double half) { return shape_make(SHAPE_CYLINDER, r, half, 0); }
+static inline shape_t shape_cone(double r, double half) { return shape_make(SHAPE_CONE, r, half, 0); }
+static inline shape_t shape_ellipsoid(double x, double y, double z) { return shape_make(SHAPE_ELLIPSOID, x, y, z); }
+
+/* The hull of n points; verts must outlive the shape. */
+static inline shape_t shape_polytope(const ccd_real_t *verts, int n)
+{
+    shape_t s = shape_make(SHAPE_POLYTOPE, 0, 0, 0);
+    int i, k;
+    s.verts = verts;
+    s.nverts = n;
+    for (k = 0; k < 3; k++) {
+        double sum = 0;
+        for (i = 0; i < n; i++)
+            sum += (double)verts[3 * i + k];
+        s.centre[k] = (ccd_real_t)(sum / n);
+    }
+    return s;
+}
+
+static inline void shape_move(shape_t *s, double x, double y, double z)
+{
+    s->pos[0] = (ccd_real_t)x;
+    s->pos[1] = (ccd_real_t)y;
+    s->pos[2] = (ccd_real_t)z;
+}
+
+static inline void shape_turn(shape_t *s, const double rot[9])
+{
+    int i;
+    for (i = 0; i < 9; i++)
+        s->rot[i] = (ccd_real_t)rot[i];
+}
+
+/* Row-major rotation by angle about an axis of any length; zero axis: identity. */
+static inline void rotation_about(double x, double y, double z, double angle, double rot[9])
+{
+    double l = sqrt(x * x + y * y + z * z), c = cos(angle), s = sin(angle), t = 1 - c;
+    if (!(l > 0)) {
+        x = y = z = 0;
+        c = 1;
+        s = t = 0;
+    } else {
+        x /= l;
+        y /= l;
+        z /= l;
+    }
+    rot[0] = c + t * x * x;     rot[1] = t * x * y - s * z; rot[2] = t * x * z + s * y;
+    rot[3] = t * x * y + s * z; rot[4] = c + t * y * y;     rot[5] = t * y * z - s * x;
+    rot[6] = t * x * z - s * y; rot[7] = t * y * z + s * x; rot[8] = c + t * z * z;
+}
+
+/* Row-major rotation of the quaternion w + xi + yj + zk of any length. */
+static inline void rotation_quaternion(double w, double x, double y, double z, double rot[9])
+{
+    double l = sqrt(w * w + x * x + y * y + z * z);
+    w /= l;
+    x /= l;
+    y /= l;
+    z /= l;
+    rot[0] = 1 - 2 * (y * y + z * z); rot[1] = 2 * (x * y - w * z);     rot[2] = 2 * (x * z + w * y);
+    rot[3] = 2 * (x * y + w * z);     rot[4] = 1 - 2 * (x * x + z * z); rot[5] = 2 * (y * z - w * x);
+    rot[6] = 2 * (x * z - w * y);     rot[7] = 2 * (y * z + w * x);     rot[8] = 1 - 2 * (x * x + y * y);
+}
+
+/* a * b for row-major rotations; out may not alias either. */
+static inline void rotation_times(const double a[9], const double b[9], double out[9])
+{
+    int i, j;
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+/* The edge graph of a triangle mesh over nverts vertices, for hill climbing: the
+ * two arrays that first and neighbours point to, in one malloc'd block that the
+ * caller frees through *first. Returns 0, or -1 without memory. Every edge is
+ * listed twice (once per triangle), which costs a climb little. */
+static inline int shape_edge_graph(int nverts, const int *tris, int ntris, int **first, int **neighbours)
+{
+    int i, k, at;
+    int *block = (int *)malloc(sizeof(int) * ((size_t)nverts + 1 + 6 * (size_t)ntris));
+    if (!block)
+        return -1;
+    *first = block;
+    *neighbours = block + nverts + 1;
+    memset(block, 0, sizeof(int) * ((size_t)nverts + 1));
+    for (i = 0; i < 3 * ntris; i++)
+        block[tris[i] + 1] += 2;
+    for (i = 0; i < nverts; i++)
+        block[i + 1] += block[i];
+    for (i = 0; i < ntris; i++)
+        for (k = 0; k < 3; k++) {
+            at = block[tris[3 * i + k]];
+            (*neighbours)[at] = tris[3 * i + (k + 1) % 3];
+            (*neighbours)[at + 1] = tris[3 * i + (k + 2) % 3];
+            block[tris[3 * i + k]] += 2;
+        }
+    for (i = nverts; i > 0; i--)
+        block[i] = block[i - 1];
+    block[0] = 0;
+    return 0;
+}
+
+/* --- the callbacks ---------------------------------------------------------- */
+
+/* h with the sign of d; at zero what the tie rule says. */
+static inline ccd_real_t shape_toward(ccd_real_t d, ccd_real_t h, int tie)
+{
+    if (d > 0)
+        return h;
+    if (d < 0)
+        return -h;
+    return tie == SHAPE_TIE_CENTRE ? (ccd_real_t)0 : (ccd_real_t)copysign((double)h, (double)d);
+}
+
+/* Rim point of a disc of radius r in the xy plane; the zero direction is a tie. */
+static inline void shape_rim(const ccd_real_t d[3], ccd_real_t r, int tie, ccd_real_t v[3])
+{
+    ccd_real_t l = CCD_SQRT(d[0] * d[0] + d[1] * d[1]);
+    if (l > 0) {
+        v[0] = r * (d[0] / l);
+        v[1] = r * (d[1] / l);
+    } else {
+        v[0] = tie == SHAPE_TIE_CENTRE ? (ccd_real_t)0 : (ccd_real_t)copysign((double)r, (double)d[0]);
+        v[1] = 0;
+    }
+}
+
+static inline ccd_real_t shape_vertex_value(const shape_t *s, int i, const ccd_real_t d[3])
+{
+    const ccd_real_t *v = s->verts + 3 * i;
+    return v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
+}
+
+static inline void shape_polytope_support(shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
+{
+    int i, best, ties;
+    ccd_real_t value;
+    if (s->first) {
+        int better = 1;
+        best = s->last;
+        value = shape_vertex_value(s, best, d);
+        while (better) {
+            int from = best;
+            better = 0;
+            for (i = s->first[from]; i < s->first[from + 1]; i++) {
+                ccd_real_t x = shape_vertex_value(s, s->neighbours[i], d);
+                if (x > value) {
+                    value = x;
+                    best = s->neighbours[i];
+                    better = 1;
+                }
+            }
+        }
+        s->last = best;
+    } else {
+        best = 0;
+        value = shape_vertex_value(s, 0, d);
+        for (i = 1; i < s->nverts; i++) {
+            ccd_real_t x = shape_vertex_value(s, i, d);
+            if (x > value) {
+                value = x;
+                best = i;
+            }
+        }
+    }
+    v[0] = s->verts[3 * best];
+    v[1] = s->verts[3 * best + 1];
+    v[2] = s->verts[3 * best + 2];
+    if (s->tie != SHAPE_TIE_CENTRE)
+        return;
+    for (i = 0, ties = 1; i < s->nverts; i++)
+        if (i != best && !(shape_vertex_value(s, i, d) < value)) {
+            v[0] += s->verts[3 * i];
+            v[1] += s->verts[3 * i + 1];
+            v[2] += s->verts[3 * i + 2];
+            ties++;
+        }
+    v[0] /= (ccd_real_t)ties;
+    v[1] /= (ccd_real_t)ties;
+    v[2] /= (ccd_real_t)ties;
+}
+
+/* Support point in the local frame for a local direction of any length. */
+static inline void shape_local_support(shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
+{
+    const ccd_real_t *p = s->p;
+    ccd_real_t l, e[3];
+    switch (s->type) {
+    case SHAPE_SPHERE:
+    case SHAPE_CAPSULE:
+        l = CCD_SQRT(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        l = l > 0 ? p[0] / l : (ccd_real_t)0;
+        v[0] = d[0] * l;
+        v[1] = d[1] * l;
+        v[2] = d[2] * l;
+        if (s->type == SHAPE_CAPSULE)
+            v[2] += shape_toward(d[2], p[1], s->tie);
+        break;
+    case SHAPE_BOX:
+        v[0] = shape_toward(d[0], p[0], s->tie);
+        v[1] = shape_toward(d[1], p[1], s->tie);
+        v[2] = shape_toward(d[2], p[2], s->tie);
+        break;
+    case SHAPE_CYLINDER:
+        shape_rim(d, p[0], s->tie, v);
+        v[2] = shape_toward(d[2], p[1], s->tie);
+        break;
+    case SHAPE_CONE: {
+        /* apex against rim: equal along a slant line, then its middle or the apex */
+        ccd_real_t gain;
+        shape_rim(d, p[0], s->tie, v);
+        v[2] = -p[1];
+        gain = 2 * p[1] * d[2] - (v[0] * d[0] + v[1] * d[1]);
+        if (gain > 0 || (gain == 0 && s->tie != SHAPE_TIE_CENTRE)) {
+            v[0] = v[1] = 0;
+            v[2] = p[1];
+        } else if (gain == 0) {
+            v[0] /= 2;
+            v[1] /= 2;
+            v[2] = 0;
+        }
+        break;
+    }
+    case SHAPE_ELLIPSOID:
+        e[0] = p[0] * d[0];
+        e[1] = p[1] * d[1];
+        e[2] = p[2] * d[2];
+        l = CCD_SQRT(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+        l = l > 0 ? 1 / l : (ccd_real_t)0;
+        v[0] = p[0] * (e[0] * l);
+        v[1] = p[1] * (e[1] * l);
+        v[2] = p[2] * (e[2] * l);
+        break;
+    default:
+        shape_polytope_support(s, d, v);
+        break;
+    }
+}
+
+/* Local point to world. */
+static inline void shape_to_world(const shape_t *s, const ccd_real_t v[3], ccd_real_t out[3])
+{
+    const ccd_real_t *r = s->rot;
+    out[0] = r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + s->pos[0];
+    out[1] = r[3] * v[0] + r[4] * v[1] + r[5] * v[2] + s->pos[1];
+    out[2] = r[6] * v[0] + r[7] * v[1] + r[8] * v[2] + s->pos[2];
+}
+
+/* ccd_support_fn */
+static inline void shape_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    shape_t *s = (shape_t *)obj;
+    const ccd_real_t *r = s->rot, *w = dir->v;
+    ccd_real_t d[3], v[3];
+    s->calls++;
+#ifdef SHAPES_CHECK_UNIT
+    if (!(fabs((double)(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) - 1) <= (sizeof(ccd_real_t) == 8 ? 1e-14 : 1e-6)))
+        s->not_unit++;
+#endif
+    d[0] = r[0] * w[0] + r[3] * w[1] + r[6] * w[2];
+    d[1] = r[1] * w[0] + r[4] * w[1] + r[7] * w[2];
+    d[2] = r[2] * w[0] + r[5] * w[1] + r[8] * w[2];
+    shape_local_support(s, d, v);
+    shape_to_world(s, v, out->v);
+}
+
+/* ccd_center_fn */
+static inline void shape_center(const void *obj, ccd_vec3_t *out)
+{
+    const shape_t *s = (const shape_t *)obj;
+    shape_to_world(s, s->centre, out->v);
+}
+
+/* A ccd_t for two shapes, as CCD_INIT leaves it otherwise. */
+static inline void shape_query(ccd_t *ccd)
+{
+    CCD_INIT(ccd);
+    ccd->support1 = shape_support;
+    ccd->support2 = shape_support;
+    ccd->center1 = shape_center;
+    ccd->center2 = shape_center;
+}
+
+#endif
