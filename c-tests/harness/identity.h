@@ -1,0 +1,23 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Which libccd.so.2 this process runs on: what ccdImplementation says, a
+ * function only this repository's library has, or NULL on any other libccd. */
+
+#ifndef C_TESTS_IDENTITY_H
+#define C_TESTS_IDENTITY_H
+
+#include <dlfcn.h>
+#include <stddef.h>
+#include <string.h>
+
+static inline const char *running_ccd(void)
+{
+    void *symbol = dlsym(dlopen(NULL, RTLD_NOW), "ccdImplementation");
+    const char *(*implementation)(void) = NULL;
+    /* ISO C has no cast from an object pointer to a function pointer. */
+    memcpy(&implementation, &symbol, sizeof symbol);
+    return symbol == NULL ? NULL : implementation();
+}
+
+#endif

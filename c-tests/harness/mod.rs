@@ -1,0 +1,668 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Builds the release library and C or C++ programs around it, runs them, and
+//! asserts that they ran on the libccd they were meant to run on.
+//!
+//! A test driver includes this file with `#[path = "../harness/mod.rs"] mod harness;`
+//!
+//! ```ignore
+//! let program = Program::c("exact").source("truth/exact.c").link_ours_shared().build();
+//! program.run(["100"]);
+//! ```
+//!
+//! | link | libccd in the process |
+//! |---|---|
+//! | `link_ours_shared` | this library's `libccd.so.2` |
+//! | `link_ours_static` | this library's `libccd.a` |
+//! | `link_ours_renamed_and_system` | the system's `libccd.so.2`, and this library with `rs_` before every name |
+//! | `link_system` | the system's; `.swapped()` gives the same program on this library |
+//!
+//! Environment, read for every program but those marked `without_tools`:
+//! `C_TESTS_CC`, `C_TESTS_CXX` name the compilers (default `cc`, `c++`);
+//! `C_TESTS_FLAGS` is appended when compiling and linking (`-fsanitize=address`);
+//! `C_TESTS_RUNNER` goes before the program (`valgrind --error-exitcode=99`).
+
+// Every driver uses a part of this module.
+#![allow(dead_code)]
+
+use std::collections::hash_map::DefaultHasher;
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File};
+use std::hash::{Hash, Hasher};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// The scalar of a build of the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Precision {
+    Double,
+    Single,
+}
+
+impl Precision {
+    /// The precision this test binary itself was compiled for.
+    pub const CURRENT: Precision = if cfg!(feature = "single") {
+        Precision::Single
+    } else {
+        Precision::Double
+    };
+
+    /// As in the last word of `ccdImplementation()`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Precision::Double => "double",
+            Precision::Single => "single",
+        }
+    }
+}
+
+/// A release build of the library, ready to link against.
+#[derive(Debug)]
+pub struct Built {
+    /// Holds libccd.so, libccd.so.2, libccd.a, librs_ccd.a and nothing else.
+    pub dir: PathBuf,
+    /// What a program linked with one of the archives needs, as rustc reports it.
+    pub native_flags: Vec<String>,
+    pub precision: Precision,
+}
+
+/// The repository's root.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Where everything this module makes goes: `target/c-tests`.
+pub fn output_dir() -> PathBuf {
+    // Cargo names target/tmp to integration tests and benchmarks, wherever target is.
+    let target = match option_env!("CARGO_TARGET_TMPDIR") {
+        Some(tmp) => PathBuf::from(tmp).join(".."),
+        None => root().join("target"),
+    };
+    let dir = target.join("c-tests");
+    fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
+    dir.canonicalize()
+        .unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
+}
+
+/// The release library, built at most once per process and precision.
+pub fn library(precision: Precision) -> &'static Built {
+    static DOUBLE: OnceLock<Built> = OnceLock::new();
+    static SINGLE: OnceLock<Built> = OnceLock::new();
+    match precision {
+        Precision::Double => &DOUBLE,
+        Precision::Single => &SINGLE,
+    }
+    .get_or_init(|| build_library(precision))
+}
+
+fn build_library(precision: Precision) -> Built {
+    let output = output_dir();
+    let target = output.join(precision.name());
+    // Test binaries may run side by side: one builds, the others wait for it.
+    let lock_path = output.join(format!("{}.lock", precision.name()));
+    let lock = File::create(&lock_path)
+        .and_then(|file| file.lock().map(|()| file))
+        .unwrap_or_else(|e| panic!("cannot lock {}: {e}", lock_path.display()));
+
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo
+        .args(["rustc", "--release", "--lib", "--manifest-path"])
+        .arg(root().join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(&target);
+    if precision == Precision::Single {
+        cargo.args(["--features", "single"]);
+    }
+    // Cargo repeats what rustc said even when nothing has to be built again.
+    cargo.args(["--", "--print", "native-static-libs"]);
+    let said = must_succeed(&mut cargo, "Rust's cargo");
+    let native_flags = said
+        .lines()
+        .find_map(|line| line.split_once("native-static-libs: "))
+        .unwrap_or_else(|| panic!("rustc did not report native-static-libs:\n{said}"))
+        .1
+        .split_whitespace()
+        .map(String::from)
+        .collect();
+
+    let release = target.join("release");
+    let dir = target.join("lib");
+    fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
+    for (name, file) in [
+        ("libccd.so", "libccd.so"),
+        ("libccd.so.2", "libccd.so"),
+        ("libccd.a", "libccd.a"),
+    ] {
+        replace(&dir.join(name), |new| {
+            std::os::unix::fs::symlink(release.join(file), new)
+        });
+    }
+    rename_symbols(&dir.join("libccd.a"), &dir.join("librs_ccd.a"));
+    drop(lock);
+    Built {
+        dir,
+        native_flags,
+        precision,
+    }
+}
+
+/// Puts `rs_` before every name of libccd's in a copy of the archive, so that
+/// one process can hold this library and the system's.
+fn rename_symbols(archive: &Path, renamed: &Path) {
+    let time = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).ok();
+    if time(renamed) > time(archive) {
+        return;
+    }
+    let symbols = must_succeed(
+        Command::new("nm")
+            .args(["-g", "--defined-only"])
+            .arg(archive),
+        "nm (Debian: binutils)",
+    );
+    let mut names: Vec<&str> = symbols
+        .lines()
+        .filter_map(|line| line.split_whitespace().nth(2))
+        .filter(|name| name.starts_with("ccd") || name.starts_with("__ccd"))
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    assert!(
+        !names.is_empty(),
+        "{} defines no symbol of libccd's",
+        archive.display()
+    );
+    let table = renamed.with_extension("syms");
+    let lines: String = names.iter().map(|n| format!("{n} rs_{n}\n")).collect();
+    fs::write(&table, lines).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
+    replace(renamed, |new| {
+        must_succeed(
+            Command::new("objcopy")
+                .arg(format!("--redefine-syms={}", table.display()))
+                .arg(archive)
+                .arg(new),
+            "objcopy (Debian: binutils)",
+        );
+        Ok(())
+    });
+    fs::remove_file(&table).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
+}
+
+/// Makes a file under a name of its own, then moves it into place: whoever is
+/// using the old one keeps it.
+fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let mut new = path.as_os_str().to_owned();
+    new.push(format!(
+        ".{}-{}",
+        std::process::id(),
+        COUNT.fetch_add(1, Ordering::Relaxed)
+    ));
+    let new = PathBuf::from(new);
+    make(&new)
+        .and_then(|()| fs::rename(&new, path))
+        .unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
+}
+
+/// Runs a build tool; its stdout and stderr if it succeeds.
+fn must_succeed(command: &mut Command, what: &str) -> String {
+    let output = match command.output() {
+        Ok(output) => output,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            panic!("{what} is not installed: run `sh c-tests/setup.sh` first")
+        }
+        Err(e) => panic!("cannot run {what}: {e}"),
+    };
+    let mut said = String::from_utf8_lossy(&output.stdout).into_owned();
+    said += &String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success(),
+        "{what} failed ({}): {command:?}\n{said}",
+        output.status
+    );
+    said
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Link {
+    OursShared,
+    OursStatic,
+    OursRenamedAndSystem,
+    System,
+}
+
+/// A C or C++ program to compile.
+#[derive(Clone, Debug)]
+pub struct Program {
+    name: String,
+    cpp: bool,
+    standard: Option<String>,
+    sources: Vec<PathBuf>,
+    includes: Vec<PathBuf>,
+    system_headers: bool,
+    flags: Vec<OsString>,
+    libraries: Vec<String>,
+    precision: Precision,
+    link: Link,
+    tools: bool,
+}
+
+impl Program {
+    /// A C program, C99 unless [`standard`](Self::standard) says otherwise.
+    pub fn c(name: &str) -> Program {
+        Program {
+            name: name.to_owned(),
+            cpp: false,
+            standard: None,
+            sources: Vec::new(),
+            includes: Vec::new(),
+            system_headers: false,
+            flags: Vec::new(),
+            libraries: Vec::new(),
+            precision: Precision::CURRENT,
+            link: Link::OursShared,
+            tools: true,
+        }
+    }
+
+    /// A C++ program, C++17 unless [`standard`](Self::standard) says otherwise.
+    pub fn cpp(name: &str) -> Program {
+        Program {
+            cpp: true,
+            ..Program::c(name)
+        }
+    }
+
+    /// A source file, relative to `c-tests/` (or absolute).
+    pub fn source(mut self, path: impl AsRef<Path>) -> Program {
+        self.sources.push(root().join("c-tests").join(path));
+        self
+    }
+
+    /// `"c99"`, `"gnu11"`, `"c++20"`.
+    pub fn standard(mut self, standard: &str) -> Program {
+        self.standard = Some(standard.to_owned());
+        self
+    }
+
+    /// A further include directory, relative to the root (or absolute).
+    /// `include/` and `c-tests/` are always there.
+    pub fn include(mut self, path: impl AsRef<Path>) -> Program {
+        self.includes.push(root().join(path));
+        self
+    }
+
+    /// Takes libccd's headers from the system instead of `include/`.
+    pub fn system_headers(mut self) -> Program {
+        self.system_headers = true;
+        self
+    }
+
+    /// A flag for compiling and linking, after the usual
+    /// `-O2 -g -Wall -Wextra`; `-Werror` makes warnings fail the build.
+    pub fn flag(mut self, flag: impl AsRef<OsStr>) -> Program {
+        self.flags.push(flag.as_ref().to_owned());
+        self
+    }
+
+    /// `-l` before libccd.
+    pub fn library(mut self, name: &str) -> Program {
+        self.libraries.push(format!("-l{name}"));
+        self
+    }
+
+    /// The flags pkg-config gives for a package of the system's.
+    pub fn pkg_config(mut self, package: &str) -> Program {
+        let ask = |what: &str| -> Vec<String> {
+            must_succeed(
+                Command::new("pkg-config").args([what, package]),
+                "pkg-config",
+            )
+            .split_whitespace()
+            .map(String::from)
+            .collect()
+        };
+        self.flags
+            .extend(ask("--cflags").into_iter().map(OsString::from));
+        self.libraries.extend(ask("--libs"));
+        self
+    }
+
+    /// Which build of this library; [`Precision::CURRENT`] if not said.
+    pub fn precision(mut self, precision: Precision) -> Program {
+        self.precision = precision;
+        self
+    }
+
+    pub fn link_ours_shared(mut self) -> Program {
+        self.link = Link::OursShared;
+        self
+    }
+
+    pub fn link_ours_static(mut self) -> Program {
+        self.link = Link::OursStatic;
+        self
+    }
+
+    pub fn link_ours_renamed_and_system(mut self) -> Program {
+        self.link = Link::OursRenamedAndSystem;
+        self
+    }
+
+    pub fn link_system(mut self) -> Program {
+        self.link = Link::System;
+        self
+    }
+
+    /// For a program that cannot live with a sanitizer or valgrind, such as one
+    /// with a malloc of its own: `C_TESTS_FLAGS` and `C_TESTS_RUNNER` pass it by.
+    pub fn without_tools(mut self) -> Program {
+        self.tools = false;
+        self
+    }
+
+    /// Compiles and links; panics with the compiler's words when it does not.
+    pub fn build(self) -> Executable {
+        assert!(
+            self.precision == Precision::Double
+                || matches!(self.link, Link::OursShared | Link::OursStatic),
+            "{}: the system's libccd is double, this program single",
+            self.name
+        );
+        let (compiler, default, standard) = if self.cpp {
+            ("C_TESTS_CXX", "c++", "c++17")
+        } else {
+            ("C_TESTS_CC", "cc", "c99")
+        };
+        let mut compiler = words(compiler);
+        if compiler.is_empty() {
+            compiler.push(default.to_owned());
+        }
+
+        let mut args: Vec<OsString> = compiler[1..].iter().map(OsString::from).collect();
+        let standard = self.standard.as_deref().unwrap_or(standard);
+        args.push(format!("-std={standard}").into());
+        args.extend(["-O2", "-g", "-Wall", "-Wextra"].map(OsString::from));
+        if self.precision == Precision::Single {
+            args.push("-DCCD_SINGLE".into());
+        }
+        for include in &self.includes {
+            args.push("-I".into());
+            args.push(include.into());
+        }
+        args.push("-I".into());
+        args.push(root().join("c-tests").into());
+        if !self.system_headers {
+            args.push("-I".into());
+            args.push(root().join("include").into());
+        }
+        args.extend(self.flags.iter().cloned());
+        if self.tools {
+            args.extend(words("C_TESTS_FLAGS").into_iter().map(OsString::from));
+        }
+        args.extend(self.sources.iter().map(OsString::from));
+        args.extend(self.libraries.iter().map(OsString::from));
+        let ours = match self.link {
+            Link::System => {
+                args.push("-lccd".into());
+                None
+            }
+            Link::OursShared => {
+                let built = library(self.precision);
+                args.push("-L".into());
+                args.push(built.dir.clone().into());
+                args.push("-lccd".into());
+                Some(built)
+            }
+            Link::OursStatic | Link::OursRenamedAndSystem => {
+                let built = library(self.precision);
+                let renamed = self.link == Link::OursRenamedAndSystem;
+                let archive = ["libccd.a", "librs_ccd.a"][usize::from(renamed)];
+                args.push(built.dir.join(archive).into());
+                if renamed {
+                    args.push("-lccd".into());
+                }
+                args.extend(built.native_flags.iter().map(OsString::from));
+                Some(built)
+            }
+        };
+        args.push("-lm".into());
+
+        // The command's hash keeps two programs of one name apart.
+        let mut hash = DefaultHasher::new();
+        (&compiler, &args).hash(&mut hash);
+        let dir = output_dir().join("programs");
+        fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
+        let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
+        replace(&path, |new| {
+            let said = must_succeed(
+                Command::new(&compiler[0]).args(&args).arg("-o").arg(new),
+                &format!("{} (compiling {})", compiler[0], self.name),
+            );
+            print!("{said}");
+            Ok(())
+        });
+
+        let library_path = match self.link {
+            Link::OursShared => ours.map(|built| built.dir.clone()),
+            _ => None,
+        };
+        let executable = Executable {
+            path,
+            name: self.name,
+            library_path,
+            environment: Vec::new(),
+            timeout: Duration::from_secs(300),
+            tools: self.tools,
+        };
+        match self.link {
+            Link::OursShared => executable.assert_loads_ours(),
+            Link::OursStatic => assert_eq!(executable.loaded_ccd(), None, "linked statically"),
+            Link::OursRenamedAndSystem | Link::System => executable.assert_loads_system(),
+        }
+        executable
+    }
+}
+
+/// A compiled program.
+#[derive(Clone, Debug)]
+pub struct Executable {
+    pub path: PathBuf,
+    name: String,
+    library_path: Option<PathBuf>,
+    environment: Vec<(String, String)>,
+    timeout: Duration,
+    tools: bool,
+}
+
+/// What a program that succeeded wrote.
+#[derive(Clone, Debug)]
+pub struct Written {
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Executable {
+    /// The same program with this library under it instead of the system's.
+    pub fn swapped(&self) -> Executable {
+        let mut swapped = self.clone();
+        swapped.library_path = Some(library(Precision::Double).dir.clone());
+        swapped.assert_loads_ours();
+        swapped
+    }
+
+    pub fn env(mut self, name: &str, value: &str) -> Executable {
+        self.environment.push((name.to_owned(), value.to_owned()));
+        self
+    }
+
+    /// Longest run, 300 s if not said; twenty times that under a tool.
+    pub fn timeout(mut self, timeout: Duration) -> Executable {
+        self.timeout = timeout;
+        self
+    }
+
+    /// Runs the program to its end and prints what it wrote. Panics unless it
+    /// exits with 0 in time.
+    pub fn run(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Written {
+        let (status, written) = self.run_to_end(args);
+        assert!(
+            status.success(),
+            "{} failed: {status}\n{:?}",
+            self.name,
+            self.command()
+        );
+        written
+    }
+
+    /// As [`run`](Self::run), whatever the exit code.
+    pub fn run_to_end(
+        &self,
+        args: impl IntoIterator<Item = impl AsRef<OsStr>>,
+    ) -> (ExitStatus, Written) {
+        let mut command = self.command();
+        let factor = if self.tools && !words("C_TESTS_RUNNER").is_empty() {
+            20
+        } else {
+            1
+        };
+        let (status, written) = run_command(command.args(args), self.timeout * factor);
+        println!("--- {}\n{}{}", self.name, written.stdout, written.stderr);
+        (status, written)
+    }
+
+    /// The command that runs the program, without arguments.
+    pub fn command(&self) -> Command {
+        let mut command = match words("C_TESTS_RUNNER").as_slice() {
+            [runner, rest @ ..] if self.tools => {
+                let mut command = Command::new(runner);
+                command.args(rest).arg(&self.path);
+                command
+            }
+            _ => Command::new(&self.path),
+        };
+        set_library_path(&mut command, self.library_path.as_deref());
+        command.envs(self.environment.iter().map(|(name, value)| (name, value)));
+        command
+    }
+
+    /// The libccd.so.2 the dynamic linker gives this program, as ldd would say.
+    pub fn loaded_ccd(&self) -> Option<PathBuf> {
+        let mut command = Command::new(&self.path);
+        set_library_path(&mut command, self.library_path.as_deref());
+        let said = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
+        let line = said.lines().find(|line| line.contains("libccd.so"))?;
+        let path = line.split_once("=>")?.1.split_whitespace().next()?;
+        Some(PathBuf::from(path))
+    }
+
+    fn assert_loads_ours(&self) {
+        let loaded = self.loaded_ccd();
+        assert!(
+            loaded.is_some() && loaded.as_deref().and_then(Path::parent) == self.library_path(),
+            "{} runs on {loaded:?}, not on the library of this repository",
+            self.name
+        );
+    }
+
+    fn assert_loads_system(&self) {
+        let loaded = self.loaded_ccd();
+        assert!(
+            loaded.as_ref().is_some_and(|path| path.is_file())
+                && !loaded.as_ref().is_some_and(|p| p.starts_with(output_dir())),
+            "{} runs on {loaded:?}, not on the system's libccd",
+            self.name
+        );
+    }
+
+    fn library_path(&self) -> Option<&Path> {
+        self.library_path.as_deref()
+    }
+}
+
+impl Built {
+    /// Makes any command, such as a Python script over DART, run on this library.
+    pub fn swap_under(&self, command: &mut Command) {
+        set_library_path(command, Some(&self.dir));
+    }
+}
+
+/// Makes a command run on the system's libraries alone, whatever cargo put in
+/// the environment.
+pub fn system_under(command: &mut Command) {
+    set_library_path(command, None);
+}
+
+fn set_library_path(command: &mut Command, dir: Option<&Path>) {
+    match dir {
+        Some(dir) => command.env("LD_LIBRARY_PATH", dir),
+        None => command.env_remove("LD_LIBRARY_PATH"),
+    };
+    // Every symbol is looked up at the start: a missing one fails at once.
+    command.env("LD_BIND_NOW", "1");
+}
+
+/// Runs a command to its end; panics when it does not come to one in time.
+pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Written) {
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap_or_else(|e| panic!("cannot run {command:?}: {e}"));
+    let stdout = collect(child.stdout.take());
+    let stderr = collect(child.stderr.take());
+    let start = Instant::now();
+    let status = loop {
+        match child.try_wait() {
+            Ok(Some(status)) => break Some(status),
+            Ok(None) if start.elapsed() < timeout => thread::sleep(Duration::from_millis(2)),
+            Ok(None) => {
+                let _ = child.kill();
+                let _ = child.wait();
+                break None;
+            }
+            Err(e) => panic!("cannot wait for {command:?}: {e}"),
+        }
+    };
+    let text = |reader: thread::JoinHandle<Vec<u8>>| {
+        let bytes = reader.join().expect("the reader thread ends");
+        String::from_utf8_lossy(&bytes).into_owned()
+    };
+    let written = Written {
+        stdout: text(stdout),
+        stderr: text(stderr),
+    };
+    let Some(status) = status else {
+        panic!(
+            "{command:?} did not end in {timeout:?}\n{}{}",
+            written.stdout, written.stderr
+        );
+    };
+    (status, written)
+}
+
+fn collect(pipe: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut pipe) = pipe {
+            // A pipe that breaks leaves what was read before.
+            let _ = pipe.read_to_end(&mut bytes);
+        }
+        bytes
+    })
+}
+
+/// An environment variable, split at blanks; empty when it is not set.
+fn words(variable: &str) -> Vec<String> {
+    std::env::var(variable)
+        .unwrap_or_default()
+        .split_whitespace()
+        .map(String::from)
+        .collect()
+}
