@@ -13,4 +13,5 @@
 pub mod contact;
 pub mod ffi;
 pub mod math;
+pub mod nearest;
 pub mod support;

@@ -1,0 +1,419 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! libccd's polytope: vertices, edges and faces in intrusive lists, and the element
+//! nearest to the origin. No solver here uses it; FCL's EPA runs on it, with inline
+//! functions of its own that unlink and free() what is allocated here.
+//!
+//! So a node is one block of C's malloc, every link stands where libccd puts it, and
+//! `nearest` is kept by libccd's rule. The distances are [`crate::nearest`]'s.
+
+use core::ffi::{c_char, c_int, c_void};
+use core::mem::offset_of;
+use core::ptr::null_mut;
+
+use super::types::{
+    CCD_PT_EDGE, CCD_PT_FACE, CCD_PT_VERTEX, ccd_list_t, ccd_pt_edge_t, ccd_pt_el_t, ccd_pt_face_t,
+    ccd_pt_t, ccd_pt_vertex_t, ccd_support_t, ccd_vec3_t,
+};
+use crate::math::{EPSILON, Real, Vec3};
+use crate::nearest;
+
+unsafe extern "C" {
+    fn malloc(size: usize) -> *mut c_void;
+    fn free(block: *mut c_void);
+}
+
+/// An empty polytope.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        list_init(&raw mut (*pt).vertices);
+        list_init(&raw mut (*pt).edges);
+        list_init(&raw mut (*pt).faces);
+        forget_nearest(pt);
+    }
+}
+
+/// Frees every element and leaves the lists empty. Elements that something outside of
+/// the polytope's lists still hangs on stay allocated and linked.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtDestroy(pt: *mut ccd_pt_t) {
+    // SAFETY: Polytope; an element is not looked at after it was deleted.
+    unsafe {
+        for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
+            delete_face(pt, face);
+        }
+        for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
+            delete_edge(pt, edge);
+        }
+        for vertex in elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices) {
+            delete_vertex(pt, vertex);
+        }
+    }
+}
+
+/// Adds a vertex; NULL when memory cannot be had.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtAddVertex(
+    pt: *mut ccd_pt_t,
+    v: *const ccd_support_t,
+) -> *mut ccd_pt_vertex_t {
+    let vertex: *mut ccd_pt_vertex_t = allocate();
+    if vertex.is_null() {
+        return vertex;
+    }
+    // SAFETY: Polytope, and `vertex` is a new block of its size.
+    unsafe {
+        let v = *v;
+        (*vertex).id = 0;
+        (*vertex).v = v;
+        list_init(&raw mut (*vertex).edges);
+        let distance = (v.v, Vec3::from(v.v).norm_squared());
+        insert(pt, &raw mut (*vertex).el, CCD_PT_VERTEX, distance);
+    }
+    vertex
+}
+
+/// Adds the edge between two vertices; NULL when either is NULL or memory cannot be had.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtAddEdge(
+    pt: *mut ccd_pt_t,
+    v1: *mut ccd_pt_vertex_t,
+    v2: *mut ccd_pt_vertex_t,
+) -> *mut ccd_pt_edge_t {
+    if v1.is_null() || v2.is_null() {
+        return null_mut();
+    }
+    let edge: *mut ccd_pt_edge_t = allocate();
+    if edge.is_null() {
+        return edge;
+    }
+    // SAFETY: Polytope, and `edge` is a new block of its size.
+    unsafe {
+        (*edge).vertex = [v1, v2];
+        (*edge).faces = [null_mut(); 2];
+        list_append(&raw mut (*v1).edges, &raw mut (*edge).vertex_list[0]);
+        list_append(&raw mut (*v2).edges, &raw mut (*edge).vertex_list[1]);
+        insert(pt, &raw mut (*edge).el, CCD_PT_EDGE, edge_distance(edge));
+    }
+    edge
+}
+
+/// Adds the face between three edges; NULL when any is NULL or memory cannot be had.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtAddFace(
+    pt: *mut ccd_pt_t,
+    e1: *mut ccd_pt_edge_t,
+    e2: *mut ccd_pt_edge_t,
+    e3: *mut ccd_pt_edge_t,
+) -> *mut ccd_pt_face_t {
+    if e1.is_null() || e2.is_null() || e3.is_null() {
+        return null_mut();
+    }
+    let face: *mut ccd_pt_face_t = allocate();
+    if face.is_null() {
+        return face;
+    }
+    // SAFETY: Polytope, and `face` is a new block of its size.
+    unsafe {
+        (*face).edge = [e1, e2, e3];
+        for edge in [e1, e2, e3] {
+            let free_side = usize::from(!(*edge).faces[0].is_null());
+            (*edge).faces[free_side] = face;
+        }
+        insert(pt, &raw mut (*face).el, CCD_PT_FACE, face_distance(face));
+    }
+    face
+}
+
+/// Computes distance and witness of every element anew; `nearest` stays as it is.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        for vertex in elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices) {
+            let v = (*vertex).v.v;
+            set_distance(&raw mut (*vertex).el, (v, Vec3::from(v).norm_squared()));
+        }
+        for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
+            set_distance(&raw mut (*edge).el, edge_distance(edge));
+        }
+        for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
+            set_distance(&raw mut (*face).el, face_distance(face));
+        }
+    }
+}
+
+/// The element nearest to the origin: `pt->nearest` as it stands, searched only when that
+/// is NULL. NULL when there is none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_el_t {
+    // SAFETY: Polytope.
+    unsafe {
+        if (*pt).nearest.is_null() {
+            forget_nearest(pt);
+            for list in [
+                &raw mut (*pt).vertices,
+                &raw mut (*pt).edges,
+                &raw mut (*pt).faces,
+            ] {
+                for element in elements(list) {
+                    update_nearest(pt, element);
+                }
+            }
+        }
+        (*pt).nearest
+    }
+}
+
+/// Appends the dump of [`ccdPtDumpSVT2`] to the named file; nothing when it cannot be opened.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const c_char) {
+    // SAFETY: Pointers (a zero-terminated name), then Polytope.
+    unsafe {
+        let file = fopen(filename, c"a".as_ptr());
+        if !file.is_null() {
+            ccdPtDumpSVT2(pt, file);
+            fclose(file);
+        }
+    }
+}
+
+/// Writes the polytope to an open C stream as text, and numbers the vertices' `id`s by it:
+/// points, edges as two and faces as three numbers of points.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut FILE) {
+    // SAFETY: Pointers (an open stream), Polytope; the formats match what is passed.
+    unsafe {
+        fputs(c"-----\nPoints:\n".as_ptr(), file);
+        for (id, vertex) in (0..).zip(elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices)) {
+            (*vertex).id = id;
+            let [x, y, z] = (*vertex).v.v.v.map(f64::from);
+            fprintf(file, c"%lf %lf %lf\n".as_ptr(), x, y, z);
+        }
+        fputs(c"Edges:\n".as_ptr(), file);
+        for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
+            let [a, b] = (*edge).vertex;
+            fprintf(file, c"%d %d\n".as_ptr(), (*a).id, (*b).id);
+        }
+        fputs(c"Faces:\n".as_ptr(), file);
+        for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
+            let [a, b, c] = corners(face);
+            fprintf(file, c"%d %d %d\n".as_ptr(), (*a).id, (*b).id, (*c).id);
+        }
+    }
+}
+
+/// A stream of C's, only handed on.
+#[repr(C)]
+pub struct FILE {
+    _opaque: [u8; 0],
+}
+
+unsafe extern "C" {
+    fn fopen(name: *const c_char, mode: *const c_char) -> *mut FILE;
+    fn fclose(file: *mut FILE) -> c_int;
+    fn fputs(text: *const c_char, file: *mut FILE) -> c_int;
+    fn fprintf(file: *mut FILE, format: *const c_char, ...) -> c_int;
+}
+
+/// One node, not initialised; NULL when memory cannot be had.
+#[inline(always)]
+fn allocate<T>() -> *mut T {
+    // SAFETY: malloc may be called with any size; its blocks are aligned for any node.
+    unsafe { malloc(size_of::<T>()) }.cast()
+}
+
+/// Unlinks a face from its edges and the polytope and frees it.
+unsafe fn delete_face(pt: *mut ccd_pt_t, face: *mut ccd_pt_face_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        for edge in (*face).edge {
+            if (*edge).faces[0] == face {
+                (*edge).faces[0] = (*edge).faces[1];
+            }
+            (*edge).faces[1] = null_mut();
+        }
+        delete(pt, &raw mut (*face).el);
+    }
+}
+
+/// Unlinks an edge from its vertices and the polytope and frees it, unless it has a face.
+unsafe fn delete_edge(pt: *mut ccd_pt_t, edge: *mut ccd_pt_edge_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        if (*edge).faces[0].is_null() {
+            list_remove(&raw mut (*edge).vertex_list[0]);
+            list_remove(&raw mut (*edge).vertex_list[1]);
+            delete(pt, &raw mut (*edge).el);
+        }
+    }
+}
+
+/// Unlinks a vertex from the polytope and frees it, unless it has an edge.
+unsafe fn delete_vertex(pt: *mut ccd_pt_t, vertex: *mut ccd_pt_vertex_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        if (*vertex).edges.next == &raw mut (*vertex).edges {
+            delete(pt, &raw mut (*vertex).el);
+        }
+    }
+}
+
+unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
+    // SAFETY: Polytope; its elements are blocks of malloc.
+    unsafe {
+        list_remove(&raw mut (*element).list);
+        if (*pt).nearest == element {
+            (*pt).nearest = null_mut();
+        }
+        free(element.cast());
+    }
+}
+
+/// Ends the addition of a new element: its common part, its list, `nearest`.
+#[inline(always)]
+unsafe fn insert(
+    pt: *mut ccd_pt_t,
+    element: *mut ccd_pt_el_t,
+    kind: c_int,
+    distance: (ccd_vec3_t, Real),
+) {
+    // SAFETY: Polytope.
+    unsafe {
+        (*element).kind = kind;
+        set_distance(element, distance);
+        let list = match kind {
+            CCD_PT_VERTEX => &raw mut (*pt).vertices,
+            CCD_PT_EDGE => &raw mut (*pt).edges,
+            _ => &raw mut (*pt).faces,
+        };
+        list_append(list, &raw mut (*element).list);
+        update_nearest(pt, element);
+    }
+}
+
+#[inline(always)]
+unsafe fn set_distance(element: *mut ccd_pt_el_t, (witness, dist): (ccd_vec3_t, Real)) {
+    // SAFETY: Polytope.
+    unsafe {
+        (*element).witness = witness;
+        (*element).dist = dist;
+    }
+}
+
+/// No element is nearest: as after [`ccdPtInit`].
+unsafe fn forget_nearest(pt: *mut ccd_pt_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        (*pt).nearest = null_mut();
+        (*pt).nearest_dist = Real::MAX;
+        (*pt).nearest_type = CCD_PT_FACE;
+    }
+}
+
+/// Takes `element` for the nearest if it is: nearer wins, and at equal distance the lower
+/// type. An element at a NaN distance is never nearest.
+#[inline(always)]
+unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        let (dist, kind) = ((*element).dist, (*element).kind);
+        let nearer = if equal((*pt).nearest_dist, dist) {
+            kind < (*pt).nearest_type
+        } else {
+            dist < (*pt).nearest_dist
+        };
+        if nearer {
+            (*pt).nearest = element;
+            (*pt).nearest_dist = dist;
+            (*pt).nearest_type = kind;
+        }
+    }
+}
+
+/// ccdEq of `ccd/vec3.h`. Its absolute term is a part of the interface: it decides ties
+/// between elements, which FCL's EPA depends on.
+#[inline(always)]
+fn equal(a: Real, b: Real) -> bool {
+    let difference = (a - b).abs();
+    let (a, b) = (a.abs(), b.abs());
+    difference < EPSILON || difference < EPSILON * if b > a { b } else { a }
+}
+
+/// The point of an edge nearest to the origin and its squared distance.
+#[inline(always)]
+unsafe fn edge_distance(edge: *const ccd_pt_edge_t) -> (ccd_vec3_t, Real) {
+    // SAFETY: Polytope.
+    let [a, b] = unsafe { (*edge).vertex.map(|v| Vec3::from((*v).v.v)) };
+    let (witness, dist) = nearest::on_segment(&Vec3::zeros(), &a, &b);
+    (witness.into(), dist)
+}
+
+/// The point of a face nearest to the origin and its squared distance.
+#[inline(always)]
+unsafe fn face_distance(face: *const ccd_pt_face_t) -> (ccd_vec3_t, Real) {
+    // SAFETY: Polytope.
+    let [a, b, c] = unsafe { corners(face).map(|v| Vec3::from((*v).v.v)) };
+    let (witness, dist) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
+    (witness.into(), dist)
+}
+
+/// The two vertices of the first edge, and the one of the second that is neither.
+#[inline(always)]
+unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
+    // SAFETY: Polytope.
+    unsafe {
+        let [a, b] = (*(*face).edge[0]).vertex;
+        let [c, other] = (*(*face).edge[1]).vertex;
+        [a, b, if c == a || c == b { other } else { c }]
+    }
+}
+
+unsafe fn list_init(head: *mut ccd_list_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        (*head).next = head;
+        (*head).prev = head;
+    }
+}
+
+/// Links `node` in front of `head`: at the end of the list.
+unsafe fn list_append(head: *mut ccd_list_t, node: *mut ccd_list_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        let last = (*head).prev;
+        (*node).prev = last;
+        (*node).next = head;
+        (*last).next = node;
+        (*head).prev = node;
+    }
+}
+
+unsafe fn list_remove(node: *mut ccd_list_t) {
+    // SAFETY: Polytope.
+    unsafe {
+        (*(*node).prev).next = (*node).next;
+        (*(*node).next).prev = (*node).prev;
+    }
+}
+
+/// The elements of one of the polytope's lists, in order. The caller may delete the
+/// element it was given last.
+unsafe fn elements<T>(head: *mut ccd_list_t) -> impl Iterator<Item = *mut T> {
+    // SAFETY: Polytope.
+    let mut next = unsafe { (*head).next };
+    core::iter::from_fn(move || {
+        let node = next;
+        if node == head {
+            return None;
+        }
+        // SAFETY: Polytope; every element begins with a ccd_pt_el_t.
+        unsafe {
+            next = (*node).next;
+            Some(node.byte_sub(offset_of!(ccd_pt_el_t, list)).cast())
+        }
+    })
+}

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The two support functions that libccd exports for others to build solvers on.
+
+use core::ffi::c_void;
+
+use super::types::{ccd_support_t, ccd_t, ccd_vec3_t};
+use crate::math::Vec3;
+
+/// Writes (1, 0, 0) to `dir`: the first direction that `CCD_INIT` sets.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdFirstDirDefault(
+    _obj1: *const c_void,
+    _obj2: *const c_void,
+    dir: *mut ccd_vec3_t,
+) {
+    // SAFETY: Outputs.
+    unsafe { *dir = Vec3::x().into() };
+}
+
+/// Writes the support point of the Minkowski difference along `dir` to `supp`. `dir`
+/// reaches the callbacks as it is, unit or not, and may be part of `supp`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn __ccdSupport(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    dir: *const ccd_vec3_t,
+    ccd: *const ccd_t,
+    supp: *mut ccd_support_t,
+) {
+    // SAFETY: Pointers; copied, because the callbacks write to `supp`.
+    let dir = unsafe { *dir };
+    // SAFETY: Pointers.
+    let callbacks = unsafe { ((*ccd).support1, (*ccd).support2) };
+    let (Some(support1), Some(support2)) = callbacks else {
+        return;
+    };
+    // SAFETY: Callbacks.
+    unsafe { support1(obj1, &dir, &raw mut (*supp).v1) };
+    let opposite: ccd_vec3_t = (-Vec3::from(dir)).into();
+    // SAFETY: Callbacks.
+    unsafe { support2(obj2, &opposite, &raw mut (*supp).v2) };
+    // SAFETY: Outputs.
+    unsafe { (*supp).v = (Vec3::from((*supp).v1) - Vec3::from((*supp).v2)).into() };
+}

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Point to segment and point to triangle distances, and the library's three data objects.
+
+use super::types::ccd_vec3_t;
+use crate::math::{Real, Vec3};
+use crate::nearest;
+
+/// Squared distance, m², of point `p` from segment `ab`; the nearest point goes to
+/// `witness` unless that is NULL. The distance is that of the witness, asked for or not.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
+    p: *const ccd_vec3_t,
+    a: *const ccd_vec3_t,
+    b: *const ccd_vec3_t,
+    witness: *mut ccd_vec3_t,
+) -> Real {
+    // SAFETY: Pointers.
+    let (p, a, b) = unsafe { (read(p), read(a), read(b)) };
+    // SAFETY: Outputs.
+    unsafe { answer(nearest::on_segment(&p, &a, &b), witness) }
+}
+
+/// Squared distance, m², of point `p` from triangle `abc`; the nearest point goes to
+/// `witness` unless that is NULL. The distance is that of the witness, asked for or not.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
+    p: *const ccd_vec3_t,
+    a: *const ccd_vec3_t,
+    b: *const ccd_vec3_t,
+    c: *const ccd_vec3_t,
+    witness: *mut ccd_vec3_t,
+) -> Real {
+    // SAFETY: Pointers.
+    let (p, a, b, c) = unsafe { (read(p), read(a), read(b), read(c)) };
+    // SAFETY: Outputs.
+    unsafe { answer(nearest::on_triangle(&p, &a, &b, &c), witness) }
+}
+
+#[inline(always)]
+unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
+    // SAFETY: Pointers.
+    unsafe { *v }.into()
+}
+
+#[inline(always)]
+unsafe fn answer((point, dist2): (Vec3, Real), witness: *mut ccd_vec3_t) -> Real {
+    if !witness.is_null() {
+        // SAFETY: Outputs; the inputs were copied, so it may be one of them.
+        unsafe { *witness = point.into() };
+    }
+    dist2
+}
+
+/// Points to the origin. An object of 8 bytes, not a function: programs copy it.
+#[unsafe(no_mangle)]
+pub static mut ccd_vec3_origin: *mut ccd_vec3_t = &raw mut ORIGIN;
+
+/// Points to [`ccd_points_on_sphere_len`] unit vectors: the icosahedron subdivided
+/// once, to libccd's six decimals.
+#[unsafe(no_mangle)]
+pub static mut ccd_points_on_sphere: *mut ccd_vec3_t = (&raw mut POINTS_ON_SPHERE).cast();
+
+/// How many vectors [`ccd_points_on_sphere`] points to.
+#[unsafe(no_mangle)]
+pub static mut ccd_points_on_sphere_len: usize = 42;
+
+static mut ORIGIN: ccd_vec3_t = point(0.0, 0.0, 0.0);
+
+const fn point(x: Real, y: Real, z: Real) -> ccd_vec3_t {
+    ccd_vec3_t { v: [x, y, z] }
+}
+
+#[rustfmt::skip]
+static mut POINTS_ON_SPHERE: [ccd_vec3_t; 42] = [
+    point(0.0, -0.0, -1.0),
+    point(0.723608, -0.525725, -0.447219),
+    point(-0.276388, -0.850649, -0.447219),
+    point(-0.894426, -0.0, -0.447216),
+    point(-0.276388, 0.850649, -0.44722),
+    point(0.723608, 0.525725, -0.447219),
+    point(0.276388, -0.850649, 0.44722),
+    point(-0.723608, -0.525725, 0.447219),
+    point(-0.723608, 0.525725, 0.447219),
+    point(0.276388, 0.850649, 0.447219),
+    point(0.894426, 0.0, 0.447216),
+    point(-0.0, 0.0, 1.0),
+    point(0.425323, -0.309011, -0.850654),
+    point(-0.162456, -0.499995, -0.850654),
+    point(0.262869, -0.809012, -0.525738),
+    point(0.425323, 0.309011, -0.850654),
+    point(0.850648, -0.0, -0.525736),
+    point(-0.52573, -0.0, -0.850652),
+    point(-0.68819, -0.499997, -0.525736),
+    point(-0.162456, 0.499995, -0.850654),
+    point(-0.68819, 0.499997, -0.525736),
+    point(0.262869, 0.809012, -0.525738),
+    point(0.951058, 0.309013, 0.0),
+    point(0.951058, -0.309013, 0.0),
+    point(0.587786, -0.809017, 0.0),
+    point(0.0, -1.0, 0.0),
+    point(-0.587786, -0.809017, 0.0),
+    point(-0.951058, -0.309013, -0.0),
+    point(-0.951058, 0.309013, -0.0),
+    point(-0.587786, 0.809017, -0.0),
+    point(-0.0, 1.0, -0.0),
+    point(0.587786, 0.809017, -0.0),
+    point(0.68819, -0.499997, 0.525736),
+    point(-0.262869, -0.809012, 0.525738),
+    point(-0.850648, 0.0, 0.525736),
+    point(-0.262869, 0.809012, 0.525738),
+    point(0.68819, 0.499997, 0.525736),
+    point(0.52573, 0.0, 0.850652),
+    point(0.162456, -0.499995, 0.850654),
+    point(-0.425323, -0.309011, 0.850654),
+    point(-0.425323, 0.309011, 0.850654),
+    point(0.162456, 0.499995, 0.850654),
+];
