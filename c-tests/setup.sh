@@ -1,0 +1,93 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: 2026 The warmccd developers
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Installs the Debian packages that are missing, and nothing when none is.
+#   setup.sh        what the tests need
+#   setup.sh main   what the main job needs
+# As root, or through sudo.
+
+set -eu
+
+missing=
+
+# want_command COMMAND PACKAGE...: the packages, unless the command is there
+want_command() {
+    command -v "$1" >/dev/null 2>&1 && return
+    shift
+    missing="$missing $*"
+}
+
+# want_package PACKAGE...: those that dpkg does not know as installed
+want_package() {
+    for package in "$@"; do
+        state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) || state=absent
+        [ "$state" = installed ] || missing="$missing $package"
+    done
+}
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        env DEBIAN_FRONTEND=noninteractive "$@"
+    else
+        sudo env DEBIAN_FRONTEND=noninteractive "$@"
+    fi
+}
+
+# apt_install PACKAGE...: the package lists are fetched only if they are too old
+apt_install() {
+    as_root apt-get install -y -q --no-install-recommends "$@" </dev/null && return
+    as_root apt-get update -q </dev/null
+    as_root apt-get install -y -q --no-install-recommends "$@" </dev/null
+}
+
+if ! command -v cargo >/dev/null 2>&1; then
+    echo "setup.sh: cargo is missing: install Rust first (rustup)" >&2
+    exit 1
+fi
+
+want_command cc gcc libc6-dev
+# Any program that compiles shows that the C library's headers are there.
+if command -v cc >/dev/null 2>&1; then
+    echo '#include <stdio.h>' | cc -E -o /dev/null - 2>/dev/null || missing="$missing libc6-dev"
+fi
+
+case ${1:-tests} in
+main) ;;
+tests)
+    want_command c++ g++
+    want_command objcopy binutils
+    want_command pkg-config pkg-config
+    want_command cmake cmake
+    want_command make make
+    want_command abidiff abigail-tools
+    want_command valgrind valgrind
+    want_command python3 python3
+    if command -v dpkg-query >/dev/null 2>&1; then
+        want_package libccd-dev libfcl-dev libode-dev libmujoco-dev libdart-dev
+    fi
+    ;;
+*)
+    echo "usage: setup.sh [tests|main]" >&2
+    exit 2
+    ;;
+esac
+
+if [ -n "$missing" ]; then
+    if ! command -v apt-get >/dev/null 2>&1; then
+        echo "setup.sh: not a Debian system; install what these packages hold:$missing" >&2
+        exit 1
+    fi
+    # shellcheck disable=SC2086  # one word per package
+    apt_install $missing
+fi
+
+# The main job compares with the system's libccd where it can be had, and goes
+# on without it where not.
+if [ "${1:-tests}" = main ] && command -v apt-get >/dev/null 2>&1; then
+    missing=
+    want_package libccd2
+    if [ -n "$missing" ]; then
+        apt_install libccd2 || echo "setup.sh: no libccd2: only this library will be run" >&2
+    fi
+fi
