@@ -31,6 +31,8 @@
 
 use core::ffi::c_char;
 
+pub mod callbacks;
+pub mod collide;
 pub mod polytope;
 pub mod support;
 pub mod types;

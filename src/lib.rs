@@ -9,9 +9,18 @@
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a negated comparison is how NaN ends a loop"
+)]
+#![allow(clippy::large_enum_variant, reason = "no heap")]
 
 pub mod contact;
 pub mod ffi;
+pub mod gjk;
+pub mod local;
 pub mod math;
 pub mod nearest;
+pub mod portal;
+pub mod simplex;
 pub mod support;

@@ -47,3 +47,8 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
     let p = n.cross(&axis);
     p / p.norm()
 }
+
+/// The library's own cap on the iterations of a query, whatever the caller allows:
+/// far above what any solver needs at the finest tolerance, low enough that a
+/// query ends within milliseconds.
+pub const ITERATION_CAP: u64 = 2_000;

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! A C caller's objects and settings, as the solvers want them.
+
+use core::ffi::{c_ulong, c_void};
+
+use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
+use crate::math::{ITERATION_CAP, Real, Vec3};
+use crate::support::{MinkowskiDifference, SupportMap, SupportPoint};
+
+/// One object behind libccd's support callback.
+#[derive(Clone, Copy)]
+pub struct Object {
+    obj: *const c_void,
+    support: ccd_support_fn,
+}
+
+impl SupportMap for Object {
+    #[inline]
+    fn support(&self, dir: &Vec3) -> Vec3 {
+        // A whole-struct copy is stored in two packed moves, which a callee's
+        // vector loads can be forwarded from; three scalar stores would stall it.
+        let dir = ccd_vec3_t::from(*dir);
+        let mut point = ccd_vec3_t::default();
+        // SAFETY: [callbacks]; nothing with a destructor is alive here.
+        unsafe { (self.support)(self.obj, &dir, &mut point) };
+        point.into()
+    }
+}
+
+/// The Minkowski difference of two C objects.
+pub type Difference = MinkowskiDifference<Object, Object>;
+
+/// A query as a C caller states it.
+#[derive(Clone, Copy)]
+pub struct Query {
+    /// The caller's first object, passed through.
+    pub obj1: *const c_void,
+    /// The caller's second object, passed through.
+    pub obj2: *const c_void,
+    /// Callbacks and settings; read field by field, because callers leave the
+    /// fields that a query does not use uninitialised.
+    pub ccd: *const ccd_t,
+}
+
+impl Query {
+    /// The Minkowski difference; `None` when a support callback is NULL.
+    ///
+    /// # Safety
+    /// [ccd] of the module contract.
+    pub unsafe fn difference(&self) -> Option<Difference> {
+        // SAFETY: [ccd]; only the two fields are read.
+        let (support1, support2) = unsafe { ((*self.ccd).support1?, (*self.ccd).support2?) };
+        Some(MinkowskiDifference::new(
+            Object {
+                obj: self.obj1,
+                support: support1,
+            },
+            Object {
+                obj: self.obj2,
+                support: support2,
+            },
+        ))
+    }
+
+    /// The difference of the objects' centres, an interior point of D; `None` when
+    /// a centre callback is NULL.
+    ///
+    /// # Safety
+    /// [ccd] of the module contract.
+    pub unsafe fn centre(&self) -> Option<SupportPoint> {
+        // SAFETY: [ccd]; only the two fields are read.
+        let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
+        // SAFETY: [callbacks].
+        let (v1, v2) = unsafe { (centre_of(center1, self.obj1), centre_of(center2, self.obj2)) };
+        Some(SupportPoint { v: v1 - v2, v1, v2 })
+    }
+
+    /// The direction of the caller's first_dir callback, as it is; `None` when the
+    /// callback is NULL.
+    ///
+    /// # Safety
+    /// [ccd] of the module contract.
+    pub unsafe fn first_dir(&self) -> Option<Vec3> {
+        // SAFETY: [ccd]; only the field is read.
+        let first_dir = unsafe { (*self.ccd).first_dir? };
+        let mut dir = ccd_vec3_t::default();
+        // SAFETY: [callbacks].
+        unsafe { first_dir(self.obj1, self.obj2, &mut dir) };
+        Some(dir.into())
+    }
+
+    /// The caller's cap on iterations, or the library's own where that is lower.
+    ///
+    /// # Safety
+    /// [ccd] of the module contract.
+    pub unsafe fn max_iterations(&self) -> u64 {
+        // SAFETY: [ccd]; only the field is read.
+        let max: c_ulong = unsafe { (*self.ccd).max_iterations };
+        #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
+        ITERATION_CAP.min(max as u64)
+    }
+
+    /// mpr_tolerance as the caller set it.
+    ///
+    /// # Safety
+    /// [ccd] of the module contract.
+    pub unsafe fn mpr_tolerance(&self) -> Real {
+        // SAFETY: [ccd]; only the field is read.
+        unsafe { (*self.ccd).mpr_tolerance }
+    }
+
+    /// epa_tolerance as the caller set it.
+    ///
+    /// # Safety
+    /// [ccd] of the module contract.
+    pub unsafe fn epa_tolerance(&self) -> Real {
+        // SAFETY: [ccd]; only the field is read.
+        unsafe { (*self.ccd).epa_tolerance }
+    }
+}
+
+/// # Safety
+/// [callbacks] of the module contract.
+unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
+    let mut c = ccd_vec3_t::default();
+    // SAFETY: [callbacks].
+    unsafe { center(obj, &mut c) };
+    c.into()
+}

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! libccd's own queries: ccdMPRIntersect, ccdMPRPenetration, ccdGJKIntersect.
+
+use core::ffi::{c_int, c_void};
+
+use super::callbacks::Query;
+use super::types::{ccd_t, ccd_vec3_t};
+use crate::contact::{Answer, Penetration, Settings};
+use crate::gjk::{self, Overlap};
+use crate::local::{self, Shortcut};
+use crate::math::{Real, Vec3, unit};
+use crate::support::{Fault, SupportPoint};
+
+/// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
+const DEFAULT_TOLERANCE: Real = 1e-4;
+
+/// The tolerance a compatible call works with.
+fn or_default(tolerance: Real) -> Real {
+    // False for NaN.
+    if tolerance >= 0.0 {
+        tolerance
+    } else {
+        DEFAULT_TOLERANCE
+    }
+}
+
+/// Writes the outputs that are not NULL.
+///
+/// # Safety
+/// [outputs] of the module contract.
+pub unsafe fn write(
+    hit: &Penetration,
+    depth: *mut Real,
+    dir: *mut ccd_vec3_t,
+    pos: *mut ccd_vec3_t,
+) {
+    // SAFETY: [outputs].
+    unsafe {
+        if let Some(depth) = depth.as_mut() {
+            *depth = hit.depth;
+        }
+        if let Some(dir) = dir.as_mut() {
+            *dir = hit.dir.into();
+        }
+        if let Some(pos) = pos.as_mut() {
+            *pos = ((hit.point1 + hit.point2) * 0.5).into();
+        }
+    }
+}
+
+/// # Safety
+/// [ccd] of the module contract.
+unsafe fn mpr_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
+    // SAFETY: passed on.
+    unsafe {
+        let md = query.difference()?;
+        let centre = query.centre()?;
+        Some(gjk::intersect(&md, centre, query.max_iterations()))
+    }
+}
+
+/// Do the objects overlap? Starts from the centres.
+///
+/// Returns 1 when they overlap or touch, 0 when they do not, when a callback is
+/// NULL or a point not finite, or when the iterations run out.
+///
+/// # Safety
+/// [ccd] of the module contract.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdMPRIntersect(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+) -> c_int {
+    // SAFETY: passed on.
+    match unsafe { mpr_intersect(Query { obj1, obj2, ccd }) } {
+        Some(Ok(Overlap::Yes(_))) => 1,
+        _ => 0,
+    }
+}
+
+/// # Safety
+/// [ccd] of the module contract.
+unsafe fn gjk_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
+    // SAFETY: passed on.
+    unsafe {
+        let md = query.difference()?;
+        let first = query.first_dir()?;
+        let dir = unit(&first).unwrap_or(Vec3::x());
+        Some(md.support(&dir).and_then(|start: SupportPoint| {
+            if dir.dot(&start.v) < 0.0 {
+                return Ok(Overlap::No(dir));
+            }
+            gjk::intersect(&md, start, query.max_iterations())
+        }))
+    }
+}
+
+/// Do the objects overlap? Starts from first_dir; the centres are not asked for.
+///
+/// Returns as [`ccdMPRIntersect`].
+///
+/// # Safety
+/// [ccd] of the module contract.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdGJKIntersect(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+) -> c_int {
+    // SAFETY: passed on.
+    match unsafe { gjk_intersect(Query { obj1, obj2, ccd }) } {
+        Some(Ok(Overlap::Yes(_))) => 1,
+        _ => 0,
+    }
+}
+
+/// # Safety
+/// [ccd] of the module contract.
+unsafe fn mpr_penetration(query: Query) -> Option<Result<Answer, Fault>> {
+    // SAFETY: passed on.
+    unsafe {
+        let md = query.difference()?;
+        let centre = query.centre()?;
+        let settings = Settings {
+            tolerance: or_default(query.mpr_tolerance()),
+            max_iterations: query.max_iterations(),
+        };
+        let start = unit(&-centre.v).unwrap_or(Vec3::x());
+        Some(local::penetration(
+            &md,
+            start,
+            Shortcut::AfterFirstRay,
+            &settings,
+            |_| {},
+        ))
+    }
+}
+
+/// How deep do the objects overlap, which way out, where? Starts from the centres.
+///
+/// Returns 0 and writes the outputs that are not NULL when they overlap or touch:
+/// `depth` in metres, `dir` unit, the way obj2 moves, `pos` the middle of two
+/// witness points. Returns -1 and leaves the outputs alone when they do not, when a
+/// callback is NULL or a point not finite.
+///
+/// # Safety
+/// [ccd] and [outputs] of the module contract.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdMPRPenetration(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    depth: *mut Real,
+    dir: *mut ccd_vec3_t,
+    pos: *mut ccd_vec3_t,
+) -> c_int {
+    // SAFETY: passed on.
+    unsafe {
+        match mpr_penetration(Query { obj1, obj2, ccd }) {
+            Some(Ok(Answer::Hit(hit) | Answer::Limit(hit))) => {
+                write(&hit, depth, dir, pos);
+                0
+            }
+            _ => -1,
+        }
+    }
+}

@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Where does the origin ray leave D? (Paper, Sec. II-C, Algorithm 1.)
+//!
+//! A *portal* is a triangle of support points v1, v2, v3 of D that the ray
+//! {t d, t ≥ 0} crosses: d lies in the cone of the three. With
+//! T(a, b) = d · (a × b) that is T(1,2), T(2,3), T(3,1) ≥ 0, and the triangle's
+//! normal N = v1×v2 + v2×v3 + v3×v1 then has N · d = T(1,2) + T(2,3) + T(3,1) ≥ 0:
+//! it points outwards along the ray. The ray meets the triangle at
+//! |p| = (n · v1) / (n · d), a lower bound on how far D reaches along d, because the
+//! triangle is inscribed; and the support plane of n meets the ray at
+//! |q| = (n · s(n)) / (n · d), an upper bound. The new point s(n) splits the cone in
+//! three; the part that holds d is the next portal.
+//!
+//! Departures from the published implementation: the direction returned is the
+//! normal of the support plane, whose support value is a sound depth, not the ray;
+//! tests are signs of triple products, none has an absolute epsilon; a support
+//! plane that excludes the origin ends the search with a proof that the objects
+//! are apart, wherever it is met; the best support plane seen is kept.
+
+use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+
+/// A support plane of D: unit normal, support point, support value.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    /// Unit normal n.
+    pub normal: Vec3,
+    /// The support point s(n).
+    pub point: SupportPoint,
+    /// h(n) = n · s(n), a sound depth along n when it is not negative.
+    pub depth: Real,
+}
+
+impl Plane {
+    /// Evaluates the support plane of the unit direction `normal`.
+    #[inline]
+    pub fn of<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        normal: Vec3,
+    ) -> Result<Self, Fault> {
+        let point = md.support(&normal)?;
+        let depth = normal.dot(&point.v);
+        Ok(Self {
+            normal,
+            point,
+            depth,
+        })
+    }
+}
+
+/// Three support points whose triangle the ray along `ray` crosses.
+#[derive(Clone, Copy)]
+pub struct Portal {
+    /// Unit direction of the origin ray.
+    pub ray: Vec3,
+    /// v1, v2, v3, ordered so that the normal looks along the ray.
+    pub points: [SupportPoint; 3],
+}
+
+impl Portal {
+    /// Outward unit normal of the triangle; `None` when it has no area.
+    #[inline]
+    pub fn normal(&self) -> Option<Vec3> {
+        let [a, b, c] = &self.points;
+        unit(&(b.v - a.v).cross(&(c.v - a.v)))
+    }
+
+    /// Replaces one vertex by `w`, a point beyond the triangle, so that the ray
+    /// still crosses (paper, Algorithm 1, update_portal).
+    #[inline]
+    pub fn update(&mut self, w: SupportPoint) {
+        let c = self.ray.cross(&w.v);
+        // Which side of the plane through the ray and w each vertex is on.
+        let [t1, t2, t3] = [0, 1, 2].map(|i: usize| c.dot(&self.points[i].v));
+        let replaced = if t1 >= 0.0 {
+            if t2 <= 0.0 {
+                2
+            } else if t3 <= 0.0 {
+                0
+            } else {
+                1
+            }
+        } else if t3 >= 0.0 {
+            1
+        } else {
+            0
+        };
+        self.points[replaced] = w;
+    }
+
+    /// The points of obj1 and obj2 whose difference is where the ray crosses the
+    /// triangle: both are convex combinations of the objects' own support points.
+    pub fn witnesses(&self) -> (Vec3, Vec3) {
+        let [a, b, c] = &self.points;
+        let weights = [
+            triple(&self.ray, &b.v, &c.v),
+            triple(&self.ray, &c.v, &a.v),
+            triple(&self.ray, &a.v, &b.v),
+        ]
+        .map(|t| t.max(0.0));
+        let sum: Real = weights.iter().sum();
+        if !(sum > 0.0) {
+            return (a.v1, a.v2);
+        }
+        let mut p1 = Vec3::zeros();
+        let mut p2 = Vec3::zeros();
+        for (p, t) in self.points.iter().zip(weights) {
+            p1 += p.v1 * (t / sum);
+            p2 += p.v2 * (t / sum);
+        }
+        (p1, p2)
+    }
+}
+
+#[inline]
+fn triple(a: &Vec3, b: &Vec3, c: &Vec3) -> Real {
+    a.dot(&b.cross(c))
+}
+
+/// Rounding of a support point of this size: below it a depth is zero, a gap a touch.
+#[inline]
+pub fn rounding(size: Real) -> Real {
+    8.0 * EPSILON * size
+}
+
+/// What portal discovery came to.
+pub enum Found {
+    /// A portal.
+    Portal(Portal),
+    /// The ray passes through its own support point: it leaves D there, and its
+    /// direction is the normal of a support plane there (stationary).
+    Vertex,
+    /// `best` has depth zero within rounding: no direction is shallower.
+    Touch,
+    /// This unit direction separates.
+    Miss(Vec3),
+    /// The iterations were used up.
+    Limit,
+}
+
+/// Portal discovery (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
+/// Game Programming Gems 7), for the ray along `first.normal`.
+///
+/// `v0 = -d`, scaled to the portal's size, stands in for the interior point of the
+/// original algorithm: only planes through the ray matter.
+/// `budget` counts iterations down; `best` keeps the lowest plane seen.
+pub fn find_portal<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    first: &Plane,
+    best: &mut Plane,
+    budget: &mut u64,
+) -> Result<Found, Fault> {
+    let d = first.normal;
+    if first.depth < 0.0 {
+        return Ok(Found::Miss(d));
+    }
+    let size = first.point.magnitude();
+    let side = first.point.v.cross(&d);
+    // Also true for NaN: a ray whose own support point cannot be told from it.
+    if !(side.norm() > rounding(size)) {
+        return Ok(Found::Vertex);
+    }
+    let Some(side) = unit(&side) else {
+        return Ok(Found::Vertex);
+    };
+    let second = match probe(md, side, best)? {
+        Probe::Plane(p) => p,
+        Probe::Miss(n) => return Ok(Found::Miss(n)),
+    };
+    if !(second.depth > rounding(size.max(second.point.magnitude()))) {
+        return Ok(Found::Touch);
+    }
+    // T(v2, v1) = side · v2 · |v1 × d| > 0: with the two in this order a third
+    // point beyond the plane (v0, v1, v2) closes the cone.
+    let mut portal = Portal {
+        ray: d,
+        points: [second.point, first.point, first.point],
+    };
+    while *budget > 0 {
+        *budget -= 1;
+        let [a, b, _] = &portal.points;
+        let v0 = -d * a.v.amax().max(b.v.amax());
+        let Some(n) = unit(&(a.v - v0).cross(&(b.v - v0))) else {
+            return Ok(Found::Touch);
+        };
+        let third = match probe(md, n, best)? {
+            Probe::Plane(p) => p,
+            Probe::Miss(n) => return Ok(Found::Miss(n)),
+        };
+        let w = third.point;
+        if triple(&d, &a.v, &w.v) > 0.0 {
+            portal.points[1] = w;
+        } else if triple(&d, &w.v, &b.v) > 0.0 {
+            portal.points[0] = w;
+        } else {
+            portal.points[2] = w;
+            return Ok(Found::Portal(portal));
+        }
+    }
+    Ok(Found::Limit)
+}
+
+enum Probe {
+    Plane(Plane),
+    Miss(Vec3),
+}
+
+#[inline]
+fn probe<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    n: Vec3,
+    best: &mut Plane,
+) -> Result<Probe, Fault> {
+    let plane = Plane::of(md, n)?;
+    if plane.depth < 0.0 {
+        return Ok(Probe::Miss(n));
+    }
+    if plane.depth < best.depth {
+        *best = plane;
+    }
+    Ok(Probe::Plane(plane))
+}
+
+/// Where [`mpr`] stopped.
+pub enum Exit {
+    /// The ray leaves D between the portal and this support plane, which are no
+    /// farther apart than the tolerance.
+    Converged(Portal, Plane),
+    /// Algorithm 5's shortcut: the support value of this plane is no greater than
+    /// the distance |p| to the portal along the ray.
+    Shortcut(Plane),
+    /// See [`Found`].
+    Vertex,
+    /// See [`Found`].
+    Touch,
+    /// See [`Found`].
+    Miss(Vec3),
+    /// The iterations were used up; the last portal if there was one.
+    Limit(Option<Portal>),
+}
+
+/// How the distance between portal and support plane is measured.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// Along the normal (Algorithm 1).
+    Normal,
+    /// Along the ray (directed penetration).
+    Ray,
+}
+
+/// Follows the origin ray along `first.normal` to the boundary of D: Algorithm 1,
+/// and with `shortcut` Algorithm 5 of the paper.
+pub fn mpr<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    first: &Plane,
+    tolerance: Real,
+    measure: Measure,
+    shortcut: bool,
+    best: &mut Plane,
+    budget: &mut u64,
+) -> Result<Exit, Fault> {
+    let mut portal = match find_portal(md, first, best, budget)? {
+        Found::Portal(p) => p,
+        Found::Vertex => return Ok(Exit::Vertex),
+        Found::Touch => return Ok(Exit::Touch),
+        Found::Miss(n) => return Ok(Exit::Miss(n)),
+        Found::Limit => return Ok(Exit::Limit(None)),
+    };
+    while *budget > 0 {
+        *budget -= 1;
+        let Some(n) = portal.normal() else {
+            // Three points on a line: the ray leaves D through an edge that the
+            // arithmetic cannot split further.
+            return Ok(Exit::Limit(Some(portal)));
+        };
+        let plane = match probe(md, n, best)? {
+            Probe::Plane(p) => p,
+            Probe::Miss(n) => return Ok(Exit::Miss(n)),
+        };
+        let along = n.dot(&first.normal);
+        let inner = n.dot(&portal.points[0].v);
+        let size = plane.point.magnitude();
+        let mut gap = plane.depth - inner;
+        let mut floor = rounding(size);
+        if measure == Measure::Ray {
+            gap /= along;
+            floor /= along;
+        }
+        // Within the tolerance and the origin on the inner side of the portal: a
+        // support plane that may still exclude the origin is no answer yet. NaN
+        // (a plane that holds the ray) ends the loop.
+        if !(gap > floor) || (gap <= tolerance && inner >= 0.0) {
+            return Ok(Exit::Converged(portal, plane));
+        }
+        if shortcut && plane.depth * along <= inner {
+            return Ok(Exit::Shortcut(plane));
+        }
+        portal.update(plane.point);
+    }
+    Ok(Exit::Limit(Some(portal)))
+}

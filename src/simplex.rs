@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The point of a simplex nearest to the origin.
+//!
+//! Voronoi regions of vertex, edge, face as in C. Ericson, "Real-Time Collision
+//! Detection", Sec. 5.1. Every test is the sign of a product of the simplex's own
+//! vectors, so it is free of scale; a face whose area vanishes falls back to its
+//! edges, an edge whose length vanishes to its ends.
+
+use crate::math::{Real, Vec3};
+use crate::support::SupportPoint;
+
+/// Up to four support points of D.
+#[derive(Clone, Copy)]
+pub struct Simplex {
+    points: [SupportPoint; 4],
+    len: usize,
+}
+
+/// Where the origin lies, seen from a simplex.
+pub enum Nearest {
+    /// Inside the tetrahedron (or on it): the origin belongs to D.
+    Inside,
+    /// Outside; this point of the simplex is nearest to the origin.
+    Outside(Vec3),
+}
+
+impl Simplex {
+    /// A simplex of one point.
+    #[inline]
+    pub fn new(p: SupportPoint) -> Self {
+        Self {
+            points: [p; 4],
+            len: 1,
+        }
+    }
+
+    /// The points of the simplex.
+    #[inline]
+    pub fn points(&self) -> &[SupportPoint] {
+        &self.points[..self.len.min(4)]
+    }
+
+    /// Adds a point; a fifth replaces the newest.
+    #[inline]
+    pub fn push(&mut self, p: SupportPoint) {
+        let at = self.len.min(3);
+        self.points[at] = p;
+        self.len = at + 1;
+    }
+
+    #[inline]
+    fn keep(&mut self, which: &[usize]) {
+        let old = self.points;
+        for (to, &from) in which.iter().enumerate() {
+            self.points[to] = old[from];
+        }
+        self.len = which.len();
+    }
+
+    /// Reduces the simplex to the face that holds its point nearest to the origin.
+    #[inline]
+    pub fn reduce(&mut self) -> Nearest {
+        let p = |i: usize| self.points[i].v;
+        match self.len {
+            1 => Nearest::Outside(p(0)),
+            2 => {
+                let (v, face) = nearest_on_segment(&p(0), &p(1));
+                self.keep(face.indices(&[0, 1, 0]).as_slice());
+                Nearest::Outside(v)
+            }
+            3 => {
+                let (v, face) = nearest_on_triangle(&p(0), &p(1), &p(2));
+                self.keep(face.indices(&[0, 1, 2]).as_slice());
+                Nearest::Outside(v)
+            }
+            _ => self.reduce_tetrahedron(),
+        }
+    }
+
+    fn reduce_tetrahedron(&mut self) -> Nearest {
+        // Each face with the vertex opposite to it.
+        const FACES: [([usize; 3], usize); 4] = [
+            ([0, 1, 3], 2),
+            ([1, 2, 3], 0),
+            ([2, 0, 3], 1),
+            ([0, 1, 2], 3),
+        ];
+        let mut best: Option<(Real, Vec3, Face, [usize; 3])> = None;
+        for (f, opposite) in FACES {
+            let [a, b, c] = f.map(|i| self.points[i].v);
+            let n = (b - a).cross(&(c - a));
+            let origin = -n.dot(&a);
+            let inner = n.dot(&(self.points[opposite].v - a));
+            // The origin is on the inner side of this face only if both products
+            // have one sign; a flat tetrahedron (product 0) or NaN examines the face.
+            if origin * inner > 0.0 {
+                continue;
+            }
+            let (v, face) = nearest_on_triangle(&a, &b, &c);
+            let d = v.norm_squared();
+            if best.as_ref().is_none_or(|x| d < x.0) {
+                best = Some((d, v, face, f));
+            }
+        }
+        match best {
+            None => Nearest::Inside,
+            Some((_, v, face, f)) => {
+                self.keep(face.indices(&f).as_slice());
+                Nearest::Outside(v)
+            }
+        }
+    }
+}
+
+/// Which of a triangle's vertices span the face that holds the nearest point.
+#[derive(Clone, Copy)]
+enum Face {
+    Vertex(usize),
+    Edge(usize, usize),
+    All,
+}
+
+/// One to three indices, without a heap.
+struct Indices([usize; 3], usize);
+
+impl Indices {
+    #[inline]
+    fn as_slice(&self) -> &[usize] {
+        &self.0[..self.1]
+    }
+}
+
+impl Face {
+    #[inline]
+    fn indices(self, of: &[usize; 3]) -> Indices {
+        match self {
+            Face::Vertex(i) => Indices([of[i], 0, 0], 1),
+            Face::Edge(i, j) => Indices([of[i], of[j], 0], 2),
+            Face::All => Indices(*of, 3),
+        }
+    }
+}
+
+#[inline]
+fn nearest_on_segment(a: &Vec3, b: &Vec3) -> (Vec3, Face) {
+    let ab = b - a;
+    let t = -a.dot(&ab);
+    let len2 = ab.norm_squared();
+    // `!(t > 0)` and `!(t < len2)` send NaN and a segment without length to an end.
+    if !(t > 0.0) {
+        (*a, Face::Vertex(0))
+    } else if !(t < len2) {
+        (*b, Face::Vertex(1))
+    } else {
+        (a + ab * (t / len2), Face::Edge(0, 1))
+    }
+}
+
+#[inline]
+fn nearest_on_triangle(a: &Vec3, b: &Vec3, c: &Vec3) -> (Vec3, Face) {
+    let ab = b - a;
+    let ac = c - a;
+    let n = ab.cross(&ac);
+    let nn = n.norm_squared();
+    // Twice the signed areas of the triangles that the projected origin makes
+    // with each edge, as multiples of n; all positive: it is inside.
+    let u = n.dot(&b.cross(c));
+    let v = n.dot(&c.cross(a));
+    let w = n.dot(&a.cross(b));
+    if u > 0.0 && v > 0.0 && w > 0.0 && nn > 0.0 {
+        return (n * (a.dot(&n) / nn), Face::All);
+    }
+    // Outside an edge, or without area: the nearest of the edges that can hold it.
+    let mut best = nearest_on_segment(a, b);
+    let mut best_d = best.0.norm_squared();
+    for (i, j, p, q) in [(1, 2, b, c), (2, 0, c, a)] {
+        let (x, face) = nearest_on_segment(p, q);
+        let d = x.norm_squared();
+        if d < best_d {
+            best_d = d;
+            best = (
+                x,
+                match face {
+                    Face::Vertex(0) => Face::Vertex(i),
+                    Face::Vertex(_) => Face::Vertex(j),
+                    _ => Face::Edge(i, j),
+                },
+            );
+        }
+    }
+    best
+}
