@@ -1,0 +1,367 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * A pen of falling bodies in ODE: boxes, cylinders, capsules and convex hulls
+ * between a floor and four walls. Metres, kilograms, seconds; z is up.
+ * The recorder and the simulations of the swap test share it.
+ */
+#ifndef ODE_SCENE_H
+#define ODE_SCENE_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <ode/ode.h>
+#include "swap/uniform.h"
+
+enum { SCENE_BODIES = 96, SCENE_SHAPES = 96, HULL_VERTICES = 16 };
+enum { HULL_FACES = 2 * HULL_VERTICES - 4 };
+
+/* Kinds as in shapes.h: the numbers go into files. */
+enum scene_kind { SCENE_CAPSULE = 1, SCENE_BOX = 2, SCENE_CYLINDER = 3, SCENE_HULL = 6 };
+
+typedef struct {
+    int kind;
+    double p[3];                /* capsule, cylinder: radius, half length; box: half extents */
+    int vertices, faces;        /* hull alone, as all that follows */
+    double vertex[3 * HULL_VERTICES];
+    double plane[4 * HULL_FACES];
+    unsigned polygon[4 * HULL_FACES];
+} scene_shape_t;
+
+typedef struct {
+    dWorldID world;
+    dSpaceID space;
+    dJointGroupID contacts;
+    int shapes, bodies;
+    scene_shape_t shape[SCENE_SHAPES];
+    int shape_of[SCENE_BODIES];
+    dGeomID geom[SCENE_BODIES];
+    dBodyID body[SCENE_BODIES]; /* NULL for what stands still */
+    double half_width;          /* the pen is 2 half_width wide */
+    /* sums over the contacts of the last step */
+    long contact_count;
+    double depth_sum, depth_max;
+    long bad_contacts;          /* a normal or depth that is not finite, a normal that is not unit */
+    /* where set, told every pair the broad phase lets through */
+    void (*on_pair)(void *user, int a, int b);
+    void *user;
+} scene_t;
+
+/*
+ * The hull of points in general position on a sphere: every triple that has
+ * all other points on one side is a face. n^4 steps, for a dozen points.
+ */
+static void scene_hull_faces(scene_shape_t *s)
+{
+    int i, j, k, l;
+    const int n = s->vertices;
+    s->faces = 0;
+    for (i = 0; i < n; i++)
+        for (j = i + 1; j < n; j++)
+            for (k = j + 1; k < n; k++) {
+                const double *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
+                double u[3], v[3], m[3], d, length;
+                int above = 0, below = 0, *side;
+                for (l = 0; l < 3; l++) {
+                    u[l] = b[l] - a[l];
+                    v[l] = c[l] - a[l];
+                }
+                dCalcVectorCross3(m, u, v);
+                length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+                for (l = 0; l < 3; l++)
+                    m[l] /= length;
+                d = m[0] * a[0] + m[1] * a[1] + m[2] * a[2];
+                for (l = 0; l < n; l++) {
+                    const double *x = s->vertex + 3 * l;
+                    if (l == i || l == j || l == k)
+                        continue;
+                    side = m[0] * x[0] + m[1] * x[1] + m[2] * x[2] > d ? &above : &below;
+                    ++*side;
+                }
+                if (above && below)
+                    continue;
+                if (s->faces == HULL_FACES) {
+                    fprintf(stderr, "hull: points not in general position\n");
+                    exit(2);
+                }
+                {
+                    const double sign = above ? -1 : 1;
+                    double *plane = s->plane + 4 * s->faces;
+                    unsigned *polygon = s->polygon + 4 * s->faces;
+                    for (l = 0; l < 3; l++)
+                        plane[l] = sign * m[l];
+                    plane[3] = sign * d;
+                    polygon[0] = 3;
+                    polygon[1] = (unsigned)i;
+                    polygon[2] = (unsigned)(above ? k : j);
+                    polygon[3] = (unsigned)(above ? j : k);
+                    s->faces++;
+                }
+            }
+}
+
+/* The distance of the origin from the nearest face plane, negative outside. */
+static double scene_hull_inradius(const scene_shape_t *s)
+{
+    double least = HUGE_VAL;
+    int i;
+    for (i = 0; i < s->faces; i++)
+        least = fmin(least, s->plane[4 * i + 3]);
+    return least;
+}
+
+/* Random points on an ellipsoid with these radii, not too close to each other. */
+static void scene_hull_vertices(scene_shape_t *s, double rx, double ry, double rz)
+{
+    int i, j;
+    const int vertices = s->vertices;
+    for (i = 0; i < vertices; i++) {
+        double v[3], length, nearest;
+        const double r[3] = { rx, ry, rz };
+        /* keep the points apart: nearly equal ones make needle faces */
+        do {
+            for (j = 0; j < 3; j++)
+                v[j] = uniform(-1, 1);
+            length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+            for (j = 0, nearest = 4; j < i && length > 0; j++) {
+                const double *w = s->vertex + 3 * j;
+                double x = v[0] / length - w[0] / rx, y = v[1] / length - w[1] / ry, z = v[2] / length - w[2] / rz;
+                nearest = fmin(nearest, x * x + y * y + z * z);
+            }
+        } while (length > 1 || length < 0.01 || nearest < 0.15);
+        for (j = 0; j < 3; j++)
+            s->vertex[3 * i + j] = (float)(r[j] * v[j] / length);
+    }
+}
+
+/* A random hull that has the origin well inside, as ODE wants it. */
+static void scene_hull(scene_shape_t *s, int vertices, double rx, double ry, double rz)
+{
+    s->kind = SCENE_HULL;
+    s->vertices = vertices;
+    do {
+        scene_hull_vertices(s, rx, ry, rz);
+        scene_hull_faces(s);
+    } while (scene_hull_inradius(s) < 0.2 * fmin(rx, fmin(ry, rz)));
+}
+
+static dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
+{
+    switch (s->kind) {
+    case SCENE_CAPSULE: return dCreateCapsule(scene->space, s->p[0], 2 * s->p[1]);
+    case SCENE_BOX: return dCreateBox(scene->space, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]);
+    case SCENE_CYLINDER: return dCreateCylinder(scene->space, s->p[0], 2 * s->p[1]);
+    default: return dCreateConvex(scene->space, s->plane, (unsigned)s->faces, s->vertex, (unsigned)s->vertices, s->polygon);
+    }
+}
+
+static int scene_add(scene_t *scene, int shape)
+{
+    const scene_shape_t *s = &scene->shape[shape];
+    const int i = scene->bodies++;
+    scene->shape_of[i] = shape;
+    scene->geom[i] = scene_geom(scene, s);
+    dGeomSetData(scene->geom[i], (void *)(intptr_t)i);
+    scene->body[i] = NULL;
+    return i;
+}
+
+/* A body of density 1000. A hull is given the mass and inertia of a ball of its mean radius. */
+static void scene_make_dynamic(scene_t *scene, int i)
+{
+    const scene_shape_t *s = &scene->shape[scene->shape_of[i]];
+    const double density = 1000;
+    dMass mass;
+    switch (s->kind) {
+    case SCENE_CAPSULE: dMassSetCapsule(&mass, density, 3, s->p[0], 2 * s->p[1]); break;
+    case SCENE_BOX: dMassSetBox(&mass, density, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]); break;
+    case SCENE_CYLINDER: dMassSetCylinder(&mass, density, 3, s->p[0], 2 * s->p[1]); break;
+    default: {
+        double r = 0;
+        int v;
+        for (v = 0; v < s->vertices; v++)
+            r += dCalcVectorLength3(s->vertex + 3 * v) / s->vertices;
+        dMassSetSphere(&mass, density, 0.8 * r);
+    }
+    }
+    scene->body[i] = dBodyCreate(scene->world);
+    dBodySetMass(scene->body[i], &mass);
+    dGeomSetBody(scene->geom[i], scene->body[i]);
+}
+
+/* Shape number for body i of the pile: kinds by turns, sizes around 0.1 m, as floats so that a file holds them exactly. */
+static int scene_pile_shape(scene_t *scene, int i)
+{
+    scene_shape_t *s = &scene->shape[scene->shapes];
+    int j;
+    memset(s, 0, sizeof *s);
+    switch (i % 4) {
+    case 0: s->kind = SCENE_BOX; break;
+    case 1: s->kind = SCENE_CYLINDER; break;
+    case 2: s->kind = SCENE_CAPSULE; break;
+    default: s->kind = SCENE_HULL; break;
+    }
+    if (s->kind == SCENE_HULL)
+        scene_hull(s, 8 + i % 9, uniform(0.07, 0.14), uniform(0.07, 0.14), uniform(0.07, 0.14));
+    else
+        for (j = 0; j < 3; j++)
+            s->p[j] = (float)uniform(0.05, 0.13);
+    if (s->kind == SCENE_CAPSULE)
+        s->p[0] *= 0.75;
+    s->p[0] = (float)s->p[0];
+    return scene->shapes++;
+}
+
+static void scene_world(scene_t *scene, unsigned long seed)
+{
+    memset(scene, 0, sizeof *scene);
+    scene->world = dWorldCreate();
+    scene->space = dHashSpaceCreate(0);
+    scene->contacts = dJointGroupCreate(0);
+    dHashSpaceSetLevels(scene->space, -4, 2);
+    dWorldSetGravity(scene->world, 0, 0, -9.81);
+    dWorldSetERP(scene->world, 0.2);
+    dWorldSetCFM(scene->world, 1e-6);
+    dWorldSetContactSurfaceLayer(scene->world, 1e-3);
+    dWorldSetContactMaxCorrectingVel(scene->world, 2);
+    dWorldSetQuickStepNumIterations(scene->world, 30);
+    dWorldSetLinearDamping(scene->world, 5e-4);
+    dWorldSetAngularDamping(scene->world, 2e-3);
+    dRandSetSeed(seed);
+    uniform_seed(seed);
+}
+
+/* Floor (top at z = 0) and four walls: thick boxes. */
+static void scene_pen(scene_t *scene, double half_width)
+{
+    int i;
+    scene_shape_t *wall = &scene->shape[scene->shapes++];
+    scene->half_width = half_width;
+    memset(wall, 0, sizeof *wall);
+    wall->kind = SCENE_BOX;
+    wall->p[0] = wall->p[1] = wall->p[2] = 2;
+    dGeomSetPosition(scene->geom[scene_add(scene, (int)(wall - scene->shape))], 0, 0, -2);
+    for (i = 0; i < 4; i++) {
+        const double at = (i & 1 ? 1 : -1) * (float)(half_width + 2);
+        const int b = scene_add(scene, (int)(wall - scene->shape));
+        dGeomSetPosition(scene->geom[b], i & 2 ? at : 0, i & 2 ? 0 : at, 1.5);
+    }
+}
+
+/*
+ * The pile: `count` bodies in layers, `layer` apart, above the floor of a pen, turned at
+ * random. `nudge` moves every start by up to that much, by a stream of its own,
+ * so that two nudged starts differ in nothing else.
+ */
+static void scene_pile(scene_t *scene, int count, double half_width, double layer, unsigned long nudge_seed, double nudge)
+{
+    int i, j;
+    const double pitch = 0.32;
+    const int side = (int)((2 * half_width - 0.1) / pitch);
+    scene_pen(scene, half_width);
+    for (i = 0; i < count; i++) {
+        const int b = scene_add(scene, scene_pile_shape(scene, i));
+        const int level = i / (side * side), x = i % side, y = i / side % side;
+        dQuaternion q;
+        scene_make_dynamic(scene, b);
+        uniform_rotation(q);
+        dBodySetQuaternion(scene->body[b], q);
+        dBodySetPosition(scene->body[b], (x - 0.5 * (side - 1)) * pitch + uniform(-0.02, 0.02),
+                         (y - 0.5 * (side - 1)) * pitch + uniform(-0.02, 0.02), 0.25 + layer * level);
+    }
+    uniform_seed(nudge_seed);
+    for (i = 0; i < scene->bodies; i++)
+        if (scene->body[i]) {
+            double at[3];
+            for (j = 0; j < 3; j++)
+                at[j] = dBodyGetPosition(scene->body[i])[j] + uniform(-nudge, nudge);
+            dBodySetPosition(scene->body[i], at[0], at[1], at[2]);
+        }
+    dRandSetSeed(nudge_seed);
+}
+
+static void scene_near(void *data, dGeomID o1, dGeomID o2)
+{
+    scene_t *scene = (scene_t *)data;
+    enum { MOST = 8 };
+    dContact contact[MOST];
+    const dBodyID b1 = dGeomGetBody(o1), b2 = dGeomGetBody(o2);
+    int i, n;
+    if (!b1 && !b2)
+        return;
+    if (scene->on_pair)
+        scene->on_pair(scene->user, (int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2));
+    n = dCollide(o1, o2, MOST, &contact[0].geom, sizeof contact[0]);
+    for (i = 0; i < n; i++) {
+        const dContactGeom *g = &contact[i].geom;
+        const double length = dCalcVectorLength3(g->normal);
+        /* negated so that NaN counts as bad */
+        if (!(fabs(length - 1) < 1e-6) || !(g->depth < 1e3) || !(fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6)) {
+            scene->bad_contacts++;
+            continue;
+        }
+        contact[i].surface.mode = dContactApprox1;
+        contact[i].surface.mu = 0.6;
+        dJointAttach(dJointCreateContact(scene->world, scene->contacts, &contact[i]), b1, b2);
+        scene->contact_count++;
+        scene->depth_sum += g->depth;
+        scene->depth_max = fmax(scene->depth_max, g->depth);
+    }
+}
+
+static void scene_step(scene_t *scene, double h)
+{
+    scene->contact_count = 0;
+    scene->depth_sum = scene->depth_max = 0;
+    dSpaceCollide(scene->space, scene, scene_near);
+    dWorldQuickStep(scene->world, h);
+    dJointGroupEmpty(scene->contacts);
+}
+
+/* Joules of motion; and of height above the floor, where `potential` is not NULL. */
+static double scene_energy(const scene_t *scene, double *potential)
+{
+    double kinetic = 0, height = 0;
+    int i, j, k;
+    for (i = 0; i < scene->bodies; i++)
+        if (scene->body[i]) {
+            const dReal *v = dBodyGetLinearVel(scene->body[i]), *R = dBodyGetRotation(scene->body[i]);
+            const dReal *w = dBodyGetAngularVel(scene->body[i]);
+            double local[3];
+            dMass m;
+            dBodyGetMass(scene->body[i], &m);
+            for (j = 0; j < 3; j++)
+                local[j] = R[j] * w[0] + R[4 + j] * w[1] + R[8 + j] * w[2];
+            kinetic += 0.5 * m.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+            for (j = 0; j < 3; j++)
+                for (k = 0; k < 3; k++)
+                    kinetic += 0.5 * local[j] * m.I[4 * j + k] * local[k];
+            height += 9.81 * m.mass * dBodyGetPosition(scene->body[i])[2];
+        }
+    if (potential)
+        *potential = height;
+    return kinetic;
+}
+
+/* Bodies whose centre is outside the pen, below the floor, or nowhere. */
+static int scene_escaped(const scene_t *scene)
+{
+    int i, out = 0;
+    for (i = 0; i < scene->bodies; i++)
+        if (scene->body[i]) {
+            const dReal *p = dBodyGetPosition(scene->body[i]);
+            out += !(fabs(p[0]) < scene->half_width && fabs(p[1]) < scene->half_width && p[2] > 0 && p[2] < 20);
+        }
+    return out;
+}
+
+static void scene_free(scene_t *scene)
+{
+    dJointGroupDestroy(scene->contacts);
+    dSpaceDestroy(scene->space);
+    dWorldDestroy(scene->world);
+}
+
+#endif

@@ -1,0 +1,44 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Repeatable random numbers and rotations for the swap programs. */
+
+#ifndef SWAP_UNIFORM_H
+#define SWAP_UNIFORM_H
+
+#include <math.h>
+#include <stdint.h>
+
+/* xorshift64*: the same numbers on every machine. */
+static uint64_t uniform_state = 1;
+static inline double uniform(double low, double high)
+{
+    uniform_state ^= uniform_state >> 12;
+    uniform_state ^= uniform_state << 25;
+    uniform_state ^= uniform_state >> 27;
+    return low + (high - low) * (double)((uniform_state * 2685821657736338717ull) >> 11) * 0x1p-53;
+}
+static inline void uniform_seed(uint64_t seed)
+{
+    int i;
+    uniform_state = seed * 0x9E3779B97F4A7C15ull + 1;
+    for (i = 0; i < 8; i++)
+        uniform(0, 1);
+}
+
+/* A uniformly random rotation as a unit quaternion (w, x, y, z). */
+static inline void uniform_rotation(double q[4])
+{
+    double length;
+    int i;
+    do {
+        for (length = 0, i = 0; i < 4; i++) {
+            q[i] = uniform(-1, 1);
+            length += q[i] * q[i];
+        }
+    } while (length > 1 || length < 0.01);
+    for (i = 0; i < 4; i++)
+        q[i] /= sqrt(length);
+}
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Stands between a consumer (FCL, ODE, MuJoCo, DART) and whichever libccd the
+ * process runs on, and looks at every penetration query.
+ *
+ * The program that includes this file defines ccdMPRPenetration and
+ * ccdMPRIntersect itself; the dynamic linker binds the consumer's calls to the
+ * program's, which pass them on to the libccd.so.2 that is loaded. */
+
+#ifndef SWAP_WATCH_H
+#define SWAP_WATCH_H
+
+#include "harness/identity.h"
+#include <ccd/ccd.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+static struct {
+    unsigned long queries, hits;
+    unsigned long zero, not_finite, not_unit; /* hits with such a direction (or depth) */
+    unsigned long slanted; /* hits whose direction is not the normal of a plane that depth brings apart */
+    unsigned long supports; /* of D: one is support1 and support2 */
+} watched;
+
+typedef int (*watch_penetration_fn)(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
+typedef int (*watch_intersect_fn)(const void *, const void *, const ccd_t *);
+
+/* The consumer's callbacks, behind a count. One query at a time: the simulations here have one thread. */
+static ccd_support_fn watch_support1;
+static void watch_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
+{
+    watched.supports++;
+    watch_support1(obj, dir, v);
+}
+
+static void *watch_next(const char *name)
+{
+    void *symbol = dlsym(RTLD_NEXT, name);
+    if (!symbol) {
+        fprintf(stderr, "no %s in the libccd that is loaded\n", name);
+        exit(2);
+    }
+    return symbol;
+}
+
+/* h(dir): how far obj2 must move along dir. And the size of the numbers it was computed from. */
+static double watch_support_value(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *dir, double *size)
+{
+    ccd_vec3_t a, b, back = *dir;
+    ccdVec3Scale(&back, -1);
+    ccd->support1(obj1, dir, &a);
+    ccd->support2(obj2, &back, &b);
+    *size = sqrt(ccdVec3Len2(&a)) + sqrt(ccdVec3Len2(&b));
+    return (double)(ccdVec3Dot(&a, dir) - ccdVec3Dot(&b, dir));
+}
+
+int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    static watch_penetration_fn next;
+    const ccd_support_fn outer = watch_support1;
+    ccd_t counted = *ccd;
+    int hit;
+    if (!next) {
+        void *symbol = watch_next("ccdMPRPenetration");
+        memcpy(&next, &symbol, sizeof next);
+    }
+    watch_support1 = ccd->support1;
+    counted.support1 = watch_count;
+    hit = next(obj1, obj2, &counted, depth, dir, pos);
+    watch_support1 = outer;
+    watched.queries++;
+    if (hit != 0)
+        return hit;
+    watched.hits++;
+    if (!isfinite(*depth + dir->v[0] + dir->v[1] + dir->v[2] + pos->v[0] + pos->v[1] + pos->v[2]))
+        watched.not_finite++;
+    else if (ccdVec3Len2(dir) == 0)
+        watched.zero++;
+    else if (fabs(sqrt(ccdVec3Len2(dir)) - 1) > 1e-9)
+        watched.not_unit++;
+    else {
+        double size;
+        /* MPR's own tolerance is a depth too */
+        if (!(*depth >= watch_support_value(obj1, obj2, ccd, dir, &size) - ccd->mpr_tolerance - 1e-12 * size))
+            watched.slanted++;
+    }
+    return hit;
+}
+
+int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
+{
+    static watch_intersect_fn next;
+    int hit;
+    if (!next) {
+        void *symbol = watch_next("ccdMPRIntersect");
+        memcpy(&next, &symbol, sizeof next);
+    }
+    hit = next(obj1, obj2, ccd);
+    watched.queries++;
+    watched.hits += hit == 1;
+    return hit;
+}
+
+/* Which library is under the consumer: the run's first line. */
+static void watch_library(void)
+{
+    const char *name = running_ccd();
+    printf("library %s\n", name ? name : "libccd");
+}
+
+static void watch_report(void)
+{
+    printf("watched queries %lu hits %lu zero %lu not_finite %lu not_unit %lu slanted %lu supports %lu\n", watched.queries,
+           watched.hits, watched.zero, watched.not_finite, watched.not_unit, watched.slanted, watched.supports);
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
