@@ -8,8 +8,9 @@ mod harness;
 
 use harness::{Precision, Program};
 
-fn name(precision: Precision) -> String {
-    format!("warmccd {} {}", env!("CARGO_PKG_VERSION"), precision.name())
+fn name() -> String {
+    let precision = Precision::CURRENT.name();
+    format!("warmccd {} {precision}", env!("CARGO_PKG_VERSION"))
 }
 
 fn identity() -> Program {
@@ -23,23 +24,26 @@ const NO_ARGS: [&str; 0] = [];
 
 #[test]
 fn shared_and_static_programs_run_on_ours() {
-    for precision in [Precision::Double, Precision::Single] {
-        let shared = identity().precision(precision).link_ours_shared().build();
-        let archive = identity().precision(precision).link_ours_static().build();
-        let expected = format!("libccd: {}\n", name(precision));
-        assert_eq!(shared.run(NO_ARGS).stdout, expected);
-        assert_eq!(archive.run(NO_ARGS).stdout, expected);
-    }
+    let expected = format!("libccd: {}\n", name());
+    assert_eq!(
+        identity().link_ours_shared().build().run(NO_ARGS).stdout,
+        expected
+    );
+    assert_eq!(
+        identity().link_ours_static().build().run(NO_ARGS).stdout,
+        expected
+    );
 }
 
+/// The system's library is double.
+#[cfg(not(feature = "single"))]
 #[test]
 fn one_process_holds_both() {
     let both = identity()
-        .precision(Precision::Double)
         .flag("-DLINK_BOTH")
         .link_ours_renamed_and_system()
         .build();
-    let expected = format!("libccd: another\nrenamed: {}\n", name(Precision::Double));
+    let expected = format!("libccd: another\nrenamed: {}\n", name());
     assert_eq!(both.run(NO_ARGS).stdout, expected);
 }
 

@@ -121,7 +121,7 @@ fn build_library(precision: Precision) -> Built {
     }
     // Cargo repeats what rustc said even when nothing has to be built again.
     cargo.args(["--", "--print", "native-static-libs"]);
-    let said = must_succeed(&mut cargo, "Rust's cargo");
+    let said = must_succeed(&mut cargo, "Rust's cargo").stderr;
     let native_flags = said
         .lines()
         .find_map(|line| line.split_once("native-static-libs: "))
@@ -164,7 +164,8 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
             .args(["-g", "--defined-only"])
             .arg(archive),
         "nm (Debian: binutils)",
-    );
+    )
+    .stdout;
     let mut names: Vec<&str> = symbols
         .lines()
         .filter_map(|line| line.split_whitespace().nth(2))
@@ -209,8 +210,8 @@ fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
         .unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
 }
 
-/// Runs a build tool; its stdout and stderr if it succeeds.
-fn must_succeed(command: &mut Command, what: &str) -> String {
+/// Runs a build tool; panics with what it wrote unless it succeeds.
+pub fn must_succeed(command: &mut Command, what: &str) -> Written {
     let output = match command.output() {
         Ok(output) => output,
         Err(e) if e.kind() == io::ErrorKind::NotFound => {
@@ -218,14 +219,18 @@ fn must_succeed(command: &mut Command, what: &str) -> String {
         }
         Err(e) => panic!("cannot run {what}: {e}"),
     };
-    let mut said = String::from_utf8_lossy(&output.stdout).into_owned();
-    said += &String::from_utf8_lossy(&output.stderr);
+    let written = Written {
+        stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
+        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+    };
     assert!(
         output.status.success(),
-        "{what} failed ({}): {command:?}\n{said}",
-        output.status
+        "{what} failed ({}): {command:?}\n{}{}",
+        output.status,
+        written.stdout,
+        written.stderr
     );
-    said
+    written
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -323,6 +328,7 @@ impl Program {
                 Command::new("pkg-config").args([what, package]),
                 "pkg-config",
             )
+            .stdout
             .split_whitespace()
             .map(String::from)
             .collect()
@@ -444,7 +450,7 @@ impl Program {
                 Command::new(&compiler[0]).args(&args).arg("-o").arg(new),
                 &format!("{} (compiling {})", compiler[0], self.name),
             );
-            print!("{said}");
+            print!("{}", said.stderr);
             Ok(())
         });
 
@@ -453,12 +459,9 @@ impl Program {
             _ => None,
         };
         let executable = Executable {
-            path,
-            name: self.name,
             library_path,
-            environment: Vec::new(),
-            timeout: Duration::from_secs(300),
             tools: self.tools,
+            ..Executable::made_elsewhere(&self.name, path)
         };
         match self.link {
             Link::OursShared => executable.assert_loads_ours(),
@@ -488,6 +491,19 @@ pub struct Written {
 }
 
 impl Executable {
+    /// A program that something else compiled, to run on the libraries it finds
+    /// by itself.
+    pub fn made_elsewhere(name: &str, path: impl Into<PathBuf>) -> Executable {
+        Executable {
+            path: path.into(),
+            name: name.to_owned(),
+            library_path: None,
+            environment: Vec::new(),
+            timeout: Duration::from_secs(300),
+            tools: true,
+        }
+    }
+
     /// The same program with this library under it instead of the system's.
     pub fn swapped(&self) -> Executable {
         let mut swapped = self.clone();
@@ -556,7 +572,10 @@ impl Executable {
         let mut command = Command::new(&self.path);
         set_library_path(&mut command, self.library_path.as_deref());
         let said = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
-        let line = said.lines().find(|line| line.contains("libccd.so"))?;
+        let line = said
+            .stdout
+            .lines()
+            .find(|line| line.contains("libccd.so"))?;
         let path = line.split_once("=>")?.1.split_whitespace().next()?;
         Some(PathBuf::from(path))
     }
@@ -564,7 +583,8 @@ impl Executable {
     fn assert_loads_ours(&self) {
         let loaded = self.loaded_ccd();
         assert!(
-            loaded.is_some() && loaded.as_deref().and_then(Path::parent) == self.library_path(),
+            loaded.is_some()
+                && loaded.as_deref().and_then(Path::parent) == self.library_path.as_deref(),
             "{} runs on {loaded:?}, not on the library of this repository",
             self.name
         );
@@ -578,10 +598,6 @@ impl Executable {
             "{} runs on {loaded:?}, not on the system's libccd",
             self.name
         );
-    }
-
-    fn library_path(&self) -> Option<&Path> {
-        self.library_path.as_deref()
     }
 }
 

@@ -1,0 +1,48 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Two unit spheres, 1.5 apart, through each half of the library. Prints which
+ * library answered. */
+
+#include <ccd/ccd.h>
+#include <ccd/quat.h>
+#include <stdio.h>
+
+static void support(const void *object, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    ccdVec3Copy(out, dir);
+    ccdVec3Normalize(out);
+    ccdVec3Add(out, (const ccd_vec3_t *)object);
+}
+
+static void center(const void *object, ccd_vec3_t *out)
+{
+    ccdVec3Copy(out, (const ccd_vec3_t *)object);
+}
+
+/* In <ccd/warm.h>; declared here, so that this is a program for any libccd
+ * but for one name that only this repository's has. */
+const char *ccdImplementation(void);
+
+int main(void)
+{
+    ccd_vec3_t a = {{CCD_ZERO, CCD_ZERO, CCD_ZERO}};
+    ccd_vec3_t b = {{CCD_REAL(1.5), CCD_ZERO, CCD_ZERO}};
+    ccd_real_t depth;
+    ccd_vec3_t dir, pos;
+    ccd_t ccd;
+
+    CCD_INIT(&ccd);
+    ccd.support1 = ccd.support2 = support;
+    ccd.center1 = ccd.center2 = center;
+    ccd.max_iterations = 100;
+
+    if (ccdGJKIntersect(&a, &b, &ccd) != 1)
+        return 1;
+    if (ccdMPRPenetration(&a, &b, &ccd, &depth, &dir, &pos) != 0)
+        return 2;
+    if (CCD_FABS(depth - CCD_REAL(0.5)) > CCD_REAL(1e-3) || ccdVec3X(&dir) < CCD_REAL(0.999))
+        return 3;
+    printf("%s\n", ccdImplementation());
+    return 0;
+}

@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Installs the library with CMake and uses it from throw-away projects, in
+//! every way its users do: find_package, add_subdirectory, FetchContent and
+//! pkg-config, shared and static, in the precision of this test binary.
+
+#[path = "../harness/mod.rs"]
+mod harness;
+
+use harness::{Executable, Precision, library, must_succeed, output_dir, root};
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// An empty directory of this name, for one test.
+fn fresh(name: &str) -> PathBuf {
+    let dir = output_dir()
+        .join("packaging")
+        .join(Precision::CURRENT.name())
+        .join(name);
+    if dir.exists() {
+        fs::remove_dir_all(&dir).expect("an old run's directory can be removed");
+    }
+    fs::create_dir_all(&dir).expect("a directory can be made");
+    dir
+}
+
+fn cmake(args: impl IntoIterator<Item = impl AsRef<OsStr>>) {
+    must_succeed(Command::new("cmake").args(args), "cmake");
+}
+
+fn define(name: &str, value: impl AsRef<OsStr>) -> std::ffi::OsString {
+    let mut definition = std::ffi::OsString::from(format!("-D{name}="));
+    definition.push(value);
+    definition
+}
+
+/// What configures a build of the library; cargo's part is the harness's own.
+fn library_options() -> [std::ffi::OsString; 2] {
+    let double = ["OFF", "ON"][usize::from(Precision::CURRENT == Precision::Double)];
+    let built = library(Precision::CURRENT);
+    [
+        define("ENABLE_DOUBLE_PRECISION", double),
+        define("CCD_CARGO_TARGET_DIR", built.dir.join("..")),
+    ]
+}
+
+fn build_library(build: &Path, prefix: &Path) {
+    let mut configure = Command::new("cmake");
+    configure
+        .arg("-S")
+        .arg(root().join("cmake"))
+        .arg("-B")
+        .arg(build)
+        .arg(define("CMAKE_INSTALL_PREFIX", prefix))
+        .args(library_options());
+    must_succeed(&mut configure, "cmake");
+    cmake(["--build".as_ref(), build.as_os_str()]);
+}
+
+/// The library installed under a prefix, then moved: nothing in it may
+/// remember where it was built or first lay.
+fn installed_and_moved(name: &str) -> PathBuf {
+    let dir = fresh(name);
+    let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
+    build_library(&build, &first);
+    cmake(["--install".as_ref(), build.as_os_str()]);
+    fs::remove_dir_all(&build).expect("the build tree can be removed");
+    fs::rename(&first, &prefix).expect("the prefix can be moved");
+    prefix
+}
+
+/// Configures and builds the consumer, with what is needed to find libccd.
+fn consumer(name: &str, options: &[std::ffi::OsString]) -> PathBuf {
+    let build = fresh(name);
+    let mut configure = Command::new("cmake");
+    configure
+        .arg("-S")
+        .arg(root().join("c-tests/packaging/consumer"))
+        .arg("-B")
+        .arg(&build)
+        .args(options);
+    must_succeed(&mut configure, "cmake");
+    cmake(["--build".as_ref(), build.as_os_str()]);
+    build
+}
+
+/// The program runs, and on this repository's library: on the shared one under
+/// `shared_under`, or on the static one.
+fn runs_on_ours(program: &Path, shared_under: Option<&Path>) {
+    let name = program.file_name().expect("a program").to_string_lossy();
+    let program = Executable::made_elsewhere(&name, program);
+    let loaded = program.loaded_ccd();
+    match shared_under {
+        Some(dir) => assert!(
+            loaded.as_ref().is_some_and(|path| path.starts_with(dir)),
+            "{name} runs on {loaded:?}"
+        ),
+        None => assert_eq!(loaded, None, "{name} is linked statically"),
+    }
+    let expected = format!(
+        "warmccd {} {}\n",
+        env!("CARGO_PKG_VERSION"),
+        Precision::CURRENT.name()
+    );
+    assert_eq!(program.run([""; 0]).stdout, expected);
+}
+
+fn all_run_on_ours(build: &Path, shared_under: &Path, names: &[&str]) {
+    for name in names {
+        runs_on_ours(&build.join(name), Some(shared_under));
+    }
+    runs_on_ours(&build.join("static"), None);
+}
+
+#[test]
+fn find_package() {
+    let prefix = installed_and_moved("installed");
+    let options = [
+        define("WAY", "find_package"),
+        define("CMAKE_PREFIX_PATH", &prefix),
+    ];
+    let build = consumer("find_package", &options);
+    all_run_on_ours(&build, &prefix, &["plain", "namespaced", "variables"]);
+}
+
+#[test]
+fn add_subdirectory_and_fetch_content() {
+    for way in ["add_subdirectory", "FetchContent"] {
+        let mut options = vec![define("WAY", way), define("REPOSITORY", root())];
+        options.extend(library_options());
+        let build = consumer(way, &options);
+        all_run_on_ours(&build, &build, &["plain", "namespaced"]);
+    }
+}
+
+#[test]
+fn pkg_config() {
+    let prefix = installed_and_moved("pkg-config");
+    let archive = find(&prefix, "libccd.a");
+    let libdir = archive.parent().expect("a directory");
+    let ask = |args: &[&str]| -> Vec<String> {
+        let mut ask = Command::new("pkg-config");
+        ask.env("PKG_CONFIG_PATH", libdir.join("pkgconfig"));
+        let said = must_succeed(ask.args(args).arg("ccd"), "pkg-config");
+        said.stdout.split_whitespace().map(String::from).collect()
+    };
+    assert_eq!(ask(&["--modversion"]), ["2.0"]);
+    let compile = |name: &str, flags: &[String]| {
+        let program = prefix.join(name);
+        let mut cc = Command::new("cc");
+        cc.arg(root().join("c-tests/packaging/consumer/main.c"));
+        must_succeed(cc.args(flags).arg("-o").arg(&program), "cc");
+        program
+    };
+
+    let mut shared = ask(&["--cflags", "--libs"]);
+    shared.push(format!("-Wl,-rpath,{}", libdir.display()));
+    runs_on_ours(&compile("shared", &shared), Some(&prefix));
+
+    // libccd alone from its archive, the rest shared.
+    let mut one = ask(&["--static", "--cflags", "--libs"]);
+    for flag in one.iter_mut().filter(|flag| *flag == "-lccd") {
+        *flag = "-l:libccd.a".to_owned();
+    }
+    runs_on_ours(&compile("one-static", &one), None);
+
+    // Everything static: the C library and the unwinder too.
+    let mut all = ask(&["--static", "--cflags", "--libs"]);
+    all.push("-static".to_owned());
+    runs_on_ours(&compile("all-static", &all), None);
+}
+
+/// DESTDIR and multiarch, as a Debian package is made: the files lie where
+/// Debian's own libccd has them, and none names a directory of the build.
+#[test]
+fn destdir_and_multiarch() {
+    let dir = fresh("destdir");
+    let (build, stage) = (dir.join("build"), dir.join("stage"));
+    build_library(&build, Path::new("/usr"));
+    must_succeed(
+        Command::new("cmake")
+            .env("DESTDIR", &stage)
+            .arg("--install")
+            .arg(&build),
+        "cmake",
+    );
+    let triplet = must_succeed(Command::new("cc").arg("-print-multiarch"), "cc");
+    let libdir = Path::new("usr/lib").join(triplet.stdout.trim());
+    for file in [
+        "libccd.a",
+        "libccd.so",
+        "libccd.so.2",
+        "libccd.so.2.0",
+        "pkgconfig/ccd.pc",
+        "ccd/ccd-config.cmake",
+        "ccd/ccd-config-version.cmake",
+    ] {
+        assert!(stage.join(&libdir).join(file).is_file(), "{file}");
+    }
+    for link in ["libccd.so", "libccd.so.2"] {
+        let target = fs::read_link(stage.join(&libdir).join(link)).expect("a link");
+        assert!(target.is_relative(), "{link} -> {target:?}");
+    }
+    let headers = root().join("include/ccd");
+    for header in fs::read_dir(headers).expect("include/ccd").flatten() {
+        let installed = stage.join("usr/include/ccd").join(header.file_name());
+        assert!(installed.is_file(), "{installed:?}");
+    }
+    for file in ["pkgconfig/ccd.pc", "ccd/ccd-config.cmake"] {
+        let text = fs::read_to_string(stage.join(&libdir).join(file)).expect("a text file");
+        for built in [root(), dir.as_path()] {
+            assert!(!text.contains(&*built.to_string_lossy()), "{file}\n{text}");
+        }
+    }
+}
+
+/// A program that asks for the other precision does not compile.
+#[test]
+fn precision_is_held() {
+    let other = match Precision::CURRENT {
+        Precision::Double => "-DCCD_SINGLE",
+        Precision::Single => "-DCCD_DOUBLE",
+    };
+    let prefix = installed_and_moved("held");
+    let compiles = |flags: &[&str]| {
+        let mut cc = Command::new("cc");
+        cc.arg("-fsyntax-only")
+            .arg(root().join("c-tests/packaging/consumer/main.c"))
+            .arg("-I")
+            .arg(prefix.join("include"))
+            .args(flags);
+        cc.output().expect("cc runs").status.success()
+    };
+    assert!(compiles(&[]));
+    assert!(!compiles(&[other]));
+}
+
+/// The one file of this name below a directory.
+fn find(dir: &Path, name: &str) -> PathBuf {
+    let mut found = Vec::new();
+    let mut waiting = vec![dir.to_owned()];
+    while let Some(dir) = waiting.pop() {
+        for entry in fs::read_dir(&dir).expect("a directory").flatten() {
+            if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                waiting.push(entry.path());
+            } else if entry.file_name() == name {
+                found.push(entry.path());
+            }
+        }
+    }
+    assert_eq!(found.len(), 1, "{name} below {}", dir.display());
+    found.remove(0)
+}
