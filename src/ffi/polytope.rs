@@ -321,10 +321,12 @@ unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     // SAFETY: Polytope.
     unsafe {
         let (dist, kind) = ((*element).dist, (*element).kind);
-        let nearer = if equal((*pt).nearest_dist, dist) {
-            kind < (*pt).nearest_type
+        let lower = kind < (*pt).nearest_type;
+        // Whether they are equal is asked last: in a scan the first two settle most.
+        let nearer = if dist < (*pt).nearest_dist {
+            lower || !equal((*pt).nearest_dist, dist)
         } else {
-            dist < (*pt).nearest_dist
+            lower && equal((*pt).nearest_dist, dist)
         };
         if nearer {
             (*pt).nearest = element;

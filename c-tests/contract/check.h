@@ -1,0 +1,69 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Checks that tell what failed and where, and the random numbers of these tests. */
+
+#ifndef TESTS_CHECK_H
+#define TESTS_CHECK_H
+
+#include <ccd/vec3.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+static unsigned long checks_made, checks_failed;
+
+/* CHECK(condition, format, ...): goes on after a failure, shows the first twenty. */
+#define CHECK(condition, ...)                                          \
+    do {                                                               \
+        checks_made++;                                                 \
+        if (!(condition) && checks_failed++ < 20) {                    \
+            printf("%s:%d: not %s: ", __FILE__, __LINE__, #condition); \
+            printf(__VA_ARGS__);                                       \
+            printf("\n");                                              \
+        }                                                              \
+    } while (0)
+
+/* What main returns. */
+static inline int checks_end(void)
+{
+    printf("%lu checks, %lu failed\n", checks_made, checks_failed);
+    return checks_made == 0 || checks_failed != 0;
+}
+
+/* Uniform in [0, 1): xorshift64*, the same numbers on every machine. */
+static uint64_t random_state = 88172645463325252u;
+
+static inline double random_unit(void)
+{
+    random_state ^= random_state >> 12;
+    random_state ^= random_state << 25;
+    random_state ^= random_state >> 27;
+    return (double)((random_state * 2685821657736338717u) >> 11) / 9007199254740992.0;
+}
+
+static inline double random_in(double low, double high)
+{
+    return low + (high - low) * random_unit();
+}
+
+static inline int random_below(int n)
+{
+    return (int)(random_unit() * n);
+}
+
+static inline ccd_vec3_t random_vec3(double size)
+{
+    ccd_vec3_t v;
+    int i;
+    for (i = 0; i < 3; i++)
+        v.v[i] = (ccd_real_t)random_in(-size, size);
+    return v;
+}
+
+static inline int same_bits(const void *a, const void *b, size_t size)
+{
+    return memcmp(a, b, size) == 0;
+}
+
+#endif
