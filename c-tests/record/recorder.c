@@ -56,11 +56,11 @@ int main(int argc, char **argv)
     put(f, head, sizeof head);
     for (i = 0; i < scene.shapes; i++) {
         const scene_shape_t *s = &scene.shape[i];
-        const uint32_t kind[2] = { (uint32_t)s->kind, (uint32_t)s->vertices };
+        const uint32_t kind[2] = { (uint32_t)s->kind, (uint32_t)s->hull.vertices };
         put(f, kind, sizeof kind);
         put(f, s->p, sizeof s->p);
-        if (s->vertices)
-            put(f, s->vertex, 24 * (size_t)s->vertices);
+        if (s->hull.vertices)
+            put(f, s->hull.vertex, 24 * (size_t)s->hull.vertices);
     }
     for (i = 0; i < scene.bodies; i++) {
         const uint32_t shape = (uint32_t)scene.shape_of[i];

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* A pile in ODE: bodies fall into a pen and come to rest, from a start that is
- * moved by up to 1e-6 m a coordinate, by a stream named SEED.
+ * moved by up to 1e-3 m a coordinate, by a stream named SEED.
  * Prints what the second half of the run looked like.
  *
  * usage: ode_pile SEED STEPS BODIES */
@@ -24,7 +24,7 @@ int main(int argc, char **argv)
     dInitODE2(0);
     watch_library();
     scene_world(&scene, 11);
-    scene_pile(&scene, atoi(argv[3]), 0.55, 0.33, strtoul(argv[1], NULL, 10), 1e-6);
+    scene_pile(&scene, atoi(argv[3]), 0.55, 0.33, strtoul(argv[1], NULL, 10), 1e-3);
     for (step = 0; step < steps; step++) {
         scene_step(&scene, 0.005);
         escaped |= scene_escaped(&scene);

@@ -9,14 +9,11 @@
 #ifndef ODE_SCENE_H
 #define ODE_SCENE_H
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <ode/ode.h>
-#include "swap/uniform.h"
+#include "swap/hull.h"
 
-enum { SCENE_BODIES = 96, SCENE_SHAPES = 96, HULL_VERTICES = 16 };
-enum { HULL_FACES = 2 * HULL_VERTICES - 4 };
+enum { SCENE_BODIES = 96, SCENE_SHAPES = 96 };
 
 /* Kinds as in shapes.h: the numbers go into files. */
 enum scene_kind { SCENE_CAPSULE = 1, SCENE_BOX = 2, SCENE_CYLINDER = 3, SCENE_HULL = 6 };
@@ -24,10 +21,7 @@ enum scene_kind { SCENE_CAPSULE = 1, SCENE_BOX = 2, SCENE_CYLINDER = 3, SCENE_HU
 typedef struct {
     int kind;
     double p[3];                /* capsule, cylinder: radius, half length; box: half extents */
-    int vertices, faces;        /* hull alone, as all that follows */
-    double vertex[3 * HULL_VERTICES];
-    double plane[4 * HULL_FACES];
-    unsigned polygon[4 * HULL_FACES];
+    hull_t hull;
 } scene_shape_t;
 
 typedef struct {
@@ -49,111 +43,14 @@ typedef struct {
     void *user;
 } scene_t;
 
-/*
- * The hull of points in general position on a sphere: every triple that has
- * all other points on one side is a face. n^4 steps, for a dozen points.
- */
-static void scene_hull_faces(scene_shape_t *s)
-{
-    int i, j, k, l;
-    const int n = s->vertices;
-    s->faces = 0;
-    for (i = 0; i < n; i++)
-        for (j = i + 1; j < n; j++)
-            for (k = j + 1; k < n; k++) {
-                const double *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
-                double u[3], v[3], m[3], d, length;
-                int above = 0, below = 0, *side;
-                for (l = 0; l < 3; l++) {
-                    u[l] = b[l] - a[l];
-                    v[l] = c[l] - a[l];
-                }
-                dCalcVectorCross3(m, u, v);
-                length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-                for (l = 0; l < 3; l++)
-                    m[l] /= length;
-                d = m[0] * a[0] + m[1] * a[1] + m[2] * a[2];
-                for (l = 0; l < n; l++) {
-                    const double *x = s->vertex + 3 * l;
-                    if (l == i || l == j || l == k)
-                        continue;
-                    side = m[0] * x[0] + m[1] * x[1] + m[2] * x[2] > d ? &above : &below;
-                    ++*side;
-                }
-                if (above && below)
-                    continue;
-                if (s->faces == HULL_FACES) {
-                    fprintf(stderr, "hull: points not in general position\n");
-                    exit(2);
-                }
-                {
-                    const double sign = above ? -1 : 1;
-                    double *plane = s->plane + 4 * s->faces;
-                    unsigned *polygon = s->polygon + 4 * s->faces;
-                    for (l = 0; l < 3; l++)
-                        plane[l] = sign * m[l];
-                    plane[3] = sign * d;
-                    polygon[0] = 3;
-                    polygon[1] = (unsigned)i;
-                    polygon[2] = (unsigned)(above ? k : j);
-                    polygon[3] = (unsigned)(above ? j : k);
-                    s->faces++;
-                }
-            }
-}
-
-/* The distance of the origin from the nearest face plane, negative outside. */
-static double scene_hull_inradius(const scene_shape_t *s)
-{
-    double least = HUGE_VAL;
-    int i;
-    for (i = 0; i < s->faces; i++)
-        least = fmin(least, s->plane[4 * i + 3]);
-    return least;
-}
-
-/* Random points on an ellipsoid with these radii, not too close to each other. */
-static void scene_hull_vertices(scene_shape_t *s, double rx, double ry, double rz)
-{
-    int i, j;
-    const int vertices = s->vertices;
-    for (i = 0; i < vertices; i++) {
-        double v[3], length, nearest;
-        const double r[3] = { rx, ry, rz };
-        /* keep the points apart: nearly equal ones make needle faces */
-        do {
-            for (j = 0; j < 3; j++)
-                v[j] = uniform(-1, 1);
-            length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-            for (j = 0, nearest = 4; j < i && length > 0; j++) {
-                const double *w = s->vertex + 3 * j;
-                double x = v[0] / length - w[0] / rx, y = v[1] / length - w[1] / ry, z = v[2] / length - w[2] / rz;
-                nearest = fmin(nearest, x * x + y * y + z * z);
-            }
-        } while (length > 1 || length < 0.01 || nearest < 0.15);
-        for (j = 0; j < 3; j++)
-            s->vertex[3 * i + j] = (float)(r[j] * v[j] / length);
-    }
-}
-
-/* A random hull that has the origin well inside, as ODE wants it. */
-static void scene_hull(scene_shape_t *s, int vertices, double rx, double ry, double rz)
-{
-    s->kind = SCENE_HULL;
-    s->vertices = vertices;
-    do {
-        scene_hull_vertices(s, rx, ry, rz);
-        scene_hull_faces(s);
-    } while (scene_hull_inradius(s) < 0.2 * fmin(rx, fmin(ry, rz)));
-}
-
 static dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
 {
     switch (s->kind) {
     case SCENE_CAPSULE: return dCreateCapsule(scene->space, s->p[0], 2 * s->p[1]);
     case SCENE_BOX: return dCreateBox(scene->space, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]);
     case SCENE_CYLINDER: return dCreateCylinder(scene->space, s->p[0], 2 * s->p[1]);
-    default: return dCreateConvex(scene->space, s->plane, (unsigned)s->faces, s->vertex, (unsigned)s->vertices, s->polygon);
+    default: return dCreateConvex(scene->space, s->hull.plane, (unsigned)s->hull.faces, s->hull.vertex, (unsigned)s->hull.vertices,
+                                   s->hull.polygon);
     }
 }
 
@@ -181,8 +78,8 @@ static void scene_make_dynamic(scene_t *scene, int i)
     default: {
         double r = 0;
         int v;
-        for (v = 0; v < s->vertices; v++)
-            r += dCalcVectorLength3(s->vertex + 3 * v) / s->vertices;
+        for (v = 0; v < s->hull.vertices; v++)
+            r += dCalcVectorLength3(s->hull.vertex + 3 * v) / s->hull.vertices;
         dMassSetSphere(&mass, density, 0.8 * r);
     }
     }
@@ -204,7 +101,7 @@ static int scene_pile_shape(scene_t *scene, int i)
     default: s->kind = SCENE_HULL; break;
     }
     if (s->kind == SCENE_HULL)
-        scene_hull(s, 8 + i % 9, uniform(0.07, 0.14), uniform(0.07, 0.14), uniform(0.07, 0.14));
+        hull_random(&s->hull, 8 + i % 9, uniform(0.07, 0.14), uniform(0.07, 0.14), uniform(0.07, 0.14));
     else
         for (j = 0; j < 3; j++)
             s->p[j] = (float)uniform(0.05, 0.13);
