@@ -1,0 +1,74 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The support functions and pair sets of the C tests, as a shared object for the
+ * benchmark: every method measured calls these same callbacks. Shapes are opaque
+ * to the benchmark; it owns their memory and asks here for their size. */
+
+#include "pairs.h"
+
+size_t bench_shape_size(void) { return sizeof(shape_t); }
+
+void bench_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out) { shape_support(obj, dir, out); }
+
+void bench_center(const void *obj, ccd_vec3_t *out) { shape_center(obj, out); }
+
+unsigned long bench_calls(const shape_t *s) { return s->calls; }
+
+pair_set_t *bench_set_open(const char *path, int climb)
+{
+    pair_set_t *set = (pair_set_t *)malloc(sizeof *set);
+    if (!set)
+        return NULL;
+    if (pair_set_read(path, set) != 0 || (climb && pair_set_climb(set) != 0)) {
+        pair_set_free(set);
+        free(set);
+        return NULL;
+    }
+    return set;
+}
+
+void bench_set_close(pair_set_t *set)
+{
+    pair_set_free(set);
+    free(set);
+}
+
+/* Poses, steps of one motion (0: independent poses). */
+void bench_set_count(const pair_set_t *set, int *n, int *trajectory)
+{
+    *n = set->n;
+    *trajectory = set->trajectory;
+}
+
+void bench_set_pose(const pair_set_t *set, int i, shape_t *a, shape_t *b, pair_truth_t *truth)
+{
+    pair_set_pose(set, i, a, b, truth);
+}
+
+/* The mesh of shape k (0 or 1) where it is a polytope; else no vertices. */
+void bench_set_mesh(const pair_set_t *set, int k, int *nverts, const double **verts, int *ntris, const int **tris)
+{
+    *nverts = k ? set->b.nverts : set->a.nverts;
+    *verts = set->verts[k];
+    *ntris = set->ntris[k];
+    *tris = set->tris[k];
+}
+
+/* A shape at a pose; verts (3 * nverts) must outlive it. */
+void bench_shape(shape_t *s, int type, const double p[3], const double *verts, int nverts, const double pos[3],
+                 const double rot[9])
+{
+    *s = type == SHAPE_POLYTOPE ? shape_polytope(verts, nverts) : shape_make(type, p[0], p[1], p[2]);
+    shape_move(s, pos[0], pos[1], pos[2]);
+    shape_turn(s, rot);
+}
+
+/* Where a shape is, and what it is. */
+void bench_shape_pose(const shape_t *s, double pos[3], double rot[9], int *type, double p[3])
+{
+    memcpy(pos, s->pos, sizeof s->pos);
+    memcpy(rot, s->rot, sizeof s->rot);
+    memcpy(p, s->p, sizeof s->p);
+    *type = s->type;
+}

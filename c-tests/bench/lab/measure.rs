@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! What a method answers on a scene, judged by the truth, and what it costs.
+//!
+//! Supports and errors are exact and repeatable. Times are medians over
+//! repetitions in which all methods take turns, so that a slow moment of the
+//! machine hits all of them.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use ccd::ffi::types::ccd_vec3_t;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use statrs::statistics::{Data, Max, OrderStatistics, Statistics};
+
+use super::libraries::Libraries;
+use super::methods::Method;
+use super::scene::{Pair, Scene};
+
+/// What a query answered.
+#[derive(Clone, Copy, Debug)]
+pub struct Answer {
+    pub depth: f64,
+    /// The way obj2 moves.
+    pub dir: [f64; 3],
+    /// Proven lower bound; 0 where none.
+    pub lower: f64,
+}
+
+/// One method on one scene. Lengths in metres.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Row {
+    pub set: String,
+    pub method: String,
+    /// Where the search starts: `5`, `25`, `45` degrees off the truth, `centres`,
+    /// `warm` (the last frame's state) or nothing.
+    pub start: String,
+    pub tolerance: Option<f64>,
+    pub ours: bool,
+    pub queries: usize,
+    /// Support points of D per query; none for a method that does not use our callbacks.
+    pub supports: Option<f64>,
+    /// Median over repetitions of the mean time of a query; none when not timed.
+    pub ns: Option<f64>,
+    /// |depth - truth| over all queries that were answered.
+    pub mean_error: f64,
+    pub median_error: f64,
+    pub max_error: f64,
+    /// Mean over the answers within 1 mm of the truth.
+    pub mean_error_1mm: f64,
+    /// Share of answers more than 1 mm too deep (percent).
+    pub nonminimal: f64,
+    /// Share of answers more than 1 mm too shallow (percent).
+    pub shallow: f64,
+    /// Share of overlaps answered by no hit or by a failure (percent).
+    pub missed: f64,
+    /// Largest h(dir) - depth: how far from separated the shapes may be left.
+    pub unsound: f64,
+    /// Mean angle to the true direction over the answers within 1 mm (milliradian).
+    pub direction: f64,
+    /// Largest depth - depth_lower, where a bound was proven.
+    pub gap: Option<f64>,
+    /// Widest uncertainty of the truth itself.
+    pub truth_gap: f64,
+}
+
+/// The support value of D along `dir`.
+fn support_value(libraries: &Libraries, pair: &Pair, dir: &[f64; 3]) -> f64 {
+    let n = Vector3::from(*dir);
+    let at = |shape, d: Vector3<f64>| {
+        let (d, mut v) = (ccd_vec3_t::from(d), ccd_vec3_t::default());
+        // SAFETY: a shape of the scene, a direction and room for a point.
+        unsafe { (libraries.callbacks.support)(shape, &d, &mut v) };
+        Vector3::from(v.v)
+    };
+    n.dot(&(at(pair.a.cast_const(), n) - at(pair.b.cast_const(), -n)))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    if values.is_empty() {
+        0.0
+    } else {
+        values.mean()
+    }
+}
+
+/// Runs the method over the scene and judges every answer. A warm method's first
+/// frame of each motion has no memory yet and is left out.
+pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
+    let calls = |pair: &Pair| {
+        // SAFETY: shapes of the scene.
+        unsafe { (libraries.callbacks.calls)(pair.a) + (libraries.callbacks.calls)(pair.b) }
+    };
+    let (mut errors, mut near, mut angles, mut gaps) = (vec![], vec![], vec![], vec![]);
+    let (mut unsound, mut missed, mut nonminimal, mut shallow) = (vec![], 0, 0, 0);
+    let (mut queries, mut supports, mut truth_gap) = (0_usize, 0, 0.0_f64);
+    for pair in &scene.pairs {
+        let before = calls(pair);
+        let answer = method.query(scene, pair);
+        let asked = calls(pair) - before;
+        if method.is_warm() && pair.frame == 0 {
+            continue;
+        }
+        queries += 1;
+        supports += asked;
+        truth_gap = truth_gap.max(pair.truth.gap);
+        let Some(answer) = answer else {
+            missed += 1;
+            continue;
+        };
+        let off = answer.depth - pair.truth.depth;
+        errors.push(off.abs());
+        unsound.push(support_value(libraries, pair, &answer.dir) - answer.depth);
+        if answer.lower > 0.0 {
+            gaps.push(answer.depth - answer.lower);
+        }
+        // Written so that NaN counts as non-minimal.
+        if off < -1e-3 {
+            shallow += 1;
+        } else if off <= 1e-3 {
+            near.push(off.abs());
+            let (n, t) = (Vector3::from(answer.dir), Vector3::from(pair.truth.normal));
+            angles.push(n.cross(&t).norm().atan2(n.dot(&t)) * 1e3);
+        } else {
+            nonminimal += 1;
+        }
+    }
+    let percent = |k: usize| 100.0 * k as f64 / queries as f64;
+    let largest = |v: &[f64]| {
+        if v.is_empty() {
+            0.0
+        } else {
+            Data::new(v.to_vec()).max()
+        }
+    };
+    Row {
+        set: scene.name.clone(),
+        method: method.name.clone(),
+        start: method.start.name().to_owned(),
+        tolerance: method.tolerance,
+        ours: method.ours,
+        queries,
+        supports: method
+            .uses_callbacks
+            .then(|| supports as f64 / 2.0 / queries as f64),
+        ns: None,
+        mean_error: mean(&errors),
+        median_error: if errors.is_empty() {
+            0.0
+        } else {
+            median(&errors)
+        },
+        max_error: largest(&errors),
+        mean_error_1mm: mean(&near),
+        nonminimal: percent(nonminimal),
+        shallow: percent(shallow),
+        missed: percent(missed),
+        unsound: largest(&unsound),
+        direction: mean(&angles),
+        gap: (!gaps.is_empty()).then(|| largest(&gaps)),
+        truth_gap,
+    }
+}
+
+pub fn median(values: &[f64]) -> f64 {
+    Data::new(values.to_vec()).median()
+}
+
+pub fn geometric_mean(values: &[f64]) -> f64 {
+    values.iter().geometric_mean()
+}
+
+/// Mean time of a query of each method, ns: the median of `repetitions` passes
+/// over the scene, the methods taking turns. `between` is called after each pass.
+pub fn times(
+    scene: &Scene,
+    methods: &mut [Method],
+    repetitions: usize,
+    mut between: impl FnMut(),
+) -> Vec<f64> {
+    let mut passes = vec![Vec::with_capacity(repetitions); methods.len()];
+    for _ in 0..repetitions {
+        for (method, times) in methods.iter_mut().zip(&mut passes) {
+            times.push(pass(scene, method));
+            between();
+        }
+    }
+    passes.iter().map(|p| median(p)).collect()
+}
+
+/// Mean time of a query over the scene, ns; a warm method's first frames untimed.
+fn pass(scene: &Scene, method: &mut Method) -> f64 {
+    if !method.is_warm() {
+        let begin = Instant::now();
+        for pair in &scene.pairs {
+            black_box(method.query(scene, pair));
+        }
+        return begin.elapsed().as_nanos() as f64 / scene.pairs.len() as f64;
+    }
+    let (mut spent, mut queries) = (0, 0);
+    for motion in scene.pairs.chunks(scene.motion.max(1)) {
+        let Some((first, rest)) = motion.split_first() else {
+            continue;
+        };
+        black_box(method.query(scene, first));
+        let begin = Instant::now();
+        for pair in rest {
+            black_box(method.query(scene, pair));
+        }
+        spent += begin.elapsed().as_nanos();
+        queries += rest.len();
+    }
+    spent as f64 / queries as f64
+}

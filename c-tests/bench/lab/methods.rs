@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The methods under measurement, each as a closure over one pair.
+
+use std::ffi::{c_int, c_void};
+
+use ccd::contact::{Answer as Outcome, Settings};
+use ccd::ffi::types::{ccd_t, ccd_vec3_t};
+use ccd::local::{self, Shortcut};
+use ccd::math::Vec3;
+use ccd::support::MinkowskiDifference;
+
+use super::libraries::{CPenetration, Classic, Libraries, Truth, Warm};
+use super::measure::Answer;
+use super::scene::{Pair, Scene};
+
+/// Where a search starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// The method does not ask.
+    None,
+    /// A guess so many degrees off the true direction.
+    Five,
+    TwentyFive,
+    FortyFive,
+    /// The centre difference.
+    Centres,
+    /// What the last frame left.
+    Warm,
+}
+
+impl Start {
+    pub const GUESSES: [Start; 3] = [Start::Five, Start::TwentyFive, Start::FortyFive];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Start::None => "",
+            Start::Five => "5",
+            Start::TwentyFive => "25",
+            Start::FortyFive => "45",
+            Start::Centres => "centres",
+            Start::Warm => "warm",
+        }
+    }
+
+    /// The start direction of a pair, where the pair knows it.
+    pub fn direction(self, truth: &Truth) -> Option<[f64; 3]> {
+        match self {
+            Start::None | Start::Warm => None,
+            Start::Five => Some(truth.init5),
+            Start::TwentyFive => Some(truth.init25),
+            Start::FortyFive => Some(truth.init45),
+            Start::Centres => Some(truth.cold),
+        }
+    }
+}
+
+type Run<'a> = Box<dyn FnMut(&Scene, &Pair) -> Option<Answer> + 'a>;
+
+pub struct Method<'a> {
+    pub name: String,
+    pub start: Start,
+    /// As the method is given it; none where it is built in.
+    pub tolerance: Option<f64>,
+    /// A call of this library's interface.
+    pub ours: bool,
+    /// Asks through the C callbacks, so its supports count.
+    pub uses_callbacks: bool,
+    run: Run<'a>,
+}
+
+impl<'a> Method<'a> {
+    pub fn new(name: &str, run: impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a) -> Self {
+        Self {
+            name: name.to_owned(),
+            start: Start::None,
+            tolerance: None,
+            ours: false,
+            uses_callbacks: true,
+            run: Box::new(run),
+        }
+    }
+
+    pub fn from(mut self, start: Start) -> Self {
+        self.start = start;
+        self
+    }
+
+    pub fn within(mut self, tolerance: f64) -> Self {
+        self.tolerance = Some(tolerance);
+        self
+    }
+
+    pub fn of_ours(mut self) -> Self {
+        self.ours = true;
+        self
+    }
+
+    pub fn without_callbacks(mut self) -> Self {
+        self.uses_callbacks = false;
+        self
+    }
+
+    pub fn is_warm(&self) -> bool {
+        self.start == Start::Warm
+    }
+
+    #[inline]
+    pub fn query(&mut self, scene: &Scene, pair: &Pair) -> Option<Answer> {
+        (self.run)(scene, pair)
+    }
+}
+
+type Query = unsafe extern "C-unwind" fn(
+    *const c_void,
+    *const c_void,
+    *const ccd_t,
+    *mut f64,
+    *mut ccd_vec3_t,
+    *mut ccd_vec3_t,
+) -> c_int;
+
+pub fn classic(query: Query, settings: ccd_t) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
+    move |_, pair| {
+        let (mut depth, mut dir, mut pos) = (0.0, ccd_vec3_t::default(), ccd_vec3_t::default());
+        // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
+        let code = unsafe { query(pair.a, pair.b, &settings, &mut depth, &mut dir, &mut pos) };
+        (code == 0).then_some(Answer {
+            depth,
+            dir: dir.v,
+            lower: 0.0,
+        })
+    }
+}
+
+/// libccd's MPR, of either library.
+pub fn mpr<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
+    let name = if std::ptr::eq(of, &libraries.ours) {
+        "MPR"
+    } else {
+        "libccd MPR"
+    };
+    let method = Method::new(
+        name,
+        classic(of.mpr, of.settings(&libraries.callbacks, tolerance)),
+    )
+    .within(tolerance);
+    if name == "MPR" {
+        method.of_ours()
+    } else {
+        method
+    }
+}
+
+/// libccd's GJK and EPA.
+pub fn libccd_epa<'a>(libraries: &Libraries, tolerance: f64) -> Method<'a> {
+    let of = &libraries.system;
+    Method::new(
+        "libccd EPA",
+        classic(of.gjk, of.settings(&libraries.callbacks, tolerance)),
+    )
+    .within(tolerance)
+}
+
+/// What of the extension is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    Local,
+    Minimum,
+    Mpr,
+}
+
+/// A query of the extension. Guesses are a fresh state each, `Warm` one state a
+/// motion, `Centres` a zero state.
+pub fn extension<'a>(
+    libraries: &'a Libraries,
+    ask: Ask,
+    start: Start,
+    tolerance: f64,
+) -> Method<'a> {
+    let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
+    let calls = libraries.extension.expect("extension");
+    let mut state = Warm::COLD;
+    let name = match ask {
+        Ask::Local => "local",
+        Ask::Minimum => "minimum",
+        Ask::Mpr => "MPR warm",
+    };
+    Method::new(name, move |_, pair| {
+        if let Some(guess) = start.direction(&pair.truth) {
+            if start == Start::Centres {
+                state = Warm::COLD;
+            } else {
+                let guess = ccd_vec3_t { v: guess };
+                // SAFETY: a state and a direction.
+                unsafe { (calls.guess)(&mut state, &guess) };
+            }
+        } else if start == Start::None || pair.frame == 0 {
+            state = Warm::COLD;
+        }
+        let mut out = CPenetration::default();
+        // SAFETY: queries of <ccd/warm.h> over the callbacks' own shapes.
+        let code = unsafe {
+            match ask {
+                Ask::Local => (calls.local)(pair.a, pair.b, &settings, &mut state, &mut out),
+                Ask::Minimum => (calls.minimum)(pair.a, pair.b, &settings, &mut state, &mut out),
+                Ask::Mpr => (calls.mpr)(
+                    pair.a,
+                    pair.b,
+                    &settings,
+                    &mut state,
+                    &mut out.depth,
+                    &mut out.dir,
+                    &mut out.pos,
+                ),
+            }
+        };
+        // CCD_HIT, or CCD_LIMIT: the best sound answer at the cap.
+        (code == 0 || code == -4).then_some(Answer {
+            depth: out.depth,
+            dir: out.dir.v,
+            lower: out.depth_lower,
+        })
+    })
+    .from(start)
+    .within(tolerance)
+    .of_ours()
+}
+
+/// The paper's method without later improvements, from inside this library:
+/// Algorithms 4 and 5, or Algorithm 3 where the shortcut is off. It falls short of
+/// the published implementation in nothing, but answers with the portal's normal.
+pub fn paper<'a>(
+    libraries: &'a Libraries,
+    shortcut: bool,
+    start: Start,
+    tolerance: f64,
+) -> Method<'a> {
+    let settings = Settings {
+        tolerance,
+        max_iterations: 10_000,
+    };
+    let (name, shortcut) = if shortcut {
+        ("Algorithm 4/5", Shortcut::Always)
+    } else {
+        ("Algorithm 3", Shortcut::Never)
+    };
+    let support = libraries.callbacks.support;
+    let mut last = None;
+    Method::new(name, move |_, pair| {
+        let object = |shape: *mut c_void| {
+            move |dir: &Vec3| {
+                let (dir, mut out) = (ccd_vec3_t::from(*dir), ccd_vec3_t::default());
+                // SAFETY: a shape of the scene, a direction and room for a point.
+                unsafe { support(shape, &dir, &mut out) };
+                Vec3::from(out)
+            }
+        };
+        let md = MinkowskiDifference::new(object(pair.a), object(pair.b));
+        let memory = if pair.frame == 0 { None } else { last };
+        let from = start.direction(&pair.truth).map(Vec3::from).or(memory);
+        let from = from.unwrap_or_else(|| pair.truth.cold.into());
+        let answer = local::penetration(&md, from, shortcut, &settings, |_| ());
+        let (Ok(Outcome::Hit(found)) | Ok(Outcome::Limit(found))) = answer else {
+            return None;
+        };
+        last = Some(found.dir);
+        Some(Answer {
+            depth: found.depth,
+            dir: found.dir.into(),
+            lower: 0.0,
+        })
+    })
+    .from(start)
+    .within(tolerance)
+}

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Other libraries' solvers, called through the same C callbacks. Which of them
+//! a run has depends on the machine; those it lacks are named, not skipped in silence.
+
+use std::ffi::c_void;
+
+use ccd::ffi::types::{ccd_support_fn, ccd_vec3_t};
+use parry3d_f64::math::{Pose, Vector};
+use parry3d_f64::query::details::contact_support_map_support_map_with_params;
+use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
+use parry3d_f64::shape::SupportMap;
+
+use super::libraries::{Classic, Libraries, function};
+use super::measure::Answer;
+use super::methods::{Method, classic};
+
+/// A shape of the callbacks as parry's trait wants it, in world coordinates.
+struct Convex {
+    shape: *const c_void,
+    support: ccd_support_fn,
+}
+
+impl SupportMap for Convex {
+    #[inline]
+    fn local_support_point(&self, dir: Vector) -> Vector {
+        // parry may pass directions of any length; the callbacks are promised unit ones.
+        let unit = dir.try_normalize().unwrap_or(Vector::X);
+        let (dir, mut out) = (ccd_vec3_t { v: unit.into() }, ccd_vec3_t::default());
+        // SAFETY: a shape of a scene, a direction and room for a point.
+        unsafe { (self.support)(self.shape, &dir, &mut out) };
+        Vector::from(out.v)
+    }
+
+    #[inline]
+    fn local_support_point_toward(&self, dir: Vector) -> Vector {
+        let (dir, mut out) = (ccd_vec3_t { v: dir.into() }, ccd_vec3_t::default());
+        // SAFETY: as above; parry promises a unit direction here.
+        unsafe { (self.support)(self.shape, &dir, &mut out) };
+        Vector::from(out.v)
+    }
+}
+
+/// parry3d's GJK and EPA from the centre difference, its tolerance built in.
+pub fn parry<'a>(libraries: &'a Libraries) -> Method<'a> {
+    Method::new("parry EPA", |_, pair| {
+        let convex = |shape: *mut c_void| Convex {
+            shape,
+            support: libraries.callbacks.support,
+        };
+        let answer = contact_support_map_support_map_with_params(
+            &Pose::IDENTITY,
+            &convex(pair.a),
+            &convex(pair.b),
+            0.0,
+            &mut VoronoiSimplex::new(),
+            Some(Vector::from(pair.truth.cold)),
+        );
+        match answer {
+            GJKResult::ClosestPoints(p, q, n) => Some(Answer {
+                depth: (p - q).dot(n),
+                dir: n.into(),
+                lower: 0.0,
+            }),
+            _ => None,
+        }
+    })
+}
+
+/// The solvers of Debian's packages, compiled when the program starts.
+pub struct Compiled {
+    bullet: Option<Classic>,
+    fcl: Option<Classic>,
+    /// What is not here, and why.
+    pub missing: Vec<(&'static str, String)>,
+}
+
+impl Compiled {
+    pub fn build(libraries: &Libraries) -> Self {
+        let mut missing = Vec::new();
+        let mut build = |name, flags: &[&str], with: &[&str]| {
+            let flags = [&["-O3", "-march=x86-64-v2", "-std=c++17", "-w"], flags].concat();
+            match libraries.helper("peers.cpp", "c++", &flags, with) {
+                // SAFETY: peer_penetration has the type of libccd's queries.
+                Ok(library) => Some(Classic {
+                    gjk: unsafe { function(library, "peer_penetration") },
+                    ..libraries.system
+                }),
+                Err(why) => {
+                    missing.push((name, why));
+                    None
+                }
+            }
+        };
+        Self {
+            bullet: build(
+                "Bullet EPA",
+                &["-DPEER_BULLET", "-isystem", "/usr/include/bullet"],
+                &[],
+            ),
+            fcl: build(
+                "FCL EPA",
+                &["-DPEER_FCL", "-isystem", "/usr/include/eigen3"],
+                &["-lfcl"],
+            ),
+            missing,
+        }
+    }
+
+    /// Bullet's btGjkEpa3, double.
+    pub fn bullet<'a>(&self, libraries: &Libraries) -> Option<Method<'a>> {
+        let of = self.bullet?;
+        Some(Method::new(
+            "Bullet EPA",
+            classic(of.gjk, of.settings(&libraries.callbacks, 1e-4)),
+        ))
+    }
+
+    /// FCL's own EPA.
+    pub fn fcl<'a>(&self, libraries: &Libraries, tolerance: f64) -> Option<Method<'a>> {
+        let of = self.fcl?;
+        let settings = of.settings(&libraries.callbacks, tolerance);
+        Some(Method::new("FCL EPA", classic(of.gjk, settings)).within(tolerance))
+    }
+}

@@ -1,0 +1,340 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Pairs of shapes in many poses, each with the global minimum of its
+//! penetration depth: read from `c-tests/pairs`, or placed at random where a
+//! closed form gives the truth (spheres and capsules).
+
+use std::ffi::{c_int, c_void};
+
+use nalgebra::{Unit, UnitQuaternion, Vector3};
+use parry3d_f64::math::Vector as ParryVector;
+use parry3d_f64::query::details::closest_points_segment_segment;
+use parry3d_f64::shape::Segment;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use super::libraries::{Callbacks, Libraries, Truth};
+use crate::harness;
+
+/// One pose: two shapes that the callbacks know, and what is true of them.
+pub struct Pair {
+    pub a: *mut c_void,
+    pub b: *mut c_void,
+    pub truth: Truth,
+    /// Position in its motion; 0 starts a new one.
+    pub frame: usize,
+}
+
+/// A polytope's mesh, in its own frame.
+#[derive(Clone, Default)]
+pub struct Mesh {
+    pub vertices: Vec<Vector3<f64>>,
+    pub triangles: Vec<[usize; 3]>,
+}
+
+/// Pairs of one kind.
+pub struct Scene {
+    pub name: String,
+    pub pairs: Vec<Pair>,
+    /// Steps of one motion; 0: independent poses.
+    pub motion: usize,
+    /// The two polytopes, where they are.
+    pub meshes: [Mesh; 2],
+    /// Where the shapes live.
+    _shapes: Vec<u64>,
+    /// What the shapes refer to: an open pair set, or vertices.
+    _set: Option<Set>,
+    _vertices: Vec<Vec<f64>>,
+}
+
+struct Set(*mut c_void, Callbacks);
+
+impl Drop for Set {
+    fn drop(&mut self) {
+        // SAFETY: opened by set_open, closed once.
+        unsafe { (self.1.set_close)(self.0) }
+    }
+}
+
+/// A shape to place: its type number and parameters as in `c-tests/shapes.h`.
+#[derive(Clone)]
+pub struct Form {
+    pub kind: c_int,
+    pub p: [f64; 3],
+    pub mesh: Mesh,
+}
+
+impl Form {
+    pub fn sphere(radius: f64) -> Self {
+        Self {
+            kind: 0,
+            p: [radius, 0.0, 0.0],
+            mesh: Mesh::default(),
+        }
+    }
+
+    /// Along z.
+    pub fn capsule(radius: f64, half: f64) -> Self {
+        Self {
+            kind: 1,
+            p: [radius, half, 0.0],
+            mesh: Mesh::default(),
+        }
+    }
+
+    pub fn polytope(mesh: Mesh) -> Self {
+        Self {
+            kind: 6,
+            p: [0.0; 3],
+            mesh,
+        }
+    }
+
+    /// Half length of the core segment, and the radius around it.
+    fn rounded(&self) -> (f64, f64) {
+        match self.kind {
+            0 => (0.0, self.p[0]),
+            1 => (self.p[1], self.p[0]),
+            _ => panic!("closed forms are known for spheres and capsules only"),
+        }
+    }
+}
+
+/// Where a shape is: local point x at `rotation * x + position`.
+#[derive(Clone, Copy)]
+pub struct Pose {
+    pub position: Vector3<f64>,
+    pub rotation: UnitQuaternion<f64>,
+}
+
+/// Memory for `n` shapes, and the size of one in words.
+fn room(callbacks: &Callbacks, n: usize) -> (Vec<u64>, usize) {
+    // SAFETY: takes nothing.
+    let words = unsafe { (callbacks.shape_size)() }.div_ceil(8);
+    (vec![0; words * n], words)
+}
+
+/// The unit vector `angle` degrees from `n`, turned about an axis across it
+/// that `rng` draws.
+pub fn tilted(n: &Vector3<f64>, degrees: f64, rng: &mut Pcg64) -> Vector3<f64> {
+    let across = n.cross(&direction(rng));
+    UnitQuaternion::from_axis_angle(&Unit::new_normalize(across), degrees.to_radians()) * n
+}
+
+/// Uniform on the unit sphere.
+pub fn direction(rng: &mut Pcg64) -> Vector3<f64> {
+    loop {
+        let v = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0));
+        let l: f64 = v.norm();
+        if l > 1e-3 && l <= 1.0 {
+            return v / l;
+        }
+    }
+}
+
+/// Uniform over all rotations.
+pub fn rotation(rng: &mut Pcg64) -> UnitQuaternion<f64> {
+    loop {
+        let q = nalgebra::Quaternion::from(nalgebra::Vector4::from_fn(|_, _| {
+            rng.random_range(-1.0..1.0)
+        }));
+        if q.norm() > 1e-3 && q.norm() <= 1.0 {
+            return UnitQuaternion::new_normalize(q);
+        }
+    }
+}
+
+impl Scene {
+    /// A pair set of `c-tests/pairs`. `hc` behind a polytope's name (`p642hc_p642hc`)
+    /// asks for hill climbing in place of the scan over all vertices. At most `limit` poses.
+    pub fn load(libraries: &Libraries, name: &str, limit: usize) -> Self {
+        let callbacks = libraries.callbacks;
+        let climb = name.contains("hc");
+        let path = harness::root().join(format!("c-tests/pairs/{}.bin", name.replace("hc", "")));
+        // SAFETY: the functions of callbacks.c, called as it says; every pointer
+        // read is theirs until the set is closed, which waits for the scene's end.
+        unsafe {
+            let set = (callbacks.set_open)(Libraries::c_path(&path).as_ptr(), climb.into());
+            assert!(!set.is_null(), "{} is not a pair set", path.display());
+            let set = Set(set, callbacks);
+            let (mut n, mut motion) = (0, 0);
+            (callbacks.set_count)(set.0, &mut n, &mut motion);
+            let n = (n as usize).min(limit);
+            let motion = motion as usize;
+            let (mut shapes, words) = room(&callbacks, 2 * n);
+            let base = shapes.as_mut_ptr();
+            let pairs = (0..n)
+                .map(|i| {
+                    let a = base.add(2 * i * words).cast();
+                    let b = base.add((2 * i + 1) * words).cast();
+                    let mut truth = Truth::default();
+                    (callbacks.set_pose)(set.0, i as c_int, a, b, &mut truth);
+                    let frame = i.checked_rem(motion).unwrap_or(0);
+                    Pair { a, b, truth, frame }
+                })
+                .collect();
+            let meshes = [0, 1].map(|k| {
+                let (mut nv, mut nt) = (0, 0);
+                let (mut v, mut t) = (std::ptr::null(), std::ptr::null());
+                (callbacks.set_mesh)(set.0, k, &mut nv, &mut v, &mut nt, &mut t);
+                let v = std::slice::from_raw_parts(v, 3 * nv as usize);
+                let t = std::slice::from_raw_parts(t, 3 * nt as usize);
+                Mesh {
+                    vertices: v.chunks_exact(3).map(Vector3::from_column_slice).collect(),
+                    triangles: t
+                        .chunks_exact(3)
+                        .map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
+                        .collect(),
+                }
+            });
+            Self {
+                name: name.to_owned(),
+                pairs,
+                motion,
+                meshes,
+                _shapes: shapes,
+                _set: Some(set),
+                _vertices: Vec::new(),
+            }
+        }
+    }
+
+    /// Shapes at given poses, `motion` steps to a motion.
+    pub fn placed(
+        libraries: &Libraries,
+        name: &str,
+        forms: [&Form; 2],
+        poses: &[([Pose; 2], Truth)],
+        motion: usize,
+    ) -> Self {
+        let callbacks = libraries.callbacks;
+        let vertices: Vec<Vec<f64>> = forms
+            .iter()
+            .map(|f| {
+                f.mesh
+                    .vertices
+                    .iter()
+                    .flat_map(|v| [v.x, v.y, v.z])
+                    .collect()
+            })
+            .collect();
+        let (mut shapes, words) = room(&callbacks, 2 * poses.len());
+        let base = shapes.as_mut_ptr();
+        let pairs = poses
+            .iter()
+            .enumerate()
+            .map(|(i, (pose, truth))| {
+                let at: [*mut c_void; 2] = [0, 1].map(|k| {
+                    let rot = pose[k].rotation.to_rotation_matrix();
+                    // SAFETY: room for 2 n shapes; bench_shape reads p[3], the
+                    // vertices (kept by the scene), pos[3] and rot[9] row by row.
+                    unsafe {
+                        let s = base.add((2 * i + k) * words).cast();
+                        (callbacks.shape)(
+                            s,
+                            forms[k].kind,
+                            forms[k].p.as_ptr(),
+                            vertices[k].as_ptr(),
+                            forms[k].mesh.vertices.len() as c_int,
+                            pose[k].position.as_ptr(),
+                            rot.matrix().transpose().as_ptr(),
+                        );
+                        s
+                    }
+                });
+                let frame = i.checked_rem(motion).unwrap_or(0);
+                Pair {
+                    a: at[0],
+                    b: at[1],
+                    truth: *truth,
+                    frame,
+                }
+            })
+            .collect();
+        Self {
+            name: name.to_owned(),
+            pairs,
+            motion,
+            meshes: forms.map(|f| f.mesh.clone()),
+            _shapes: shapes,
+            _set: None,
+            _vertices: vertices,
+        }
+    }
+
+    /// `n` overlapping random poses of two spheres or capsules: rotations uniform,
+    /// the second shape's centre uniform in the ball that reaches an overlap.
+    pub fn random_rounded(
+        libraries: &Libraries,
+        name: &str,
+        forms: [&Form; 2],
+        n: usize,
+        seed: u64,
+    ) -> Self {
+        let mut rng = Pcg64::seed_from_u64(seed);
+        let reach: f64 = forms.iter().map(|f| f.rounded().0 + f.rounded().1).sum();
+        let mut poses = Vec::with_capacity(n);
+        while poses.len() < n {
+            let pose = [
+                Pose {
+                    position: Vector3::from_fn(|_, _| rng.random_range(-0.5..0.5)),
+                    rotation: rotation(&mut rng),
+                },
+                Pose {
+                    position: Vector3::zeros(),
+                    rotation: rotation(&mut rng),
+                },
+            ];
+            let away = Vector3::from_fn(|_, _| rng.random_range(-reach..reach));
+            let pose = [
+                pose[0],
+                Pose {
+                    position: pose[0].position + away,
+                    ..pose[1]
+                },
+            ];
+            if let Some(truth) = rounded_truth(forms, &pose, &mut rng) {
+                poses.push((pose, truth));
+            }
+        }
+        Self::placed(libraries, name, forms, &poses, 0)
+    }
+}
+
+/// The depth of two spheres or capsules: D is the difference of their core
+/// segments, a parallelogram, with a ball around it. With the origin off the
+/// parallelogram the minimum lies along the shortest way to it; poses without
+/// overlap, or with crossing cores, have no answer here.
+pub fn rounded_truth(forms: [&Form; 2], pose: &[Pose; 2], rng: &mut Pcg64) -> Option<Truth> {
+    let core = |k: usize| {
+        let half = pose[k].rotation * Vector3::new(0.0, 0.0, forms[k].rounded().0);
+        let end = |v: Vector3<f64>| ParryVector::new(v.x, v.y, v.z);
+        Segment::new(end(pose[k].position - half), end(pose[k].position + half))
+    };
+    let near = closest_points_segment_segment(
+        &parry3d_f64::math::Pose::IDENTITY,
+        &core(0),
+        &core(1),
+        f64::MAX,
+    );
+    let parry3d_f64::query::ClosestPoints::WithinMargin(p, q) = near else {
+        return None;
+    };
+    let apart = Vector3::new(q.x - p.x, q.y - p.y, q.z - p.z);
+    let depth = forms[0].rounded().1 + forms[1].rounded().1 - apart.norm();
+    if !(depth > 0.0 && apart.norm() > 1e-9) {
+        return None;
+    }
+    let normal = apart.normalize();
+    let cold = pose[1].position - pose[0].position;
+    Some(Truth {
+        depth,
+        gap: 0.0,
+        normal: normal.into(),
+        init5: tilted(&normal, 5.0, rng).into(),
+        init25: tilted(&normal, 25.0, rng).into(),
+        init45: tilted(&normal, 45.0, rng).into(),
+        cold: cold.try_normalize(0.0).unwrap_or(normal).into(),
+    })
+}

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The benchmark: `cargo bench --bench charts -- tables` prints supports, times and
+//! errors per pair set beside system libccd's and the paper's.
+//!
+//! Double precision only, as Debian's libccd is.
+
+#[cfg(not(feature = "single"))]
+#[path = "../harness/mod.rs"]
+mod harness;
+#[cfg(not(feature = "single"))]
+mod lab;
+#[cfg(not(feature = "single"))]
+mod tables;
+
+#[cfg(not(feature = "single"))]
+mod command {
+    use clap::{Parser, Subcommand};
+
+    use crate::tables;
+
+    /// Speed and accuracy of penetration depth, this library beside others.
+    #[derive(Parser)]
+    #[command(name = "charts")]
+    struct Arguments {
+        #[command(subcommand)]
+        command: Command,
+        /// Cargo says so to every benchmark.
+        #[arg(long, hide = true, global = true)]
+        bench: bool,
+    }
+
+    #[derive(Subcommand)]
+    enum Command {
+        /// Supports, times and errors of every pair set, as Markdown.
+        Tables(tables::Options),
+    }
+
+    pub fn run() {
+        match Arguments::parse().command {
+            Command::Tables(options) => tables::run(&options),
+        }
+    }
+}
+
+fn main() {
+    #[cfg(not(feature = "single"))]
+    command::run();
+    #[cfg(feature = "single")]
+    eprintln!("the benchmark measures double precision, beside Debian's libccd");
+}
