@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The exported functions called as C calls them, but from Rust: a program that
+//! Miri can run, to find undefined behaviour behind the pointers
+//! (`sh c-tests/tools/miri.sh`). In the ordinary test run it is a small test.
+
+// C names, and calls into the C interface.
+#![allow(unsafe_code)]
+
+use ccd::ffi::collide::*;
+use ccd::ffi::polytope::*;
+use ccd::ffi::support::{__ccdSupport, ccdFirstDirDefault};
+use ccd::ffi::types::*;
+use ccd::ffi::vec3::{ccdVec3PointSegmentDist2, ccdVec3PointTriDist2};
+use ccd::math::Real;
+use std::ffi::{CStr, c_int, c_void};
+use std::mem::MaybeUninit;
+use std::ptr::{null, null_mut};
+
+/// An object as a consumer has it; the callbacks count their calls in it.
+struct Object {
+    shape: Shape,
+    center: [Real; 3],
+    calls: usize,
+}
+
+#[derive(Clone, Copy)]
+enum Shape {
+    Ball(Real),
+    Box([Real; 3]),
+    Tetrahedron(Real),
+    NotANumber,
+    Panics,
+}
+
+fn object(shape: Shape, center: [Real; 3]) -> Object {
+    Object {
+        shape,
+        center,
+        calls: 0,
+    }
+}
+
+unsafe extern "C-unwind" fn support(
+    obj: *const c_void,
+    dir: *const ccd_vec3_t,
+    vec: *mut ccd_vec3_t,
+) {
+    let obj = obj.cast::<Object>().cast_mut();
+    unsafe {
+        (*obj).calls += 1;
+        let d = (*dir).v;
+        let p = match (*obj).shape {
+            Shape::Ball(radius) => {
+                let length = d.iter().map(|x| x * x).sum::<Real>().sqrt();
+                d.map(|x| x / length * radius)
+            }
+            Shape::Box(half) => std::array::from_fn(|i| half[i].copysign(d[i])),
+            Shape::Tetrahedron(size) => {
+                let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
+                let along = |c: &[Real; 3]| c.iter().zip(&d).map(|(c, d)| c * d).sum::<Real>();
+                let farthest = corners
+                    .iter()
+                    .max_by(|a, b| along(a).total_cmp(&along(b)))
+                    .unwrap();
+                farthest.map(|x| x * size)
+            }
+            Shape::NotANumber => [Real::NAN; 3],
+            Shape::Panics => panic!("out of a callback"),
+        };
+        (*vec).v = std::array::from_fn(|i| p[i] + (*obj).center[i]);
+    }
+}
+
+unsafe extern "C-unwind" fn center(obj: *const c_void, center: *mut ccd_vec3_t) {
+    unsafe { (*center).v = (*obj.cast::<Object>()).center };
+}
+
+/// Settings with every field a call must not read left uninitialised.
+struct Settings(MaybeUninit<ccd_t>);
+
+impl Settings {
+    /// What MPR's calls read.
+    fn mpr() -> Settings {
+        let mut settings = MaybeUninit::<ccd_t>::uninit();
+        let ccd = settings.as_mut_ptr();
+        unsafe {
+            (&raw mut (*ccd).support1).write(Some(support));
+            (&raw mut (*ccd).support2).write(Some(support));
+            (&raw mut (*ccd).center1).write(Some(center));
+            (&raw mut (*ccd).center2).write(Some(center));
+            (&raw mut (*ccd).max_iterations).write(100);
+            (&raw mut (*ccd).mpr_tolerance).write(TOLERANCE);
+        }
+        Settings(settings)
+    }
+
+    /// What GJK's calls read.
+    fn gjk() -> Settings {
+        let mut settings = MaybeUninit::<ccd_t>::uninit();
+        let ccd = settings.as_mut_ptr();
+        unsafe {
+            (&raw mut (*ccd).first_dir).write(Some(ccdFirstDirDefault));
+            (&raw mut (*ccd).support1).write(Some(support));
+            (&raw mut (*ccd).support2).write(Some(support));
+            (&raw mut (*ccd).max_iterations).write(100);
+            (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
+            (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
+        }
+        Settings(settings)
+    }
+
+    fn get(&self) -> *const ccd_t {
+        self.0.as_ptr()
+    }
+}
+
+const TOLERANCE: Real = 1e-4;
+/// `ccdMPRPenetration`, `ccdGJKPenetration` and `ccdGJKSeparate` with a part of
+/// their outputs.
+type Penetration = unsafe extern "C-unwind" fn(
+    *const c_void,
+    *const c_void,
+    *const ccd_t,
+    *mut Real,
+    *mut ccd_vec3_t,
+    *mut ccd_vec3_t,
+) -> c_int;
+
+fn pointer(object: &mut Object) -> *const c_void {
+    (&raw mut *object).cast()
+}
+
+/// Overlapping pairs with their depths; the last is a miss.
+fn pairs() -> Vec<(Shape, Shape, [Real; 3], Option<Real>)> {
+    let half = Shape::Box([0.5, 1.0, 1.5]);
+    vec![
+        (
+            Shape::Ball(1.0),
+            Shape::Ball(0.5),
+            [1.2, 0.0, 0.0],
+            Some(0.3),
+        ),
+        (Shape::Ball(1.0), half, [0.0, 0.0, 2.4], Some(0.1)),
+        (half, half, [0.9, 0.1, 0.2], Some(0.1)),
+        (Shape::Tetrahedron(1.0), half, [-1.4, 0.0, 0.0], Some(0.1)),
+        (half, Shape::Tetrahedron(1.0), [5.0, 4.0, 3.0], None),
+    ]
+}
+
+fn penetrates(call: Penetration, settings: &Settings) {
+    for (shape1, shape2, center2, truth) in pairs() {
+        let mut obj1 = object(shape1, [0.0; 3]);
+        let mut obj2 = object(shape2, center2);
+        let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+        let untouched = ccd_vec3_t { v: [7.0; 3] };
+        let (mut depth, mut dir, mut pos) = (7.0, untouched, untouched);
+        let code = unsafe { call(obj1, obj2, settings.get(), &mut depth, &mut dir, &mut pos) };
+        match truth {
+            Some(truth) => {
+                assert_eq!(code, 0);
+                assert!((depth - truth).abs() <= 2.0 * TOLERANCE, "{depth} {truth}");
+                let length = dir.v.iter().map(|x| x * x).sum::<Real>().sqrt();
+                assert!((length - 1.0).abs() < 1e-5, "{dir:?}");
+            }
+            None => {
+                assert_eq!(code, -1);
+                assert_eq!((depth, dir, pos), (7.0, untouched, untouched));
+            }
+        }
+        let without_outputs = unsafe {
+            call(
+                obj1,
+                obj2,
+                settings.get(),
+                null_mut(),
+                null_mut(),
+                null_mut(),
+            )
+        };
+        assert_eq!(without_outputs, code);
+        assert!(unsafe { (*obj1.cast::<Object>()).calls } > 0);
+    }
+}
+
+fn refuses_what_is_not_a_number(call: Penetration, settings: &Settings) {
+    let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
+    let mut obj2 = object(Shape::NotANumber, [0.5; 3]);
+    let mut depth = 7.0;
+    let code = unsafe {
+        call(
+            pointer(&mut obj1),
+            pointer(&mut obj2),
+            settings.get(),
+            &mut depth,
+            null_mut(),
+            null_mut(),
+        )
+    };
+    assert_eq!((code, depth), (-1, 7.0));
+}
+
+/// Nothing is leaked or left half done when a callback does not return.
+fn unwinds(call: Penetration, settings: &Settings) {
+    let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
+    let mut obj2 = object(Shape::Panics, [0.5; 3]);
+    let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+    let caught = std::panic::catch_unwind(|| unsafe {
+        call(
+            obj1,
+            obj2,
+            settings.get(),
+            null_mut(),
+            null_mut(),
+            null_mut(),
+        )
+    });
+    assert!(caught.is_err());
+}
+
+#[test]
+fn mpr() {
+    let settings = Settings::mpr();
+    penetrates(ccdMPRPenetration, &settings);
+    refuses_what_is_not_a_number(ccdMPRPenetration, &settings);
+    unwinds(ccdMPRPenetration, &settings);
+}
+
+#[test]
+fn overlap() {
+    for (shape1, shape2, center2, truth) in pairs() {
+        let mut obj1 = object(shape1, [0.0; 3]);
+        let mut obj2 = object(shape2, center2);
+        let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+        let expected = c_int::from(truth.is_some());
+        unsafe {
+            assert_eq!(ccdMPRIntersect(obj1, obj2, Settings::mpr().get()), expected);
+            assert_eq!(ccdGJKIntersect(obj1, obj2, Settings::gjk().get()), expected);
+        }
+    }
+}
+
+#[test]
+fn support_may_alias() {
+    let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
+    let mut obj2 = object(Shape::Ball(1.0), [3.0, 0.0, 0.0]);
+    let mut out = ccd_support_t::default();
+    out.v.v = [0.0, 1.0, 0.0];
+    let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+    let settings = Settings::mpr();
+    unsafe {
+        let dir = &raw const out.v;
+        __ccdSupport(obj1, obj2, dir, settings.get(), &raw mut out);
+    }
+    assert_eq!(out.v.v, [-3.0, 2.0, 0.0]);
+}
+
+#[test]
+fn distances() {
+    let point = |x, y, z| ccd_vec3_t { v: [x, y, z] };
+    let (p, a, b, c) = (
+        point(0.25, 0.25, 2.0),
+        point(0.0, 0.0, 0.0),
+        point(1.0, 0.0, 0.0),
+        point(0.0, 1.0, 0.0),
+    );
+    let mut witness = point(7.0, 7.0, 7.0);
+    unsafe {
+        assert_eq!(ccdVec3PointTriDist2(&p, &a, &b, &c, &mut witness), 4.0);
+        assert_eq!(witness, point(0.25, 0.25, 0.0));
+        assert_eq!(ccdVec3PointTriDist2(&p, &a, &b, &c, null_mut()), 4.0);
+        // The witness may be one of the inputs.
+        let mut a = a;
+        let at = &raw mut a;
+        assert_eq!(ccdVec3PointSegmentDist2(&p, at, &b, at), 4.0625);
+        assert_eq!(a, point(0.25, 0.0, 0.0));
+    }
+}
+
+/// A tetrahedron around the origin, taken apart by ccdPtDestroy.
+#[test]
+fn polytope() {
+    let mut pt = MaybeUninit::<ccd_pt_t>::uninit();
+    let pt = pt.as_mut_ptr();
+    let corners: [[Real; 3]; 4] = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
+    unsafe {
+        ccdPtInit(pt);
+        let vertex = corners.map(|v| {
+            let mut support = ccd_support_t::default();
+            support.v.v = v;
+            ccdPtAddVertex(pt, &support)
+        });
+        assert_eq!((*ccdPtNearest(pt)).kind, CCD_PT_VERTEX);
+        let edge = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
+            .map(|(i, j)| ccdPtAddEdge(pt, vertex[i], vertex[j]));
+        for [i, j, k] in [[0, 1, 3], [0, 2, 4], [1, 2, 5], [3, 4, 5]] {
+            assert!(!ccdPtAddFace(pt, edge[i], edge[j], edge[k]).is_null());
+        }
+        let nearest = ccdPtNearest(pt);
+        assert_eq!((*nearest).kind, CCD_PT_FACE);
+        assert!(((*nearest).dist - 1.0 / 3.0).abs() < 1e-6);
+        ccdPtRecomputeDistances(pt);
+        (*pt).nearest = null_mut();
+        assert_eq!((*ccdPtNearest(pt)).kind, CCD_PT_FACE);
+        assert!(ccdPtAddEdge(pt, vertex[0], null_mut()).is_null());
+        assert!(ccdPtAddFace(pt, edge[0], edge[1], null_mut()).is_null());
+        ccdPtDestroy(pt);
+    }
+}
+
+#[test]
+fn names_itself() {
+    let name = unsafe { CStr::from_ptr(ccd::ffi::ccdImplementation()) };
+    assert!(name.to_bytes().starts_with(b"warmccd "));
+    let mut dir = ccd_vec3_t::default();
+    unsafe { ccdFirstDirDefault(null(), null(), &mut dir) };
+    assert_eq!(dir.v, [1.0, 0.0, 0.0]);
+}
