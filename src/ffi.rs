@@ -9,19 +9,20 @@
 //! What C callers promise, and what this module promises in return. Each `unsafe` names
 //! the clause it stands on.
 //!
-//! - **Pointers.** An argument that is read points to a live, aligned, initialised object
-//!   of its C type, which nobody changes during the call but the callbacks. Of a
-//!   [`ccd_t`](types::ccd_t) only the fields that the call needs are initialised, so fields
-//!   are read one by one. Object pointers are never looked at, only handed on.
-//! - **Callbacks.** A callback that the call needs is non-NULL and has its C signature. It
-//!   may write through its object, call this library again, throw a C++ exception or
-//!   longjmp away. So entry points and callback types are `extern "C-unwind"`, callbacks
-//!   run on the calling thread, and while one runs no value with a destructor is alive, no
-//!   lock is held and no Rust reference into the caller's memory exists.
-//! - **Outputs.** An output pointer is NULL (where its function says so) or points to
+//! - \[inputs\] An argument that is read points to a live, aligned, initialised object of
+//!   its C type, which nobody changes during the call but the callbacks. Object pointers
+//!   are never looked at, only handed on.
+//! - \[ccd\] Of a [`ccd_t`](types::ccd_t) only the fields that the call needs are
+//!   initialised, so fields are read one by one.
+//! - \[callbacks\] A callback has its C signature. It may write through its object, call
+//!   this library again, throw a C++ exception or longjmp away. So entry points and callback
+//!   types are `extern "C-unwind"`, callbacks run on the calling thread, and while one runs
+//!   no value with a destructor is alive, no lock is held and no Rust reference into the
+//!   caller's memory exists.
+//! - \[outputs\] An output pointer is NULL (where its function says so) or points to
 //!   writable memory of its type. It may be an input too: inputs are copied first, outputs
 //!   are written last.
-//! - **Polytope.** A [`ccd_pt_t`](types::ccd_pt_t) went through `ccdPtInit`, its lists are
+//! - \[polytope\] A [`ccd_pt_t`](types::ccd_pt_t) went through `ccdPtInit`, its lists are
 //!   circular, its links lead to live elements, each element is a block of C's malloc, and
 //!   during a call only that call touches it. It is reached through raw pointers alone.
 

@@ -27,7 +27,7 @@ unsafe extern "C" {
 /// An empty polytope.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         list_init(&raw mut (*pt).vertices);
         list_init(&raw mut (*pt).edges);
@@ -40,7 +40,7 @@ pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
 /// the polytope's lists still hangs on stay allocated and linked.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDestroy(pt: *mut ccd_pt_t) {
-    // SAFETY: Polytope; an element is not looked at after it was deleted.
+    // SAFETY: [polytope]; an element is not looked at after it was deleted.
     unsafe {
         for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
             delete_face(pt, face);
@@ -64,7 +64,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddVertex(
     if vertex.is_null() {
         return vertex;
     }
-    // SAFETY: Polytope, and `vertex` is a new block of its size.
+    // SAFETY: [polytope], and `vertex` is a new block of its size.
     unsafe {
         let v = *v;
         (*vertex).id = 0;
@@ -90,7 +90,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddEdge(
     if edge.is_null() {
         return edge;
     }
-    // SAFETY: Polytope, and `edge` is a new block of its size.
+    // SAFETY: [polytope], and `edge` is a new block of its size.
     unsafe {
         (*edge).vertex = [v1, v2];
         (*edge).faces = [null_mut(); 2];
@@ -116,7 +116,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
     if face.is_null() {
         return face;
     }
-    // SAFETY: Polytope, and `face` is a new block of its size.
+    // SAFETY: [polytope], and `face` is a new block of its size.
     unsafe {
         (*face).edge = [e1, e2, e3];
         for edge in [e1, e2, e3] {
@@ -131,7 +131,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
 /// Computes distance and witness of every element anew; `nearest` stays as it is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         for vertex in elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices) {
             let v = (*vertex).v.v;
@@ -150,7 +150,7 @@ pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
 /// is NULL. NULL when there is none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_el_t {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         if (*pt).nearest.is_null() {
             forget_nearest(pt);
@@ -171,7 +171,7 @@ pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_e
 /// Appends the dump of [`ccdPtDumpSVT2`] to the named file; nothing when it cannot be opened.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const c_char) {
-    // SAFETY: Pointers (a zero-terminated name), then Polytope.
+    // SAFETY: [inputs] (a zero-terminated name), then [polytope].
     unsafe {
         let file = fopen(filename, c"a".as_ptr());
         if !file.is_null() {
@@ -185,7 +185,7 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const
 /// points, edges as two and faces as three numbers of points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut FILE) {
-    // SAFETY: Pointers (an open stream), Polytope; the formats match what is passed.
+    // SAFETY: [inputs] (an open stream), [polytope]; the formats match what is passed.
     unsafe {
         fputs(c"-----\nPoints:\n".as_ptr(), file);
         for (id, vertex) in (0..).zip(elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices)) {
@@ -228,7 +228,7 @@ fn allocate<T>() -> *mut T {
 
 /// Unlinks a face from its edges and the polytope and frees it.
 unsafe fn delete_face(pt: *mut ccd_pt_t, face: *mut ccd_pt_face_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         for edge in (*face).edge {
             if (*edge).faces[0] == face {
@@ -242,7 +242,7 @@ unsafe fn delete_face(pt: *mut ccd_pt_t, face: *mut ccd_pt_face_t) {
 
 /// Unlinks an edge from its vertices and the polytope and frees it, unless it has a face.
 unsafe fn delete_edge(pt: *mut ccd_pt_t, edge: *mut ccd_pt_edge_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         if (*edge).faces[0].is_null() {
             list_remove(&raw mut (*edge).vertex_list[0]);
@@ -254,7 +254,7 @@ unsafe fn delete_edge(pt: *mut ccd_pt_t, edge: *mut ccd_pt_edge_t) {
 
 /// Unlinks a vertex from the polytope and frees it, unless it has an edge.
 unsafe fn delete_vertex(pt: *mut ccd_pt_t, vertex: *mut ccd_pt_vertex_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         if (*vertex).edges.next == &raw mut (*vertex).edges {
             delete(pt, &raw mut (*vertex).el);
@@ -263,7 +263,7 @@ unsafe fn delete_vertex(pt: *mut ccd_pt_t, vertex: *mut ccd_pt_vertex_t) {
 }
 
 unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
-    // SAFETY: Polytope; its elements are blocks of malloc.
+    // SAFETY: [polytope]; its elements are blocks of malloc.
     unsafe {
         list_remove(&raw mut (*element).list);
         if (*pt).nearest == element {
@@ -281,7 +281,7 @@ unsafe fn insert(
     kind: c_int,
     distance: (ccd_vec3_t, Real),
 ) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         (*element).kind = kind;
         set_distance(element, distance);
@@ -297,7 +297,7 @@ unsafe fn insert(
 
 #[inline(always)]
 unsafe fn set_distance(element: *mut ccd_pt_el_t, (witness, dist): (ccd_vec3_t, Real)) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         (*element).witness = witness;
         (*element).dist = dist;
@@ -306,7 +306,7 @@ unsafe fn set_distance(element: *mut ccd_pt_el_t, (witness, dist): (ccd_vec3_t, 
 
 /// No element is nearest: as after [`ccdPtInit`].
 unsafe fn forget_nearest(pt: *mut ccd_pt_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         (*pt).nearest = null_mut();
         (*pt).nearest_dist = Real::MAX;
@@ -318,7 +318,7 @@ unsafe fn forget_nearest(pt: *mut ccd_pt_t) {
 /// type. An element at a NaN distance is never nearest.
 #[inline(always)]
 unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         let (dist, kind) = ((*element).dist, (*element).kind);
         let lower = kind < (*pt).nearest_type;
@@ -348,7 +348,7 @@ fn equal(a: Real, b: Real) -> bool {
 /// The point of an edge nearest to the origin and its squared distance.
 #[inline(always)]
 unsafe fn edge_distance(edge: *const ccd_pt_edge_t) -> (ccd_vec3_t, Real) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     let [a, b] = unsafe { (*edge).vertex.map(|v| Vec3::from((*v).v.v)) };
     let (witness, dist) = nearest::on_segment(&Vec3::zeros(), &a, &b);
     (witness.into(), dist)
@@ -357,7 +357,7 @@ unsafe fn edge_distance(edge: *const ccd_pt_edge_t) -> (ccd_vec3_t, Real) {
 /// The point of a face nearest to the origin and its squared distance.
 #[inline(always)]
 unsafe fn face_distance(face: *const ccd_pt_face_t) -> (ccd_vec3_t, Real) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     let [a, b, c] = unsafe { corners(face).map(|v| Vec3::from((*v).v.v)) };
     let (witness, dist) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
     (witness.into(), dist)
@@ -366,7 +366,7 @@ unsafe fn face_distance(face: *const ccd_pt_face_t) -> (ccd_vec3_t, Real) {
 /// The two vertices of the first edge, and the one of the second that is neither.
 #[inline(always)]
 unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         let [a, b] = (*(*face).edge[0]).vertex;
         let [c, other] = (*(*face).edge[1]).vertex;
@@ -375,7 +375,7 @@ unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
 }
 
 unsafe fn list_init(head: *mut ccd_list_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         (*head).next = head;
         (*head).prev = head;
@@ -384,7 +384,7 @@ unsafe fn list_init(head: *mut ccd_list_t) {
 
 /// Links `node` in front of `head`: at the end of the list.
 unsafe fn list_append(head: *mut ccd_list_t, node: *mut ccd_list_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         let last = (*head).prev;
         (*node).prev = last;
@@ -395,7 +395,7 @@ unsafe fn list_append(head: *mut ccd_list_t, node: *mut ccd_list_t) {
 }
 
 unsafe fn list_remove(node: *mut ccd_list_t) {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     unsafe {
         (*(*node).prev).next = (*node).next;
         (*(*node).next).prev = (*node).prev;
@@ -405,14 +405,14 @@ unsafe fn list_remove(node: *mut ccd_list_t) {
 /// The elements of one of the polytope's lists, in order. The caller may delete the
 /// element it was given last.
 unsafe fn elements<T>(head: *mut ccd_list_t) -> impl Iterator<Item = *mut T> {
-    // SAFETY: Polytope.
+    // SAFETY: [polytope].
     let mut next = unsafe { (*head).next };
     core::iter::from_fn(move || {
         let node = next;
         if node == head {
             return None;
         }
-        // SAFETY: Polytope; every element begins with a ccd_pt_el_t.
+        // SAFETY: [polytope]; every element begins with a ccd_pt_el_t.
         unsafe {
             next = (*node).next;
             Some(node.byte_sub(offset_of!(ccd_pt_el_t, list)).cast())

@@ -15,7 +15,7 @@ pub unsafe extern "C-unwind" fn ccdFirstDirDefault(
     _obj2: *const c_void,
     dir: *mut ccd_vec3_t,
 ) {
-    // SAFETY: Outputs.
+    // SAFETY: [outputs].
     unsafe { *dir = Vec3::x().into() };
 }
 
@@ -29,18 +29,18 @@ pub unsafe extern "C-unwind" fn __ccdSupport(
     ccd: *const ccd_t,
     supp: *mut ccd_support_t,
 ) {
-    // SAFETY: Pointers; copied, because the callbacks write to `supp`.
+    // SAFETY: [inputs]; copied, because the callbacks write to `supp`.
     let dir = unsafe { *dir };
-    // SAFETY: Pointers.
+    // SAFETY: [ccd]; only the two fields are read.
     let callbacks = unsafe { ((*ccd).support1, (*ccd).support2) };
     let (Some(support1), Some(support2)) = callbacks else {
         return;
     };
-    // SAFETY: Callbacks.
+    // SAFETY: [callbacks].
     unsafe { support1(obj1, &dir, &raw mut (*supp).v1) };
     let opposite: ccd_vec3_t = (-Vec3::from(dir)).into();
-    // SAFETY: Callbacks.
+    // SAFETY: [callbacks].
     unsafe { support2(obj2, &opposite, &raw mut (*supp).v2) };
-    // SAFETY: Outputs.
+    // SAFETY: [outputs].
     unsafe { (*supp).v = (Vec3::from((*supp).v1) - Vec3::from((*supp).v2)).into() };
 }

@@ -16,9 +16,9 @@ pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
     b: *const ccd_vec3_t,
     witness: *mut ccd_vec3_t,
 ) -> Real {
-    // SAFETY: Pointers.
+    // SAFETY: [inputs].
     let (p, a, b) = unsafe { (read(p), read(a), read(b)) };
-    // SAFETY: Outputs.
+    // SAFETY: [outputs].
     unsafe { answer(nearest::on_segment(&p, &a, &b), witness) }
 }
 
@@ -32,22 +32,22 @@ pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     c: *const ccd_vec3_t,
     witness: *mut ccd_vec3_t,
 ) -> Real {
-    // SAFETY: Pointers.
+    // SAFETY: [inputs].
     let (p, a, b, c) = unsafe { (read(p), read(a), read(b), read(c)) };
-    // SAFETY: Outputs.
+    // SAFETY: [outputs].
     unsafe { answer(nearest::on_triangle(&p, &a, &b, &c), witness) }
 }
 
 #[inline(always)]
 unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
-    // SAFETY: Pointers.
+    // SAFETY: [inputs].
     unsafe { *v }.into()
 }
 
 #[inline(always)]
 unsafe fn answer((point, dist2): (Vec3, Real), witness: *mut ccd_vec3_t) -> Real {
     if !witness.is_null() {
-        // SAFETY: Outputs; the inputs were copied, so it may be one of them.
+        // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
         unsafe { *witness = point.into() };
     }
     dist2
