@@ -25,12 +25,16 @@ pub enum Overlap {
     Undecided,
 }
 
-/// Decides whether the origin is in D, starting from any point of D.
+/// Decides whether the origin is in D, starting from any point of D: a support
+/// point is one, and so is the difference of two interior points.
 ///
-/// A support point of D is one; so is the difference of two interior points.
+/// `known` points of D are used wherever they do as well as a new support point: a
+/// step needs only a point of D beyond the origin, so D is asked when none of them
+/// is. A search that has points all around the origin is proven without a call.
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: SupportPoint,
+    known: &[SupportPoint],
     max_iterations: u64,
 ) -> Result<Overlap, Fault> {
     let mut simplex = Simplex::new(start);
@@ -43,12 +47,17 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
             return Ok(Overlap::Yes(simplex));
         }
         let n = -v / distance;
-        let w = md.support(&n)?;
+        let w = match farthest(known, &n) {
+            Some(w) => w,
+            None => {
+                let w = md.support(&n)?;
+                if n.dot(&w.v) < 0.0 {
+                    return Ok(Overlap::No(n));
+                }
+                w
+            }
+        };
         size = size.max(w.magnitude());
-        let h = n.dot(&w.v);
-        if h < 0.0 {
-            return Ok(Overlap::No(n));
-        }
         simplex.push(w);
         match simplex.reduce() {
             Nearest::Inside => return Ok(Overlap::Yes(simplex)),
@@ -64,6 +73,21 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
         }
     }
     Ok(Overlap::Undecided)
+}
+
+/// The point farthest along `n`, if it lies beyond the origin.
+#[inline]
+fn farthest(known: &[SupportPoint], n: &Vec3) -> Option<SupportPoint> {
+    let mut best = None;
+    let mut reach = 0.0;
+    for p in known {
+        let d = n.dot(&p.v);
+        if d > reach {
+            reach = d;
+            best = Some(*p);
+        }
+    }
+    best
 }
 
 /// Distances below this many times the largest coordinate are rounding errors of

@@ -57,7 +57,7 @@ unsafe fn mpr_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
     unsafe {
         let md = query.difference()?;
         let centre = query.centre()?;
-        Some(gjk::intersect(&md, centre, query.max_iterations()))
+        Some(gjk::intersect(&md, centre, &[], query.max_iterations()))
     }
 }
 
@@ -93,7 +93,7 @@ unsafe fn gjk_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
             if dir.dot(&start.v) < 0.0 {
                 return Ok(Overlap::No(dir));
             }
-            gjk::intersect(&md, start, query.max_iterations())
+            gjk::intersect(&md, start, &[], query.max_iterations())
         }))
     }
 }
