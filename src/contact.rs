@@ -43,6 +43,9 @@ pub enum Answer {
     /// They overlap, and the iteration cap came before the tolerance: the best
     /// sound answer.
     Limit(Penetration),
+    /// The iteration cap came before the objects were shown to overlap or not; moving
+    /// obj2 by this answer would separate them.
+    Undecided(Penetration),
     /// They are apart: the support plane of this unit direction has the origin
     /// strictly outside, n·s(n) < 0.
     Miss(Vec3),

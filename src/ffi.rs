@@ -30,22 +30,10 @@
 // The safety section of every function here is the contract above.
 #![allow(clippy::missing_safety_doc)]
 
-use core::ffi::c_char;
-
 pub mod callbacks;
 pub mod collide;
 pub mod polytope;
 pub mod support;
 pub mod types;
 pub mod vec3;
-
-/// Which library a process really runs, and in which precision, as a
-/// zero-terminated string: `"warmccd 0.1.0 double"` (or `single`).
-#[unsafe(no_mangle)]
-pub extern "C-unwind" fn ccdImplementation() -> *const c_char {
-    #[cfg(not(feature = "single"))]
-    const NAME: &str = concat!("warmccd ", env!("CARGO_PKG_VERSION"), " double\0");
-    #[cfg(feature = "single")]
-    const NAME: &str = concat!("warmccd ", env!("CARGO_PKG_VERSION"), " single\0");
-    NAME.as_ptr().cast()
-}
+pub mod warm;

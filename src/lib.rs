@@ -21,6 +21,8 @@ pub mod gjk;
 pub mod local;
 pub mod math;
 pub mod nearest;
+pub mod planar;
 pub mod portal;
 pub mod simplex;
 pub mod support;
+pub mod warm;

@@ -24,7 +24,7 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::math::{Real, Vec3, perpendicular, unit};
-use crate::portal::{self, Exit, Measure, Plane, Portal, rounding};
+use crate::portal::{self, Exit, Plane, Portal, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
 
 /// When a ray may be left before its end.
@@ -80,7 +80,6 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             md,
             &ray,
             settings.tolerance,
-            Measure::Normal,
             may_leave,
             &mut best,
             &mut budget,

@@ -55,25 +55,48 @@ impl Plane {
 pub struct Portal {
     /// Unit direction of the origin ray.
     pub ray: Vec3,
-    /// v1, v2, v3, ordered so that the normal looks along the ray.
-    pub points: [SupportPoint; 3],
+    /// The support planes of v1, v2, v3, ordered so that the triangle's normal looks
+    /// along the ray.
+    pub planes: [Plane; 3],
 }
 
 impl Portal {
     /// Outward unit normal of the triangle; `None` when it has no area.
     #[inline]
     pub fn normal(&self) -> Option<Vec3> {
-        let [a, b, c] = &self.points;
-        unit(&(b.v - a.v).cross(&(c.v - a.v)))
+        let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
+        unit(&(b - a).cross(&(c - a)))
     }
 
-    /// Replaces one vertex by `w`, a point beyond the triangle, so that the ray
+    /// The portal of three support planes, if the ray crosses their triangle from
+    /// the origin's side, in either order of the vertices.
+    pub fn of(ray: Vec3, planes: [Plane; 3]) -> Option<Self> {
+        let [a, b, c] = planes.map(|p| p.point.v);
+        let t = [
+            triple(&ray, &a, &b),
+            triple(&ray, &b, &c),
+            triple(&ray, &c, &a),
+        ];
+        if t.iter().all(|&t| t > 0.0) {
+            Some(Self { ray, planes })
+        } else if t.iter().all(|&t| t < 0.0) {
+            let [a, b, c] = planes;
+            Some(Self {
+                ray,
+                planes: [a, c, b],
+            })
+        } else {
+            None
+        }
+    }
+
+    /// Replaces one vertex by the point of `w`, beyond the triangle, so that the ray
     /// still crosses (paper, Algorithm 1, update_portal).
     #[inline]
-    pub fn update(&mut self, w: SupportPoint) {
-        let c = self.ray.cross(&w.v);
+    pub fn update(&mut self, w: Plane) {
+        let c = self.ray.cross(&w.point.v);
         // Which side of the plane through the ray and w each vertex is on.
-        let [t1, t2, t3] = [0, 1, 2].map(|i: usize| c.dot(&self.points[i].v));
+        let [t1, t2, t3] = self.planes.each_ref().map(|p| c.dot(&p.point.v));
         let replaced = if t1 >= 0.0 {
             if t2 <= 0.0 {
                 2
@@ -87,13 +110,13 @@ impl Portal {
         } else {
             0
         };
-        self.points[replaced] = w;
+        self.planes[replaced] = w;
     }
 
     /// The points of obj1 and obj2 whose difference is where the ray crosses the
     /// triangle: both are convex combinations of the objects' own support points.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
-        let [a, b, c] = &self.points;
+        let [a, b, c] = self.planes.each_ref().map(|p| &p.point);
         let weights = [
             triple(&self.ray, &b.v, &c.v),
             triple(&self.ray, &c.v, &a.v),
@@ -106,7 +129,7 @@ impl Portal {
         }
         let mut p1 = Vec3::zeros();
         let mut p2 = Vec3::zeros();
-        for (p, t) in self.points.iter().zip(weights) {
+        for (p, t) in [a, b, c].into_iter().zip(weights) {
             p1 += p.v1 * (t / sum);
             p2 += p.v2 * (t / sum);
         }
@@ -176,26 +199,26 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
     // point beyond the plane (v0, v1, v2) closes the cone.
     let mut portal = Portal {
         ray: d,
-        points: [second.point, first.point, first.point],
+        planes: [second, *first, *first],
     };
     while *budget > 0 {
         *budget -= 1;
-        let [a, b, _] = &portal.points;
-        let v0 = -d * a.v.amax().max(b.v.amax());
-        let Some(n) = unit(&(a.v - v0).cross(&(b.v - v0))) else {
+        let [a, b, _] = portal.planes.each_ref().map(|p| p.point.v);
+        let v0 = -d * a.amax().max(b.amax());
+        let Some(n) = unit(&(a - v0).cross(&(b - v0))) else {
             return Ok(Found::Touch);
         };
         let third = match probe(md, n, best)? {
             Probe::Plane(p) => p,
             Probe::Miss(n) => return Ok(Found::Miss(n)),
         };
-        let w = third.point;
-        if triple(&d, &a.v, &w.v) > 0.0 {
-            portal.points[1] = w;
-        } else if triple(&d, &w.v, &b.v) > 0.0 {
-            portal.points[0] = w;
+        let w = third.point.v;
+        if triple(&d, &a, &w) > 0.0 {
+            portal.planes[1] = third;
+        } else if triple(&d, &w, &b) > 0.0 {
+            portal.planes[0] = third;
         } else {
-            portal.points[2] = w;
+            portal.planes[2] = third;
             return Ok(Found::Portal(portal));
         }
     }
@@ -256,18 +279,29 @@ pub fn mpr<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     first: &Plane,
     tolerance: Real,
+    shortcut: bool,
+    best: &mut Plane,
+    budget: &mut u64,
+) -> Result<Exit, Fault> {
+    match find_portal(md, first, best, budget)? {
+        Found::Portal(p) => refine(md, p, tolerance, Measure::Normal, shortcut, best, budget),
+        Found::Vertex => Ok(Exit::Vertex),
+        Found::Touch => Ok(Exit::Touch),
+        Found::Miss(n) => Ok(Exit::Miss(n)),
+        Found::Limit => Ok(Exit::Limit(None)),
+    }
+}
+
+/// Portal refinement: the loop of Algorithms 1 and 5, from a portal on.
+pub fn refine<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    mut portal: Portal,
+    tolerance: Real,
     measure: Measure,
     shortcut: bool,
     best: &mut Plane,
     budget: &mut u64,
 ) -> Result<Exit, Fault> {
-    let mut portal = match find_portal(md, first, best, budget)? {
-        Found::Portal(p) => p,
-        Found::Vertex => return Ok(Exit::Vertex),
-        Found::Touch => return Ok(Exit::Touch),
-        Found::Miss(n) => return Ok(Exit::Miss(n)),
-        Found::Limit => return Ok(Exit::Limit(None)),
-    };
     while *budget > 0 {
         *budget -= 1;
         let Some(n) = portal.normal() else {
@@ -279,11 +313,10 @@ pub fn mpr<A: SupportMap, B: SupportMap>(
             Probe::Plane(p) => p,
             Probe::Miss(n) => return Ok(Exit::Miss(n)),
         };
-        let along = n.dot(&first.normal);
-        let inner = n.dot(&portal.points[0].v);
-        let size = plane.point.magnitude();
+        let along = n.dot(&portal.ray);
+        let inner = n.dot(&portal.planes[0].point.v);
         let mut gap = plane.depth - inner;
-        let mut floor = rounding(size);
+        let mut floor = rounding(plane.point.magnitude());
         if measure == Measure::Ray {
             gap /= along;
             floor /= along;
@@ -297,7 +330,7 @@ pub fn mpr<A: SupportMap, B: SupportMap>(
         if shortcut && plane.depth * along <= inner {
             return Ok(Exit::Shortcut(plane));
         }
-        portal.update(plane.point);
+        portal.update(plane);
     }
     Ok(Exit::Limit(Some(portal)))
 }

@@ -8,7 +8,7 @@
 //! vectors, so it is free of scale; a face whose area vanishes falls back to its
 //! edges, an edge whose length vanishes to its ends.
 
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, unit};
 use crate::support::SupportPoint;
 
 /// Up to four support points of D.
@@ -17,6 +17,14 @@ pub struct Simplex {
     points: [SupportPoint; 4],
     len: usize,
 }
+
+/// Each face of a tetrahedron with the vertex opposite to it.
+const FACES: [([usize; 3], usize); 4] = [
+    ([0, 1, 3], 2),
+    ([1, 2, 3], 0),
+    ([2, 0, 3], 1),
+    ([0, 1, 2], 3),
+];
 
 /// Where the origin lies, seen from a simplex.
 pub enum Nearest {
@@ -48,6 +56,29 @@ impl Simplex {
         let at = self.len.min(3);
         self.points[at] = p;
         self.len = at + 1;
+    }
+
+    /// The distance from the origin to the nearest face of a tetrahedron that holds
+    /// it: a lower bound on the penetration depth, since the tetrahedron is inscribed
+    /// in D. Zero where the origin is not strictly inside a tetrahedron.
+    pub fn inner_distance(&self) -> Real {
+        if self.len != 4 {
+            return 0.0;
+        }
+        let mut least = Real::INFINITY;
+        for (f, opposite) in FACES {
+            let [a, b, c] = f.map(|i| self.points[i].v);
+            let Some(n) = unit(&(b - a).cross(&(c - a))) else {
+                return 0.0;
+            };
+            let origin = -n.dot(&a);
+            let inner = n.dot(&(self.points[opposite].v - a));
+            if !(origin * inner > 0.0) {
+                return 0.0;
+            }
+            least = least.min(origin.abs());
+        }
+        least
     }
 
     #[inline]

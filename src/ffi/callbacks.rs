@@ -8,6 +8,7 @@ use core::ffi::{c_ulong, c_void};
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
 use crate::math::{ITERATION_CAP, Real, Vec3};
 use crate::support::{MinkowskiDifference, SupportMap, SupportPoint};
+use crate::warm::Pair;
 
 /// One object behind libccd's support callback.
 #[derive(Clone, Copy)]
@@ -23,7 +24,7 @@ impl SupportMap for Object {
         // vector loads can be forwarded from; three scalar stores would stall it.
         let dir = ccd_vec3_t::from(*dir);
         let mut point = ccd_vec3_t::default();
-        // SAFETY: [callbacks]; nothing with a destructor is alive here.
+        // SAFETY: Callbacks; nothing with a destructor is alive here.
         unsafe { (self.support)(self.obj, &dir, &mut point) };
         point.into()
     }
@@ -48,9 +49,9 @@ impl Query {
     /// The Minkowski difference; `None` when a support callback is NULL.
     ///
     /// # Safety
-    /// [ccd] of the module contract.
+    /// Pointers of the module contract.
     pub unsafe fn difference(&self) -> Option<Difference> {
-        // SAFETY: [ccd]; only the two fields are read.
+        // SAFETY: Pointers; only the two fields are read.
         let (support1, support2) = unsafe { ((*self.ccd).support1?, (*self.ccd).support2?) };
         Some(MinkowskiDifference::new(
             Object {
@@ -68,11 +69,11 @@ impl Query {
     /// a centre callback is NULL.
     ///
     /// # Safety
-    /// [ccd] of the module contract.
+    /// Pointers of the module contract.
     pub unsafe fn centre(&self) -> Option<SupportPoint> {
-        // SAFETY: [ccd]; only the two fields are read.
+        // SAFETY: Pointers; only the two fields are read.
         let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
-        // SAFETY: [callbacks].
+        // SAFETY: Callbacks.
         let (v1, v2) = unsafe { (centre_of(center1, self.obj1), centre_of(center2, self.obj2)) };
         Some(SupportPoint { v: v1 - v2, v1, v2 })
     }
@@ -81,22 +82,37 @@ impl Query {
     /// callback is NULL.
     ///
     /// # Safety
-    /// [ccd] of the module contract.
+    /// Pointers of the module contract.
     pub unsafe fn first_dir(&self) -> Option<Vec3> {
-        // SAFETY: [ccd]; only the field is read.
+        // SAFETY: Pointers; only the field is read.
         let first_dir = unsafe { (*self.ccd).first_dir? };
         let mut dir = ccd_vec3_t::default();
-        // SAFETY: [callbacks].
+        // SAFETY: Callbacks.
         unsafe { first_dir(self.obj1, self.obj2, &mut dir) };
         Some(dir.into())
+    }
+
+    /// Difference and centres; `None` when a callback for them is NULL.
+    ///
+    /// # Safety
+    /// Pointers of the module contract.
+    pub unsafe fn pair(&self) -> Option<Pair<Object, Object>> {
+        // SAFETY: passed on.
+        unsafe {
+            Some(Pair {
+                md: self.difference()?,
+                centre: Some(self.centre()?),
+                first_dir: None,
+            })
+        }
     }
 
     /// The caller's cap on iterations, or the library's own where that is lower.
     ///
     /// # Safety
-    /// [ccd] of the module contract.
+    /// Pointers of the module contract.
     pub unsafe fn max_iterations(&self) -> u64 {
-        // SAFETY: [ccd]; only the field is read.
+        // SAFETY: Pointers; only the field is read.
         let max: c_ulong = unsafe { (*self.ccd).max_iterations };
         #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
         ITERATION_CAP.min(max as u64)
@@ -105,27 +121,27 @@ impl Query {
     /// mpr_tolerance as the caller set it.
     ///
     /// # Safety
-    /// [ccd] of the module contract.
+    /// Pointers of the module contract.
     pub unsafe fn mpr_tolerance(&self) -> Real {
-        // SAFETY: [ccd]; only the field is read.
+        // SAFETY: Pointers; only the field is read.
         unsafe { (*self.ccd).mpr_tolerance }
     }
 
     /// epa_tolerance as the caller set it.
     ///
     /// # Safety
-    /// [ccd] of the module contract.
+    /// Pointers of the module contract.
     pub unsafe fn epa_tolerance(&self) -> Real {
-        // SAFETY: [ccd]; only the field is read.
+        // SAFETY: Pointers; only the field is read.
         unsafe { (*self.ccd).epa_tolerance }
     }
 }
 
 /// # Safety
-/// [callbacks] of the module contract.
+/// Callbacks of the module contract.
 unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
     let mut c = ccd_vec3_t::default();
-    // SAFETY: [callbacks].
+    // SAFETY: Callbacks.
     unsafe { center(obj, &mut c) };
     c.into()
 }

@@ -7,14 +7,15 @@ use core::ffi::{c_int, c_void};
 
 use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
+use super::warm::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::{self, Overlap};
-use crate::local::{self, Shortcut};
 use crate::math::{Real, Vec3, unit};
 use crate::support::{Fault, SupportPoint};
+use crate::warm::State;
 
 /// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
-const DEFAULT_TOLERANCE: Real = 1e-4;
+pub const DEFAULT_TOLERANCE: Real = 1e-4;
 
 /// The tolerance a compatible call works with.
 fn or_default(tolerance: Real) -> Real {
@@ -29,14 +30,14 @@ fn or_default(tolerance: Real) -> Real {
 /// Writes the outputs that are not NULL.
 ///
 /// # Safety
-/// [outputs] of the module contract.
+/// Outputs of the module contract.
 pub unsafe fn write(
     hit: &Penetration,
     depth: *mut Real,
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) {
-    // SAFETY: [outputs].
+    // SAFETY: Outputs.
     unsafe {
         if let Some(depth) = depth.as_mut() {
             *depth = hit.depth;
@@ -50,24 +51,10 @@ pub unsafe fn write(
     }
 }
 
-/// # Safety
-/// [ccd] of the module contract.
-unsafe fn mpr_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
-    // SAFETY: passed on.
-    unsafe {
-        let md = query.difference()?;
-        let centre = query.centre()?;
-        Some(gjk::intersect(&md, centre, &[], query.max_iterations()))
-    }
-}
-
 /// Do the objects overlap? Starts from the centres.
 ///
 /// Returns 1 when they overlap or touch, 0 when they do not, when a callback is
 /// NULL or a point not finite, or when the iterations run out.
-///
-/// # Safety
-/// [ccd] of the module contract.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     obj1: *const c_void,
@@ -75,14 +62,11 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     ccd: *const ccd_t,
 ) -> c_int {
     // SAFETY: passed on.
-    match unsafe { mpr_intersect(Query { obj1, obj2, ccd }) } {
-        Some(Ok(Overlap::Yes(_))) => 1,
-        _ => 0,
-    }
+    unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, core::ptr::null_mut()) }
 }
 
 /// # Safety
-/// [ccd] of the module contract.
+/// Pointers of the module contract.
 unsafe fn gjk_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
     // SAFETY: passed on.
     unsafe {
@@ -101,9 +85,6 @@ unsafe fn gjk_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
 /// Do the objects overlap? Starts from first_dir; the centres are not asked for.
 ///
 /// Returns as [`ccdMPRIntersect`].
-///
-/// # Safety
-/// [ccd] of the module contract.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     obj1: *const c_void,
@@ -117,25 +98,19 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     }
 }
 
+/// ccdMPRPenetration with a state; `None` when nothing was decided.
+///
 /// # Safety
-/// [ccd] of the module contract.
-unsafe fn mpr_penetration(query: Query) -> Option<Result<Answer, Fault>> {
+/// Pointers of the module contract.
+pub unsafe fn mpr_penetration(query: Query, state: &mut State) -> Option<Answer> {
     // SAFETY: passed on.
     unsafe {
-        let md = query.difference()?;
-        let centre = query.centre()?;
+        let pair = query.pair()?;
         let settings = Settings {
             tolerance: or_default(query.mpr_tolerance()),
             max_iterations: query.max_iterations(),
         };
-        let start = unit(&-centre.v).unwrap_or(Vec3::x());
-        Some(local::penetration(
-            &md,
-            start,
-            Shortcut::AfterFirstRay,
-            &settings,
-            |_| {},
-        ))
+        pair.mpr(state, &settings).ok()
     }
 }
 
@@ -145,9 +120,6 @@ unsafe fn mpr_penetration(query: Query) -> Option<Result<Answer, Fault>> {
 /// `depth` in metres, `dir` unit, the way obj2 moves, `pos` the middle of two
 /// witness points. Returns -1 and leaves the outputs alone when they do not, when a
 /// callback is NULL or a point not finite.
-///
-/// # Safety
-/// [ccd] and [outputs] of the module contract.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     obj1: *const c_void,
@@ -158,13 +130,5 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     pos: *mut ccd_vec3_t,
 ) -> c_int {
     // SAFETY: passed on.
-    unsafe {
-        match mpr_penetration(Query { obj1, obj2, ccd }) {
-            Some(Ok(Answer::Hit(hit) | Answer::Limit(hit))) => {
-                write(&hit, depth, dir, pos);
-                0
-            }
-            _ => -1,
-        }
-    }
+    unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
 }

@@ -1,0 +1,354 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The extension, `ccd/warm.h`: cbindgen makes that header from this file.
+
+use core::ffi::{c_char, c_int, c_uint, c_ulong, c_void};
+
+use super::callbacks::{Object, Query};
+use super::collide::{mpr_penetration, write};
+use super::types::{ccd_t, ccd_vec3_t};
+use crate::contact::{Answer, Penetration, Settings};
+use crate::local::Shortcut;
+use crate::math::{Real, Vec3, unit};
+use crate::support::Fault;
+use crate::warm::{Pair, State};
+
+/// The objects overlap or touch.
+pub const CCD_HIT: c_int = 0;
+/// The objects are apart.
+pub const CCD_MISS: c_int = -1;
+/// Memory was needed and not to be had.
+pub const CCD_NO_MEMORY: c_int = -2;
+/// An argument or a callback's answer that no query can work with; nothing was written.
+pub const CCD_BAD_INPUT: c_int = -3;
+/// max_iterations came before the tolerance: the best sound answer was written.
+pub const CCD_LIMIT: c_int = -4;
+
+/// How many numbers a [`ccd_warm_t`] holds.
+pub const CCD_WARM_REALS: usize = 9;
+
+/// State of one pair between queries. Plain data, no pointers, nothing to free: all
+/// bytes zero is cold, and it may be copied and stored freely.
+///
+/// A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to
+/// another local minimum; every answer stays sound. The fields are the library's own.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ccd_warm_t {
+    /// Private.
+    pub reals: [Real; CCD_WARM_REALS],
+    /// Private.
+    pub words: [c_uint; 2],
+}
+
+const _: () = {
+    assert!(size_of::<ccd_warm_t>() == size_of::<State>());
+    assert!(align_of::<ccd_warm_t>() == align_of::<State>());
+    assert!(size_of::<ccd_warm_t>() <= 256);
+};
+
+/// What a query of the extension answers.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ccd_penetration_t {
+    /// Metres, >= 0: moving obj2 by depth * dir separates the objects. It is the support
+    /// value of normal, divided by dir . normal.
+    pub depth: Real,
+    /// Proven lower bound on the global minimum depth (in ccdPenetrationAlong: on the
+    /// depth along dir), metres; 0 where none was proven.
+    pub depth_lower: Real,
+    /// Unit; the way obj2 moves.
+    pub dir: ccd_vec3_t,
+    /// Unit; normal of the separating plane. Equal to dir except in ccdPenetrationAlong.
+    pub normal: ccd_vec3_t,
+    /// Contact position: the middle of the witness points.
+    pub pos: ccd_vec3_t,
+    /// Witness point of obj1, within the tolerance of its supporting plane.
+    pub point1: ccd_vec3_t,
+    /// Witness point of obj2, within the tolerance of its supporting plane.
+    pub point2: ccd_vec3_t,
+    /// Support points of the Minkowski difference evaluated; one is one call of support1
+    /// and one of support2.
+    pub supports: c_ulong,
+    /// Iterations of the solver.
+    pub iterations: c_ulong,
+}
+
+impl ccd_penetration_t {
+    fn new(hit: &Penetration, supports: u64) -> Self {
+        Self {
+            depth: hit.depth,
+            depth_lower: hit.depth_lower,
+            dir: hit.dir.into(),
+            normal: hit.normal.into(),
+            pos: ((hit.point1 + hit.point2) * 0.5).into(),
+            point1: hit.point1.into(),
+            point2: hit.point2.into(),
+            supports: supports as c_ulong,
+            iterations: hit.iterations as c_ulong,
+        }
+    }
+}
+
+/// A query of the extension: runs `solve` with the caller's state, or with a cold one
+/// where there is none, and writes what comes of it.
+///
+/// # Safety
+/// Pointers and Outputs of the module contract; `solve` runs callbacks, so that nothing
+/// with a destructor is alive here.
+unsafe fn answer(
+    query: Query,
+    tolerance: unsafe fn(&Query) -> Real,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_penetration_t,
+    solve: impl Fn(&Pair<Object, Object>, &mut State, &Settings) -> Result<Answer, Fault>,
+) -> c_int {
+    if query.ccd.is_null() || out.is_null() {
+        return CCD_BAD_INPUT;
+    }
+    // SAFETY: Pointers.
+    unsafe {
+        let tolerance = tolerance(&query);
+        if !(tolerance >= 0.0) {
+            return CCD_BAD_INPUT;
+        }
+        let Some(md) = query.difference() else {
+            return CCD_BAD_INPUT;
+        };
+        let centre = query.centre();
+        if centre.is_some_and(|c| !c.v.sum().is_finite()) {
+            return CCD_BAD_INPUT;
+        }
+        let first_dir = if centre.is_none() {
+            query.first_dir()
+        } else {
+            None
+        };
+        let settings = Settings {
+            tolerance,
+            max_iterations: query.max_iterations(),
+        };
+        let pair = Pair {
+            md,
+            centre,
+            first_dir,
+        };
+        let mut state = read(warm);
+        let result = solve(&pair, &mut state, &settings);
+        let (code, hit) = match result {
+            Ok(Answer::Hit(hit)) => (CCD_HIT, Some(hit)),
+            Ok(Answer::Limit(hit) | Answer::Undecided(hit)) => (CCD_LIMIT, Some(hit)),
+            Ok(Answer::Miss(_)) => (CCD_MISS, None),
+            Err(Fault::NoMemory) => return CCD_NO_MEMORY,
+            Err(Fault::NonFinite) => return CCD_BAD_INPUT,
+        };
+        if let Some(hit) = hit {
+            *out = ccd_penetration_t::new(&hit, pair.md.supports());
+        }
+        store(warm, &state);
+        code
+    }
+}
+
+/// The caller's state; cold where there is none.
+///
+/// # Safety
+/// Pointers of the module contract.
+unsafe fn read(warm: *const ccd_warm_t) -> State {
+    if warm.is_null() {
+        State::default()
+    } else {
+        // SAFETY: Pointers; every bit pattern is a State of the same layout.
+        unsafe { *warm.cast::<State>() }
+    }
+}
+
+/// # Safety
+/// Outputs of the module contract.
+unsafe fn store(warm: *mut ccd_warm_t, state: &State) {
+    if !warm.is_null() {
+        // SAFETY: Outputs.
+        unsafe { *warm.cast::<State>() = *state };
+    }
+}
+
+/// Makes `warm` a fresh state that starts from `dir`, the caller's guess of the way obj2
+/// leaves.
+///
+/// `dir` need not be unit; zero, not finite or NULL makes a cold state. `warm` NULL: nothing
+/// happens.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const ccd_vec3_t) {
+    // SAFETY: Pointers, Outputs.
+    unsafe {
+        let guess = match dir.as_ref() {
+            Some(dir) => State::guess(&(*dir).into()),
+            None => State::default(),
+        };
+        store(warm, &guess);
+    }
+}
+
+/// ccdMPRPenetration with memory.
+///
+/// `warm` may be NULL (cold). Returns and outputs as ccdMPRPenetration.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+    depth: *mut Real,
+    dir: *mut ccd_vec3_t,
+    pos: *mut ccd_vec3_t,
+) -> c_int {
+    // SAFETY: passed on.
+    unsafe {
+        let mut state = read(warm);
+        let answer = mpr_penetration(Query { obj1, obj2, ccd }, &mut state);
+        if answer.is_some() {
+            store(warm, &state);
+        }
+        match answer {
+            Some(Answer::Hit(hit) | Answer::Limit(hit)) => {
+                write(&hit, depth, dir, pos);
+                CCD_HIT
+            }
+            _ => CCD_MISS,
+        }
+    }
+}
+
+/// ccdMPRIntersect with memory: a pair that stays apart costs one support point while its
+/// last separating direction still separates.
+///
+/// `warm` may be NULL (cold). Returns as ccdMPRIntersect: 1 or 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+) -> c_int {
+    let query = Query { obj1, obj2, ccd };
+    // SAFETY: passed on.
+    unsafe {
+        let mut state = read(warm);
+        let overlap = query
+            .pair()
+            .and_then(|pair| pair.intersect(&mut state, query.max_iterations()).ok());
+        if overlap.is_some() {
+            store(warm, &state);
+        }
+        c_int::from(overlap == Some(Some(true)))
+    }
+}
+
+/// A local minimum of the penetration depth, by the paper's method: from the state, else
+/// from the centres, else from first_dir.
+///
+/// Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+///
+/// Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
+/// alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    let query = Query { obj1, obj2, ccd };
+    // SAFETY: passed on.
+    unsafe {
+        answer(
+            query,
+            Query::mpr_tolerance,
+            warm,
+            out,
+            |pair, state, settings| pair.local(state, Shortcut::Always, settings),
+        )
+    }
+}
+
+/// How far obj2 must move along `dir` to separate: where the origin ray leaves the
+/// Minkowski difference (the paper's Algorithm 1).
+///
+/// `dir` need not be unit. mpr_tolerance is measured along `dir`. `warm` may be NULL (cold).
+///
+/// Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT (also for a `dir`
+/// that is zero, not finite or NULL) and leaves it alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    dir: *const ccd_vec3_t,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    // SAFETY: passed on.
+    unsafe {
+        let Some(dir) = unit_of(dir) else {
+            return CCD_BAD_INPUT;
+        };
+        answer(
+            Query { obj1, obj2, ccd },
+            Query::mpr_tolerance,
+            warm,
+            out,
+            |pair, state, settings| pair.along(dir, state, settings),
+        )
+    }
+}
+
+/// A local minimum of the penetration depth among the directions of a plane (the paper's
+/// two-dimensional case), for shapes that lie in a common plane with this normal.
+///
+/// `plane_normal` need not be unit. Reads mpr_tolerance. `warm` may be NULL (cold).
+///
+/// Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT (also for a
+/// `plane_normal` that is zero, not finite or NULL) and leaves it alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    plane_normal: *const ccd_vec3_t,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    // SAFETY: passed on.
+    unsafe {
+        let Some(m) = unit_of(plane_normal) else {
+            return CCD_BAD_INPUT;
+        };
+        answer(
+            Query { obj1, obj2, ccd },
+            Query::mpr_tolerance,
+            warm,
+            out,
+            |pair, state, settings| pair.planar(m, state, settings),
+        )
+    }
+}
+
+/// # Safety
+/// Pointers of the module contract.
+unsafe fn unit_of(dir: *const ccd_vec3_t) -> Option<Vec3> {
+    // SAFETY: Pointers.
+    unit(&unsafe { *dir.as_ref()? }.into())
+}
+
+/// Which library a process really runs, and in which precision: "warmccd 0.1.0 double", a
+/// string that lives as long as the library.
+#[unsafe(no_mangle)]
+pub extern "C-unwind" fn ccdImplementation() -> *const c_char {
+    #[cfg(not(feature = "single"))]
+    const NAME: &str = concat!("warmccd ", env!("CARGO_PKG_VERSION"), " double\0");
+    #[cfg(feature = "single")]
+    const NAME: &str = concat!("warmccd ", env!("CARGO_PKG_VERSION"), " single\0");
+    NAME.as_ptr().cast()
+}

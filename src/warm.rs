@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Queries with memory: what one query of a pair leaves behind for the next
+//! (paper, Sec. III-D), and the order of steps that all of them share.
+//!
+//! 1. A pair that was apart is asked about the direction that separated it: while
+//!    that still separates, one support point is the whole answer.
+//! 2. The solver starts from what the state holds, else from the centres, else from
+//!    the caller's first direction.
+//! 3. An overlap is proven. A local minimum of the support function can be positive
+//!    though the objects are apart (a plate that an object has passed through, seen
+//!    from the old side), so the origin must be shown to lie among points of D:
+//!    [`gjk::intersect`] on the points the solver saw, the centres' difference among
+//!    them, asks for more only where these leave a side open.
+//!
+//! Nothing in a state is trusted: it chooses where to look first, never what is true.
+
+use crate::contact::{Answer, Penetration, Settings};
+use crate::gjk::{self, Overlap};
+use crate::local::{self, Shortcut};
+use crate::math::{Real, Vec3, unit};
+use crate::planar;
+use crate::portal::{self, Exit, Found, Measure, Plane, Portal};
+use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+
+/// Directions a state remembers.
+pub const DIRECTIONS: usize = 3;
+
+/// What a query leaves behind. All zero is cold; any other bits are harmless.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct State {
+    /// Directions of the last answer: the first is the separating direction, the
+    /// guess, or the normal of the answer.
+    pub directions: [[Real; 3]; DIRECTIONS],
+    /// One of the constants below; anything else is cold.
+    pub kind: u32,
+    /// How many of the directions are in use.
+    pub count: u32,
+}
+
+/// The pair was apart.
+const APART: u32 = 1;
+/// The pair overlapped.
+const OVERLAP: u32 = 2;
+/// Nothing but the caller's guess of the direction.
+const GUESS: u32 = 3;
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            directions: [[0.0; 3]; DIRECTIONS],
+            kind: 0,
+            count: 0,
+        }
+    }
+}
+
+impl State {
+    /// A fresh state that starts from `dir`; cold when it is zero or not finite.
+    pub fn guess(dir: &Vec3) -> Self {
+        match unit(dir) {
+            Some(n) => Self::remember(GUESS, n),
+            None => Self::default(),
+        }
+    }
+
+    fn remember(kind: u32, n: Vec3) -> Self {
+        let mut state = Self {
+            kind,
+            count: 1,
+            ..Self::default()
+        };
+        state.directions[0] = n.into();
+        state
+    }
+
+    /// The unit direction `i`, if the state holds one.
+    fn direction(&self, i: usize) -> Option<Vec3> {
+        if i >= self.count as usize {
+            return None;
+        }
+        unit(&Vec3::from(*self.directions.get(i)?))
+    }
+
+    /// The direction that separated the pair.
+    fn separating(&self) -> Option<Vec3> {
+        if self.kind == APART {
+            self.direction(0)
+        } else {
+            None
+        }
+    }
+
+    /// Where a solver starts.
+    fn start(&self) -> Option<Vec3> {
+        match self.kind {
+            OVERLAP | GUESS => self.direction(0),
+            _ => None,
+        }
+    }
+}
+
+/// A pair and what the caller knows of it besides the state.
+pub struct Pair<A, B> {
+    /// The Minkowski difference.
+    pub md: MinkowskiDifference<A, B>,
+    /// The difference of the centres, where the caller gives them.
+    pub centre: Option<SupportPoint>,
+    /// The caller's first direction, where it gives one.
+    pub first_dir: Option<Vec3>,
+}
+
+impl<A: SupportMap, B: SupportMap> Pair<A, B> {
+    /// Step 1: the separating direction that still separates.
+    fn still_apart(&self, state: &State) -> Result<Option<Vec3>, Fault> {
+        if let Some(n) = state.separating() {
+            let s = self.md.support(&n)?;
+            if n.dot(&s.v) < 0.0 {
+                return Ok(Some(n));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The way from the centre of D through the origin, or the caller's first
+    /// direction, or any.
+    fn cold_start(&self) -> Vec3 {
+        let from_centre = self.centre.and_then(|c| unit(&-c.v));
+        from_centre
+            .or_else(|| self.first_dir.and_then(|d| unit(&d)))
+            .unwrap_or(Vec3::x())
+    }
+
+    /// Step 3: the answer of a solver, with the overlap proven or refuted.
+    fn proven(
+        &self,
+        hit: Penetration,
+        limit: bool,
+        known: &[SupportPoint],
+        settings: &Settings,
+    ) -> Result<Answer, Fault> {
+        let start = match (self.centre, known.first()) {
+            (Some(c), _) => c,
+            (None, Some(k)) => *k,
+            (None, None) => self.md.support(&hit.normal)?,
+        };
+        // The proof has a budget of its own: a search cut short must still know
+        // whether it has an answer.
+        Ok(
+            match gjk::intersect(&self.md, start, known, settings.max_iterations)? {
+                Overlap::Yes(simplex) => {
+                    let hit = Penetration {
+                        depth_lower: simplex.inner_distance().min(hit.depth),
+                        ..hit
+                    };
+                    if limit {
+                        Answer::Limit(hit)
+                    } else {
+                        Answer::Hit(hit)
+                    }
+                }
+                Overlap::No(n) => Answer::Miss(n),
+                Overlap::Undecided => Answer::Undecided(hit),
+            },
+        )
+    }
+
+    /// Do the objects overlap? (`Ok(None)`: the iterations ran out.)
+    pub fn intersect(&self, state: &mut State, max_iterations: u64) -> Result<Option<bool>, Fault> {
+        if self.still_apart(state)?.is_some() {
+            return Ok(Some(false));
+        }
+        let start = match self.centre {
+            Some(c) => c,
+            None => self.md.support(&self.cold_start())?,
+        };
+        Ok(
+            match gjk::intersect(&self.md, start, &[], max_iterations)? {
+                Overlap::Yes(_) => Some(true),
+                Overlap::No(n) => {
+                    *state = State::remember(APART, n);
+                    Some(false)
+                }
+                Overlap::Undecided => None,
+            },
+        )
+    }
+
+    /// The depth at MPR's price: from the state, else from the centres with the first
+    /// ray run to its end.
+    pub fn mpr(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        let shortcut = match state.start() {
+            Some(_) => Shortcut::Always,
+            None => Shortcut::AfterFirstRay,
+        };
+        self.local(state, shortcut, settings)
+    }
+
+    /// A local minimum of the depth; `shortcut` as in [`local::penetration`].
+    pub fn local(
+        &self,
+        state: &mut State,
+        shortcut: Shortcut,
+        settings: &Settings,
+    ) -> Result<Answer, Fault> {
+        if let Some(n) = self.still_apart(state)? {
+            return Ok(Answer::Miss(n));
+        }
+        let start = state.start().unwrap_or_else(|| self.cold_start());
+        let answer = local::penetration(&self.md, start, shortcut, settings, |_| {})?;
+        let answer = match answer {
+            Answer::Hit(hit) => self.proven(hit, false, &[], settings)?,
+            Answer::Limit(hit) => self.proven(hit, true, &[], settings)?,
+            other => other,
+        };
+        remember(state, &answer, []);
+        Ok(answer)
+    }
+
+    /// How far obj2 must move along the unit direction `dir` (Algorithm 1).
+    pub fn along(
+        &self,
+        dir: Vec3,
+        state: &mut State,
+        settings: &Settings,
+    ) -> Result<Answer, Fault> {
+        if let Some(n) = self.still_apart(state)? {
+            return Ok(Answer::Miss(n));
+        }
+        let mut budget = settings.max_iterations;
+        let (exit, first) = self.along_ray(dir, state, settings, &mut budget)?;
+        let touch = |plane: &Plane| (plane.normal, plane.depth, plane.point.v1, plane.point.v2);
+        let (limit, portal, (normal, h, point1, point2)) = match &exit {
+            Exit::Miss(n) => {
+                let answer = Answer::Miss(*n);
+                remember(state, &answer, []);
+                return Ok(answer);
+            }
+            Exit::Converged(portal, plane) => {
+                let (p1, p2) = portal.witnesses();
+                (false, Some(portal), (plane.normal, plane.depth, p1, p2))
+            }
+            // The cap, or a portal without area: the support plane of the ray itself
+            // is sound; the portal, where there is one, tells the witnesses.
+            Exit::Limit(Some(portal)) => {
+                let (p1, p2) = portal.witnesses();
+                (true, Some(portal), (first.normal, first.depth, p1, p2))
+            }
+            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => (false, None, touch(&first)),
+            Exit::Limit(None) => (true, None, touch(&first)),
+        };
+        let depth = h / dir.dot(&normal);
+        let hit = Penetration {
+            depth,
+            depth_lower: 0.0,
+            dir,
+            normal,
+            point1,
+            point2,
+            iterations: settings.max_iterations - budget,
+        };
+        let known = portal.map(|p| p.planes.map(|plane| plane.point));
+        let known: &[SupportPoint] = known.as_ref().map_or(&[], |k| k);
+        let mut answer = self.proven(hit, limit, known, settings)?;
+        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
+            // The bound along dir: the portal is inscribed and the origin in D.
+            hit.depth_lower = match portal {
+                Some(p) => {
+                    let reach = p
+                        .normal()
+                        .map_or(0.0, |n| n.dot(&p.planes[0].point.v) / n.dot(&dir));
+                    // max also drops NaN
+                    reach.max(0.0).min(depth)
+                }
+                None if !limit => depth,
+                None => 0.0,
+            };
+        }
+        match portal {
+            Some(p) => remember(state, &answer, p.planes.map(|plane| plane.normal)),
+            None => remember(state, &answer, []),
+        }
+        Ok(answer)
+    }
+
+    fn along_ray(
+        &self,
+        dir: Vec3,
+        state: &State,
+        settings: &Settings,
+        budget: &mut u64,
+    ) -> Result<(Exit, Plane), Fault> {
+        let finish = |portal: Portal, best: &mut Plane, budget: &mut u64| {
+            portal::refine(
+                &self.md,
+                portal,
+                settings.tolerance,
+                Measure::Ray,
+                false,
+                best,
+                budget,
+            )
+        };
+        // The last portal, found again by its three directions.
+        if let (Some(a), Some(b), Some(c)) =
+            (state.direction(0), state.direction(1), state.direction(2))
+        {
+            let planes = [
+                Plane::of(&self.md, a)?,
+                Plane::of(&self.md, b)?,
+                Plane::of(&self.md, c)?,
+            ];
+            if let Some(out) = planes.iter().find(|p| p.depth < 0.0) {
+                return Ok((Exit::Miss(out.normal), *out));
+            }
+            if let Some(portal) = Portal::of(dir, planes) {
+                let mut best = planes[0];
+                let exit = finish(portal, &mut best, budget)?;
+                if matches!(exit, Exit::Converged(..) | Exit::Miss(_)) {
+                    return Ok((exit, best));
+                }
+            }
+        }
+        let first = Plane::of(&self.md, dir)?;
+        let mut best = first;
+        let exit = match portal::find_portal(&self.md, &first, &mut best, budget)? {
+            Found::Portal(portal) => finish(portal, &mut best, budget)?,
+            Found::Vertex => Exit::Vertex,
+            Found::Touch => Exit::Touch,
+            Found::Miss(n) => Exit::Miss(n),
+            Found::Limit => Exit::Limit(None),
+        };
+        Ok((exit, first))
+    }
+
+    /// A local minimum among the directions perpendicular to the unit vector `m`.
+    pub fn planar(&self, m: Vec3, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        if let Some(n) = self.still_apart(state)? {
+            return Ok(Answer::Miss(n));
+        }
+        let start = state.start().unwrap_or_else(|| self.cold_start());
+        let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
+        let start = in_plane(start)
+            .or_else(|| in_plane(Vec3::x()))
+            .or_else(|| in_plane(Vec3::y()))
+            .unwrap_or(Vec3::y());
+        let answer = planar::penetration(&self.md, &m, start, settings)?;
+        let answer = match answer {
+            Answer::Hit(hit) => self.proven(hit, false, &[], settings)?,
+            Answer::Limit(hit) => self.proven(hit, true, &[], settings)?,
+            other => other,
+        };
+        remember(state, &answer, []);
+        Ok(answer)
+    }
+}
+
+/// Leaves the answer behind: the separating direction, or the normal and then the
+/// `others`. A query without an answer leaves the state alone.
+fn remember<const N: usize>(state: &mut State, answer: &Answer, others: [Vec3; N]) {
+    match answer {
+        Answer::Miss(n) => *state = State::remember(APART, *n),
+        Answer::Hit(hit) | Answer::Limit(hit) => {
+            *state = State::remember(OVERLAP, hit.normal);
+            for (to, n) in state.directions.iter_mut().zip(others) {
+                *to = n.into();
+            }
+            state.count = state.count.max(N as u32);
+        }
+        Answer::Undecided(_) => {}
+    }
+}
