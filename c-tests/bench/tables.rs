@@ -140,6 +140,9 @@ fn roster<'a>(libraries: &'a Libraries, compiled: &Compiled, scene: &Scene) -> V
         all.push(methods::paper(libraries, true, start, 1e-6));
     }
     all.push(methods::paper(libraries, false, starts[0], 1e-6));
+    if !motion {
+        all.extend(methods::deep(libraries, scene, Start::Five));
+    }
     all.push(peers::parry(libraries));
     all.extend(compiled.bullet(libraries));
     all.extend(compiled.fcl(libraries, 1e-6));

@@ -7,6 +7,7 @@
 // The benchmark and its test each use a part.
 #![allow(dead_code)]
 
+pub mod deep;
 pub mod libraries;
 pub mod measure;
 pub mod methods;

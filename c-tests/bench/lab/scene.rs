@@ -33,6 +33,21 @@ pub struct Mesh {
     pub triangles: Vec<[usize; 3]>,
 }
 
+impl Mesh {
+    /// A box by its half extents.
+    pub fn cuboid(half: [f64; 3]) -> Self {
+        let half = ParryVector::from(half);
+        let (vertices, triangles) = parry3d_f64::shape::Cuboid::new(half).to_trimesh();
+        Self {
+            vertices: vertices
+                .iter()
+                .map(|v| Vector3::new(v.x, v.y, v.z))
+                .collect(),
+            triangles: triangles.iter().map(|t| t.map(|i| i as usize)).collect(),
+        }
+    }
+}
+
 /// Pairs of one kind.
 pub struct Scene {
     pub name: String,
@@ -108,6 +123,25 @@ pub struct Pose {
     pub rotation: UnitQuaternion<f64>,
 }
 
+/// A box's half extents; none for another shape.
+///
+/// # Safety
+/// `shape` is one of the callbacks' shapes.
+unsafe fn half_extents(callbacks: &Callbacks, shape: *const c_void) -> Option<[f64; 3]> {
+    let (mut pos, mut rot, mut kind, mut p) = ([0.0; 3], [0.0; 9], 0, [0.0; 3]);
+    // SAFETY: the caller's contract, and room for what is written.
+    unsafe {
+        (callbacks.shape_pose)(
+            shape,
+            pos.as_mut_ptr(),
+            rot.as_mut_ptr(),
+            &mut kind,
+            p.as_mut_ptr(),
+        );
+    }
+    (kind == 2).then_some(p)
+}
+
 /// Memory for `n` shapes, and the size of one in words.
 fn room(callbacks: &Callbacks, n: usize) -> (Vec<u64>, usize) {
     // SAFETY: takes nothing.
@@ -164,7 +198,7 @@ impl Scene {
             let motion = motion as usize;
             let (mut shapes, words) = room(&callbacks, 2 * n);
             let base = shapes.as_mut_ptr();
-            let pairs = (0..n)
+            let pairs: Vec<Pair> = (0..n)
                 .map(|i| {
                     let a = base.add(2 * i * words).cast();
                     let b = base.add((2 * i + 1) * words).cast();
@@ -180,6 +214,10 @@ impl Scene {
                 (callbacks.set_mesh)(set.0, k, &mut nv, &mut v, &mut nt, &mut t);
                 let v = std::slice::from_raw_parts(v, 3 * nv as usize);
                 let t = std::slice::from_raw_parts(t, 3 * nt as usize);
+                let shape = pairs.first().map(|p| if k == 0 { p.a } else { p.b });
+                if let Some(half) = shape.and_then(|s| half_extents(&callbacks, s)) {
+                    return Mesh::cuboid(half);
+                }
                 Mesh {
                     vertices: v.chunks_exact(3).map(Vector3::from_column_slice).collect(),
                     triangles: t
