@@ -25,7 +25,7 @@ pub const CCD_BAD_INPUT: c_int = -3;
 /// max_iterations came before the tolerance: the best sound answer was written.
 pub const CCD_LIMIT: c_int = -4;
 
-/// How many numbers a [`ccd_warm_t`] holds.
+/// How many numbers a ccd_warm_t holds.
 pub const CCD_WARM_REALS: usize = 9;
 
 /// State of one pair between queries. Plain data, no pointers, nothing to free: all

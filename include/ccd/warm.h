@@ -1,0 +1,210 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What this library adds to libccd: penetration queries that start from the last answer,
+ * along a direction and in a plane, with witness points and bounds. Made by cbindgen from
+ * src/ffi/warm.rs; edit that.
+ *
+ * Tolerances are depths in metres; the library floors them at a few ulps of the objects'
+ * size, so 0 asks for the best the precision can give. Object pointers are handed to the
+ * callbacks and never looked at. A query is re-entrant and keeps nothing but the state that
+ * the caller hands it. */
+
+#ifndef __CCD_WARM_H__
+#define __CCD_WARM_H__
+
+#include <ccd/ccd.h>
+
+/**
+ * The objects overlap or touch.
+ */
+#define CCD_HIT 0
+
+/**
+ * The objects are apart.
+ */
+#define CCD_MISS -1
+
+/**
+ * Memory was needed and not to be had.
+ */
+#define CCD_NO_MEMORY -2
+
+/**
+ * An argument or a callback's answer that no query can work with; nothing was written.
+ */
+#define CCD_BAD_INPUT -3
+
+/**
+ * max_iterations came before the tolerance: the best sound answer was written.
+ */
+#define CCD_LIMIT -4
+
+/**
+ * How many numbers a ccd_warm_t holds.
+ */
+#define CCD_WARM_REALS 9
+
+/**
+ * State of one pair between queries. Plain data, no pointers, nothing to free: all
+ * bytes zero is cold, and it may be copied and stored freely.
+ *
+ * A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to
+ * another local minimum; every answer stays sound. The fields are the library's own.
+ */
+typedef struct ccd_warm_t {
+  /**
+   * Private.
+   */
+  ccd_real_t reals[CCD_WARM_REALS];
+  /**
+   * Private.
+   */
+  unsigned int words[2];
+} ccd_warm_t;
+
+/**
+ * What a query of the extension answers.
+ */
+typedef struct ccd_penetration_t {
+  /**
+   * Metres, >= 0: moving obj2 by depth * dir separates the objects. It is the support
+   * value of normal, divided by dir . normal.
+   */
+  ccd_real_t depth;
+  /**
+   * Proven lower bound on the global minimum depth (in ccdPenetrationAlong: on the
+   * depth along dir), metres; 0 where none was proven.
+   */
+  ccd_real_t depth_lower;
+  /**
+   * Unit; the way obj2 moves.
+   */
+  ccd_vec3_t dir;
+  /**
+   * Unit; normal of the separating plane. Equal to dir except in ccdPenetrationAlong.
+   */
+  ccd_vec3_t normal;
+  /**
+   * Contact position: the middle of the witness points.
+   */
+  ccd_vec3_t pos;
+  /**
+   * Witness point of obj1, within the tolerance of its supporting plane.
+   */
+  ccd_vec3_t point1;
+  /**
+   * Witness point of obj2, within the tolerance of its supporting plane.
+   */
+  ccd_vec3_t point2;
+  /**
+   * Support points of the Minkowski difference evaluated; one is one call of support1
+   * and one of support2.
+   */
+  unsigned long supports;
+  /**
+   * Iterations of the solver.
+   */
+  unsigned long iterations;
+} ccd_penetration_t;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * Makes `warm` a fresh state that starts from `dir`, the caller's guess of the way obj2
+ * leaves.
+ *
+ * `dir` need not be unit; zero, not finite or NULL makes a cold state. `warm` NULL: nothing
+ * happens.
+ */
+CCD_EXPORT void ccdWarmGuess(struct ccd_warm_t *warm, const ccd_vec3_t *dir);
+
+/**
+ * ccdMPRPenetration with memory.
+ *
+ * `warm` may be NULL (cold). Returns and outputs as ccdMPRPenetration.
+ */
+CCD_EXPORT
+int ccdMPRPenetrationWarm(const void *obj1,
+                          const void *obj2,
+                          const ccd_t *ccd,
+                          struct ccd_warm_t *warm,
+                          ccd_real_t *depth,
+                          ccd_vec3_t *dir,
+                          ccd_vec3_t *pos);
+
+/**
+ * ccdMPRIntersect with memory: a pair that stays apart costs one support point while its
+ * last separating direction still separates.
+ *
+ * `warm` may be NULL (cold). Returns as ccdMPRIntersect: 1 or 0.
+ */
+CCD_EXPORT
+int ccdMPRIntersectWarm(const void *obj1,
+                        const void *obj2,
+                        const ccd_t *ccd,
+                        struct ccd_warm_t *warm);
+
+/**
+ * A local minimum of the penetration depth, by the paper's method: from the state, else
+ * from the centres, else from first_dir.
+ *
+ * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+ *
+ * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
+ * alone.
+ */
+CCD_EXPORT
+int ccdPenetrationLocal(const void *obj1,
+                        const void *obj2,
+                        const ccd_t *ccd,
+                        struct ccd_warm_t *warm,
+                        struct ccd_penetration_t *out);
+
+/**
+ * How far obj2 must move along `dir` to separate: where the origin ray leaves the
+ * Minkowski difference (the paper's Algorithm 1).
+ *
+ * `dir` need not be unit. mpr_tolerance is measured along `dir`. `warm` may be NULL (cold).
+ *
+ * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT (also for a `dir`
+ * that is zero, not finite or NULL) and leaves it alone.
+ */
+CCD_EXPORT
+int ccdPenetrationAlong(const void *obj1,
+                        const void *obj2,
+                        const ccd_t *ccd,
+                        const ccd_vec3_t *dir,
+                        struct ccd_warm_t *warm,
+                        struct ccd_penetration_t *out);
+
+/**
+ * A local minimum of the penetration depth among the directions of a plane (the paper's
+ * two-dimensional case), for shapes that lie in a common plane with this normal.
+ *
+ * `plane_normal` need not be unit. Reads mpr_tolerance. `warm` may be NULL (cold).
+ *
+ * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT (also for a
+ * `plane_normal` that is zero, not finite or NULL) and leaves it alone.
+ */
+CCD_EXPORT
+int ccdPenetrationPlanar(const void *obj1,
+                         const void *obj2,
+                         const ccd_t *ccd,
+                         const ccd_vec3_t *plane_normal,
+                         struct ccd_warm_t *warm,
+                         struct ccd_penetration_t *out);
+
+/**
+ * Which library a process really runs, and in which precision: "warmccd 0.1.0 double", a
+ * string that lives as long as the library.
+ */
+CCD_EXPORT const char *ccdImplementation(void);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* __CCD_WARM_H__ */
