@@ -13,6 +13,7 @@ use ccd::ffi::polytope::*;
 use ccd::ffi::support::{__ccdSupport, ccdFirstDirDefault};
 use ccd::ffi::types::*;
 use ccd::ffi::vec3::{ccdVec3PointSegmentDist2, ccdVec3PointTriDist2};
+use ccd::ffi::warm::*;
 use ccd::math::Real;
 use std::ffi::{CStr, c_int, c_void};
 use std::mem::MaybeUninit;
@@ -161,8 +162,7 @@ fn penetrates(call: Penetration, settings: &Settings) {
             Some(truth) => {
                 assert_eq!(code, 0);
                 assert!((depth - truth).abs() <= 2.0 * TOLERANCE, "{depth} {truth}");
-                let length = dir.v.iter().map(|x| x * x).sum::<Real>().sqrt();
-                assert!((length - 1.0).abs() < 1e-5, "{dir:?}");
+                assert!((dot(&dir, &dir) - 1.0).abs() < 1e-5, "{dir:?}");
             }
             None => {
                 assert_eq!(code, -1);
@@ -241,6 +241,160 @@ fn overlap() {
     }
 }
 
+/// A call of the extension; `dir` goes to those that take one.
+type Extended = unsafe fn(
+    *const c_void,
+    *const c_void,
+    *const ccd_t,
+    &ccd_vec3_t,
+    *mut ccd_warm_t,
+    *mut ccd_penetration_t,
+) -> c_int;
+
+/// Every state that C can hand over: none, cold, any bytes at all, the last answer's.
+fn states() -> Vec<Option<ccd_warm_t>> {
+    let bytes = |next: &mut dyn FnMut() -> u8| {
+        let mut state = MaybeUninit::<ccd_warm_t>::uninit();
+        let first = state.as_mut_ptr().cast::<u8>();
+        for i in 0..size_of::<ccd_warm_t>() {
+            unsafe { first.add(i).write(next()) };
+        }
+        unsafe { state.assume_init() }
+    };
+    let mut random = 1u32;
+    let mut random_byte = move || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 24) as u8
+    };
+    let mut states = vec![None, Some(bytes(&mut || 0)), Some(bytes(&mut || 0xff))];
+    let random_states = if cfg!(miri) { 1 } else { 8 };
+    states.extend((0..random_states).map(|_| Some(bytes(&mut random_byte))));
+    states
+}
+
+/// Whatever the state holds, hits are hits, misses misses, and the depth separates.
+fn extended(call: Extended) {
+    let settings = Settings::mpr();
+    let dir = ccd_vec3_t { v: [1.0, 0.0, 0.0] };
+    for (shape1, shape2, center2, truth) in pairs() {
+        for mut state in states() {
+            let mut obj1 = object(shape1, [0.0; 3]);
+            let mut obj2 = object(shape2, center2);
+            let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+            let warm = state.as_mut().map_or(null_mut(), |state| &raw mut *state);
+            // The second call starts from what the first one left.
+            for _ in 0..2 {
+                let mut out = MaybeUninit::uninit();
+                let code =
+                    unsafe { call(obj1, obj2, settings.get(), &dir, warm, out.as_mut_ptr()) };
+                let Some(truth) = truth else {
+                    assert_eq!(code, CCD_MISS);
+                    continue;
+                };
+                assert_eq!(code, CCD_HIT);
+                let out = unsafe { out.assume_init() };
+                assert!(out.depth >= truth - TOLERANCE && out.depth < 10.0);
+                let along_normal = reach(obj1, obj2, settings.get(), &out.normal);
+                let separates = along_normal / dot(&out.dir, &out.normal);
+                assert!((out.depth - separates).abs() <= 1e-5, "{separates}");
+            }
+        }
+    }
+    let (mut obj1, mut obj2) = (
+        object(Shape::Ball(1.0), [0.0; 3]),
+        object(Shape::NotANumber, [0.5; 3]),
+    );
+    let mut out = MaybeUninit::uninit();
+    let code = unsafe {
+        call(
+            pointer(&mut obj1),
+            pointer(&mut obj2),
+            settings.get(),
+            &dir,
+            null_mut(),
+            out.as_mut_ptr(),
+        )
+    };
+    assert_eq!(code, CCD_BAD_INPUT);
+}
+
+#[test]
+fn local() {
+    extended(|obj1, obj2, ccd, _, warm, out| unsafe {
+        ccdPenetrationLocal(obj1, obj2, ccd, warm, out)
+    });
+}
+
+#[test]
+fn along() {
+    extended(|obj1, obj2, ccd, dir, warm, out| unsafe {
+        ccdPenetrationAlong(obj1, obj2, ccd, dir, warm, out)
+    });
+}
+
+#[test]
+fn planar() {
+    extended(|obj1, obj2, ccd, dir, warm, out| unsafe {
+        ccdPenetrationPlanar(obj1, obj2, ccd, dir, warm, out)
+    });
+}
+
+/// The compatible calls' warm forms, from a guess too.
+#[test]
+fn warm_forms() {
+    for state in states() {
+        let warm = std::cell::Cell::new(state);
+        let pointer_to_state = || {
+            let state = warm.as_ptr();
+            unsafe { (*state).as_mut() }.map_or(null_mut(), |state| &raw mut *state)
+        };
+        let guess = ccd_vec3_t { v: [0.0, 3.0, 0.0] };
+        for (shape1, shape2, center2, truth) in pairs() {
+            let mut obj1 = object(shape1, [0.0; 3]);
+            let mut obj2 = object(shape2, center2);
+            let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+            let settings = Settings::mpr();
+            let warm = pointer_to_state();
+            let (mut depth, mut dir) = (7.0, guess);
+            unsafe {
+                let hit = c_int::from(truth.is_some());
+                assert_eq!(ccdMPRIntersectWarm(obj1, obj2, settings.get(), warm), hit);
+                ccdWarmGuess(warm, &guess);
+                let code = ccdMPRPenetrationWarm(
+                    obj1,
+                    obj2,
+                    settings.get(),
+                    warm,
+                    &mut depth,
+                    &mut dir,
+                    null_mut(),
+                );
+                assert_eq!(code, hit - 1);
+            }
+            match truth {
+                Some(truth) => {
+                    // Sound; not always the least depth, from a guess as far off as this.
+                    let separates = reach(obj1, obj2, settings.get(), &dir);
+                    assert!(depth >= truth - TOLERANCE);
+                    assert!((depth - separates).abs() <= 1e-5, "{depth} {separates}");
+                }
+                None => assert_eq!((depth, dir), (7.0, guess)),
+            }
+        }
+    }
+}
+
+/// How far obj2 has to move along `dir` until a plane with this normal separates.
+fn reach(obj1: *const c_void, obj2: *const c_void, ccd: *const ccd_t, dir: &ccd_vec3_t) -> Real {
+    let mut farthest = ccd_support_t::default();
+    unsafe { __ccdSupport(obj1, obj2, dir, ccd, &mut farthest) };
+    dot(&farthest.v, dir)
+}
+
+fn dot(a: &ccd_vec3_t, b: &ccd_vec3_t) -> Real {
+    a.v.iter().zip(&b.v).map(|(a, b)| a * b).sum()
+}
+
 #[test]
 fn support_may_alias() {
     let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
@@ -311,7 +465,7 @@ fn polytope() {
 
 #[test]
 fn names_itself() {
-    let name = unsafe { CStr::from_ptr(ccd::ffi::ccdImplementation()) };
+    let name = unsafe { CStr::from_ptr(ccdImplementation()) };
     assert!(name.to_bytes().starts_with(b"warmccd "));
     let mut dir = ccd_vec3_t::default();
     unsafe { ccdFirstDirDefault(null(), null(), &mut dir) };
