@@ -38,7 +38,7 @@ static void put_model(int bodies, int multi, int field)
     int i, j;
     double q[4];
     put("<mujoco><compiler angle=\"radian\"/><option timestep=\"0.004\"><flag energy=\"enable\"%s/></option>"
-        "<size nconmax=\"2000\" njmax=\"8000\"/><asset>", multi ? " multiccd=\"enable\"" : "");
+        "<size nconmax=\"600\" njmax=\"2400\"/><asset>", multi ? " multiccd=\"enable\"" : "");
     for (i = 0; i < MESHES; i++) {
         put("<mesh name=\"m%d\" vertex=\"", i);
         for (j = 0; j < MESH_VERTICES; j++) {

@@ -16,7 +16,7 @@ static inline double uniform(double low, double high)
     uniform_state ^= uniform_state >> 12;
     uniform_state ^= uniform_state << 25;
     uniform_state ^= uniform_state >> 27;
-    return low + (high - low) * (double)((uniform_state * 2685821657736338717ull) >> 11) * 0x1p-53;
+    return low + (high - low) * (double)((uniform_state * 2685821657736338717ull) >> 11) * (1.0 / 9007199254740992.0);
 }
 static inline void uniform_seed(uint64_t seed)
 {

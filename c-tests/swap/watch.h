@@ -4,8 +4,8 @@
 /* Stands between a consumer (FCL, ODE, MuJoCo, DART) and whichever libccd the
  * process runs on, and looks at every penetration query.
  *
- * The program that includes this file defines ccdMPRPenetration and
- * ccdMPRIntersect itself; the dynamic linker binds the consumer's calls to the
+ * The program that includes this file defines ccdMPRPenetration, ccdMPRIntersect
+ * and __ccdSupport itself; the dynamic linker binds the consumer's calls to the
  * program's, which pass them on to the libccd.so.2 that is loaded. */
 
 #ifndef SWAP_WATCH_H
@@ -26,10 +26,14 @@ static struct {
     unsigned long zero, not_finite, not_unit; /* hits with such a direction (or depth) */
     unsigned long slanted; /* hits whose direction is not the normal of a plane that depth brings apart */
     unsigned long supports; /* of D: one is support1 and support2 */
+    unsigned long raw_supports; /* __ccdSupport, the support function FCL's own GJK calls */
 } watched;
 
 typedef int (*watch_penetration_fn)(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
 typedef int (*watch_intersect_fn)(const void *, const void *, const ccd_t *);
+
+typedef struct _ccd_support_t ccd_support_t;
+typedef void (*watch_support_fn)(const void *, const void *, const ccd_vec3_t *, const ccd_t *, ccd_support_t *);
 
 /* The consumer's callbacks, behind a count. One query at a time: the simulations here have one thread. */
 static ccd_support_fn watch_support1;
@@ -105,6 +109,17 @@ int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
     watched.queries++;
     watched.hits += hit == 1;
     return hit;
+}
+
+void __ccdSupport(const void *obj1, const void *obj2, const ccd_vec3_t *dir, const ccd_t *ccd, ccd_support_t *supp)
+{
+    static watch_support_fn next;
+    if (!next) {
+        void *symbol = watch_next("__ccdSupport");
+        memcpy(&next, &symbol, sizeof next);
+    }
+    next(obj1, obj2, dir, ccd, supp);
+    watched.raw_supports++;
 }
 
 /* Which library is under the consumer: the run's first line. */

@@ -1,0 +1,145 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* FCL's collide and signed distance over random pairs of every convex kind.
+ * Writes a line for every query; the driver compares those of two libraries.
+ *
+ *   collide A B number size lower upper hit depth |normal|
+ *   distance A B number size lower upper outcome value
+ *
+ * hit 0 or 1; outcome 0, or 1 when FCL threw.
+ *
+ * usage: fcl_static SEED POSES   (POSES placed pairs of each two kinds) */
+
+#include "swap/poses.h"
+#include "swap/watch.h"
+
+#include <fcl/fcl.h>
+
+typedef fcl::Vector3d vec;
+typedef std::shared_ptr<fcl::CollisionGeometryd> geometry;
+
+static geometry fcl_geometry(const body_t &b)
+{
+    const double *p = b.shape.p;
+    switch (b.kind) {
+    case SHAPE_SPHERE: return std::make_shared<fcl::Sphered>(p[0]);
+    case SHAPE_CAPSULE: return std::make_shared<fcl::Capsuled>(p[0], 2 * p[1]);
+    case KIND_PLATE:
+    case SHAPE_BOX: return std::make_shared<fcl::Boxd>(2 * p[0], 2 * p[1], 2 * p[2]);
+    case SHAPE_CYLINDER: return std::make_shared<fcl::Cylinderd>(p[0], 2 * p[1]);
+    case SHAPE_CONE: return std::make_shared<fcl::Coned>(p[0], 2 * p[1]);
+    case SHAPE_ELLIPSOID: return std::make_shared<fcl::Ellipsoidd>(p[0], p[1], p[2]);
+    default: break;
+    }
+    auto vertices = std::make_shared<std::vector<vec>>();
+    for (int i = 0; i < b.hull.vertices; i++)
+        vertices->emplace_back(b.hull.vertex[3 * i], b.hull.vertex[3 * i + 1], b.hull.vertex[3 * i + 2]);
+    if (b.kind == KIND_TRIANGLE) {
+        auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+        mesh->beginModel();
+        mesh->addTriangle((*vertices)[0], (*vertices)[1], (*vertices)[2]);
+        mesh->endModel();
+        return mesh;
+    }
+    auto faces = std::make_shared<std::vector<int>>();
+    for (int i = 0; i < 4 * b.hull.faces; i++)
+        faces->push_back((int)b.hull.polygon[i]);
+    return std::make_shared<fcl::Convexd>(vertices, b.hull.faces, faces, true);
+}
+
+static fcl::Transform3d fcl_pose(const shape_t &s)
+{
+    fcl::Transform3d t = fcl::Transform3d::Identity();
+    t.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.rot);
+    t.translation() = vec(s.pos[0], s.pos[1], s.pos[2]);
+    return t;
+}
+
+static void put_known(const char *what, const body_t &a, const body_t &b, long number, const known_t &known)
+{
+    printf("%s %s %s %ld %.17g %.17g %.17g", what, KIND_NAME[a.kind], KIND_NAME[b.kind], number, known.size, known.lower, known.upper);
+}
+
+static void collide(const body_t &a, const body_t &b, const fcl::CollisionObjectd &oa, const fcl::CollisionObjectd &ob, long number,
+                    const known_t &known)
+{
+    fcl::CollisionRequestd request(1, true);
+    fcl::CollisionResultd result;
+    const unsigned long before = watched.queries;
+    bool threw = false;
+    request.gjk_solver_type = fcl::GST_LIBCCD;
+    try {
+        fcl::collide(&oa, &ob, request, result);
+    } catch (const std::exception &) {
+        threw = true;
+    }
+    if (watched.queries == before)
+        return; /* FCL has a closed form for these two, or its boxes excluded them */
+    put_known("collide", a, b, number, known);
+    if (threw)
+        printf(" 2 0 0\n");
+    else if (result.numContacts() == 0)
+        printf(" 0 0 0\n");
+    else
+        printf(" 1 %.17g %.17g\n", result.getContact(0).penetration_depth, result.getContact(0).normal.norm());
+}
+
+static void distance(const body_t &a, const body_t &b, const fcl::CollisionObjectd &oa, const fcl::CollisionObjectd &ob, long number,
+                     const known_t &known)
+{
+    fcl::DistanceRequestd request(true, true);
+    fcl::DistanceResultd result;
+    const unsigned long before = watched.raw_supports;
+    double value = 0;
+    bool threw = false;
+    request.gjk_solver_type = fcl::GST_LIBCCD;
+    try {
+        value = fcl::distance(&oa, &ob, request, result);
+    } catch (const std::exception &) {
+        threw = true;
+    }
+    if (watched.raw_supports == before)
+        return;
+    put_known("distance", a, b, number, known);
+    printf(" %d %.17g\n", threw, value);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 3) {
+        fprintf(stderr, "usage: fcl_static SEED POSES\n");
+        return 2;
+    }
+    const long poses = atol(argv[2]);
+    long number = 0;
+    watch_library();
+    uniform_seed(strtoull(argv[1], NULL, 10));
+    for (int i = 0; i < KINDS; i++)
+        for (int j = i; j < KINDS; j++)
+            for (long k = 0; k < poses; k++) {
+                if (i == KIND_TRIANGLE && j == KIND_TRIANGLE)
+                    continue;
+                static body_t a, b;
+                known_t known;
+                body_random(&a, i);
+                body_random(&b, j);
+                pose_overlapping(&a, &b, &known);
+                fcl::CollisionObjectd oa(fcl_geometry(a), fcl_pose(a.shape)), ob(fcl_geometry(b), fcl_pose(b.shape));
+                for (int d = -1; d < DEPTH_COUNT; d++) {
+                    if (d >= 0) {
+                        if (DEPTHS[d] * known.size >= known.upper)
+                            continue;
+                        pose_at_depth(&b, &known, DEPTHS[d] * known.size);
+                        ob.setTransform(fcl_pose(b.shape));
+                        ob.computeAABB();
+                    }
+                    collide(a, b, oa, ob, number, known);
+                    if (i != KIND_TRIANGLE && j != KIND_TRIANGLE)
+                        distance(a, b, oa, ob, number, known);
+                    number++;
+                }
+            }
+    watch_report();
+    return 0;
+}
