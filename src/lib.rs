@@ -16,6 +16,7 @@
 #![allow(clippy::large_enum_variant, reason = "no heap")]
 
 pub mod contact;
+pub mod epa;
 pub mod ffi;
 pub mod gjk;
 pub mod local;
