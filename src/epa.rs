@@ -25,15 +25,16 @@
 //! is isolated the surface stays coarse away from it. It ends when upper − lower is
 //! within the tolerance.
 //!
-//! The start is GJK on triangles: it separates, or finds the origin in the hull of the
-//! points seen (given ones are used before new ones are asked for), to rounding; yes or
-//! no never depends on the tolerance. D flat in some direction, to rounding, is a touch.
+//! The start is [`gjk`]: it separates, or finds the origin in the hull of the points seen
+//! (given ones are used before new ones are asked for), to rounding; yes or no never
+//! depends on the tolerance. D flat in some direction, to rounding, is a touch.
 //!
 //! Departures from libccd: tolerances are depths (libccd compares squared metres), all
 //! faces that the new point sees go (libccd splits one), no test is absolute, and an
 //! origin on a face is no special case.
 
 use crate::contact::{Answer, Penetration, Settings};
+use crate::gjk::{self, Overlap};
 use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
 use crate::nearest;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -42,6 +43,8 @@ use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 type Index = u16;
 /// No face: ends a list.
 const NONE: Index = Index::MAX;
+/// Face numbers lie below, so that half-edges fit.
+const MAX_FACES: Index = Index::MAX / 4;
 
 /// Most points a polytope may have, so that half-edges fit an [`Index`].
 pub const MAX_POINTS: usize = 5400;
@@ -49,8 +52,13 @@ pub const MAX_POINTS: usize = 5400;
 /// wait dead in the heap and those a point replaces need room too.
 pub const FACES_PER_POINT: usize = 3;
 
-/// Steps of the search for a simplex around the origin, at most.
-const ENCLOSE_STEPS: u64 = 256;
+/// Most given points that are used.
+pub const GIVEN: usize = 8;
+/// Room for the points of a simplex, and for those that make a flat one solid.
+const SIMPLEX: usize = 4;
+const WIDEN: usize = 6;
+/// Least points of an [`Arena`]: given ones, a few more, and that room.
+pub const LEAST_POINTS: usize = 24;
 
 /// A triangle of the polytope.
 ///
@@ -80,6 +88,57 @@ pub struct Face {
     seen: u32,
 }
 
+impl Face {
+    /// A new face in an old one's place.
+    #[inline]
+    fn renew(&mut self, corners: [Index; 3], across: [Index; 3]) {
+        self.corners = corners;
+        self.across = across;
+        self.next = NONE;
+        self.queued = false;
+        self.dead = false;
+        self.lone = false;
+        self.edge = false;
+        self.seen = 0;
+    }
+
+    /// Sets normal, offset and distance bound from the corners.
+    #[inline]
+    fn measure(&mut self, a: &Vec3, b: &Vec3, c: &Vec3, target: Real) {
+        let (ab, bc, ca) = (b - a, c - b, a - c);
+        let (ab2, bc2, ca2) = (ab.norm_squared(), bc.norm_squared(), ca.norm_squared());
+        // The two shorter edges: of a needle's two long ones rounding would leave no normal.
+        let normal = if ab2 >= bc2 && ab2 >= ca2 {
+            bc.cross(&ca)
+        } else if bc2 >= ca2 {
+            ca.cross(&ab)
+        } else {
+            ab.cross(&bc)
+        };
+        let normal = normal * (1.0 / normal.norm());
+        let (da, db, dc) = (normal.dot(a), normal.dot(b), normal.dot(c));
+        self.normal = normal;
+        self.offset = da.max(db).max(dc);
+        self.key = da.min(db).min(dc);
+        // Nearer than wanted: unless the origin projects into the triangle (or is on its
+        // wrong side), the nearest point is on an edge and farther than the plane.
+        if self.key < target && self.key >= 0.0 {
+            let inside = normal.dot(&a.cross(b)) >= 0.0
+                && normal.dot(&b.cross(c)) >= 0.0
+                && normal.dot(&c.cross(a)) >= 0.0;
+            if !inside {
+                let w = nearest::on_triangle(&Vec3::zeros(), a, b, c).0;
+                let w = w * (1.0 / w.norm());
+                let bound = w.dot(a).min(w.dot(b)).min(w.dot(c));
+                if bound > self.key {
+                    self.key = bound;
+                    self.edge = true;
+                }
+            }
+        }
+    }
+}
+
 /// The memory of a query: a point, [`FACES_PER_POINT`] faces and as many heap slots for
 /// each point.
 pub struct Storage<'a> {
@@ -93,7 +152,7 @@ pub struct Storage<'a> {
 
 /// Where a query gets its memory from.
 pub trait Arena {
-    /// What there is now. At least 16 points.
+    /// What there is now. At least [`LEAST_POINTS`].
     fn storage(&mut self) -> Storage<'_>;
     /// Makes it larger and keeps what it holds; up to [`MAX_POINTS`] are asked for.
     fn grow(&mut self) -> Result<(), Fault>;
@@ -144,13 +203,19 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
         if h < 0.0 {
             return Err(Stop::Miss(*dir));
         }
+        self.lower_to(h, dir);
+        Ok((point, h))
+    }
+
+    /// Takes `h`, the support value along `dir`, as upper bound if it is lower.
+    #[inline]
+    fn lower_to(&mut self, h: Real, dir: &Vec3) {
         if h < self.upper.depth {
             self.upper = Upper {
                 depth: h,
                 dir: *dir,
             };
         }
-        Ok((point, h))
     }
 
     fn note(&mut self, point: &SupportPoint) {
@@ -227,14 +292,42 @@ fn run<A: SupportMap, B: SupportMap>(
     arena: &mut impl Arena,
 ) -> Result<Answer, Stop> {
     let mut polytope = Polytope::new(arena.storage());
-    for point in seed.points.iter().take(8) {
+    let given = &seed.points[..seed.points.len().min(GIVEN)];
+    for point in given {
         query.note(point);
         polytope.push(*point);
     }
     if let Some((depth, dir)) = seed.upper {
         query.upper = Upper { depth, dir };
     }
-    if let Some(answer) = polytope.enclose(query, &seed.dir)? {
+    let start = match given.first() {
+        Some(point) => *point,
+        None => {
+            let (point, _) = query.ask(&seed.dir)?;
+            polytope.push(point);
+            point
+        }
+    };
+    // A thin overlap takes many steps: the latest points are kept.
+    let first = polytope.counts.points;
+    let room = polytope.points.len() - SIMPLEX - WIDEN;
+    let mut next = first;
+    let overlap = gjk::search(query.md, start, given, query.settings.max_iterations, |n, w| {
+        query.note(w);
+        query.lower_to(n.dot(&w.v), n);
+        polytope.points[next] = *w;
+        polytope.counts.points = polytope.counts.points.max(next + 1);
+        next = if next + 1 < room { next + 1 } else { first };
+        query.iterations += 1;
+    });
+    let simplex = match overlap.map_err(Stop::Fault)? {
+        Overlap::Yes(simplex) => simplex,
+        Overlap::No(n) => return Err(Stop::Miss(n)),
+        Overlap::Undecided => {
+            return Ok(Answer::Undecided(query.penetration(0.0, &start)));
+        }
+    };
+    if let Some(answer) = polytope.build(query, simplex.points())? {
         return Ok(answer);
     }
     loop {
@@ -263,6 +356,8 @@ struct Counts {
     free: usize,
     first_free: Index,
     insertions: u32,
+    /// A point well inside the first tetrahedron, hence inside the polytope.
+    inner: Vec3,
     /// Least key of the faces that were far enough to be left out of the heap.
     dropped: Real,
 }
@@ -289,6 +384,7 @@ impl<'a> Polytope<'a> {
                 free: 0,
                 first_free: NONE,
                 insertions: 0,
+                inner: Vec3::zeros(),
                 dropped: Real::INFINITY,
             },
         }
@@ -328,81 +424,26 @@ impl<'a> Polytope<'a> {
         best
     }
 
-    /// GJK: moves a triangle of points towards the origin until the origin is in the
-    /// tetrahedron it forms with the next point, or on it to rounding; then builds the
-    /// polytope of all points seen. An answer ends the query.
-    fn enclose<A: SupportMap, B: SupportMap>(
-        &mut self,
-        query: &mut Query<'_, A, B>,
-        dir: &Vec3,
-    ) -> Result<Option<Answer>, Stop> {
-        if self.counts.points == 0 {
-            let (point, _) = query.ask(dir)?;
-            self.push(point);
-        }
-        let mut triangle = [0, 0, 0];
-        let mut nearest = self.v(0);
-        let mut distance = nearest.norm();
-        while distance > query.rounding() {
-            if query.iterations >= query.settings.max_iterations.min(ENCLOSE_STEPS) {
-                let witness = self.points[usize::from(triangle[0])];
-                return Ok(Some(Answer::Limit(query.penetration(0.0, &witness))));
-            }
-            query.iterations += 1;
-            let dir = -nearest / distance;
-            let (mut new, beyond) = self.farthest(|v| dir.dot(v));
-            // A known point serves when it lies on the origin's other side: a new one
-            // need not do better.
-            if !(beyond > 0.0) {
-                if self.counts.points >= self.points.len().min(MAX_POINTS) - 8 {
-                    // Thin overlaps take many steps; old points are of no more use.
-                    self.keep(&mut triangle);
-                }
-                let (point, _) = query.ask(&dir)?;
-                new = self.push(point);
-            }
-            let [a, b, c] = triangle;
-            let (va, vb, vc, vp) = (self.v(a), self.v(b), self.v(c), self.v(new));
-            if surrounds(&va, &vb, &vc, &vp) {
-                triangle = [a, b, new];
-                break;
-            }
-            let mut best = (distance, nearest, triangle);
-            for (t, [x, y]) in [
-                ([a, b, new], [va, vb]),
-                ([b, c, new], [vb, vc]),
-                ([c, a, new], [vc, va]),
-            ] {
-                let w = nearest::on_triangle(&Vec3::zeros(), &x, &y, &vp).0;
-                let d = w.norm();
-                if d < best.0 {
-                    best = (d, w, t);
-                }
-            }
-            // No progress: rounding has the last word, and the origin is on the triangle.
-            if !(best.0 < distance) {
-                break;
-            }
-            (distance, nearest, triangle) = best;
-        }
-        self.build(query, triangle)
-    }
-
-    /// Forgets all points but the triangle's.
-    fn keep(&mut self, triangle: &mut [Index; 3]) {
-        let kept = triangle.map(|i| self.points[usize::from(i)]);
-        self.points[..3].copy_from_slice(&kept);
-        self.counts.points = 3;
-        *triangle = [0, 1, 2];
-    }
-
-    /// The polytope of all points, made solid by new ones where they are flat. Where D
-    /// itself is flat the origin touches it: that answer ends the query.
+    /// The polytope of all points, made solid by new ones where they are flat; `simplex`,
+    /// of some of them, holds the origin. Where D itself is flat the origin touches it:
+    /// that answer ends the query.
     fn build<A: SupportMap, B: SupportMap>(
         &mut self,
         query: &mut Query<'_, A, B>,
-        triangle: [Index; 3],
+        simplex: &[SupportPoint],
     ) -> Result<Option<Answer>, Stop> {
+        let mut triangle = [0; 3];
+        for (i, point) in simplex.iter().enumerate() {
+            let known = &self.points[..self.counts.points];
+            let at = match known.iter().position(|p| p.v == point.v) {
+                Some(at) => at as Index,
+                None => self.push(*point),
+            };
+            // A simplex of less than three points is a triangle without area.
+            for corner in triangle.iter_mut().skip(i) {
+                *corner = at;
+            }
+        }
         let a = triangle[0];
         let va = self.v(a);
         let (mut b, far2) = self.farthest(|v| (v - va).norm_squared());
@@ -433,6 +474,7 @@ impl<'a> Polytope<'a> {
         if (self.v(d) - va).dot(&normal) > 0.0 {
             core::mem::swap(&mut b, &mut c);
         }
+        self.counts.inner = (va + self.v(b) + self.v(c) + self.v(d)) * 0.25;
         let target = query.upper.depth - query.tolerance();
         for (corners, across) in [
             ([a, b, c], [6, 10, 14]),
@@ -441,8 +483,10 @@ impl<'a> Polytope<'a> {
             ([c, d, a], [9, 4, 2]),
         ] {
             let f = self.allocate();
-            let face = self.measure(corners, target);
-            *self.face_mut(f) = Face { across, ..face };
+            let [x, y, z] = corners.map(|i| self.v(i));
+            let face = self.face_mut(f);
+            face.renew(corners, across);
+            face.measure(&x, &y, &z, target);
             self.enqueue(f, target);
         }
         for i in 0..self.counts.points as Index {
@@ -478,7 +522,7 @@ impl<'a> Polytope<'a> {
         })
     }
 
-    /// The answer where D is flat around the origin, which lies on `triangle`.
+    /// The answer where D is flat: the origin lies on `triangle`.
     fn touch<A: SupportMap, B: SupportMap>(
         &self,
         query: &Query<'_, A, B>,
@@ -502,41 +546,13 @@ impl<'a> Polytope<'a> {
         (best.0 != NONE).then_some(best.0)
     }
 
-    /// Normal, offset and distance bound of a triangle.
-    #[inline]
-    fn measure(&self, corners: [Index; 3], target: Real) -> Face {
-        let [a, b, c] = corners.map(|i| self.v(i));
-        let normal = (b - a).cross(&(c - a));
-        let normal = normal * (1.0 / normal.norm());
-        let (da, db, dc) = (normal.dot(&a), normal.dot(&b), normal.dot(&c));
-        let mut face = Face {
-            normal,
-            offset: da.max(db).max(dc),
-            key: da.min(db).min(dc),
-            corners,
-            ..Face::default()
-        };
-        // Nearer than wanted: unless the origin projects into the triangle (or is on its
-        // wrong side), the nearest point is on an edge and farther than the plane.
-        if face.key < target && face.key >= 0.0 {
-            let inside = normal.dot(&a.cross(&b)) >= 0.0
-                && normal.dot(&b.cross(&c)) >= 0.0
-                && normal.dot(&c.cross(&a)) >= 0.0;
-            if !inside {
-                let w = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c).0;
-                let w = w * (1.0 / w.norm());
-                let bound = w.dot(&a).min(w.dot(&b)).min(w.dot(&c));
-                if bound > face.key {
-                    face.key = bound;
-                    face.edge = true;
-                }
-            }
-        }
-        face
-    }
-
     /// Replaces all faces that point `p` sees by the cone from p over their rim. `first`
-    /// is one of them. `false`: the rim is no single loop, nothing was changed.
+    /// is one of them. `false`: rounding leaves the rim no single loop; nothing changed.
+    ///
+    /// A face sees p when p is above its plane by more than rounding. What decides is
+    /// the cone: where it would fold back (the inner point on the outer side of a new
+    /// face), the old face across that rim edge sees p after all, by less than rounding.
+    /// So all faces keep the inner point on their inner side.
     fn insert<A, B>(&mut self, first: Index, p: Index, query: &Query<'_, A, B>) -> bool
     where
         A: SupportMap,
@@ -548,88 +564,144 @@ impl<'a> Polytope<'a> {
         self.counts.insertions += 1;
         let hidden = 2 * self.counts.insertions;
         let visible = hidden + 1;
+        if self.room() < self.counts.points {
+            self.purge();
+        }
 
-        // Flood from the first face; the list of visible faces is its own queue.
+        // The list of visible faces is the queue of the flood.
         self.face_mut(first).seen = visible;
         self.face_mut(first).next = NONE;
         let mut last = first;
-        let mut at = first;
-        let mut rim = 0;
-        let mut start = 0;
-        while at != NONE {
-            let across = self.face(at).across;
-            for (edge, other) in across.into_iter().enumerate() {
-                let f = other / 4;
-                let face = self.face_mut(f);
-                if face.seen < hidden {
-                    if face.normal.dot(&vp) - face.offset > rounding {
-                        face.seen = visible;
-                        face.next = NONE;
-                        self.face_mut(last).next = f;
-                        last = f;
-                        continue;
+        let cone = loop {
+            let mut at = first;
+            let mut rim = 0;
+            let mut start = 0;
+            while at != NONE {
+                let across = self.face(at).across;
+                for (edge, other) in across.into_iter().enumerate() {
+                    let f = other / 4;
+                    let face = self.face_mut(f);
+                    if face.seen < hidden {
+                        if face.normal.dot(&vp) - face.offset > rounding {
+                            face.seen = visible;
+                            face.next = NONE;
+                            self.face_mut(last).next = f;
+                            last = f;
+                            continue;
+                        }
+                        face.seen = hidden;
                     }
-                    face.seen = hidden;
+                    if self.face(f).seen == hidden {
+                        rim += 1;
+                        start = 4 * at + edge as Index;
+                    }
                 }
-                if self.face(f).seen == hidden {
-                    rim += 1;
-                    start = 4 * at + edge as Index;
-                }
+                at = self.face(at).next;
             }
-            at = self.face(at).next;
-        }
-        let mut length = 1;
-        let mut edge = self.next_rim(start, visible);
-        while edge != start && length < rim {
-            edge = self.next_rim(edge, visible);
-            length += 1;
-        }
-        if length != rim || edge != start {
-            return false;
-        }
-        if self.room() < rim {
-            self.purge();
-            if self.room() < rim {
+            if rim < 3 || rim > self.room() {
                 return false;
             }
-        }
-
-        // The cone: each rim edge gets a face, joined to the one before it.
-        let mut previous = NONE;
-        let mut oldest = NONE;
-        let mut at = start;
-        for _ in 0..rim {
-            let (inner, edge) = (at / 4, usize::from(at % 4));
-            let face = self.face(inner);
-            let outer = face.across[edge];
-            let corners = [face.corners[edge], face.corners[(edge + 1) % 3], p];
-            let next = self.next_rim(at, visible);
-            let new = self.measure(corners, target);
-            let f = self.allocate();
-            *self.face_mut(f) = Face {
-                across: [outer, 0, if previous == NONE { 0 } else { 4 * previous + 1 }],
-                ..new
-            };
-            self.face_mut(outer / 4).across[usize::from(outer % 4)] = 4 * f;
-            if previous == NONE {
-                oldest = f;
-            } else {
-                self.face_mut(previous).across[1] = 4 * f + 2;
+            match self.cone(start, rim, p, visible, target) {
+                Ok(cone) => break cone,
+                Err(Some(folded)) => {
+                    self.face_mut(folded).seen = visible;
+                    self.face_mut(folded).next = NONE;
+                    self.face_mut(last).next = folded;
+                    last = folded;
+                }
+                Err(None) => return false,
             }
-            self.enqueue(f, target);
-            previous = f;
-            at = next;
-        }
-        self.face_mut(previous).across[1] = 4 * oldest + 2;
-        self.face_mut(oldest).across[2] = 4 * previous + 1;
-
+        };
         let mut at = first;
         while at != NONE {
             let next = self.face(at).next;
             self.bury(at);
             at = next;
         }
+        let mut at = cone;
+        while at != NONE {
+            let next = self.face(at).next;
+            self.enqueue(at, target);
+            at = next;
+        }
         true
+    }
+
+    /// The faces from point `p` to the `rim` edges of the visible faces, the first to
+    /// `start`, as a list. Otherwise nothing is changed: `Err` has the face across the
+    /// rim that the cone folds back on, or none when the rim is no single loop.
+    fn cone(
+        &mut self,
+        start: Index,
+        rim: usize,
+        p: Index,
+        visible: u32,
+        target: Real,
+    ) -> Result<Index, Option<Index>> {
+        let (inner, vp) = (self.counts.inner, self.v(p));
+        let mut oldest = NONE;
+        let mut previous = NONE;
+        let mut made = 0;
+        let mut folded = NONE;
+        let mut at = start;
+        let mut from = self.begin(at);
+        let mut va = self.v(from);
+        loop {
+            let outer = self.face(at / 4).across[usize::from(at % 4)];
+            let next = self.next_rim(at, visible);
+            let to = self.begin(next);
+            let vb = self.v(to);
+            let f = self.allocate();
+            let face = self.face_mut(f);
+            face.renew(
+                [from, to, p],
+                [outer, 0, 4 * (previous % MAX_FACES) + 1],
+            );
+            face.measure(&va, &vb, &vp, target);
+            // False for a triangle without area, whose normal is NaN: it is harmless.
+            let folds = face.offset < face.normal.dot(&inner);
+            self.face_mut(outer / 4).across[usize::from(outer % 4)] = 4 * f;
+            if previous == NONE {
+                oldest = f;
+            } else {
+                let before = self.face_mut(previous);
+                before.across[1] = 4 * f + 2;
+                before.next = f;
+            }
+            previous = f;
+            made += 1;
+            if folds {
+                folded = outer / 4;
+                break;
+            }
+            if next == start {
+                break;
+            }
+            (at, from, va) = (next, to, vb);
+        }
+        if folded == NONE && made == rim {
+            self.face_mut(previous).across[1] = 4 * oldest + 2;
+            self.face_mut(oldest).across[2] = 4 * previous + 1;
+            return Ok(oldest);
+        }
+        // Undo: back across each rim edge to the visible face, in the same order.
+        let mut back = start;
+        let mut f = oldest;
+        while f != NONE {
+            let next = self.face(f).next;
+            let outer = self.face(f).across[0];
+            self.face_mut(outer / 4).across[usize::from(outer % 4)] = back;
+            self.release(f);
+            back = self.next_rim(back, visible);
+            f = next;
+        }
+        Err((folded != NONE).then_some(folded))
+    }
+
+    /// The corner where a half-edge begins.
+    #[inline]
+    fn begin(&self, edge: Index) -> Index {
+        self.face(edge / 4).corners[usize::from(edge % 4)]
     }
 
     /// The rim edge after `edge`: turns about its end through the visible faces.
@@ -801,21 +873,24 @@ impl<'a> Polytope<'a> {
             if query.upper.depth - lower <= query.tolerance() {
                 return Ok(Outcome::Done(true, self.finish(query, lower, Some(top))));
             }
+            // A point above by less than this would add faces and no distance.
+            let least = query.rounding().max(query.tolerance() * 0.125);
             let face = self.face_mut(top);
             let height = face.normal.dot(&point.v) - face.offset;
-            let rounding = query.rounding();
-            let retry = !(height > rounding) && !face.edge && !face.lone;
+            let retry = !(height > least) && !face.edge && !face.lone;
             face.lone |= retry;
             let p = self.push(point);
-            let lit = if height > rounding {
+            let lit = if height > least {
                 Some(top)
             } else {
-                self.lit(p, rounding)
+                self.lit(p, least)
             };
             let grown = lit.is_some_and(|f| self.insert(f, p, query));
             if !grown && !retry {
                 // Rounding error has the last word.
-                return Ok(Outcome::Done(false, self.finish(query, lower, Some(top))));
+                let gap = query.upper.depth - lower;
+                let close = gap <= 64.0 * EPSILON * query.magnitude;
+                return Ok(Outcome::Done(close, self.finish(query, lower, Some(top))));
             }
         }
     }
@@ -930,21 +1005,6 @@ impl<'a> Polytope<'a> {
 #[inline]
 fn after(edge: Index) -> Index {
     if edge % 4 == 2 { edge - 2 } else { edge + 1 }
-}
-
-/// Is the origin inside tetrahedron abcp, which is not flat?
-fn surrounds(a: &Vec3, b: &Vec3, c: &Vec3, p: &Vec3) -> bool {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let n = ab.cross(&ac);
-    let volume = n.dot(&ap);
-    let flat = 64.0 * EPSILON * ab.norm() * ac.norm() * ap.norm();
-    let side = volume.signum();
-    volume.abs() > flat
-        // The origin in place of p, a, b and c in turn keeps the orientation.
-        && -n.dot(a) * side >= 0.0
-        && b.cross(c).dot(p) * side >= 0.0
-        && c.cross(a).dot(p) * side >= 0.0
-        && a.cross(b).dot(p) * side >= 0.0
 }
 
 /// Barycentric coordinates of `w`, a point of triangle abc.

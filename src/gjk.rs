@@ -37,6 +37,17 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
     known: &[SupportPoint],
     max_iterations: u64,
 ) -> Result<Overlap, Fault> {
+    search(md, start, known, max_iterations, |_, _| ())
+}
+
+/// [`intersect`], telling `seen` of each direction it asks and the support point there.
+pub fn search<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    start: SupportPoint,
+    known: &[SupportPoint],
+    max_iterations: u64,
+    mut seen: impl FnMut(&Vec3, &SupportPoint),
+) -> Result<Overlap, Fault> {
     let mut simplex = Simplex::new(start);
     let mut v = start.v;
     let mut size = start.magnitude();
@@ -54,6 +65,7 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
                 if n.dot(&w.v) < 0.0 {
                     return Ok(Overlap::No(n));
                 }
+                seen(&n, &w);
                 w
             }
         };
