@@ -6,12 +6,14 @@
 //!
 //! The nearest point v of a simplex inscribed in D gives the next direction
 //! n = −v/|v|. A support value n·s(n) < 0 is a plane with all of D on its far side:
-//! apart, proven. A tetrahedron around the origin: overlap, proven. Departure from
+//! apart, proven. A tetrahedron around the origin: overlap, proven. Where v becomes too
+//! short to tell a direction a portal decides ([`portal`]). Departure from
 //! libccd: nothing is compared with an absolute epsilon, so objects of a
 //! micrometre and of a thousand kilometres are answered alike; objects that touch
 //! within rounding (a few ulps of their coordinates) count as overlapping.
 
-use crate::math::{EPSILON, Real, Vec3};
+use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::portal::{self, Exit, Plane};
 use crate::simplex::{Nearest, Simplex};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -74,17 +76,47 @@ pub fn search<A: SupportMap, B: SupportMap>(
         match simplex.reduce() {
             Nearest::Inside => return Ok(Overlap::Yes(simplex)),
             Nearest::Outside(next) => {
-                // Each step comes nearer by at least a rounding error, or the
-                // support plane through or beyond the origin is as near as the
-                // arithmetic can tell: a touch.
+                // Each step comes nearer by at least a rounding error, or v is too
+                // short to tell a direction.
                 if !(next.norm() < distance * (1.0 - EPSILON)) {
-                    return Ok(Overlap::Yes(simplex));
+                    return near_touch(md, simplex, max_iterations);
                 }
                 v = next;
             }
         }
     }
     Ok(Overlap::Undecided)
+}
+
+/// The last word where the objects nearly touch. There v is mostly rounding error, and
+/// with it the direction −v/|v|; the normals of a portal's triangles are not. The ray
+/// leaves from a point inside the simplex through the origin: if the origin is in D,
+/// the ray ends beyond it.
+fn near_touch<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    simplex: Simplex,
+    max_iterations: u64,
+) -> Result<Overlap, Fault> {
+    let inner = simplex.mean();
+    let Some(d) = unit(&-inner.v) else {
+        return Ok(Overlap::Yes(simplex));
+    };
+    let first = Plane::of(md, d)?;
+    let mut best = first;
+    let mut budget = max_iterations;
+    // Any portal that has the origin on its inner side decides.
+    let tolerance = Real::INFINITY;
+    Ok(
+        match portal::mpr(md, &first, tolerance, false, &mut best, &mut budget)? {
+            Exit::Miss(n) => Overlap::No(n),
+            Exit::Converged(portal, _) | Exit::Limit(Some(portal)) if budget > 0 => {
+                let [a, b, c] = portal.planes.map(|p| p.point);
+                Overlap::Yes(Simplex::of([inner, a, b, c]))
+            }
+            Exit::Converged(..) | Exit::Limit(_) => Overlap::Undecided,
+            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => Overlap::Yes(simplex),
+        },
+    )
 }
 
 /// The point farthest along `n`, if it lies beyond the origin.

@@ -44,6 +44,23 @@ impl Simplex {
         }
     }
 
+    /// A tetrahedron.
+    pub fn of(points: [SupportPoint; 4]) -> Self {
+        Self { points, len: 4 }
+    }
+
+    /// The mean of the points.
+    pub fn mean(&self) -> SupportPoint {
+        let mut mean = SupportPoint::default();
+        let share = 1.0 / self.points().len() as Real;
+        for p in self.points() {
+            mean.v += p.v * share;
+            mean.v1 += p.v1 * share;
+            mean.v2 += p.v2 * share;
+        }
+        mean
+    }
+
     /// The points of the simplex.
     #[inline]
     pub fn points(&self) -> &[SupportPoint] {
