@@ -6,6 +6,7 @@
 
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
+#include <ccd/warm.h>
 #include <stdio.h>
 
 static void support(const void *object, const ccd_vec3_t *dir, ccd_vec3_t *out)
@@ -20,16 +21,13 @@ static void center(const void *object, ccd_vec3_t *out)
     ccdVec3Copy(out, (const ccd_vec3_t *)object);
 }
 
-/* In <ccd/warm.h>; declared here, so that this is a program for any libccd
- * but for one name that only this repository's has. */
-const char *ccdImplementation(void);
-
 int main(void)
 {
     ccd_vec3_t a = {{CCD_ZERO, CCD_ZERO, CCD_ZERO}};
     ccd_vec3_t b = {{CCD_REAL(1.5), CCD_ZERO, CCD_ZERO}};
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
+    ccd_warm_t warm = {0};
     ccd_t ccd;
 
     CCD_INIT(&ccd);
@@ -41,8 +39,10 @@ int main(void)
         return 1;
     if (ccdMPRPenetration(&a, &b, &ccd, &depth, &dir, &pos) != 0)
         return 2;
-    if (CCD_FABS(depth - CCD_REAL(0.5)) > CCD_REAL(1e-3) || ccdVec3X(&dir) < CCD_REAL(0.999))
+    if (ccdMPRPenetrationWarm(&a, &b, &ccd, &warm, &depth, &dir, &pos) != 0)
         return 3;
+    if (CCD_FABS(depth - CCD_REAL(0.5)) > CCD_REAL(1e-3) || ccdVec3X(&dir) < CCD_REAL(0.999))
+        return 4;
     printf("%s\n", ccdImplementation());
     return 0;
 }
