@@ -15,6 +15,7 @@
 )]
 #![allow(clippy::large_enum_variant, reason = "no heap")]
 
+pub mod bundle;
 pub mod contact;
 pub mod epa;
 pub mod ffi;
