@@ -230,9 +230,7 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
 
     /// The tolerance, floored at what the coordinates resolve.
     fn tolerance(&self) -> Real {
-        self.settings
-            .tolerance
-            .max(16.0 * EPSILON * self.magnitude)
+        self.settings.tolerance.max(16.0 * EPSILON * self.magnitude)
     }
 
     fn penetration(&self, lower: Real, witness: &SupportPoint) -> Penetration {
@@ -312,14 +310,20 @@ fn run<A: SupportMap, B: SupportMap>(
     let first = polytope.counts.points;
     let room = polytope.points.len() - SIMPLEX - WIDEN;
     let mut next = first;
-    let overlap = gjk::search(query.md, start, given, query.settings.max_iterations, |n, w| {
-        query.note(w);
-        query.lower_to(n.dot(&w.v), n);
-        polytope.points[next] = *w;
-        polytope.counts.points = polytope.counts.points.max(next + 1);
-        next = if next + 1 < room { next + 1 } else { first };
-        query.iterations += 1;
-    });
+    let overlap = gjk::search(
+        query.md,
+        start,
+        given,
+        query.settings.max_iterations,
+        |n, w| {
+            query.note(w);
+            query.lower_to(n.dot(&w.v), n);
+            polytope.points[next] = *w;
+            polytope.counts.points = polytope.counts.points.max(next + 1);
+            next = if next + 1 < room { next + 1 } else { first };
+            query.iterations += 1;
+        },
+    );
     let simplex = match overlap.map_err(Stop::Fault)? {
         Overlap::Yes(simplex) => simplex,
         Overlap::No(n) => return Err(Stop::Miss(n)),
@@ -369,7 +373,6 @@ struct Polytope<'a> {
     heap: &'a mut [Index],
     counts: Counts,
 }
-
 
 impl<'a> Polytope<'a> {
     fn new(storage: Storage<'a>) -> Self {
@@ -653,10 +656,7 @@ impl<'a> Polytope<'a> {
             let vb = self.v(to);
             let f = self.allocate();
             let face = self.face_mut(f);
-            face.renew(
-                [from, to, p],
-                [outer, 0, 4 * (previous % MAX_FACES) + 1],
-            );
+            face.renew([from, to, p], [outer, 0, 4 * (previous % MAX_FACES) + 1]);
             face.measure(&va, &vb, &vp, target);
             // False for a triangle without area, whose normal is NaN: it is harmless.
             let folds = face.offset < face.normal.dot(&inner);
@@ -858,8 +858,7 @@ impl<'a> Polytope<'a> {
             let Some(top) = top.filter(|_| !proven) else {
                 return Ok(Outcome::Done(proven, self.finish(query, lower, top)));
             };
-            if query.iterations >= query.settings.max_iterations
-                || self.counts.points >= MAX_POINTS
+            if query.iterations >= query.settings.max_iterations || self.counts.points >= MAX_POINTS
             {
                 return Ok(Outcome::Done(false, self.finish(query, lower, Some(top))));
             }
@@ -1017,7 +1016,11 @@ fn weights(w: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> [Real; 3] {
         return shares.map(|x| x / sum);
     }
     // No area: along the longest edge.
-    let edges = [(0, 1, b - a, w - a), (1, 2, c - b, w - b), (2, 0, a - c, w - c)];
+    let edges = [
+        (0, 1, b - a, w - a),
+        (1, 2, c - b, w - b),
+        (2, 0, a - c, w - c),
+    ];
     let mut best = ([1.0, 0.0, 0.0], 0.0);
     for (from, to, edge, at) in edges {
         let length2 = edge.norm_squared();

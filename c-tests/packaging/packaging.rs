@@ -8,7 +8,7 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
-use harness::{Executable, Precision, library, must_succeed, output_dir, root};
+use harness::{Executable, Precision, Program, library, must_succeed, output_dir, root};
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -236,6 +236,31 @@ fn precision_is_held() {
     };
     assert!(compiles(&[]));
     assert!(!compiles(&[other]));
+}
+
+/// The README's C program compiles without a warning and answers rightly.
+#[test]
+fn readme_program() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
+    let program = readme
+        .split_once("```c\n")
+        .and_then(|(_, rest)| rest.split_once("```"))
+        .expect("a C program")
+        .0;
+    let source = fresh("readme").join("readme.c");
+    fs::write(&source, program).expect("a file can be written");
+    let written = Program::c("readme")
+        .source(&source)
+        .flag("-pedantic")
+        .flag("-Werror")
+        .link_ours_shared()
+        .build()
+        .run([""; 0]);
+    let depth = written.stdout.split(' ').nth(3).expect("move b by DEPTH");
+    // Unit spheres: the sum of the radii less the distance of the centres.
+    let truth = 2.0 - 0.14_f64.sqrt();
+    let depth: f64 = depth.parse().expect("a number");
+    assert!((depth - truth).abs() < 1e-5, "{depth}");
 }
 
 /// The one file of this name below a directory.
