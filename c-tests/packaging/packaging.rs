@@ -13,6 +13,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
 /// An empty directory of this name, for one test.
 fn fresh(name: &str) -> PathBuf {
@@ -62,14 +63,17 @@ fn build_library(build: &Path, prefix: &Path) {
 
 /// The library installed under a prefix, then moved: nothing in it may
 /// remember where it was built or first lay.
-fn installed_and_moved(name: &str) -> PathBuf {
-    let dir = fresh(name);
-    let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
-    build_library(&build, &first);
-    cmake(["--install".as_ref(), build.as_os_str()]);
-    fs::remove_dir_all(&build).expect("the build tree can be removed");
-    fs::rename(&first, &prefix).expect("the prefix can be moved");
-    prefix
+fn installed_and_moved() -> &'static Path {
+    static PREFIX: OnceLock<PathBuf> = OnceLock::new();
+    PREFIX.get_or_init(|| {
+        let dir = fresh("installed");
+        let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
+        build_library(&build, &first);
+        cmake(["--install".as_ref(), build.as_os_str()]);
+        fs::remove_dir_all(&build).expect("the build tree can be removed");
+        fs::rename(&first, &prefix).expect("the prefix can be moved");
+        prefix
+    })
 }
 
 /// Configures and builds the consumer, with what is needed to find libccd.
@@ -117,13 +121,13 @@ fn all_run_on_ours(build: &Path, shared_under: &Path, names: &[&str]) {
 
 #[test]
 fn find_package() {
-    let prefix = installed_and_moved("installed");
+    let prefix = installed_and_moved();
     let options = [
         define("WAY", "find_package"),
-        define("CMAKE_PREFIX_PATH", &prefix),
+        define("CMAKE_PREFIX_PATH", prefix),
     ];
     let build = consumer("find_package", &options);
-    all_run_on_ours(&build, &prefix, &["plain", "namespaced", "variables"]);
+    all_run_on_ours(&build, prefix, &["plain", "namespaced", "variables"]);
 }
 
 #[test]
@@ -138,8 +142,9 @@ fn add_subdirectory_and_fetch_content() {
 
 #[test]
 fn pkg_config() {
-    let prefix = installed_and_moved("pkg-config");
-    let archive = find(&prefix, "libccd.a");
+    let prefix = installed_and_moved();
+    let programs = fresh("pkg-config");
+    let archive = find(prefix, "libccd.a");
     let libdir = archive.parent().expect("a directory");
     let ask = |args: &[&str]| -> Vec<String> {
         let mut ask = Command::new("pkg-config");
@@ -149,7 +154,7 @@ fn pkg_config() {
     };
     assert_eq!(ask(&["--modversion"]), ["2.0"]);
     let compile = |name: &str, flags: &[String]| {
-        let program = prefix.join(name);
+        let program = programs.join(name);
         let mut cc = Command::new("cc");
         cc.arg(root().join("c-tests/packaging/consumer/main.c"));
         must_succeed(cc.args(flags).arg("-o").arg(&program), "cc");
@@ -158,7 +163,7 @@ fn pkg_config() {
 
     let mut shared = ask(&["--cflags", "--libs"]);
     shared.push(format!("-Wl,-rpath,{}", libdir.display()));
-    runs_on_ours(&compile("shared", &shared), Some(&prefix));
+    runs_on_ours(&compile("shared", &shared), Some(prefix));
 
     // libccd alone from its archive, the rest shared.
     let mut one = ask(&["--static", "--cflags", "--libs"]);
@@ -224,7 +229,7 @@ fn precision_is_held() {
         Precision::Double => "-DCCD_SINGLE",
         Precision::Single => "-DCCD_DOUBLE",
     };
-    let prefix = installed_and_moved("held");
+    let prefix = installed_and_moved();
     let compiles = |flags: &[&str]| {
         let mut cc = Command::new("cc");
         cc.arg("-fsyntax-only")
