@@ -16,88 +16,96 @@
 //!
 //! Nothing in a state is trusted: it chooses where to look first, never what is true.
 
+use crate::bundle::{self, Memory, Seen};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::{self, Overlap};
-use crate::local::{self, Shortcut};
-use crate::math::{Real, Vec3, unit};
+use crate::math::{Vec3, unit};
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
-/// Directions a state remembers.
-pub const DIRECTIONS: usize = 3;
-
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct State {
-    /// Directions of the last answer: the first is the separating direction, the
-    /// guess, or the normal of the answer.
-    pub directions: [[Real; 3]; DIRECTIONS],
+    /// What the solvers remember. In a pair that was apart `dir` separated it; after a
+    /// query along a direction `sides` are the directions of the last portal.
+    pub memory: Memory,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
-    /// How many of the directions are in use.
-    pub count: u32,
+    /// Fills the last word, always 0.
+    pub padding: u32,
 }
 
 /// The pair was apart.
 const APART: u32 = 1;
 /// The pair overlapped.
 const OVERLAP: u32 = 2;
-/// Nothing but the caller's guess of the direction.
-const GUESS: u32 = 3;
-
-impl Default for State {
-    fn default() -> Self {
-        Self {
-            directions: [[0.0; 3]; DIRECTIONS],
-            kind: 0,
-            count: 0,
-        }
-    }
-}
+/// The pair overlapped, and was asked about along a direction.
+const ALONG: u32 = 3;
 
 impl State {
     /// A fresh state that starts from `dir`; cold when it is zero or not finite.
     pub fn guess(dir: &Vec3) -> Self {
         match unit(dir) {
-            Some(n) => Self::remember(GUESS, n),
+            Some(n) => Self::of(OVERLAP, n),
             None => Self::default(),
         }
     }
 
-    fn remember(kind: u32, n: Vec3) -> Self {
-        let mut state = Self {
+    fn of(kind: u32, dir: Vec3) -> Self {
+        Self {
+            memory: Memory {
+                dir,
+                ..Memory::default()
+            },
             kind,
-            count: 1,
-            ..Self::default()
-        };
-        state.directions[0] = n.into();
-        state
-    }
-
-    /// The unit direction `i`, if the state holds one.
-    fn direction(&self, i: usize) -> Option<Vec3> {
-        if i >= self.count as usize {
-            return None;
+            padding: 0,
         }
-        unit(&Vec3::from(*self.directions.get(i)?))
     }
 
     /// The direction that separated the pair.
     fn separating(&self) -> Option<Vec3> {
-        if self.kind == APART {
-            self.direction(0)
-        } else {
-            None
+        match self.kind {
+            APART => unit(&self.memory.dir),
+            _ => None,
         }
     }
 
-    /// Where a solver starts.
-    fn start(&self) -> Option<Vec3> {
+    /// The direction in which obj2 left last time, or is guessed to leave. A pair that
+    /// was apart and is no longer has just met there.
+    fn leaving(&self) -> Option<Vec3> {
         match self.kind {
-            OVERLAP | GUESS => self.direction(0),
+            APART | OVERLAP | ALONG => unit(&self.memory.dir),
             _ => None,
+        }
+    }
+
+    /// What the local solver starts from.
+    fn solver(&self) -> Memory {
+        match self.kind {
+            OVERLAP => self.memory,
+            APART | ALONG => Self::of(OVERLAP, self.memory.dir).memory,
+            _ => Memory::default(),
+        }
+    }
+
+    /// The directions of the last portal.
+    fn portal(&self) -> Option<[Vec3; 3]> {
+        let [a, b, c] = &self.memory.sides;
+        match self.kind {
+            ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
+            _ => None,
+        }
+    }
+
+    /// The kind of the answer and its direction; a query without an answer leaves
+    /// the state alone.
+    fn remember(&mut self, answer: &Answer) {
+        match answer {
+            Answer::Miss(n) => *self = Self::of(APART, *n),
+            Answer::Hit(hit) | Answer::Limit(hit) => *self = Self::of(OVERLAP, hit.normal),
+            Answer::Undecided(_) => {}
         }
     }
 }
@@ -180,7 +188,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             match gjk::intersect(&self.md, start, &[], max_iterations)? {
                 Overlap::Yes(_) => Some(true),
                 Overlap::No(n) => {
-                    *state = State::remember(APART, n);
+                    *state = State::of(APART, n);
                     Some(false)
                 }
                 Overlap::Undecided => None,
@@ -188,34 +196,41 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         )
     }
 
-    /// The depth at MPR's price: from the state, else from the centres with the first
-    /// ray run to its end.
+    /// The depth at MPR's price.
     pub fn mpr(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        let shortcut = match state.start() {
-            Some(_) => Shortcut::Always,
-            None => Shortcut::AfterFirstRay,
-        };
-        self.local(state, shortcut, settings)
+        self.local(state, settings)
     }
 
-    /// A local minimum of the depth; `shortcut` as in [`local::penetration`].
-    pub fn local(
-        &self,
-        state: &mut State,
-        shortcut: Shortcut,
-        settings: &Settings,
-    ) -> Result<Answer, Fault> {
+    /// A local minimum of the depth.
+    pub fn local(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let start = state.start().unwrap_or_else(|| self.cold_start());
-        let answer = local::penetration(&self.md, start, shortcut, settings, |_| {})?;
-        let answer = match answer {
-            Answer::Hit(hit) => self.proven(hit, false, &[], settings)?,
-            Answer::Limit(hit) => self.proven(hit, true, &[], settings)?,
+        let mut memory = state.solver();
+        let mut seen = Seen::default();
+        let found = bundle::penetration(
+            &self.md,
+            self.centre.map(|c| c.v).as_ref(),
+            &self.cold_start(),
+            &mut memory,
+            settings,
+            &mut seen,
+        )?;
+        let answer = match found {
+            Answer::Hit(hit) => self.proven(hit, false, seen.points(), settings)?,
+            Answer::Limit(hit) => self.proven(hit, true, seen.points(), settings)?,
             other => other,
         };
-        remember(state, &answer, []);
+        match answer {
+            Answer::Hit(_) | Answer::Limit(_) => {
+                *state = State {
+                    memory,
+                    kind: OVERLAP,
+                    padding: 0,
+                }
+            }
+            other => state.remember(&other),
+        }
         Ok(answer)
     }
 
@@ -235,7 +250,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let (limit, portal, (normal, h, point1, point2)) = match &exit {
             Exit::Miss(n) => {
                 let answer = Answer::Miss(*n);
-                remember(state, &answer, []);
+                state.remember(&answer);
                 return Ok(answer);
             }
             Exit::Converged(portal, plane) => {
@@ -278,9 +293,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 None => 0.0,
             };
         }
-        match portal {
-            Some(p) => remember(state, &answer, p.planes.map(|plane| plane.normal)),
-            None => remember(state, &answer, []),
+        state.remember(&answer);
+        if let (Some(p), Answer::Hit(_) | Answer::Limit(_)) = (portal, &answer) {
+            state.kind = ALONG;
+            state.memory.sides = p.planes.map(|plane| plane.normal);
         }
         Ok(answer)
     }
@@ -304,9 +320,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             )
         };
         // The last portal, found again by its three directions.
-        if let (Some(a), Some(b), Some(c)) =
-            (state.direction(0), state.direction(1), state.direction(2))
-        {
+        if let Some([a, b, c]) = state.portal() {
             let planes = [
                 Plane::of(&self.md, a)?,
                 Plane::of(&self.md, b)?,
@@ -340,7 +354,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let start = state.start().unwrap_or_else(|| self.cold_start());
+        let start = state.leaving().unwrap_or_else(|| self.cold_start());
         let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
         let start = in_plane(start)
             .or_else(|| in_plane(Vec3::x()))
@@ -352,23 +366,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Answer::Limit(hit) => self.proven(hit, true, &[], settings)?,
             other => other,
         };
-        remember(state, &answer, []);
+        state.remember(&answer);
         Ok(answer)
-    }
-}
-
-/// Leaves the answer behind: the separating direction, or the normal and then the
-/// `others`. A query without an answer leaves the state alone.
-fn remember<const N: usize>(state: &mut State, answer: &Answer, others: [Vec3; N]) {
-    match answer {
-        Answer::Miss(n) => *state = State::remember(APART, *n),
-        Answer::Hit(hit) | Answer::Limit(hit) => {
-            *state = State::remember(OVERLAP, hit.normal);
-            for (to, n) in state.directions.iter_mut().zip(others) {
-                *to = n.into();
-            }
-            state.count = state.count.max(N as u32);
-        }
-        Answer::Undecided(_) => {}
     }
 }

@@ -43,7 +43,7 @@
 /**
  * How many numbers a ccd_warm_t holds.
  */
-#define CCD_WARM_REALS 9
+#define CCD_WARM_REALS 19
 
 /**
  * State of one pair between queries. Plain data, no pointers, nothing to free: all
@@ -60,7 +60,7 @@ typedef struct ccd_warm_t {
   /**
    * Private.
    */
-  unsigned int words[2];
+  unsigned int words[4];
 } ccd_warm_t;
 
 /**

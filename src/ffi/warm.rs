@@ -9,7 +9,6 @@ use super::callbacks::{Object, Query};
 use super::collide::{mpr_penetration, write};
 use super::types::{ccd_t, ccd_vec3_t};
 use crate::contact::{Answer, Penetration, Settings};
-use crate::local::Shortcut;
 use crate::math::{Real, Vec3, unit};
 use crate::support::Fault;
 use crate::warm::{Pair, State};
@@ -26,7 +25,7 @@ pub const CCD_BAD_INPUT: c_int = -3;
 pub const CCD_LIMIT: c_int = -4;
 
 /// How many numbers a ccd_warm_t holds.
-pub const CCD_WARM_REALS: usize = 9;
+pub const CCD_WARM_REALS: usize = 19;
 
 /// State of one pair between queries. Plain data, no pointers, nothing to free: all
 /// bytes zero is cold, and it may be copied and stored freely.
@@ -39,7 +38,7 @@ pub struct ccd_warm_t {
     /// Private.
     pub reals: [Real; CCD_WARM_REALS],
     /// Private.
-    pub words: [c_uint; 2],
+    pub words: [c_uint; 4],
 }
 
 const _: () = {
@@ -268,7 +267,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
             Query::mpr_tolerance,
             warm,
             out,
-            |pair, state, settings| pair.local(state, Shortcut::Always, settings),
+            |pair, state, settings| pair.local(state, settings),
         )
     }
 }
