@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The extension, `<ccd/warm.h>` and `<ccd/ccd.hpp>`, from C and C++.
+
+#[path = "../harness/mod.rs"]
+mod harness;
+
+use harness::Program;
+
+const NO_ARGS: [&str; 0] = [];
+
+#[test]
+fn cpp_wrapper() {
+    for standard in ["c++17", "c++20"] {
+        Program::cpp("wrapper")
+            .source("extension/wrapper.cpp")
+            .standard(standard)
+            .flag("-pedantic")
+            .flag("-Werror")
+            .link_ours_shared()
+            .build()
+            .run(NO_ARGS);
+    }
+}
+
+/// What the example prints: two frames apart, the touch, then the depth by which the
+/// box has sunk, and a warm query never costs more supports than the first hit.
+#[test]
+fn example() {
+    let lines = Program::c("example")
+        .source("extension/example.c")
+        .flag("-pedantic")
+        .flag("-Werror")
+        .link_ours_shared()
+        .build()
+        .run(NO_ARGS)
+        .stdout;
+    let lines: Vec<&str> = lines.lines().collect();
+    assert_eq!(lines.len(), 10);
+    assert_eq!(lines[..2], ["frame 0: apart", "frame 1: apart"]);
+    let supports = |line: &str| -> u32 {
+        let word = line.split(", ").nth(1).expect("supports");
+        word.split(' ').next().unwrap().parse().expect("a number")
+    };
+    for (frame, line) in lines.iter().enumerate().skip(3) {
+        let depth = 0.01 * (frame - 2) as f64;
+        let expected = format!("frame {frame}: depth {depth:.4} along (");
+        assert!(line.starts_with(&expected), "{line}");
+        assert!(supports(line) <= supports(lines[3]), "{line}");
+    }
+}

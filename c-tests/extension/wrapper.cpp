@@ -1,0 +1,214 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* ccd.hpp: the same bits as the C calls it wraps, shapes of any vector type with and
+ * without a centre, exceptions thrown by a shape, states copied as values. */
+
+#include <ccd/ccd.hpp>
+
+#include "contract/check.h"
+#include "shapes.h"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+/* A shape of the C tests behind the interface of the wrapper. */
+struct Wrapped {
+    shape_t shape;
+
+    ccd_vec3_t support(const ccd::Vec3 &dir) const
+    {
+        const ccd_vec3_t d = dir;
+        ccd_vec3_t out;
+        shape_support(&shape, &d, &out);
+        return out;
+    }
+    ccd_vec3_t centre() const
+    {
+        ccd_vec3_t out;
+        shape_center(&shape, &out);
+        return out;
+    }
+};
+
+/* The same without a centre, with a foreign vector type. */
+struct NoCentre {
+    Wrapped of;
+
+    std::array<ccd_real_t, 3> support(const ccd::Vec3 &dir) const
+    {
+        const ccd::Vec3 v = of.support(dir);
+        return {v.x, v.y, v.z};
+    }
+};
+
+struct TooFar : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/* A ball that refuses to answer more than so many questions. */
+struct Tired {
+    ccd_real_t x;
+    mutable int left;
+
+    ccd::Vec3 support(const ccd::Vec3 &d) const
+    {
+        if (left-- == 0)
+            throw TooFar("support");
+        return {x + d.x, d.y, d.z};
+    }
+    ccd::Vec3 centre() const
+    {
+        if (left-- == 0)
+            throw TooFar("centre");
+        return {x, 0, 0};
+    }
+};
+
+static bool same(const ccd::Vec3 &a, const ccd_vec3_t &b) { return a.x == b.v[0] && a.y == b.v[1] && a.z == b.v[2]; }
+
+static void check_same(const char *name, const ccd::Penetration &p, int code, const ccd_penetration_t &out)
+{
+    CHECK(int(p.status) == code, "%s", name);
+    if (!p)
+        return;
+    CHECK(p.depth == out.depth && p.depth_lower == out.depth_lower && same(p.dir, out.dir) &&
+              same(p.normal, out.normal) && same(p.pos, out.pos) && same(p.point1, out.point1) &&
+              same(p.point2, out.point2) && p.supports == out.supports && p.iterations == out.iterations,
+          "%s", name);
+}
+
+static Wrapped random_shape(double spread)
+{
+    Wrapped w{};
+    const double p = random_in(0.2, 1), q = random_in(0.2, 1), r = random_in(0.2, 1);
+    switch (random_below(5)) {
+    case 0: w.shape = shape_sphere(p); break;
+    case 1: w.shape = shape_capsule(p, q); break;
+    case 2: w.shape = shape_box(p, q, r); break;
+    case 3: w.shape = shape_cylinder(p, q); break;
+    default: w.shape = shape_ellipsoid(p, q, r); break;
+    }
+    double rot[9];
+    rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
+    shape_turn(&w.shape, rot);
+    shape_move(&w.shape, random_in(-spread, spread), random_in(-spread, spread), random_in(-spread, spread));
+    return w;
+}
+
+/* Every query, with and without a state, against the C call with the same callbacks. */
+static void same_as_c()
+{
+    int hits = 0, misses = 0;
+    for (int i = 0; i < 500; i++) {
+        const Wrapped a = random_shape(1), b = random_shape(1);
+        const shape_t *o1 = &a.shape, *o2 = &b.shape;
+        const ccd::Settings settings{CCD_REAL(1e-5)};
+        const ccd::Vec3 dir{1, 2, -2};
+        const ccd_vec3_t c_dir = dir;
+        ccd_t c;
+        shape_query(&c);
+        c.mpr_tolerance = c.epa_tolerance = settings.tolerance;
+
+        ccd::Warm warm;
+        ccd_warm_t c_warm;
+        memset(&c_warm, 0, sizeof c_warm);
+        for (int frame = 0; frame < 2; frame++) {
+            ccd_penetration_t out;
+            ccd_real_t depth;
+            ccd_vec3_t d, pos;
+            int code = ccdPenetrationLocal(o1, o2, &c, &c_warm, &out);
+            check_same("local", ccd::penetration_local(a, b, settings, &warm), code, out);
+            CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after a local query");
+            (code == CCD_HIT ? hits : misses)++;
+            code = ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, &out);
+            check_same("along", ccd::penetration_along(a, b, dir, settings, &warm), code, out);
+            code = ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, &out);
+            check_same("planar", ccd::penetration_planar(a, b, dir, settings, &warm), code, out);
+
+            code = ccdMPRPenetrationWarm(o1, o2, &c, &c_warm, &depth, &d, &pos);
+            const ccd::Contact mpr = ccd::penetration_mpr(a, b, settings, &warm);
+            CHECK(int(mpr.status) == code, "mpr");
+            CHECK(!mpr || (mpr.depth == depth && same(mpr.dir, d) && same(mpr.pos, pos)), "mpr");
+            CHECK(ccd::intersect(a, b, settings, &warm) == (ccdMPRIntersectWarm(o1, o2, &c, &c_warm) == 1), "intersect");
+            CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after all queries");
+        }
+
+        CHECK(ccd::intersect_gjk(a, b, settings) == (ccdGJKIntersect(o1, o2, &c) == 1), "intersect_gjk");
+
+        c.center1 = c.center2 = nullptr;
+        ccd_penetration_t out;
+        const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, &out);
+        check_same("without centres", ccd::penetration_local(NoCentre{a}, NoCentre{b}, settings), without, out);
+        check_same("one centre", ccd::penetration_local(NoCentre{a}, b, settings), without, out);
+        CHECK(ccd::intersect_gjk(NoCentre{a}, NoCentre{b}) == ccd::intersect_gjk(a, b), "a foreign vector");
+    }
+    CHECK(hits > 100 && misses > 100, "%d hits, %d misses", hits, misses);
+}
+
+/* Whatever call it is that a shape refuses, the exception arrives as it was thrown. */
+template <class Query>
+static void throws_through(const char *name, Query query)
+{
+    int caught = 0;
+    for (int left = 0;; left++) {
+        const Tired a{0, left}, b{CCD_REAL(1.5), -1};
+        try {
+            query(a, b);
+            break;
+        } catch (const TooFar &e) {
+            CHECK(e.what() == std::string("support") || e.what() == std::string("centre"), "%s", name);
+            caught++;
+        }
+    }
+    CHECK(caught > 0, "%s asks the shape", name);
+}
+
+static void exceptions()
+{
+    throws_through("intersect", [](auto &a, auto &b) { ccd::intersect(a, b); });
+    throws_through("intersect_gjk", [](auto &a, auto &b) { ccd::intersect_gjk(a, b); });
+    throws_through("mpr", [](auto &a, auto &b) { ccd::penetration_mpr(a, b); });
+    throws_through("local", [](auto &a, auto &b) { ccd::penetration_local(a, b); });
+    throws_through("along", [](auto &a, auto &b) { ccd::penetration_along(a, b, {0, 1, 0}); });
+    throws_through("planar", [](auto &a, auto &b) { ccd::penetration_planar(a, b, {0, 0, 1}); });
+
+    /* A query that was left has not touched the state. */
+    const Tired ball{0, -1};
+    ccd::Warm warm = ccd::Warm::guess({1, 0, 0});
+    const ccd::Warm before = warm;
+    try {
+        ccd::penetration_local(ball, Tired{CCD_REAL(1.5), 2}, {}, &warm);
+        CHECK(false, "nothing thrown");
+    } catch (const TooFar &) {
+    }
+    ccd::Warm copy = before;
+    CHECK(same_bits(warm.get(), copy.get(), sizeof(ccd_warm_t)), "the state after an exception");
+}
+
+static void values()
+{
+    const Tired a{0, -1}, b{CCD_REAL(1.5), -1}, far_off{9, -1};
+    const ccd_real_t nan = CCD_REAL(0.0) / CCD_REAL(0.0);
+    CHECK(!ccd::penetration_local(a, far_off), "apart");
+    CHECK(ccd::penetration_local(a, far_off).status == ccd::Status::miss, "apart");
+    CHECK(ccd::penetration_local(a, b, {nan}).status == ccd::Status::bad_input, "NaN tolerance");
+    CHECK(ccd::penetration_along(a, b, {0, 0, 0}).status == ccd::Status::bad_input, "no direction");
+    CHECK(ccd::penetration_local(a, b, {CCD_REAL(1e-5), 0}).status == ccd::Status::limit, "no iterations");
+
+    /* The guess leads: between two shapes on one spot any way out is as good. */
+    ccd::Warm warm = ccd::Warm::guess({0, -5, 0});
+    const auto hit = ccd::penetration_local(a, a, {CCD_REAL(1e-5)}, &warm);
+    CHECK(hit && hit.dir.y < CCD_REAL(-0.9), "dir %g %g %g", double(hit.dir.x), double(hit.dir.y), double(hit.dir.z));
+    ccd::Warm zero = ccd::Warm::guess({0, 0, 0}), cold;
+    CHECK(same_bits(zero.get(), cold.get(), sizeof(ccd_warm_t)), "a guess of zero is cold");
+}
+
+int main()
+{
+    same_as_c();
+    exceptions();
+    values();
+    return checks_end();
+}
