@@ -536,10 +536,24 @@ static inline double truth_game(double m[3][3])
     return best;
 }
 
+/* Square of the longest edge. */
+static inline double truth_edge2(const truth_triangle_t *t)
+{
+    double most = 0;
+    int k, i;
+    for (k = 0; k < 3; k++) {
+        double l = 0;
+        for (i = 0; i < 3; i++)
+            l += (t->n[k][i] - t->n[(k + 1) % 3][i]) * (t->n[k][i] - t->n[(k + 1) % 3][i]);
+        most = fmax(most, l);
+    }
+    return most;
+}
+
 /* Least value that the objective can have inside the triangle. */
 static inline double truth_bound(const truth_triangle_t *t, const double *along)
 {
-    double m[3][3], value, flat = 1;
+    double m[3][3], value;
     int i, k;
     for (k = 0; k < 3; k++)
         for (i = 0; i < 3; i++)
@@ -564,21 +578,10 @@ static inline double truth_bound(const truth_triangle_t *t, const double *along)
         return value > 0 ? value / most : -HUGE_VAL;
     }
     value = truth_game(m);
-    if (value < 0) {
-        /* then |sum l_i n_i| counts: at least the flat triangle's distance */
-        double u[3], v[3], x[3], l;
-        for (i = 0; i < 3; i++) {
-            u[i] = t->n[1][i] - t->n[0][i];
-            v[i] = t->n[2][i] - t->n[0][i];
-        }
-        x[0] = u[1] * v[2] - u[2] * v[1];
-        x[1] = u[2] * v[0] - u[0] * v[2];
-        x[2] = u[0] * v[1] - u[1] * v[0];
-        l = sqrt(truth_dot3(x, x));
-        if (l > 0)
-            flat = fabs(truth_dot3(x, t->n[0])) / l;
-        value /= flat;
-    }
+    if (value < 0)
+        /* then |sum l_i n_i| counts: its square is 1 - sum l_i l_j |n_i - n_j|^2 over
+         * the three edges, and sum l_i l_j is at most 1/3 */
+        value /= sqrt(1 - truth_edge2(t) / 3);
     return value;
 }
 
@@ -674,6 +677,8 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, const dou
             out.lower = out.depth; /* rounding */
         if (heap.n == 0 || out.depth - out.lower <= width || heap.n + 4 > heap.room)
             break;
+        if (truth_edge2(&heap.heap[0]) < 1e-26)
+            break; /* as fine as double can split: the gap stays what it is */
         truth_pop(&heap, &t);
         /* the plane of the three support points, as a candidate */
         for (i = 0; i < 3; i++) {

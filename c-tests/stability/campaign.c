@@ -1,0 +1,195 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* How often each library fails, by category of pair.
+ *
+ *   campaign [pairs a category [tie rule: 0 sign of zero, 1 centre [category]]]
+ *
+ * Prints one table for libccd and one for this library, at the default tolerance of
+ * 1e-4 m, and exits with 1 when this library breaks a promise at that tolerance or
+ * at a fine one (TOL_TIGHT of the size), with the first pairs that show it. */
+
+#include "categories.h"
+
+/* columns of the tables */
+typedef struct {
+    int asked, overlaps;
+    int count[FAULT_BIT_COUNT];
+    int limit; /* CCD_LIMIT where minima form a surface: allowed */
+    double calls, most, least;
+    double *errors;
+} row_t;
+
+/* libccd counts as looping from so many calls of both support functions on */
+enum { LOOP_MPR = 40000, LOOP_GJK = 4000, LOOP_OURS = 400000 };
+
+/* The share of pairs, in percent, in which ccdMPRPenetration may be more than 1 %
+ * too deep: it is a local method with a safeguard, not a proof. */
+static const double mpr_deep_percent = 1;
+
+static int shown;
+
+static int by_value(const void *x, const void *y)
+{
+    double a = *(const double *)x, b = *(const double *)y;
+    return (a > b) - (a < b);
+}
+
+static int count_fault(const row_t *r, int fault)
+{
+    int bit;
+    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
+        if (fault == 1 << bit)
+            return r->count[bit];
+    return 0;
+}
+
+static void tally(row_t *r, const answer_t *x, const pair_t *p, int faults)
+{
+    int bit;
+    r->asked++;
+    r->calls += (double)x->calls;
+    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
+        r->count[bit] += faults >> bit & 1;
+    r->limit += x->code == CCD_LIMIT;
+    if ((x->code == CCD_HIT || x->code == CCD_LIMIT) && p->truth.lower > 0) {
+        double ratio = x->depth / p->truth.depth;
+        if (faults & FAULT_OVER)
+            r->most = fmax(r->most, ratio);
+        if (faults & FAULT_UNDER)
+            r->least = fmin(r->least, ratio);
+        r->errors[r->overlaps++] = isfinite(ratio) ? fabs(ratio - 1) : HUGE_VAL;
+    }
+}
+
+static void number(const char *format, double x)
+{
+    if (isfinite(x) && x != 0)
+        printf(format, x);
+    else
+        printf(" - |");
+}
+
+static void report(const char *name, const char *category, row_t *r)
+{
+    static const int columns[] = {FAULT_LOOP, FAULT_CRASH, FAULT_NAN, FAULT_DIR0, FAULT_MISS_DEEP, FAULT_MISS_SHALLOW,
+                                  FAULT_FALSE_HIT, FAULT_OVER, FAULT_UNDER, FAULT_ZERO, FAULT_UNSOUND, FAULT_DIR_BAD};
+    size_t i;
+    double n = r->asked ? r->asked : 1;
+    printf("| %s | %s |", category, name);
+    for (i = 0; i < sizeof columns / sizeof columns[0]; i++)
+        printf(" %.1f |", 100 * count_fault(r, columns[i]) / n);
+    qsort(r->errors, (size_t)r->overlaps, sizeof *r->errors, by_value);
+    number(" %.2g |", r->most);
+    number(" %.1e |", r->least);
+    if (r->overlaps)
+        printf(" %.1e | %.1e |", r->errors[r->overlaps / 2], r->errors[r->overlaps * 99 / 100]);
+    else
+        printf(" - | - |");
+    printf(" %.0f |\n", r->calls / n);
+}
+
+int main(int argc, char **argv)
+{
+    int pairs = argc > 1 ? atoi(argv[1]) : 2000, tie = argc > 2 ? atoi(argv[2]) : SHAPE_TIE_SIGN;
+    int only = argc > 3 ? atoi(argv[3]) : -1, category, i, k, broken = 0, rows = 0;
+    /* [entry][category] at the default tolerance, and the fine one for ours */
+    static row_t table[ENTRIES][CATEGORY_COUNT], fine[ENTRIES][CATEGORY_COUNT];
+    static pair_t p;
+    if (pairs < 1) {
+        fprintf(stderr, "usage: campaign [pairs a category [tie rule [category]]]\n");
+        return 2;
+    }
+    judge_begin();
+    for (k = 0; k < (int)ENTRIES; k++)
+        for (category = 0; category < CATEGORY_COUNT; category++) {
+            table[k][category].least = fine[k][category].least = HUGE_VAL;
+            table[k][category].errors = (double *)malloc(sizeof(double) * (size_t)pairs);
+            fine[k][category].errors = (double *)malloc(sizeof(double) * (size_t)pairs);
+            if (!table[k][category].errors || !fine[k][category].errors)
+                return 2;
+        }
+    for (category = 0; category < CATEGORY_COUNT; category++) {
+        if (only >= 0 && category != only)
+            continue;
+        fprintf(stderr, "%d/%d %s\n", category + 1, CATEGORY_COUNT, category_text(category));
+        for (i = 0; i < pairs; i++) {
+            category_pair(category, (uint64_t)i, tie, &p);
+            for (k = 0; k < (int)ENTRIES; k++) {
+                const entry_t *e = &entries[k];
+                double tols[2];
+                int t;
+                if (!entry_exists(e))
+                    continue;
+                tols[0] = 1e-4;
+                tols[1] = tolerance(TOL_TIGHT) * pair_size(&p.a, &p.b);
+                for (t = 0; t < (e->system ? 1 : 2); t++) {
+                    question_t q = question(&p.a, &p.b, tols[t], &p.truth);
+                    unsigned long limit = !e->system ? LOOP_OURS : e->ask == ASK_MPR ? LOOP_MPR : LOOP_GJK;
+                    answer_t x = ask(e, &p.a, &p.b, tols[t], p.truth.n, limit);
+                    int faults;
+                    q.surface = p.surface;
+                    faults = judge(e, &x, &p.a, &p.b, &q);
+                    tally(t ? &fine[k][category] : &table[k][category], &x, &p, faults);
+                    if (!e->system && faults & FAULTS_NEVER && (broken++, shown++ < 20)) {
+                        printf("BROKEN %s, pair %d, tolerance %g, %s: ", category_text(category), i, tols[t], e->name);
+                        print_faults(stdout, faults & FAULTS_NEVER);
+                        printf("\n  truth %.17g (lower %.17g) along %.17g %.17g %.17g%s\n  ", p.truth.depth, p.truth.lower,
+                               p.truth.n[0], p.truth.n[1], p.truth.n[2], p.surface ? ", surface" : "");
+                        print_answer(stdout, &x);
+                        printf("\n  ");
+                        print_shape(stdout, "a", &p.a);
+                        printf("  ");
+                        print_shape(stdout, "b", &p.b);
+                    }
+                }
+            }
+        }
+    }
+    printf("Rates in %% of %d pairs a category, tolerance 1e-4 m (fine: 1e-9 of the size), %s tie rule; errors relative to the true depth; calls of "
+           "both support functions.\n\n", pairs, tie == SHAPE_TIE_CENTRE ? "centre" : "sign");
+    printf("| category | method | loop | crash | NaN | dir 0 | deep miss | shallow miss | false hit | over | under | depth ~0 | "
+           "unsound | bad dir | most over | least under | median err | p99 err | calls |\n");
+    printf("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    for (category = 0; category < CATEGORY_COUNT; category++)
+        for (k = 0; k < (int)ENTRIES; k++) {
+            const entry_t *e = &entries[k];
+            int rated = e->ask == ASK_MPR || e->ask == ASK_GJK || (e->ask == ASK_MINIMUM && e->state == STATE_NONE);
+            if (!rated || !table[k][category].asked)
+                continue;
+            report(e->system ? e->name : e->ask == ASK_MPR ? "**our MPR**" : e->ask == ASK_GJK ? "**our GJK**" : "**minimum**",
+                   category_text(category), &table[k][category]);
+            if (!e->system && e->ask == ASK_MPR)
+                report("**our MPR, fine**", category_text(category), &fine[k][category]);
+            rows++;
+        }
+    printf("\n");
+    for (category = 0; category < CATEGORY_COUNT; category++)
+        for (k = 0; k < (int)ENTRIES; k++) {
+            const entry_t *e = &entries[k];
+            int t;
+            if (e->system || (e->ask != ASK_MPR && e->ask != ASK_MPR_WARM))
+                continue;
+            for (t = 0; t < 2; t++) {
+                const row_t *r = t ? &fine[k][category] : &table[k][category];
+                double percent = r->asked ? 100. * count_fault(r, FAULT_DEEPER) / r->asked : 0;
+                if (percent > mpr_deep_percent) {
+                    printf("BROKEN %s: %s is over 1 %% too deep in %.2f %% of pairs at the %s tolerance\n",
+                           category_text(category), e->name, percent, t ? "fine" : "default");
+                    broken++;
+                }
+            }
+        }
+    for (category = 0; category < CATEGORY_COUNT; category++)
+        for (k = 0; k < (int)ENTRIES; k++)
+            if (!entries[k].system && (table[k][category].limit || fine[k][category].limit))
+                printf("stopped at the cap: %s, %s: %d (default), %d (fine) of %d\n", category_text(category), entries[k].name,
+                       table[k][category].limit, fine[k][category].limit, pairs);
+    printf("%d rows, %d broken promises\n", rows, broken);
+    for (k = 0; k < (int)ENTRIES; k++)
+        for (category = 0; category < CATEGORY_COUNT; category++) {
+            free(table[k][category].errors);
+            free(fine[k][category].errors);
+        }
+    return broken > 0;
+}

@@ -1,0 +1,491 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The categories of pairs where penetration methods fail at different rates. Pair i
+ * of a category is always the same pair, in whatever order they are asked for. */
+
+#ifndef STABILITY_CATEGORIES_H
+#define STABILITY_CATEGORIES_H
+
+#include "judge.h"
+
+#include <stdint.h>
+
+/* --- random numbers: splitmix64 (Steele, Lea, Flood 2014) ---------------------- */
+
+typedef struct {
+    uint64_t state;
+} dice_t;
+
+static inline uint64_t dice_bits(dice_t *d)
+{
+    uint64_t z = d->state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
+    return z ^ z >> 31;
+}
+
+static inline dice_t dice(uint64_t stream, uint64_t index)
+{
+    dice_t d;
+    d.state = stream * UINT64_C(0xd1342543de82ef95) + index;
+    d.state = dice_bits(&d);
+    return d;
+}
+
+/* in [low, high) */
+static inline double dice_in(dice_t *d, double low, double high)
+{
+    return low + (high - low) * ((double)(dice_bits(d) >> 11) * (1.0 / 9007199254740992.0));
+}
+
+/* log-uniform */
+static inline double dice_log(dice_t *d, double low, double high) { return exp(dice_in(d, log(low), log(high))); }
+
+/* 0 ... n-1 */
+static inline int dice_below(dice_t *d, int n) { return (int)(dice_bits(d) % (uint64_t)n); }
+
+static inline int dice_sign(dice_t *d) { return dice_bits(d) & 1 ? 1 : -1; }
+
+static inline void dice_unit(dice_t *d, double n[3])
+{
+    double l;
+    do {
+        int i;
+        for (i = 0; i < 3; i++)
+            n[i] = dice_in(d, -1, 1);
+        l = sqrt(truth_dot3(n, n));
+    } while (!(l > 1e-3 && l <= 1));
+    n[0] /= l;
+    n[1] /= l;
+    n[2] /= l;
+}
+
+static inline void dice_rotation(dice_t *d, double rot[9])
+{
+    double q[4], l;
+    int i;
+    do {
+        for (i = 0, l = 0; i < 4; i++) {
+            q[i] = dice_in(d, -1, 1);
+            l += q[i] * q[i];
+        }
+    } while (!(l > 1e-3 && l <= 1));
+    rotation_quaternion(q[0], q[1], q[2], q[3], rot);
+}
+
+/* --- pairs ---------------------------------------------------------------------- */
+
+enum { PAIR_VERTICES = 20 };
+
+/* Holds its polytopes' vertices: refer to it by pointer, do not copy it. */
+typedef struct {
+    shape_t a, b;
+    ccd_real_t verts[2][3 * PAIR_VERTICES];
+    truth_t truth;
+    int surface; /* the minima form a curve or surface, or nearly */
+} pair_t;
+
+static inline void pair_turn(dice_t *d, shape_t *s)
+{
+    double r[9];
+    dice_rotation(d, r);
+    shape_turn(s, r);
+}
+
+/* A hull of 4 to PAIR_VERTICES points on an ellipsoid of the given size. */
+static inline shape_t pair_hull(dice_t *d, ccd_real_t *verts, double size)
+{
+    int i, k, n = 4 + dice_below(d, PAIR_VERTICES - 3);
+    double axis[3], p[3];
+    for (k = 0; k < 3; k++)
+        axis[k] = size * dice_in(d, .3, 1);
+    for (i = 0; i < n; i++) {
+        dice_unit(d, p);
+        for (k = 0; k < 3; k++)
+            verts[3 * i + k] = (ccd_real_t)(axis[k] * p[k]);
+    }
+    return shape_polytope(verts, n);
+}
+
+/* A convex polygon of 3 to 8 corners in the plane z = 0. */
+static inline shape_t pair_polygon(dice_t *d, ccd_real_t *verts, double size)
+{
+    int i, n = 3 + dice_below(d, 6);
+    double turn = dice_in(d, 0, 6), stretch = dice_in(d, .2, 1);
+    for (i = 0; i < n; i++) {
+        double angle = turn + 6.283185307179586 * (i + dice_in(d, 0, .7)) / n;
+        verts[3 * i] = (ccd_real_t)(size * cos(angle));
+        verts[3 * i + 1] = (ccd_real_t)(size * stretch * sin(angle));
+        verts[3 * i + 2] = 0;
+    }
+    return shape_polytope(verts, n);
+}
+
+enum { PAIR_ROUND = 6 }; /* kinds 0 to 5 are the shape types in their order, 6 is a hull */
+
+static inline shape_t pair_shape(dice_t *d, ccd_real_t *verts, int kind, double low, double high)
+{
+    double x = dice_in(d, low, high), y = dice_in(d, low, high), z = dice_in(d, low, high);
+    switch (kind) {
+    case SHAPE_SPHERE: return shape_sphere(x);
+    case SHAPE_CAPSULE: return shape_capsule(x, y);
+    case SHAPE_BOX: return shape_box(x, y, z);
+    case SHAPE_CYLINDER: return shape_cylinder(x, y);
+    case SHAPE_CONE: return shape_cone(x, y);
+    case SHAPE_ELLIPSOID: return shape_ellipsoid(x, y, z);
+    default: return pair_hull(d, verts, x);
+    }
+}
+
+/* Two shapes of any kind in random poses that overlap, or (apart) do not. */
+static inline void pair_generic(dice_t *d, pair_t *p, double scale, int apart)
+{
+    double u[3];
+    int tries;
+    p->a = pair_shape(d, p->verts[0], dice_below(d, PAIR_ROUND + 1), .1 * scale, scale);
+    p->b = pair_shape(d, p->verts[1], dice_below(d, PAIR_ROUND + 1), .1 * scale, scale);
+    pair_turn(d, &p->a);
+    pair_turn(d, &p->b);
+    for (tries = 0; tries < 60; tries++) {
+        double at = pair_size(&p->a, &p->b) * dice_in(d, 0, apart ? 1.5 : 1);
+        truth_t t;
+        dice_unit(d, u);
+        shape_move(&p->b, at * u[0], at * u[1], at * u[2]);
+        t = truth_depth(&p->a, &p->b);
+        if (apart ? t.depth < -1e-3 * scale : t.lower > 1e-3 * scale)
+            return;
+    }
+    /* as last resort deep inside, or far out */
+    shape_move(&p->b, apart ? 10 * scale : .01 * scale, 0, 0);
+}
+
+/* Moves b along the true normal until only depth is left: exact, because the
+ * minimum of h(n) - s n.m over n stays where it was. */
+static inline void pair_pull_out(pair_t *p, double depth)
+{
+    truth_t t = truth_depth(&p->a, &p->b);
+    double by = t.depth - depth;
+    shape_move(&p->b, (double)p->b.pos[0] + by * t.n[0], (double)p->b.pos[1] + by * t.n[1],
+               (double)p->b.pos[2] + by * t.n[2]);
+}
+
+static inline void pair_offset(pair_t *p, double x, double y, double z)
+{
+    shape_move(&p->a, (double)p->a.pos[0] + x, (double)p->a.pos[1] + y, (double)p->a.pos[2] + z);
+    shape_move(&p->b, (double)p->b.pos[0] + x, (double)p->b.pos[1] + y, (double)p->b.pos[2] + z);
+}
+
+/* Is there a way from n along which h hardly grows? Then a proof from support
+ * points needs so many of them that the library may stop. */
+static inline int pair_is_surface(const pair_t *p)
+{
+    double u[3], v[3], m[3], angle = .05, size = pair_size(&p->a, &p->b), l;
+    const double *n = p->truth.n;
+    int i, k;
+    i = fabs(n[0]) < .6 ? 0 : fabs(n[1]) < .6 ? 1 : 2;
+    m[0] = m[1] = m[2] = 0;
+    m[i] = 1;
+    for (k = 0; k < 3; k++)
+        u[k] = n[(k + 1) % 3] * m[(k + 2) % 3] - n[(k + 2) % 3] * m[(k + 1) % 3];
+    l = sqrt(truth_dot3(u, u));
+    for (k = 0; k < 3; k++)
+        u[k] /= l;
+    for (k = 0; k < 3; k++)
+        v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
+    for (i = 0; i < 64; i++) {
+        double c = cos(i * 3.14159265358979 / 32), s = sin(i * 3.14159265358979 / 32);
+        for (k = 0; k < 3; k++)
+            m[k] = n[k] + angle * (c * u[k] + s * v[k]);
+        if (truth_value(&p->a, &p->b, m) - p->truth.depth < 1e-3 * angle * angle * size)
+            return 1;
+    }
+    return 0;
+}
+
+/* --- the categories --------------------------------------------------------------- */
+
+#define CATEGORIES(X) \
+    X(GENERIC, "generic random pose") \
+    X(SHALLOW3, "shallow: depth 1e-3 of the size") \
+    X(SHALLOW5, "shallow: depth 1e-5 of the size") \
+    X(TOUCHING, "touching +-1e-12") \
+    X(COINCIDENT, "coincident centres") \
+    X(NEAR_COINCIDENT, "near-coincident centres 1e-8 to 1e-18") \
+    X(GRID, "aligned boxes on a 1/8 grid") \
+    X(KISSING, "tilted kissing boxes +-1e-15 to 1e-6") \
+    X(AXIS, "centre offset along a shared axis") \
+    X(TIES, "cube in cube: diagonal and face ties") \
+    X(INSIDE, "small fully inside big") \
+    X(THIN_BOXES, "boxes, aspect 1e2 to 1e6") \
+    X(THIN_CAPSULES, "capsules, aspect 1e2 to 1e5") \
+    X(FLAT, "flat polygon and solid") \
+    X(FLAT_CENTRED, "flat polygon and solid, same centre") \
+    X(SEGMENT, "segment or point and solid") \
+    X(CAPSULES, "capsules parallel, coaxial, crossing") \
+    X(CAPS, "cylinder caps face to face") \
+    X(APEX, "cone apex on a face") \
+    X(EDGES, "box edge on box edge") \
+    X(ELLIPSOIDS, "ellipsoids, aspect 1 to 20") \
+    X(SCALE_M3, "scale 1e-3") \
+    X(SCALE_M6, "scale 1e-6") \
+    X(SCALE_3, "scale 1e3") \
+    X(SCALE_6, "scale 1e6") \
+    X(FAR_6, "far from the origin 1e6") \
+    X(FAR_8, "far from the origin 1e8") \
+    X(APART, "separated")
+
+enum {
+#define STABILITY_CATEGORY(name, text) CATEGORY_##name,
+    CATEGORIES(STABILITY_CATEGORY)
+#undef STABILITY_CATEGORY
+        CATEGORY_COUNT
+};
+
+static inline const char *category_text(int category)
+{
+    static const char *const texts[] = {
+#define STABILITY_CATEGORY_TEXT(name, text) text,
+        CATEGORIES(STABILITY_CATEGORY_TEXT)
+#undef STABILITY_CATEGORY_TEXT
+    };
+    return texts[category];
+}
+
+static inline void pair_solid(dice_t *d, pair_t *p)
+{
+    p->b = pair_shape(d, p->verts[1], dice_below(d, PAIR_ROUND + 1), .1, 1);
+    pair_turn(d, &p->b);
+}
+
+/* Moves b by up to part of both reaches, until they overlap by more than depth. */
+static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
+{
+    int tries;
+    for (tries = 0; tries < 60; tries++) {
+        double u[3], at = part * pair_size(&p->a, &p->b) * dice_in(d, 0, 1);
+        dice_unit(d, u);
+        shape_move(&p->b, at * u[0], at * u[1], at * u[2]);
+        if (truth_depth(&p->a, &p->b).lower > depth)
+            return;
+    }
+    shape_move(&p->b, 0, 0, 0);
+}
+
+/* Pair number index of a category, with its truth. */
+static inline void category_pair(int category, uint64_t index, int tie, pair_t *p)
+{
+    static const double pi = 3.14159265358979323846;
+    dice_t dd = dice((uint64_t)category + 1, index), *d = &dd;
+    double u[3], x, y, z;
+    int k;
+    memset(p, 0, sizeof *p);
+    switch (category) {
+    case CATEGORY_GENERIC:
+        pair_generic(d, p, 1, 0);
+        break;
+    case CATEGORY_SHALLOW3:
+    case CATEGORY_SHALLOW5:
+    case CATEGORY_TOUCHING:
+        pair_generic(d, p, 1, 0);
+        x = pair_size(&p->a, &p->b);
+        pair_pull_out(p, category == CATEGORY_SHALLOW3 ? 1e-3 * x : category == CATEGORY_SHALLOW5 ? 1e-5 * x : dice_sign(d) * 1e-12);
+        break;
+    case CATEGORY_COINCIDENT:
+    case CATEGORY_NEAR_COINCIDENT:
+        p->a = pair_shape(d, p->verts[0], dice_below(d, PAIR_ROUND + 1), .1, 1);
+        pair_turn(d, &p->a);
+        pair_solid(d, p);
+        if (category == CATEGORY_NEAR_COINCIDENT) {
+            dice_unit(d, u);
+            x = dice_log(d, 1e-18, 1e-8);
+            shape_move(&p->b, x * u[0], x * u[1], x * u[2]);
+        }
+        break;
+    case CATEGORY_GRID:
+        p->a = shape_box((1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8.);
+        p->b = shape_box((1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8.);
+        shape_move(&p->b, dice_below(d, 9) / 8. - .5, dice_below(d, 9) / 8. - .5, dice_below(d, 9) / 8. - .5);
+        break;
+    case CATEGORY_KISSING: {
+        double r[9], half[3], gap = dice_sign(d) * dice_log(d, 1e-15, 1e-6);
+        int axis = dice_below(d, 3);
+        dice_rotation(d, r);
+        for (k = 0; k < 3; k++)
+            half[k] = dice_in(d, .1, 1);
+        p->a = shape_box(half[0], half[1], half[2]);
+        p->b = shape_box(half[axis == 0 ? 0 : 1], half[1], half[2]);
+        p->b.p[0] = p->a.p[0];
+        shape_turn(&p->a, r);
+        shape_turn(&p->b, r);
+        x = 2 * half[axis] + gap;
+        shape_move(&p->b, r[axis] * x, r[3 + axis] * x, r[6 + axis] * x);
+        break;
+    }
+    case CATEGORY_AXIS: {
+        int kind = dice_below(d, PAIR_ROUND);
+        p->a = pair_shape(d, p->verts[0], kind, .1, 1);
+        p->b = pair_shape(d, p->verts[1], dice_below(d, 2) ? kind : dice_below(d, PAIR_ROUND), .1, 1);
+        x = dice_in(d, 0, .9) * .3;
+        k = dice_below(d, 3);
+        shape_move(&p->b, k == 0 ? x : 0, k == 1 ? x : 0, k == 2 ? x : 0);
+        break;
+    }
+    case CATEGORY_TIES:
+        x = dice_in(d, .3, 1);
+        y = x * dice_in(d, .1, 1);
+        p->a = shape_box(x, x, x);
+        p->b = dice_below(d, 3) ? shape_box(y, y, y) : shape_sphere(y);
+        z = dice_in(d, 0, x);
+        switch (dice_below(d, 3)) {
+        case 0: shape_move(&p->b, z, z, z); break;
+        case 1: shape_move(&p->b, z, z, 0); break;
+        default: shape_move(&p->b, z, 0, 0); break;
+        }
+        break;
+    case CATEGORY_INSIDE:
+        p->a = pair_shape(d, p->verts[0], dice_below(d, PAIR_ROUND + 1), .5, 1);
+        pair_turn(d, &p->a);
+        p->b = pair_shape(d, p->verts[1], dice_below(d, PAIR_ROUND + 1), .01, .1);
+        pair_turn(d, &p->b);
+        pair_scatter(d, p, .3, 2 * shape_reach(&p->b));
+        break;
+    case CATEGORY_THIN_BOXES:
+        for (k = 0; k < 2; k++) {
+            x = dice_log(d, 1e2, 1e6);
+            if (dice_below(d, 2))
+                *(k ? &p->b : &p->a) = shape_box(1, dice_in(d, .3, 1), 1 / x);
+            else
+                *(k ? &p->b : &p->a) = shape_box(1, 1 / x, dice_in(d, .5, 2) / x);
+            pair_turn(d, k ? &p->b : &p->a);
+        }
+        pair_scatter(d, p, .1, 0);
+        break;
+    case CATEGORY_THIN_CAPSULES: {
+        x = dice_log(d, 1e2, 1e5);
+        p->a = shape_capsule(1 / x, 1);
+        p->b = shape_capsule(dice_in(d, .5, 2) / x, dice_in(d, .5, 1));
+        pair_turn(d, &p->a);
+        pair_turn(d, &p->b);
+        dice_unit(d, u);
+        y = dice_in(d, 0, 1) / x;
+        /* their axes pass at y or less; then slid along a's axis */
+        z = dice_in(d, -.5, .5);
+        shape_move(&p->b, y * u[0] + z * (double)p->a.rot[2], y * u[1] + z * (double)p->a.rot[5],
+                   y * u[2] + z * (double)p->a.rot[8]);
+        break;
+    }
+    case CATEGORY_FLAT:
+    case CATEGORY_FLAT_CENTRED:
+        p->a = pair_polygon(d, p->verts[0], dice_in(d, .1, 1));
+        pair_turn(d, &p->a);
+        pair_solid(d, p);
+        if (category == CATEGORY_FLAT) {
+            pair_scatter(d, p, .7, 1e-4);
+        } else {
+            ccd_vec3_t ca, cb;
+            shape_center(&p->a, &ca);
+            shape_center(&p->b, &cb);
+            shape_move(&p->b, (double)(ca.v[0] - cb.v[0]), (double)(ca.v[1] - cb.v[1]), (double)(ca.v[2] - cb.v[2]));
+        }
+        break;
+    case CATEGORY_SEGMENT:
+        x = dice_below(d, 2) ? dice_in(d, .1, 1) : 0;
+        p->verts[0][2] = (ccd_real_t)-x;
+        p->verts[0][5] = (ccd_real_t)x;
+        p->a = shape_polytope(p->verts[0], x > 0 ? 2 : 1);
+        pair_turn(d, &p->a);
+        pair_solid(d, p);
+        pair_scatter(d, p, .5, 1e-4);
+        break;
+    case CATEGORY_CAPSULES:
+        p->a = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
+        p->b = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
+        x = (double)p->a.p[0] + (double)p->b.p[0];
+        switch (dice_below(d, 3)) {
+        case 0: /* parallel */
+            shape_move(&p->b, dice_in(d, .1, .9) * x, 0, dice_in(d, -.3, .3));
+            break;
+        case 1: /* coaxial */
+            shape_move(&p->b, 0, 0, dice_in(d, 0, (double)p->a.p[1]));
+            break;
+        default: { /* crossing, or nearly */
+            double r[9];
+            rotation_about(1, 0, 0, dice_in(d, .1, pi / 2), r);
+            shape_turn(&p->b, r);
+            shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, 0, .9) * x, 0, 0);
+            break;
+        }
+        }
+        break;
+    case CATEGORY_CAPS:
+        p->a = shape_cylinder(dice_in(d, .2, 1), dice_in(d, .1, 1));
+        p->b = shape_cylinder(dice_in(d, .2, 1), dice_in(d, .1, 1));
+        x = dice_log(d, 1e-4, .05);
+        shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, -.1, .1), dice_below(d, 2) ? 0 : dice_in(d, -.1, .1),
+                   (double)p->a.p[1] + (double)p->b.p[1] - x);
+        break;
+    case CATEGORY_APEX:
+        p->a = dice_below(d, 2) ? shape_box(dice_in(d, .3, 1), dice_in(d, .3, 1), dice_in(d, .1, 1))
+                                : shape_cylinder(dice_in(d, .3, 1), dice_in(d, .1, 1));
+        p->b = shape_cone(dice_in(d, .1, 1), dice_in(d, .1, 1));
+        {
+            double r[9];
+            rotation_about(1, 0, 0, pi, r);
+            shape_turn(&p->b, r);
+        }
+        x = dice_log(d, 1e-6, .3);
+        z = (double)p->a.p[p->a.type == SHAPE_BOX ? 2 : 1];
+        shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, -.2, .2), dice_below(d, 2) ? 0 : dice_in(d, -.2, .2),
+                   z + (double)p->b.p[1] - x);
+        break;
+    case CATEGORY_EDGES: {
+        double r[9];
+        x = dice_in(d, .2, 1);
+        y = dice_in(d, .2, 1);
+        p->a = shape_box(x, x, dice_in(d, .5, 1));
+        p->b = shape_box(y, dice_in(d, .5, 1), y);
+        rotation_about(0, 0, 1, pi / 4, r);
+        shape_turn(&p->a, r);
+        rotation_about(0, 1, 0, pi / 4, r);
+        shape_turn(&p->b, r);
+        shape_move(&p->b, (x + y) * sqrt(2) - dice_log(d, 1e-6, .1), dice_in(d, -.2, .2), dice_in(d, -.2, .2));
+        break;
+    }
+    case CATEGORY_ELLIPSOIDS:
+        for (k = 0; k < 2; k++) {
+            x = dice_in(d, .3, 1);
+            *(k ? &p->b : &p->a) = shape_ellipsoid(x, x / dice_log(d, 1, 20), x / dice_log(d, 1, 20));
+            pair_turn(d, k ? &p->b : &p->a);
+        }
+        pair_scatter(d, p, .7, 1e-4);
+        break;
+    case CATEGORY_SCALE_M3:
+        pair_generic(d, p, 1e-3, 0);
+        break;
+    case CATEGORY_SCALE_M6:
+        pair_generic(d, p, 1e-6, 0);
+        break;
+    case CATEGORY_SCALE_3:
+        pair_generic(d, p, 1e3, 0);
+        break;
+    case CATEGORY_SCALE_6:
+        pair_generic(d, p, 1e6, 0);
+        break;
+    case CATEGORY_FAR_6:
+    case CATEGORY_FAR_8:
+        pair_generic(d, p, 1, 0);
+        dice_unit(d, u);
+        x = category == CATEGORY_FAR_6 ? 1e6 : 1e8;
+        pair_offset(p, x * u[0], x * u[1], x * u[2]);
+        break;
+    default:
+        pair_generic(d, p, 1, 1);
+        break;
+    }
+    p->a.tie = p->b.tie = tie;
+    p->truth = truth_depth(&p->a, &p->b);
+    p->surface = pair_is_surface(p);
+}
+
+#endif

@@ -1,0 +1,112 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Every configuration on every entry point, judged by the exact truth; libccd's
+ * answer is printed beside ours.
+ *
+ *   configurations            one line a configuration; exit code 1 if any fails
+ *   configurations --ledger   a Markdown table of those where libccd is wrong */
+
+#include "configurations.h"
+
+static int ledger, failed, checked;
+static int broken[ENTRIES];
+
+static void describe(const answer_t *x, char text[32])
+{
+    if (x->code == ANSWER_LOOP)
+        snprintf(text, 32, "endless");
+    else if (x->code == ANSWER_CRASH)
+        snprintf(text, 32, "crash");
+    else if (x->code == CCD_MISS)
+        snprintf(text, 32, "miss");
+    else if (x->code != CCD_HIT && x->code != CCD_LIMIT)
+        snprintf(text, 32, "code %d", x->code);
+    else if (truth_dot3(x->dir, x->dir) == 0)
+        snprintf(text, 32, "%.6g, dir 0", x->depth);
+    else if (!isfinite(truth_dot3(x->dir, x->dir)))
+        snprintf(text, 32, "%.6g, dir NaN", x->depth);
+    else
+        snprintf(text, 32, "%.8g%s", x->depth, x->code == CCD_LIMIT ? " (limit)" : "");
+}
+
+static void check(const configuration_t *c, void *context)
+{
+    truth_t truth = truth_depth(&c->a, &c->b);
+    double tol = c->tol > 0 ? c->tol : tolerance(TOL_TIGHT) * pair_size(&c->a, &c->b);
+    char text[ENTRIES][32], libccd[96] = "";
+    int i, bad = 0, theirs = 0;
+    question_t q;
+    (void)context;
+    if (c->not_single && sizeof(ccd_real_t) == sizeof(float))
+        return;
+    q = question(&c->a, &c->b, tol, &truth);
+    q.surface = c->surface;
+    q.touching = q.touching || c->touching;
+    checked++;
+    if (isfinite(c->expected) && !(fabs(truth.depth - c->expected) <= c->within)) {
+        printf("%-28s truth %.17g, expected %.17g\n", c->id, truth.depth, c->expected);
+        failed++;
+    }
+    for (i = 0; i < (int)ENTRIES; i++) {
+        const entry_t *e = &entries[i];
+        answer_t x;
+        int faults;
+        text[i][0] = 0;
+        if (!entry_exists(e))
+            continue;
+        /* libccd is asked as its users do: with its default tolerance */
+        x = ask(e, &c->a, &c->b, e->system ? 1e-4 : tol, truth.n, 400000);
+        faults = judge(e, &x, &c->a, &c->b, &q);
+        describe(&x, text[i]);
+        if (e->system) {
+            theirs |= faults & ~(FAULT_MISS_SHALLOW | FAULT_MISSED);
+            snprintf(libccd + strlen(libccd), sizeof libccd - strlen(libccd), " %-20.31s", text[i]);
+            continue;
+        }
+        /* MPR, cold or warm, is no proof, but finds the minimum in all of these */
+        faults &= e->ask == ASK_MPR || e->ask == ASK_MPR_WARM ? FAULTS_NEVER | FAULT_DEEPER : FAULTS_NEVER;
+        if (faults) {
+            if (!bad++)
+                printf("%-28s truth %.17g\n", c->id, truth.depth);
+            printf("    FAILED %-22s ", e->name);
+            print_faults(stdout, faults);
+            printf(": ");
+            print_answer(stdout, &x);
+            printf("\n");
+            broken[i]++;
+        }
+    }
+    failed += bad > 0;
+    if (ledger && theirs)
+        printf("| %s: %s | %.8g | %s | %s | %s |\n", c->id, c->what, truth.depth,
+               ENTRIES > 2 ? text[0] : "", ENTRIES > 2 ? text[1] : "", text[2]);
+    else if (!ledger)
+        printf("%-28.28s truth %-16.10g libccd%s ours", c->id, truth.depth, libccd[0] ? libccd : " -");
+    for (i = 0; i < (int)ENTRIES && !ledger; i++)
+        if (!entries[i].system && entries[i].state == STATE_NONE && text[i][0])
+            printf(" %s", text[i]);
+    if (!ledger)
+        printf("\n");
+}
+
+int main(int argc, char **argv)
+{
+    configuration_run_t run;
+    int i;
+    run.visit = check;
+    run.context = NULL;
+    ledger = argc > 1 && strcmp(argv[1], "--ledger") == 0;
+    judge_begin();
+    if (ledger)
+        printf("| configuration | true depth | libccd MPR | libccd GJK | this library |\n|---|---|---|---|---|\n");
+    configurations_listed(&run);
+    configurations_ported(&run);
+    if (!ledger) {
+        for (i = 0; i < (int)ENTRIES; i++)
+            if (entry_exists(&entries[i]) && !entries[i].system)
+                printf("%-24s wrong in %d of %d\n", entries[i].name, broken[i], checked);
+        printf("%d configurations, %d failed\n", checked, failed);
+    }
+    return failed > 0;
+}

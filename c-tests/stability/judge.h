@@ -1,0 +1,542 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Asks any entry point of either library one question, and judges the answer by
+ * the exact truth. The table of entry points is `entries`; a question that does
+ * not come back within a number of support calls, or crashes, is an answer too. */
+
+#ifndef STABILITY_JUDGE_H
+#define STABILITY_JUDGE_H
+
+#ifndef _POSIX_C_SOURCE
+#define _POSIX_C_SOURCE 200809L
+#endif
+
+#include "ours.h"
+#include "tolerances.h"
+
+#include <setjmp.h>
+#include <signal.h>
+#include <stdio.h>
+#include <unistd.h>
+
+/* --- asking ------------------------------------------------------------------ */
+
+enum { /* which function */
+    ASK_MPR,
+    ASK_GJK,
+    ASK_SEPARATE,
+    ASK_MPR_INTERSECT,
+    ASK_GJK_INTERSECT,
+    ASK_MPR_WARM,
+    ASK_MPR_INTERSECT_WARM,
+    ASK_LOCAL,
+    ASK_MINIMUM,
+    ASK_ALONG
+};
+
+enum { /* what the warm state holds */
+    STATE_NONE,  /* NULL */
+    STATE_ZERO,  /* all bytes 0 */
+    STATE_AGAIN, /* left by the same question asked a moment ago */
+    STATE_AGAINST /* a guess opposite to the true normal */
+};
+
+typedef struct {
+    const char *name;
+    int system; /* libccd's, else ours */
+    int ask, state;
+} entry_t;
+
+/* codes beside those of the libraries */
+enum { ANSWER_LOOP = -100, ANSWER_CRASH = -101 };
+
+typedef struct {
+    int code;
+    double depth, dir[3], pos[3];
+    int has_pos, has_proof;
+    double lower, normal[3], point1[3], point2[3]; /* with has_proof */
+    unsigned long calls;                           /* of both support functions */
+    unsigned long supports;                        /* as reported, with has_proof */
+} answer_t;
+
+static const entry_t entries[] = {
+#ifndef OURS_ALONE
+    {"libccd MPR", 1, ASK_MPR, STATE_NONE},
+    {"libccd GJK", 1, ASK_GJK, STATE_NONE},
+#endif
+    {"MPR", 0, ASK_MPR, STATE_NONE},
+    {"GJK", 0, ASK_GJK, STATE_NONE},
+    {"separate", 0, ASK_SEPARATE, STATE_NONE},
+    {"MPR intersect", 0, ASK_MPR_INTERSECT, STATE_NONE},
+    {"GJK intersect", 0, ASK_GJK_INTERSECT, STATE_NONE},
+    {"local", 0, ASK_LOCAL, STATE_NONE},
+    {"minimum", 0, ASK_MINIMUM, STATE_NONE},
+    {"along", 0, ASK_ALONG, STATE_NONE},
+    {"MPR, zero state", 0, ASK_MPR_WARM, STATE_ZERO},
+    {"MPR, again", 0, ASK_MPR_WARM, STATE_AGAIN},
+    {"MPR, wrong guess", 0, ASK_MPR_WARM, STATE_AGAINST},
+    {"MPR intersect, again", 0, ASK_MPR_INTERSECT_WARM, STATE_AGAIN},
+    {"local, again", 0, ASK_LOCAL, STATE_AGAIN},
+    {"local, wrong guess", 0, ASK_LOCAL, STATE_AGAINST},
+    {"minimum, again", 0, ASK_MINIMUM, STATE_AGAIN},
+    {"minimum, wrong guess", 0, ASK_MINIMUM, STATE_AGAINST},
+    {"along, again", 0, ASK_ALONG, STATE_AGAIN},
+};
+enum { ENTRIES = sizeof entries / sizeof entries[0] };
+
+#ifdef STABILITY_PARTIAL
+#define STABILITY_WEAK(name) extern __typeof__(OURS(name)) OURS(name) __attribute__((weak));
+STABILITY_WEAK(ccdGJKPenetration)
+STABILITY_WEAK(ccdGJKSeparate)
+STABILITY_WEAK(ccdMPRPenetrationWarm)
+STABILITY_WEAK(ccdMPRIntersectWarm)
+STABILITY_WEAK(ccdWarmGuess)
+STABILITY_WEAK(ccdPenetrationLocal)
+STABILITY_WEAK(ccdPenetrationMinimum)
+STABILITY_WEAK(ccdPenetrationAlong)
+STABILITY_WEAK(ccdPenetrationPlanar)
+#endif
+
+/* Is a function of the library there at all? */
+static inline int entry_exists(const entry_t *e)
+{
+#ifdef STABILITY_PARTIAL /* while parts of the extension are not written yet */
+    switch (e->ask) {
+    case ASK_GJK: return e->system || OURS(ccdGJKPenetration) != NULL;
+    case ASK_SEPARATE: return OURS(ccdGJKSeparate) != NULL;
+    case ASK_MPR_WARM: return OURS(ccdMPRPenetrationWarm) != NULL;
+    case ASK_MPR_INTERSECT_WARM: return OURS(ccdMPRIntersectWarm) != NULL;
+    case ASK_LOCAL: return OURS(ccdPenetrationLocal) != NULL;
+    case ASK_MINIMUM: return OURS(ccdPenetrationMinimum) != NULL;
+    case ASK_ALONG: return OURS(ccdPenetrationAlong) != NULL;
+    }
+#endif
+    (void)e;
+    return 1;
+}
+
+/* Does the answer claim to be the global minimum within the tolerance? */
+static inline int entry_is_minimum(const entry_t *e)
+{
+    return !e->system && (e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_MINIMUM);
+}
+
+static sigjmp_buf judge_back;
+static volatile unsigned long judge_calls, judge_limit;
+
+static void judge_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    if (++judge_calls > judge_limit)
+        siglongjmp(judge_back, ANSWER_LOOP);
+    shape_support(obj, dir, out);
+}
+
+static void judge_signal(int number)
+{
+    siglongjmp(judge_back, number == SIGALRM ? ANSWER_LOOP : ANSWER_CRASH);
+}
+
+/* Crashes and endless loops become answers from here on. A loop without support
+ * calls is ended by an alarm. */
+static inline void judge_begin(void)
+{
+    static const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
+    struct sigaction action;
+    size_t i;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = judge_signal;
+    action.sa_flags = SA_NODEFER;
+    for (i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        sigaction(numbers[i], &action, NULL);
+}
+
+static inline void judge_vec(const ccd_vec3_t *v, double out[3])
+{
+    int i;
+    for (i = 0; i < 3; i++)
+        out[i] = (double)v->v[i];
+}
+
+/* One call of the function itself. */
+static inline int ask_once(const entry_t *e, const shape_t *a, const shape_t *b, const ccd_t *ccd,
+                           ccd_warm_t *warm, const ccd_vec3_t *along, answer_t *out)
+{
+    ccd_penetration_t p;
+    ccd_real_t depth = 0;
+    ccd_vec3_t dir, pos;
+    int code, i, full = 0;
+    memset(&p, 0, sizeof p);
+    memset(&dir, 0, sizeof dir);
+    memset(&pos, 0, sizeof pos);
+    switch (e->ask) {
+    case ASK_MPR:
+#ifndef OURS_ALONE
+        if (e->system) {
+            code = ccdMPRPenetration(a, b, ccd, &depth, &dir, &pos);
+            break;
+        }
+#endif
+        code = OURS(ccdMPRPenetration)(a, b, ccd, &depth, &dir, &pos);
+        break;
+    case ASK_GJK:
+#ifndef OURS_ALONE
+        if (e->system) {
+            code = ccdGJKPenetration(a, b, ccd, &depth, &dir, &pos);
+            break;
+        }
+#endif
+        code = OURS(ccdGJKPenetration)(a, b, ccd, &depth, &dir, &pos);
+        break;
+    case ASK_SEPARATE:
+        code = OURS(ccdGJKSeparate)(a, b, ccd, &pos);
+        if (code == 0) {
+            /* a zero vector keeps no direction: give it the answer's own */
+            double v[3], l;
+            judge_vec(&pos, v);
+            l = sqrt(truth_dot3(v, v));
+            depth = (ccd_real_t)l;
+            for (i = 0; i < 3; i++)
+                dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
+        }
+        break;
+    case ASK_MPR_INTERSECT:
+        code = OURS(ccdMPRIntersect)(a, b, ccd) ? CCD_HIT : CCD_MISS;
+        break;
+    case ASK_GJK_INTERSECT:
+        code = OURS(ccdGJKIntersect)(a, b, ccd) ? CCD_HIT : CCD_MISS;
+        break;
+    case ASK_MPR_INTERSECT_WARM:
+        code = OURS(ccdMPRIntersectWarm)(a, b, ccd, warm) ? CCD_HIT : CCD_MISS;
+        break;
+    case ASK_MPR_WARM:
+        code = OURS(ccdMPRPenetrationWarm)(a, b, ccd, warm, &depth, &dir, &pos);
+        break;
+    case ASK_LOCAL:
+        code = OURS(ccdPenetrationLocal)(a, b, ccd, warm, &p);
+        full = 1;
+        break;
+    case ASK_MINIMUM:
+        code = OURS(ccdPenetrationMinimum)(a, b, ccd, warm, &p);
+        full = 1;
+        break;
+    default:
+        code = OURS(ccdPenetrationAlong)(a, b, ccd, along, warm, &p);
+        full = 1;
+        break;
+    }
+    out->code = code;
+    out->has_proof = full;
+    out->has_pos = full || e->ask == ASK_MPR || e->ask == ASK_GJK || e->ask == ASK_MPR_WARM;
+    if (full) {
+        depth = p.depth;
+        dir = p.dir;
+        pos = p.pos;
+        out->lower = (double)p.depth_lower;
+        out->supports = p.supports;
+        judge_vec(&p.normal, out->normal);
+        judge_vec(&p.point1, out->point1);
+        judge_vec(&p.point2, out->point2);
+    }
+    out->depth = (double)depth;
+    judge_vec(&dir, out->dir);
+    judge_vec(&pos, out->pos);
+    return code;
+}
+
+/* The whole question. normal: the true one (start of a wrong guess, and the
+ * direction asked about by "along"). limit: support calls until it is a loop. */
+static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
+                           const double normal[3], unsigned long limit)
+{
+    static answer_t out;
+    static shape_t sa, sb;
+    static ccd_warm_t warm;
+    static ccd_t ccd;
+    static ccd_vec3_t along;
+    int i, code;
+    memset(&out, 0, sizeof out);
+    memset(&warm, 0, sizeof warm);
+    sa = *a;
+    sb = *b;
+    shape_query(&ccd);
+    ccd.support1 = ccd.support2 = judge_support;
+    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)tol;
+    for (i = 0; i < 3; i++)
+        along.v[i] = (ccd_real_t)normal[i];
+    judge_limit = limit;
+    judge_calls = 0;
+    code = sigsetjmp(judge_back, 1);
+    if (code == 0) {
+        alarm(10);
+        if (e->state == STATE_AGAINST) {
+            ccd_vec3_t guess;
+            for (i = 0; i < 3; i++)
+                guess.v[i] = -along.v[i];
+            OURS(ccdWarmGuess)(&warm, &guess);
+        }
+        if (e->state == STATE_AGAIN) {
+            ask_once(e, &sa, &sb, &ccd, &warm, &along, &out);
+            judge_calls = 0;
+            memset(&out, 0, sizeof out);
+        }
+        ask_once(e, &sa, &sb, &ccd, e->state == STATE_NONE ? NULL : &warm, &along, &out);
+    } else {
+        out.code = code;
+    }
+    alarm(0);
+    out.calls = judge_calls;
+    return out;
+}
+
+/* --- judging ------------------------------------------------------------------ */
+
+/* What can be wrong with an answer. The first group is the rate table's, the same
+ * for both libraries; the second is what this library promises. */
+#define FAULTS(X) \
+    X(LOOP, "loop") \
+    X(CRASH, "crash") \
+    X(NAN, "NaN") \
+    X(DIR0, "zero direction") \
+    X(MISS_DEEP, "deep miss") \
+    X(MISS_SHALLOW, "shallow miss") \
+    X(FALSE_HIT, "false hit") \
+    X(OVER, "too deep") \
+    X(UNDER, "too shallow") \
+    X(ZERO, "depth nearly 0") \
+    X(UNSOUND, "unsound") \
+    X(DIR_BAD, "bad direction") \
+    X(CODE, "undocumented code") \
+    X(MISSED, "missed an overlap") \
+    X(NOT_UNIT, "direction not unit") \
+    X(NOT_SUPPORT, "depth is not the support value of its direction") \
+    X(NOT_MINIMUM, "not the minimum within tolerance") \
+    X(DEEPER, "another local minimum, over 1 % deeper") \
+    X(FALSE_PROOF, "lower bound above the truth") \
+    X(NO_PROOF, "gap above tolerance") \
+    X(LIMIT, "stopped at the cap") \
+    X(WITNESS, "witness points off") \
+    X(POSITION, "position not between the witness points") \
+    X(MISCOUNTED, "supports miscounted")
+
+enum {
+#define STABILITY_FAULT_BIT(name, text) FAULT_BIT_##name,
+    FAULTS(STABILITY_FAULT_BIT)
+#undef STABILITY_FAULT_BIT
+        FAULT_BIT_COUNT
+};
+enum {
+#define STABILITY_FAULT(name, text) FAULT_##name = 1 << FAULT_BIT_##name,
+    FAULTS(STABILITY_FAULT)
+#undef STABILITY_FAULT
+};
+
+static inline const char *fault_text(int bit)
+{
+    static const char *const texts[] = {
+#define STABILITY_FAULT_TEXT(name, text) text,
+        FAULTS(STABILITY_FAULT_TEXT)
+#undef STABILITY_FAULT_TEXT
+    };
+    return texts[bit];
+}
+
+/* Faults that this library never has, whatever the entry point. */
+enum {
+    FAULTS_NEVER = FAULT_LOOP | FAULT_CRASH | FAULT_NAN | FAULT_DIR0 | FAULT_MISS_DEEP | FAULT_FALSE_HIT
+        | FAULT_UNSOUND | FAULT_CODE | FAULT_MISSED | FAULT_NOT_UNIT | FAULT_NOT_SUPPORT | FAULT_NOT_MINIMUM
+        | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS | FAULT_POSITION | FAULT_MISCOUNTED
+};
+
+typedef struct {
+    double size, noise; /* metres */
+    double tol;         /* the query's, metres */
+    truth_t truth;
+    int surface;        /* minima form a curve or surface: CCD_LIMIT is an answer */
+    int touching;       /* within rounding of touching: hit or miss */
+} question_t;
+
+static inline question_t question(const shape_t *a, const shape_t *b, double tol, const truth_t *truth)
+{
+    question_t q;
+    q.size = pair_size(a, b);
+    q.noise = pair_noise(a, b);
+    q.tol = tol;
+    q.truth = *truth;
+    q.surface = 0;
+    q.touching = truth->lower <= q.noise && truth->depth >= -q.noise;
+    return q;
+}
+
+/* Support value of one shape, in full precision, relative to origin. */
+static inline double judge_reach(const shape_t *s, const double origin[3], const double n[3])
+{
+    double p[3];
+    truth_point(s, origin, n, p);
+    return truth_dot3(p, n);
+}
+
+/* Witness points: each in its shape and at its supporting plane, their difference
+ * the depth, pos their middle. */
+static inline int judge_witness(const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+{
+    double bound = q->tol + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p1[3], p2[3], value;
+    int faults = 0, i, j, k;
+    for (i = 0; i < 3; i++) {
+        origin[i] = (double)a->pos[i];
+        m[i] = -x->normal[i];
+        p1[i] = x->point1[i] - origin[i];
+        p2[i] = x->point2[i] - origin[i];
+        d[i] = p1[i] - p2[i];
+        if (!(fabs((p1[i] + p2[i]) / 2 + origin[i] - x->pos[i]) <= q->noise))
+            faults |= FAULT_POSITION;
+    }
+    value = x->depth * truth_dot3(x->dir, x->normal);
+    if (!(fabs(truth_dot3(d, x->normal) - value) <= bound))
+        faults |= FAULT_WITNESS;
+    if (!(judge_reach(a, origin, x->normal) - truth_dot3(p1, x->normal) <= bound)
+        || !(judge_reach(b, origin, m) - truth_dot3(p2, m) <= bound))
+        faults |= FAULT_WITNESS;
+    /* inside: under the support planes of 26 directions */
+    for (i = -1; i <= 1; i++)
+        for (j = -1; j <= 1; j++)
+            for (k = -1; k <= 1; k++) {
+                double n[3], l = sqrt((double)(i * i + j * j + k * k));
+                if (l == 0)
+                    continue;
+                n[0] = i / l;
+                n[1] = j / l;
+                n[2] = k / l;
+                if (!(truth_dot3(p1, n) - judge_reach(a, origin, n) <= bound)
+                    || !(truth_dot3(p2, n) - judge_reach(b, origin, n) <= bound))
+                    faults |= FAULT_WITNESS;
+            }
+    return faults;
+}
+
+/* All that is wrong with the answer. */
+static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+{
+    const truth_t *t = &q->truth;
+    double gap = t->depth - t->lower, value, table, l2;
+    int faults = 0, i, finite;
+    if (x->code == ANSWER_LOOP)
+        return FAULT_LOOP;
+    if (x->code == ANSWER_CRASH)
+        return FAULT_CRASH;
+    if (x->code == CCD_MISS) {
+        if (t->lower > tolerance(TOL_DEEP) * q->size + q->noise)
+            faults |= FAULT_MISS_DEEP;
+        else if (t->lower > 0)
+            faults |= FAULT_MISS_SHALLOW;
+        if (t->lower > q->noise && !q->touching)
+            faults |= FAULT_MISSED;
+        return faults;
+    }
+    if (x->code != CCD_HIT && x->code != CCD_LIMIT)
+        return FAULT_CODE;
+    if (x->code == CCD_LIMIT && !x->has_proof)
+        faults |= FAULT_CODE;
+    if (x->code == CCD_LIMIT && !q->surface)
+        faults |= FAULT_LIMIT;
+    if (t->depth < -q->noise && !q->touching)
+        return faults | FAULT_FALSE_HIT;
+    if (e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM)
+        return faults;
+    if (e->ask == ASK_SEPARATE && x->depth == 0)
+        return faults | (t->depth > q->tol + q->noise ? FAULT_ZERO | FAULT_UNSOUND : 0);
+
+    finite = isfinite(x->depth);
+    for (i = 0; i < 3; i++)
+        finite = finite && isfinite(x->dir[i]) && (!x->has_pos || isfinite(x->pos[i]));
+    if (!finite)
+        return faults | FAULT_NAN;
+    l2 = truth_dot3(x->dir, x->dir);
+    if (l2 == 0)
+        return faults | FAULT_DIR0;
+    if (!(fabs(sqrt(l2) - 1) <= tolerance(TOL_UNIT)) && e->ask != ASK_SEPARATE)
+        faults |= FAULT_NOT_UNIT;
+
+    /* the rate table's verdicts */
+    value = truth_value(a, b, x->dir);
+    table = fmin(tolerance(TOL_TABLE) * fmax(t->depth, 0) + 2 * q->tol, tolerance(TOL_TABLE_CAP) * q->size) + q->noise;
+    if (x->depth > t->depth + table)
+        faults |= FAULT_OVER;
+    if (x->depth < t->lower - table)
+        faults |= FAULT_UNDER;
+    if (x->depth < tolerance(TOL_TABLE) * t->lower - q->noise)
+        faults |= FAULT_ZERO;
+    if (x->depth < value - table)
+        faults |= FAULT_UNSOUND;
+    if (value > t->depth + table)
+        faults |= FAULT_DIR_BAD;
+    if (e->system)
+        return faults;
+
+    /* the promises */
+    if (x->has_proof) {
+        double along = truth_dot3(x->dir, x->normal), n2 = truth_dot3(x->normal, x->normal);
+        if (!(fabs(sqrt(n2) - 1) <= tolerance(TOL_UNIT)) || !(along > 0))
+            faults |= FAULT_NOT_UNIT;
+        value = truth_value(a, b, x->normal) / along;
+        faults |= judge_witness(x, a, b, q);
+        if (x->lower > t->depth + q->noise + gap)
+            faults |= FAULT_FALSE_PROOF;
+        /* supports counts pairs of calls; the callbacks of one pair may be a first sample each */
+        if (x->supports * 2 != x->calls)
+            faults |= FAULT_MISCOUNTED;
+    }
+    /* h(dir) itself rounds by up to the noise, and a depth is never below 0 */
+    if (!(fabs(x->depth - fmax(value, 0)) <= 2 * q->noise))
+        faults |= x->depth < value ? FAULT_NOT_SUPPORT | FAULT_UNSOUND : FAULT_NOT_SUPPORT;
+    if (entry_is_minimum(e)) {
+        if (!(x->depth <= fmax(t->depth, 0) + q->tol + gap + 2 * q->noise))
+            faults |= FAULT_NOT_MINIMUM;
+        if (e->ask == ASK_MINIMUM && x->code == CCD_HIT
+            && !(x->depth - x->lower <= q->tol + tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b) + 2 * q->noise))
+            faults |= FAULT_NO_PROOF;
+    }
+    if (x->depth > fmax(t->depth, 0) * (1 + tolerance(TOL_MPR_DEEP)) + q->tol + gap + 2 * q->noise)
+        faults |= FAULT_DEEPER; /* a rate for MPR, no fault for the bare local method */
+    if (e->ask == ASK_ALONG && x->depth > fmax(t->depth, 0) + q->tol + gap + 2 * q->noise)
+        faults |= FAULT_NOT_MINIMUM; /* asked along the true normal */
+    return faults;
+}
+
+/* Prints the faults' names; returns how many. */
+static inline int print_faults(FILE *file, int faults)
+{
+    int bit, n = 0;
+    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
+        if (faults >> bit & 1)
+            fprintf(file, "%s%s", n++ ? ", " : "", fault_text(bit));
+    return n;
+}
+
+static inline void print_answer(FILE *file, const answer_t *x)
+{
+    fprintf(file, "code %d depth %.17g dir %.17g %.17g %.17g pos %.9g %.9g %.9g calls %lu", x->code, x->depth,
+            x->dir[0], x->dir[1], x->dir[2], x->pos[0], x->pos[1], x->pos[2], x->calls);
+    if (x->has_proof)
+        fprintf(file, " lower %.17g normal %.9g %.9g %.9g point1 %.9g %.9g %.9g point2 %.9g %.9g %.9g supports %lu",
+                x->lower, x->normal[0], x->normal[1], x->normal[2], x->point1[0], x->point1[1], x->point1[2],
+                x->point2[0], x->point2[1], x->point2[2], x->supports);
+}
+
+/* A pair as C that makes it again. */
+static inline void print_shape(FILE *file, const char *name, const shape_t *s)
+{
+    int i;
+    fprintf(file, "%s: type %d p %.17g %.17g %.17g tie %d pos %.17g %.17g %.17g rot", name, s->type, (double)s->p[0],
+            (double)s->p[1], (double)s->p[2], s->tie, (double)s->pos[0], (double)s->pos[1], (double)s->pos[2]);
+    for (i = 0; i < 9; i++)
+        fprintf(file, " %.17g", (double)s->rot[i]);
+    if (s->type == SHAPE_POLYTOPE) {
+        fprintf(file, " verts %d", s->nverts);
+        for (i = 0; i < 3 * s->nverts && i < 3 * 16; i++)
+            fprintf(file, " %.17g", (double)s->verts[i]);
+    }
+    fprintf(file, "\n");
+}
+
+#endif
