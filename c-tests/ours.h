@@ -57,7 +57,6 @@ ccd_real_t OURS(ccdVec3PointSegmentDist2)(const ccd_vec3_t *p, const ccd_vec3_t 
 ccd_real_t OURS(ccdVec3PointTriDist2)(const ccd_vec3_t *p, const ccd_vec3_t *x0, const ccd_vec3_t *b,
                                       const ccd_vec3_t *c, ccd_vec3_t *witness);
 
-#if !defined(OURS_ALONE) || !defined(TESTS_HAVE_WARM_H)
 int OURS(ccdMPRPenetrationWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
                                 ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 int OURS(ccdMPRIntersectWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
@@ -71,7 +70,6 @@ int OURS(ccdPenetrationAlong)(const void *obj1, const void *obj2, const ccd_t *c
 int OURS(ccdPenetrationPlanar)(const void *obj1, const void *obj2, const ccd_t *ccd,
                                const ccd_vec3_t *plane_normal, ccd_warm_t *warm, ccd_penetration_t *out);
 const char *OURS(ccdImplementation)(void);
-#endif
 
 #ifdef __cplusplus
 }

@@ -18,7 +18,8 @@ fn program(name: &str) -> Executable {
     let program = Program::c(name)
         .source(format!("stability/{name}.c"))
         .flag("-pedantic")
-        .flag("-Werror");
+        .flag("-Werror")
+        .flag("-DSTABILITY_PARTIAL");
     match Precision::CURRENT {
         Precision::Double => program.link_ours_renamed_and_system().build(),
         Precision::Single => program.flag("-DOURS_ALONE").link_ours_static().build(),
@@ -46,4 +47,15 @@ fn truth_agrees_with_itself_and_the_certified_sets() {
     let mut args = vec!["2000".to_owned(), "25".to_owned()];
     args.extend(pair_sets());
     program("truth").run(args);
+}
+
+/// Every category of pairs, 2,000 pairs each, both tie rules, on system libccd and
+/// on this library: `cargo test --test stability -- --ignored --nocapture campaign`.
+#[test]
+#[ignore = "takes minutes; prints the rate tables"]
+fn campaign() {
+    let campaign = program("campaign");
+    for tie in ["0", "1"] {
+        campaign.run(["2000", tie]);
+    }
 }
