@@ -309,12 +309,21 @@ pub fn refine<A: SupportMap, B: SupportMap>(
             // arithmetic cannot split further.
             return Ok(Exit::Limit(Some(portal)));
         };
-        let plane = match probe(md, n, best)? {
-            Probe::Plane(p) => p,
-            Probe::Miss(n) => return Ok(Exit::Miss(n)),
-        };
         let along = n.dot(&portal.ray);
         let inner = n.dot(&portal.planes[0].point.v);
+        let plane = match probe(md, n, best)? {
+            Probe::Plane(p) => p,
+            // D holds the portal: a callback that answers less than it is wrong.
+            Probe::Miss(_) if inner >= 0.0 => {
+                let plane = Plane {
+                    normal: n,
+                    point: portal.planes[0].point,
+                    depth: inner,
+                };
+                return Ok(Exit::Converged(portal, plane));
+            }
+            Probe::Miss(n) => return Ok(Exit::Miss(n)),
+        };
         let mut gap = plane.depth - inner;
         let mut floor = rounding(plane.point.magnitude());
         if measure == Measure::Ray {
