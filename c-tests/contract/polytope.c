@@ -430,6 +430,7 @@ int main(int argc, char **argv)
             libraries[lib].destroy(&pt[lib]);
             CHECK(list_length(&pt[lib].vertices) + list_length(&pt[lib].edges) + list_length(&pt[lib].faces) == 0,
                   "%s: empty after destroy", libraries[lib].name);
+            CHECK(pt[lib].nearest == NULL, "%s: nothing is nearest after destroy", libraries[lib].name);
         }
     }
     return checks_end();

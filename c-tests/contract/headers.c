@@ -1,0 +1,199 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Prints the value of every macro and inline function of the headers, over random and
+ * special numbers, bit for bit. Compiled against libccd's headers and against ours: the
+ * two must print the same. C99 and C++11; the driver checks that no name is missing. */
+
+#include <ccd/ccd.h>
+#include <ccd/ccd_export.h>
+#include <ccd/compiler.h>
+#include <ccd/config.h>
+#include <ccd/quat.h>
+#include <ccd/vec3.h>
+#include <stdio.h>
+
+/* What a consumer may rely on without including it: stdlib.h, math.h, float.h, stddef.h. */
+static size_t included = sizeof(ptrdiff_t) + DBL_DIG + RAND_MAX;
+
+static void show(const char *what, ccd_real_t value)
+{
+    if (value != value)
+        printf("%s nan\n", what);
+    else
+        printf("%s %a\n", what, (double)value);
+}
+
+static void show_vec3(const char *what, const ccd_vec3_t *v)
+{
+    show(what, ccdVec3X(v));
+    show(what, ccdVec3Y(v));
+    show(what, ccdVec3Z(v));
+}
+
+static void show_quat(const char *what, const ccd_quat_t *q)
+{
+    int i;
+    for (i = 0; i < 4; i++)
+        show(what, q->q[i]);
+}
+
+static ccd_real_t number(void)
+{
+    static const ccd_real_t special[] = {0, 1, -1, 2, CCD_EPS, CCD_EPS / 2, -CCD_EPS, 2 * CCD_EPS, 1 + CCD_EPS, CCD_REAL_MAX,
+                                         -CCD_REAL_MAX, CCD_REAL(1e-20), CCD_REAL(1e20), CCD_REAL(0.1)};
+    int kind = rand() % 4;
+    ccd_real_t unit = (ccd_real_t)(rand() % 20001 - 10000) / 10000;
+    if (kind == 0) {
+        int i = rand() % 17;
+        return i < 14 ? special[i] : i == 14 ? (ccd_real_t)HUGE_VAL : i == 15 ? -(ccd_real_t)HUGE_VAL : (ccd_real_t)NAN;
+    }
+    return kind == 1 ? unit * (ccd_real_t)pow(10, rand() % 20 - 10) : unit;
+}
+
+static void vec3(ccd_vec3_t *v)
+{
+    ccd_real_t x = number(), y = number(), z = number();
+    ccdVec3Set(v, x, y, z);
+}
+
+static void quat(ccd_quat_t *q)
+{
+    ccd_real_t x = number(), y = number(), z = number(), w = number();
+    ccdQuatSet(q, x, y, z, w);
+}
+
+static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *vec)
+{
+    (void)obj;
+    ccdVec3Copy(vec, dir);
+}
+
+static void center(const void *obj, ccd_vec3_t *c)
+{
+    (void)obj;
+    ccdVec3Copy(c, ccd_vec3_origin);
+}
+
+/* The typedefs, and the tags behind them. */
+static ccd_support_fn support_fn = support;
+static ccd_first_dir_fn first_dir_fn = ccdFirstDirDefault;
+static ccd_center_fn center_fn = center;
+static struct _ccd_t tagged;
+static struct _ccd_vec3_t tagged_vec3 = CCD_VEC3_STATIC(1, 2, 3);
+static struct _ccd_quat_t tagged_quat;
+
+struct outer { int first; ccd_vec3_t member; };
+
+_ccd_inline int inlined(void) { return 5; }
+
+CCD_EXPORT int exported(void);
+CCD_EXPORT int exported(void) { return 7; }
+
+int main(void)
+{
+    int round;
+    ccd_t ccd;
+    struct outer outer = {1, {{0, 0, 0}}};
+    CCD_INIT(&ccd);
+    printf("%d %d %d %d %d\n", ccd.first_dir == first_dir_fn, ccd.support1 == NULL, ccd.support2 == NULL,
+           ccd.center1 == NULL, ccd.center2 == NULL);
+    ccd.first_dir(NULL, NULL, &outer.member);
+    show_vec3("ccdFirstDirDefault", &outer.member);
+    printf("%lu\n", ccd.max_iterations);
+    show("epa_tolerance", ccd.epa_tolerance);
+    show("mpr_tolerance", ccd.mpr_tolerance);
+    show("dist_tolerance", ccd.dist_tolerance);
+    tagged = ccd;
+    tagged.support1 = support_fn;
+    tagged.center1 = center_fn;
+    if (inlined() > 4)
+        CCD_INIT(&tagged);
+    else
+        return 1;
+    printf("%d %d\n", tagged.support1 == NULL, tagged.center1 == NULL);
+    show_vec3("tagged", &tagged_vec3);
+    show_quat("tagged", &tagged_quat);
+    printf("%lu %lu %d\n", (unsigned long)included, (unsigned long)ccd_offsetof(struct outer, member),
+           (ccd_container_of(&outer.member, struct outer, member))->first);
+    printf("%d %d\n", inlined(), exported());
+    _ccd_prefetch(&outer);
+    _ccd_prefetchw(&outer);
+    show("CCD_EPS", CCD_EPS);
+    show("CCD_REAL_MAX", CCD_REAL_MAX);
+    show("CCD_ZERO", CCD_ZERO);
+    show("CCD_ONE", CCD_ONE);
+    show("CCD_REAL", CCD_REAL(0.1));
+    printf("%d %d %d\n", (int)sizeof(CCD_REAL(0.1)), (int)sizeof(CCD_EPS), (int)sizeof(ccd_real_t));
+#ifdef CCD_SINGLE
+    printf("CCD_SINGLE\n");
+#endif
+#ifdef CCD_DOUBLE
+    printf("CCD_DOUBLE\n");
+#endif
+
+    srand(1);
+    for (round = 0; round < 20000; round++) {
+        ccd_real_t x = number(), y = rand() % 3 ? number() : x * (1 + (ccd_real_t)(rand() % 5 - 2) * CCD_EPS);
+        ccd_vec3_t a, b, c;
+        ccd_quat_t p, q, r;
+        CCD_VEC3(made, x, y, 3);
+        CCD_QUAT(turned, x, y, 3, 4);
+        show_vec3("CCD_VEC3", &made);
+        show_quat("CCD_QUAT", &turned);
+        show("CCD_SQRT", CCD_SQRT(x));
+        show("CCD_FABS", CCD_FABS(x));
+        show("CCD_FMAX", CCD_FMAX(x, y));
+        show("CCD_FMIN", CCD_FMIN(x, y));
+        printf("%d %d %d\n", ccdSign(x), ccdIsZero(x), ccdEq(x, y));
+
+        vec3(&a);
+        vec3(&b);
+        if (rand() % 2)
+            ccdVec3Copy(&b, &a);
+        if (rand() % 2)
+            b.v[rand() % 3] *= 1 + (ccd_real_t)(rand() % 5 - 2) * CCD_EPS;
+        printf("%d\n", ccdVec3Eq(&a, &b));
+        show("ccdVec3Len2", ccdVec3Len2(&a));
+        show("ccdVec3Dist2", ccdVec3Dist2(&a, &b));
+        show("ccdVec3Dot", ccdVec3Dot(&a, &b));
+        ccdVec3Copy(&c, &a);
+        ccdVec3Sub(&c, &b);
+        show_vec3("ccdVec3Sub", &c);
+        ccdVec3Add(&c, &b);
+        show_vec3("ccdVec3Add", &c);
+        ccdVec3Sub2(&c, &b, &a);
+        show_vec3("ccdVec3Sub2", &c);
+        ccdVec3Scale(&c, x);
+        show_vec3("ccdVec3Scale", &c);
+        ccdVec3Copy(&c, &b);
+        ccdVec3Normalize(&c);
+        show_vec3("ccdVec3Normalize", &c);
+        ccdVec3Cross(&c, &a, &b);
+        show_vec3("ccdVec3Cross", &c);
+
+        quat(&p);
+        quat(&q);
+        show("ccdQuatLen2", ccdQuatLen2(&p));
+        show("ccdQuatLen", ccdQuatLen(&p));
+        ccdQuatCopy(&r, &p);
+        printf("%d\n", ccdQuatNormalize(&r));
+        show_quat("ccdQuatNormalize", &r);
+        ccdQuatSetAngleAxis(&r, x, &a);
+        show_quat("ccdQuatSetAngleAxis", &r);
+        ccdQuatScale(&r, y);
+        show_quat("ccdQuatScale", &r);
+        ccdQuatMul2(&r, &p, &q);
+        show_quat("ccdQuatMul2", &r);
+        ccdQuatCopy(&r, &p);
+        ccdQuatMul(&r, &q);
+        show_quat("ccdQuatMul", &r);
+        printf("%d\n", ccdQuatInvert(&r));
+        show_quat("ccdQuatInvert", &r);
+        printf("%d\n", ccdQuatInvert2(&r, &q));
+        show_quat("ccdQuatInvert2", &r);
+        ccdQuatRotVec(&b, &p);
+        show_vec3("ccdQuatRotVec", &b);
+    }
+    return 0;
+}

@@ -1,0 +1,57 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The same queries from many threads at once give the bits that one thread gives. */
+
+#define _POSIX_C_SOURCE 200809L
+#include "entries.h"
+#include <pthread.h>
+
+enum { PAIRS = 60, THREADS = 8, ROUNDS = 5 };
+
+static struct { shape_t a, b; ccd_t ccd; int code; outputs_t out; } queries[ENTRIES][PAIRS];
+static unsigned long different[THREADS];
+
+static void *ask_all(void *arg)
+{
+    const int me = (int)((unsigned long *)arg - different);
+    int i, k, round;
+    for (round = 0; round < ROUNDS; round++)
+        for (k = 0; k < ENTRIES * PAIRS; k++) {
+            /* Each thread in an order of its own. */
+            const int place = (k * 7 + me * 131) % (ENTRIES * PAIRS);
+            shape_t a, b;
+            outputs_t out;
+            int code;
+            i = place / PAIRS;
+            a = queries[i][place % PAIRS].a;
+            b = queries[i][place % PAIRS].b;
+            memset(&out, 0x5a, sizeof out);
+            code = entries[i].call(&a, &b, &queries[i][place % PAIRS].ccd, &out);
+            different[me] += code != queries[i][place % PAIRS].code
+                             || !same_bits(&out, &queries[i][place % PAIRS].out, sizeof out);
+        }
+    return NULL;
+}
+
+int main(void)
+{
+    pthread_t thread[THREADS];
+    int i, k;
+    for (i = 0; i < ENTRIES; i++)
+        for (k = 0; k < PAIRS; k++) {
+            shape_t a, b;
+            random_pair(&entries[i], k % 2, &queries[i][k].a, &queries[i][k].b, &queries[i][k].ccd);
+            a = queries[i][k].a;
+            b = queries[i][k].b;
+            memset(&queries[i][k].out, 0x5a, sizeof queries[i][k].out);
+            queries[i][k].code = entries[i].call(&a, &b, &queries[i][k].ccd, &queries[i][k].out);
+        }
+    for (i = 0; i < THREADS; i++)
+        CHECK(pthread_create(&thread[i], NULL, ask_all, &different[i]) == 0, "thread %d", i);
+    for (i = 0; i < THREADS; i++) {
+        pthread_join(thread[i], NULL);
+        CHECK(different[i] == 0, "thread %d: %lu answers differ", i, different[i]);
+    }
+    return checks_end();
+}
