@@ -6,7 +6,8 @@
  *
  * The program that includes this file defines ccdMPRPenetration, ccdMPRIntersect
  * and __ccdSupport itself; the dynamic linker binds the consumer's calls to the
- * program's, which pass them on to the libccd.so.2 that is loaded. */
+ * program's, which pass them on to the libccd.so.2 that is loaded. A program that
+ * defines WATCH_ANSWER(obj, dir, v) is shown every support point as well. */
 
 #ifndef SWAP_WATCH_H
 #define SWAP_WATCH_H
@@ -41,7 +42,18 @@ static void watch_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
 {
     watched.supports++;
     watch_support1(obj, dir, v);
+#ifdef WATCH_ANSWER
+    WATCH_ANSWER(obj, dir, v);
+#endif
 }
+#ifdef WATCH_ANSWER
+static ccd_support_fn watch_support2;
+static void watch_answer(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
+{
+    watch_support2(obj, dir, v);
+    WATCH_ANSWER(obj, dir, v);
+}
+#endif
 
 static void *watch_next(const char *name)
 {
@@ -76,6 +88,10 @@ int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_
     }
     watch_support1 = ccd->support1;
     counted.support1 = watch_count;
+#ifdef WATCH_ANSWER
+    watch_support2 = ccd->support2;
+    counted.support2 = watch_answer;
+#endif
     hit = next(obj1, obj2, &counted, depth, dir, pos);
     watch_support1 = outer;
     watched.queries++;

@@ -1,0 +1,161 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* ODE's dCollide over random pairs of every kind of geometry that it hands to
+ * libccd. Writes a line for every query, as fcl_static does:
+ *
+ *   collide A B number size lower upper hit depth |normal| wrong
+ *
+ * wrong 1: ODE's own callback gave a point that is not a support point.
+ *
+ * usage: ode_static SEED POSES   (POSES placed pairs of each two kinds) */
+
+#include "swap/poses.h"
+
+/* ODE's cylinder callback is wrong for directions within about 1e-15 of the axis:
+ * it makes a unit vector of what rounding leaves across the axis, and answers with
+ * a point up to a radius out of place. Such queries are about no convex shape; they
+ * are found by holding every support point against the shape it is said to be of. */
+static int callback_wrong;
+static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v);
+#define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
+#include "swap/watch.h"
+
+#include <ode/ode.h>
+
+/* Where ODE keeps looking while a geometry lives. */
+typedef struct {
+    body_t body;
+    dGeomID geom;
+    dTriMeshDataID mesh;
+    double vertex[18];
+    dTriIndex index[6];
+} placed_t;
+
+static placed_t a, b;
+
+static double excess(const placed_t *p, const ccd_vec3_t *dir, const ccd_vec3_t *v)
+{
+    static const double origin[3];
+    double point[3];
+    truth_point(&p->body.shape, origin, dir->v, point);
+    return fabs(dir->v[0] * (v->v[0] - point[0]) + dir->v[1] * (v->v[1] - point[1]) + dir->v[2] * (v->v[2] - point[2]));
+}
+
+/* Which of the two an object is does not show: an answer is right when it fits one of them. */
+static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v)
+{
+    (void)obj;
+    callback_wrong |= !(fmin(excess(&a, dir, v), excess(&b, dir, v)) < 1e-10 * pair_size(&a.body.shape, &b.body.shape));
+}
+
+static void geom_make(placed_t *p)
+{
+    const body_t *b = &p->body;
+    const double *s = b->shape.p;
+    int i;
+    p->mesh = NULL;
+    switch (b->kind) {
+    case SHAPE_SPHERE: p->geom = dCreateSphere(NULL, s[0]); break;
+    case SHAPE_CAPSULE: p->geom = dCreateCapsule(NULL, s[0], 2 * s[1]); break;
+    case SHAPE_BOX:
+    case KIND_PLATE: p->geom = dCreateBox(NULL, 2 * s[0], 2 * s[1], 2 * s[2]); break;
+    case SHAPE_CYLINDER: p->geom = dCreateCylinder(NULL, s[0], 2 * s[1]); break;
+    case SHAPE_POLYTOPE:
+        p->geom = dCreateConvex(NULL, b->hull.plane, (unsigned)b->hull.faces, b->hull.vertex, (unsigned)b->hull.vertices, b->hull.polygon);
+        break;
+    default:
+        /* ODE cannot have a mesh of one triangle: a copy stands far away */
+        for (i = 0; i < 18; i++)
+            p->vertex[i] = i < 9 ? b->hull.vertex[i] : b->hull.vertex[i - 9] + 100;
+        for (i = 0; i < 6; i++)
+            p->index[i] = (dTriIndex)i;
+        p->mesh = dGeomTriMeshDataCreate();
+        dGeomTriMeshDataBuildDouble(p->mesh, p->vertex, 3 * sizeof(double), 6, p->index, 6, 3 * sizeof(dTriIndex));
+        dGeomTriMeshDataPreprocess2(p->mesh, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, NULL);
+        p->geom = dCreateTriMesh(NULL, p->mesh, NULL, NULL, NULL);
+        break;
+    }
+}
+
+static void geom_place(placed_t *p)
+{
+    const double *r = p->body.shape.rot;
+    dMatrix3 m;
+    int i, j;
+    for (i = 0; i < 3; i++) {
+        for (j = 0; j < 3; j++)
+            m[4 * i + j] = r[3 * i + j];
+        m[4 * i + 3] = 0;
+    }
+    dGeomSetRotation(p->geom, m);
+    dGeomSetPosition(p->geom, p->body.shape.pos[0], p->body.shape.pos[1], p->body.shape.pos[2]);
+}
+
+static void geom_free(placed_t *p)
+{
+    dGeomDestroy(p->geom);
+    if (p->mesh)
+        dGeomTriMeshDataDestroy(p->mesh);
+}
+
+static void collide(long number, const known_t *known)
+{
+    dContactGeom contact;
+    const unsigned long before = watched.queries;
+    int hit;
+    callback_wrong = 0;
+    hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
+    if (watched.queries == before)
+        return; /* not libccd's */
+    printf("collide %s %s %ld %.17g %.17g %.17g %d ", KIND_NAME[a.body.kind], KIND_NAME[b.body.kind], number, known->size,
+           known->lower, known->upper, hit);
+    if (hit)
+        printf("%.17g %.17g %d\n", contact.depth, dCalcVectorLength3(contact.normal), callback_wrong);
+    else
+        printf("0 0 %d\n", callback_wrong);
+}
+
+int main(int argc, char **argv)
+{
+    static const int kinds[] = { SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_POLYTOPE, KIND_TRIANGLE, KIND_PLATE };
+    enum { COUNT = sizeof kinds / sizeof kinds[0] };
+    long number = 0, k, poses;
+    int i, j, d;
+    if (argc != 3) {
+        fprintf(stderr, "usage: ode_static SEED POSES\n");
+        return 2;
+    }
+    poses = atol(argv[2]);
+    dInitODE2(0);
+    dAllocateODEDataForThread(dAllocateMaskAll);
+    watch_library();
+    uniform_seed(strtoull(argv[1], NULL, 10));
+    for (i = 0; i < COUNT; i++)
+        for (j = i; j < COUNT; j++)
+            for (k = 0; k < poses; k++) {
+                known_t known;
+                if (kinds[i] == KIND_TRIANGLE && kinds[j] == KIND_TRIANGLE)
+                    continue;
+                body_random(&a.body, kinds[i]);
+                body_random(&b.body, kinds[j]);
+                pose_overlapping(&a.body, &b.body, &known);
+                geom_make(&a);
+                geom_make(&b);
+                for (d = -1; d < DEPTH_COUNT; d++) {
+                    if (d >= 0) {
+                        if (DEPTHS[d] * known.size >= known.upper)
+                            continue;
+                        pose_at_depth(&b.body, &known, DEPTHS[d] * known.size);
+                    }
+                    geom_place(&a);
+                    geom_place(&b);
+                    collide(number++, &known);
+                }
+                geom_free(&a);
+                geom_free(&b);
+            }
+    watch_report();
+    dCloseODE();
+    return 0;
+}
