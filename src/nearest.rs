@@ -41,11 +41,11 @@ pub fn on_segment(p: &Vec3, a: &Vec3, b: &Vec3) -> (Vec3, Real) {
 ///
 /// Taking x·ab away *before* the product with d is what makes the solution that of a
 /// triangle whose corners are moved by rounding errors only (Björck, Numerical Methods
-/// for Least Squares Problems, 2.4). s, t and 1 − s − t are the barycentric coordinates
-/// of c's, b's and a's opposite: inside when none is negative, otherwise the nearest
-/// point lies on an edge whose coordinate is. Where d vanishes against rounding, (s, t)
-/// is noise, but still a point of the plane, and the edges it is outside of cover
-/// the collapsed triangle; where d is 0, NaN makes every edge a candidate.
+/// for Least Squares Problems, 2.4). s, t and 1 − s − t are the weights of b, c and a:
+/// the projection is inside when none is negative, otherwise the nearest point lies on
+/// the edge opposite to a corner of negative weight. Where d vanishes against rounding,
+/// (s, t) is noise, but still a point of the plane, and the edges it is outside of
+/// cover the collapsed triangle; where d is 0, NaN makes every edge a candidate.
 #[inline]
 pub fn on_triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> (Vec3, Real) {
     let ab = b - a;

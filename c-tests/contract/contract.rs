@@ -277,12 +277,11 @@ fn headers_compute_what_libccd_s_do() {
             .standard(standard)
             .source("contract/headers.c")
     };
+    // A C++ compiler takes the same source for C++.
     let cpp = || {
         Program::cpp("headers")
             .standard("c++11")
-            .flag("-xc++")
             .source("contract/headers.c")
-            .flag("-xnone")
     };
     for (theirs, ours) in [
         (headers("c99"), headers("c99")),
@@ -367,31 +366,29 @@ fn headers_and_layouts_compile_without_warnings() {
 
 #[test]
 fn nearest_points_of_segments_and_triangles() {
-    if compared() {
-        program("nearest")
-            .link_ours_renamed_and_system()
-            .build()
-            .run(NO_ARGS);
+    let nearest = if compared() {
+        program("nearest").link_ours_renamed_and_system()
     } else {
-        alone("nearest").build().run(NO_ARGS);
-    }
+        alone("nearest")
+    };
+    nearest.build().run(NO_ARGS);
 }
 
 #[test]
-fn polytopes_of_both_libraries() {
-    if compared() {
-        program("polytope")
-            .standard("gnu99")
-            .link_ours_renamed_and_system()
-            .build()
-            .run(NO_ARGS);
-    }
+fn polytopes() {
+    let polytope = if compared() {
+        program("polytope").link_ours_renamed_and_system()
+    } else {
+        alone("polytope")
+    };
+    polytope.standard("gnu99").build().run(NO_ARGS);
 }
 
 /// FCL's EPA runs on the polytope functions: instructions are exact, time is not.
 #[test]
 fn expanding_polytopes_costs_no_more_instructions_than_libccd() {
     if !compared() {
+        println!("skipped: Debian's libccd is double");
         return;
     }
     if Command::new("valgrind").arg("--version").output().is_err() {

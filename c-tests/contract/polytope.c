@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The polytope functions of both libraries in lockstep: random sequences of additions,
+/* The polytope functions, of both libraries in lockstep where there are both: random sequences of additions,
  * deletions by the user's inline functions, nearest elements set by the user, searches and
  * recomputations. After every step each library's polytope is held against a model: what
  * was added, in which order, and which element libccd's rule makes nearest given the
@@ -33,8 +33,15 @@ typedef struct {
      NAME(ccdPtAddFace), NAME(ccdPtRecomputeDistances), NAME(ccdPtNearest), NAME(ccdPtDumpSVT),      \
      NAME(ccdPtDumpSVT2)}
 
-enum { LIBRARIES = 2, MOST = 512, END = -1 };
-static const library_t libraries[LIBRARIES] = {LIBRARY("this library", OURS), LIBRARY("libccd", LIBCCD)};
+#ifdef OURS_ALONE
+enum { LIBRARIES = 1 };
+static const library_t libraries[] = {LIBRARY("this library", OURS)};
+#else
+enum { LIBRARIES = 2 };
+static const library_t libraries[] = {LIBRARY("this library", OURS), LIBRARY("libccd", LIBCCD)};
+#endif
+
+enum { MOST = 512, END = -1 };
 
 /* What the polytopes must hold. Elements are numbered as they were added; a deleted one
  * has type 0. parts: vertices of an edge, edges of a face. sides: faces of an edge. */
@@ -323,7 +330,7 @@ static void recompute(void)
     for (k = 0; k < count; k++) {
         /* Far from the ties that only rounding decides, the libraries agree. */
         if (model[k].type != 0) {
-            double ours = sqrt((double)address[0][k]->dist), theirs = sqrt((double)address[1][k]->dist);
+            double ours = sqrt((double)address[0][k]->dist), theirs = sqrt((double)address[LIBRARIES - 1][k]->dist);
             CHECK(fabs(ours - theirs) < 1e-7 || theirs != theirs, "distance %g, libccd's %g", ours, theirs);
             CHECK(fabs((double)(address[0][k]->dist - ccdVec3Len2(&address[0][k]->witness))) <= 0, "the witness's distance");
         }
@@ -378,7 +385,7 @@ static void dump(void)
         remove(name);
         libraries[lib].dump(&pt[lib], "/no such directory/polytope");
     }
-    CHECK(length[0] == length[1] && memcmp(text[0], text[1], length[0]) == 0, "the same text");
+    CHECK(length[0] == length[LIBRARIES - 1] && memcmp(text[0], text[LIBRARIES - 1], length[0]) == 0, "the same text");
     for (i = 0; i < count; i++)
         if (model[i].type == PT_VERTEX) {
             CHECK(((pt_vertex_t *)address[0][i])->id == id, "vertex number %d", id);
