@@ -7,6 +7,9 @@
 //! Double precision only, as Debian's libccd is.
 
 #[cfg(not(feature = "single"))]
+#[path = "../charts/mod.rs"]
+mod charts;
+#[cfg(not(feature = "single"))]
 #[path = "../harness/mod.rs"]
 mod harness;
 #[cfg(not(feature = "single"))]
@@ -18,7 +21,7 @@ mod tables;
 mod command {
     use clap::{Parser, Subcommand};
 
-    use crate::tables;
+    use crate::{charts, tables};
 
     /// Speed and accuracy of penetration depth, this library beside others.
     #[derive(Parser)]
@@ -35,11 +38,18 @@ mod command {
     enum Command {
         /// Supports, times and errors of every pair set, as Markdown.
         Tables(tables::Options),
+        /// Every chart as CSV and SVG.
+        Charts(charts::Options),
+        /// One method over one set, for a profiler to watch.
+        #[command(hide = true)]
+        Once(charts::split::Once),
     }
 
     pub fn run() {
         match Arguments::parse().command {
             Command::Tables(options) => tables::run(&options),
+            Command::Charts(options) => charts::run(&options),
+            Command::Once(options) => charts::split::once(&options),
         }
     }
 }

@@ -117,24 +117,16 @@ fn roster<'a>(libraries: &'a Libraries, compiled: &Compiled, scene: &Scene) -> V
             Start::Centres,
         ]
     };
-    let has = libraries.extension.is_some();
-    for &start in starts.iter().filter(|_| has) {
+    for &start in starts {
         all.push(methods::extension(libraries, Ask::Local, start, 1e-6));
     }
-    if has {
-        all.push(methods::extension(libraries, Ask::Local, starts[0], 1e-10));
-        if motion {
-            all.push(methods::extension(libraries, Ask::Mpr, Start::Warm, 1e-6));
-            all.push(methods::extension(
-                libraries,
-                Ask::Minimum,
-                Start::Warm,
-                1e-6,
-            ));
-        }
-        all.extend(
-            [1e-6, 1e-10].map(|t| methods::extension(libraries, Ask::Minimum, Start::None, t)),
-        );
+    all.push(methods::extension(libraries, Ask::Local, starts[0], 1e-10));
+    if motion {
+        all.push(methods::extension(libraries, Ask::Mpr, Start::Warm, 1e-6));
+    }
+    if libraries.extension.minimum.is_some() {
+        let start = if motion { Start::Warm } else { Start::None };
+        all.extend([1e-6, 1e-10].map(|t| methods::extension(libraries, Ask::Minimum, start, t)));
     }
     for &start in starts {
         all.push(methods::paper(libraries, true, start, 1e-6));

@@ -6,6 +6,7 @@
  * to the benchmark; it owns their memory and asks here for their size. */
 
 #include "pairs.h"
+#include "record/recording.h"
 
 size_t bench_shape_size(void) { return sizeof(shape_t); }
 
@@ -55,11 +56,26 @@ void bench_set_mesh(const pair_set_t *set, int k, int *nverts, const double **ve
     *tris = set->tris[k];
 }
 
-/* A shape at a pose; verts (3 * nverts) must outlive it. */
-void bench_shape(shape_t *s, int type, const double p[3], const double *verts, int nverts, const double pos[3],
-                 const double rot[9])
+/* The edges of a mesh for climbing, into nverts + 1 + 6 * ntris ints. */
+int bench_graph(int nverts, const int *tris, int ntris, int *graph)
+{
+    int *first, *neighbours;
+    if (shape_edge_graph(nverts, tris, ntris, &first, &neighbours) != 0)
+        return -1;
+    memcpy(graph, first, sizeof(int) * ((size_t)nverts + 1 + 6 * (size_t)ntris));
+    free(first);
+    return 0;
+}
+
+/* A shape at a pose; verts (3 * nverts) and graph (NULL: scan) must outlive it. */
+void bench_shape(shape_t *s, int type, const double p[3], const double *verts, int nverts, const int *graph,
+                 const double pos[3], const double rot[9])
 {
     *s = type == SHAPE_POLYTOPE ? shape_polytope(verts, nverts) : shape_make(type, p[0], p[1], p[2]);
+    if (graph) {
+        s->first = graph;
+        s->neighbours = graph + nverts + 1;
+    }
     shape_move(s, pos[0], pos[1], pos[2]);
     shape_turn(s, rot);
 }
@@ -71,4 +87,44 @@ void bench_shape_pose(const shape_t *s, double pos[3], double rot[9], int *type,
     memcpy(rot, s->rot, sizeof s->rot);
     memcpy(p, s->p, sizeof s->p);
     *type = s->type;
+}
+
+recording_t *bench_recording_open(const char *path)
+{
+    recording_t *r = (recording_t *)malloc(sizeof *r);
+    if (!r)
+        return NULL;
+    if (recording_read(path, r) != 0 || !r->truth_at) {
+        recording_free(r);
+        free(r);
+        return NULL;
+    }
+    return r;
+}
+
+void bench_recording_close(recording_t *r)
+{
+    recording_free(r);
+    free(r);
+}
+
+void bench_recording_count(const recording_t *r, unsigned *frames, unsigned *bodies)
+{
+    *frames = r->frames;
+    *bodies = r->bodies;
+}
+
+/* Places the bodies of frame f; how many pairs it asks about. */
+void bench_recording_frame(const recording_t *r, unsigned f, shape_t *bodies, unsigned *pairs)
+{
+    recording_place(r, f, bodies);
+    *pairs = r->frame_pairs[f];
+}
+
+/* Pair i of frame f, the k-th of the whole recording: its bodies and bounds on its signed depth. */
+void bench_recording_pair(const recording_t *r, unsigned f, unsigned i, size_t k, unsigned *a, unsigned *b,
+                          double *lower, double *upper)
+{
+    recording_pair(r, f, i, a, b);
+    recording_truth(r, k, lower, upper);
 }

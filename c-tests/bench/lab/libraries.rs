@@ -11,7 +11,7 @@
 //! a shared object of their own, compiled when the program starts, so that every
 //! method pays the same for them.
 
-use std::ffi::{CStr, CString, c_char, c_int, c_ulong, c_void};
+use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_ulong, c_void};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -89,7 +89,7 @@ pub struct Extension {
     pub guess: unsafe extern "C-unwind" fn(*mut Warm, *const ccd_vec3_t),
     pub mpr: WarmMpr,
     pub local: WarmQuery,
-    pub minimum: WarmQuery,
+    pub minimum: Option<WarmQuery>,
 }
 
 /// `pair_truth_t` of `c-tests/pairs.h`.
@@ -130,8 +130,24 @@ pub struct Callbacks {
         *const f64,
         *const f64,
         c_int,
+        *const c_int,
         *const f64,
         *const f64,
+    ),
+    pub graph: unsafe extern "C" fn(c_int, *const c_int, c_int, *mut c_int) -> c_int,
+    pub recording_open: unsafe extern "C" fn(*const c_char) -> *mut c_void,
+    pub recording_close: unsafe extern "C" fn(*mut c_void),
+    pub recording_count: unsafe extern "C" fn(*const c_void, *mut c_uint, *mut c_uint),
+    pub recording_frame: unsafe extern "C" fn(*const c_void, c_uint, *mut c_void, *mut c_uint),
+    pub recording_pair: unsafe extern "C" fn(
+        *const c_void,
+        c_uint,
+        c_uint,
+        usize,
+        *mut c_uint,
+        *mut c_uint,
+        *mut f64,
+        *mut f64,
     ),
     pub shape_pose: unsafe extern "C" fn(*const c_void, *mut f64, *mut f64, *mut c_int, *mut f64),
 }
@@ -141,7 +157,7 @@ pub struct Libraries {
     pub callbacks: Callbacks,
     pub system: Classic,
     pub ours: Classic,
-    pub extension: Option<Extension>,
+    pub extension: Extension,
     /// What `ccdImplementation` of ours says.
     pub implementation: String,
     /// The system library's file.
@@ -259,16 +275,23 @@ impl Libraries {
                     set_pose: function(callbacks, "bench_set_pose"),
                     set_mesh: function(callbacks, "bench_set_mesh"),
                     shape: function(callbacks, "bench_shape"),
+                    graph: function(callbacks, "bench_graph"),
+                    recording_open: function(callbacks, "bench_recording_open"),
+                    recording_close: function(callbacks, "bench_recording_close"),
+                    recording_count: function(callbacks, "bench_recording_count"),
+                    recording_frame: function(callbacks, "bench_recording_frame"),
+                    recording_pair: function(callbacks, "bench_recording_pair"),
                     shape_pose: function(callbacks, "bench_shape_pose"),
                 },
                 system: Classic::of(system),
                 ours: Classic::of(ours),
-                extension: (!absent(ours, "ccdPenetrationLocal")).then(|| Extension {
+                extension: Extension {
                     guess: function(ours, "ccdWarmGuess"),
                     mpr: function(ours, "ccdMPRPenetrationWarm"),
                     local: function(ours, "ccdPenetrationLocal"),
-                    minimum: function(ours, "ccdPenetrationMinimum"),
-                }),
+                    minimum: (!absent(ours, "ccdPenetrationMinimum"))
+                        .then(|| function(ours, "ccdPenetrationMinimum")),
+                },
                 implementation,
                 system_file: file_of(function(system, "ccdMPRPenetration")),
                 compiler,

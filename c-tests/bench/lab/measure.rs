@@ -39,12 +39,16 @@ pub struct Row {
     pub start: String,
     pub tolerance: Option<f64>,
     pub ours: bool,
+    /// What a chart varies: vertices, degrees a frame.
+    pub x: Option<f64>,
     pub queries: usize,
+    /// Of these, overlaps deeper than 1 nm: the ones that are judged.
+    pub overlaps: usize,
     /// Support points of D per query; none for a method that does not use our callbacks.
     pub supports: Option<f64>,
     /// Median over repetitions of the mean time of a query; none when not timed.
     pub ns: Option<f64>,
-    /// |depth - truth| over all queries that were answered.
+    /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
     pub mean_error: f64,
     pub median_error: f64,
     pub max_error: f64,
@@ -95,7 +99,7 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
     };
     let (mut errors, mut near, mut angles, mut gaps) = (vec![], vec![], vec![], vec![]);
     let (mut unsound, mut missed, mut nonminimal, mut shallow) = (vec![], 0, 0, 0);
-    let (mut queries, mut supports, mut truth_gap) = (0_usize, 0, 0.0_f64);
+    let (mut queries, mut hits, mut supports, mut truth_gap) = (0_usize, 0_usize, 0, 0.0_f64);
     for pair in &scene.pairs {
         let before = calls(pair);
         let answer = method.query(scene, pair);
@@ -106,7 +110,14 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         queries += 1;
         supports += asked;
         truth_gap = truth_gap.max(pair.truth.gap);
+        // Pairs apart or touching are asked about, not judged here.
+        if pair.truth.depth <= 1e-9 {
+            continue;
+        }
+        hits += 1;
         let Some(answer) = answer else {
+            // As if the depth had been 0.
+            errors.push(pair.truth.depth);
             missed += 1;
             continue;
         };
@@ -127,7 +138,7 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
             nonminimal += 1;
         }
     }
-    let percent = |k: usize| 100.0 * k as f64 / queries as f64;
+    let percent = |k: usize| 100.0 * k as f64 / hits.max(1) as f64;
     let largest = |v: &[f64]| {
         if v.is_empty() {
             0.0
@@ -141,7 +152,9 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         start: method.start.name().to_owned(),
         tolerance: method.tolerance,
         ours: method.ours,
+        x: None,
         queries,
+        overlaps: hits,
         supports: method
             .uses_callbacks
             .then(|| supports as f64 / 2.0 / queries as f64),
@@ -200,7 +213,7 @@ fn pass(scene: &Scene, method: &mut Method) -> f64 {
         return begin.elapsed().as_nanos() as f64 / scene.pairs.len() as f64;
     }
     let (mut spent, mut queries) = (0, 0);
-    for motion in scene.pairs.chunks(scene.motion.max(1)) {
+    for motion in scene.pairs.chunk_by(|_, next| next.frame > 0) {
         let Some((first, rest)) = motion.split_first() else {
             continue;
         };

@@ -182,7 +182,7 @@ pub fn extension<'a>(
     tolerance: f64,
 ) -> Method<'a> {
     let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
-    let calls = libraries.extension.expect("extension");
+    let calls = libraries.extension;
     let mut state = Warm::COLD;
     let name = match ask {
         Ask::Local => "local",
@@ -206,7 +206,9 @@ pub fn extension<'a>(
         let code = unsafe {
             match ask {
                 Ask::Local => (calls.local)(pair.a, pair.b, &settings, &mut state, &mut out),
-                Ask::Minimum => (calls.minimum)(pair.a, pair.b, &settings, &mut state, &mut out),
+                Ask::Minimum => (calls.minimum.unwrap_or(calls.local))(
+                    pair.a, pair.b, &settings, &mut state, &mut out,
+                ),
                 Ask::Mpr => (calls.mpr)(
                     pair.a,
                     pair.b,

@@ -23,6 +23,16 @@ pub fn bar(steps: u64, what: &str) -> ProgressBar {
         .with_prefix(what.to_owned())
 }
 
+/// What, where and when, in short lines for a picture.
+pub fn short(libraries: &Libraries) -> Vec<String> {
+    machine(libraries)
+        .split(", ")
+        .take(2)
+        .map(str::to_owned)
+        .chain(["rustc -O3, callbacks gcc -O3".to_owned()])
+        .collect()
+}
+
 /// One line: libraries, processor, compiler and flags, date.
 pub fn machine(libraries: &Libraries) -> String {
     let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -5,16 +5,18 @@
 //! penetration depth: read from `c-tests/pairs`, or placed at random where a
 //! closed form gives the truth (spheres and capsules).
 
-use std::ffi::{c_int, c_void};
+use std::collections::BTreeMap;
+use std::ffi::{c_int, c_uint, c_void};
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use parry3d_f64::math::Vector as ParryVector;
+use parry3d_f64::query::ClosestPoints;
 use parry3d_f64::query::details::closest_points_segment_segment;
 use parry3d_f64::shape::Segment;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use super::libraries::{Callbacks, Libraries, Truth};
+use super::libraries::{CPenetration, Callbacks, Libraries, Truth, Warm};
 use crate::harness;
 
 /// One pose: two shapes that the callbacks know, and what is true of them.
@@ -52,23 +54,39 @@ impl Mesh {
 pub struct Scene {
     pub name: String,
     pub pairs: Vec<Pair>,
-    /// Steps of one motion; 0: independent poses.
+    /// Poses follow each other; else they are independent.
     pub motion: usize,
     /// The two polytopes, where they are.
     pub meshes: [Mesh; 2],
     /// Where the shapes live.
     _shapes: Vec<u64>,
-    /// What the shapes refer to: an open pair set, or vertices.
-    _set: Option<Set>,
-    _vertices: Vec<Vec<f64>>,
+    /// What the shapes refer to: an open file, or bodies.
+    _source: Option<Source>,
+    _bodies: Vec<Body>,
 }
 
-struct Set(*mut c_void, Callbacks);
+/// An open file of the callbacks'.
+enum Source {
+    Set(*mut c_void, Callbacks),
+    Recording(*mut c_void, Callbacks),
+}
 
-impl Drop for Set {
+impl Source {
+    fn pointer(&self) -> *mut c_void {
+        let (Self::Set(p, _) | Self::Recording(p, _)) = *self;
+        p
+    }
+}
+
+impl Drop for Source {
     fn drop(&mut self) {
-        // SAFETY: opened by set_open, closed once.
-        unsafe { (self.1.set_close)(self.0) }
+        // SAFETY: opened by the function beside the one that closes it; closed once.
+        unsafe {
+            match self {
+                Self::Set(p, callbacks) => (callbacks.set_close)(*p),
+                Self::Recording(p, callbacks) => (callbacks.recording_close)(*p),
+            }
+        }
     }
 }
 
@@ -78,6 +96,8 @@ pub struct Form {
     pub kind: c_int,
     pub p: [f64; 3],
     pub mesh: Mesh,
+    /// Support points by climbing over the mesh's edges, not by a scan of its vertices.
+    pub climb: bool,
 }
 
 impl Form {
@@ -86,6 +106,7 @@ impl Form {
             kind: 0,
             p: [radius, 0.0, 0.0],
             mesh: Mesh::default(),
+            climb: false,
         }
     }
 
@@ -95,6 +116,7 @@ impl Form {
             kind: 1,
             p: [radius, half, 0.0],
             mesh: Mesh::default(),
+            climb: false,
         }
     }
 
@@ -103,6 +125,7 @@ impl Form {
             kind: 6,
             p: [0.0; 3],
             mesh,
+            climb: false,
         }
     }
 
@@ -121,6 +144,25 @@ impl Form {
 pub struct Pose {
     pub position: Vector3<f64>,
     pub rotation: UnitQuaternion<f64>,
+}
+
+/// Where a shape is.
+///
+/// # Safety
+/// `shape` is one of the callbacks' shapes.
+unsafe fn position(callbacks: &Callbacks, shape: *const c_void) -> Vector3<f64> {
+    let (mut pos, mut rot, mut kind, mut p) = ([0.0; 3], [0.0; 9], 0, [0.0; 3]);
+    // SAFETY: the caller's contract, and room for what is written.
+    unsafe {
+        (callbacks.shape_pose)(
+            shape,
+            pos.as_mut_ptr(),
+            rot.as_mut_ptr(),
+            &mut kind,
+            p.as_mut_ptr(),
+        );
+    }
+    pos.into()
 }
 
 /// A box's half extents; none for another shape.
@@ -191,9 +233,9 @@ impl Scene {
         unsafe {
             let set = (callbacks.set_open)(Libraries::c_path(&path).as_ptr(), climb.into());
             assert!(!set.is_null(), "{} is not a pair set", path.display());
-            let set = Set(set, callbacks);
+            let source = Source::Set(set, callbacks);
             let (mut n, mut motion) = (0, 0);
-            (callbacks.set_count)(set.0, &mut n, &mut motion);
+            (callbacks.set_count)(set, &mut n, &mut motion);
             let n = (n as usize).min(limit);
             let motion = motion as usize;
             let (mut shapes, words) = room(&callbacks, 2 * n);
@@ -203,7 +245,7 @@ impl Scene {
                     let a = base.add(2 * i * words).cast();
                     let b = base.add((2 * i + 1) * words).cast();
                     let mut truth = Truth::default();
-                    (callbacks.set_pose)(set.0, i as c_int, a, b, &mut truth);
+                    (callbacks.set_pose)(set, i as c_int, a, b, &mut truth);
                     let frame = i.checked_rem(motion).unwrap_or(0);
                     Pair { a, b, truth, frame }
                 })
@@ -211,7 +253,7 @@ impl Scene {
             let meshes = [0, 1].map(|k| {
                 let (mut nv, mut nt) = (0, 0);
                 let (mut v, mut t) = (std::ptr::null(), std::ptr::null());
-                (callbacks.set_mesh)(set.0, k, &mut nv, &mut v, &mut nt, &mut t);
+                (callbacks.set_mesh)(set, k, &mut nv, &mut v, &mut nt, &mut t);
                 let v = std::slice::from_raw_parts(v, 3 * nv as usize);
                 let t = std::slice::from_raw_parts(t, 3 * nt as usize);
                 let shape = pairs.first().map(|p| if k == 0 { p.a } else { p.b });
@@ -232,8 +274,8 @@ impl Scene {
                 motion,
                 meshes,
                 _shapes: shapes,
-                _set: Some(set),
-                _vertices: Vec::new(),
+                _source: Some(source),
+                _bodies: Vec::new(),
             }
         }
     }
@@ -247,16 +289,7 @@ impl Scene {
         motion: usize,
     ) -> Self {
         let callbacks = libraries.callbacks;
-        let vertices: Vec<Vec<f64>> = forms
-            .iter()
-            .map(|f| {
-                f.mesh
-                    .vertices
-                    .iter()
-                    .flat_map(|v| [v.x, v.y, v.z])
-                    .collect()
-            })
-            .collect();
+        let bodies = forms.map(|f| Body::of(&callbacks, f));
         let (mut shapes, words) = room(&callbacks, 2 * poses.len());
         let base = shapes.as_mut_ptr();
         let pairs = poses
@@ -264,20 +297,10 @@ impl Scene {
             .enumerate()
             .map(|(i, (pose, truth))| {
                 let at: [*mut c_void; 2] = [0, 1].map(|k| {
-                    let rot = pose[k].rotation.to_rotation_matrix();
-                    // SAFETY: room for 2 n shapes; bench_shape reads p[3], the
-                    // vertices (kept by the scene), pos[3] and rot[9] row by row.
+                    // SAFETY: room for 2 n shapes; the scene keeps the bodies.
                     unsafe {
                         let s = base.add((2 * i + k) * words).cast();
-                        (callbacks.shape)(
-                            s,
-                            forms[k].kind,
-                            forms[k].p.as_ptr(),
-                            vertices[k].as_ptr(),
-                            forms[k].mesh.vertices.len() as c_int,
-                            pose[k].position.as_ptr(),
-                            rot.matrix().transpose().as_ptr(),
-                        );
+                        bodies[k].place(&callbacks, s, &pose[k]);
                         s
                     }
                 });
@@ -296,8 +319,98 @@ impl Scene {
             motion,
             meshes: forms.map(|f| f.mesh.clone()),
             _shapes: shapes,
-            _set: None,
-            _vertices: vertices,
+            _source: None,
+            _bodies: bodies.into(),
+        }
+    }
+
+    /// The recorded contact sequence of `c-tests/record`, its first `frames` frames,
+    /// queries sorted by pair: each contact is a motion of its own. Pairs that are
+    /// apart have a negative depth; normals and guesses are not known.
+    pub fn recorded(libraries: &Libraries, frames: usize) -> Self {
+        let callbacks = libraries.callbacks;
+        let path = harness::root().join("c-tests/record/contacts.bin");
+        // SAFETY: the functions of callbacks.c, called as it says.
+        unsafe {
+            let recording = (callbacks.recording_open)(Libraries::c_path(&path).as_ptr());
+            assert!(
+                !recording.is_null(),
+                "{} is not a recording",
+                path.display()
+            );
+            let recording = Source::Recording(recording, callbacks);
+            let of = recording.pointer();
+            let (mut n, mut bodies, mut count) = (0, 0, 0);
+            (callbacks.recording_count)(of, &mut n, &mut bodies);
+            // By pair, in time: the frame number and where the two shapes are.
+            let mut found: BTreeMap<(c_uint, c_uint), Vec<(usize, usize, Truth)>> = BTreeMap::new();
+            let (mut world, words) = room(&callbacks, bodies as usize);
+            let mut shapes: Vec<u64> = Vec::new();
+            let mut queries = 0;
+            for frame in 0..(n as usize).min(frames) {
+                (callbacks.recording_frame)(
+                    of,
+                    frame as c_uint,
+                    world.as_mut_ptr().cast(),
+                    &mut count,
+                );
+                for k in 0..count {
+                    let (mut a, mut b, mut low, mut high) = (0, 0, 0.0, 0.0);
+                    (callbacks.recording_pair)(
+                        of,
+                        frame as c_uint,
+                        k,
+                        queries,
+                        &mut a,
+                        &mut b,
+                        &mut low,
+                        &mut high,
+                    );
+                    queries += 1;
+                    let [pa, pb] = [a, b].map(|k| {
+                        position(&callbacks, world.as_ptr().add(k as usize * words).cast())
+                    });
+                    let truth = Truth {
+                        depth: (low + high) / 2.0,
+                        gap: high - low,
+                        cold: (pb - pa).try_normalize(0.0).unwrap_or(Vector3::x()).into(),
+                        ..Truth::default()
+                    };
+                    found
+                        .entry((a, b))
+                        .or_default()
+                        .push((frame, shapes.len(), truth));
+                    for body in [a as usize, b as usize] {
+                        shapes.extend_from_slice(&world[body * words..(body + 1) * words]);
+                    }
+                }
+            }
+            let base = shapes.as_mut_ptr();
+            let mut pairs = Vec::new();
+            for contact in found.values() {
+                let mut last = usize::MAX - 1;
+                let mut age = 0;
+                for &(frame, at, truth) in contact {
+                    age = if frame == last + 1 { age + 1 } else { 0 };
+                    last = frame;
+                    let (a, b) = (base.add(at).cast(), base.add(at + words).cast());
+                    pairs.push(Pair {
+                        a,
+                        b,
+                        truth,
+                        frame: age,
+                    });
+                }
+            }
+            Self {
+                name: "recorded".to_owned(),
+                pairs,
+                motion: 1,
+                meshes: Default::default(),
+                _shapes: shapes,
+                _source: Some(recording),
+                _bodies: Vec::new(),
+            }
         }
     }
 
@@ -340,11 +453,126 @@ impl Scene {
     }
 }
 
-/// The depth of two spheres or capsules: D is the difference of their core
-/// segments, a parallelogram, with a ball around it. With the origin off the
-/// parallelogram the minimum lies along the shortest way to it; poses without
-/// overlap, or with crossing cores, have no answer here.
-pub fn rounded_truth(forms: [&Form; 2], pose: &[Pose; 2], rng: &mut Pcg64) -> Option<Truth> {
+/// The global minimum of two shapes in any pose, from this library's own proof.
+pub struct Oracle<'a> {
+    libraries: &'a Libraries,
+    bodies: [Body; 2],
+}
+
+/// What the oracle proves: the depth is within `gap` of the minimum.
+pub struct Proven {
+    pub depth: f64,
+    pub normal: Vector3<f64>,
+    pub gap: f64,
+}
+
+impl<'a> Oracle<'a> {
+    pub fn new(libraries: &'a Libraries, forms: [&Form; 2]) -> Self {
+        let bodies = forms.map(|f| Body::of(&libraries.callbacks, f));
+        Self { libraries, bodies }
+    }
+
+    /// None when the shapes are apart.
+    pub fn depth(&self, poses: &[Pose; 2]) -> Option<Proven> {
+        let callbacks = &self.libraries.callbacks;
+        let settings = self.libraries.ours.settings(callbacks, 1e-10);
+        let (mut shapes, words) = room(callbacks, 2);
+        let mut out = CPenetration::default();
+        let mut state = Warm::COLD;
+        let ask = self
+            .libraries
+            .extension
+            .minimum
+            .unwrap_or(self.libraries.extension.local);
+        // SAFETY: room for two shapes, placed before they are asked about.
+        let code = unsafe {
+            let at: [*mut c_void; 2] = [0, 1].map(|k| shapes.as_mut_ptr().add(k * words).cast());
+            for k in 0..2 {
+                self.bodies[k].place(callbacks, at[k], &poses[k]);
+            }
+            ask(at[0], at[1], &settings, &mut state, &mut out)
+        };
+        // At the cap (-4) the bound is as honest, only wider.
+        (code == 0 || code == -4).then(|| Proven {
+            depth: out.depth,
+            normal: out.dir.v.into(),
+            gap: out.depth - out.depth_lower,
+        })
+    }
+}
+
+/// What the callbacks' shapes of one form have in common.
+struct Body {
+    kind: c_int,
+    p: [f64; 3],
+    vertices: Vec<f64>,
+    /// The edges to climb over; empty: scan.
+    graph: Vec<c_int>,
+}
+
+impl Body {
+    fn of(callbacks: &Callbacks, form: &Form) -> Self {
+        let mesh = &form.mesh;
+        let mut graph = Vec::new();
+        if form.climb {
+            let triangles: Vec<c_int> = mesh
+                .triangles
+                .iter()
+                .flatten()
+                .map(|&i| i as c_int)
+                .collect();
+            graph = vec![0; mesh.vertices.len() + 1 + 6 * mesh.triangles.len()];
+            // SAFETY: indices of the mesh, and room for its graph.
+            let code = unsafe {
+                (callbacks.graph)(
+                    mesh.vertices.len() as c_int,
+                    triangles.as_ptr(),
+                    mesh.triangles.len() as c_int,
+                    graph.as_mut_ptr(),
+                )
+            };
+            assert_eq!(code, 0, "memory for a mesh's edges");
+        }
+        Self {
+            kind: form.kind,
+            p: form.p,
+            vertices: mesh.vertices.iter().flat_map(|v| [v.x, v.y, v.z]).collect(),
+            graph,
+        }
+    }
+
+    /// Makes a shape at a pose.
+    ///
+    /// # Safety
+    /// `at` has room for a shape, which must not outlive the body.
+    unsafe fn place(&self, callbacks: &Callbacks, at: *mut c_void, pose: &Pose) {
+        let rot = pose.rotation.to_rotation_matrix();
+        let graph = if self.graph.is_empty() {
+            std::ptr::null()
+        } else {
+            self.graph.as_ptr()
+        };
+        // SAFETY: the caller's contract; p[3], pos[3] and rot[9] row by row are read.
+        unsafe {
+            (callbacks.shape)(
+                at,
+                self.kind,
+                self.p.as_ptr(),
+                self.vertices.as_ptr(),
+                (self.vertices.len() / 3) as c_int,
+                graph,
+                pose.position.as_ptr(),
+                rot.matrix().transpose().as_ptr(),
+            );
+        }
+    }
+}
+
+/// Signed depth of two spheres or capsules and the direction of it: D is the
+/// difference of their core segments, a parallelogram, with a ball around it. With
+/// the origin off the parallelogram the minimum lies along the shortest way to it;
+/// crossing cores have no answer here.
+pub fn rounded_depth(forms: [&Form; 2], pose: &[Pose; 2]) -> Option<(f64, Vector3<f64>)> {
     let core = |k: usize| {
         let half = pose[k].rotation * Vector3::new(0.0, 0.0, forms[k].rounded().0);
         let end = |v: Vector3<f64>| ParryVector::new(v.x, v.y, v.z);
@@ -356,15 +584,17 @@ pub fn rounded_truth(forms: [&Form; 2], pose: &[Pose; 2], rng: &mut Pcg64) -> Op
         &core(1),
         f64::MAX,
     );
-    let parry3d_f64::query::ClosestPoints::WithinMargin(p, q) = near else {
+    let ClosestPoints::WithinMargin(p, q) = near else {
         return None;
     };
     let apart = Vector3::new(q.x - p.x, q.y - p.y, q.z - p.z);
     let depth = forms[0].rounded().1 + forms[1].rounded().1 - apart.norm();
-    if !(depth > 0.0 && apart.norm() > 1e-9) {
-        return None;
-    }
-    let normal = apart.normalize();
+    (apart.norm() > 1e-9).then(|| (depth, apart.normalize()))
+}
+
+/// The truth of an overlap of two spheres or capsules.
+pub fn rounded_truth(forms: [&Form; 2], pose: &[Pose; 2], rng: &mut Pcg64) -> Option<Truth> {
+    let (depth, normal) = rounded_depth(forms, pose).filter(|d| d.0 > 0.0)?;
     let cold = pose[1].position - pose[0].position;
     Some(Truth {
         depth,

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! No more model than a scene needs: one contact, its round body modelled as what
+//! it is and as ever finer polytopes. More vertices make the model truer and the
+//! query dearer; the primitive is both exact and cheap.
+
+use nalgebra::Vector3;
+use parry3d_f64::math::Vector as ParryVector;
+use parry3d_f64::transformation::convex_hull;
+use plotters::style::RGBColor;
+use rand::SeedableRng;
+use rand_pcg::Pcg64;
+use serde::{Deserialize, Serialize};
+use statrs::statistics::Statistics;
+
+use super::Bench;
+use super::figure::{self, Curve, Look, Mark, Panel, Unit};
+use super::paper::VERTICES;
+use crate::lab::libraries::Truth;
+use crate::lab::measure;
+use crate::lab::methods::{self, Ask, Start};
+use crate::lab::progress;
+use crate::lab::scene::{self, Form, Mesh, Oracle, Pose, Scene};
+
+/// One model of a body in contact with a capsule.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Model {
+    /// What the body is.
+    pub body: String,
+    /// What it is modelled as.
+    pub model: String,
+    /// 0 for a primitive.
+    pub vertices: usize,
+    pub method: String,
+    /// Mean |depth of the model - depth of the body|, metres.
+    pub modelling_error: f64,
+    /// Mean |answer - depth of the model|, metres.
+    pub query_error: f64,
+    pub supports: f64,
+    pub ns: f64,
+}
+
+/// The hull of two copies of an icosphere, `half` up and down: a capsule's polytope.
+fn stretched(mesh: &Mesh, half: f64) -> Mesh {
+    let ends = mesh.vertices.iter().flat_map(|v| [(v, half), (v, -half)]);
+    let points: Vec<ParryVector> = ends
+        .map(|(v, up)| ParryVector::new(v.x, v.y, v.z + up))
+        .collect();
+    let (vertices, triangles) = convex_hull(&points);
+    Mesh {
+        vertices: vertices
+            .iter()
+            .map(|v| Vector3::new(v.x, v.y, v.z))
+            .collect(),
+        triangles: triangles.iter().map(|t| t.map(|i| i as usize)).collect(),
+    }
+}
+
+/// Poses of a body and a capsule up to 5 cm deep in it, and the body's own depth.
+fn poses(bench: &Bench, body: &Form, other: &Form) -> Vec<([Pose; 2], Truth)> {
+    let mut rng = Pcg64::seed_from_u64(11);
+    let n = if bench.quick { 50 } else { 500 };
+    let mut found = Vec::with_capacity(n);
+    while found.len() < n {
+        let still = Pose {
+            position: Vector3::zeros(),
+            rotation: scene::rotation(&mut rng),
+        };
+        let moving = Pose {
+            position: scene::direction(&mut rng) * 1.6,
+            rotation: scene::rotation(&mut rng),
+        };
+        // Wherever it is, bring it to the depth that is wanted.
+        let deep = 0.05 * (found.len() + 1) as f64 / n as f64;
+        let Some((depth, normal)) = scene::rounded_depth([body, other], &[still, moving]) else {
+            continue;
+        };
+        let pose = [
+            still,
+            Pose {
+                position: moving.position + normal * (depth - deep),
+                ..moving
+            },
+        ];
+        found.extend(scene::rounded_truth([body, other], &pose, &mut rng).map(|t| (pose, t)));
+    }
+    found
+}
+
+/// A model against the body's poses. The answers are judged by the model's own depth,
+/// as the oracle proves it; its distance from the body's depth is the modelling error.
+fn measure(
+    bench: &Bench,
+    body: &str,
+    model: &str,
+    forms: [&Form; 2],
+    poses: &[([Pose; 2], Truth)],
+) -> Vec<Model> {
+    let oracle = Oracle::new(bench.libraries, forms);
+    let mut modelling = Vec::new();
+    let mut placed = Vec::new();
+    for (pose, truth) in poses {
+        let proven = oracle.depth(pose);
+        // A model too small to touch has no depth at all.
+        modelling.push((proven.as_ref().map_or(0.0, |p| p.depth) - truth.depth).abs());
+        if let Some(p) = proven {
+            let truth = Truth {
+                depth: p.depth,
+                gap: p.gap,
+                normal: p.normal.into(),
+                ..*truth
+            };
+            placed.push((*pose, truth));
+        }
+    }
+    let scene = Scene::placed(bench.libraries, body, forms, &placed, 0);
+    let mut methods = vec![
+        methods::extension(bench.libraries, Ask::Local, Start::Five, 1e-6),
+        methods::extension(bench.libraries, Ask::Minimum, Start::None, 1e-6),
+        methods::libccd_epa(bench.libraries, 1e-6),
+    ];
+    let ns = measure::times(&scene, &mut methods, bench.repetitions(), || ());
+    let modelling_error = modelling.iter().mean();
+    let rows = methods.iter_mut().zip(ns).map(|(method, ns)| {
+        let row = measure::judge(bench.libraries, &scene, method);
+        Model {
+            body: body.to_owned(),
+            model: model.to_owned(),
+            vertices: forms[0].mesh.vertices.len(),
+            method: super::name(&row),
+            modelling_error,
+            query_error: row.mean_error,
+            supports: row.supports.unwrap_or_default(),
+            ns,
+        }
+    });
+    rows.collect()
+}
+
+/// Modelling error against time, from the coarsest model to the finest.
+fn panel(title: &str, models: &[&Model]) -> Panel {
+    let mut curves: Vec<Curve> = Vec::new();
+    for m in models {
+        let (ours, minimum) = (
+            m.method.starts_with("warmccd"),
+            m.method.contains("minimum"),
+        );
+        let colour = match (ours, minimum) {
+            (true, false) => RGBColor(37, 99, 235),
+            (true, true) => RGBColor(22, 145, 70),
+            _ => RGBColor(220, 38, 38),
+        };
+        let (kind, mark) = match m.model.as_str() {
+            "polytope, scan" => ("polytopes, scan", Mark::Dot),
+            "polytope, climbing" => ("polytopes, climbing", Mark::Ring),
+            _ => ("the shape itself", Mark::Triangle),
+        };
+        // A primitive's modelling error is 0: what is left is its query's.
+        let error = m.modelling_error.max(m.query_error).max(1e-16);
+        let label = format!("{}: {kind}", m.method);
+        let point = (error, m.ns * 1e-9);
+        match curves.iter_mut().find(|c| c.label == label) {
+            Some(curve) => curve.points.push(point),
+            None => curves.push(Curve {
+                label,
+                look: Look {
+                    colour,
+                    mark,
+                    bold: ours,
+                },
+                points: vec![point],
+            }),
+        }
+    }
+    Panel {
+        title: title.to_owned(),
+        x: (
+            "mean error of the contact's depth, model and query",
+            Unit::Metres,
+        ),
+        y: ("time per query", Unit::Seconds),
+        curves,
+        limit: None,
+    }
+}
+
+pub fn run(bench: &Bench) -> Vec<Model> {
+    let capsule = Form::capsule(0.5, 0.5);
+    let bar = progress::bar(2 * (1 + 2 * VERTICES.len()) as u64, "models");
+    let mut all = Vec::new();
+    for (body, form) in [("sphere", Form::sphere(0.5)), ("capsule", capsule.clone())] {
+        let poses = poses(bench, &form, &capsule);
+        all.extend(measure(bench, body, body, [&form, &capsule], &poses));
+        bar.inc(1);
+        for n in VERTICES {
+            let icosphere = Scene::load(bench.libraries, &format!("p{n}_cap"), 1).meshes[0].clone();
+            let mesh = if body == "sphere" {
+                icosphere
+            } else {
+                stretched(&icosphere, 0.5)
+            };
+            for (climb, model) in [(false, "polytope, scan"), (true, "polytope, climbing")] {
+                let polytope = Form {
+                    climb,
+                    ..Form::polytope(mesh.clone())
+                };
+                all.extend(measure(bench, body, model, [&polytope, &capsule], &poses));
+                bar.inc(1);
+            }
+        }
+    }
+    bar.finish_and_clear();
+    progress::write_csv(&bench.file("models.csv"), bench.libraries, &all);
+    let panels: Vec<Panel> = [("sphere", "a sphere"), ("capsule", "a capsule")]
+        .map(|(body, what)| {
+            let of: Vec<&Model> = all.iter().filter(|m| m.body == body).collect();
+            panel(
+                &format!("{what} against a capsule: 12 to 2,562 vertices, right to left"),
+                &of,
+            )
+        })
+        .into();
+    figure::grid(
+        &bench.file("models.svg"),
+        "No more model than the scene needs",
+        3,
+        &panels,
+        &[
+            vec!["polytopes: 12 to 2,562 vertices, right to left".to_owned()],
+            bench.notes(),
+        ]
+        .concat(),
+    );
+    all
+}

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The paper's Section IV measured again: Tables I to III, the figures over vertex
+//! counts, the comparison with DEEP, the ablation of the shortcut.
+
+use super::figure::{self, Curve, Panel, Unit};
+use super::{Bench, look, name};
+use crate::lab::measure::{self, Row};
+use crate::lab::methods::{self, Ask, Method, Start};
+use crate::lab::progress;
+use crate::lab::scene::{Form, Scene};
+
+/// Icospheres of the pair sets, by their number of vertices.
+pub const VERTICES: [usize; 5] = [12, 42, 162, 642, 2562];
+
+/// Pairs of the tables, and the paper's figures for each: guesses 5°, 25° and 45°
+/// off, then EPA. Table I depth error (µm), II direction error (mrad), III time (µs).
+pub struct Published {
+    pub pair: &'static str,
+    pub depth: [f64; 4],
+    pub direction: [f64; 4],
+    pub time: [f64; 4],
+}
+
+pub const PAPER: [Published; 3] = [
+    Published {
+        pair: "sphere vs. sphere",
+        depth: [0.909, 1.018, 1.03, 1.58],
+        direction: [1.82, 1.38, 1.93, 8.84],
+        time: [1.9, 2.1, 2.3, 85.1],
+    },
+    Published {
+        pair: "capsule vs. capsule",
+        depth: [1.092, 1.12, 1.12, 0.39],
+        direction: [3.19, 3.42, 3.23, 10.39],
+        time: [1.6, 1.9, 2.0, 39.5],
+    },
+    Published {
+        pair: "sphere vs. capsule",
+        depth: [1.255, 1.31, 1.30, 1.72],
+        direction: [2.25, 2.31, 2.30, 10.72],
+        time: [2.0, 2.2, 2.4, 61.5],
+    },
+];
+
+/// Times and judges `methods` on a scene.
+pub fn rows(bench: &Bench, scene: &Scene, mut methods: Vec<Method>, x: Option<f64>) -> Vec<Row> {
+    let ns = measure::times(scene, &mut methods, bench.repetitions(), || ());
+    let judged = methods.iter_mut().zip(ns).map(|(method, ns)| Row {
+        ns: Some(ns),
+        x,
+        ..measure::judge(bench.libraries, scene, method)
+    });
+    judged.collect()
+}
+
+/// Tables I to III.
+pub fn tables(bench: &Bench) -> Vec<Row> {
+    let libraries = bench.libraries;
+    let (sphere, capsule) = (Form::sphere(0.5), Form::capsule(0.5, 0.5));
+    let forms = [
+        [&sphere, &sphere],
+        [&capsule, &capsule],
+        [&sphere, &capsule],
+    ];
+    let n = if bench.quick { 500 } else { 10_000 };
+    let bar = progress::bar(3, "the paper's tables");
+    let mut all = Vec::new();
+    for (k, forms) in forms.into_iter().enumerate() {
+        let scene = Scene::random_rounded(libraries, PAPER[k].pair, forms, n, k as u64);
+        let mut methods = Vec::new();
+        for start in Start::GUESSES {
+            methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));
+            methods.push(methods::paper(libraries, true, start, 1e-6));
+        }
+        methods.extend([1e-4, 1e-6, 1e-10].map(|t| methods::libccd_epa(libraries, t)));
+        if libraries.extension.minimum.is_some() {
+            methods.push(methods::extension(
+                libraries,
+                Ask::Minimum,
+                Start::None,
+                1e-6,
+            ));
+        }
+        all.extend(rows(bench, &scene, methods, None));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    all
+}
+
+/// Over vertex counts: `cap` a polytope against a capsule, else against another.
+pub fn vertices(bench: &Bench) -> Vec<Row> {
+    let libraries = bench.libraries;
+    let bar = progress::bar(2 * VERTICES.len() as u64, "vertex counts");
+    let mut all = Vec::new();
+    for n in VERTICES {
+        let scene = Scene::load(libraries, &format!("p{n}_cap"), bench.poses());
+        let mut methods = Vec::new();
+        for start in [Start::Five, Start::FortyFive] {
+            methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));
+            methods.push(methods::paper(libraries, true, start, 1e-6));
+        }
+        methods.push(methods::paper(libraries, false, Start::FortyFive, 1e-6));
+        methods.push(methods::libccd_epa(libraries, 1e-6));
+        if libraries.extension.minimum.is_some() {
+            methods.push(methods::extension(
+                libraries,
+                Ask::Minimum,
+                Start::None,
+                1e-6,
+            ));
+        }
+        all.extend(rows(bench, &scene, methods, Some(n as f64)));
+        bar.inc(1);
+        // Climbing supports here: DEEP walks over the same edges.
+        let scene = Scene::load(libraries, &format!("p{n}hc_p{n}hc"), bench.poses());
+        let mut methods = vec![
+            methods::extension(libraries, Ask::Local, Start::Five, 1e-6),
+            methods::paper(libraries, true, Start::Five, 1e-6),
+        ];
+        methods.extend(methods::deep(libraries, &scene, Start::Five));
+        all.extend(rows(bench, &scene, methods, Some(n as f64)));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    all
+}
+
+/// One curve a method through the rows' `x`.
+pub fn over_x<'a>(
+    rows: impl Iterator<Item = &'a Row>,
+    cost: &dyn Fn(&Row) -> Option<f64>,
+) -> Vec<Curve> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for row in rows {
+        let (Some(x), Some(cost)) = (row.x, cost(row)) else {
+            continue;
+        };
+        let label = name(row);
+        match curves.iter_mut().find(|c| c.label == label) {
+            Some(curve) => curve.points.push((x, cost)),
+            None => curves.push(Curve {
+                label,
+                look: look(row),
+                points: vec![(x, cost)],
+            }),
+        }
+    }
+    curves
+}
+
+pub fn seconds(row: &Row) -> Option<f64> {
+    row.ns.map(|n| n * 1e-9)
+}
+
+fn pictures(bench: &Bench, all: &[Row]) {
+    let x = ("vertices", Unit::Count);
+    let time = ("time per query", Unit::Seconds);
+    let supports = ("support points per query", Unit::Count);
+    let capsule = |r: &&Row| r.set.ends_with("_cap");
+    let ablation = |r: &&Row| capsule(r) && r.start == "45" && r.method.starts_with("Algorithm");
+    let panel = |title: &str, y, curves| Panel {
+        title: title.to_owned(),
+        x,
+        y,
+        curves,
+        limit: None,
+    };
+    let panels = [
+        panel(
+            "polytope – capsule: time",
+            time,
+            over_x(
+                all.iter()
+                    .filter(capsule)
+                    .filter(|r| r.method != "Algorithm 3"),
+                &seconds,
+            ),
+        ),
+        panel(
+            "polytope – capsule: supports",
+            supports,
+            over_x(
+                all.iter()
+                    .filter(capsule)
+                    .filter(|r| r.method != "Algorithm 3"),
+                &|r| r.supports,
+            ),
+        ),
+        panel(
+            "polytope – polytope, climbing: DEEP",
+            time,
+            over_x(all.iter().filter(|r| !capsule(r)), &seconds),
+        ),
+        panel(
+            "shortcut on and off, 45°: time",
+            time,
+            over_x(all.iter().filter(ablation), &seconds),
+        ),
+        panel(
+            "shortcut on and off, 45°: supports",
+            supports,
+            over_x(all.iter().filter(ablation), &|r| r.supports),
+        ),
+    ];
+    figure::grid(
+        &bench.file("vertices.svg"),
+        "The paper's figures over vertex counts",
+        3,
+        &panels,
+        &bench.notes(),
+    );
+}
+
+pub fn run(bench: &Bench) -> (Vec<Row>, Vec<Row>) {
+    let tables = tables(bench);
+    bench.write_csv("paper.csv", &tables);
+    let vertices = vertices(bench);
+    bench.write_csv("vertices.csv", &vertices);
+    pictures(bench, &vertices);
+    (tables, vertices)
+}
