@@ -102,6 +102,34 @@ fn picture(
     figure::grid(&bench.file(file), title, 4, &panels, &bench.notes());
 }
 
+/// What of an error can be seen: not less than the truth's own uncertainty, nor
+/// than a few ulps of a metre.
+fn visible(row: &Row) -> f64 {
+    row.mean_error.max(row.truth_gap).max(1e-15)
+}
+
+/// Whether `a` is at least as good as `b` in supports and error.
+fn beats(a: &Row, b: &Row) -> bool {
+    let (Some(sa), Some(sb)) = (a.supports, b.supports) else {
+        return false;
+    };
+    sa <= sb && visible(a) <= visible(b)
+}
+
+/// The rows of a set that no other method's row beats: the Pareto front.
+pub fn front<'a>(rows: &'a [Row], set: &str) -> Vec<&'a Row> {
+    let of = || rows.iter().filter(|r| r.set == set && r.supports.is_some());
+    let mut front: Vec<&Row> = of()
+        .filter(|b| !of().any(|a| beats(a, b) && !beats(b, a)))
+        .collect();
+    front.sort_by(|a, b| {
+        a.supports
+            .partial_cmp(&b.supports)
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    front
+}
+
 pub fn measure(bench: &Bench) -> Vec<Row> {
     let sets = [&RANDOM[..], &FRAMES].concat();
     let bar = progress::bar(sets.len() as u64, "speed against accuracy");
@@ -203,7 +231,7 @@ fn tolerance(bench: &Bench, rows: &[Row]) {
     );
 }
 
-pub fn run(bench: &Bench) {
+pub fn run(bench: &Bench) -> Vec<Row> {
     let rows = measure(bench);
     bench.write_csv("accuracy.csv", &rows);
     tolerance(bench, &rows);
@@ -235,4 +263,5 @@ pub fn run(bench: &Bench) {
             &|r| r.supports,
         );
     }
+    rows
 }

@@ -296,70 +296,72 @@ pub fn bars(
     bars: &[Bar],
     notes: &[String],
 ) {
+    if bars.is_empty() {
+        return;
+    }
     let longest = bars
         .iter()
         .map(|b| b.parts.iter().sum())
         .fold(0.0, f64::max);
-    write(
-        path,
-        (1080, 80 + 30 * (bars.len() + notes.len()) as u32),
-        |root| {
-            let mut chart = ChartBuilder::on(root)
-                .caption(title, ink(21))
-                .margin(10)
-                .x_label_area_size(44)
-                .y_label_area_size(330)
-                .build_cartesian_2d(0.0..longest * 1.05, (0..bars.len()).into_segmented())?;
-            // The first bar on top.
-            let name = |k: usize| bars[bars.len() - 1 - k].label.clone();
-            chart
-                .configure_mesh()
-                .axis_style(INK)
-                .bold_line_style(FAINT)
-                .light_line_style(TRANSPARENT)
-                .disable_y_mesh()
-                .label_style(ink(13))
-                .axis_desc_style(ink(14))
-                .x_desc(x)
-                .y_labels(bars.len())
-                .x_label_formatter(&|v| short(*v))
-                .y_label_formatter(&|v| match v {
-                    SegmentValue::CenterOf(k) if *k < bars.len() => name(*k),
-                    _ => String::new(),
-                })
-                .draw()?;
-            for (part, (label, colour)) in parts.iter().enumerate() {
-                let colour = *colour;
-                let blocks = bars.iter().rev().enumerate().map(|(k, bar)| {
-                    let from: f64 = bar.parts[..part].iter().sum();
-                    let ends = [
-                        (from, SegmentValue::Exact(k)),
-                        (from + bar.parts[part], SegmentValue::Exact(k + 1)),
-                    ];
-                    let mut block = Rectangle::new(ends, colour.filled());
-                    block.set_margin(5, 5, 0, 0);
-                    block
-                });
-                chart
-                    .draw_series(blocks)?
-                    .label(*label)
-                    .legend(move |(x, y)| {
-                        Rectangle::new([(x, y - 6), (x + 12, y + 6)], colour.filled())
-                    });
-            }
-            for note in notes {
-                chart
-                    .draw_series(std::iter::empty::<Circle<(f64, SegmentValue<usize>), i32>>())?
-                    .label(note.clone())
-                    .legend(|at| PathElement::new(vec![at], PAPER));
-            }
-            chart
-                .configure_series_labels()
-                .position(SeriesLabelPosition::LowerRight)
-                .label_font(ink(14))
-                .legend_area_size(22)
-                .draw()?;
-            Ok(())
-        },
-    );
+    let head = 20 * (parts.len() + notes.len()) as u32 + 10;
+    write(path, (1080, 100 + head + 28 * bars.len() as u32), |root| {
+        let (top, below) = root.titled(title, ink(21))?.split_vertically(head);
+        let mut chart = ChartBuilder::on(&below)
+            .margin(10)
+            .x_label_area_size(44)
+            .y_label_area_size(330)
+            .build_cartesian_2d(0.0..longest * 1.02, (0..bars.len() - 1).into_segmented())?;
+        // The first bar on top.
+        let name = |k: usize| bars[bars.len() - 1 - k].label.clone();
+        chart
+            .configure_mesh()
+            .axis_style(INK)
+            .bold_line_style(FAINT)
+            .light_line_style(TRANSPARENT)
+            .disable_y_mesh()
+            .label_style(ink(13))
+            .axis_desc_style(ink(14))
+            .x_desc(x)
+            .y_labels(bars.len())
+            .x_label_formatter(&|v| short(*v))
+            .y_label_formatter(&|v| match v {
+                SegmentValue::CenterOf(k) if *k < bars.len() => name(*k),
+                _ => String::new(),
+            })
+            .draw()?;
+        for (part, (_, colour)) in parts.iter().enumerate() {
+            let blocks = bars.iter().rev().enumerate().map(|(k, bar)| {
+                let from: f64 = bar.parts[..part].iter().sum();
+                let ends = [
+                    (from, SegmentValue::Exact(k)),
+                    (from + bar.parts[part], SegmentValue::Exact(k + 1)),
+                ];
+                let mut block = Rectangle::new(ends, colour.filled());
+                block.set_margin(5, 5, 0, 0);
+                block
+            });
+            chart.draw_series(blocks)?;
+        }
+        let mut names = ChartBuilder::on(&top).build_cartesian_2d(0.0..1.0, 0.0..1.0)?;
+        let nothing = std::iter::empty::<Circle<(f64, f64), i32>>;
+        for (label, colour) in parts {
+            let fill = colour.filled();
+            let block = move |(x, y)| Rectangle::new([(x + 4, y - 6), (x + 16, y + 6)], fill);
+            names.draw_series(nothing())?.label(*label).legend(block);
+        }
+        for note in notes {
+            let blank = |at| PathElement::new(vec![at], PAPER);
+            names
+                .draw_series(nothing())?
+                .label(note.clone())
+                .legend(blank);
+        }
+        names
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperLeft)
+            .label_font(ink(14))
+            .legend_area_size(22)
+            .draw()?;
+        Ok(())
+    });
 }

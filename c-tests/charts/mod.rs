@@ -9,6 +9,7 @@ pub mod coherence;
 pub mod figure;
 pub mod models;
 pub mod paper;
+pub mod results;
 pub mod split;
 
 use std::path::PathBuf;
@@ -153,9 +154,19 @@ pub fn run(options: &Options) {
             why.lines().next().unwrap_or("")
         );
     }
-    accuracy::run(&bench);
-    paper::run(&bench);
-    coherence::run(&bench);
-    models::run(&bench);
-    split::run(&bench);
+    let accuracy = accuracy::run(&bench);
+    let (paper, vertices) = paper::run(&bench);
+    let (coherence, recorded) = coherence::run(&bench);
+    let models = models::run(&bench);
+    let split = split::run(&bench);
+    let results = results::Results {
+        accuracy,
+        paper,
+        vertices,
+        coherence,
+        recorded,
+        models,
+        split,
+    };
+    results::write(&bench, &results);
 }
