@@ -54,7 +54,6 @@ pub enum Unit {
     Seconds,
     Count,
     Degrees,
-    Percent,
 }
 
 impl Unit {
@@ -70,7 +69,6 @@ impl Unit {
             format!("{} {name}", short(v / scale))
         };
         match self {
-            Unit::Percent => format!("{v:.0} %"),
             Unit::Metres => with(&[
                 (1.0, "m"),
                 (1e-3, "mm"),

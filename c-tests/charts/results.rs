@@ -83,7 +83,7 @@ fn paper_table(
                 paper_method("25"),
                 paper_method("45"),
                 epa(1e-6),
-                epa(1e-10),
+                epa(1e-11),
             ],
             [
                 empty(),
@@ -104,7 +104,7 @@ fn paper_table(
             "25°",
             "45°",
             "libccd EPA 1e-6",
-            "libccd EPA 1e-10",
+            "libccd EPA 1e-11",
         ],
         lines,
     )
@@ -121,10 +121,10 @@ fn times_faster(rows: &[Row]) -> String {
         [
             p.pair.to_owned(),
             ratio("local", "5", 1e-6),
-            ratio("local", "5", 1e-10),
+            ratio("local", "5", 1e-11),
             ratio("minimum", "", 1e-6),
             ratio("Algorithm 4/5", "5", 1e-6),
-            ratio("Algorithm 4/5", "5", 1e-10),
+            ratio("Algorithm 4/5", "5", 1e-11),
             format!("{:.1}", p.time[3] / p.time[0]),
         ]
     });
@@ -132,10 +132,10 @@ fn times_faster(rows: &[Row]) -> String {
         [
             "pair",
             "local, EPA 1e-6",
-            "local, EPA 1e-10",
+            "local, EPA 1e-11",
             "minimum, EPA 1e-6",
             "Algorithm 4/5, EPA 1e-6",
-            "Algorithm 4/5, EPA 1e-10",
+            "Algorithm 4/5, EPA 1e-11",
             "*in the paper*",
         ],
         lines,

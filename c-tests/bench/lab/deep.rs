@@ -151,7 +151,8 @@ impl Deep {
                     }
                 }
             }
-            if !(best.0 < depth) {
+            // Also where it is NaN.
+            if best.0.partial_cmp(&depth) != Some(std::cmp::Ordering::Less) {
                 return Some(best);
             }
         }

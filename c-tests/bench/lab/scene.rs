@@ -343,7 +343,7 @@ impl Scene {
             let (mut n, mut bodies, mut count) = (0, 0, 0);
             (callbacks.recording_count)(of, &mut n, &mut bodies);
             // By pair, in time: the frame number and where the two shapes are.
-            let mut found: BTreeMap<(c_uint, c_uint), Vec<(usize, usize, Truth)>> = BTreeMap::new();
+            let mut found: BTreeMap<(c_uint, c_uint), Vec<_>> = BTreeMap::new();
             let (mut world, words) = room(&callbacks, bodies as usize);
             let mut shapes: Vec<u64> = Vec::new();
             let mut queries = 0;
