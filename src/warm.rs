@@ -18,8 +18,9 @@
 
 use crate::bundle::{self, Memory, Seen};
 use crate::contact::{Answer, Penetration, Settings};
+use crate::epa::{self, Arena, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
-use crate::math::{Vec3, unit};
+use crate::math::{Real, Vec3, unit};
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -196,9 +197,88 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         )
     }
 
-    /// The depth at MPR's price.
+    /// The minimum depth at MPR's price: a local minimum, then a look at what a proof of
+    /// the global one would need.
     pub fn mpr(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        self.local(state, settings)
+        if let Some(n) = self.still_apart(state)? {
+            return Ok(Answer::Miss(n));
+        }
+        let mut memory = state.solver();
+        let mut seen = Seen::default();
+        let found = self.descend(&mut memory, settings, &mut seen)?;
+        let local = match found {
+            Answer::Hit(hit) | Answer::Limit(hit) => hit,
+            other => {
+                state.remember(&other);
+                return Ok(other);
+            }
+        };
+        let mut points = [SupportPoint::default(); epa::GIVEN];
+        let mut count = 0;
+        for (to, p) in points
+            .iter_mut()
+            .zip(seen.points().iter().copied().chain(self.centre))
+        {
+            *to = p;
+            count += 1;
+        }
+        let seed = Seed {
+            dir: local.normal,
+            points: &points[..count],
+            upper: Some((local.depth, local.normal)),
+        };
+        let proof = Settings {
+            tolerance: settings.tolerance.max(GAP * local.depth),
+            max_iterations: settings.max_iterations.min(STEPS),
+        };
+        let checked = epa::minimum(&self.md, &seed, &proof, &mut Desk::default())?;
+        let answer = match checked {
+            Answer::Hit(global) | Answer::Limit(global) => {
+                let lower = global.depth_lower;
+                let found = if !(global.depth < local.depth - settings.tolerance) {
+                    local
+                } else if global.depth - lower <= settings.tolerance {
+                    memory = State::of(OVERLAP, global.normal).memory;
+                    global
+                } else {
+                    memory = State::of(OVERLAP, global.normal).memory;
+                    match self.descend(&mut memory, settings, &mut seen)? {
+                        Answer::Hit(hit) | Answer::Limit(hit) if hit.depth < global.depth => hit,
+                        _ => global,
+                    }
+                };
+                *state = State {
+                    memory,
+                    kind: OVERLAP,
+                    padding: 0,
+                };
+                Answer::Hit(Penetration {
+                    depth_lower: lower.min(found.depth),
+                    ..found
+                })
+            }
+            other => {
+                state.remember(&other);
+                other
+            }
+        };
+        Ok(answer)
+    }
+
+    fn descend(
+        &self,
+        memory: &mut Memory,
+        settings: &Settings,
+        seen: &mut Seen,
+    ) -> Result<Answer, Fault> {
+        bundle::penetration(
+            &self.md,
+            self.centre.map(|c| c.v).as_ref(),
+            &self.cold_start(),
+            memory,
+            settings,
+            seen,
+        )
     }
 
     /// A local minimum of the depth.
@@ -208,15 +288,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let mut memory = state.solver();
         let mut seen = Seen::default();
-        let found = bundle::penetration(
-            &self.md,
-            self.centre.map(|c| c.v).as_ref(),
-            &self.cold_start(),
-            &mut memory,
-            settings,
-            &mut seen,
-        )?;
-        let answer = match found {
+        let answer = match self.descend(&mut memory, settings, &mut seen)? {
             Answer::Hit(hit) => self.proven(hit, false, seen.points(), settings)?,
             Answer::Limit(hit) => self.proven(hit, true, seen.points(), settings)?,
             other => other,
@@ -368,5 +440,44 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         state.remember(&answer);
         Ok(answer)
+    }
+}
+
+/// Where the proof of [`Pair::mpr`] may stop: a gap of this share of the depth.
+const GAP: Real = 0.003;
+/// Steps it may take, at most.
+const STEPS: u64 = 16;
+
+/// Points that a [`Desk`] has room for.
+const DESK: usize = 40;
+
+/// Room for the short proof of [`Pair::mpr`].
+struct Desk {
+    points: [SupportPoint; DESK],
+    faces: [Face; DESK * epa::FACES_PER_POINT],
+    heap: [u16; DESK * epa::FACES_PER_POINT],
+}
+
+impl Default for Desk {
+    fn default() -> Self {
+        Self {
+            points: [SupportPoint::default(); DESK],
+            faces: [Face::default(); DESK * epa::FACES_PER_POINT],
+            heap: [0; DESK * epa::FACES_PER_POINT],
+        }
+    }
+}
+
+impl Arena for Desk {
+    fn storage(&mut self) -> Storage<'_> {
+        Storage {
+            points: &mut self.points,
+            faces: &mut self.faces,
+            heap: &mut self.heap,
+        }
+    }
+
+    fn grow(&mut self) -> Result<(), Fault> {
+        Err(Fault::NoMemory)
     }
 }
