@@ -54,6 +54,14 @@ impl State {
         }
     }
 
+    fn overlap(memory: Memory) -> Self {
+        Self {
+            memory,
+            kind: OVERLAP,
+            padding: 0,
+        }
+    }
+
     fn of(kind: u32, dir: Vec3) -> Self {
         Self {
             memory: Memory {
@@ -235,33 +243,32 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let answer = match checked {
             Answer::Hit(global) | Answer::Limit(global) => {
                 let lower = global.depth_lower;
-                let found = if !(global.depth < local.depth - settings.tolerance) {
-                    local
-                } else if global.depth - lower <= settings.tolerance {
+                let mut found = local;
+                if global.depth < local.depth - settings.tolerance {
+                    // Another valley: its floor is where the proof got to, or below.
                     memory = State::of(OVERLAP, global.normal).memory;
-                    global
-                } else {
-                    memory = State::of(OVERLAP, global.normal).memory;
-                    match self.descend(&mut memory, settings, &mut seen)? {
-                        Answer::Hit(hit) | Answer::Limit(hit) if hit.depth < global.depth => hit,
-                        _ => global,
+                    found = global;
+                    if global.depth - lower > settings.tolerance
+                        && let Answer::Hit(hit) | Answer::Limit(hit) =
+                            self.descend(&mut memory, settings, &mut seen)?
+                        && hit.depth < global.depth
+                    {
+                        found = hit;
                     }
-                };
-                *state = State {
-                    memory,
-                    kind: OVERLAP,
-                    padding: 0,
-                };
+                }
                 Answer::Hit(Penetration {
                     depth_lower: lower.min(found.depth),
                     ..found
                 })
             }
-            other => {
-                state.remember(&other);
-                other
-            }
+            // Too thin an overlap for so short a search: yes or no has no such limit.
+            Answer::Undecided(_) => self.proven(local, false, &points[..count], settings)?,
+            Answer::Miss(n) => Answer::Miss(n),
         };
+        match answer {
+            Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(memory),
+            other => state.remember(&other),
+        }
         Ok(answer)
     }
 
@@ -294,13 +301,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             other => other,
         };
         match answer {
-            Answer::Hit(_) | Answer::Limit(_) => {
-                *state = State {
-                    memory,
-                    kind: OVERLAP,
-                    padding: 0,
-                }
-            }
+            Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(memory),
             other => state.remember(&other),
         }
         Ok(answer)
@@ -446,38 +447,65 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 /// Where the proof of [`Pair::mpr`] may stop: a gap of this share of the depth.
 const GAP: Real = 0.003;
 /// Steps it may take, at most.
-const STEPS: u64 = 16;
+const STEPS: u64 = 48;
 
-/// Points that a [`Desk`] has room for.
-const DESK: usize = 40;
-
-/// Room for the short proof of [`Pair::mpr`].
+/// Room for the short proof of [`Pair::mpr`]: most end with a dozen points, and only
+/// those that do not pay for more.
+#[derive(Default)]
 struct Desk {
-    points: [SupportPoint; DESK],
-    faces: [Face; DESK * epa::FACES_PER_POINT],
-    heap: [u16; DESK * epa::FACES_PER_POINT],
+    small: Room<{ epa::LEAST_POINTS }>,
+    large: Option<Room<{ 2 * epa::LEAST_POINTS + STEPS as usize }>>,
 }
 
-impl Default for Desk {
+struct Room<const POINTS: usize> {
+    points: [SupportPoint; POINTS],
+    faces: [[Face; epa::FACES_PER_POINT]; POINTS],
+    heap: [[u16; epa::FACES_PER_POINT]; POINTS],
+}
+
+impl<const POINTS: usize> Default for Room<POINTS> {
     fn default() -> Self {
         Self {
-            points: [SupportPoint::default(); DESK],
-            faces: [Face::default(); DESK * epa::FACES_PER_POINT],
-            heap: [0; DESK * epa::FACES_PER_POINT],
+            points: [SupportPoint::default(); POINTS],
+            faces: [[Face::default(); epa::FACES_PER_POINT]; POINTS],
+            heap: [[0; epa::FACES_PER_POINT]; POINTS],
+        }
+    }
+}
+
+impl<const POINTS: usize> Room<POINTS> {
+    fn storage(&mut self) -> Storage<'_> {
+        Storage {
+            points: &mut self.points,
+            faces: self.faces.as_flattened_mut(),
+            heap: self.heap.as_flattened_mut(),
         }
     }
 }
 
 impl Arena for Desk {
     fn storage(&mut self) -> Storage<'_> {
-        Storage {
-            points: &mut self.points,
-            faces: &mut self.faces,
-            heap: &mut self.heap,
+        match &mut self.large {
+            Some(large) => large.storage(),
+            None => self.small.storage(),
         }
     }
 
     fn grow(&mut self) -> Result<(), Fault> {
-        Err(Fault::NoMemory)
+        if self.large.is_some() {
+            return Err(Fault::NoMemory);
+        }
+        let large = self.large.insert(Room::default()).storage();
+        let small = self.small.storage();
+        for (to, from) in large.points.iter_mut().zip(small.points) {
+            *to = *from;
+        }
+        for (to, from) in large.faces.iter_mut().zip(small.faces) {
+            *to = *from;
+        }
+        for (to, from) in large.heap.iter_mut().zip(small.heap) {
+            *to = *from;
+        }
+        Ok(())
     }
 }
