@@ -62,7 +62,6 @@ tests)
     want_command make make
     want_command abidiff abigail-tools
     want_command valgrind valgrind
-    want_command python3 python3
     if command -v dpkg-query >/dev/null 2>&1; then
         want_package libccd-dev libfcl-dev libode-dev libmujoco-dev libdart-dev
     fi
