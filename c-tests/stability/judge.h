@@ -55,6 +55,7 @@ typedef struct {
     int code;
     double depth, dir[3], pos[3];
     int has_pos, has_proof;
+    int touched; /* an output was written though there was no answer */
     double lower, normal[3], point1[3], point2[3]; /* with has_proof */
     unsigned long calls;                           /* of both support functions */
     unsigned long supports;                        /* as reported, with has_proof */
@@ -125,10 +126,15 @@ static inline int entry_is_minimum(const entry_t *e)
 static sigjmp_buf judge_back;
 static volatile unsigned long judge_calls, judge_limit;
 
-static void judge_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+static inline void judge_count(void)
 {
     if (++judge_calls > judge_limit)
         siglongjmp(judge_back, ANSWER_LOOP);
+}
+
+static inline void judge_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    judge_count();
     shape_support(obj, dir, out);
 }
 
@@ -151,6 +157,19 @@ static inline void judge_begin(void)
         sigaction(numbers[i], &action, NULL);
 }
 
+/* Outputs hold this until they are written. */
+static const unsigned char judge_blank = 0xa5;
+
+static inline int judge_is_blank(const void *memory, size_t size)
+{
+    const unsigned char *byte = (const unsigned char *)memory;
+    size_t i;
+    for (i = 0; i < size; i++)
+        if (byte[i] != judge_blank)
+            return 0;
+    return 1;
+}
+
 static inline void judge_vec(const ccd_vec3_t *v, double out[3])
 {
     int i;
@@ -159,16 +178,17 @@ static inline void judge_vec(const ccd_vec3_t *v, double out[3])
 }
 
 /* One call of the function itself. */
-static inline int ask_once(const entry_t *e, const shape_t *a, const shape_t *b, const ccd_t *ccd,
-                           ccd_warm_t *warm, const ccd_vec3_t *along, answer_t *out)
+static inline void ask_once(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
+                            const ccd_vec3_t *along, answer_t *out)
 {
     ccd_penetration_t p;
-    ccd_real_t depth = 0;
+    ccd_real_t depth;
     ccd_vec3_t dir, pos;
     int code, i, full = 0;
-    memset(&p, 0, sizeof p);
-    memset(&dir, 0, sizeof dir);
-    memset(&pos, 0, sizeof pos);
+    memset(&p, judge_blank, sizeof p);
+    memset(&depth, judge_blank, sizeof depth);
+    memset(&dir, judge_blank, sizeof dir);
+    memset(&pos, judge_blank, sizeof pos);
     switch (e->ask) {
     case ASK_MPR:
 #ifndef OURS_ALONE
@@ -198,6 +218,8 @@ static inline int ask_once(const entry_t *e, const shape_t *a, const shape_t *b,
             depth = (ccd_real_t)l;
             for (i = 0; i < 3; i++)
                 dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
+        } else {
+            dir = pos;
         }
         break;
     case ASK_MPR_INTERSECT:
@@ -226,6 +248,11 @@ static inline int ask_once(const entry_t *e, const shape_t *a, const shape_t *b,
         break;
     }
     out->code = code;
+    if (code != CCD_HIT && code != CCD_LIMIT) {
+        out->touched = !judge_is_blank(&p, sizeof p) || !judge_is_blank(&depth, sizeof depth)
+            || !judge_is_blank(&dir, sizeof dir) || !judge_is_blank(&pos, sizeof pos);
+        return;
+    }
     out->has_proof = full;
     out->has_pos = full || e->ask == ASK_MPR || e->ask == ASK_GJK || e->ask == ASK_MPR_WARM;
     if (full) {
@@ -241,52 +268,60 @@ static inline int ask_once(const entry_t *e, const shape_t *a, const shape_t *b,
     out->depth = (double)depth;
     judge_vec(&dir, out->dir);
     judge_vec(&pos, out->pos);
-    return code;
 }
 
-/* The whole question. normal: the true one (start of a wrong guess, and the
- * direction asked about by "along"). limit: support calls until it is a loop. */
-static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
-                           const double normal[3], unsigned long limit)
+/* One call that comes back whatever happens in it. Support functions count by
+ * judge_count; more calls than limit are a loop. */
+static inline answer_t ask_guarded(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
+                                   const ccd_vec3_t *along, unsigned long limit)
 {
-    static answer_t out;
-    static shape_t sa, sb;
-    static ccd_warm_t warm;
-    static ccd_t ccd;
-    static ccd_vec3_t along;
-    int i, code;
+    static answer_t out; /* static: kept over a siglongjmp */
+    int code;
     memset(&out, 0, sizeof out);
-    memset(&warm, 0, sizeof warm);
-    sa = *a;
-    sb = *b;
-    shape_query(&ccd);
-    ccd.support1 = ccd.support2 = judge_support;
-    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)tol;
-    for (i = 0; i < 3; i++)
-        along.v[i] = (ccd_real_t)normal[i];
     judge_limit = limit;
     judge_calls = 0;
     code = sigsetjmp(judge_back, 1);
     if (code == 0) {
         alarm(10);
-        if (e->state == STATE_AGAINST) {
-            ccd_vec3_t guess;
-            for (i = 0; i < 3; i++)
-                guess.v[i] = -along.v[i];
-            OURS(ccdWarmGuess)(&warm, &guess);
-        }
-        if (e->state == STATE_AGAIN) {
-            ask_once(e, &sa, &sb, &ccd, &warm, &along, &out);
-            judge_calls = 0;
-            memset(&out, 0, sizeof out);
-        }
-        ask_once(e, &sa, &sb, &ccd, e->state == STATE_NONE ? NULL : &warm, &along, &out);
+        ask_once(e, a, b, ccd, warm, along, &out);
     } else {
         out.code = code;
     }
     alarm(0);
     out.calls = judge_calls;
     return out;
+}
+
+/* The question put with any objects and callbacks, from the state that the entry
+ * names. normal: the start of a wrong guess, and what "along" asks about. */
+static inline answer_t ask_objects(const entry_t *e, const void *a, const void *b, const ccd_t *ccd,
+                                   const double normal[3], unsigned long limit)
+{
+    ccd_warm_t warm;
+    ccd_vec3_t along, guess;
+    int i;
+    memset(&warm, 0, sizeof warm);
+    for (i = 0; i < 3; i++) {
+        along.v[i] = (ccd_real_t)normal[i];
+        guess.v[i] = -along.v[i];
+    }
+    if (e->state == STATE_AGAINST)
+        OURS(ccdWarmGuess)(&warm, &guess);
+    if (e->state == STATE_AGAIN)
+        ask_guarded(e, a, b, ccd, &warm, &along, limit);
+    return ask_guarded(e, a, b, ccd, e->state == STATE_NONE ? NULL : &warm, &along, limit);
+}
+
+/* The question about two shapes. limit: support calls until it is a loop. */
+static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
+                           const double normal[3], unsigned long limit)
+{
+    shape_t sa = *a, sb = *b;
+    ccd_t ccd;
+    shape_query(&ccd);
+    ccd.support1 = ccd.support2 = judge_support;
+    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)tol;
+    return ask_objects(e, &sa, &sb, &ccd, normal, limit);
 }
 
 /* --- judging ------------------------------------------------------------------ */
@@ -317,7 +352,8 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
     X(LIMIT, "stopped at the cap") \
     X(WITNESS, "witness points off") \
     X(POSITION, "position not between the witness points") \
-    X(MISCOUNTED, "supports miscounted")
+    X(MISCOUNTED, "supports miscounted") \
+    X(TOUCHED, "outputs written without an answer")
 
 enum {
 #define STABILITY_FAULT_BIT(name, text) FAULT_BIT_##name,
@@ -345,7 +381,7 @@ static inline const char *fault_text(int bit)
 enum {
     FAULTS_NEVER = FAULT_LOOP | FAULT_CRASH | FAULT_NAN | FAULT_DIR0 | FAULT_MISS_DEEP | FAULT_FALSE_HIT
         | FAULT_UNSOUND | FAULT_CODE | FAULT_MISSED | FAULT_NOT_UNIT | FAULT_NOT_SUPPORT | FAULT_NOT_MINIMUM
-        | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS | FAULT_POSITION | FAULT_MISCOUNTED
+        | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS | FAULT_POSITION | FAULT_MISCOUNTED | FAULT_TOUCHED
 };
 
 typedef struct {
@@ -424,6 +460,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         return FAULT_LOOP;
     if (x->code == ANSWER_CRASH)
         return FAULT_CRASH;
+    if (x->touched)
+        faults |= FAULT_TOUCHED;
     if (x->code == CCD_MISS) {
         if (t->lower > tolerance(TOL_DEEP) * q->size + q->noise)
             faults |= FAULT_MISS_DEEP;
@@ -434,7 +472,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         return faults;
     }
     if (x->code != CCD_HIT && x->code != CCD_LIMIT)
-        return FAULT_CODE;
+        return faults | FAULT_CODE;
     if (x->code == CCD_LIMIT && !x->has_proof)
         faults |= FAULT_CODE;
     if (x->code == CCD_LIMIT && !q->surface)

@@ -1,0 +1,114 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The same question gives the same bits. Prints one digest of every answer of every
+ * entry point over all categories of pairs, states carried along included, after it
+ * has computed it several times: at once in threads, and once more alone. Who runs it
+ * compares what runs and builds print.
+ *
+ *   determinism [pairs a category] */
+
+#define _POSIX_C_SOURCE 200809L
+
+#include "categories.h"
+
+#include <pthread.h>
+
+enum { THREADS = 4 };
+
+static int pairs;
+
+static void digest_bytes(uint64_t *digest, const void *memory, size_t size)
+{
+    const unsigned char *byte = (const unsigned char *)memory;
+    size_t i;
+    for (i = 0; i < size; i++) /* FNV-1a */
+        *digest = (*digest ^ byte[i]) * UINT64_C(0x100000001b3);
+}
+
+/* Everything that a call writes, padding excepted. */
+static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
+{
+    shape_t a = p->a, b = p->b;
+    ccd_t ccd;
+    ccd_vec3_t dir, pos;
+    ccd_real_t depth;
+    ccd_penetration_t out;
+    int code, k;
+    shape_query(&ccd);
+    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)1e-6;
+    for (k = 0; k < 8; k++) {
+        ccd_vec3_t along;
+        memset(&out, 0, sizeof out);
+        memset(&dir, 0, sizeof dir);
+        memset(&pos, 0, sizeof pos);
+        depth = 0;
+        along.v[0] = (ccd_real_t).6;
+        along.v[1] = 0;
+        along.v[2] = (ccd_real_t).8;
+        switch (k) {
+        case 0: code = OURS(ccdMPRPenetration)(&a, &b, &ccd, &depth, &dir, &pos); break;
+        case 1: code = OURS(ccdMPRPenetrationWarm)(&a, &b, &ccd, warm, &depth, &dir, &pos); break;
+        case 2: code = OURS(ccdPenetrationLocal)(&a, &b, &ccd, warm, &out); break;
+        case 3: code = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &along, warm, &out); break;
+        case 4: code = OURS(ccdMPRIntersectWarm)(&a, &b, &ccd, warm) + 10 * OURS(ccdGJKIntersect)(&a, &b, &ccd); break;
+#ifndef STABILITY_PARTIAL
+        case 5: code = OURS(ccdGJKPenetration)(&a, &b, &ccd, &depth, &dir, &pos); break;
+        case 6: code = OURS(ccdPenetrationMinimum)(&a, &b, &ccd, warm, &out); break;
+#endif
+        default: code = OURS(ccdMPRIntersect)(&a, &b, &ccd); break;
+        }
+        digest_bytes(digest, &code, sizeof code);
+        digest_bytes(digest, &depth, sizeof depth);
+        digest_bytes(digest, &dir, sizeof dir);
+        digest_bytes(digest, &pos, sizeof pos);
+        digest_bytes(digest, &out.depth, sizeof out.depth);
+        digest_bytes(digest, &out.depth_lower, sizeof out.depth_lower);
+        digest_bytes(digest, &out.dir, sizeof out.dir);
+        digest_bytes(digest, &out.normal, sizeof out.normal);
+        digest_bytes(digest, &out.pos, sizeof out.pos);
+        digest_bytes(digest, &out.point1, sizeof out.point1);
+        digest_bytes(digest, &out.point2, sizeof out.point2);
+        digest_bytes(digest, &out.supports, sizeof out.supports);
+        digest_bytes(digest, &out.iterations, sizeof out.iterations);
+    }
+    digest_bytes(digest, &a.calls, sizeof a.calls);
+}
+
+static void *digest_all(void *result)
+{
+    uint64_t digest = UINT64_C(0xcbf29ce484222325);
+    pair_t *p = (pair_t *)malloc(sizeof *p);
+    int category, i;
+    for (category = 0; p && category < CATEGORY_COUNT; category++) {
+        ccd_warm_t warm;
+        memset(&warm, 0, sizeof warm);
+        for (i = 0; i < pairs; i++) {
+            category_pair(category, (uint64_t)i, SHAPE_TIE_SIGN, p);
+            digest_answers(&digest, p, &warm);
+        }
+    }
+    free(p);
+    *(uint64_t *)result = digest;
+    return NULL;
+}
+
+int main(int argc, char **argv)
+{
+    pthread_t threads[THREADS];
+    uint64_t digests[THREADS + 1];
+    int i, differ = 0;
+    pairs = argc > 1 ? atoi(argv[1]) : 20;
+    for (i = 0; i < THREADS; i++)
+        if (pthread_create(&threads[i], NULL, digest_all, &digests[i]) != 0)
+            return 2;
+    for (i = 0; i < THREADS; i++)
+        pthread_join(threads[i], NULL);
+    digest_all(&digests[THREADS]);
+    for (i = 0; i < THREADS; i++)
+        differ += digests[i] != digests[THREADS];
+    printf("%s: %016llx\n", OURS(ccdImplementation)(), (unsigned long long)digests[THREADS]);
+    if (differ)
+        printf("FAILED %d threads differ\n", differ);
+    return differ > 0;
+}
