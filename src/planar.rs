@@ -143,6 +143,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             }
         }
     }
+    // The cap may come before the newest plane is looked at.
+    if best.depth < 0.0 {
+        return Ok(Answer::Miss(best.normal));
+    }
     Ok(Answer::Limit(finish(best, None, 0)))
 }
 

@@ -11,13 +11,17 @@
 #include <stdio.h>
 #include <string.h>
 
+#ifndef CHECKS_SHOWN
+#define CHECKS_SHOWN 20
+#endif
+
 static unsigned long checks_made, checks_failed;
 
-/* CHECK(condition, format, ...): goes on after a failure, shows the first twenty. */
+/* CHECK(condition, format, ...): goes on after a failure, shows the first CHECKS_SHOWN. */
 #define CHECK(condition, ...)                                          \
     do {                                                               \
         checks_made++;                                                 \
-        if (!(condition) && checks_failed++ < 20) {                    \
+        if (!(condition) && checks_failed++ < CHECKS_SHOWN) {                    \
             printf("%s:%d: not %s: ", __FILE__, __LINE__, #condition); \
             printf(__VA_ARGS__);                                       \
             printf("\n");                                              \

@@ -445,6 +445,12 @@ fn outputs() {
 
 #[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
+fn bad_input() {
+    alone("bad_input").build().run(NO_ARGS);
+}
+
+#[ignore = "ccdGJKPenetration is not there yet"]
+#[test]
 fn memory() {
     alone("memory").without_tools().build().run(NO_ARGS);
 }

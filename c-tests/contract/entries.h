@@ -54,12 +54,12 @@ static inline int run_MPRPenetration(const void *a, const void *b, const ccd_t *
     return ccdMPRPenetration(a, b, ccd, &out->depth, &out->dir, &out->pos);
 }
 
-/* The extension, from a cold state and with that state again. */
+/* The extension, from a cold state and with that state again; out is the second answer. */
 static inline int run_MPRPenetrationWarm(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     ccd_warm_t warm;
     memset(&warm, 0, sizeof warm);
-    ccdMPRPenetrationWarm(a, b, ccd, &warm, &out->depth, &out->dir, &out->pos);
+    ccdMPRPenetrationWarm(a, b, ccd, &warm, NULL, NULL, NULL);
     return ccdMPRPenetrationWarm(a, b, ccd, &warm, &out->depth, &out->dir, &out->pos);
 }
 

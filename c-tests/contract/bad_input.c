@@ -1,0 +1,194 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Input that no query can like: points that are not numbers, tolerances of every kind, no
+ * iterations, an object against itself, objects without volume, sizes at both ends of the
+ * numbers. Always a return code of the call's, outputs untouched unless it is a hit, a hit
+ * sound, and an end: the number of support points is bounded. */
+
+#include "entries.h"
+#include <math.h>
+#include <time.h>
+
+static unsigned long bad_from, supports;
+static ccd_real_t bad_value;
+static int bad_axis, bad_seen;
+
+static void bad_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    shape_support(obj, dir, out);
+    if (++supports >= bad_from) {
+        out->v[bad_axis] = bad_value;
+        bad_seen = 1;
+    }
+}
+
+static int may_return(const entry_t *entry, int code)
+{
+    if (code == entry->hit || code == entry->miss)
+        return 1;
+    return (entry->traits & EXTENSION) && entry->hit == CCD_HIT && (code == CCD_BAD_INPUT || code == CCD_LIMIT);
+}
+
+/* The support value of D along dir: moving obj2 that far separates. */
+static double value_along(const shape_t *a, const shape_t *b, const ccd_vec3_t *dir)
+{
+    ccd_vec3_t back = *dir, p, q;
+    ccdVec3Scale(&back, -1);
+    shape_support(a, dir, &p);
+    shape_support(b, &back, &q);
+    ccdVec3Sub(&p, &q);
+    return (double)ccdVec3Dot(&p, dir);
+}
+
+/* Runs the query and checks what must hold whatever goes in. */
+static int ask(const entry_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, double size, const char *what)
+{
+    /* 10 ms of a primitive's callbacks. */
+    const unsigned long most = 20000;
+    outputs_t out, before;
+    clock_t start = clock();
+    int code, i;
+    memset(&out, 0x5a, sizeof out);
+    before = out;
+    a->calls = b->calls = 0;
+    bad_seen = 0;
+    supports = 0;
+    code = entry->call(a, b, ccd, &out);
+    CHECK(may_return(entry, code), "%s, %s: returned %d", entry->name, what, code);
+    CHECK(a->calls + b->calls <= most, "%s, %s: %lu supports, %.3f s", entry->name, what, a->calls + b->calls,
+          (double)(clock() - start) / CLOCKS_PER_SEC);
+    if (code != entry->hit) {
+        CHECK(same_bits(&out, &before, sizeof out), "%s, %s: outputs touched with %d", entry->name, what, code);
+    } else if (entry->traits & STORES_DIR_POS) {
+        CHECK(fabs((double)ccdVec3Len2(&out.dir) - 1) <= 8 * (double)CCD_EPS, "%s, %s: dir not unit", entry->name, what);
+        CHECK(out.depth >= 0 && out.depth <= CCD_REAL_MAX, "%s, %s: depth %g", entry->name, what, (double)out.depth);
+        for (i = 0; i < 3; i++)
+            CHECK(fabs((double)out.pos.v[i]) <= (double)CCD_REAL_MAX, "%s, %s: pos", entry->name, what);
+        if (entry->call != run_PenetrationAlong)
+            CHECK(value_along(a, b, &out.dir) <= (double)out.depth + 64 * (double)CCD_EPS * size,
+                  "%s, %s: depth %g, but it takes %g", entry->name, what, (double)out.depth, value_along(a, b, &out.dir));
+    }
+    return code;
+}
+
+static void not_numbers(const entry_t *entry)
+{
+    const ccd_real_t values[] = {(ccd_real_t)NAN, (ccd_real_t)HUGE_VAL, -(ccd_real_t)HUGE_VAL};
+    int round;
+    for (round = 0; round < 120; round++) {
+        shape_t a, b;
+        ccd_t ccd;
+        int code;
+        random_pair(entry, round % 2, &a, &b, &ccd);
+        ccd.support1 = round % 4 < 2 ? bad_support : shape_support;
+        ccd.support2 = round % 4 < 2 ? shape_support : bad_support;
+        bad_from = 1 + (unsigned long)random_below(6);
+        bad_value = values[round % 3];
+        bad_axis = random_below(entry->call == run_PenetrationPlanar ? 2 : 3);
+        code = ask(entry, &a, &b, &ccd, 10, "a point that is not a number");
+        if (bad_seen)
+            CHECK(code == (entry->hit == CCD_HIT && (entry->traits & EXTENSION) && !(entry->traits & FROM_CENTERS)
+                               ? CCD_BAD_INPUT
+                               : entry->miss),
+                  "%s after such a point returned %d", entry->name, code);
+    }
+}
+
+static void tolerances(const entry_t *entry)
+{
+    const ccd_real_t values[] = {0, -1, -0.0f, (ccd_real_t)NAN, (ccd_real_t)1e-30, (ccd_real_t)1e-12, 1, (ccd_real_t)HUGE_VAL};
+    int round;
+    for (round = 0; round < 160; round++) {
+        const int kind = round % 8, overlapping = round / 8 % 2, refused = kind == 1 || kind == 3;
+        shape_t a, b;
+        ccd_t ccd;
+        int code;
+        random_pair(entry, overlapping, &a, &b, &ccd);
+        ccd.epa_tolerance = ccd.mpr_tolerance = ccd.dist_tolerance = values[kind];
+        code = ask(entry, &a, &b, &ccd, 10, "a tolerance");
+        if (refused && entry->hit == CCD_HIT && (entry->traits & EXTENSION) && !(entry->traits & FROM_CENTERS))
+            CHECK(code == CCD_BAD_INPUT, "%s with tolerance %g: %d", entry->name, (double)values[kind], code);
+        else
+            CHECK(code == (overlapping ? entry->hit : entry->miss), "%s with tolerance %g: %d", entry->name,
+                  (double)values[kind], code);
+    }
+}
+
+static void iterations(const entry_t *entry)
+{
+    int round;
+    for (round = 0; round < 200; round++) {
+        shape_t a, b;
+        ccd_t ccd;
+        int code;
+        random_pair(entry, round % 2, &a, &b, &ccd);
+        ccd.max_iterations = (unsigned long)(round / 2 % 5);
+        code = ask(entry, &a, &b, &ccd, 10, "few iterations");
+        /* The extension may say CCD_LIMIT, which these entries count as a hit. */
+        if (round % 2 == 0 && (!(entry->traits & EXTENSION) || (entry->traits & FROM_CENTERS)))
+            CHECK(code != entry->hit, "%s: objects far apart hit after %lu iterations", entry->name, ccd.max_iterations);
+    }
+}
+
+static void degenerate(const entry_t *entry)
+{
+    static const ccd_real_t point[] = {0, 0, 0}, segment[] = {-1, -1, 0, 1, 1, 0},
+                            square[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    const shape_t plain[] = {shape_polytope(point, 1),   shape_polytope(segment, 2), shape_polytope(square, 4),
+                             shape_sphere(0),            shape_capsule(0, 1),        shape_cylinder(1, 0),
+                             shape_box(1, 0, 1),         shape_sphere(1),            shape_box(1, 1, 1),
+                             shape_ellipsoid(1, 0.5, 2), shape_cylinder(1, 1),       shape_cone(1, 1)};
+    enum { PLAIN = sizeof plain / sizeof plain[0] };
+    static const double sizes[] = {1, 1e-3, 1e3, 1e-12, 1e12, 1e6};
+    int i, k, at, size;
+    for (i = 0; i < PLAIN; i++)
+        for (k = 0; k < PLAIN; k++)
+            for (at = 0; at < 3; at++)
+                for (size = 0; size < 6; size++) {
+                    static ccd_real_t scaled[2][12];
+                    shape_t s[2];
+                    ccd_t ccd;
+                    int n, c, code;
+                    s[0] = plain[i];
+                    s[1] = plain[k];
+                    for (n = 0; n < 2; n++) {
+                        for (c = 0; c < 3; c++)
+                            s[n].p[c] *= (ccd_real_t)sizes[size];
+                        for (c = 0; c < 3 * s[n].nverts; c++)
+                            scaled[n][c] = s[n].verts[c] * (ccd_real_t)sizes[size];
+                        if (s[n].nverts > 0)
+                            s[n].verts = scaled[n];
+                    }
+                    /* In one place, just touching or nearly so, and well apart. */
+                    shape_move(&s[1], at == 2 ? 10 * sizes[size] : 0, 0, at == 1 ? 2 * sizes[size] : 0);
+                    shape_query(&ccd);
+                    ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)(1e-4 * sizes[size]);
+                    code = ask(entry, &s[0], &s[1], &ccd, 10 * sizes[size], "a degenerate pair");
+                    if (at == 2 && entry->call != run_PenetrationPlanar)
+                        CHECK(code == entry->miss, "%s: shapes %d and %d apart, size %g: %d", entry->name, i, k, sizes[size], code);
+                    if (at == 0 && i >= 7 && k >= 7 && entry->call != run_PenetrationPlanar)
+                        CHECK(code == entry->hit, "%s: solids %d and %d in one place, size %g: %d", entry->name, i, k,
+                              sizes[size], code);
+                }
+    for (i = 0; i < PLAIN; i++) {
+        shape_t s = plain[i];
+        ccd_t ccd;
+        shape_query(&ccd);
+        ask(entry, &s, &s, &ccd, 10, "an object against itself");
+    }
+}
+
+int main(void)
+{
+    int i;
+    for (i = 0; i < ENTRIES; i++) {
+        const unsigned long failed = checks_failed;
+        not_numbers(&entries[i]);
+        tolerances(&entries[i]);
+        iterations(&entries[i]);
+        degenerate(&entries[i]);
+        printf("%s: %lu failed\n", entries[i].name, checks_failed - failed);
+    }
+    return checks_end();
+}
