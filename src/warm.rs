@@ -20,6 +20,7 @@ use crate::bundle::{self, Memory, Seen};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::epa::{self, Arena, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
+use crate::local::{self, Shortcut};
 use crate::math::{Real, Vec3, unit};
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal};
@@ -272,20 +273,41 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 
+    /// A local minimum, not yet a proven overlap: the few-supports solver, and where that
+    /// does not end in time the paper's method from there on.
     fn descend(
         &self,
         memory: &mut Memory,
         settings: &Settings,
         seen: &mut Seen,
     ) -> Result<Answer, Fault> {
-        bundle::penetration(
+        let first = Settings {
+            max_iterations: settings.max_iterations.min(PATIENCE),
+            ..*settings
+        };
+        let found = bundle::penetration(
             &self.md,
             self.centre.map(|c| c.v).as_ref(),
             &self.cold_start(),
             memory,
-            settings,
+            &first,
             seen,
-        )
+        )?;
+        let Answer::Limit(tired) = found else {
+            return Ok(found);
+        };
+        let rest = Settings {
+            max_iterations: settings.max_iterations - first.max_iterations,
+            ..*settings
+        };
+        if rest.max_iterations == 0 {
+            return Ok(found);
+        }
+        let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
+        if let Answer::Hit(hit) | Answer::Limit(hit) = &answer {
+            *memory = State::of(OVERLAP, hit.normal).memory;
+        }
+        Ok(answer)
     }
 
     /// A local minimum of the depth.
@@ -443,6 +465,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 }
+
+/// Support points after which the few-supports solver has failed: it needs a dozen, on
+/// the hardest pairs thirty.
+const PATIENCE: u64 = 64;
 
 /// Where the proof of [`Pair::mpr`] may stop: a gap of this share of the depth.
 const GAP: Real = 0.003;
