@@ -120,6 +120,29 @@ impl State {
     }
 }
 
+/// Points of D that a query has come to know, each once.
+#[derive(Default)]
+struct Known {
+    points: [SupportPoint; epa::GIVEN],
+    len: usize,
+}
+
+impl Known {
+    fn points(&self) -> &[SupportPoint] {
+        self.points.get(..self.len).unwrap_or(&[])
+    }
+
+    /// Adds a point, unless it is there or there is no room.
+    fn add(&mut self, p: &SupportPoint) {
+        if !self.points().iter().any(|k| k.v == p.v)
+            && let Some(to) = self.points.get_mut(self.len)
+        {
+            *to = *p;
+            self.len += 1;
+        }
+    }
+}
+
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
     /// The Minkowski difference.
@@ -151,38 +174,41 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .unwrap_or(Vec3::x())
     }
 
-    /// Step 3: the answer of a solver, with the overlap proven or refuted.
+    /// Step 3: the answer of a solver, with the overlap proven or refuted. `known` gains
+    /// the points of the proof.
     fn proven(
         &self,
         hit: Penetration,
         limit: bool,
-        known: &[SupportPoint],
+        known: &mut Known,
         settings: &Settings,
     ) -> Result<Answer, Fault> {
-        let start = match (self.centre, known.first()) {
+        let start = match (self.centre, known.points().first()) {
             (Some(c), _) => c,
             (None, Some(k)) => *k,
             (None, None) => self.md.support(&hit.normal)?,
         };
         // The proof has a budget of its own: a search cut short must still know
         // whether it has an answer.
-        Ok(
-            match gjk::intersect(&self.md, start, known, settings.max_iterations)? {
-                Overlap::Yes(simplex) => {
-                    let hit = Penetration {
-                        depth_lower: simplex.inner_distance().min(hit.depth),
-                        ..hit
-                    };
-                    if limit {
-                        Answer::Limit(hit)
-                    } else {
-                        Answer::Hit(hit)
-                    }
+        let overlap = gjk::intersect(&self.md, start, known.points(), settings.max_iterations)?;
+        Ok(match overlap {
+            Overlap::Yes(simplex) => {
+                for p in simplex.points() {
+                    known.add(p);
                 }
-                Overlap::No(n) => Answer::Miss(n),
-                Overlap::Undecided => Answer::Undecided(hit),
-            },
-        )
+                let hit = Penetration {
+                    depth_lower: simplex.inner_distance().min(hit.depth),
+                    ..hit
+                };
+                if limit {
+                    Answer::Limit(hit)
+                } else {
+                    Answer::Hit(hit)
+                }
+            }
+            Overlap::No(n) => Answer::Miss(n),
+            Overlap::Undecided => Answer::Undecided(hit),
+        })
     }
 
     /// Do the objects overlap? (`Ok(None)`: the iterations ran out.)
@@ -206,65 +232,26 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         )
     }
 
-    /// The minimum depth at MPR's price: a local minimum, then a look at what a proof of
-    /// the global one would need.
-    pub fn mpr(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+    /// A local minimum of the depth.
+    pub fn local(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        self.local_known(state, settings, &mut Known::default())
+    }
+
+    /// [`Pair::local`], and the points it came to know.
+    fn local_known(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        known: &mut Known,
+    ) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
         let mut memory = state.solver();
-        let mut seen = Seen::default();
-        let found = self.descend(&mut memory, settings, &mut seen)?;
-        let local = match found {
-            Answer::Hit(hit) | Answer::Limit(hit) => hit,
-            other => {
-                state.remember(&other);
-                return Ok(other);
-            }
-        };
-        let mut points = [SupportPoint::default(); epa::GIVEN];
-        let mut count = 0;
-        for (to, p) in points
-            .iter_mut()
-            .zip(seen.points().iter().copied().chain(self.centre))
-        {
-            *to = p;
-            count += 1;
-        }
-        let seed = Seed {
-            dir: local.normal,
-            points: &points[..count],
-            upper: Some((local.depth, local.normal)),
-        };
-        let proof = Settings {
-            tolerance: settings.tolerance.max(GAP * local.depth),
-            max_iterations: settings.max_iterations.min(STEPS),
-        };
-        let checked = epa::minimum(&self.md, &seed, &proof, &mut Desk::default())?;
-        let answer = match checked {
-            Answer::Hit(global) | Answer::Limit(global) => {
-                let lower = global.depth_lower;
-                let mut found = local;
-                if global.depth < local.depth - settings.tolerance {
-                    // Another valley: its floor is where the proof got to, or below.
-                    memory = State::of(OVERLAP, global.normal).memory;
-                    found = global;
-                    if global.depth - lower > settings.tolerance
-                        && let Answer::Hit(hit) | Answer::Limit(hit) =
-                            self.descend(&mut memory, settings, &mut seen)?
-                        && hit.depth < global.depth
-                    {
-                        found = hit;
-                    }
-                }
-                Answer::Hit(Penetration {
-                    depth_lower: lower.min(found.depth),
-                    ..found
-                })
-            }
-            // Too thin an overlap for so short a search: yes or no has no such limit.
-            Answer::Undecided(_) => self.proven(local, false, &points[..count], settings)?,
-            Answer::Miss(n) => Answer::Miss(n),
+        let answer = match self.descend(&mut memory, settings, known)? {
+            Answer::Hit(hit) => self.proven(hit, false, known, settings)?,
+            Answer::Limit(hit) => self.proven(hit, true, known, settings)?,
+            other => other,
         };
         match answer {
             Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(memory),
@@ -273,14 +260,68 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 
+    /// The minimum depth at MPR's price: a local minimum, then as much of a proof that it
+    /// is the global one as finds what is lower, to a gap of [`GAP`].
+    pub fn mpr(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        let mut known = Known::default();
+        let answer = self.local_known(state, settings, &mut known)?;
+        let (Answer::Hit(local) | Answer::Limit(local)) = answer else {
+            return Ok(answer);
+        };
+        let proof = Settings {
+            tolerance: settings.tolerance.max(GAP * local.depth),
+            max_iterations: settings.max_iterations.min(STEPS),
+        };
+        // A shallow contact of polytopes is proven by the tetrahedron that proved the
+        // overlap: the centre and the face that the local search ended on.
+        if local.depth - local.depth_lower <= proof.tolerance {
+            return Ok(answer);
+        }
+        let seed = Seed {
+            dir: local.normal,
+            points: known.points(),
+            upper: Some((local.depth, local.normal)),
+        };
+        let (Answer::Hit(global) | Answer::Limit(global)) =
+            epa::minimum(&self.md, &seed, &proof, &mut Desk::default())?
+        else {
+            return Ok(answer);
+        };
+        let mut best = Penetration {
+            depth_lower: global.depth_lower.min(local.depth),
+            ..local
+        };
+        if global.depth < local.depth - settings.tolerance {
+            // Another valley: its floor is where the proof got to, or below.
+            let mut memory = State::of(OVERLAP, global.normal).memory;
+            best = global;
+            if global.depth - global.depth_lower > settings.tolerance
+                && let Answer::Hit(hit) | Answer::Limit(hit) =
+                    self.descend(&mut memory, settings, &mut known)?
+                && hit.depth < global.depth
+            {
+                best = Penetration {
+                    depth_lower: global.depth_lower.min(hit.depth),
+                    ..hit
+                };
+            }
+            *state = State::overlap(memory);
+        }
+        Ok(match answer {
+            Answer::Limit(_) => Answer::Limit(best),
+            _ => Answer::Hit(best),
+        })
+    }
+
     /// A local minimum, not yet a proven overlap: the few-supports solver, and where that
     /// does not end in time the paper's method from there on.
     fn descend(
         &self,
         memory: &mut Memory,
         settings: &Settings,
-        seen: &mut Seen,
+        known: &mut Known,
     ) -> Result<Answer, Fault> {
+        let mut seen = Seen::default();
         let first = Settings {
             max_iterations: settings.max_iterations.min(PATIENCE),
             ..*settings
@@ -291,8 +332,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             &self.cold_start(),
             memory,
             &first,
-            seen,
+            &mut seen,
         )?;
+        for p in seen.points() {
+            known.add(p);
+        }
         let Answer::Limit(tired) = found else {
             return Ok(found);
         };
@@ -306,25 +350,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &answer {
             *memory = State::of(OVERLAP, hit.normal).memory;
-        }
-        Ok(answer)
-    }
-
-    /// A local minimum of the depth.
-    pub fn local(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
-            return Ok(Answer::Miss(n));
-        }
-        let mut memory = state.solver();
-        let mut seen = Seen::default();
-        let answer = match self.descend(&mut memory, settings, &mut seen)? {
-            Answer::Hit(hit) => self.proven(hit, false, seen.points(), settings)?,
-            Answer::Limit(hit) => self.proven(hit, true, seen.points(), settings)?,
-            other => other,
-        };
-        match answer {
-            Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(memory),
-            other => state.remember(&other),
         }
         Ok(answer)
     }
@@ -371,9 +396,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             point2,
             iterations: settings.max_iterations - budget,
         };
-        let known = portal.map(|p| p.planes.map(|plane| plane.point));
-        let known: &[SupportPoint] = known.as_ref().map_or(&[], |k| k);
-        let mut answer = self.proven(hit, limit, known, settings)?;
+        let mut known = Known::default();
+        for plane in portal.iter().flat_map(|p| &p.planes) {
+            known.add(&plane.point);
+        }
+        let mut answer = self.proven(hit, limit, &mut known, settings)?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
             // The bound along dir: the portal is inscribed and the origin in D.
             hit.depth_lower = match portal {
@@ -457,8 +484,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .unwrap_or(Vec3::y());
         let answer = planar::penetration(&self.md, &m, start, settings)?;
         let answer = match answer {
-            Answer::Hit(hit) => self.proven(hit, false, &[], settings)?,
-            Answer::Limit(hit) => self.proven(hit, true, &[], settings)?,
+            Answer::Hit(hit) => self.proven(hit, false, &mut Known::default(), settings)?,
+            Answer::Limit(hit) => self.proven(hit, true, &mut Known::default(), settings)?,
             other => other,
         };
         state.remember(&answer);
