@@ -6,14 +6,12 @@
 //!
 //! The nearest point v of a simplex inscribed in D gives the next direction
 //! n = −v/|v|. A support value n·s(n) < 0 is a plane with all of D on its far side:
-//! apart, proven. A tetrahedron around the origin: overlap, proven. Where v becomes too
-//! short to tell a direction a portal decides ([`portal`]). Departure from
+//! apart, proven. A tetrahedron around the origin: overlap, proven. Departure from
 //! libccd: nothing is compared with an absolute epsilon, so objects of a
 //! micrometre and of a thousand kilometres are answered alike; objects that touch
 //! within rounding (a few ulps of their coordinates) count as overlapping.
 
-use crate::math::{EPSILON, Real, Vec3, unit};
-use crate::portal::{self, Exit, Plane};
+use crate::math::{EPSILON, Real, Vec3};
 use crate::simplex::{Nearest, Simplex};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -53,11 +51,16 @@ pub fn search<A: SupportMap, B: SupportMap>(
     let mut simplex = Simplex::new(start);
     let mut v = start.v;
     let mut size = start.magnitude();
+    let mut stalls = 0;
     for _ in 0..max_iterations {
         let distance = v.norm();
         // Scale-free zero; also ends on NaN.
         if !(distance > ROUNDING * size) {
             return Ok(Overlap::Yes(simplex));
+        }
+        if distance == Real::INFINITY {
+            // Its square overflows: no direction to ask.
+            return Ok(Overlap::Undecided);
         }
         let n = -v / distance;
         let w = match farthest(known, &n) {
@@ -76,47 +79,19 @@ pub fn search<A: SupportMap, B: SupportMap>(
         match simplex.reduce() {
             Nearest::Inside => return Ok(Overlap::Yes(simplex)),
             Nearest::Outside(next) => {
-                // Each step comes nearer by at least a rounding error, or v is too
-                // short to tell a direction.
+                // Where the distance is hardly above rounding, a step that turns the
+                // simplex the right way need not look nearer. NaN counts as no nearer.
                 if !(next.norm() < distance * (1.0 - EPSILON)) {
-                    return near_touch(md, simplex, max_iterations);
+                    stalls += 1;
+                    if stalls > STALLS {
+                        return Ok(Overlap::Yes(simplex));
+                    }
                 }
                 v = next;
             }
         }
     }
     Ok(Overlap::Undecided)
-}
-
-/// The last word where the objects nearly touch. There v is mostly rounding error, and
-/// with it the direction −v/|v|; the normals of a portal's triangles are not. The ray
-/// leaves from a point inside the simplex through the origin: if the origin is in D,
-/// the ray ends beyond it.
-fn near_touch<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    simplex: Simplex,
-    max_iterations: u64,
-) -> Result<Overlap, Fault> {
-    let inner = simplex.mean();
-    let Some(d) = unit(&-inner.v) else {
-        return Ok(Overlap::Yes(simplex));
-    };
-    let first = Plane::of(md, d)?;
-    let mut best = first;
-    let mut budget = max_iterations;
-    // Any portal that has the origin on its inner side decides.
-    let tolerance = Real::INFINITY;
-    Ok(
-        match portal::mpr(md, &first, tolerance, false, &mut best, &mut budget)? {
-            Exit::Miss(n) => Overlap::No(n),
-            Exit::Converged(portal, _) | Exit::Limit(Some(portal)) if budget > 0 => {
-                let [a, b, c] = portal.planes.map(|p| p.point);
-                Overlap::Yes(Simplex::of([inner, a, b, c]))
-            }
-            Exit::Converged(..) | Exit::Limit(_) => Overlap::Undecided,
-            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => Overlap::Yes(simplex),
-        },
-    )
 }
 
 /// The point farthest along `n`, if it lies beyond the origin.
@@ -137,3 +112,283 @@ fn farthest(known: &[SupportPoint], n: &Vec3) -> Option<SupportPoint> {
 /// Distances below this many times the largest coordinate are rounding errors of
 /// a difference of two points and of the nearest-point arithmetic.
 const ROUNDING: Real = 4.0 * EPSILON;
+
+/// Steps that bring the simplex no nearer before the origin counts as reached: no
+/// support plane excludes it, and the arithmetic cannot tell the difference.
+const STALLS: u32 = 3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::unit;
+    use crate::shapes::{Random, ball, capsule, corners, ellipsoid, hull, placed};
+
+    type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
+
+    /// Do they overlap? Also: a miss must come with a direction that separates, and
+    /// swapped objects must give the same answer.
+    fn overlap(a: &Shape, b: &Shape, dir: &Vec3) -> bool {
+        let ask = |a: &Shape, b: &Shape, dir: Vec3| {
+            let md = MinkowskiDifference::new(a, b);
+            let start = md.support(&dir).unwrap();
+            match intersect(&md, start, &[], 1000).unwrap() {
+                Overlap::Yes(_) => true,
+                Overlap::No(n) => {
+                    assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
+                    assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
+                    false
+                }
+                Overlap::Undecided => panic!("undecided"),
+            }
+        };
+        let answer = ask(a, b, *dir);
+        assert_eq!(answer, ask(b, a, -dir), "swapped");
+        answer
+    }
+
+    /// A pair of unit size whose distance is `gap` (less than zero: the depth).
+    fn pair(kind: usize, gap: Real, r: &mut Random) -> (Shape, Shape) {
+        let rot = r.rotation();
+        let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
+        let cube = placed(&corners(half), &rot, Vec3::zeros());
+        let [x, y, up] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
+        // A point of the cube's upper face.
+        let top = x * r.within(-0.9, 0.9) * half.x + y * r.within(-0.9, 0.9) * half.y + up * half.z;
+        let lifted = |points: &[Vec3], by: Vec3| points.iter().map(|p| p + by).collect::<Vec<_>>();
+        match kind {
+            // A vertex over a face.
+            0 => {
+                let points = r.points(12, 1.0);
+                let low = hull(&points)(&-up);
+                let points = lifted(&points, top + up * gap - low);
+                (Box::new(hull(&cube)), Box::new(hull(&points)))
+            }
+            // A face on the same face, on a part of it, along an edge, at a corner.
+            1..=4 => {
+                let shift = match kind {
+                    1 => Vec3::zeros(),
+                    2 => x * (0.8 * half.x) + y * (0.3 * half.y),
+                    3 => x * (2.0 * half.x),
+                    _ => x * (2.0 * half.x) + y * (2.0 * half.y),
+                };
+                let other = lifted(&cube, shift + up * (2.0 * half.z + gap));
+                (Box::new(hull(&cube)), Box::new(hull(&other)))
+            }
+            // An edge across an edge.
+            5 => {
+                let n = unit(&(x + y)).unwrap();
+                let edge = n.cross(&up) + up * 0.5;
+                let at = x * half.x + y * half.y + n * gap + up * r.within(-0.2, 0.2);
+                let other = [at - edge, at + edge, at + n + up, at + n - up];
+                (Box::new(hull(&cube)), Box::new(hull(&other)))
+            }
+            6 => (
+                Box::new(hull(&cube)),
+                Box::new(ball(top + up * (gap + 0.5), 0.5)),
+            ),
+            7 => (
+                Box::new(ball(Vec3::zeros(), 1.0)),
+                Box::new(ball(up * (1.5 + gap), 0.5)),
+            ),
+            8 => {
+                let at = up * (1.0 + gap) + x * r.within(-0.5, 0.5) + y * r.within(-0.5, 0.5);
+                (
+                    Box::new(capsule(-x, x, 0.5)),
+                    Box::new(capsule(at - y, at + y, 0.5)),
+                )
+            }
+            // Two ellipsoids with a common normal.
+            _ => {
+                let mut side = |n: Vec3, at: Vec3| {
+                    let radii = Vec3::from_fn(|_, _| r.within(0.2, 1.0));
+                    let turn = r.rotation();
+                    let extreme = ellipsoid(radii, turn, Vec3::zeros())(&n);
+                    Box::new(ellipsoid(radii, turn, at - extreme))
+                };
+                (side(up, Vec3::zeros()), side(-up, up * gap))
+            }
+        }
+    }
+
+    /// Gaps and depths from 20 ulps to a tenth of the size: no false hit, no false miss.
+    #[test]
+    fn no_false_answer_down_to_a_few_ulps() {
+        let mut r = Random::new(1);
+        for ulps in [20.0, 100.0, 4500.0, 1e6, 1e10] {
+            let gap = (ulps * EPSILON).min(0.1);
+            for round in 0..200 {
+                for kind in 0..10 {
+                    for gap in [gap, -gap] {
+                        let (a, b) = pair(kind, gap, &mut r);
+                        assert_eq!(
+                            overlap(&a, &b, &r.direction()),
+                            gap < 0.0,
+                            "kind {kind}, gap {gap:e}, round {round}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    /// The same bits at every power of two from a micrometre to 1000 km and beyond.
+    #[test]
+    fn free_of_scale() {
+        let mut r = Random::new(2);
+        for _ in 0..100 {
+            for kind in 0..10 {
+                let gap = r.within(-0.1, 0.1);
+                let (a, b) = pair(kind, gap, &mut r);
+                let dir = r.direction();
+                for exponent in [-20, 20] {
+                    let scale = (2.0 as Real).powi(exponent);
+                    let scaled = |s: &Shape, d: &Vec3| s(d) * scale;
+                    let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
+                    let other = MinkowskiDifference::new(
+                        |d: &Vec3| scaled(&a, d),
+                        |d: &Vec3| scaled(&b, d),
+                    );
+                    let start = md.support(&dir).unwrap();
+                    let there = other.support(&dir).unwrap();
+                    let one = intersect(&md, start, &[], 1000).unwrap();
+                    let two = intersect(&other, there, &[], 1000).unwrap();
+                    assert_eq!(matches!(one, Overlap::Yes(_)), gap < 0.0);
+                    match (one, two) {
+                        (Overlap::No(n), Overlap::No(m)) => assert_eq!(n, m),
+                        (Overlap::Yes(s), Overlap::Yes(t)) => {
+                            assert_eq!(s.inner_distance() * scale, t.inner_distance());
+                        }
+                        _ => panic!("the answers differ"),
+                    }
+                    assert_eq!(md.supports(), other.supports());
+                }
+            }
+        }
+    }
+
+    /// Boxes a million times longer than thick (single: a thousand), one across the other.
+    #[test]
+    fn needles_and_plates() {
+        let mut r = Random::new(3);
+        // In single precision 1e-6 would be a few ulps of the length.
+        let thin: Real = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
+        for round in 0..300 {
+            let rot = r.rotation();
+            let mut half = || Vec3::new(r.within(0.1, 1.0), r.within(1e2, 1e3) * thin, thin);
+            let (one, other) = (half(), half());
+            // Turned about the thin axis.
+            let turned = rot * nalgebra::Rotation3::new(Vec3::z() * r.within(-3.0, 3.0));
+            let long = placed(&corners(one), &rot, Vec3::zeros());
+            for gap in [0.1 * thin, -0.1 * thin] {
+                let at = rot * Vec3::z() * (2.0 * thin + gap);
+                let across = placed(&corners(other), &turned, at);
+                let (a, b): (Shape, Shape) = (Box::new(hull(&long)), Box::new(hull(&across)));
+                let hit = overlap(&a, &b, &r.direction());
+                assert_eq!(hit, gap < 0.0, "{round}");
+            }
+        }
+    }
+
+    /// Polygons, segments and points, alone and against each other, in a common plane
+    /// and across it: apart by a tenth, or overlapping by that much.
+    #[test]
+    fn flat_shapes() {
+        let mut r = Random::new(4);
+        for round in 0..500 {
+            let rot = r.rotation();
+            let at = r.vector(3.0);
+            let [x, y, z] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
+            let triangle = [at, at + x, at + x * 0.3 + y];
+            let inner = at + x * 0.45 + y * 0.3;
+            let flat = |points: &[Vec3]| -> Shape { Box::new(hull(points)) };
+            let shifted = |by: Vec3| triangle.map(|p| p + by);
+            // In one plane: overlap is exact in the plane only, within rounding across
+            // it; so only what is apart can be told for certain.
+            for by in [y * 1.1, y * -1.1, x * 1.1, x * -1.1] {
+                let (a, b) = (flat(&triangle), flat(&shifted(by)));
+                assert!(!overlap(&a, &b, &r.direction()), "side by side, {round}");
+            }
+            // Across the plane.
+            let segment = flat(&[inner - z * 0.5, inner + z * 0.4]);
+            assert!(
+                overlap(&flat(&triangle), &segment, &r.direction()),
+                "{round}"
+            );
+            let short = flat(&[inner + z * 0.1, inner + z * 0.4]);
+            assert!(
+                !overlap(&flat(&triangle), &short, &r.direction()),
+                "{round}"
+            );
+            let outside = at + x * 0.45 - y * 0.1;
+            let beside = flat(&[outside - z, outside + z]);
+            assert!(
+                !overlap(&flat(&triangle), &beside, &r.direction()),
+                "{round}"
+            );
+            // Points in and out of a solid.
+            let cube = flat(&placed(&corners(Vec3::new(0.5, 0.6, 0.7)), &rot, at));
+            let point = |p: Vec3| flat(&[p]);
+            assert!(
+                overlap(&cube, &point(at + x * 0.4), &r.direction()),
+                "{round}"
+            );
+            assert!(
+                !overlap(&cube, &point(at + x * 0.6), &r.direction()),
+                "{round}"
+            );
+            // Segments that miss each other by a tenth, and parallel ones.
+            let a = flat(&[at - x, at + x]);
+            let lifted = at + z * 0.1;
+            for b in [[lifted - y, lifted + y], [lifted - x, lifted + x * 0.5]] {
+                assert!(!overlap(&a, &flat(&b), &r.direction()), "{round}");
+            }
+            // A point on itself is an overlap, two points are not.
+            assert!(overlap(&point(at), &point(at), &r.direction()), "{round}");
+            assert!(!overlap(&point(at), &point(at + x * 1e-3), &r.direction()));
+        }
+    }
+
+    /// Shapes that touch exactly, on a grid where nothing is rounded, are a hit.
+    #[test]
+    fn exact_touch_is_a_hit() {
+        let cube = corners(Vec3::new(0.5, 0.25, 0.5));
+        let mut r = Random::new(5);
+        for by in [
+            Vec3::new(1.0, 0.0, 0.0),
+            Vec3::new(1.0, 0.125, -0.25),
+            Vec3::new(1.0, 0.5, 0.0),
+            Vec3::new(1.0, 0.5, 1.0),
+        ] {
+            let other: Vec<_> = cube.iter().map(|p| p + by).collect();
+            let (a, b): (Shape, Shape) = (Box::new(hull(&cube)), Box::new(hull(&other)));
+            for _ in 0..50 {
+                assert!(overlap(&a, &b, &r.direction()), "{by}");
+            }
+        }
+    }
+
+    /// Known points of D do not change the answer, and points all around the origin are
+    /// a proof by themselves.
+    #[test]
+    fn known_points() {
+        let mut r = Random::new(6);
+        for _ in 0..300 {
+            for kind in 0..10 {
+                let gap = r.within(-0.1, 0.1);
+                let (a, b) = pair(kind, gap, &mut r);
+                let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
+                let known = [0; 3].map(|_| md.support(&r.direction()).unwrap());
+                let answer = intersect(&md, known[0], &known, 1000).unwrap();
+                assert_eq!(matches!(answer, Overlap::Yes(_)), gap < 0.0);
+                if let Overlap::Yes(simplex) = answer {
+                    let before = md.supports();
+                    let again = intersect(&md, simplex.points()[0], simplex.points(), 1000);
+                    if simplex.points().len() == 4 {
+                        assert!(matches!(again, Ok(Overlap::Yes(_))));
+                        assert_eq!(md.supports(), before);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -25,6 +25,8 @@ pub mod math;
 pub mod nearest;
 pub mod planar;
 pub mod portal;
+#[cfg(test)]
+mod shapes;
 pub mod simplex;
 pub mod support;
 pub mod warm;

@@ -44,23 +44,6 @@ impl Simplex {
         }
     }
 
-    /// A tetrahedron.
-    pub fn of(points: [SupportPoint; 4]) -> Self {
-        Self { points, len: 4 }
-    }
-
-    /// The mean of the points.
-    pub fn mean(&self) -> SupportPoint {
-        let mut mean = SupportPoint::default();
-        let share = 1.0 / self.points().len() as Real;
-        for p in self.points() {
-            mean.v += p.v * share;
-            mean.v1 += p.v1 * share;
-            mean.v2 += p.v2 * share;
-        }
-        mean
-    }
-
     /// The points of the simplex.
     #[inline]
     pub fn points(&self) -> &[SupportPoint] {
@@ -90,7 +73,7 @@ impl Simplex {
             };
             let origin = -n.dot(&a);
             let inner = n.dot(&(self.points[opposite].v - a));
-            if !(origin * inner > 0.0) {
+            if !same_sign(origin, inner) {
                 return 0.0;
             }
             least = least.min(origin.abs());
@@ -108,6 +91,11 @@ impl Simplex {
     }
 
     /// Reduces the simplex to the face that holds its point nearest to the origin.
+    ///
+    /// The newest point must lie beyond the origin, seen from the nearest point of the
+    /// others: then that face has the newest point for a vertex, and the faces without
+    /// it are not looked at. Near the origin, where the arithmetic could prefer one of
+    /// them, that is what makes every new point count.
     #[inline]
     pub fn reduce(&mut self) -> Nearest {
         let p = |i: usize| self.points[i].v;
@@ -128,28 +116,22 @@ impl Simplex {
     }
 
     fn reduce_tetrahedron(&mut self) -> Nearest {
-        // Each face with the vertex opposite to it.
-        const FACES: [([usize; 3], usize); 4] = [
-            ([0, 1, 3], 2),
-            ([1, 2, 3], 0),
-            ([2, 0, 3], 1),
-            ([0, 1, 2], 3),
-        ];
         let mut best: Option<(Real, Vec3, Face, [usize; 3])> = None;
-        for (f, opposite) in FACES {
+        // The last face lacks the newest vertex.
+        for (f, opposite) in &FACES[..3] {
             let [a, b, c] = f.map(|i| self.points[i].v);
             let n = (b - a).cross(&(c - a));
             let origin = -n.dot(&a);
-            let inner = n.dot(&(self.points[opposite].v - a));
+            let inner = n.dot(&(self.points[*opposite].v - a));
             // The origin is on the inner side of this face only if both products
-            // have one sign; a flat tetrahedron (product 0) or NaN examines the face.
-            if origin * inner > 0.0 {
+            // have one sign; a flat tetrahedron (0) or NaN examines the face.
+            if same_sign(origin, inner) {
                 continue;
             }
             let (v, face) = nearest_on_triangle(&a, &b, &c);
             let d = v.norm_squared();
             if best.as_ref().is_none_or(|x| d < x.0) {
-                best = Some((d, v, face, f));
+                best = Some((d, v, face, *f));
             }
         }
         match best {
@@ -160,6 +142,12 @@ impl Simplex {
             }
         }
     }
+}
+
+/// Are both positive or both negative? Their product could underflow.
+#[inline]
+fn same_sign(a: Real, b: Real) -> bool {
+    a > 0.0 && b > 0.0 || a < 0.0 && b < 0.0
 }
 
 /// Which of a triangle's vertices span the face that holds the nearest point.
@@ -202,41 +190,41 @@ fn nearest_on_segment(a: &Vec3, b: &Vec3) -> (Vec3, Face) {
     } else if !(t < len2) {
         (*b, Face::Vertex(1))
     } else {
-        (a + ab * (t / len2), Face::Edge(0, 1))
+        // Close to the origin the sum is all rounding error: what of it lies along
+        // the segment is taken away, so that the direction stays perpendicular.
+        let v = a + ab * (t / len2);
+        (v - ab * (v.dot(&ab) / len2), Face::Edge(0, 1))
     }
 }
 
+/// As all of [`Simplex::reduce`], for a triangle whose newest vertex is `c`.
 #[inline]
 fn nearest_on_triangle(a: &Vec3, b: &Vec3, c: &Vec3) -> (Vec3, Face) {
-    let ab = b - a;
-    let ac = c - a;
-    let n = ab.cross(&ac);
+    let n = (b - a).cross(&(c - a));
     let nn = n.norm_squared();
     // Twice the signed areas of the triangles that the projected origin makes
-    // with each edge, as multiples of n; all positive: it is inside.
+    // with the edges bc and ca, as multiples of n: positive on the inner side.
     let u = n.dot(&b.cross(c));
     let v = n.dot(&c.cross(a));
-    let w = n.dot(&a.cross(b));
-    if u > 0.0 && v > 0.0 && w > 0.0 && nn > 0.0 {
+    if u > 0.0 && v > 0.0 && nn > 0.0 {
         return (n * (a.dot(&n) / nn), Face::All);
     }
-    // Outside an edge, or without area: the nearest of the edges that can hold it.
-    let mut best = nearest_on_segment(a, b);
-    let mut best_d = best.0.norm_squared();
-    for (i, j, p, q) in [(1, 2, b, c), (2, 0, c, a)] {
-        let (x, face) = nearest_on_segment(p, q);
-        let d = x.norm_squared();
-        if d < best_d {
-            best_d = d;
-            best = (
-                x,
-                match face {
-                    Face::Vertex(0) => Face::Vertex(i),
-                    Face::Vertex(_) => Face::Vertex(j),
-                    _ => Face::Edge(i, j),
-                },
-            );
-        }
+    // Outside an edge, or without area.
+    let (p, on_ac) = nearest_on_segment(a, c);
+    let (q, on_bc) = nearest_on_segment(b, c);
+    if q.norm_squared() < p.norm_squared() {
+        let face = match on_bc {
+            Face::Vertex(0) => Face::Vertex(1),
+            Face::Vertex(_) => Face::Vertex(2),
+            _ => Face::Edge(1, 2),
+        };
+        (q, face)
+    } else {
+        let face = match on_ac {
+            Face::Vertex(0) => Face::Vertex(0),
+            Face::Vertex(_) => Face::Vertex(2),
+            _ => Face::Edge(0, 2),
+        };
+        (p, face)
     }
-    best
 }

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Support mappings for the unit tests, and where to put them.
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+use crate::math::{Real, Vec3, unit};
+
+pub type Rotation = nalgebra::Rotation3<Real>;
+
+/// The same numbers on every machine.
+pub struct Random(Pcg64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(Pcg64::seed_from_u64(seed))
+    }
+
+    pub fn within(&mut self, low: Real, high: Real) -> Real {
+        self.0.random_range(low..high)
+    }
+
+    pub fn vector(&mut self, size: Real) -> Vec3 {
+        Vec3::from_fn(|_, _| self.within(-size, size))
+    }
+
+    pub fn direction(&mut self) -> Vec3 {
+        loop {
+            let v = self.vector(1.0);
+            if v.norm() <= 1.0
+                && let Some(n) = unit(&v)
+            {
+                return n;
+            }
+        }
+    }
+
+    pub fn rotation(&mut self) -> Rotation {
+        let q = nalgebra::Quaternion::from_vector(nalgebra::Vector4::from_fn(|_, _| {
+            self.within(-1.0, 1.0)
+        }));
+        nalgebra::UnitQuaternion::from_quaternion(q).to_rotation_matrix()
+    }
+
+    /// `n` points on a sphere.
+    pub fn points(&mut self, n: usize, radius: Real) -> Vec<Vec3> {
+        (0..n).map(|_| self.direction() * radius).collect()
+    }
+}
+
+/// The hull of the points.
+pub fn hull(points: &[Vec3]) -> impl Fn(&Vec3) -> Vec3 + use<> {
+    let points = points.to_vec();
+    move |d| {
+        let mut best = points[0];
+        for p in &points {
+            if p.dot(d) > best.dot(d) {
+                best = *p;
+            }
+        }
+        best
+    }
+}
+
+/// The corners of a box with these half extents about the origin.
+pub fn corners(half: Vec3) -> Vec<Vec3> {
+    (0..8)
+        .map(|i| {
+            let sign = |bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
+            half.component_mul(&Vec3::new(sign(1), sign(2), sign(4)))
+        })
+        .collect()
+}
+
+/// Points moved rigidly.
+pub fn placed(points: &[Vec3], rotation: &Rotation, at: Vec3) -> Vec<Vec3> {
+    points.iter().map(|p| rotation * p + at).collect()
+}
+
+pub fn ball(at: Vec3, radius: Real) -> impl Fn(&Vec3) -> Vec3 {
+    move |d| at + d * radius
+}
+
+/// All points within `radius` of the segment.
+pub fn capsule(a: Vec3, b: Vec3, radius: Real) -> impl Fn(&Vec3) -> Vec3 {
+    move |d| (if d.dot(&(b - a)) > 0.0 { b } else { a }) + d * radius
+}
+
+pub fn ellipsoid(radii: Vec3, rotation: Rotation, at: Vec3) -> impl Fn(&Vec3) -> Vec3 {
+    move |d| {
+        let e = radii.component_mul(&(rotation.inverse() * d));
+        rotation * radii.component_mul(&(e / e.norm())) + at
+    }
+}
