@@ -27,7 +27,8 @@ enum { LOOP_MPR = 40000, LOOP_GJK = 4000, LOOP_OURS = 400000 };
  * too deep: it is a local method with a safeguard, not a proof. */
 static const double mpr_deep_percent = 1;
 
-static int shown;
+/* which fault of which entry point has been shown in full */
+static int shown[ENTRIES];
 
 static int by_value(const void *x, const void *y)
 {
@@ -131,8 +132,9 @@ int main(int argc, char **argv)
                     q.surface = p.surface;
                     faults = judge(e, &x, &p.a, &p.b, &q);
                     tally(t ? &fine[k][category] : &table[k][category], &x, &p, faults);
-                    if (!e->system && faults & FAULTS_NEVER && (broken++, shown++ < 20)) {
-                        printf("BROKEN %s, pair %d, tolerance %g, %s: ", category_text(category), i, tols[t], e->name);
+                    if (!e->system && faults & FAULTS_NEVER & ~shown[k]) {
+                        shown[k] |= faults;
+                        printf("first seen: %s, pair %d, tolerance %g, %s: ", category_text(category), i, tols[t], e->name);
                         print_faults(stdout, faults & FAULTS_NEVER);
                         printf("\n  truth %.17g (lower %.17g) along %.17g %.17g %.17g%s\n  ", p.truth.depth, p.truth.lower,
                                p.truth.n[0], p.truth.n[1], p.truth.n[2], p.surface ? ", surface" : "");
@@ -185,6 +187,16 @@ int main(int argc, char **argv)
             if (!entries[k].system && (table[k][category].limit || fine[k][category].limit))
                 printf("stopped at the cap: %s, %s: %d (default), %d (fine) of %d\n", category_text(category), entries[k].name,
                        table[k][category].limit, fine[k][category].limit, pairs);
+    for (category = 0; category < CATEGORY_COUNT; category++)
+        for (k = 0; k < (int)ENTRIES; k++)
+            for (i = 0; i < FAULT_BIT_COUNT && !entries[k].system; i++) {
+                int n = table[k][category].count[i], m = fine[k][category].count[i];
+                if (!(FAULTS_NEVER >> i & 1) || n + m == 0)
+                    continue;
+                printf("BROKEN %s, %s: %s: %d (default), %d (fine) of %d\n", category_text(category), entries[k].name,
+                       fault_text(i), n, m, pairs);
+                broken += n + m;
+            }
     printf("%d rows, %d broken promises\n", rows, broken);
     for (k = 0; k < (int)ENTRIES; k++)
         for (category = 0; category < CATEGORY_COUNT; category++) {

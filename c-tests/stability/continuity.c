@@ -191,9 +191,11 @@ int main(void)
                 error = fmax(error, fabs(x.depth - t.depth));
                 if (f > 0) {
                     double step = 0, turn = angle_between(x.dir, last.dir);
-                    /* the truth turns, or the old direction ties with the new one */
+                    /* the truth turns, or the old direction ties with the new one: as far as
+                     * the method tells minima apart */
+                    double tie = e->ask == ASK_MPR || e->ask == ASK_MPR_WARM ? tolerance(TOL_MPR_DEEP) * t.depth : 0;
                     int true_turn = angle_between(t.n, before.n) > 1
-                        || truth_value(&a, &b, last.dir) <= t.depth + 2 * (tol + q.noise) + 1e-6 * q.size;
+                        || truth_value(&a, &b, last.dir) <= t.depth + tie + 2 * (tol + q.noise) + 1e-6 * q.size;
                     if (!(turn <= 1)) {
                         needed += true_turn;
                         jumps += !true_turn;

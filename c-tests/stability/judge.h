@@ -350,7 +350,10 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
     X(FALSE_PROOF, "lower bound above the truth") \
     X(NO_PROOF, "gap above tolerance") \
     X(LIMIT, "stopped at the cap") \
-    X(WITNESS, "witness points off") \
+    X(WITNESS_DEPTH, "witness points not the depth apart") \
+    X(WITNESS_PLANE, "witness points off the supporting planes") \
+    X(WITNESS_INSIDE, "witness points outside the shapes") \
+    X(WITNESS_ACROSS, "witness points apart across the normal") \
     X(POSITION, "position not between the witness points") \
     X(MISCOUNTED, "supports miscounted") \
     X(TOUCHED, "outputs written without an answer")
@@ -381,7 +384,8 @@ static inline const char *fault_text(int bit)
 enum {
     FAULTS_NEVER = FAULT_LOOP | FAULT_CRASH | FAULT_NAN | FAULT_DIR0 | FAULT_MISS_DEEP | FAULT_FALSE_HIT
         | FAULT_UNSOUND | FAULT_CODE | FAULT_MISSED | FAULT_NOT_UNIT | FAULT_NOT_SUPPORT | FAULT_NOT_MINIMUM
-        | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS | FAULT_POSITION | FAULT_MISCOUNTED | FAULT_TOUCHED
+        | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS_DEPTH
+        | FAULT_WITNESS_PLANE | FAULT_WITNESS_INSIDE | FAULT_WITNESS_ACROSS | FAULT_POSITION | FAULT_MISCOUNTED | FAULT_TOUCHED
 };
 
 typedef struct {
@@ -416,7 +420,7 @@ static inline double judge_reach(const shape_t *s, const double origin[3], const
  * the depth, pos their middle. */
 static inline int judge_witness(const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
-    double bound = q->tol + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p1[3], p2[3], value;
+    double bound = q->tol + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p1[3], p2[3], value, l2;
     int faults = 0, i, j, k;
     for (i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
@@ -429,10 +433,17 @@ static inline int judge_witness(const answer_t *x, const shape_t *a, const shape
     }
     value = x->depth * truth_dot3(x->dir, x->normal);
     if (!(fabs(truth_dot3(d, x->normal) - value) <= bound))
-        faults |= FAULT_WITNESS;
+        faults |= FAULT_WITNESS_DEPTH;
+    for (i = 0, l2 = 0; i < 3; i++) {
+        double c = d[i] - x->depth * x->dir[i];
+        l2 += c * c;
+    }
+    l2 -= pow(truth_dot3(d, x->normal) - value, 2);
+    if (!(sqrt(fmax(l2, 0)) <= sqrt(2 * (x->depth + bound) * bound) + bound))
+        faults |= FAULT_WITNESS_ACROSS;
     if (!(judge_reach(a, origin, x->normal) - truth_dot3(p1, x->normal) <= bound)
         || !(judge_reach(b, origin, m) - truth_dot3(p2, m) <= bound))
-        faults |= FAULT_WITNESS;
+        faults |= FAULT_WITNESS_PLANE;
     /* inside: under the support planes of 26 directions */
     for (i = -1; i <= 1; i++)
         for (j = -1; j <= 1; j++)
@@ -445,7 +456,7 @@ static inline int judge_witness(const answer_t *x, const shape_t *a, const shape
                 n[2] = k / l;
                 if (!(truth_dot3(p1, n) - judge_reach(a, origin, n) <= bound)
                     || !(truth_dot3(p2, n) - judge_reach(b, origin, n) <= bound))
-                    faults |= FAULT_WITNESS;
+                    faults |= FAULT_WITNESS_INSIDE;
             }
     return faults;
 }
