@@ -1,0 +1,535 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Runs the consumers' programs on the system's libccd and on this library, judges
+//! what they say, and makes rows of the swap table. Shared by the test (`swap.rs`)
+//! and by the command that prints the table (`table.rs`).
+
+#![allow(dead_code)]
+
+use crate::harness::{Executable, Program};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// FCL's, ODE's and MuJoCo's setting, metres.
+const MPR_TOLERANCE: f64 = 1e-6;
+/// A depth or gap of this many sizes is neither hit nor miss.
+const TOUCH: f64 = 1e-9;
+
+/// One program of a consumer's, on either library.
+pub struct Swapped {
+    pub consumer: &'static str,
+    system: Executable,
+    ours: Executable,
+}
+
+/// What a program wrote on either library, system's first.
+type Both<T> = [T; 2];
+
+const NAMES: Both<&str> = ["libccd", "this library"];
+
+impl Swapped {
+    fn new(consumer: &'static str, program: Program) -> Swapped {
+        let system = program
+            .link_system()
+            .without_tools()
+            .build()
+            .env("LD_BIND_NOW", "1");
+        let ours = system.swapped();
+        Swapped {
+            consumer,
+            system,
+            ours,
+        }
+    }
+
+    /// Runs on both libraries side by side. Each run's first line names the library
+    /// that the program found in its process.
+    pub fn run(&self, args: &[String]) -> Both<Vec<String>> {
+        let lines = |program: &Executable, expected: &str| {
+            let mut lines: Vec<String> =
+                program.run(args).stdout.lines().map(String::from).collect();
+            let library = lines.remove(0);
+            assert!(
+                library.starts_with(expected),
+                "{} {args:?}: runs on `{library}`, not on `{expected}`",
+                self.consumer
+            );
+            lines
+        };
+        std::thread::scope(|scope| {
+            let system = scope.spawn(|| lines(&self.system, "library libccd"));
+            let ours = lines(&self.ours, "library warmccd ");
+            [system.join().expect("the system's run"), ours]
+        })
+    }
+}
+
+fn c(source: &str) -> Program {
+    Program::c(source)
+        .standard("gnu99")
+        .source(format!("swap/{source}.c"))
+}
+
+fn cpp(source: &str) -> Program {
+    Program::cpp(source)
+        .source(format!("swap/{source}.cpp"))
+        .flag("-D_GNU_SOURCE")
+        .flag("-isystem/usr/include/eigen3")
+}
+
+pub fn fcl_static() -> Swapped {
+    Swapped::new("FCL", cpp("fcl_static").library("fcl"))
+}
+
+pub fn ode_static() -> Swapped {
+    Swapped::new("ODE", c("ode_static").library("ode"))
+}
+
+pub fn ode_pile() -> Swapped {
+    Swapped::new("ODE", c("ode_pile").library("ode"))
+}
+
+pub fn mujoco_pile() -> Swapped {
+    Swapped::new("MuJoCo", c("mujoco_pile").library("mujoco"))
+}
+
+pub fn dart_pile() -> Swapped {
+    Swapped::new("DART", cpp("dart_pile").library("dart"))
+}
+
+// --- static queries -------------------------------------------------------------
+
+/// One line of a static program.
+#[derive(Clone, Debug)]
+struct Query {
+    line: String,
+    size: f64,
+    lower: f64,
+    upper: f64,
+    outcome: u8,
+    value: f64,
+    normal: f64,
+    callback_wrong: bool,
+}
+
+const HIT: u8 = 1;
+const THREW: u8 = 2;
+
+fn queries(lines: &[String], what: &str) -> BTreeMap<u64, Query> {
+    lines
+        .iter()
+        .filter(|line| line.starts_with(what))
+        .map(|line| {
+            let words: Vec<&str> = line.split(' ').collect();
+            let number = |i: usize| -> f64 {
+                let word = words.get(i).copied().unwrap_or("0");
+                word.parse().unwrap_or_else(|e| panic!("{line}: {e}"))
+            };
+            let query = Query {
+                line: line.clone(),
+                size: number(4),
+                lower: number(5),
+                upper: number(6),
+                outcome: number(7) as u8,
+                value: number(8),
+                normal: number(9),
+                callback_wrong: number(10) != 0.0,
+            };
+            (number(3) as u64, query)
+        })
+        .collect()
+}
+
+/// Counts over a set of static queries, for each library.
+#[derive(Clone, Debug, Default)]
+pub struct Static {
+    pub consumer: &'static str,
+    pub what: &'static str,
+    pub kinds: usize,
+    pub queries: usize,
+    pub hits: Both<usize>,
+    pub missed: Both<usize>,
+    pub spurious: Both<usize>,
+    /// Depth above 1.01 × truth + 2 tolerances.
+    pub deep: Both<usize>,
+    /// Depth below the truth by more than 2 tolerances.
+    pub unsound: Both<usize>,
+    /// Direction not unit, or depth not a number.
+    pub broken: Both<usize>,
+    /// The consumer threw, or an assertion of its own failed.
+    pub threw: Both<usize>,
+    /// A callback of the consumer's own was wrong: not judged.
+    pub not_judged: usize,
+    /// Signed distances that differ by more than 1e-6.
+    pub differ: usize,
+    /// Why this library may not replace the other, one line each.
+    pub against: Vec<String>,
+}
+
+/// FCL's or ODE's yes, no and depth.
+pub fn judge_collide(consumer: &'static str, lines: &Both<Vec<String>>) -> Static {
+    let runs = lines.each_ref().map(|l| queries(l, "collide"));
+    let mut s = Static {
+        consumer,
+        what: "collide",
+        ..Static::default()
+    };
+    assert!(
+        runs[0].keys().eq(runs[1].keys()),
+        "{consumer}: the two runs did not ask the same"
+    );
+    let mut kinds = std::collections::BTreeSet::new();
+    for (system, ours) in runs[0].values().zip(runs[1].values()) {
+        let Query {
+            size, lower, upper, ..
+        } = *ours;
+        let mut against = |why: &str| s.against.push(format!("{why}: {}", ours.line));
+        kinds.insert(
+            ours.line
+                .split(' ')
+                .skip(1)
+                .take(2)
+                .collect::<Vec<_>>()
+                .join("-"),
+        );
+        s.queries += 1;
+        for (i, q) in [system, ours].into_iter().enumerate() {
+            s.threw[i] += usize::from(q.outcome >= THREW);
+            // Negated, so that NaN counts.
+            let broken =
+                q.outcome == HIT && (!((q.normal - 1.0).abs() < 1e-9) || !q.value.is_finite());
+            s.broken[i] += usize::from(broken);
+            if i == 1 && broken {
+                against("broken");
+            }
+        }
+        if ours.outcome >= THREW && system.outcome < THREW {
+            against("threw");
+        }
+        if system.callback_wrong || ours.callback_wrong {
+            s.not_judged += 1;
+            continue;
+        }
+        let overlap = lower > TOUCH * size;
+        let apart = upper < -TOUCH * size;
+        for (i, q) in [system, ours].into_iter().enumerate() {
+            let hit = q.outcome == HIT;
+            s.hits[i] += usize::from(hit);
+            s.missed[i] += usize::from(overlap && q.outcome == 0);
+            s.spurious[i] += usize::from(apart && hit);
+            s.deep[i] += usize::from(hit && q.value > 1.01 * upper.max(0.0) + 2.0 * MPR_TOLERANCE);
+            s.unsound[i] += usize::from(hit && q.value < lower - 2.0 * MPR_TOLERANCE);
+        }
+        if overlap && ours.outcome == 0 {
+            against("missed");
+        }
+        if apart && ours.outcome == HIT {
+            against("spurious");
+        }
+        if ours.outcome == HIT && ours.value < lower - 2.0 * MPR_TOLERANCE {
+            against("unsound");
+        }
+        if ours.outcome == HIT
+            && system.outcome == HIT
+            && ours.value > system.value + 2.0 * MPR_TOLERANCE
+        {
+            against(&format!("deeper than libccd's {}", system.value));
+        }
+    }
+    s.kinds = kinds.len();
+    s
+}
+
+/// FCL's signed distance: GJK and EPA of its own on libccd's polytope functions.
+pub fn judge_distance(consumer: &'static str, lines: &Both<Vec<String>>) -> Static {
+    let runs = lines.each_ref().map(|l| queries(l, "distance"));
+    let mut s = Static {
+        consumer,
+        what: "signed distance",
+        ..Static::default()
+    };
+    assert!(
+        runs[0].keys().eq(runs[1].keys()),
+        "{consumer}: the two runs did not ask the same"
+    );
+    let mut kinds = std::collections::BTreeSet::new();
+    for (system, ours) in runs[0].values().zip(runs[1].values()) {
+        let exact = -0.5 * (ours.lower + ours.upper);
+        kinds.insert(
+            ours.line
+                .split(' ')
+                .skip(1)
+                .take(2)
+                .collect::<Vec<_>>()
+                .join("-"),
+        );
+        s.queries += 1;
+        for (i, q) in [system, ours].into_iter().enumerate() {
+            s.threw[i] += usize::from(q.outcome >= THREW);
+            s.broken[i] += usize::from(q.outcome < THREW && !q.value.is_finite());
+            s.hits[i] += usize::from(q.outcome < THREW && q.value < 0.0);
+        }
+        if ours.outcome >= THREW {
+            if system.outcome < THREW {
+                s.against.push(format!("threw: {}", ours.line));
+            }
+            continue;
+        }
+        if !ours.value.is_finite() {
+            s.against.push(format!("not a number: {}", ours.line));
+        }
+        if system.outcome >= THREW {
+            continue;
+        }
+        if !((ours.value - system.value).abs() <= 1e-6) {
+            s.differ += 1;
+            if !((ours.value - exact).abs() <= (system.value - exact).abs()) {
+                s.against.push(format!(
+                    "farther from the exact value than libccd's {}: {}",
+                    system.value, ours.line
+                ));
+            }
+        }
+    }
+    s.kinds = kinds.len();
+    s
+}
+
+impl Static {
+    pub fn verdict(&self) -> String {
+        if self.against.is_empty() {
+            "passes".to_owned()
+        } else {
+            format!("**{} against**", self.against.len())
+        }
+    }
+}
+
+fn of_both(counts: Both<usize>) -> String {
+    format!("{} / {}", counts[0], counts[1])
+}
+
+/// The static half of the swap table.
+pub fn static_table(rows: &[Static]) -> String {
+    let mut out = String::from(
+        "| consumer | query | pairs of kinds | queries | hits | missed overlaps | spurious hits | > 1 % too deep | unsound \
+         | NaN or zero normal | consumer threw | wrong callbacks, not judged | distances that differ | swap |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for s in rows {
+        let distance = s.what != "collide";
+        let if_collide = |counts| {
+            if distance {
+                "–".to_owned()
+            } else {
+                of_both(counts)
+            }
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            s.consumer,
+            s.what,
+            s.kinds,
+            s.queries,
+            of_both(s.hits),
+            if_collide(s.missed),
+            if_collide(s.spurious),
+            if_collide(s.deep),
+            if_collide(s.unsound),
+            of_both(s.broken),
+            of_both(s.threw),
+            s.not_judged,
+            if distance {
+                s.differ.to_string()
+            } else {
+                "–".to_owned()
+            },
+            s.verdict(),
+        );
+    }
+    out
+}
+
+// --- simulations ----------------------------------------------------------------
+
+/// `key value key value …`
+fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
+    let line = lines
+        .iter()
+        .find(|line| line.split(' ').next() == Some(first))
+        .unwrap_or_else(|| panic!("no `{first}` line in {lines:?}"));
+    let words: Vec<&str> = line.split(' ').skip(1).collect();
+    words
+        .chunks(2)
+        .map(|pair| {
+            let value = pair[1].parse().unwrap_or_else(|e| panic!("{line}: {e}"));
+            (pair[0].to_owned(), value)
+        })
+        .collect()
+}
+
+/// One simulation.
+#[derive(Clone, Debug)]
+struct Run {
+    pile: BTreeMap<String, f64>,
+    watched: BTreeMap<String, f64>,
+}
+
+/// The same scene from several slightly moved starts, on each library.
+pub struct Piles {
+    pub consumer: &'static str,
+    pub scene: &'static str,
+    pub steps: usize,
+    runs: Both<Vec<Run>>,
+    pub against: Vec<String>,
+}
+
+/// Runs starts 1, 2, …, `starts`; `after` follows SEED and STEPS on the command line.
+pub fn piles(
+    program: &Swapped,
+    scene: &'static str,
+    starts: usize,
+    steps: usize,
+    after: &[&str],
+    progress: impl Fn(usize),
+) -> Piles {
+    let mut p = Piles {
+        consumer: program.consumer,
+        scene,
+        steps,
+        runs: [Vec::new(), Vec::new()],
+        against: Vec::new(),
+    };
+    for seed in 1..=starts {
+        let mut args = vec![seed.to_string(), steps.to_string()];
+        args.extend(after.iter().map(|s| (*s).to_owned()));
+        for (i, lines) in program.run(&args).into_iter().enumerate() {
+            p.runs[i].push(Run {
+                pile: fields(&lines, "pile"),
+                watched: fields(&lines, "watched"),
+            });
+        }
+        progress(seed);
+    }
+    p.judge();
+    p
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    0.5 * (values[(n - 1) / 2] + values[n / 2])
+}
+
+impl Piles {
+    /// A quantity over the starts.
+    fn all(&self, library: usize, key: &str) -> Vec<f64> {
+        let of = |run: &Run| run.pile.get(key).or_else(|| run.watched.get(key)).copied();
+        self.runs[library]
+            .iter()
+            .map(|run| of(run).unwrap_or_else(|| panic!("no {key} from {}", self.consumer)))
+            .collect()
+    }
+
+    fn sum(&self, library: usize, key: &str) -> f64 {
+        self.all(library, key).iter().sum()
+    }
+
+    fn range(&self, library: usize, key: &str) -> (f64, f64) {
+        let all = self.all(library, key);
+        (
+            all.iter().copied().fold(f64::INFINITY, f64::min),
+            all.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        )
+    }
+
+    fn judge(&mut self) {
+        for key in [
+            "escaped",
+            "bad",
+            "zero",
+            "not_finite",
+            "not_unit",
+            "slanted",
+        ] {
+            if self.sum(1, key) != 0.0 {
+                self.against.push(format!("{key}: {:?}", self.all(1, key)));
+            }
+        }
+        if self.runs[0].len() < 10 {
+            return; // too few starts to speak of a spread
+        }
+        for key in ["kinetic", "depth"] {
+            let (least, most) = self.range(0, key);
+            let width = most - least;
+            let ours = median(self.all(1, key));
+            // Negated, so that NaN counts.
+            if !(least - width <= ours && ours <= most + width) {
+                self.against.push(format!(
+                    "{key}: median {ours:e}, libccd's {least:e} to {most:e}"
+                ));
+            }
+        }
+    }
+
+    pub fn verdict(&self) -> String {
+        if self.against.is_empty() {
+            "passes".to_owned()
+        } else {
+            format!("**{}**", self.against.join("; "))
+        }
+    }
+}
+
+/// The dynamic half of the swap table. Depths in millimetres.
+pub fn pile_table(rows: &[Piles]) -> String {
+    let mut out = String::from(
+        "| consumer | scene | starts × steps | library | penetration queries | hits | supports a query | bad or zero normals \
+         | escaped | kinetic energy, J: median (min to max) | mean contact depth, mm: median (min to max) | deepest, mm | swap |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for p in rows {
+        for (library, name) in NAMES.iter().enumerate() {
+            let spread = |key: &str, unit: f64| {
+                let (least, most) = p.range(library, key);
+                let middle = median(p.all(library, key));
+                format!(
+                    "{:.3} ({:.3} to {:.3})",
+                    middle * unit,
+                    least * unit,
+                    most * unit
+                )
+            };
+            let bad: f64 = ["bad", "zero", "not_finite", "not_unit"]
+                .iter()
+                .map(|key| p.sum(library, key))
+                .sum();
+            let queries = p.sum(library, "queries");
+            let _ = writeln!(
+                out,
+                "| {} | {} | {} × {} | {} | {} | {:.0} % | {:.1} | {} | {} | {} | {} | {:.1} | {} |",
+                p.consumer,
+                p.scene,
+                p.runs[library].len(),
+                p.steps,
+                name,
+                queries,
+                100.0 * p.sum(library, "hits") / queries,
+                p.sum(library, "supports") / queries,
+                bad,
+                p.sum(library, "escaped"),
+                spread("kinetic", 1.0),
+                spread("depth", 1e3),
+                1e3 * p.range(library, "deepest").1,
+                if library == 1 {
+                    p.verdict()
+                } else {
+                    String::new()
+                },
+            );
+        }
+    }
+    out
+}

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The swap: programs linked to Debian's FCL, ODE, MuJoCo and DART run on this
+//! library as they run on libccd. The table of `cargo run --release --example swap`
+//! is made by the same checks.
+
+#[path = "../harness/mod.rs"]
+mod harness;
+
+#[path = "checks.rs"]
+mod checks;
+
+use checks::{Piles, Static};
+
+fn args(seed: u64, poses: usize) -> Vec<String> {
+    vec![seed.to_string(), poses.to_string()]
+}
+
+fn must_pass(s: &Static) {
+    assert!(s.queries > 1000, "too few queries: {s:?}");
+    assert!(
+        s.against.is_empty(),
+        "{} {}:\n{}",
+        s.consumer,
+        s.what,
+        s.against.join("\n")
+    );
+}
+
+fn piles_must_pass(p: &Piles) {
+    assert!(
+        p.against.is_empty(),
+        "{} {}:\n{}",
+        p.consumer,
+        p.scene,
+        p.against.join("\n")
+    );
+}
+
+#[test]
+fn fcl_collide_and_signed_distance() {
+    let lines = checks::fcl_static().run(&args(1, 20));
+    must_pass(&checks::judge_collide("FCL", &lines));
+    must_pass(&checks::judge_distance("FCL", &lines));
+}
+
+#[test]
+fn ode_collide() {
+    let lines = checks::ode_static().run(&args(1, 60));
+    must_pass(&checks::judge_collide("ODE", &lines));
+}
+
+#[test]
+fn ode_pile() {
+    let program = checks::ode_pile();
+    piles_must_pass(&checks::piles(&program, "pile", 10, 1500, &["32"], |_| ()));
+}
+
+#[test]
+fn mujoco_pile() {
+    let program = checks::mujoco_pile();
+    let pile = ["30", "pile"];
+    piles_must_pass(&checks::piles(&program, "pile", 10, 1500, &pile, |_| ()));
+}
+
+#[test]
+fn dart_over_fcl_and_ode() {
+    let program = checks::dart_pile();
+    for scene in ["fcl", "ode"] {
+        piles_must_pass(&checks::piles(
+            &program,
+            scene,
+            10,
+            800,
+            &["12", scene],
+            |_| (),
+        ));
+    }
+}
