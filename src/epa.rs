@@ -105,21 +105,20 @@ impl Face {
     /// Sets normal, offset and distance bound from the corners.
     #[inline]
     fn measure(&mut self, a: &Vec3, b: &Vec3, c: &Vec3, target: Real) {
-        let (ab, bc, ca) = (b - a, c - b, a - c);
-        let (ab2, bc2, ca2) = (ab.norm_squared(), bc.norm_squared(), ca.norm_squared());
-        // The two shorter edges: of a needle's two long ones rounding would leave no normal.
-        let normal = if ab2 >= bc2 && ab2 >= ca2 {
-            bc.cross(&ca)
-        } else if bc2 >= ca2 {
-            ca.cross(&ab)
+        // The shorter of the other two edges: a needle's two long ones would leave no
+        // normal but rounding.
+        let (ab, ac, bc) = (b - a, c - a, c - b);
+        let other = if ac.norm_squared() < bc.norm_squared() {
+            ac
         } else {
-            ab.cross(&bc)
+            bc
         };
+        let normal = ab.cross(&other);
         let normal = normal * (1.0 / normal.norm());
         let (da, db, dc) = (normal.dot(a), normal.dot(b), normal.dot(c));
         self.normal = normal;
-        self.offset = da.max(db).max(dc);
-        self.key = da.min(db).min(dc);
+        self.offset = larger(larger(da, db), dc);
+        self.key = lesser(lesser(da, db), dc);
         // Nearer than wanted: unless the origin projects into the triangle (or is on its
         // wrong side), the nearest point is on an edge and farther than the plane.
         if self.key < target && self.key >= 0.0 {
@@ -129,7 +128,7 @@ impl Face {
             if !inside {
                 let w = nearest::on_triangle(&Vec3::zeros(), a, b, c).0;
                 let w = w * (1.0 / w.norm());
-                let bound = w.dot(a).min(w.dot(b)).min(w.dot(c));
+                let bound = lesser(lesser(w.dot(a), w.dot(b)), w.dot(c));
                 if bound > self.key {
                     self.key = bound;
                     self.edge = true;
@@ -147,7 +146,14 @@ pub struct Storage<'a> {
     /// Faces, live and free.
     pub faces: &'a mut [Face],
     /// Heap of faces.
-    pub heap: &'a mut [Index],
+    pub heap: &'a mut [Entry],
+}
+
+/// A face in the heap.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Entry {
+    key: Real,
+    face: Index,
 }
 
 /// Where a query gets its memory from.
@@ -370,7 +376,7 @@ struct Counts {
 struct Polytope<'a> {
     points: &'a mut [SupportPoint],
     faces: &'a mut [Face],
-    heap: &'a mut [Index],
+    heap: &'a mut [Entry],
     counts: Counts,
 }
 
@@ -756,7 +762,7 @@ impl<'a> Polytope<'a> {
     fn enqueue(&mut self, f: Index, target: Real) {
         let key = self.face(f).key;
         if key >= target {
-            self.counts.dropped = self.counts.dropped.min(key);
+            self.counts.dropped = lesser(self.counts.dropped, key);
             return;
         }
         self.face_mut(f).queued = true;
@@ -765,13 +771,13 @@ impl<'a> Polytope<'a> {
         while hole > 0 {
             let parent = (hole - 1) / 2;
             let above = self.heap[parent];
-            if !(key < self.face(above).key) {
+            if !(key < above.key) {
                 break;
             }
             self.heap[hole] = above;
             hole = parent;
         }
-        self.heap[hole] = f;
+        self.heap[hole] = Entry { key, face: f };
     }
 
     /// Takes the nearest face, dead or alive, out of the heap.
@@ -780,37 +786,33 @@ impl<'a> Polytope<'a> {
             return;
         };
         self.counts.heap = end;
-        let top = self.heap[0];
+        let top = self.heap[0].face;
         self.face_mut(top).queued = false;
-        let moved = self.heap[end];
-        self.sink(0, moved);
+        self.sink(0, self.heap[end]);
         if self.face(top).dead {
             self.release(top);
         }
     }
 
-    /// Puts `f` into the hole at `hole` of the heap, or below.
-    fn sink(&mut self, mut hole: usize, f: Index) {
-        let key = self.face(f).key;
-        let end = self.counts.heap;
+    /// Puts `entry` into the hole at `hole` of the heap, or below.
+    fn sink(&mut self, mut hole: usize, entry: Entry) {
+        let heap = &mut self.heap[..self.counts.heap];
         loop {
             let mut child = 2 * hole + 1;
-            if child >= end {
+            if child >= heap.len() {
                 break;
             }
-            if child + 1 < end
-                && self.face(self.heap[child + 1]).key < self.face(self.heap[child]).key
-            {
+            if child + 1 < heap.len() && heap[child + 1].key < heap[child].key {
                 child += 1;
             }
-            if !(self.face(self.heap[child]).key < key) {
+            if !(heap[child].key < entry.key) {
                 break;
             }
-            self.heap[hole] = self.heap[child];
+            heap[hole] = heap[child];
             hole = child;
         }
-        if hole < end {
-            self.heap[hole] = f;
+        if let Some(place) = heap.get_mut(hole) {
+            *place = entry;
         }
     }
 
@@ -818,19 +820,18 @@ impl<'a> Polytope<'a> {
     fn purge(&mut self) {
         let mut kept = 0;
         for i in 0..self.counts.heap {
-            let f = self.heap[i];
-            if self.face(f).dead {
-                self.face_mut(f).queued = false;
-                self.release(f);
+            let entry = self.heap[i];
+            if self.face(entry.face).dead {
+                self.face_mut(entry.face).queued = false;
+                self.release(entry.face);
             } else {
-                self.heap[kept] = f;
+                self.heap[kept] = entry;
                 kept += 1;
             }
         }
         self.counts.heap = kept;
         for i in (0..kept / 2).rev() {
-            let f = self.heap[i];
-            self.sink(i, f);
+            self.sink(i, self.heap[i]);
         }
     }
 
@@ -838,9 +839,9 @@ impl<'a> Polytope<'a> {
     /// give.
     fn nearest(&mut self) -> (Option<Index>, Real) {
         while self.counts.heap > 0 {
-            let f = self.heap[0];
-            if !self.face(f).dead {
-                return (Some(f), self.face(f).key.min(self.counts.dropped));
+            let Entry { key, face } = self.heap[0];
+            if !self.face(face).dead {
+                return (Some(face), lesser(key, self.counts.dropped));
             }
             self.pop();
         }
@@ -998,6 +999,17 @@ impl<'a> Polytope<'a> {
         }
         sum
     }
+}
+
+// One instruction each, unlike the methods, which sort out NaN.
+#[inline]
+fn larger(x: Real, y: Real) -> Real {
+    if x > y { x } else { y }
+}
+
+#[inline]
+fn lesser(x: Real, y: Real) -> Real {
+    if x < y { x } else { y }
 }
 
 /// The half-edge after `edge` on its face.
