@@ -270,7 +270,7 @@ pub fn minimum<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     seed: &Seed<'_>,
     settings: &Settings,
-    arena: &mut impl Arena,
+    arena: &mut dyn Arena,
 ) -> Result<Answer, Fault> {
     let mut query = Query {
         md,
@@ -293,7 +293,7 @@ pub fn minimum<A: SupportMap, B: SupportMap>(
 fn run<A: SupportMap, B: SupportMap>(
     query: &mut Query<'_, A, B>,
     seed: &Seed<'_>,
-    arena: &mut impl Arena,
+    arena: &mut dyn Arena,
 ) -> Result<Answer, Stop> {
     let mut polytope = Polytope::new(arena.storage());
     let given = &seed.points[..seed.points.len().min(GIVEN)];
@@ -948,6 +948,8 @@ impl<'a> Polytope<'a> {
         lower: Real,
         guess: Option<Index>,
     ) -> Penetration {
+        #[cfg(test)]
+        tests::check(self, query.rounding());
         let dir = query.upper.dir;
         let shares = |f: &Face| {
             let [a, b, c] = f.corners.map(|i| self.v(i));
@@ -1045,4 +1047,275 @@ fn weights(w: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> [Real; 3] {
         }
     }
     best.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Vecs {
+        points: Vec<SupportPoint>,
+        faces: Vec<Face>,
+        heap: Vec<Entry>,
+    }
+
+    impl Vecs {
+        fn new() -> Self {
+            let mut vecs = Self {
+                points: vec![],
+                faces: vec![],
+                heap: vec![],
+            };
+            vecs.resize(LEAST_POINTS);
+            vecs
+        }
+
+        fn resize(&mut self, n: usize) {
+            self.points.resize(n, SupportPoint::default());
+            self.faces.resize(n * FACES_PER_POINT, Face::default());
+            self.heap.resize(n * FACES_PER_POINT, Entry::default());
+        }
+    }
+
+    impl Arena for Vecs {
+        fn storage(&mut self) -> Storage<'_> {
+            Storage {
+                points: &mut self.points,
+                faces: &mut self.faces,
+                heap: &mut self.heap,
+            }
+        }
+
+        fn grow(&mut self) -> Result<(), Fault> {
+            self.resize((2 * self.points.len()).min(MAX_POINTS));
+            Ok(())
+        }
+    }
+
+    /// The surface is closed and of one piece, and convex to rounding.
+    pub fn check(polytope: &Polytope<'_>, rounding: Real) {
+        let live: Vec<Index> = (0..polytope.counts.faces as Index)
+            .filter(|&f| !polytope.face(f).dead)
+            .collect();
+        let mut corners = std::collections::BTreeSet::new();
+        for &f in &live {
+            let face = polytope.face(f);
+            corners.extend(face.corners);
+            for (i, other) in face.across.into_iter().enumerate() {
+                let half = 4 * f + i as Index;
+                let g = polytope.face(other / 4);
+                assert!(!g.dead);
+                assert_eq!(g.across[usize::from(other % 4)], half);
+                assert_eq!(polytope.begin(other), polytope.begin(after(half)));
+                assert_eq!(polytope.begin(after(other)), polytope.begin(half));
+            }
+        }
+        assert_eq!(live.len(), 2 * corners.len() - 4);
+        for &f in &live {
+            let face = polytope.face(f);
+            for &i in &corners {
+                let height = face.normal.dot(&polytope.v(i)) - face.offset;
+                // A needle's normal is as uncertain as the needle is narrow.
+                let [a, b, c] = face.corners.map(|i| polytope.v(i));
+                let area = (b - a).cross(&(c - a)).norm();
+                let reach = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+                let slack = 4.0 * rounding * (1.0 + reach * reach / area);
+                assert!(!(height > slack), "concave by {height:e}, slack {slack:e}");
+            }
+        }
+    }
+
+    fn solve<A: SupportMap, B: SupportMap>(a: A, b: B, tolerance: Real) -> Answer {
+        let md = MinkowskiDifference::new(a, b);
+        let settings = Settings {
+            tolerance,
+            max_iterations: 2000,
+        };
+        let seed = Seed {
+            dir: Vec3::x(),
+            points: &[],
+            upper: None,
+        };
+        let answer = minimum(&md, &seed, &settings, &mut Vecs::new()).unwrap();
+        if let Answer::Hit(hit) | Answer::Limit(hit) = &answer {
+            let h = md.support(&hit.dir).unwrap().v.dot(&hit.dir);
+            assert!((hit.dir.norm() - 1.0).abs() <= 4.0 * EPSILON);
+            assert!(h <= hit.depth + 4.0 * EPSILON * h.abs(), "unsound");
+            assert!(hit.depth_lower <= hit.depth);
+        }
+        answer
+    }
+
+    fn sphere(c: Vec3, r: Real) -> impl SupportMap {
+        move |d: &Vec3| c + d * r
+    }
+
+    /// A box whose support point takes sign `tie` where the direction is flat.
+    fn cuboid(c: Vec3, half: Vec3, tie: Real) -> impl SupportMap {
+        move |d: &Vec3| c + half.zip_map(d, |h, x| h.copysign(if x == 0.0 { tie } else { x }))
+    }
+
+    fn hull(points: Vec<Vec3>) -> impl SupportMap {
+        move |d: &Vec3| {
+            *points
+                .iter()
+                .max_by(|a, b| a.dot(d).total_cmp(&b.dot(d)))
+                .unwrap()
+        }
+    }
+
+    #[track_caller]
+    fn expect(answer: Answer, truth: Real, tolerance: Real, size: Real) {
+        let slack = tolerance + 64.0 * EPSILON * size;
+        match answer {
+            Answer::Hit(hit) => {
+                assert!((hit.depth - truth).abs() <= slack, "{} {truth}", hit.depth);
+                assert!(hit.depth - hit.depth_lower <= slack);
+                assert!(hit.depth_lower <= truth + 64.0 * EPSILON * size);
+                let apart = hit.point1 - hit.point2;
+                assert!((apart.dot(&hit.dir) - hit.depth).abs() <= slack);
+                let across = (apart - hit.dir * apart.dot(&hit.dir)).norm();
+                assert!(across <= (2.0 * truth * slack).sqrt() + slack);
+            }
+            other => panic!("{other:?}, depth {truth}"),
+        }
+    }
+
+    /// libccd answers 2e-16 for the first of these.
+    #[test]
+    fn spheres_at_every_scale() {
+        for scale in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+            for offset in [
+                Vec3::new(0.3, 0.2, 0.1),
+                Vec3::new(0.0, 0.0, 0.5),
+                Vec3::new(1.9, 0.0, 0.0),
+                Vec3::new(-1.1, 1.2, 1.1),
+            ] {
+                let c = offset * scale;
+                let a = sphere(Vec3::zeros(), scale);
+                let b = sphere(c, scale);
+                let tolerance = 1e-6 * scale;
+                expect(
+                    solve(a, b, tolerance),
+                    2.0 * scale - c.norm(),
+                    tolerance,
+                    3.0 * scale,
+                );
+            }
+        }
+    }
+
+    /// All pairs of cubes on a grid, so that support points tie, faces are coplanar
+    /// and the origin lies on vertices, edges and faces of D.
+    #[test]
+    fn cubes_on_a_grid() {
+        for (tie1, tie2) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            for i in 0..1000 {
+                let at = [i / 100, i / 10 % 10, i % 10].map(|k| k as Real * 0.125 - 0.5);
+                let c = Vec3::from(at);
+                let half1 = Vec3::new(0.5, 0.25, 0.375);
+                let half2 = Vec3::new(0.25, 0.5, 0.125);
+                let truth = (half1 + half2 - c.abs()).min();
+                let a = cuboid(Vec3::zeros(), half1, tie1);
+                let b = cuboid(c, half2, tie2);
+                let answer = solve(a, b, 1e-9);
+                if truth >= 0.0 {
+                    expect(answer, truth, 1e-9, 1.0);
+                } else {
+                    assert!(matches!(answer, Answer::Miss(_)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn flat_shapes_touch() {
+        let triangle = || {
+            hull(vec![
+                Vec3::zeros(),
+                Vec3::new(1.0, 0.0, 0.0),
+                Vec3::new(0.0, 1.0, 0.0),
+            ])
+        };
+        let across = hull(vec![Vec3::new(0.2, 0.2, -1.0), Vec3::new(0.3, 0.2, 2.0)]);
+        let beside = hull(vec![Vec3::new(2.0, 0.2, 0.0), Vec3::new(1.0, 0.2, 0.0)]);
+        let within = hull(vec![Vec3::new(2.0, 0.2, 0.0), Vec3::new(0.1, 0.2, 0.0)]);
+        let point = |x| hull(vec![Vec3::new(x, 0.25, 0.0)]);
+        // Crossing: the shortest way out is over an edge of the triangle.
+        let Answer::Hit(hit) = solve(triangle(), across, 1e-9) else {
+            panic!()
+        };
+        assert!(hit.depth > 0.1 && hit.depth - hit.depth_lower <= 1e-9);
+        assert!(matches!(solve(triangle(), beside, 1e-9), Answer::Miss(_)));
+        expect(solve(triangle(), within, 1e-9), 0.0, 1e-9, 1.0);
+        expect(solve(triangle(), point(0.25), 1e-9), 0.0, 1e-9, 1.0);
+        expect(solve(point(0.5), point(0.5), 1e-9), 0.0, 1e-9, 1.0);
+        assert!(matches!(
+            solve(point(0.5), point(0.75), 1e-9),
+            Answer::Miss(_)
+        ));
+        let plate = cuboid(Vec3::zeros(), Vec3::new(1.0, 1.0, 0.0), 1.0);
+        expect(
+            solve(
+                plate,
+                cuboid(Vec3::zeros(), Vec3::new(0.5, 0.3, 0.4), 1.0),
+                1e-9,
+            ),
+            0.4,
+            1e-9,
+            1.0,
+        );
+    }
+
+    #[test]
+    fn thin_overlaps_hit_and_thin_gaps_miss() {
+        let n = Vec3::new(0.6, 0.48, 0.64);
+        for exponent in 1..12 {
+            let gap = (10.0 as Real).powi(-exponent);
+            let near = solve(
+                sphere(Vec3::zeros(), 1.0),
+                sphere(n * (2.0 - gap), 1.0),
+                1e-4,
+            );
+            assert!(matches!(near, Answer::Hit(_)), "{gap}: {near:?}");
+            let far = solve(
+                sphere(Vec3::zeros(), 1.0),
+                sphere(n * (2.0 + gap), 1.0),
+                1e-4,
+            );
+            assert!(matches!(far, Answer::Miss(_)), "{gap}: {far:?}");
+        }
+    }
+
+    /// No inscribed polytope proves a sphere round in few points: sound, and no worse.
+    #[test]
+    fn concentric_spheres_come_to_the_limit() {
+        let answer = solve(sphere(Vec3::zeros(), 1.0), sphere(Vec3::zeros(), 0.1), 1e-6);
+        let Answer::Limit(hit) = answer else {
+            panic!("{answer:?}")
+        };
+        assert!((hit.depth - 1.1).abs() <= 1e-12);
+        assert!(hit.depth_lower > 1.09 && hit.depth_lower <= 1.1);
+    }
+
+    #[test]
+    fn a_point_that_is_not_finite_is_refused() {
+        let md = MinkowskiDifference::new(
+            |_: &Vec3| Vec3::new(Real::NAN, 0.0, 0.0),
+            sphere(Vec3::zeros(), 1.0),
+        );
+        let seed = Seed {
+            dir: Vec3::x(),
+            points: &[],
+            upper: None,
+        };
+        let settings = Settings {
+            tolerance: 1e-6,
+            max_iterations: 100,
+        };
+        assert_eq!(
+            minimum(&md, &seed, &settings, &mut Vecs::new()),
+            Err(Fault::NonFinite)
+        );
+    }
 }

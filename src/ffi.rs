@@ -30,6 +30,7 @@
 // The safety section of every function here is the contract above.
 #![allow(clippy::missing_safety_doc)]
 
+mod arena;
 pub mod callbacks;
 pub mod collide;
 pub mod polytope;

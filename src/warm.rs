@@ -18,7 +18,7 @@
 
 use crate::bundle::{self, Memory, Seen};
 use crate::contact::{Answer, Penetration, Settings};
-use crate::epa::{self, Arena, Face, Seed, Storage};
+use crate::epa::{self, Arena, Entry, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
 use crate::local::{self, Shortcut};
 use crate::math::{Real, Vec3, unit};
@@ -354,6 +354,43 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 
+    /// The global minimum of the depth, proven.
+    pub fn minimum(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        arena: &mut dyn Arena,
+    ) -> Result<Answer, Fault> {
+        if let Some(n) = self.still_apart(state)? {
+            return Ok(Answer::Miss(n));
+        }
+        let mut memory = state.solver();
+        let mut seen = Seen::default();
+        let local = match self.descend(&mut memory, settings, &mut seen)? {
+            Answer::Hit(hit) | Answer::Limit(hit) => hit,
+            other => {
+                state.remember(&other);
+                return Ok(other);
+            }
+        };
+        // The centres are the caller's word, not support points: no part of a proof.
+        let seed = Seed {
+            dir: local.normal,
+            points: seen.points(),
+            upper: Some((local.depth, local.normal)),
+        };
+        let answer = epa::minimum(&self.md, &seed, settings, arena)?;
+        match answer {
+            Answer::Hit(hit) | Answer::Limit(hit)
+                if hit.depth >= local.depth - settings.tolerance =>
+            {
+                *state = State::overlap(memory);
+            }
+            other => state.remember(&other),
+        }
+        Ok(answer)
+    }
+
     /// How far obj2 must move along the unit direction `dir` (Algorithm 1).
     pub fn along(
         &self,
@@ -513,7 +550,7 @@ struct Desk {
 struct Room<const POINTS: usize> {
     points: [SupportPoint; POINTS],
     faces: [[Face; epa::FACES_PER_POINT]; POINTS],
-    heap: [[u16; epa::FACES_PER_POINT]; POINTS],
+    heap: [[Entry; epa::FACES_PER_POINT]; POINTS],
 }
 
 impl<const POINTS: usize> Default for Room<POINTS> {
@@ -521,7 +558,7 @@ impl<const POINTS: usize> Default for Room<POINTS> {
         Self {
             points: [SupportPoint::default(); POINTS],
             faces: [[Face::default(); epa::FACES_PER_POINT]; POINTS],
-            heap: [[0; epa::FACES_PER_POINT]; POINTS],
+            heap: [[Entry::default(); epa::FACES_PER_POINT]; POINTS],
         }
     }
 }

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! libccd's own queries: ccdMPRIntersect, ccdMPRPenetration, ccdGJKIntersect.
+//! libccd's own queries.
 
 use core::ffi::{c_int, c_void};
 
+use super::arena;
 use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
 use crate::contact::{Answer, Penetration, Settings};
+use crate::epa::{self, Seed};
 use crate::gjk::{self, Overlap};
 use crate::math::{Real, Vec3, unit};
 use crate::support::{Fault, SupportPoint};
@@ -131,4 +133,81 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
 ) -> c_int {
     // SAFETY: passed on.
     unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
+}
+
+/// The global minimum, from first_dir; the centres are not asked for.
+///
+/// # Safety
+/// Pointers of the module contract.
+unsafe fn gjk_penetration(query: Query) -> Result<Penetration, c_int> {
+    // SAFETY: passed on.
+    unsafe {
+        let (Some(md), Some(first)) = (query.difference(), query.first_dir()) else {
+            return Err(-1);
+        };
+        let settings = Settings {
+            tolerance: or_default(query.epa_tolerance()),
+            max_iterations: query.max_iterations(),
+        };
+        let seed = Seed {
+            dir: unit(&first).unwrap_or(Vec3::x()),
+            points: &[],
+            upper: None,
+        };
+        match arena::with(|arena| epa::minimum(&md, &seed, &settings, arena)) {
+            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
+            Ok(Answer::Miss(_) | Answer::Undecided(_)) | Err(Fault::NonFinite) => Err(-1),
+            Err(Fault::NoMemory) => Err(-2),
+        }
+    }
+}
+
+/// How deep do the objects overlap, which way out, where? The global minimum, within
+/// epa_tolerance. Starts from first_dir; the centres are not asked for.
+///
+/// Returns 0 and writes the outputs that are not NULL when they overlap or touch, as
+/// [`ccdMPRPenetration`] does; -2 when memory cannot be had and -1 otherwise, and leaves
+/// the outputs alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdGJKPenetration(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    depth: *mut Real,
+    dir: *mut ccd_vec3_t,
+    pos: *mut ccd_vec3_t,
+) -> c_int {
+    // SAFETY: passed on; Outputs.
+    unsafe {
+        match gjk_penetration(Query { obj1, obj2, ccd }) {
+            Ok(hit) => {
+                write(&hit, depth, dir, pos);
+                0
+            }
+            Err(code) => code,
+        }
+    }
+}
+
+/// The shortest translation of obj2 that separates the objects, written to `sep` unless
+/// that is NULL. Otherwise as [`ccdGJKPenetration`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdGJKSeparate(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    sep: *mut ccd_vec3_t,
+) -> c_int {
+    // SAFETY: passed on; Outputs.
+    unsafe {
+        match gjk_penetration(Query { obj1, obj2, ccd }) {
+            Ok(hit) => {
+                if let Some(sep) = sep.as_mut() {
+                    *sep = (hit.dir * hit.depth).into();
+                }
+                0
+            }
+            Err(code) => code,
+        }
+    }
 }

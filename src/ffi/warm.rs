@@ -5,6 +5,7 @@
 
 use core::ffi::{c_char, c_int, c_uint, c_ulong, c_void};
 
+use super::arena;
 use super::callbacks::{Object, Query};
 use super::collide::{mpr_penetration, write};
 use super::types::{ccd_t, ccd_vec3_t};
@@ -101,7 +102,7 @@ unsafe fn answer(
     tolerance: unsafe fn(&Query) -> Real,
     warm: *mut ccd_warm_t,
     out: *mut ccd_penetration_t,
-    solve: impl Fn(&Pair<Object, Object>, &mut State, &Settings) -> Result<Answer, Fault>,
+    solve: impl FnOnce(&Pair<Object, Object>, &mut State, &Settings) -> Result<Answer, Fault>,
 ) -> c_int {
     if query.ccd.is_null() || out.is_null() {
         return CCD_BAD_INPUT;
@@ -268,6 +269,35 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
             warm,
             out,
             |pair, state, settings| pair.local(state, settings),
+        )
+    }
+}
+
+/// The global minimum of the penetration depth, proven: depth - depth_lower <=
+/// epa_tolerance on CCD_HIT. From the state, else from the centres, else from first_dir.
+///
+/// Reads epa_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+/// Takes memory from malloc only where the minima (nearly) form a curve or a surface.
+///
+/// Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY
+/// and leaves it alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPenetrationMinimum(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    let query = Query { obj1, obj2, ccd };
+    // SAFETY: passed on.
+    unsafe {
+        answer(
+            query,
+            Query::epa_tolerance,
+            warm,
+            out,
+            |pair, state, settings| arena::with(|arena| pair.minimum(state, settings, arena)),
         )
     }
 }
