@@ -164,6 +164,23 @@ int ccdPenetrationLocal(const void *obj1,
                         struct ccd_penetration_t *out);
 
 /**
+ * The global minimum of the penetration depth, proven: depth - depth_lower <=
+ * epa_tolerance on CCD_HIT. From the state, else from the centres, else from first_dir.
+ *
+ * Reads epa_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+ * Takes memory from malloc only where the minima (nearly) form a curve or a surface.
+ *
+ * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY
+ * and leaves it alone.
+ */
+CCD_EXPORT
+int ccdPenetrationMinimum(const void *obj1,
+                          const void *obj2,
+                          const ccd_t *ccd,
+                          struct ccd_warm_t *warm,
+                          struct ccd_penetration_t *out);
+
+/**
  * How far obj2 must move along `dir` to separate: where the origin ray leaves the
  * Minkowski difference (the paper's Algorithm 1).
  *
