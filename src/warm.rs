@@ -321,6 +321,31 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Answer, Fault> {
+        let found = self.stroll(memory, settings, known)?;
+        let Answer::Limit(tired) = found else {
+            return Ok(found);
+        };
+        let rest = Settings {
+            max_iterations: settings.max_iterations.saturating_sub(PATIENCE),
+            ..*settings
+        };
+        if rest.max_iterations == 0 {
+            return Ok(found);
+        }
+        let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
+        if let Answer::Hit(hit) | Answer::Limit(hit) = &answer {
+            *memory = State::of(OVERLAP, hit.normal).memory;
+        }
+        Ok(answer)
+    }
+
+    /// The few-supports solver, for as long as [`PATIENCE`].
+    fn stroll(
+        &self,
+        memory: &mut Memory,
+        settings: &Settings,
+        known: &mut Known,
+    ) -> Result<Answer, Fault> {
         let mut seen = Seen::default();
         let first = Settings {
             max_iterations: settings.max_iterations.min(PATIENCE),
@@ -337,21 +362,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         for p in seen.points() {
             known.add(p);
         }
-        let Answer::Limit(tired) = found else {
-            return Ok(found);
-        };
-        let rest = Settings {
-            max_iterations: settings.max_iterations - first.max_iterations,
-            ..*settings
-        };
-        if rest.max_iterations == 0 {
-            return Ok(found);
-        }
-        let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &answer {
-            *memory = State::of(OVERLAP, hit.normal).memory;
-        }
-        Ok(answer)
+        Ok(found)
     }
 
     /// The global minimum of the depth, proven.
@@ -365,8 +376,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Miss(n));
         }
         let mut memory = state.solver();
-        let mut seen = Seen::default();
-        let local = match self.descend(&mut memory, settings, &mut seen)? {
+        let mut known = Known::default();
+        // Where it gets tired the proof goes on from what it found.
+        let local = match self.stroll(&mut memory, settings, &mut known)? {
             Answer::Hit(hit) | Answer::Limit(hit) => hit,
             other => {
                 state.remember(&other);
@@ -376,7 +388,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         // The centres are the caller's word, not support points: no part of a proof.
         let seed = Seed {
             dir: local.normal,
-            points: seen.points(),
+            points: known.points(),
             upper: Some((local.depth, local.normal)),
         };
         let answer = epa::minimum(&self.md, &seed, settings, arena)?;
