@@ -93,7 +93,6 @@ fn dynamic_symbols(library: &Path) -> BTreeSet<String> {
     .collect()
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn shared_library_exports_libccd_s_symbols_and_the_extension() {
     let extension = EXTENSION.map(|name| format!("{name} FUNC DEFAULT "));
@@ -138,7 +137,6 @@ fn soname_is_libccd_s() {
 }
 
 /// Plain abidiff: with --no-unreferenced-symbols it is silent on missing symbols.
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn abidiff_finds_nothing_removed_or_changed() {
     let diff = Command::new("abidiff")
@@ -431,44 +429,37 @@ fn expanding_polytopes_costs_no_more_instructions_than_libccd() {
     assert!(ours.1 <= theirs.1);
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn callbacks() {
     alone("callbacks").library("pthread").build().run(NO_ARGS);
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn outputs() {
     alone("outputs").build().run(NO_ARGS);
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn bad_input() {
     alone("bad_input").build().run(NO_ARGS);
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn memory() {
     alone("memory").without_tools().build().run(NO_ARGS);
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn threads() {
     alone("threads").library("pthread").build().run(NO_ARGS);
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn longjmp_out_of_callbacks() {
     alone("longjmp").build().run(NO_ARGS);
     alone("longjmp").link_ours_static().build().run(NO_ARGS);
 }
 
-#[ignore = "ccdGJKPenetration is not there yet"]
 #[test]
 fn exceptions_out_of_callbacks() {
     let exceptions = || {
