@@ -92,7 +92,8 @@ impl Query {
         Some(dir.into())
     }
 
-    /// Difference and centres; `None` when a callback for them is NULL.
+    /// Difference and centres; `None` when a callback for them is NULL or a centre is not
+    /// finite.
     ///
     /// # Safety
     /// Pointers of the module contract.
@@ -101,7 +102,7 @@ impl Query {
         unsafe {
             Some(Pair {
                 md: self.difference()?,
-                centre: Some(self.centre()?),
+                centre: Some(self.centre().filter(|c| c.v.sum().is_finite())?),
                 first_dir: None,
             })
         }
