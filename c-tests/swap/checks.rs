@@ -13,6 +13,12 @@ use std::fmt::Write as _;
 
 /// FCL's, ODE's and MuJoCo's setting, metres.
 const MPR_TOLERANCE: f64 = 1e-6;
+/// What two answers within their tolerances may differ by: twice the tolerance, and a
+/// hundredth of the depth.
+fn verdict_tolerance(truth: f64) -> f64 {
+    0.01 * truth.max(0.0) + 2.0 * MPR_TOLERANCE
+}
+
 /// A depth or gap of this many sizes is neither hit nor miss.
 const TOUCH: f64 = 1e-9;
 
@@ -151,7 +157,7 @@ pub struct Static {
     pub hits: Both<usize>,
     pub missed: Both<usize>,
     pub spurious: Both<usize>,
-    /// Depth above 1.01 × truth + 2 tolerances.
+    /// Deeper than the truth by more than `verdict_tolerance`.
     pub deep: Both<usize>,
     /// Depth below the truth by more than 2 tolerances.
     pub unsound: Both<usize>,
@@ -218,7 +224,7 @@ pub fn judge_collide(consumer: &'static str, lines: &Both<Vec<String>>) -> Stati
             s.hits[i] += usize::from(hit);
             s.missed[i] += usize::from(overlap && q.outcome == 0);
             s.spurious[i] += usize::from(apart && hit);
-            s.deep[i] += usize::from(hit && q.value > 1.01 * upper.max(0.0) + 2.0 * MPR_TOLERANCE);
+            s.deep[i] += usize::from(hit && q.value > upper.max(0.0) + verdict_tolerance(upper));
             s.unsound[i] += usize::from(hit && q.value < lower - 2.0 * MPR_TOLERANCE);
         }
         if overlap && ours.outcome == 0 {
@@ -232,7 +238,7 @@ pub fn judge_collide(consumer: &'static str, lines: &Both<Vec<String>>) -> Stati
         }
         if ours.outcome == HIT
             && system.outcome == HIT
-            && ours.value > system.value + 2.0 * MPR_TOLERANCE
+            && ours.value > system.value + verdict_tolerance(upper)
         {
             against(&format!("deeper than libccd's {}", system.value));
         }
