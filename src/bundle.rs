@@ -77,11 +77,11 @@
 //! forecast (one model does both); more than [`CUTS`] samples.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
-/// Samples kept: three active cuts, the best, the newest, and one to spare.
-pub const CUTS: usize = 6;
+/// Samples kept: three active cuts and the newest.
+pub const CUTS: usize = 4;
 
 /// First reach, radians: the error of a good guess.
 const REACH: Real = 0.09;
@@ -93,12 +93,18 @@ const SHRINK: Real = 0.6;
 const ALIKE: Real = 0.03;
 /// A pair whose slope is larger than this share of the object must be more alike.
 const STEEP: Real = 0.7;
+/// A slope larger than so many times the object is a kink's.
+const BLUNT: Real = 8.0;
+/// Cosine of the angle beyond which R says nothing.
+const NEAR: Real = 0.9;
 /// How much more alike once a vertex was seen twice (a polytope, it seems).
 const FLAT: Real = 0.25;
 /// Residual below which two samples are one vertex of P.
 const SAME_PIECE: Real = 0.15;
 /// Smallest first step, radians: enough to see curvature.
 const ASIDE: Real = 0.01;
+/// Step across the one direction known, radians.
+const ACROSS: Real = 0.03;
 /// Support points after which curvature is given up.
 const TRUST_CURVATURE: u64 = 40;
 
@@ -121,12 +127,18 @@ pub struct Memory {
     pub curved: u32,
 }
 
-/// A direction, its support point, its support value.
-#[derive(Clone, Copy, Default)]
-struct Sample {
-    n: Vec3,
-    p: SupportPoint,
-    h: Real,
+/// The support points that the search keeps, for a proof of the overlap.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    points: [SupportPoint; CUTS],
+    len: usize,
+}
+
+impl Seen {
+    /// The points, all of D.
+    pub fn points(&self) -> &[SupportPoint] {
+        self.points.get(..self.len).unwrap_or(&[])
+    }
 }
 
 /// A symmetric matrix.
@@ -173,13 +185,14 @@ impl Symmetric {
 }
 
 /// R and what is known of it.
-#[derive(Clone, Copy)]
 struct Curvature {
     r: Symmetric,
     /// Some pair measured it, or the memory remembers it.
     known: bool,
     /// Relative error, by the last smooth pair.
     error: Real,
+    /// How much of it is obj1's.
+    share: Real,
     /// The direction of the first smooth pair; zero before it.
     line: Vec3,
     /// Measured along a second direction too.
@@ -191,83 +204,167 @@ struct Curvature {
 }
 
 impl Curvature {
-    /// Learns from the new sample `s`, compared with the `others`.
+    /// Sets the extent of the object; a remembered R beyond any object of that extent
+    /// was another's.
+    fn forget_unless_fits(&mut self, size: Real) {
+        self.size = size;
+        let r = &self.r;
+        let largest = r.xx.abs() + r.yy.abs() + r.zz.abs() + r.xy.abs() + r.xz.abs() + r.yz.abs();
+        self.known &= largest <= 1e3 * size;
+    }
+}
+
+/// The samples, their newest and best, and what they tell.
+struct Search<'a> {
+    n: [Vec3; CUTS],
+    h: [Real; CUTS],
+    seen: &'a mut Seen,
+    best: usize,
+    curvature: Curvature,
+    /// Rounding error of a support value, metres.
+    noise: Real,
+}
+
+impl Search<'_> {
+    fn len(&self) -> usize {
+        self.seen.len
+    }
+
+    /// Drops sample `i`; the last one takes its place.
     #[inline]
-    fn learn(&mut self, s: &Sample, others: &[Sample], noise: Real) {
-        let mut nearest: Option<(&Sample, Vec3, Vec3, Real)> = None;
-        for o in others {
-            let dn = s.n - o.n;
-            let ds = s.p.v - o.p.v;
-            let dn2 = dn.norm_squared();
+    fn drop(&mut self, i: usize) {
+        let last = self.seen.len - 1;
+        self.n[i] = self.n[last];
+        self.h[i] = self.h[last];
+        self.seen.points[i] = self.seen.points[last];
+        if self.best == last {
+            self.best = i;
+        }
+        self.seen.len = last;
+    }
+
+    /// Learns the curvature from a new sample, not yet kept. Returns the nearest sample
+    /// that makes a smooth pair with it, [`CUTS`] for none.
+    #[inline]
+    fn learn(&mut self, n: &Vec3, p: &SupportPoint, h: Real) -> usize {
+        let noise = self.noise;
+        let curvature = &mut self.curvature;
+        let size2 = curvature.size * curvature.size;
+        let steep = STEEP * STEEP * size2;
+        let mut twin = CUTS;
+        let mut twin_dn2 = Real::INFINITY;
+        // What a kink between the new sample and the best leaves for R.
+        let mut room = Real::INFINITY;
+        for i in 0..self.seen.len.min(CUTS) {
+            let (on, ov) = (&self.n[i], &self.seen.points[i].v);
+            let dn2 = 2.0 - 2.0 * n.dot(on);
             // Closer directions tell nothing above the rounding errors.
             if !(dn2 > 1e-10) {
                 continue;
             }
-            let ds2 = ds.norm_squared();
-            let ahead = s.h - o.p.v.dot(&s.n);
-            let behind = o.h - s.p.v.dot(&o.n);
+            let ds2 = (p.v - ov).norm_squared();
+            let ahead = h - ov.dot(n);
+            let behind = self.h[i] - p.v.dot(on);
             let repeated = ds2 <= noise * noise;
-            self.flat |= repeated;
-            let limit = if self.flat { ALIKE * FLAT } else { ALIKE };
-            let sum = limit * (ahead + behind);
-            let gap = ((ahead - behind).abs() - noise).max(0.0);
-            let steep = STEEP * self.size;
-            let alike =
-                gap * gap * ds2.max(steep * steep * dn2) <= sum * sum * (steep * steep * dn2);
-            if repeated || alike && sum > noise {
-                if nearest.is_none_or(|(_, _, _, d)| dn2 < d) {
-                    nearest = Some((o, dn, ds, dn2));
+            curvature.flat |= repeated;
+            let sum = ahead + behind;
+            let limit = if curvature.flat { ALIKE * FLAT } else { ALIKE };
+            let gap = (ahead - behind) * (ahead - behind);
+            let steep = steep * dn2;
+            let alike = sum > noise
+                && ds2 <= BLUNT * BLUNT * size2 * dn2
+                && gap <= limit * limit * sum * sum
+                && gap * ds2 <= limit * limit * sum * sum * steep;
+            if repeated || alike {
+                if dn2 < twin_dn2 {
+                    twin = i;
+                    twin_dn2 = dn2;
                 }
-            } else if self.known {
-                let rd = self.r.times(&dn);
-                let bend = rd.dot(&dn);
-                let room = 2.0 * ahead.min(behind).max(0.0);
-                if bend > room {
-                    self.r.add((room - bend) / (bend * bend), &rd);
-                }
+            } else if i == self.best {
+                room = 2.0 * ahead.min(behind);
             }
         }
-        let Some((_, dn, ds, dn2)) = nearest else {
-            return;
-        };
-        if self.line == Vec3::zeros() {
-            self.line = dn / dn2.sqrt();
-        } else if self.line.cross(&dn).norm_squared() > 0.04 * dn2 {
-            self.spread = true;
+        if curvature.known && room < Real::INFINITY {
+            let dn = n - self.n[self.best];
+            let rd = curvature.r.times(&dn);
+            let bend = rd.dot(&dn);
+            let room = room.max(0.0);
+            if bend > room {
+                curvature.r.add((room - bend) / (bend * bend), &rd);
+            }
         }
+        if twin == CUTS {
+            return twin;
+        }
+        let (dn, dn2) = (n - self.n[twin], twin_dn2);
+        let other = &self.seen.points[twin];
+        let ds = p.v - other.v;
         let ds2 = ds.norm_squared();
+        // The first pair that confirms a remembered R confirms all of it.
+        let remembered = curvature.known && curvature.line == Vec3::zeros();
+        if curvature.line == Vec3::zeros() {
+            curvature.line = dn;
+        } else if curvature.line.cross(&dn).norm_squared()
+            > 0.04 * dn2 * curvature.line.norm_squared()
+        {
+            curvature.spread = true;
+        }
         if ds2 <= noise * noise {
-            if self.known {
-                let rd = self.r.times(&dn);
+            if curvature.known {
+                let rd = curvature.r.times(&dn);
                 let bend = rd.dot(&dn);
-                if bend > 1e-6 * self.size * dn2 {
-                    self.r.add(-1.0 / bend, &rd);
+                if bend > 1e-6 * curvature.size * dn2 {
+                    curvature.r.add(-1.0 / bend, &rd);
                 }
             }
-            return;
+            return twin;
         }
-        let slope = ds.dot(&dn) / dn2;
-        if !self.known {
-            self.known = true;
-            let square = slope * slope * dn2 > 0.9 * ds2;
-            self.r = Symmetric::scaled_identity(if square { slope } else { ds2 / (slope * dn2) });
+        let bend = ds.dot(&dn);
+        let slope = bend / dn2;
+        curvature.share = ((p.v1 - other.v1).dot(&dn) / bend).clamp(0.0, 1.0);
+        let measured = curvature.known;
+        if !measured {
+            curvature.known = true;
+            let square = slope * bend > 0.9 * ds2;
+            curvature.r = Symmetric::scaled_identity(if square { slope } else { ds2 / bend });
         }
-        let w = ds - self.r.times(&dn);
-        self.error = (w.norm_squared() / ds2).sqrt();
-        // Exactly parallel: a ball.
-        if (ds - dn * slope).norm_squared() <= 1e-12 * ds2 {
-            self.spread = true;
-            if self.error > 1e-6 {
-                self.r = Symmetric::scaled_identity(slope);
-                self.error = 1e-6;
-            }
-            return;
-        }
+        let w = ds - curvature.r.times(&dn);
         let w2 = w.norm_squared();
-        let along = w.dot(&dn);
-        if along * along > 0.0025 * w2 * dn2 && w2 > 1e-18 * self.size * self.size * dn2 {
-            self.r.add(1.0 / along, &w);
+        if measured {
+            curvature.error = (w2 / ds2).sqrt();
         }
+        curvature.spread |= remembered && curvature.error < 0.1;
+        // Exactly parallel: a ball, if the object has room for it.
+        if (ds - dn * slope).norm_squared() <= 1e-12 * ds2 && slope * slope <= 1.02 * size2 {
+            curvature.spread = true;
+            if curvature.error > 1e-6 {
+                curvature.r = Symmetric::scaled_identity(slope);
+                curvature.error = 1e-6;
+            }
+            return twin;
+        }
+        let along = w.dot(&dn);
+        if along * along > 0.0025 * w2 * dn2 {
+            curvature.r.add(1.0 / along, &w);
+        }
+        twin
+    }
+
+    /// Is sample `i` the same vertex of P as the newest, within R, and farther from
+    /// the best? Then it tells nothing more.
+    #[inline]
+    fn outdated(&self, i: usize) -> bool {
+        let new = self.seen.len - 1;
+        let (n, v) = (&self.n[new], &self.seen.points[new].v);
+        let mut residual = v - self.seen.points[i].v;
+        let mut small = self.noise * self.noise;
+        if self.curvature.known {
+            let rd = self.curvature.r.times(&(n - self.n[i]));
+            small += SAME_PIECE * SAME_PIECE * rd.norm_squared().min(residual.norm_squared());
+            residual -= rd;
+        }
+        let b = &self.n[self.best];
+        i != self.best && residual.norm_squared() <= small && self.n[i].dot(b) <= n.dot(b)
     }
 }
 
@@ -275,14 +372,23 @@ impl Curvature {
 #[derive(Clone, Copy, Default)]
 struct Cut {
     a: Real,
-    bx: Real,
-    by: Real,
+    x: Real,
+    y: Real,
 }
 
 impl Cut {
     #[inline]
     fn at(&self, x: Real, y: Real) -> Real {
-        self.a + self.bx * x + self.by * y
+        self.a + self.x * x + self.y * y
+    }
+
+    #[inline]
+    fn minus(&self, o: &Self) -> Self {
+        Self {
+            a: self.a - o.a,
+            x: self.x - o.x,
+            y: self.y - o.y,
+        }
     }
 }
 
@@ -292,12 +398,11 @@ struct Model {
     e1: Vec3,
     e2: Vec3,
     rho: Real,
+    /// A is [[axx, axy], [axy, −axx]].
     axx: Real,
     axy: Real,
-    ayy: Real,
-    kxx: Real,
-    kxy: Real,
-    kyy: Real,
+    /// h(b) − ρ: K = A − core · I.
+    core: Real,
     cuts: [Cut; CUTS],
     /// How far R lifts each cut at x = 0, metres.
     lift: [Real; CUTS],
@@ -305,7 +410,7 @@ struct Model {
     best: usize,
 }
 
-/// A point of the chart that minimises the model.
+/// A point of the chart that minimises the model, and the cuts active there.
 #[derive(Clone, Copy)]
 struct Step {
     x: Real,
@@ -318,37 +423,34 @@ struct Step {
 
 impl Model {
     #[inline]
-    fn new(samples: &[Sample], best: usize, curvature: &Curvature) -> Self {
-        let s = &samples[best];
-        let b = s.n;
+    fn new(search: &Search) -> Self {
+        let best = search.best;
+        let len = search.len();
+        let b = search.n[best];
+        let h = search.h[best];
+        let points = &search.seen.points;
         // Orthonormal basis without a branch (Duff et al., JCGT 6(1), 2017).
         let sign = (1.0 as Real).copysign(b.z);
         let c = -1.0 / (sign + b.z);
         let d = b.x * b.y * c;
         let e1 = Vec3::new(1.0 + sign * b.x * b.x * c, sign * d, -sign * b.x);
         let e2 = Vec3::new(d, sign + b.y * b.y * c, -b.y);
-        let (mut rho, mut axx, mut axy, mut ayy) = (0.0, 0.0, 0.0, 0.0);
-        if curvature.known {
-            let r1 = curvature.r.times(&e1);
-            let r2 = curvature.r.times(&e2);
+        let (mut rho, mut axx, mut axy) = (0.0, 0.0, 0.0);
+        if search.curvature.known {
+            let r1 = search.curvature.r.times(&e1);
+            let r2 = search.curvature.r.times(&e2);
             let (rxx, rxy, ryy) = (r1.dot(&e1), r1.dot(&e2), r2.dot(&e2));
             rho = 0.5 * (rxx + ryy);
-            axx = rxx - rho;
+            axx = 0.5 * (rxx - ryy);
             axy = rxy;
-            ayy = -axx;
             // R is positive semidefinite: a negative eigenvalue becomes zero.
             let m = (axx * axx + axy * axy).sqrt();
             if m > rho {
                 let top = (rho + m).max(0.0);
-                let f = if m > 0.0 { 0.5 * top / m } else { 0.0 };
                 rho = 0.5 * top;
-                axx *= f;
-                axy *= f;
-                ayy *= f;
+                axx *= rho / m;
+                axy *= rho / m;
             }
-        } else if samples.len() == 1 {
-            // Nothing but the size to go by.
-            rho = curvature.size;
         }
         let mut model = Self {
             b,
@@ -357,39 +459,40 @@ impl Model {
             rho,
             axx,
             axy,
-            ayy,
-            kxx: axx - (s.h - rho),
-            kxy: axy,
-            kyy: ayy - (s.h - rho),
+            core: h - rho,
             cuts: [Cut::default(); CUTS],
             lift: [0.0; CUTS],
-            len: samples.len(),
+            len,
             best,
         };
-        for (i, o) in samples.iter().enumerate() {
-            let v = &o.p.v;
+        for i in 0..len.min(CUTS) {
+            let v = &points[i].v;
             let a = v.dot(&b);
             let mut cut = Cut {
                 a: a - rho,
-                bx: v.dot(&e1),
-                by: v.dot(&e2),
+                x: v.dot(&e1),
+                y: v.dot(&e2),
             };
-            if i != best && rho > 0.0 {
-                let z = o.n.dot(&b);
-                let (tx, ty) = (o.n.dot(&e1), o.n.dot(&e2));
-                let zi = 1.0 / z.max(0.3);
+            if rho > 0.0 && i != best {
+                let n = &search.n[i];
+                let z = n.dot(&b);
+                let (tx, ty) = (n.dot(&e1), n.dot(&e2));
+                let zi = 1.0 / z;
                 let (x, y) = (tx * zi, ty * zi);
-                let (ax, ay) = (axx * x + axy * y, axy * x + ayy * y);
+                let (ax, ay) = (axx * x + axy * y, axy * x - axx * y);
                 let lift = rho * (1.0 - z) + 0.5 * (ax * x + ay * y);
-                let behind = s.h - a;
-                let ahead = o.h - s.p.v.dot(&o.n);
+                let behind = h - a;
+                let ahead = search.h[i] - points[best].v.dot(n);
                 // A smooth pair is one piece, which b itself represents; a lift above
-                // h(b) is refuted. Both stay as exact cuts.
-                let smooth = (ahead - behind).abs() <= ALIKE * (ahead + behind);
-                if !smooth && lift <= behind {
+                // h(b) is refuted; far away R means nothing. All stay exact cuts.
+                if z > NEAR
+                    && lift >= 0.0
+                    && lift <= behind
+                    && (ahead - behind).abs() > ALIKE * (ahead + behind)
+                {
                     cut.a += lift;
-                    cut.bx -= rho * tx + ax;
-                    cut.by -= rho * ty + ay;
+                    cut.x -= rho * tx + ax;
+                    cut.y -= rho * ty + ay;
                     model.lift[i] = lift;
                 }
             }
@@ -398,155 +501,111 @@ impl Model {
         model
     }
 
+    /// Least model value within the reach: the lowest of the points where one cut has
+    /// its minimum, two meet and have theirs, or three meet, among those that the
+    /// best or the newest cut is part of (the others were there before).
     #[inline]
-    fn quadratic(&self, x: Real, y: Real) -> Real {
-        0.5 * (self.kxx * x * x + self.kyy * y * y) + self.kxy * x * y
+    fn minimise(&self, newest: usize, reach: Real, noise: Real) -> Step {
+        let mut step = Step {
+            x: 0.0,
+            y: 0.0,
+            value: Real::INFINITY,
+            set: [self.best; 3],
+            count: 1,
+            inside: false,
+        };
+        self.pivot(self.best, CUTS, reach, noise, &mut step);
+        if newest != self.best {
+            self.pivot(newest, self.best, reach, noise, &mut step);
+        }
+        // The model's own value of the depth there, exact for P and for balls.
+        let (x, y) = (step.x, step.y);
+        let v = self.cuts[step.set[0]].at(x, y);
+        let bent = 0.5 * self.axx * (x * x - y * y) + self.axy * x * y;
+        step.value = (v + bent) / (1.0 + x * x + y * y).sqrt() + self.rho;
+        step
     }
 
-    /// Minimum of one cut within the reach.
-    #[inline]
-    fn single(&self, i: usize, reach: Real) -> Step {
-        let c = &self.cuts[i];
-        let det = self.kxx * self.kyy - self.kxy * self.kxy;
-        let (mut x, mut y) = (-c.bx, -c.by);
+    /// The candidates of [`Self::minimise`] with cut `p` and without cut `skip`.
+    fn pivot(&self, p: usize, skip: usize, reach: Real, noise: Real, step: &mut Step) {
+        let c = self.cuts[p];
+        let (kxx, kxy, kyy) = (self.axx - self.core, self.axy, -self.axx - self.core);
+        let reach2 = reach * reach;
+        // How far c lies above each other cut, `skip` last.
+        let mut above = [(Cut::default(), p); CUTS - 1];
+        let mut len = 0;
+        for (i, o) in self.cuts[..self.len].iter().enumerate() {
+            if i != p && i != skip {
+                above[len] = (c.minus(o), i);
+                len += 1;
+            }
+        }
+        let active = len;
+        if skip < CUTS {
+            above[len] = (c.minus(&self.cuts[skip]), skip);
+            len += 1;
+        }
+        let above = &above[..len];
+        let mut offer = |x: Real, y: Real, i: usize, j: usize, count: usize, inside: bool| {
+            let value = c.at(x, y) + 0.5 * (kxx * x * x + kyy * y * y) + kxy * x * y;
+            if value < step.value && above.iter().all(|(d, _)| d.at(x, y) >= -noise) {
+                *step = Step {
+                    x,
+                    y,
+                    value,
+                    set: [p, i, j],
+                    count,
+                    inside,
+                };
+            }
+        };
+        let (mut x, mut y) = (-c.x, -c.y);
         let mut inside = false;
-        if self.kxx + self.kyy > 0.0 && det > 0.0 {
-            let d = 1.0 / det;
-            (x, y) = (
-                (self.kyy * x - self.kxy * y) * d,
-                (self.kxx * y - self.kxy * x) * d,
-            );
-            inside = x * x + y * y <= reach * reach;
+        let det = kxx * kyy - kxy * kxy;
+        if det > 0.0 && kxx > 0.0 {
+            let di = 1.0 / det;
+            (x, y) = ((kyy * x - kxy * y) * di, (kxx * y - kxy * x) * di);
+            inside = x * x + y * y <= reach2;
         }
         if !inside {
-            let g = (x * x + y * y).sqrt();
+            let g = x * x + y * y;
             // No gradient: one way is as good as another.
             (x, y) = if g > 0.0 {
-                (x * (reach / g), y * (reach / g))
+                let f = reach / g.sqrt();
+                (x * f, y * f)
             } else {
                 (reach, 0.0)
             };
         }
-        Step {
-            x,
-            y,
-            value: 0.0,
-            set: [i, i, i],
-            count: 1,
-            inside,
-        }
-    }
-
-    /// Minimum on the line where two cuts meet, if that crosses the reach.
-    #[inline]
-    fn pair(&self, i: usize, j: usize, reach: Real) -> Option<Step> {
-        let (c, o) = (&self.cuts[i], &self.cuts[j]);
-        let (dx, dy, da) = (c.bx - o.bx, c.by - o.by, c.a - o.a);
-        let q = dx * dx + dy * dy;
-        let f = -da / q;
-        let (x0, y0) = (f * dx, f * dy);
-        let room = reach * reach + f * da;
-        // Also refuses q = 0.
-        if !(room > 0.0) {
-            return None;
-        }
-        let (tx, ty) = (-dy, dx);
-        let (kx, ky) = (self.kxx * tx + self.kxy * ty, self.kxy * tx + self.kyy * ty);
-        let slope = c.bx * tx + c.by * ty + x0 * kx + y0 * ky;
-        let bend = kx * tx + ky * ty;
-        let mut t = -slope / bend;
-        let inside = bend > 0.0 && t * t * q <= room;
-        if !inside {
-            t = (room / q).sqrt().copysign(-slope);
-        }
-        Some(Step {
-            x: x0 + t * tx,
-            y: y0 + t * ty,
-            value: 0.0,
-            set: [i, j, j],
-            count: 2,
-            inside,
-        })
-    }
-
-    /// The point where three cuts meet, if within the reach.
-    #[inline]
-    fn triple(&self, i: usize, j: usize, l: usize, reach: Real) -> Option<Step> {
-        let (c, o, p) = (&self.cuts[i], &self.cuts[j], &self.cuts[l]);
-        let (dx, dy, da) = (c.bx - o.bx, c.by - o.by, c.a - o.a);
-        let (ex, ey, ea) = (c.bx - p.bx, c.by - p.by, c.a - p.a);
-        let w = 1.0 / (dx * ey - dy * ex);
-        let (x, y) = ((ea * dy - da * ey) * w, (ex * da - dx * ea) * w);
-        // Also refuses NaN and infinity.
-        if !(x * x + y * y <= reach * reach) {
-            return None;
-        }
-        Some(Step {
-            x,
-            y,
-            value: 0.0,
-            set: [i, j, l],
-            count: 3,
-            inside: true,
-        })
-    }
-
-    /// Least model value within the reach.
-    fn minimise(&self, reach: Real, noise: Real) -> Step {
-        let mut step = self.single(self.best, reach);
-        for _ in 0..2 * CUTS {
-            let base = self.cuts[step.set[0]].at(step.x, step.y);
-            let mut worst = self.len;
-            let mut top = base + noise;
-            for (i, c) in self.cuts.iter().enumerate().take(self.len) {
-                let v = c.at(step.x, step.y);
-                if v > top {
-                    top = v;
-                    worst = i;
+        offer(x, y, p, p, 1, inside);
+        for (k, (d, i)) in above[..active].iter().enumerate() {
+            // On the line d = 0, from its point nearest to x = 0.
+            let q = d.x * d.x + d.y * d.y;
+            let f = -d.a / q;
+            // Squared half chord of the line in the reach; NaN for equal cuts.
+            let room = reach2 + f * d.a;
+            if room > 0.0 {
+                let (x0, y0) = (f * d.x, f * d.y);
+                let (tx, ty) = (-d.y, d.x);
+                let (kx, ky) = (kxx * tx + kxy * ty, kxy * tx + kyy * ty);
+                let slope = c.x * tx + c.y * ty + x0 * kx + y0 * ky;
+                let bend = kx * tx + ky * ty;
+                let mut t = -slope / bend;
+                let inside = bend > 0.0 && t * t * q <= room;
+                if !inside {
+                    t = (room / q).sqrt().copysign(-slope);
+                }
+                offer(x0 + t * tx, y0 + t * ty, *i, *i, 2, inside);
+            }
+            for (e, j) in &above[..k] {
+                let w = 1.0 / (d.x * e.y - d.y * e.x);
+                let (x, y) = ((e.a * d.y - d.a * e.y) * w, (e.x * d.a - d.x * e.a) * w);
+                // Refuses NaN and infinity too.
+                if x * x + y * y <= reach2 {
+                    offer(x, y, *i, *j, 3, true);
                 }
             }
-            if worst == self.len {
-                break;
-            }
-            let old = step;
-            let mut set = [worst; 4];
-            set[1..=old.count].copy_from_slice(&old.set[..old.count]);
-            let set = &set[..old.count + 1];
-            let value = |s: &Step| {
-                let mut m = Real::NEG_INFINITY;
-                for &k in set {
-                    m = m.max(self.cuts[k].at(s.x, s.y));
-                }
-                m + self.quadratic(s.x, s.y)
-            };
-            let mut best = self.single(worst, reach);
-            let mut least = value(&best);
-            let mut consider = |s: Option<Step>| {
-                if let Some(s) = s {
-                    let v = value(&s);
-                    if v < least {
-                        least = v;
-                        best = s;
-                    }
-                }
-            };
-            for k in 1..set.len() {
-                consider(self.pair(worst, set[k], reach));
-                for l in 1..k {
-                    consider(self.triple(worst, set[k], set[l], reach));
-                }
-            }
-            step = best;
         }
-        // The model's own value of the depth there, exact for P and for balls.
-        let (x, y) = (step.x, step.y);
-        let mut m = Real::NEG_INFINITY;
-        for c in &self.cuts[..self.len] {
-            m = m.max(c.at(x, y));
-        }
-        let bent = 0.5 * (self.axx * x * x + self.ayy * y * y) + self.axy * x * y;
-        step.value = (m + bent) / (1.0 + x * x + y * y).sqrt() + self.rho;
-        step
     }
 
     #[inline]
@@ -554,21 +613,16 @@ impl Model {
         self.b + self.e1 * x + self.e2 * y
     }
 
-    /// Weights of the active cuts whose gradients balance at `step`.
+    /// Weights of the active cuts whose gradients balance at x = 0, or come nearest.
     fn weights(&self, step: &Step) -> [Real; 3] {
-        let target = |c: &Cut| {
-            (
-                c.bx + self.kxx * step.x + self.kxy * step.y,
-                c.by + self.kxy * step.x + self.kyy * step.y,
-            )
-        };
-        let [g, h, k] = step.set.map(|i| target(&self.cuts[i]));
+        let [g, h, k] = step.set.map(|i| (self.cuts[i].x, self.cuts[i].y));
         let cross = |a: (Real, Real), b: (Real, Real)| a.0 * b.1 - a.1 * b.0;
         match step.count {
             3 => {
                 let w = [cross(h, k), cross(k, g), cross(g, h)];
                 let sum = w[0] + w[1] + w[2];
-                let w = w.map(|w| (w / sum).clamp(0.0, 1.0));
+                // max drops NaN
+                let w = w.map(|w| (w / sum).max(0.0));
                 let sum = w[0] + w[1] + w[2];
                 if sum > 0.0 {
                     w.map(|w| w / sum)
@@ -578,9 +632,8 @@ impl Model {
             }
             2 => {
                 let d = (h.0 - g.0, h.1 - g.1);
-                let q = d.0 * d.0 + d.1 * d.1;
-                let t = -(g.0 * d.0 + g.1 * d.1) / q;
-                // NaN too
+                let t = -(g.0 * d.0 + g.1 * d.1) / (d.0 * d.0 + d.1 * d.1);
+                // NaN becomes 0
                 let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
                 [1.0 - t, t, 0.0]
             }
@@ -589,50 +642,12 @@ impl Model {
     }
 }
 
-/// The support points that the search kept, for a proof of the overlap.
-#[derive(Clone, Copy, Default)]
-pub struct Seen {
-    points: [SupportPoint; CUTS],
-    len: usize,
-}
-
-impl Seen {
-    /// The points, all of D.
-    pub fn points(&self) -> &[SupportPoint] {
-        self.points.get(..self.len).unwrap_or(&[])
-    }
-}
-
-/// What the search works on.
-struct Search {
-    samples: [Sample; CUTS],
-    len: usize,
-    best: usize,
-    curvature: Curvature,
-}
-
-impl Search {
-    fn slice(&self) -> &[Sample] {
-        &self.samples[..self.len]
-    }
-
-    /// Drops sample `i`; the last one takes its place.
-    fn drop(&mut self, i: usize) {
-        let last = self.len - 1;
-        self.samples[i] = self.samples[last];
-        if self.best == last {
-            self.best = i;
-        }
-        self.len = last;
-    }
-}
-
 /// A local minimum of the depth near the remembered direction, else near the unit
 /// vector `start`.
 ///
-/// `centre`: any inner point of D, its scale is what curvature is first guessed from.
-/// `seen`: filled with points of D for the caller's proof of the overlap, which a
-/// local minimum alone is not.
+/// `centre`: any inner point of D, its distance is what curvature is first guessed
+/// from. `seen`: filled with points of D for the caller's proof of the overlap, which
+/// a local minimum alone is not.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -644,58 +659,36 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     settings: &Settings,
     seen: &mut Seen,
 ) -> Result<Answer, Fault> {
-    let remembered = unit(&memory.dir);
-    let mut n = remembered.unwrap_or(*start);
-    // Directions to ask before the first model, last one first.
-    let mut queue = [n; 3];
-    let mut queued = 0;
+    let mut n = *start;
+    seen.len = 0;
     let mut search = Search {
-        samples: [Sample::default(); CUTS],
-        len: 0,
+        n: [Vec3::zeros(); CUTS],
+        h: [0.0; CUTS],
+        seen,
         best: 0,
         curvature: Curvature {
             r: Symmetric::default(),
             known: false,
             error: 1.0,
+            share: 0.5,
             line: Vec3::zeros(),
             spread: false,
             flat: false,
             size: 0.0,
         },
+        noise: 0.0,
     };
-    if remembered.is_some() {
-        // Farther aside than the pair moved; NaN becomes the least angle.
-        let drift = 3.0 * memory.drift;
-        let angle = if drift > 0.003 {
-            drift.min(0.03)
-        } else {
-            0.003
-        };
-        for side in memory.sides.iter().take(memory.count as usize) {
-            if let Some(side) = unit(&(side - n * n.dot(side))).and_then(|s| unit(&(n + s * angle)))
-            {
-                queue[queued] = side;
-                queued += 1;
-            }
-        }
+    // Directions to ask before the first model, last one first.
+    let mut queue = [n; 3];
+    let mut queued = 0;
+    if let Some(dir) = unit(&memory.dir) {
+        n = dir;
+        queued = recall(memory, &dir, &mut queue, &mut search.curvature);
         if queued > 0 {
             queued -= 1;
             n = queue[queued];
         }
-        let [xx, xy, xz, yy, yz, zz] = memory.curvature;
-        if memory.curved == 1 && (xx + xy + xz + yy + yz + zz).is_finite() {
-            search.curvature.r = Symmetric {
-                xx,
-                xy,
-                xz,
-                yy,
-                yz,
-                zz,
-            };
-            search.curvature.known = true;
-        }
     }
-    let cap = settings.max_iterations;
     let mut reach = REACH;
     let mut predicted = Real::NAN;
     let mut on_border = false;
@@ -703,119 +696,124 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut probing = CUTS;
     let mut tolerance = settings.tolerance;
     let mut iterations = 0;
-    let mut noise: Real = 0.0;
     loop {
         let p = md.support(&n)?;
         let h = n.dot(&p.v);
         if h < 0.0 {
+            search.seen.len = 0;
             return Ok(Answer::Miss(n));
         }
         iterations += 1;
-        let sample = Sample { n, p, h };
-        let magnitude = p.magnitude();
-        noise = noise.max(32.0 * EPSILON * magnitude);
-        tolerance = tolerance.max(16.0 * EPSILON * magnitude);
-        if search.len == 0 {
+        let size = (p.v1.x.abs() + p.v1.y.abs() + p.v1.z.abs())
+            + (p.v2.x.abs() + p.v2.y.abs() + p.v2.z.abs());
+        let rounding = 8.0 * EPSILON * size;
+        if rounding > search.noise {
+            search.noise = rounding;
+            tolerance = tolerance.max(rounding);
+        }
+        let mut newest = search.len();
+        let before = search.h[search.best];
+        let mut twin = CUTS;
+        if newest == 0 {
             let inner = centre.copied().unwrap_or_default();
-            search.curvature.size = (p.v - inner).norm();
+            search.curvature.forget_unless_fits((p.v - inner).norm());
+        } else {
+            twin = search.learn(&n, &p, h);
+            if iterations == TRUST_CURVATURE {
+                search.curvature.known = false;
+                search.curvature.size = 0.0;
+            }
         }
-        search
-            .curvature
-            .learn(&sample, &search.samples[..search.len], noise);
-        if iterations == TRUST_CURVATURE {
-            search.curvature.known = false;
-            search.curvature.size = 0.0;
-        }
-        let new = search.len;
-        search.samples[new] = sample;
-        search.len = new + 1;
-        let before = search.samples[search.best].h;
-        if new == 0 || h < before {
-            search.best = new;
-        }
-        // The reach.
-        if predicted.is_finite() {
-            let foretold = before - predicted;
+        search.n[newest] = n;
+        search.h[newest] = h;
+        search.seen.points[newest] = p;
+        search.seen.len += 1;
+        if newest > 0 {
+            if h < before {
+                search.best = newest;
+            }
             let came = before - h;
-            if came > 0.25 * foretold {
+            // False for NaN: no forecast.
+            if came > 0.25 * (before - predicted) {
                 if on_border {
                     reach = (reach * GROW).min(1.0);
                 }
-            } else if !(came > 0.0) && (n - from).norm_squared() > 0.25 * reach * reach {
+            } else if predicted.is_finite()
+                && !(came > 0.0)
+                && (n - from).norm_squared() > 0.25 * reach * reach
+            {
                 reach *= SHRINK;
             }
-        }
-        // One sample per piece.
-        if probing < new && probing != search.best {
-            search.drop(probing);
-        } else {
-            let b = search.samples[search.best].n;
-            let away = (n - b).norm_squared();
-            for i in (0..new).rev() {
-                let o = &search.samples[i];
-                let dn = n - o.n;
-                let ds = p.v - o.p.v;
-                let rd = if search.curvature.known {
-                    search.curvature.r.times(&dn)
-                } else {
-                    Vec3::zeros()
-                };
-                let small = SAME_PIECE * SAME_PIECE * rd.norm_squared().min(ds.norm_squared());
-                if i != search.best
-                    && (ds - rd).norm_squared() <= small + noise * noise
-                    && (o.n - b).norm_squared() >= away
-                {
-                    search.drop(i);
-                }
+            // The answer to a doubt replaces what was doubted.
+            let gone = if probing < newest && probing != search.best {
+                probing
+            } else if twin < CUTS && search.outdated(twin) {
+                twin
+            } else {
+                CUTS
+            };
+            if gone < newest {
+                search.drop(gone);
+                newest = gone;
             }
         }
         probing = CUTS;
-        if queued > 0 && iterations < cap {
+        if queued > 0 && iterations < settings.max_iterations {
             queued -= 1;
             n = queue[queued];
             continue;
         }
-        let alone = search.len == 1 && !search.curvature.known;
-        let model = Model::new(search.slice(), search.best, &search.curvature);
-        let mut step = model.minimise(reach, noise);
-        if alone {
-            // Far enough to see curvature.
-            let length = (step.x * step.x + step.y * step.y).sqrt();
-            if !(length >= ASIDE) {
-                let g = ASIDE / length;
-                (step.x, step.y) = if g.is_finite() {
-                    (step.x * g, step.y * g)
-                } else {
-                    (ASIDE, 0.0)
-                };
-            }
+        if search.len() == 1
+            && !search.curvature.known
+            && h > search.noise
+            && iterations < settings.max_iterations
+        {
+            // Nothing but the size to go by: down the gradient as on a ball, at least
+            // far enough to see curvature.
+            let gradient = p.v - n * h;
+            let slope = gradient.norm();
+            let core = h - search.curvature.size;
+            let ball = -slope / core;
+            let length = if ball > 0.0 { ball.min(reach) } else { reach }.max(ASIDE);
+            on_border = length == reach;
+            predicted = (core - slope * length) / (1.0 + length * length).sqrt() + h - core;
+            from = n;
+            // No gradient: one way is as good as another.
+            let down = unit(&-gradient).unwrap_or_else(|| perpendicular(&n));
+            let d = n + down * length;
+            n = d * (1.0 / d.norm());
+            continue;
         }
-        let gain = model_gain(&search, &step);
-        let exact = model.rho == 0.0;
+        let mut model = Model::new(&search);
+        let mut step = model.minimise(newest, reach, search.noise);
+        if !step.value.is_finite() && search.curvature.known {
+            search.curvature.known = false;
+            model = Model::new(&search);
+            step = model.minimise(newest, reach, search.noise);
+        }
+        let gain = search.h[search.best] - step.value;
+        let curved = model.rho != 0.0;
         let mut far = search.best;
-        for &i in &step.set[..step.count] {
-            if model.lift[i] > model.lift[far] {
-                far = i;
+        let mut doubt = 0.0;
+        if curved && step.count > 1 {
+            for &i in &step.set[..step.count] {
+                if model.lift[i] > model.lift[far] {
+                    far = i;
+                }
             }
+            doubt = model.lift[far] * search.curvature.error;
         }
-        let doubt = if exact || step.count == 1 {
-            0.0
-        } else {
-            model.lift[far] * search.curvature.error
-        };
         // Flat as far as the eye reaches: minima that form a curve or a surface.
         let level = reach >= REACH && search.curvature.spread;
-        let close = !alone && gain <= tolerance && (step.inside || level);
-        let blind = close && !exact && step.count < 3 && !search.curvature.spread;
-        let done = close && !blind && doubt <= tolerance;
-        let broken = !(step.x + step.y + gain).is_finite();
-        if done || broken || iterations >= cap {
-            let answer = finish(&search, &model, &step, iterations);
-            remember(memory, &search, &model, &step);
-            seen.len = search.len;
-            for (to, from) in seen.points.iter_mut().zip(search.slice()) {
-                *to = from.p;
-            }
+        let close = gain.abs() <= tolerance && (step.inside || level);
+        let blind = close && curved && step.count < 3 && !search.curvature.spread;
+        // Depth zero within rounding cannot be lower.
+        let touch = search.h[search.best] <= search.noise;
+        let done = touch || close && !blind && doubt <= tolerance;
+        let broken = !step.value.is_finite();
+        if done || broken || iterations >= settings.max_iterations {
+            let answer = conclude(&search, &model, &step, iterations);
+            remember(memory, &search.curvature, &model, &step);
             return Ok(if done {
                 Answer::Hit(answer)
             } else {
@@ -826,73 +824,78 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         on_border = !step.inside;
         from = model.b;
         let mut d = model.direction(step.x, step.y);
-        let mut far_kept = CUTS;
-        if step.inside && !alone && doubt > tolerance && 2.0 * doubt >= gain {
+        if step.inside && doubt > tolerance && 2.0 * doubt >= gain {
             // Ask nearer to the minimum on the side of the cut in doubt.
             predicted = Real::NAN;
             let share = (0.5 * tolerance.max(0.1 * gain) / doubt).sqrt().min(0.5);
-            d += (search.samples[far].n - d) * share;
-            far_kept = far;
+            d += (search.n[far] - d) * share;
+            probing = far;
         } else if blind {
             predicted = Real::NAN;
-            search.curvature.spread = true;
-            if let Some(a) = unit(&search.curvature.line.cross(&model.b)) {
-                let g = search.samples[search.best].p.v.dot(&a);
-                d += a * (0.03 as Real).copysign(-g);
-            }
+            let line = &search.curvature.line;
+            let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
+            search.curvature.spread = *line != Vec3::zeros();
+            let g = search.seen.points[search.best].v.dot(&across);
+            d += across * ACROSS.copysign(-g);
         }
-        n = d / d.norm();
-        if search.len == CUTS {
+        n = d * (1.0 / d.norm());
+        if search.len() == CUTS {
+            // Room for the next: the cut that is lowest where the model has its
+            // minimum. The newest may be the answer to a doubt.
             let mut least = Real::INFINITY;
-            let mut victim = (search.best + 1) % CUTS;
+            let mut victim = CUTS;
             for i in 0..CUTS {
-                // The newest sample may be the answer to a doubt.
-                if i == search.best
-                    || i == new.min(search.len - 1)
-                    || step.set[..step.count].contains(&i)
-                {
-                    continue;
-                }
+                let kept = i == search.best || i == newest || step.set[..step.count].contains(&i);
                 let v = model.cuts[i].at(step.x, step.y);
-                if v < least {
+                if !kept && v < least {
                     least = v;
                     victim = i;
                 }
             }
-            if far_kept == CUTS - 1 {
-                far_kept = victim;
+            if victim == CUTS {
+                victim = (search.best + 1) % CUTS;
             }
             search.drop(victim);
+            if probing == CUTS - 1 {
+                probing = victim;
+            }
         }
-        probing = far_kept;
     }
-}
-
-#[inline]
-fn model_gain(search: &Search, step: &Step) -> Real {
-    search.samples[search.best].h - step.value
 }
 
 /// The answer: the best support plane, with witness points in the middle of the
 /// active cuts.
-fn finish(search: &Search, model: &Model, step: &Step, iterations: u64) -> Penetration {
-    let best = &search.samples[search.best];
-    let weights = model.weights(step);
+fn conclude(search: &Search, model: &Model, step: &Step, iterations: u64) -> Penetration {
+    let best = &search.seen.points[search.best];
+    let b = &model.b;
+    let share = search.curvature.share;
     let mut point1 = Vec3::zeros();
     let mut point2 = Vec3::zeros();
-    for (&i, w) in step.set[..step.count].iter().zip(weights) {
-        let s = &search.samples[i];
-        point1 += s.p.v1 * w;
-        point2 += s.p.v2 * w;
+    for (&i, w) in step.set[..step.count].iter().zip(model.weights(step)) {
+        let (p, cut) = (&search.seen.points[i], &model.cuts[i]);
+        point1 += p.v1 * w;
+        point2 += p.v2 * w;
+        if model.lift[i] > 0.0 {
+            // Where R moves the sample's point to when its direction becomes b.
+            let (x, y) = (cut.x - p.v.dot(&model.e1), cut.y - p.v.dot(&model.e2));
+            let moved = (model.e1 * x + model.e2 * y) * w;
+            point1 += moved * share;
+            point2 -= moved * (1.0 - share);
+        }
     }
-    let b = &model.b;
-    point1 += b * (best.p.v1.dot(b) - point1.dot(b));
-    point2 += b * (best.p.v2.dot(b) - point2.dot(b));
+    // What is left across the normal is the distance to the model's minimum.
+    let across = point1 - point2;
+    let across = across - b * across.dot(b);
+    point1 -= across * share;
+    point2 += across * (1.0 - share);
+    // Onto the support planes of both objects.
+    point1 += b * (best.v1 - point1).dot(b);
+    point2 += b * (best.v2 - point2).dot(b);
     Penetration {
-        depth: best.h,
+        depth: search.h[search.best],
         depth_lower: 0.0,
-        dir: best.n,
-        normal: best.n,
+        dir: *b,
+        normal: *b,
         point1,
         point2,
         iterations,
@@ -900,17 +903,18 @@ fn finish(search: &Search, model: &Model, step: &Step, iterations: u64) -> Penet
 }
 
 /// Leaves behind what finds the same active cuts again.
-fn remember(memory: &mut Memory, search: &Search, model: &Model, step: &Step) {
-    let drift = match unit(&memory.dir) {
-        Some(old) if memory.count > 0 || memory.curved == 1 => (model.b - old).norm(),
-        _ => 0.0,
+fn remember(memory: &mut Memory, curvature: &Curvature, model: &Model, step: &Step) {
+    let drift = if memory.count > 0 || memory.curved == 1 {
+        (model.b - memory.dir).norm()
+    } else {
+        0.0
     };
-    let [g, h, k] = step.set.map(|i| (model.cuts[i].bx, model.cuts[i].by));
+    let [g, h, k] = step.set.map(|i| (model.cuts[i].x, model.cuts[i].y));
     let side = |x: Real, y: Real| model.e1 * x + model.e2 * y;
     // Away from the line on which the other two cuts are equal.
     let apart = |a: (Real, Real), b: (Real, Real), c: (Real, Real)| {
         let (x, y) = (c.1 - b.1, b.0 - c.0);
-        let s = ((a.0 - b.0) * x + (a.1 - b.1) * y).signum();
+        let s = (1.0 as Real).copysign((a.0 - b.0) * x + (a.1 - b.1) * y);
         side(x * s, y * s)
     };
     let (sides, count) = match step.count {
@@ -921,13 +925,437 @@ fn remember(memory: &mut Memory, search: &Search, model: &Model, step: &Step) {
         }
         _ => ([Vec3::zeros(); 3], 0),
     };
-    let r = &search.curvature.r;
+    let r = &curvature.r;
     *memory = Memory {
         dir: model.b,
         sides,
         curvature: [r.xx, r.xy, r.xz, r.yy, r.yz, r.zz],
         drift,
         count,
-        curved: u32::from(search.curvature.known),
+        curved: u32::from(curvature.known),
     };
+}
+
+/// Takes from the memory what still makes sense: the directions to ask first, into
+/// `queue`, and the curvature. Returns the number of directions.
+fn recall(memory: &Memory, dir: &Vec3, queue: &mut [Vec3; 3], curvature: &mut Curvature) -> usize {
+    // Farther aside than the pair moved; NaN becomes the least angle.
+    let drift = 3.0 * memory.drift;
+    let angle = if drift > 0.003 {
+        drift.min(0.03)
+    } else {
+        0.003
+    };
+    let mut queued = 0;
+    for side in memory.sides.iter().take(memory.count as usize) {
+        let across = side - dir * dir.dot(side);
+        if let Some(n) = unit(&across).and_then(|s| unit(&(dir + s * angle))) {
+            queue[queued] = n;
+            queued += 1;
+        }
+    }
+    let [xx, xy, xz, yy, yz, zz] = memory.curvature;
+    if memory.curved == 1 && (xx + xy + xz + yy + yz + zz).is_finite() {
+        curvature.r = Symmetric {
+            xx,
+            xy,
+            xz,
+            yy,
+            yz,
+            zz,
+        };
+        curvature.known = true;
+    }
+    queued
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A support function, placed.
+    type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
+
+    fn at(c: Vec3, f: impl Fn(&Vec3) -> Vec3 + 'static) -> Shape {
+        Box::new(move |d| c + f(d))
+    }
+
+    fn ball(c: Vec3, r: Real) -> Shape {
+        at(c, move |d| d * r)
+    }
+
+    fn block(c: Vec3, half: Vec3) -> Shape {
+        at(c, move |d| {
+            Vec3::new(
+                half.x.copysign(d.x),
+                half.y.copysign(d.y),
+                half.z.copysign(d.z),
+            )
+        })
+    }
+
+    fn capsule(c: Vec3, r: Real, half: Real) -> Shape {
+        at(c, move |d| d * r + Vec3::z() * half.copysign(d.z))
+    }
+
+    fn cylinder(c: Vec3, r: Real, half: Real) -> Shape {
+        at(c, move |d| {
+            let t = (d.x * d.x + d.y * d.y).sqrt();
+            let f = if t > 0.0 { r / t } else { 0.0 };
+            Vec3::new(d.x * f, d.y * f, half.copysign(d.z))
+        })
+    }
+
+    fn ellipsoid(c: Vec3, r: Vec3) -> Shape {
+        at(c, move |d| {
+            let w = r.component_mul(&r.component_mul(d));
+            w / w.dot(d).sqrt()
+        })
+    }
+
+    fn hull(points: Vec<Vec3>) -> Shape {
+        Box::new(move |d| {
+            points
+                .iter()
+                .copied()
+                .max_by(|a, b| a.dot(d).total_cmp(&b.dot(d)))
+                .unwrap_or_default()
+        })
+    }
+
+    fn icosahedron() -> Vec<Vec3> {
+        let g = 0.5 * (1.0 + (5.0 as Real).sqrt());
+        let mut points = Vec::new();
+        for (a, b) in [(1.0, g), (1.0, -g), (-1.0, g), (-1.0, -g)] {
+            points.push(Vec3::new(0.0, a, b).normalize());
+            points.push(Vec3::new(a, b, 0.0).normalize());
+            points.push(Vec3::new(b, 0.0, a).normalize());
+        }
+        points
+    }
+
+    const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
+
+    fn settings(tolerance: Real) -> Settings {
+        Settings {
+            tolerance,
+            max_iterations: 500,
+        }
+    }
+
+    fn solve(
+        a: &Shape,
+        b: &Shape,
+        start: Vec3,
+        memory: &mut Memory,
+        tolerance: Real,
+    ) -> (Answer, u64) {
+        let md = MinkowskiDifference::new(a, b);
+        let mut seen = Seen::default();
+        let answer = penetration(
+            &md,
+            None,
+            &start.normalize(),
+            memory,
+            &settings(tolerance),
+            &mut seen,
+        );
+        match answer {
+            Ok(answer) => (answer, md.supports()),
+            Err(fault) => panic!("{fault:?}"),
+        }
+    }
+
+    fn hit(a: &Shape, b: &Shape, start: Vec3, tolerance: Real) -> Penetration {
+        match solve(a, b, start, &mut Memory::default(), tolerance) {
+            (Answer::Hit(p), supports) => {
+                assert!(supports < 100, "{supports} support points");
+                p
+            }
+            (other, supports) => panic!("{other:?} after {supports}"),
+        }
+    }
+
+    fn h(a: &Shape, b: &Shape, n: &Vec3) -> Real {
+        n.dot(&(a(n) - b(&-n)))
+    }
+
+    /// Sound, witnessed, and nothing lower nearby: an answer must hold all of this.
+    fn check(a: &Shape, b: &Shape, p: &Penetration, tolerance: Real, size: Real) {
+        let slack = 64.0 * EPSILON * size;
+        assert!((p.dir.norm() - 1.0).abs() < 8.0 * EPSILON);
+        assert!((h(a, b, &p.dir) - p.depth).abs() <= slack);
+        let difference = p.point1 - p.point2;
+        assert!(
+            (difference - p.dir * p.depth).norm()
+                <= (2.0 * p.depth.max(0.0) * tolerance).sqrt() + tolerance + slack
+        );
+        for (point, reach) in [
+            (p.point1, a(&p.dir).dot(&p.dir)),
+            (p.point2, b(&-p.dir).dot(&p.dir)),
+        ] {
+            assert!((point.dot(&p.dir) - reach).abs() <= tolerance + slack);
+        }
+        let e1 = perpendicular(&p.dir);
+        let e2 = p.dir.cross(&e1);
+        for k in 0..16 {
+            let (s, c) = (k as Real * 0.3927).sin_cos();
+            for step in [1e-3, 1e-2] {
+                let n = (p.dir + (e1 * c + e2 * s) * step).normalize();
+                let there = h(a, b, &n);
+                assert!(
+                    there >= p.depth - 4.0 * tolerance - slack,
+                    "{} lower at {step} rad",
+                    p.depth - there
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_stationary_start_is_not_an_answer() {
+        // A ball on a capsule's axis: 1.3 along it is a maximum.
+        let a = capsule(Vec3::zeros(), 0.5, 0.5);
+        let b = ball(Vec3::z() * 0.2, 0.5);
+        let p = hit(&a, &b, Vec3::z(), TOLERANCE);
+        assert!((p.depth - 1.0).abs() < 2.0 * TOLERANCE, "{}", p.depth);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+        // Icosahedra along a vertex: a maximum of the distance.
+        let points = icosahedron();
+        let start = points[0];
+        let a = hull(points.clone());
+        let b = hull(points);
+        let p = hit(&a, &b, start, TOLERANCE);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+        assert!(p.depth < 1.9);
+    }
+
+    #[test]
+    fn balls_and_boxes_are_exact() {
+        let c = Vec3::new(0.3, 0.2, 0.1);
+        let (a, b) = (ball(Vec3::zeros(), 1.0), ball(c, 1.0));
+        let p = hit(&a, &b, Vec3::new(1.0, 0.4, -0.3), TOLERANCE);
+        assert!((p.depth - (2.0 - c.norm())).abs() < TOLERANCE);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+        let (a, b) = (
+            block(Vec3::zeros(), Vec3::repeat(1.0)),
+            block(Vec3::new(0.1, 0.2, 1.9), Vec3::repeat(1.0)),
+        );
+        let p = hit(&a, &b, Vec3::new(0.1, -0.2, 1.0), TOLERANCE);
+        assert!((p.depth - 0.1).abs() < 16.0 * EPSILON, "{}", p.depth);
+        assert!((p.dir - Vec3::z()).norm() < 16.0 * EPSILON);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+    }
+
+    #[test]
+    fn coincident_centres_end() {
+        let unit_box = || block(Vec3::zeros(), Vec3::new(0.5, 0.4, 0.3));
+        let pairs: [(Shape, Shape); 5] = [
+            (ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.1)),
+            (unit_box(), unit_box()),
+            (
+                capsule(Vec3::zeros(), 0.5, 0.5),
+                capsule(Vec3::zeros(), 0.2, 0.7),
+            ),
+            (
+                cylinder(Vec3::zeros(), 0.5, 0.5),
+                cylinder(Vec3::zeros(), 0.5, 0.5),
+            ),
+            (
+                ellipsoid(Vec3::zeros(), Vec3::new(0.5, 0.35, 0.25)),
+                ellipsoid(Vec3::zeros(), Vec3::new(0.5, 0.35, 0.25)),
+            ),
+        ];
+        for (i, (a, b)) in pairs.iter().enumerate() {
+            for start in [
+                Vec3::x(),
+                Vec3::z(),
+                Vec3::new(0.3, -0.8, 0.5),
+                Vec3::new(1.0, 1.0, 1.0),
+            ] {
+                let p = hit(a, b, start, TOLERANCE);
+                assert!(p.depth > 0.0, "{i}");
+                check(a, b, &p, TOLERANCE, 2.0);
+            }
+        }
+    }
+
+    #[test]
+    fn flat_and_thin_shapes_end() {
+        let flat: Vec<Shape> = vec![
+            block(Vec3::zeros(), Vec3::new(0.5, 0.5, 0.0)),
+            block(Vec3::zeros(), Vec3::new(0.5, 0.0, 0.0)),
+            block(Vec3::zeros(), Vec3::zeros()),
+            cylinder(Vec3::zeros(), 0.5, 0.0),
+            block(Vec3::zeros(), Vec3::new(1.0, 1e-6, 1.0)),
+            block(Vec3::zeros(), Vec3::new(1e6, 1.0, 1.0)),
+            ellipsoid(Vec3::zeros(), Vec3::new(1.0, 0.05, 0.05)),
+        ];
+        for (i, a) in flat.iter().enumerate() {
+            for (j, b) in flat.iter().enumerate() {
+                for start in [
+                    Vec3::z(),
+                    Vec3::new(0.1, 0.2, 0.9),
+                    Vec3::new(-0.7, 0.3, 0.5),
+                ] {
+                    let size = if i == 5 || j == 5 { 2e6 } else { 2.0 };
+                    match solve(a, b, start, &mut Memory::default(), TOLERANCE) {
+                        (Answer::Hit(p), _) => check(a, b, &p, TOLERANCE, size),
+                        (Answer::Miss(n), _) => assert!(h(a, b, &n) < 0.0),
+                        (other, supports) => panic!("{i} {j} {start:?} {other:?} after {supports}"),
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn any_scale_place_and_tolerance() {
+        for scale in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+            for far in [0.0, 1e3] {
+                for fine in [0.0, 1e-12, 1e-6] {
+                    let o = Vec3::new(1.0, -0.7, 0.4) * (far * scale);
+                    let c = |x, y, z| o + Vec3::new(x, y, z) * scale;
+                    let pairs: [(Shape, Shape); 5] = [
+                        (ball(o, scale), ball(c(0.9, 0.4, 0.2), 0.5 * scale)),
+                        (
+                            block(o, Vec3::new(0.5, 0.4, 0.3) * scale),
+                            block(c(0.4, 0.2, 0.3), Vec3::repeat(0.3 * scale)),
+                        ),
+                        (
+                            capsule(o, 0.5 * scale, 0.5 * scale),
+                            ellipsoid(c(0.5, 0.3, 0.4), Vec3::new(0.5, 0.35, 0.25) * scale),
+                        ),
+                        (
+                            cylinder(o, 0.5 * scale, 0.5 * scale),
+                            block(c(0.7, 0.3, 0.4), Vec3::new(0.5, 0.4, 0.3) * scale),
+                        ),
+                        (
+                            cylinder(o, 0.5 * scale, 0.5 * scale),
+                            capsule(c(0.6, 0.2, 0.4), 0.2 * scale, 0.3 * scale),
+                        ),
+                    ];
+                    for (i, (a, b)) in pairs.iter().enumerate() {
+                        let tolerance = fine * scale;
+                        let size = scale * (1.0 + far);
+                        match solve(
+                            a,
+                            b,
+                            Vec3::new(0.8, 0.4, 0.3),
+                            &mut Memory::default(),
+                            tolerance,
+                        ) {
+                            (Answer::Hit(p), supports) => {
+                                assert!(supports < 100, "{i} {scale} {far} {fine}: {supports}");
+                                check(a, b, &p, tolerance.max(64.0 * EPSILON * size), size);
+                            }
+                            other => panic!("{i} {scale} {far} {fine}: {other:?}"),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn apart_is_seen_and_touching_is_free() {
+        let a = ball(Vec3::zeros(), 1.0);
+        let b = block(Vec3::new(1.7, 0.1, 0.2), Vec3::repeat(0.5));
+        match solve(
+            &a,
+            &b,
+            Vec3::new(0.2, 1.0, 0.1),
+            &mut Memory::default(),
+            TOLERANCE,
+        ) {
+            (Answer::Miss(n), supports) => {
+                assert!(h(&a, &b, &n) < 0.0);
+                assert!(supports < 20);
+            }
+            other => panic!("{other:?}"),
+        }
+        for (a, b) in [
+            (ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 2.0, 1.0)),
+            (
+                block(Vec3::zeros(), Vec3::repeat(1.0)),
+                block(Vec3::x() * 2.0, Vec3::repeat(1.0)),
+            ),
+        ] {
+            match solve(
+                &a,
+                &b,
+                Vec3::new(1.0, 0.1, 0.1),
+                &mut Memory::default(),
+                TOLERANCE,
+            ) {
+                (Answer::Hit(p), _) => assert!(p.depth <= TOLERANCE, "{}", p.depth),
+                (Answer::Miss(n), _) => assert!(h(&a, &b, &n) < 0.0),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn any_memory_is_harmless() {
+        // Bits of a linear congruential generator, and of another pair.
+        let mut bits: u64 = 1;
+        let mut next = || {
+            bits = bits
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            bits
+        };
+        let a = cylinder(Vec3::zeros(), 0.5, 0.5);
+        let b = block(Vec3::new(0.6, 0.3, 0.4), Vec3::new(0.5, 0.4, 0.3));
+        for round in 0..2000 {
+            let mut real = || {
+                if round % 2 == 0 {
+                    Real::from_bits(next() as _)
+                } else {
+                    (next() >> 40) as Real / (1 << 23) as Real - 1.0
+                }
+            };
+            let mut v = || Vec3::new(real(), real(), real());
+            let mut memory = Memory {
+                dir: v(),
+                sides: [v(), v(), v()],
+                ..Memory::default()
+            };
+            memory.curvature = [(); 6].map(|_| real());
+            memory.drift = real();
+            memory.count = (round % 5) as u32;
+            memory.curved = (round % 3) as u32;
+            match solve(&a, &b, Vec3::x(), &mut memory, TOLERANCE) {
+                (Answer::Hit(p), _) => check(&a, &b, &p, TOLERANCE, 2.0),
+                (other, supports) => panic!("{round}: {other:?} after {supports}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_contact_that_stays_is_found_again_cheaply() {
+        let still = |a: &Shape, b: &Shape, most: u64| {
+            let mut memory = Memory::default();
+            let mut last = 0;
+            for _ in 0..4 {
+                last = solve(a, b, Vec3::new(0.2, 0.1, 1.0), &mut memory, 1e-6).1;
+            }
+            assert!(last <= most, "{last} support points");
+        };
+        still(
+            &block(Vec3::zeros(), Vec3::new(0.5, 0.4, 0.3)),
+            &hull(
+                icosahedron()
+                    .iter()
+                    .map(|p| p * 0.5 + Vec3::new(0.03, 0.02, 0.7))
+                    .collect(),
+            ),
+            4,
+        );
+        still(
+            &ball(Vec3::zeros(), 0.5),
+            &ball(Vec3::new(0.1, 0.2, 0.8), 0.5),
+            2,
+        );
+    }
 }
