@@ -2,9 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Input that no query can like: points that are not numbers, tolerances of every kind, no
- * iterations, an object against itself, objects without volume, sizes at both ends of the
- * numbers. Always a return code of the call's, outputs untouched unless it is a hit, a hit
- * sound, and an end: the number of support points is bounded. */
+ * iterations, an object against itself, objects without volume, sizes far from 1. Always a
+ * return code of the call's, outputs untouched unless it is a hit, a hit sound, and an end:
+ * the number of support points is bounded. */
 
 #include "entries.h"
 #include <math.h>
@@ -140,7 +140,8 @@ static void degenerate(const entry_t *entry)
                              shape_box(1, 0, 1),         shape_sphere(1),            shape_box(1, 1, 1),
                              shape_ellipsoid(1, 0.5, 2), shape_cylinder(1, 1),       shape_cone(1, 1)};
     enum { PLAIN = sizeof plain / sizeof plain[0] };
-    static const double sizes[] = {1, 1e-3, 1e3, 1e-12, 1e12, 1e6};
+    /* The fourth power of a size must be a number of the precision. */
+    static const double sizes[] = {1, 1e-3, 1e3, 1e6, sizeof(ccd_real_t) == 8 ? 1e-70 : 1e-8, sizeof(ccd_real_t) == 8 ? 1e70 : 1e8};
     int i, k, at, size;
     for (i = 0; i < PLAIN; i++)
         for (k = 0; k < PLAIN; k++)
