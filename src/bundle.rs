@@ -624,7 +624,8 @@ impl Model {
                 // max drops NaN
                 let w = w.map(|w| (w / sum).max(0.0));
                 let sum = w[0] + w[1] + w[2];
-                if sum > 0.0 {
+                // Infinite where gradients on one line add up to no area.
+                if sum > 0.0 && sum < Real::INFINITY {
                     w.map(|w| w / sum)
                 } else {
                     [1.0, 0.0, 0.0]
