@@ -17,9 +17,11 @@ enum { BODIES = 40, FRAMES = 360, STEPS_PER_FRAME = 2, MOST_PAIRS = 4096 };
 static uint16_t pair[MOST_PAIRS][2];
 static uint32_t pairs;
 
-static void on_pair(void *user, int a, int b)
+static void on_pair(void *user, int a, int b, const dContact *contact, int contacts)
 {
     (void)user;
+    (void)contact;
+    (void)contacts;
     if (pairs == MOST_PAIRS) {
         fprintf(stderr, "too many pairs in one frame\n");
         exit(2);
@@ -48,7 +50,8 @@ int main(int argc, char **argv)
     }
     dInitODE2(0);
     scene_world(&scene, 7);
-    scene_pile(&scene, BODIES, 0.55, 1.2, 1, 0);
+    scene_pile(&scene, BODIES, 0.55, 1.2);
+    scene_nudge(&scene, 1, 0);
     scene.on_pair = on_pair;
     head[0] = (uint32_t)scene.shapes;
     head[1] = (uint32_t)scene.bodies;

@@ -17,7 +17,7 @@ typedef struct {
     int vertices, faces;
     double vertex[3 * HULL_VERTICES];
     double plane[4 * HULL_FACES];     /* outward unit normal, offset */
-    unsigned polygon[4 * HULL_FACES]; /* 3, then three vertices, counterclockwise from outside */
+    unsigned polygon[4 * HULL_FACES]; /* face by face: how many vertices, then they, counterclockwise from outside */
 } hull_t;
 
 /* Every triple of points, in general position, that has all others on one side
@@ -118,6 +118,32 @@ static inline void hull_random(hull_t *s, int vertices, double rx, double ry, do
         hull_make_vertices(s, r);
         hull_make_faces(s);
     } while (hull_inradius(s) < 0.2 * fmin(rx, fmin(ry, rz)));
+}
+
+/* A box with these half extents, as a hull of eight vertices and six faces. */
+static inline void hull_box(hull_t *s, double x, double y, double z)
+{
+    const double half[3] = { x, y, z };
+    int i, j;
+    s->vertices = 8;
+    s->faces = 6;
+    for (i = 0; i < 8; i++)
+        for (j = 0; j < 3; j++)
+            s->vertex[3 * i + j] = i >> j & 1 ? half[j] : -half[j];
+    for (i = 0; i < 6; i++) {
+        /* the face across axis k, on its upper side for even i */
+        const int k = i / 2, u = (k + 1) % 3, v = (k + 2) % 3, up = i % 2 == 0;
+        const unsigned base = up ? 1u << k : 0, pu = 1u << u, pv = 1u << v;
+        unsigned *polygon = s->polygon + 5 * i;
+        for (j = 0; j < 3; j++)
+            s->plane[4 * i + j] = j == k ? (up ? 1 : -1) : 0;
+        s->plane[4 * i + 3] = half[k];
+        polygon[0] = 4;
+        polygon[1] = base;
+        polygon[2] = base | (up ? pu : pv);
+        polygon[3] = base | pu | pv;
+        polygon[4] = base | (up ? pv : pu);
+    }
 }
 
 #endif

@@ -1,43 +1,115 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A pile in ODE: bodies fall into a pen and come to rest, from a start that is
- * moved by up to 1e-3 m a coordinate, by a stream named SEED.
- * Prints what the second half of the run looked like.
+/* A simulation in ODE, from a start that is moved by up to 1e-3 m a coordinate, by
+ * a stream named SEED. Prints what the second half of the run looked like and,
+ * of every 20th step, what ODE made of its pairs against the truth. Scenes:
  *
- * usage: ode_pile SEED STEPS BODIES */
+ *   pile   boxes, cylinders, capsules and hulls fall into a pen and come to rest
+ *   hulls  convex hulls alone
+ *   stack  towers of flat boxes, ODE's own and hulls by turns
+ *   roll   cylinders roll to and fro on the floor
+ *
+ * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll */
 
 #include "swap/ode_scene.h"
 #include "swap/watch.h"
+#include "truth.h"
+
+/* Contacts of one step against the truth; only of pairs that ODE put to libccd. */
+typedef struct {
+    const scene_t *scene;
+    unsigned long queries; /* watched so far */
+    long judged, lost, spurious;
+    double error; /* of the deepest contact's depth: the largest */
+} judge_t;
+
+/* A depth or gap below this is neither: ten times ODE's tolerance. */
+static const double LOST = 1e-5;
+
+static shape_t shape_of(const scene_t *scene, int i)
+{
+    const scene_shape_t *s = &scene->shape[scene->shape_of[i]];
+    const dReal *p = dGeomGetPosition(scene->geom[i]), *R = dGeomGetRotation(scene->geom[i]);
+    const double rot[9] = { R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10] };
+    shape_t out = s->kind == SCENE_HULL ? shape_polytope(s->hull.vertex, s->hull.vertices) : shape_make(s->kind, s->p[0], s->p[1], s->p[2]);
+    shape_move(&out, p[0], p[1], p[2]);
+    shape_turn(&out, rot);
+    return out;
+}
+
+static void judge(void *user, int a, int b, const dContact *contact, int contacts)
+{
+    judge_t *j = (judge_t *)user;
+    shape_t sa, sb;
+    truth_t t;
+    double deepest = 0;
+    int i;
+    if (watched.queries == j->queries)
+        return;
+    j->queries = watched.queries;
+    sa = shape_of(j->scene, a);
+    sb = shape_of(j->scene, b);
+    t = truth_depth_within(&sa, &sb, 1e-7);
+    j->judged++;
+    j->lost += !contacts && t.lower > LOST;
+    j->spurious += contacts && t.depth < -LOST;
+    for (i = 0; i < contacts; i++)
+        deepest = fmax(deepest, contact[i].geom.depth);
+    if (contacts && t.depth > 0)
+        j->error = fmax(j->error, fabs(deepest - t.depth));
+}
 
 int main(int argc, char **argv)
 {
     static scene_t scene;
-    double kinetic = 0, depth = 0, deepest = 0;
-    long step, contacts = 0, bad = 0;
+    judge_t found = { &scene, 0, 0, 0, 0, 0 };
+    double kinetic = 0, depth = 0, deepest = 0, least = HUGE_VAL, gained = 0;
+    long step, contacts = 0;
     int escaped = 0;
-    if (argc != 4) {
-        fprintf(stderr, "usage: ode_pile SEED STEPS BODIES\n");
+    if (argc != 5) {
+        fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll\n");
         return 2;
     }
+    const unsigned long seed = strtoul(argv[1], NULL, 10);
     const long steps = atol(argv[2]);
+    const int bodies = atoi(argv[3]);
+    const char *name = argv[4];
     dInitODE2(0);
     watch_library();
     scene_world(&scene, 11);
-    scene_pile(&scene, atoi(argv[3]), 0.55, 0.33, strtoul(argv[1], NULL, 10), 1e-3);
+    if (!strcmp(name, "stack")) {
+        scene_stack(&scene, (bodies + 4) / 5, 0.8);
+    } else if (!strcmp(name, "roll")) {
+        scene_roll(&scene, bodies, 1.5);
+    } else {
+        int i;
+        for (i = 0; i < 4 && !strcmp(name, "hulls"); i++)
+            scene.kinds[i] = SCENE_HULL;
+        scene_pile(&scene, bodies, 0.55, 0.33);
+    }
+    scene_nudge(&scene, seed, !strcmp(name, "pile") || !strcmp(name, "hulls") ? 1e-3 : 1e-5);
+    scene.user = &found;
     for (step = 0; step < steps; step++) {
+        double height, energy, moving;
+        scene.on_pair = step % 20 ? NULL : judge;
+        found.queries = watched.queries;
         scene_step(&scene, 0.005);
         escaped |= scene_escaped(&scene);
         deepest = fmax(deepest, scene.depth_max);
+        moving = scene_energy(&scene, &height);
+        energy = moving + height;
+        least = fmin(least, energy);
+        gained = fmax(gained, energy - least);
         if (2 * step >= steps) {
-            kinetic += scene_energy(&scene, NULL) / (steps - steps / 2);
+            kinetic += moving / (double)(steps - steps / 2);
             depth += scene.depth_sum;
             contacts += scene.contact_count;
         }
     }
-    bad = scene.bad_contacts;
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld\n", kinetic,
-           contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, bad);
+    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g judged %ld lost %ld spurious %ld error %.9g\n",
+           kinetic, contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, scene.bad_contacts, gained, found.judged,
+           found.lost, found.spurious, found.error);
     watch_report();
     scene_free(&scene);
     dCloseODE();

@@ -19,7 +19,7 @@ enum { SCENE_BODIES = 96, SCENE_SHAPES = 96 };
 enum scene_kind { SCENE_CAPSULE = 1, SCENE_BOX = 2, SCENE_CYLINDER = 3, SCENE_HULL = 6 };
 
 typedef struct {
-    int kind;
+    enum scene_kind kind;
     double p[3];                /* capsule, cylinder: radius, half length; box: half extents */
     hull_t hull;
 } scene_shape_t;
@@ -34,16 +34,17 @@ typedef struct {
     dGeomID geom[SCENE_BODIES];
     dBodyID body[SCENE_BODIES]; /* NULL for what stands still */
     double half_width;          /* the pen is 2 half_width wide */
+    enum scene_kind kinds[4];   /* of a pile, by turns */
     /* sums over the contacts of the last step */
     long contact_count;
     double depth_sum, depth_max;
     long bad_contacts;          /* a normal or depth that is not finite, a normal that is not unit */
-    /* where set, told every pair the broad phase lets through */
-    void (*on_pair)(void *user, int a, int b);
+    /* where set, told every pair the broad phase lets through, and the contacts ODE made of it */
+    void (*on_pair)(void *user, int a, int b, const dContact *contact, int contacts);
     void *user;
 } scene_t;
 
-static dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
+static inline dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
 {
     switch (s->kind) {
     case SCENE_CAPSULE: return dCreateCapsule(scene->space, s->p[0], 2 * s->p[1]);
@@ -54,7 +55,7 @@ static dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
     }
 }
 
-static int scene_add(scene_t *scene, int shape)
+static inline int scene_add(scene_t *scene, int shape)
 {
     const scene_shape_t *s = &scene->shape[shape];
     const int i = scene->bodies++;
@@ -66,7 +67,7 @@ static int scene_add(scene_t *scene, int shape)
 }
 
 /* A body of density 1000. A hull is given the mass and inertia of a ball of its mean radius. */
-static void scene_make_dynamic(scene_t *scene, int i)
+static inline void scene_make_dynamic(scene_t *scene, int i)
 {
     const scene_shape_t *s = &scene->shape[scene->shape_of[i]];
     const double density = 1000;
@@ -88,18 +89,13 @@ static void scene_make_dynamic(scene_t *scene, int i)
     dGeomSetBody(scene->geom[i], scene->body[i]);
 }
 
-/* Shape number for body i of the pile: kinds by turns, sizes around 0.1 m, as floats so that a file holds them exactly. */
-static int scene_pile_shape(scene_t *scene, int i)
+/* Shape number for body i of a pile: kinds by turns, sizes around 0.1 m, as floats so that a file holds them exactly. */
+static inline int scene_pile_shape(scene_t *scene, int i)
 {
     scene_shape_t *s = &scene->shape[scene->shapes];
     int j;
     memset(s, 0, sizeof *s);
-    switch (i % 4) {
-    case 0: s->kind = SCENE_BOX; break;
-    case 1: s->kind = SCENE_CYLINDER; break;
-    case 2: s->kind = SCENE_CAPSULE; break;
-    default: s->kind = SCENE_HULL; break;
-    }
+    s->kind = scene->kinds[i % 4];
     if (s->kind == SCENE_HULL)
         hull_random(&s->hull, 8 + i % 9, uniform(0.07, 0.14), uniform(0.07, 0.14), uniform(0.07, 0.14));
     else
@@ -111,9 +107,11 @@ static int scene_pile_shape(scene_t *scene, int i)
     return scene->shapes++;
 }
 
-static void scene_world(scene_t *scene, unsigned long seed)
+static inline void scene_world(scene_t *scene, unsigned long seed)
 {
+    static const enum scene_kind all[4] = { SCENE_BOX, SCENE_CYLINDER, SCENE_CAPSULE, SCENE_HULL };
     memset(scene, 0, sizeof *scene);
+    memcpy(scene->kinds, all, sizeof all);
     scene->world = dWorldCreate();
     scene->space = dHashSpaceCreate(0);
     scene->contacts = dJointGroupCreate(0);
@@ -131,7 +129,7 @@ static void scene_world(scene_t *scene, unsigned long seed)
 }
 
 /* Floor (top at z = 0) and four walls: thick boxes. */
-static void scene_pen(scene_t *scene, double half_width)
+static inline void scene_pen(scene_t *scene, double half_width)
 {
     int i;
     scene_shape_t *wall = &scene->shape[scene->shapes++];
@@ -147,14 +145,29 @@ static void scene_pen(scene_t *scene, double half_width)
     }
 }
 
-/*
- * The pile: `count` bodies in layers, `layer` apart, above the floor of a pen, turned at
- * random. `nudge` moves every start by up to that much, by a stream of its own,
- * so that two nudged starts differ in nothing else.
- */
-static void scene_pile(scene_t *scene, int count, double half_width, double layer, unsigned long nudge_seed, double nudge)
+/* Moves every start by up to `nudge` a coordinate, by a stream of its own, so that
+ * two nudged starts differ in nothing else. */
+static inline void scene_nudge(scene_t *scene, unsigned long nudge_seed, double nudge)
 {
     int i, j;
+    uniform_seed(nudge_seed);
+    for (i = 0; i < scene->bodies; i++)
+        if (scene->body[i]) {
+            double at[3];
+            for (j = 0; j < 3; j++)
+                at[j] = dBodyGetPosition(scene->body[i])[j] + uniform(-nudge, nudge);
+            dBodySetPosition(scene->body[i], at[0], at[1], at[2]);
+        }
+    dRandSetSeed(nudge_seed);
+}
+
+/*
+ * The pile: `count` bodies in layers, `layer` apart, above the floor of a pen, turned at
+ * random.
+ */
+static inline void scene_pile(scene_t *scene, int count, double half_width, double layer)
+{
+    int i;
     const double pitch = 0.32;
     const int side = (int)((2 * half_width - 0.1) / pitch);
     scene_pen(scene, half_width);
@@ -168,18 +181,60 @@ static void scene_pile(scene_t *scene, int count, double half_width, double laye
         dBodySetPosition(scene->body[b], (x - 0.5 * (side - 1)) * pitch + uniform(-0.02, 0.02),
                          (y - 0.5 * (side - 1)) * pitch + uniform(-0.02, 0.02), 0.25 + layer * level);
     }
-    uniform_seed(nudge_seed);
-    for (i = 0; i < scene->bodies; i++)
-        if (scene->body[i]) {
-            double at[3];
-            for (j = 0; j < 3; j++)
-                at[j] = dBodyGetPosition(scene->body[i])[j] + uniform(-nudge, nudge);
-            dBodySetPosition(scene->body[i], at[0], at[1], at[2]);
-        }
-    dRandSetSeed(nudge_seed);
 }
 
-static void scene_near(void *data, dGeomID o1, dGeomID o2)
+/* Towers of five flat boxes each, every second one an ODE box, the others hulls; in a pen. */
+static inline void scene_stack(scene_t *scene, int towers, double half_width)
+{
+    int i, j;
+    scene_pen(scene, half_width);
+    for (i = 0; i < 2; i++) {
+        scene_shape_t *s = &scene->shape[scene->shapes++];
+        memset(s, 0, sizeof *s);
+        s->kind = i ? SCENE_HULL : SCENE_BOX;
+        s->p[0] = s->p[1] = 0.125;
+        s->p[2] = 0.0625;
+        hull_box(&s->hull, s->p[0], s->p[1], s->p[2]);
+    }
+    for (i = 0; i < 5 * towers; i++) {
+        const int b = scene_add(scene, scene->shapes - 2 + i % 2);
+        j = i / 5;
+        scene_make_dynamic(scene, b);
+        dBodySetPosition(scene->body[b], 0.4 * (j % 2) - 0.2, 0.4 * (j / 2) - 0.2, 0.0625 + 0.125 * (i % 5));
+    }
+}
+
+/* Cylinders that lie on a plate and roll, to and fro between the walls of a pen. The
+ * plate is a hull: for a cylinder on a box of its own ODE does not ask libccd. */
+static inline void scene_roll(scene_t *scene, int count, double half_width)
+{
+    int i;
+    scene_shape_t *plate;
+    scene_pen(scene, half_width);
+    plate = &scene->shape[scene->shapes++];
+    memset(plate, 0, sizeof *plate);
+    plate->kind = SCENE_HULL;
+    hull_box(&plate->hull, half_width, half_width, 0.05);
+    dGeomSetPosition(scene->geom[scene_add(scene, scene->shapes - 1)], 0, 0, 0.05);
+    for (i = 0; i < count; i++) {
+        scene_shape_t *s = &scene->shape[scene->shapes++];
+        int b;
+        dQuaternion q;
+        memset(s, 0, sizeof *s);
+        s->kind = SCENE_CYLINDER;
+        s->p[0] = 0.06 + 0.01 * (i % 5);
+        s->p[1] = 0.08 + 0.02 * (i % 3);
+        b = scene_add(scene, scene->shapes - 1);
+        scene_make_dynamic(scene, b);
+        dQFromAxisAndAngle(q, 1, 0, 0, 0.5 * 3.14159265358979323846); /* axis along y */
+        dBodySetQuaternion(scene->body[b], q);
+        dBodySetPosition(scene->body[b], -0.5 * half_width, (i + 0.5) * 2 * half_width / count - half_width, 0.1 + s->p[0]);
+        dBodySetLinearVel(scene->body[b], 0.5, 0, 0);
+        dBodySetAngularVel(scene->body[b], 0, 0.5 / s->p[0], 0);
+    }
+}
+
+static inline void scene_near(void *data, dGeomID o1, dGeomID o2)
 {
     scene_t *scene = (scene_t *)data;
     enum { MOST = 8 };
@@ -188,9 +243,9 @@ static void scene_near(void *data, dGeomID o1, dGeomID o2)
     int i, n;
     if (!b1 && !b2)
         return;
-    if (scene->on_pair)
-        scene->on_pair(scene->user, (int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2));
     n = dCollide(o1, o2, MOST, &contact[0].geom, sizeof contact[0]);
+    if (scene->on_pair)
+        scene->on_pair(scene->user, (int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2), contact, n);
     for (i = 0; i < n; i++) {
         const dContactGeom *g = &contact[i].geom;
         const double length = dCalcVectorLength3(g->normal);
@@ -208,7 +263,7 @@ static void scene_near(void *data, dGeomID o1, dGeomID o2)
     }
 }
 
-static void scene_step(scene_t *scene, double h)
+static inline void scene_step(scene_t *scene, double h)
 {
     scene->contact_count = 0;
     scene->depth_sum = scene->depth_max = 0;
@@ -218,7 +273,7 @@ static void scene_step(scene_t *scene, double h)
 }
 
 /* Joules of motion; and of height above the floor, where `potential` is not NULL. */
-static double scene_energy(const scene_t *scene, double *potential)
+static inline double scene_energy(const scene_t *scene, double *potential)
 {
     double kinetic = 0, height = 0;
     int i, j, k;
@@ -243,7 +298,7 @@ static double scene_energy(const scene_t *scene, double *potential)
 }
 
 /* Bodies whose centre is outside the pen, below the floor, or nowhere. */
-static int scene_escaped(const scene_t *scene)
+static inline int scene_escaped(const scene_t *scene)
 {
     int i, out = 0;
     for (i = 0; i < scene->bodies; i++)
@@ -254,7 +309,7 @@ static int scene_escaped(const scene_t *scene)
     return out;
 }
 
-static void scene_free(scene_t *scene)
+static inline void scene_free(scene_t *scene)
 {
     dJointGroupDestroy(scene->contacts);
     dSpaceDestroy(scene->space);
