@@ -14,10 +14,10 @@
 //!   nearest *triangle*. The surface need not be convex: convexity decides how fast the
 //!   bound rises, not whether it holds.
 //!
-//! The distance from the origin to a triangle is bounded from below by the least m·v of
-//! its corners v, for any unit m; with m the normal (or the direction of the nearest
-//! point of an edge) that is the distance itself, and it stays a bound when a sliver's
-//! normal is mostly rounding error.
+//! The distance from the origin to a triangle is bounded from below by the least n·v of
+//! its corners v, for any unit n; with n the normal that is the distance to its plane, and
+//! it stays a bound when a sliver's normal is mostly rounding error. The nearest triangle
+//! of a convex surface is one that the origin projects into: the others are passed over.
 //!
 //! The nearest face nearer than upper − tolerance is taken from a heap, the support point
 //! along its normal replaces all faces it sees, and the upper bound is the least h met.
@@ -35,7 +35,7 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::{self, Overlap};
-use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
+use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance};
 use crate::nearest;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -60,6 +60,12 @@ const WIDEN: usize = 6;
 /// Least points of an [`Arena`]: given ones, a few more, and that room.
 pub const LEAST_POINTS: usize = 24;
 
+/// Squares of the sizes whose faces' areas can be squared.
+#[cfg(not(feature = "single"))]
+const SIZES: (Real, Real) = (1e-120, 1e140);
+#[cfg(feature = "single")]
+const SIZES: (Real, Real) = (1e-16, 1e16);
+
 /// A triangle of the polytope.
 ///
 /// Corners run counter-clockwise seen from outside. Edge i leads from corner i to corner
@@ -82,8 +88,8 @@ pub struct Face {
     dead: bool,
     /// Its common direction with its neighbours was tried in vain.
     lone: bool,
-    /// The bound is that of the nearest point of an edge, not the plane's.
-    edge: bool,
+    /// The origin projects beyond an edge: a neighbour is nearer.
+    aside: bool,
     /// Number of the insertion that last looked at the face: 2 · insertion, + 1 if visible.
     seen: u32,
 }
@@ -98,42 +104,36 @@ impl Face {
         self.queued = false;
         self.dead = false;
         self.lone = false;
-        self.edge = false;
+        self.aside = false;
         self.seen = 0;
     }
 
     /// Sets normal, offset and distance bound from the corners.
     #[inline]
     fn measure(&mut self, a: &Vec3, b: &Vec3, c: &Vec3, target: Real) {
-        // The shorter of the other two edges: a needle's two long ones would leave no
-        // normal but rounding.
         let (ab, ac, bc) = (b - a, c - a, c - b);
-        let other = if ac.norm_squared() < bc.norm_squared() {
-            ac
-        } else {
-            bc
-        };
-        let normal = ab.cross(&other);
-        let normal = normal * (1.0 / normal.norm());
+        let mut normal = ab.cross(&ac);
+        // A needle's two long edges would leave no normal but rounding. (Seldom: a choice
+        // of the shorter one for each face would cost more in branches foretold wrong.)
+        if ac.norm_squared() > 64.0 * bc.norm_squared() {
+            normal = ab.cross(&bc);
+        }
+        let area2 = normal.norm_squared();
+        let normal = normal * (1.0 / area2.sqrt());
         let (da, db, dc) = (normal.dot(a), normal.dot(b), normal.dot(c));
         self.normal = normal;
         self.offset = larger(larger(da, db), dc);
         self.key = lesser(lesser(da, db), dc);
-        // Nearer than wanted: unless the origin projects into the triangle (or is on its
-        // wrong side), the nearest point is on an edge and farther than the plane.
         if self.key < target && self.key >= 0.0 {
-            let inside = normal.dot(&a.cross(b)) >= 0.0
-                && normal.dot(&b.cross(c)) >= 0.0
-                && normal.dot(&c.cross(a)) >= 0.0;
-            if !inside {
-                let w = nearest::on_triangle(&Vec3::zeros(), a, b, c).0;
-                let w = w * (1.0 / w.norm());
-                let bound = lesser(lesser(w.dot(a), w.dot(b)), w.dot(c));
-                if bound > self.key {
-                    self.key = bound;
-                    self.edge = true;
-                }
-            }
+            // Twice the areas the projection of the origin makes with the edges, by more
+            // than a share of the triangle's and rounding: a projection onto an edge is
+            // inside of both faces.
+            let least = lesser(
+                lesser(normal.dot(&a.cross(b)), normal.dot(&b.cross(c))),
+                normal.dot(&c.cross(a)),
+            );
+            let slack = 1e-6 * area2.sqrt() + 16.0 * EPSILON * a.norm_squared();
+            self.aside = least < -slack;
         }
     }
 }
@@ -187,9 +187,14 @@ struct Query<'q, A, B> {
     md: &'q MinkowskiDifference<A, B>,
     settings: Settings,
     upper: Upper,
-    /// Largest coordinate of a witness, and of a point of D.
-    magnitude: Real,
-    size: Real,
+    /// Largest square of a witness's distance from the world's origin, and of a point of
+    /// D from its own.
+    reach2: Real,
+    size2: Real,
+    /// The tolerance in force.
+    tolerance: Real,
+    /// Differences of support values below this are rounding.
+    rounding: Real,
     iterations: u64,
 }
 
@@ -201,16 +206,27 @@ enum Stop {
 
 impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
     /// The support point along unit `dir`, and what it says of both bounds.
+    ///
+    /// A callback that errs must not lower the upper bound, nor separate: D reaches as far
+    /// as all `known` points.
     #[inline]
-    fn ask(&mut self, dir: &Vec3) -> Result<(SupportPoint, Real), Stop> {
-        let point = self.md.support(dir).map_err(Stop::Fault)?;
-        let h = dir.dot(&point.v);
+    fn ask(&mut self, dir: &Vec3, known: &[SupportPoint]) -> Result<SupportPoint, Stop> {
+        let mut point = self.md.support(dir).map_err(Stop::Fault)?;
         self.note(&point);
-        if h < 0.0 {
-            return Err(Stop::Miss(*dir));
+        let mut h = dir.dot(&point.v);
+        if h < self.upper.depth {
+            for p in known {
+                let d = dir.dot(&p.v);
+                if d > h {
+                    (h, point) = (d, *p);
+                }
+            }
+            if h < 0.0 {
+                return Err(Stop::Miss(*dir));
+            }
+            self.lower_to(h, dir);
         }
-        self.lower_to(h, dir);
-        Ok((point, h))
+        Ok(point)
     }
 
     /// Takes `h`, the support value along `dir`, as upper bound if it is lower.
@@ -224,26 +240,40 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
         }
     }
 
+    /// Takes the sizes that rounding and tolerance follow from a point.
+    #[inline]
     fn note(&mut self, point: &SupportPoint) {
-        self.magnitude = self.magnitude.max(point.magnitude());
-        self.size = self.size.max(point.v.amax());
+        let v2 = point.v.norm_squared();
+        let reach2 = larger(point.v1.norm_squared(), point.v2.norm_squared());
+        if v2 > self.size2 || reach2 > self.reach2 {
+            self.size2 = larger(self.size2, v2);
+            self.reach2 = larger(self.reach2, reach2);
+            self.rounding = 16.0 * EPSILON * self.size2.sqrt();
+            self.tolerance = tolerance(
+                self.settings.tolerance,
+                self.size2.sqrt(),
+                self.reach2.sqrt(),
+            );
+        }
     }
 
-    /// Differences of support values below this are rounding.
-    fn rounding(&self) -> Real {
-        16.0 * EPSILON * self.size
+    /// What coordinates so large cannot resolve.
+    fn grain(&self) -> Real {
+        4.0 * EPSILON * self.reach2.sqrt()
     }
 
-    /// The tolerance, floored at what the coordinates resolve.
-    fn tolerance(&self) -> Real {
-        self.settings.tolerance.max(16.0 * EPSILON * self.magnitude)
+    /// Faces at least so far away are near enough to proven.
+    #[inline]
+    fn target(&self) -> Real {
+        self.upper.depth - self.tolerance
     }
 
     fn penetration(&self, lower: Real, witness: &SupportPoint) -> Penetration {
         let depth = self.upper.depth.max(0.0);
         Penetration {
             depth,
-            depth_lower: lower.clamp(0.0, depth),
+            // The points themselves are rounded.
+            depth_lower: (lower - self.grain()).clamp(0.0, depth),
             dir: self.upper.dir,
             normal: self.upper.dir,
             point1: witness.v1,
@@ -279,8 +309,10 @@ pub fn minimum<A: SupportMap, B: SupportMap>(
             depth: Real::INFINITY,
             dir: seed.dir,
         },
-        magnitude: 0.0,
-        size: 0.0,
+        reach2: 0.0,
+        size2: 0.0,
+        tolerance: 0.0,
+        rounding: 0.0,
         iterations: 0,
     };
     match run(&mut query, seed, arena) {
@@ -307,7 +339,7 @@ fn run<A: SupportMap, B: SupportMap>(
     let start = match given.first() {
         Some(point) => *point,
         None => {
-            let (point, _) = query.ask(&seed.dir)?;
+            let point = query.ask(&seed.dir, &[])?;
             polytope.push(point);
             point
         }
@@ -337,6 +369,10 @@ fn run<A: SupportMap, B: SupportMap>(
             return Ok(Answer::Undecided(query.penetration(0.0, &start)));
         }
     };
+    // Squares of areas must be in range.
+    if !(query.size2 > SIZES.0 && query.size2 < SIZES.1) && query.size2 > 0.0 {
+        return Ok(Answer::Undecided(query.penetration(0.0, &start)));
+    }
     if let Some(answer) = polytope.build(query, simplex.points())? {
         return Ok(answer);
     }
@@ -366,6 +402,9 @@ struct Counts {
     free: usize,
     first_free: Index,
     insertions: u32,
+    /// Common directions tried in vain, and the insertion until which none is tried.
+    vain: u32,
+    plain: u32,
     /// A point well inside the first tetrahedron, hence inside the polytope.
     inner: Vec3,
     /// Least key of the faces that were far enough to be left out of the heap.
@@ -393,6 +432,8 @@ impl<'a> Polytope<'a> {
                 free: 0,
                 first_free: NONE,
                 insertions: 0,
+                vain: 0,
+                plain: 0,
                 inner: Vec3::zeros(),
                 dropped: Real::INFINITY,
             },
@@ -456,7 +497,7 @@ impl<'a> Polytope<'a> {
         let a = triangle[0];
         let va = self.v(a);
         let (mut b, far2) = self.farthest(|v| (v - va).norm_squared());
-        if far2.sqrt() <= query.rounding() {
+        if far2.sqrt() <= query.rounding {
             let Some(p) = self.widen(query, a, &Vec3::x())? else {
                 return Ok(Some(self.touch(query, triangle)));
             };
@@ -464,7 +505,7 @@ impl<'a> Polytope<'a> {
         }
         let along = (self.v(b) - va).normalize();
         let (mut c, far2) = self.farthest(|v| (v - va).cross(&along).norm_squared());
-        if far2.sqrt() <= query.rounding() {
+        if far2.sqrt() <= query.rounding {
             let Some(p) = self.widen(query, a, &perpendicular(&along))? else {
                 return Ok(Some(self.touch(query, triangle)));
             };
@@ -473,7 +514,7 @@ impl<'a> Polytope<'a> {
         let ac = self.v(c) - va;
         let normal = along.cross(&(ac - along * along.dot(&ac))).normalize();
         let (mut d, far) = self.farthest(|v| (v - va).dot(&normal).abs());
-        if far <= query.rounding() {
+        if far <= query.rounding {
             let Some(p) = self.widen(query, a, &normal)? else {
                 return Ok(Some(self.touch(query, triangle)));
             };
@@ -484,7 +525,7 @@ impl<'a> Polytope<'a> {
             core::mem::swap(&mut b, &mut c);
         }
         self.counts.inner = (va + self.v(b) + self.v(c) + self.v(d)) * 0.25;
-        let target = query.upper.depth - query.tolerance();
+        let target = query.target();
         for (corners, across) in [
             ([a, b, c], [6, 10, 14]),
             ([a, d, b], [13, 8, 0]),
@@ -500,7 +541,7 @@ impl<'a> Polytope<'a> {
         }
         for i in 0..self.counts.points as Index {
             if ![a, b, c, d].contains(&i)
-                && let Some(f) = self.lit(i, query.rounding())
+                && let Some(f) = self.lit(i, query.rounding)
             {
                 self.insert(f, i, query);
             }
@@ -517,12 +558,12 @@ impl<'a> Polytope<'a> {
         dir: &Vec3,
     ) -> Result<Option<Index>, Stop> {
         let base = self.v(from);
-        let up = query.ask(dir)?.0;
-        let down = query.ask(&-dir)?.0;
+        let up = query.ask(dir, &self.points[..self.counts.points])?;
+        let down = query.ask(&-dir, &self.points[..self.counts.points])?;
         let (up, down) = (self.push(up), self.push(down));
         let height = (self.v(up) - base).dot(dir);
         let drop = (base - self.v(down)).dot(dir);
-        Ok(if height.max(drop) <= query.rounding() {
+        Ok(if height.max(drop) <= query.rounding {
             None
         } else if height >= drop {
             Some(up)
@@ -568,8 +609,8 @@ impl<'a> Polytope<'a> {
         B: SupportMap,
     {
         let vp = self.v(p);
-        let rounding = query.rounding();
-        let target = query.upper.depth - query.tolerance();
+        let rounding = query.rounding;
+        let target = query.target();
         self.counts.insertions += 1;
         let hidden = 2 * self.counts.insertions;
         let visible = hidden + 1;
@@ -760,7 +801,10 @@ impl<'a> Polytope<'a> {
     /// Puts a face nearer than `target` into the heap.
     #[inline]
     fn enqueue(&mut self, f: Index, target: Real) {
-        let key = self.face(f).key;
+        let &Face { key, aside, .. } = self.face(f);
+        if aside {
+            return;
+        }
         if key >= target {
             self.counts.dropped = lesser(self.counts.dropped, key);
             return;
@@ -855,7 +899,8 @@ impl<'a> Polytope<'a> {
     ) -> Result<Outcome, Stop> {
         loop {
             let (top, lower) = self.nearest();
-            let proven = query.upper.depth - lower <= query.tolerance();
+            let enough = query.tolerance - query.grain();
+            let proven = query.upper.depth - lower <= enough;
             let Some(top) = top.filter(|_| !proven) else {
                 return Ok(Outcome::Done(proven, self.finish(query, lower, top)));
             };
@@ -868,17 +913,21 @@ impl<'a> Polytope<'a> {
             }
             query.iterations += 1;
 
-            let dir = self.aim(top, query.upper.depth - query.tolerance());
-            let (point, _) = query.ask(&dir)?;
-            if query.upper.depth - lower <= query.tolerance() {
+            let dir = self.aim(top, query.target());
+            let point = query.ask(&dir, &self.points[..self.counts.points])?;
+            if query.upper.depth - lower <= enough {
                 return Ok(Outcome::Done(true, self.finish(query, lower, Some(top))));
             }
             // A point above by less than this would add faces and no distance.
-            let least = query.rounding().max(query.tolerance() * 0.125);
+            let least = larger(query.rounding, query.tolerance * 0.125);
             let face = self.face_mut(top);
             let height = face.normal.dot(&point.v) - face.offset;
-            let retry = !(height > least) && !face.edge && !face.lone;
-            face.lone |= retry;
+            let vain = !(height > least) && !face.lone;
+            if vain {
+                face.lone = true;
+                self.counts.vain += 1;
+                self.counts.plain = self.counts.insertions + 2 * self.counts.vain;
+            }
             let p = self.push(point);
             let lit = if height > least {
                 Some(top)
@@ -886,10 +935,9 @@ impl<'a> Polytope<'a> {
                 self.lit(p, least)
             };
             let grown = lit.is_some_and(|f| self.insert(f, p, query));
-            if !grown && !retry {
+            if !grown && !vain {
                 // Rounding error has the last word.
-                let gap = query.upper.depth - lower;
-                let close = gap <= 64.0 * EPSILON * query.magnitude;
+                let close = query.upper.depth - lower <= 16.0 * query.grain();
                 return Ok(Outcome::Done(close, self.finish(query, lower, Some(top))));
             }
         }
@@ -905,15 +953,11 @@ impl<'a> Polytope<'a> {
     /// solution at 1e-6: spheres 51 → 30 support points a query, ellipsoids 45 → 25,
     /// 162-vertex polytopes 16.4 → 14.4, boxes 8.15 → 8.07 (neighbours alone: 34, 29,
     /// 14.8, 8.08; the order in which faces are taken changes less than 3 %). Where f
-    /// does not see the point that the mean leads to (facets), its normal is asked next.
+    /// does not see the point that the mean leads to (facets), its normal is asked next,
+    /// and normals alone for some time.
     fn aim(&self, f: Index, target: Real) -> Vec3 {
         let face = self.face(f);
-        if face.edge {
-            let [a, b, c] = face.corners.map(|i| self.v(i));
-            let w = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c).0;
-            return unit(&w).unwrap_or(face.normal);
-        }
-        if face.lone {
+        if face.lone || self.counts.insertions < self.counts.plain {
             return face.normal;
         }
         let near = |f: Index| {
@@ -949,7 +993,7 @@ impl<'a> Polytope<'a> {
         guess: Option<Index>,
     ) -> Penetration {
         #[cfg(test)]
-        tests::check(self, query.rounding());
+        tests::check(self, query.rounding, lower);
         let dir = query.upper.dir;
         let shares = |f: &Face| {
             let [a, b, c] = f.corners.map(|i| self.v(i));
@@ -1093,7 +1137,7 @@ mod tests {
     }
 
     /// The surface is closed and of one piece, and convex to rounding.
-    pub fn check(polytope: &Polytope<'_>, rounding: Real) {
+    pub fn check(polytope: &Polytope<'_>, rounding: Real, lower: Real) {
         let live: Vec<Index> = (0..polytope.counts.faces as Index)
             .filter(|&f| !polytope.face(f).dead)
             .collect();
@@ -1113,10 +1157,12 @@ mod tests {
         assert_eq!(live.len(), 2 * corners.len() - 4);
         for &f in &live {
             let face = polytope.face(f);
+            let [a, b, c] = face.corners.map(|i| polytope.v(i));
+            let (_, distance2) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
+            assert!(face.key < 0.0 || lower <= distance2.sqrt() + rounding);
             for &i in &corners {
                 let height = face.normal.dot(&polytope.v(i)) - face.offset;
                 // A needle's normal is as uncertain as the needle is narrow.
-                let [a, b, c] = face.corners.map(|i| polytope.v(i));
                 let area = (b - a).cross(&(c - a)).norm();
                 let reach = (b - a).norm().max((c - a).norm()).max((c - b).norm());
                 let slack = 4.0 * rounding * (1.0 + reach * reach / area);
