@@ -43,8 +43,6 @@ use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 type Index = u16;
 /// No face: ends a list.
 const NONE: Index = Index::MAX;
-/// Face numbers lie below, so that half-edges fit.
-const MAX_FACES: Index = Index::MAX / 4;
 
 /// Most points a polytope may have, so that half-edges fit an [`Index`].
 pub const MAX_POINTS: usize = 5400;
@@ -79,38 +77,43 @@ pub struct Face {
     /// Lower bound on the distance from the origin to the triangle; negative when the
     /// origin is outside.
     key: Real,
-    corners: [Index; 3],
+    /// (Four, so that the low bits of a half-edge are in range.)
+    corners: [Index; 4],
     /// Half-edge on the other side of each edge.
-    across: [Index; 3],
+    across: [Index; 4],
     /// Next in the list of free or of visible faces.
     next: Index,
     queued: bool,
     dead: bool,
     /// Its common direction with its neighbours was tried in vain.
     lone: bool,
-    /// The origin projects beyond an edge: a neighbour is nearer.
-    aside: bool,
     /// Number of the insertion that last looked at the face: 2 · insertion, + 1 if visible.
-    seen: u32,
+    seen: Index,
 }
 
 impl Face {
     /// A new face in an old one's place.
     #[inline]
-    fn renew(&mut self, corners: [Index; 3], across: [Index; 3]) {
-        self.corners = corners;
-        self.across = across;
+    fn renew(&mut self, [a, b, c]: [Index; 3], [d, e, f]: [Index; 3]) {
+        self.corners = [a, b, c, 0];
+        self.across = [d, e, f, 0];
         self.next = NONE;
         self.queued = false;
         self.dead = false;
         self.lone = false;
-        self.aside = false;
         self.seen = 0;
+    }
+
+    /// Its three corners.
+    #[inline]
+    fn corners(&self) -> [Index; 3] {
+        let [a, b, c, _] = self.corners;
+        [a, b, c]
     }
 
     /// Sets normal, offset and distance bound from the corners.
     #[inline]
-    fn measure(&mut self, a: &Vec3, b: &Vec3, c: &Vec3, target: Real) {
+    fn measure(&mut self, a: &Vec3, b: &Vec3, c: &Vec3) {
         let (ab, ac, bc) = (b - a, c - a, c - b);
         let mut normal = ab.cross(&ac);
         // A needle's two long edges would leave no normal but rounding. (Seldom: a choice
@@ -118,23 +121,11 @@ impl Face {
         if ac.norm_squared() > 64.0 * bc.norm_squared() {
             normal = ab.cross(&bc);
         }
-        let area2 = normal.norm_squared();
-        let normal = normal * (1.0 / area2.sqrt());
+        let normal = normal * (1.0 / normal.norm());
         let (da, db, dc) = (normal.dot(a), normal.dot(b), normal.dot(c));
         self.normal = normal;
         self.offset = larger(larger(da, db), dc);
         self.key = lesser(lesser(da, db), dc);
-        if self.key < target && self.key >= 0.0 {
-            // Twice the areas the projection of the origin makes with the edges, by more
-            // than a share of the triangle's and rounding: a projection onto an edge is
-            // inside of both faces.
-            let least = lesser(
-                lesser(normal.dot(&a.cross(b)), normal.dot(&b.cross(c))),
-                normal.dot(&c.cross(a)),
-            );
-            let slack = 1e-6 * area2.sqrt() + 16.0 * EPSILON * a.norm_squared();
-            self.aside = least < -slack;
-        }
     }
 }
 
@@ -401,14 +392,36 @@ struct Counts {
     /// Faces on the free list.
     free: usize,
     first_free: Index,
-    insertions: u32,
+    insertions: Index,
     /// Common directions tried in vain, and the insertion until which none is tried.
-    vain: u32,
-    plain: u32,
+    vain: Index,
+    plain: Index,
     /// A point well inside the first tetrahedron, hence inside the polytope.
     inner: Vec3,
     /// Least key of the faces that were far enough to be left out of the heap.
     dropped: Real,
+}
+
+impl Counts {
+    /// Takes a free face; there is one.
+    #[inline]
+    fn allocate(&mut self, faces: &[Face]) -> Index {
+        let f = self.first_free;
+        if f == NONE {
+            self.faces += 1;
+            return (self.faces - 1) as Index;
+        }
+        self.first_free = faces[usize::from(f)].next;
+        self.free -= 1;
+        f
+    }
+
+    #[inline]
+    fn release(&mut self, faces: &mut [Face], f: Index) {
+        faces[usize::from(f)].next = self.first_free;
+        self.first_free = f;
+        self.free += 1;
+    }
 }
 
 /// A closed surface of triangles.
@@ -532,11 +545,11 @@ impl<'a> Polytope<'a> {
             ([b, d, c], [5, 12, 1]),
             ([c, d, a], [9, 4, 2]),
         ] {
-            let f = self.allocate();
+            let f = self.counts.allocate(self.faces);
             let [x, y, z] = corners.map(|i| self.v(i));
             let face = self.face_mut(f);
             face.renew(corners, across);
-            face.measure(&x, &y, &z, target);
+            face.measure(&x, &y, &z);
             self.enqueue(f, target);
         }
         for i in 0..self.counts.points as Index {
@@ -612,54 +625,30 @@ impl<'a> Polytope<'a> {
         let rounding = query.rounding;
         let target = query.target();
         self.counts.insertions += 1;
-        let hidden = 2 * self.counts.insertions;
-        let visible = hidden + 1;
+        let visible = 2 * self.counts.insertions + 1;
         if self.room() < self.counts.points {
             self.purge();
         }
 
-        // The list of visible faces is the queue of the flood.
-        self.face_mut(first).seen = visible;
-        self.face_mut(first).next = NONE;
         let mut last = first;
+        let seen = self.face_mut(first);
+        seen.seen = visible;
+        seen.next = NONE;
         let cone = loop {
-            let mut at = first;
-            let mut rim = 0;
-            let mut start = 0;
-            while at != NONE {
-                let across = self.face(at).across;
-                for (edge, other) in across.into_iter().enumerate() {
-                    let f = other / 4;
-                    let face = self.face_mut(f);
-                    if face.seen < hidden {
-                        if face.normal.dot(&vp) - face.offset > rounding {
-                            face.seen = visible;
-                            face.next = NONE;
-                            self.face_mut(last).next = f;
-                            last = f;
-                            continue;
-                        }
-                        face.seen = hidden;
-                    }
-                    if self.face(f).seen == hidden {
-                        rim += 1;
-                        start = 4 * at + edge as Index;
-                    }
-                }
-                at = self.face(at).next;
-            }
+            let (rim, start) = flood(self.faces, first, &mut last, &vp, rounding, visible);
             if rim < 3 || rim > self.room() {
                 return false;
             }
-            match self.cone(start, rim, p, visible, target) {
+            match self.cone(start, rim, p, visible) {
                 Ok(cone) => break cone,
-                Err(Some(folded)) => {
-                    self.face_mut(folded).seen = visible;
-                    self.face_mut(folded).next = NONE;
+                Err(NONE) => return false,
+                Err(folded) => {
                     self.face_mut(last).next = folded;
+                    let seen = self.face_mut(folded);
+                    seen.seen = visible;
+                    seen.next = NONE;
                     last = folded;
                 }
-                Err(None) => return false,
             }
         };
         let mut at = first;
@@ -679,39 +668,39 @@ impl<'a> Polytope<'a> {
 
     /// The faces from point `p` to the `rim` edges of the visible faces, the first to
     /// `start`, as a list. Otherwise nothing is changed: `Err` has the face across the
-    /// rim that the cone folds back on, or none when the rim is no single loop.
-    fn cone(
-        &mut self,
-        start: Index,
-        rim: usize,
-        p: Index,
-        visible: u32,
-        target: Real,
-    ) -> Result<Index, Option<Index>> {
+    /// rim that the cone folds back on, or [`NONE`] when the rim is no single loop.
+    fn cone(&mut self, start: Index, rim: usize, p: Index, visible: Index) -> Result<Index, Index> {
         let (inner, vp) = (self.counts.inner, self.v(p));
+        let Self {
+            points,
+            faces,
+            counts,
+            ..
+        } = self;
+        let faces = &mut **faces;
         let mut oldest = NONE;
         let mut previous = NONE;
         let mut made = 0;
         let mut folded = NONE;
         let mut at = start;
-        let mut from = self.begin(at);
-        let mut va = self.v(from);
+        let mut from = begin(faces, at);
+        let mut va = points[usize::from(from)].v;
         loop {
-            let outer = self.face(at / 4).across[usize::from(at % 4)];
-            let next = self.next_rim(at, visible);
-            let to = self.begin(next);
-            let vb = self.v(to);
-            let f = self.allocate();
-            let face = self.face_mut(f);
-            face.renew([from, to, p], [outer, 0, 4 * (previous % MAX_FACES) + 1]);
-            face.measure(&va, &vb, &vp, target);
+            let outer = faces[face_of(at)].across[edge_of(at)];
+            let next = next_rim(faces, at, visible);
+            let to = begin(faces, next);
+            let vb = points[usize::from(to)].v;
+            let f = counts.allocate(faces);
+            let face = &mut faces[usize::from(f)];
+            face.renew([from, to, p], [outer, 0, previous.wrapping_mul(4) | 1]);
+            face.measure(&va, &vb, &vp);
             // False for a triangle without area, whose normal is NaN: it is harmless.
             let folds = face.offset < face.normal.dot(&inner);
-            self.face_mut(outer / 4).across[usize::from(outer % 4)] = 4 * f;
+            faces[face_of(outer)].across[edge_of(outer)] = 4 * f;
             if previous == NONE {
                 oldest = f;
             } else {
-                let before = self.face_mut(previous);
+                let before = &mut faces[usize::from(previous)];
                 before.across[1] = 4 * f + 2;
                 before.next = f;
             }
@@ -727,41 +716,21 @@ impl<'a> Polytope<'a> {
             (at, from, va) = (next, to, vb);
         }
         if folded == NONE && made == rim {
-            self.face_mut(previous).across[1] = 4 * oldest + 2;
-            self.face_mut(oldest).across[2] = 4 * previous + 1;
+            faces[usize::from(previous)].across[1] = 4 * oldest + 2;
+            faces[usize::from(oldest)].across[2] = 4 * previous + 1;
             return Ok(oldest);
         }
         // Undo: back across each rim edge to the visible face, in the same order.
         let mut back = start;
         let mut f = oldest;
         while f != NONE {
-            let next = self.face(f).next;
-            let outer = self.face(f).across[0];
-            self.face_mut(outer / 4).across[usize::from(outer % 4)] = back;
-            self.release(f);
-            back = self.next_rim(back, visible);
+            let Face { next, across, .. } = faces[usize::from(f)];
+            faces[face_of(across[0])].across[edge_of(across[0])] = back;
+            back = next_rim(faces, back, visible);
+            counts.release(faces, f);
             f = next;
         }
-        Err((folded != NONE).then_some(folded))
-    }
-
-    /// The corner where a half-edge begins.
-    #[inline]
-    fn begin(&self, edge: Index) -> Index {
-        self.face(edge / 4).corners[usize::from(edge % 4)]
-    }
-
-    /// The rim edge after `edge`: turns about its end through the visible faces.
-    #[inline]
-    fn next_rim(&self, edge: Index, visible: u32) -> Index {
-        let mut at = after(edge);
-        loop {
-            let other = self.face(at / 4).across[usize::from(at % 4)];
-            if self.face(other / 4).seen != visible {
-                return at;
-            }
-            at = after(other);
-        }
+        Err(folded)
     }
 
     /// Free faces.
@@ -769,44 +738,24 @@ impl<'a> Polytope<'a> {
         self.faces.len() - self.counts.faces + self.counts.free
     }
 
-    /// Takes a free face; there is one.
-    #[inline]
-    fn allocate(&mut self) -> Index {
-        let f = self.counts.first_free;
-        if f == NONE {
-            self.counts.faces += 1;
-            return (self.counts.faces - 1) as Index;
-        }
-        self.counts.first_free = self.face(f).next;
-        self.counts.free -= 1;
-        f
-    }
-
     /// Ends a face's life. Its place is free once the heap does not hold it.
     #[inline]
     fn bury(&mut self, f: Index) {
         self.face_mut(f).dead = true;
         if !self.face(f).queued {
-            self.release(f);
+            self.counts.release(self.faces, f);
         }
-    }
-
-    #[inline]
-    fn release(&mut self, f: Index) {
-        self.face_mut(f).next = self.counts.first_free;
-        self.counts.first_free = f;
-        self.counts.free += 1;
     }
 
     /// Puts a face nearer than `target` into the heap.
     #[inline]
     fn enqueue(&mut self, f: Index, target: Real) {
-        let &Face { key, aside, .. } = self.face(f);
-        if aside {
-            return;
-        }
+        let key = self.face(f).key;
         if key >= target {
             self.counts.dropped = lesser(self.counts.dropped, key);
+            return;
+        }
+        if key >= 0.0 && self.aside(f) {
             return;
         }
         self.face_mut(f).queued = true;
@@ -824,6 +773,24 @@ impl<'a> Polytope<'a> {
         self.heap[hole] = Entry { key, face: f };
     }
 
+    /// Does the origin project beyond an edge of the face, so that a neighbour is nearer?
+    ///
+    /// By more than a share of the edge and rounding: a projection onto an edge is inside
+    /// of both faces.
+    #[inline]
+    fn aside(&self, f: Index) -> bool {
+        let face = self.face(f);
+        let [a, b, c] = face.corners().map(|i| self.v(i));
+        // n·(a × b): twice the area of the edge and the projection.
+        let least = lesser(
+            lesser(face.normal.dot(&a.cross(&b)), face.normal.dot(&b.cross(&c))),
+            face.normal.dot(&c.cross(&a)),
+        );
+        let slack = 1e-6 * larger((b - a).norm_squared(), (c - a).norm_squared())
+            + 16.0 * EPSILON * larger(a.norm_squared(), c.norm_squared());
+        least < -slack
+    }
+
     /// Takes the nearest face, dead or alive, out of the heap.
     fn pop(&mut self) {
         let Some(end) = self.counts.heap.checked_sub(1) else {
@@ -834,7 +801,7 @@ impl<'a> Polytope<'a> {
         self.face_mut(top).queued = false;
         self.sink(0, self.heap[end]);
         if self.face(top).dead {
-            self.release(top);
+            self.counts.release(self.faces, top);
         }
     }
 
@@ -867,7 +834,7 @@ impl<'a> Polytope<'a> {
             let entry = self.heap[i];
             if self.face(entry.face).dead {
                 self.face_mut(entry.face).queued = false;
-                self.release(entry.face);
+                self.counts.release(self.faces, entry.face);
             } else {
                 self.heap[kept] = entry;
                 kept += 1;
@@ -965,7 +932,7 @@ impl<'a> Polytope<'a> {
             (g.key < target && g.normal.dot(&face.normal) > 0.0).then_some(g)
         };
         let mut sum = face.normal;
-        for edge in face.across {
+        for &edge in &face.across[..3] {
             let Some(neighbour) = near(edge / 4) else {
                 continue;
             };
@@ -996,7 +963,7 @@ impl<'a> Polytope<'a> {
         tests::check(self, query.rounding, lower);
         let dir = query.upper.dir;
         let shares = |f: &Face| {
-            let [a, b, c] = f.corners.map(|i| self.v(i));
+            let [a, b, c] = f.corners().map(|i| self.v(i));
             let w = [
                 dir.dot(&b.cross(&c)),
                 dir.dot(&c.cross(&a)),
@@ -1017,7 +984,7 @@ impl<'a> Polytope<'a> {
             let (w, sum) = shares(f);
             let least = w[0].min(w[1]).min(w[2]);
             if sum > 0.0 && best.is_none_or(|b| least > b.2) {
-                best = Some((f.corners, w, least));
+                best = Some((f.corners(), w, least));
                 if least >= 0.0 {
                     break;
                 }
@@ -1056,6 +1023,74 @@ fn larger(x: Real, y: Real) -> Real {
 #[inline]
 fn lesser(x: Real, y: Real) -> Real {
     if x < y { x } else { y }
+}
+
+/// Finds all faces that see the point at `v`, from the ones listed at `first`, and lists
+/// them to `last`. Their rim: how many edges, and one of them.
+#[inline]
+fn flood(
+    faces: &mut [Face],
+    first: Index,
+    last: &mut Index,
+    v: &Vec3,
+    rounding: Real,
+    visible: Index,
+) -> (usize, Index) {
+    let hidden = visible - 1;
+    let (mut rim, mut start) = (0, 0);
+    // The list is the queue.
+    let mut at = first;
+    while at != NONE {
+        for edge in 0..3 {
+            let other = face_of(faces[usize::from(at)].across[edge]);
+            let face = &mut faces[other];
+            if face.seen < hidden {
+                if face.normal.dot(v) - face.offset > rounding {
+                    face.seen = visible;
+                    face.next = NONE;
+                    faces[usize::from(*last)].next = other as Index;
+                    *last = other as Index;
+                    continue;
+                }
+                face.seen = hidden;
+            }
+            if face.seen == hidden {
+                rim += 1;
+                start = 4 * at + edge as Index;
+            }
+        }
+        at = faces[usize::from(at)].next;
+    }
+    (rim, start)
+}
+
+/// The rim edge after `edge`: turns about its end through the visible faces.
+#[inline]
+fn next_rim(faces: &[Face], edge: Index, visible: Index) -> Index {
+    let mut at = after(edge);
+    loop {
+        let other = faces[face_of(at)].across[edge_of(at)];
+        if faces[face_of(other)].seen != visible {
+            return at;
+        }
+        at = after(other);
+    }
+}
+
+/// The corner where a half-edge begins.
+#[inline]
+fn begin(faces: &[Face], edge: Index) -> Index {
+    faces[face_of(edge)].corners[edge_of(edge)]
+}
+
+#[inline]
+fn face_of(edge: Index) -> usize {
+    usize::from(edge / 4)
+}
+
+#[inline]
+fn edge_of(edge: Index) -> usize {
+    usize::from(edge % 4)
 }
 
 /// The half-edge after `edge` on its face.
@@ -1144,20 +1179,26 @@ mod tests {
         let mut corners = std::collections::BTreeSet::new();
         for &f in &live {
             let face = polytope.face(f);
-            corners.extend(face.corners);
-            for (i, other) in face.across.into_iter().enumerate() {
+            corners.extend(face.corners());
+            for (i, other) in face.across.into_iter().take(3).enumerate() {
                 let half = 4 * f + i as Index;
                 let g = polytope.face(other / 4);
                 assert!(!g.dead);
                 assert_eq!(g.across[usize::from(other % 4)], half);
-                assert_eq!(polytope.begin(other), polytope.begin(after(half)));
-                assert_eq!(polytope.begin(after(other)), polytope.begin(half));
+                assert_eq!(
+                    begin(polytope.faces, other),
+                    begin(polytope.faces, after(half))
+                );
+                assert_eq!(
+                    begin(polytope.faces, after(other)),
+                    begin(polytope.faces, half)
+                );
             }
         }
         assert_eq!(live.len(), 2 * corners.len() - 4);
         for &f in &live {
             let face = polytope.face(f);
-            let [a, b, c] = face.corners.map(|i| polytope.v(i));
+            let [a, b, c] = face.corners().map(|i| polytope.v(i));
             let (_, distance2) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
             assert!(face.key < 0.0 || lower <= distance2.sqrt() + rounding);
             for &i in &corners {
