@@ -92,9 +92,9 @@ impl Simplex {
 
     /// Reduces the simplex to the face that holds its point nearest to the origin.
     ///
-    /// The newest point must lie beyond the origin, seen from the nearest point of the
-    /// others: then that face has the newest point for a vertex, and the faces without
-    /// it are not looked at. Near the origin, where the arithmetic could prefer one of
+    /// Seen from the nearest point v of the others, the newest point must lie on the
+    /// origin's side (−v·w > −v·v): then that face has the newest point for a vertex, and
+    /// the faces without it are not looked at. Near the origin, where the arithmetic could prefer one of
     /// them, that is what makes every new point count.
     #[inline]
     pub fn reduce(&mut self) -> Nearest {

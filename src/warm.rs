@@ -5,7 +5,8 @@
 //! (paper, Sec. III-D), and the order of steps that all of them share.
 //!
 //! 1. A pair that was apart is asked about the direction that separated it: while
-//!    that still separates, one support point is the whole answer.
+//!    that still separates, one support point is the whole answer, and turns the
+//!    direction for the next time.
 //! 2. The solver starts from what the state holds, else from the centres, else from
 //!    the caller's first direction.
 //! 3. An overlap is proven. A local minimum of the support function can be positive
@@ -30,8 +31,8 @@ use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct State {
-    /// What the solvers remember. In a pair that was apart `dir` separated it; after a
-    /// query along a direction `sides` are the directions of the last portal.
+    /// What the solvers remember. In a pair that was apart `dir` separated it, and its
+    /// length, metres, is the margin to aim at; after a query along a direction `sides` are the directions of the last portal.
     pub memory: Memory,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
@@ -143,6 +144,13 @@ impl Known {
     }
 }
 
+/// Directions tried before a pair that was apart is asked about anew.
+const TRIES: u32 = 2;
+/// What a margin that was reached once is still worth at the next query.
+const KEEP: Real = 0.95;
+/// A share of the aim below which the separating direction is turned.
+const ENOUGH: Real = 0.7;
+
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
     /// The Minkowski difference.
@@ -151,18 +159,51 @@ pub struct Pair<A, B> {
     pub centre: Option<SupportPoint>,
     /// The caller's first direction, where it gives one.
     pub first_dir: Option<Vec3>,
+    /// Whether the caller keeps the state: then a separating direction is worth a few
+    /// support points more.
+    pub lasting: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Step 1: the separating direction that still separates.
-    fn still_apart(&self, state: &State) -> Result<Option<Vec3>, Fault> {
-        if let Some(n) = state.separating() {
-            let s = self.md.support(&n)?;
-            if n.dot(&s.v) < 0.0 {
+    ///
+    /// The support point that shows it also tells how to turn the direction for the next
+    /// time: h is to fall to -aim, its gradient is the tangential part g of s, and the
+    /// step -g (h + aim) / g² is Polyak's. A pair whose contact turns is followed so, at
+    /// one support point a query.
+    fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
+        let Some(mut n) = state.separating() else {
+            return Ok(None);
+        };
+        let mut aim = state.memory.dir.norm();
+        for _ in 0..TRIES {
+            let s = self.md.support(&n)?.v;
+            let margin = -n.dot(&s);
+            aim = margin.max(KEEP * aim);
+            let mut next = n;
+            if margin < ENOUGH * aim {
+                let g = s + n * margin;
+                next = unit(&(n - g * ((aim - margin) / g.norm_squared()))).unwrap_or(n);
+            }
+            if margin > 0.0 {
+                state.memory.dir = next * aim;
                 return Ok(Some(n));
             }
+            n = next;
         }
         Ok(None)
+    }
+
+    /// Leaves the answer behind for the next query.
+    fn remember(&self, state: &mut State, answer: &Answer) -> Result<(), Fault> {
+        match answer {
+            Answer::Miss(n) if self.lasting => {
+                let (n, margin) = gjk::widen(&self.md, *n)?;
+                *state = State::of(APART, n * margin);
+            }
+            other => state.remember(other),
+        }
+        Ok(())
     }
 
     /// The way from the centre of D through the origin, or the caller's first
@@ -224,7 +265,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             match gjk::intersect(&self.md, start, &[], max_iterations)? {
                 Overlap::Yes(_) => Some(true),
                 Overlap::No(n) => {
-                    *state = State::of(APART, n);
+                    self.remember(state, &Answer::Miss(n))?;
                     Some(false)
                 }
                 Overlap::Undecided => None,
@@ -255,7 +296,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         match answer {
             Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(memory),
-            other => state.remember(&other),
+            other => self.remember(state, &other)?,
         }
         Ok(answer)
     }
@@ -381,7 +422,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let local = match self.stroll(&mut memory, settings, &mut known)? {
             Answer::Hit(hit) | Answer::Limit(hit) => hit,
             other => {
-                state.remember(&other);
+                self.remember(state, &other)?;
                 return Ok(other);
             }
         };
@@ -398,7 +439,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             {
                 *state = State::overlap(memory);
             }
-            other => state.remember(&other),
+            other => self.remember(state, &other)?,
         }
         Ok(answer)
     }
@@ -419,7 +460,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let (limit, portal, (normal, h, point1, point2)) = match &exit {
             Exit::Miss(n) => {
                 let answer = Answer::Miss(*n);
-                state.remember(&answer);
+                self.remember(state, &answer)?;
                 return Ok(answer);
             }
             Exit::Converged(portal, plane) => {
@@ -464,7 +505,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 None => 0.0,
             };
         }
-        state.remember(&answer);
+        self.remember(state, &answer)?;
         if let (Some(p), Answer::Hit(_) | Answer::Limit(_)) = (portal, &answer) {
             state.kind = ALONG;
             state.memory.sides = p.planes.map(|plane| plane.normal);
@@ -537,7 +578,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Answer::Limit(hit) => self.proven(hit, true, &mut Known::default(), settings)?,
             other => other,
         };
-        state.remember(&answer);
+        self.remember(state, &answer)?;
         Ok(answer)
     }
 }

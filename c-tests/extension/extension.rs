@@ -24,18 +24,26 @@ fn cpp_wrapper() {
     }
 }
 
+/// A C program of this directory on this library.
+fn program(name: &str) -> Program {
+    Program::c(name)
+        .source(format!("extension/{name}.c"))
+        .flag("-DOURS_ALONE")
+        .flag("-pedantic")
+        .flag("-Werror")
+        .link_ours_shared()
+}
+
+#[test]
+fn pairs_that_stay_apart_cost_one_support() {
+    program("apart").build().run(NO_ARGS);
+}
+
 /// What the example prints: two frames apart, the touch, then the depth by which the
 /// box has sunk, and a warm query never costs more supports than the first hit.
 #[test]
 fn example() {
-    let lines = Program::c("example")
-        .source("extension/example.c")
-        .flag("-pedantic")
-        .flag("-Werror")
-        .link_ours_shared()
-        .build()
-        .run(NO_ARGS)
-        .stdout;
+    let lines = program("example").build().run(NO_ARGS).stdout;
     let lines: Vec<&str> = lines.lines().collect();
     assert_eq!(lines.len(), 10);
     assert_eq!(lines[..2], ["frame 0: apart", "frame 1: apart"]);

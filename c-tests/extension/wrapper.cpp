@@ -122,6 +122,8 @@ static void same_as_c()
             check_same("local", ccd::penetration_local(a, b, settings, &warm), code, out);
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after a local query");
             (code == CCD_HIT ? hits : misses)++;
+            code = ccdPenetrationMinimum(o1, o2, &c, &c_warm, &out);
+            check_same("minimum", ccd::penetration_minimum(a, b, settings, &warm), code, out);
             code = ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, &out);
             check_same("along", ccd::penetration_along(a, b, dir, settings, &warm), code, out);
             code = ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, &out);
@@ -135,6 +137,12 @@ static void same_as_c()
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after all queries");
         }
 
+        ccd_real_t depth;
+        ccd_vec3_t d, pos;
+        const int code = ccdGJKPenetration(o1, o2, &c, &depth, &d, &pos);
+        const ccd::Contact gjk = ccd::penetration_gjk(a, b, settings);
+        CHECK(int(gjk.status) == code, "gjk");
+        CHECK(!gjk || (gjk.depth == depth && same(gjk.dir, d) && same(gjk.pos, pos)), "gjk");
         CHECK(ccd::intersect_gjk(a, b, settings) == (ccdGJKIntersect(o1, o2, &c) == 1), "intersect_gjk");
 
         c.center1 = c.center2 = nullptr;
@@ -170,7 +178,9 @@ static void exceptions()
     throws_through("intersect", [](auto &a, auto &b) { ccd::intersect(a, b); });
     throws_through("intersect_gjk", [](auto &a, auto &b) { ccd::intersect_gjk(a, b); });
     throws_through("mpr", [](auto &a, auto &b) { ccd::penetration_mpr(a, b); });
+    throws_through("gjk", [](auto &a, auto &b) { ccd::penetration_gjk(a, b); });
     throws_through("local", [](auto &a, auto &b) { ccd::penetration_local(a, b); });
+    throws_through("minimum", [](auto &a, auto &b) { ccd::penetration_minimum(a, b); });
     throws_through("along", [](auto &a, auto &b) { ccd::penetration_along(a, b, {0, 1, 0}); });
     throws_through("planar", [](auto &a, auto &b) { ccd::penetration_planar(a, b, {0, 0, 1}); });
 

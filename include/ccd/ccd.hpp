@@ -239,6 +239,17 @@ Penetration penetration_local(const A &a, const B &b, const Settings &settings =
     return detail::penetration(code, out);
 }
 
+/* The global minimum of the depth with its proof, depth - depth_lower <= tolerance:
+ * ccdPenetrationMinimum. */
+template <class A, class B>
+Penetration penetration_minimum(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
+{
+    const ccd_t c = detail::query<A, B>(settings);
+    ccd_penetration_t out{};
+    const int code = ccdPenetrationMinimum(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
+    return detail::penetration(code, out);
+}
+
 /* How far b must move along dir (of any length): ccdPenetrationAlong. */
 template <class A, class B>
 Penetration penetration_along(const A &a, const B &b, const Vec3 &dir, const Settings &settings = {},

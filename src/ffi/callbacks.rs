@@ -93,17 +93,18 @@ impl Query {
     }
 
     /// Difference and centres; `None` when a callback for them is NULL or a centre is not
-    /// finite.
+    /// finite. `lasting`: whether the caller keeps a state.
     ///
     /// # Safety
     /// Pointers of the module contract.
-    pub unsafe fn pair(&self) -> Option<Pair<Object, Object>> {
+    pub unsafe fn pair(&self, lasting: bool) -> Option<Pair<Object, Object>> {
         // SAFETY: passed on.
         unsafe {
             Some(Pair {
                 md: self.difference()?,
                 centre: Some(self.centre().filter(|c| c.v.sum().is_finite())?),
                 first_dir: None,
+                lasting,
             })
         }
     }

@@ -104,10 +104,10 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
 ///
 /// # Safety
 /// Pointers of the module contract.
-pub unsafe fn mpr_penetration(query: Query, state: &mut State) -> Option<Answer> {
+pub unsafe fn mpr_penetration(query: Query, state: &mut State, lasting: bool) -> Option<Answer> {
     // SAFETY: passed on.
     unsafe {
-        let pair = query.pair()?;
+        let pair = query.pair(lasting)?;
         let settings = Settings {
             tolerance: or_default(query.mpr_tolerance()),
             max_iterations: query.max_iterations(),

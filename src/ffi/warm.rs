@@ -133,6 +133,7 @@ unsafe fn answer(
             md,
             centre,
             first_dir,
+            lasting: !warm.is_null(),
         };
         let mut state = read(warm);
         let result = solve(&pair, &mut state, &settings);
@@ -206,7 +207,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     // SAFETY: passed on.
     unsafe {
         let mut state = read(warm);
-        let answer = mpr_penetration(Query { obj1, obj2, ccd }, &mut state);
+        let answer = mpr_penetration(Query { obj1, obj2, ccd }, &mut state, !warm.is_null());
         if answer.is_some() {
             store(warm, &state);
         }
@@ -236,7 +237,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     unsafe {
         let mut state = read(warm);
         let overlap = query
-            .pair()
+            .pair(!warm.is_null())
             .and_then(|pair| pair.intersect(&mut state, query.max_iterations()).ok());
         if overlap.is_some() {
             store(warm, &state);
