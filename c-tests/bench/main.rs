@@ -38,6 +38,8 @@ mod command {
     enum Command {
         /// Supports, times and errors of every pair set, as Markdown.
         Tables(tables::Options),
+        /// Writes the support counts and errors that a test holds.
+        Hold,
         /// Every chart as CSV and SVG.
         Charts(charts::Options),
         /// One method over one set, for a profiler to watch.
@@ -48,6 +50,7 @@ mod command {
     pub fn run() {
         match Arguments::parse().command {
             Command::Tables(options) => tables::run(&options),
+            Command::Hold => tables::hold(),
             Command::Charts(options) => charts::run(&options),
             Command::Once(options) => charts::split::once(&options),
         }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::harness;
 use crate::lab::libraries::Libraries;
@@ -102,10 +102,89 @@ pub fn published() -> Vec<Published> {
         .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
+/// What a later change may not lose: one of ours on one set.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Held {
+    pub set: String,
+    pub method: String,
+    pub start: String,
+    pub tolerance: f64,
+    pub supports: f64,
+    pub mean_error_1mm: f64,
+    pub nonminimal: f64,
+}
+
+impl Held {
+    pub fn is_of(&self, row: &Row) -> bool {
+        self.set == row.set
+            && self.method == row.method
+            && self.start == row.start
+            && Some(self.tolerance) == row.tolerance
+    }
+}
+
+pub fn held_file() -> PathBuf {
+    harness::root().join("c-tests/bench/held.csv")
+}
+
+/// Every method of ours over the random and the shallow sets and the small motions.
+pub fn measure_held(libraries: &Libraries) -> Vec<Row> {
+    let motions = MOTIONS.iter().filter(|s| s.ends_with("_trajS"));
+    let sets = RANDOM.iter().chain(&SHALLOW).chain(motions);
+    let of = |set: &&str| {
+        let scene = Scene::load(libraries, set, usize::MAX);
+        let mut methods = ours(libraries, &scene);
+        let rows = methods
+            .iter_mut()
+            .map(|m| measure::judge(libraries, &scene, m));
+        rows.collect::<Vec<Row>>()
+    };
+    sets.flat_map(of).collect()
+}
+
+/// Writes what is held anew, from what is measured now.
+pub fn hold() {
+    let libraries = Libraries::open();
+    let rows: Vec<Held> = measure_held(&libraries)
+        .into_iter()
+        .map(|row| Held {
+            set: row.set,
+            method: row.method,
+            start: row.start,
+            tolerance: row.tolerance.unwrap_or_default(),
+            supports: row.supports.unwrap_or_default(),
+            mean_error_1mm: row.mean_error_1mm,
+            nonminimal: row.nonminimal,
+        })
+        .collect();
+    progress::write_csv(&held_file(), &libraries, &rows);
+}
+
+/// This library's queries on a scene, from every start it has.
+fn ours<'a>(libraries: &'a Libraries, scene: &Scene) -> Vec<Method<'a>> {
+    let mut all = vec![methods::mpr(libraries, &libraries.ours, 1e-6)];
+    let local = |start, t| methods::extension(libraries, Ask::Local, start, t);
+    let minimum = |start, t| methods::extension(libraries, Ask::Minimum, start, t);
+    if scene.motion > 0 {
+        all.extend([
+            local(Start::Centres, 1e-6),
+            local(Start::Warm, 1e-6),
+            local(Start::Warm, 1e-10),
+        ]);
+        all.push(methods::extension(libraries, Ask::Mpr, Start::Warm, 1e-6));
+        all.extend([minimum(Start::Warm, 1e-6), minimum(Start::None, 1e-6)]);
+    } else {
+        all.extend(Start::GUESSES.map(|start| local(start, 1e-6)));
+        all.extend([local(Start::Centres, 1e-6), local(Start::Five, 1e-10)]);
+        all.extend([minimum(Start::None, 1e-6), minimum(Start::None, 1e-10)]);
+    }
+    all
+}
+
 fn roster<'a>(libraries: &'a Libraries, compiled: &Compiled, scene: &Scene) -> Vec<Method<'a>> {
     let mut all = vec![methods::mpr(libraries, &libraries.system, 1e-6)];
     all.extend([1e-4, 1e-6, 1e-10].map(|t| methods::libccd_epa(libraries, t)));
-    all.push(methods::mpr(libraries, &libraries.ours, 1e-6));
+    all.extend(ours(libraries, scene));
     let motion = scene.motion > 0;
     let starts: &[Start] = if motion {
         &[Start::Centres, Start::Warm]
@@ -117,17 +196,6 @@ fn roster<'a>(libraries: &'a Libraries, compiled: &Compiled, scene: &Scene) -> V
             Start::Centres,
         ]
     };
-    for &start in starts {
-        all.push(methods::extension(libraries, Ask::Local, start, 1e-6));
-    }
-    all.push(methods::extension(libraries, Ask::Local, starts[0], 1e-10));
-    if motion {
-        all.push(methods::extension(libraries, Ask::Mpr, Start::Warm, 1e-6));
-    }
-    if libraries.extension.minimum.is_some() {
-        let start = if motion { Start::Warm } else { Start::None };
-        all.extend([1e-6, 1e-10].map(|t| methods::extension(libraries, Ask::Minimum, start, t)));
-    }
     for &start in starts {
         all.push(methods::paper(libraries, true, start, 1e-6));
     }

@@ -10,7 +10,6 @@ use ccd::ffi::types::{ccd_t, ccd_vec3_t};
 use ccd::local::{self, Shortcut};
 use ccd::math::Vec3;
 use ccd::support::MinkowskiDifference;
-use nalgebra::Matrix3;
 
 use super::deep::{Deep, Polytope};
 use super::libraries::{CPenetration, Classic, Libraries, Truth, Warm};
@@ -288,23 +287,8 @@ pub fn deep<'a>(libraries: &'a Libraries, scene: &Scene, start: Start) -> Option
     }
     let [a, b] = [0, 1].map(|k| Polytope::new(&scene.meshes[k]));
     let mut deep = Deep::default();
-    let place = libraries.callbacks.shape_pose;
-    let pose = move |shape| {
-        let (mut pos, mut rot, mut kind, mut p) = ([0.0; 3], [0.0; 9], 0, [0.0; 3]);
-        // SAFETY: a shape of the scene, room for what bench_shape_pose writes.
-        unsafe {
-            place(
-                shape,
-                pos.as_mut_ptr(),
-                rot.as_mut_ptr(),
-                &mut kind,
-                p.as_mut_ptr(),
-            )
-        };
-        (Matrix3::from_row_slice(&rot), Vec3::from(pos))
-    };
     let run = move |_: &Scene, pair: &Pair| {
-        let ((ra, pa), (rb, pb)) = (pose(pair.a), pose(pair.b));
+        let ((ra, pa), (rb, pb)) = (pair.pose(libraries, 0), pair.pose(libraries, 1));
         let local = ra.transpose();
         let from = start.direction(&pair.truth).unwrap_or(pair.truth.cold);
         let from = local * Vec3::from(from);

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::ffi::{c_int, c_uint, c_void};
 
-use nalgebra::{Unit, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::query::ClosestPoints;
 use parry3d_f64::query::details::closest_points_segment_segment;
@@ -26,6 +26,44 @@ pub struct Pair {
     pub truth: Truth,
     /// Position in its motion; 0 starts a new one.
     pub frame: usize,
+}
+
+impl Pair {
+    /// Rotation (local to world) and position of the first or second shape.
+    pub fn pose(&self, libraries: &Libraries, which: usize) -> (Matrix3<f64>, Vector3<f64>) {
+        // SAFETY: a shape of the scene.
+        let shape = unsafe {
+            Shape::read(
+                &libraries.callbacks,
+                if which == 0 { self.a } else { self.b },
+            )
+        };
+        (
+            Matrix3::from_row_slice(&shape.rotation),
+            shape.position.into(),
+        )
+    }
+}
+
+/// What the callbacks know of a shape.
+#[derive(Default)]
+struct Shape {
+    position: [f64; 3],
+    rotation: [f64; 9],
+    kind: c_int,
+    p: [f64; 3],
+}
+
+impl Shape {
+    /// # Safety
+    /// `shape` is one of the callbacks' shapes.
+    unsafe fn read(callbacks: &Callbacks, shape: *const c_void) -> Self {
+        let mut s = Self::default();
+        let (position, rotation) = (s.position.as_mut_ptr(), s.rotation.as_mut_ptr());
+        // SAFETY: the caller's contract, and room for what is written.
+        unsafe { (callbacks.shape_pose)(shape, position, rotation, &mut s.kind, s.p.as_mut_ptr()) };
+        s
+    }
 }
 
 /// A polytope's mesh, in its own frame.
@@ -146,44 +184,6 @@ pub struct Pose {
     pub rotation: UnitQuaternion<f64>,
 }
 
-/// Where a shape is.
-///
-/// # Safety
-/// `shape` is one of the callbacks' shapes.
-unsafe fn position(callbacks: &Callbacks, shape: *const c_void) -> Vector3<f64> {
-    let (mut pos, mut rot, mut kind, mut p) = ([0.0; 3], [0.0; 9], 0, [0.0; 3]);
-    // SAFETY: the caller's contract, and room for what is written.
-    unsafe {
-        (callbacks.shape_pose)(
-            shape,
-            pos.as_mut_ptr(),
-            rot.as_mut_ptr(),
-            &mut kind,
-            p.as_mut_ptr(),
-        );
-    }
-    pos.into()
-}
-
-/// A box's half extents; none for another shape.
-///
-/// # Safety
-/// `shape` is one of the callbacks' shapes.
-unsafe fn half_extents(callbacks: &Callbacks, shape: *const c_void) -> Option<[f64; 3]> {
-    let (mut pos, mut rot, mut kind, mut p) = ([0.0; 3], [0.0; 9], 0, [0.0; 3]);
-    // SAFETY: the caller's contract, and room for what is written.
-    unsafe {
-        (callbacks.shape_pose)(
-            shape,
-            pos.as_mut_ptr(),
-            rot.as_mut_ptr(),
-            &mut kind,
-            p.as_mut_ptr(),
-        );
-    }
-    (kind == 2).then_some(p)
-}
-
 /// Memory for `n` shapes, and the size of one in words.
 fn room(callbacks: &Callbacks, n: usize) -> (Vec<u64>, usize) {
     // SAFETY: takes nothing.
@@ -257,8 +257,10 @@ impl Scene {
                 let v = std::slice::from_raw_parts(v, 3 * nv as usize);
                 let t = std::slice::from_raw_parts(t, 3 * nt as usize);
                 let shape = pairs.first().map(|p| if k == 0 { p.a } else { p.b });
-                if let Some(half) = shape.and_then(|s| half_extents(&callbacks, s)) {
-                    return Mesh::cuboid(half);
+                let shape = shape.map(|s| Shape::read(&callbacks, s));
+                // A box.
+                if let Some(shape) = shape.filter(|s| s.kind == 2) {
+                    return Mesh::cuboid(shape.p);
                 }
                 Mesh {
                     vertices: v.chunks_exact(3).map(Vector3::from_column_slice).collect(),
@@ -368,7 +370,10 @@ impl Scene {
                     );
                     queries += 1;
                     let [pa, pb] = [a, b].map(|k| {
-                        position(&callbacks, world.as_ptr().add(k as usize * words).cast())
+                        Vector3::from(
+                            Shape::read(&callbacks, world.as_ptr().add(k as usize * words).cast())
+                                .position,
+                        )
                     });
                     let truth = Truth {
                         depth: (low + high) / 2.0,
