@@ -42,10 +42,8 @@ fn roster<'a>(bench: &Bench<'a>, scene: &Scene) -> Vec<Method<'a>> {
         all.push(methods::paper(libraries, false, start, t));
         all.push(methods::mpr(libraries, &libraries.ours, t));
         all.push(methods::extension(libraries, Ask::Local, start, t));
-        if libraries.extension.minimum.is_some() {
-            let start = if frames { Start::Warm } else { Start::None };
-            all.push(methods::extension(libraries, Ask::Minimum, start, t));
-        }
+        let start = if frames { Start::Warm } else { Start::None };
+        all.push(methods::extension(libraries, Ask::Minimum, start, t));
     }
     if !frames {
         all.extend(methods::deep(libraries, scene, Start::Five));
@@ -225,7 +223,7 @@ fn tolerance(bench: &Bench, rows: &[Row]) {
     figure::grid(
         &bench.file("tolerance.svg"),
         "What a tolerance costs",
-        4,
+        3,
         &panels,
         &bench.notes(),
     );

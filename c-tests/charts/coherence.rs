@@ -130,12 +130,9 @@ fn roster<'a>(bench: &Bench<'a>) -> Vec<methods::Method<'a>> {
     all.extend(
         [Start::Centres, Start::Warm].map(|s| methods::extension(libraries, Ask::Local, s, 1e-6)),
     );
-    if libraries.extension.minimum.is_some() {
-        all.extend(
-            [Start::None, Start::Warm]
-                .map(|s| methods::extension(libraries, Ask::Minimum, s, 1e-6)),
-        );
-    }
+    all.extend(
+        [Start::None, Start::Warm].map(|s| methods::extension(libraries, Ask::Minimum, s, 1e-6)),
+    );
     all
 }
 

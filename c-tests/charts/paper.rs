@@ -76,14 +76,12 @@ pub fn tables(bench: &Bench) -> Vec<Row> {
         }
         // Squares of metres: the second is about as exact as the paper reports.
         methods.extend([1e-6, 1e-11].map(|t| methods::libccd_epa(libraries, t)));
-        if libraries.extension.minimum.is_some() {
-            methods.push(methods::extension(
-                libraries,
-                Ask::Minimum,
-                Start::None,
-                1e-6,
-            ));
-        }
+        methods.push(methods::extension(
+            libraries,
+            Ask::Minimum,
+            Start::None,
+            1e-6,
+        ));
         all.extend(rows(bench, &scene, methods, None));
         bar.inc(1);
     }
@@ -105,14 +103,12 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
         }
         methods.push(methods::paper(libraries, false, Start::FortyFive, 1e-6));
         methods.push(methods::libccd_epa(libraries, 1e-6));
-        if libraries.extension.minimum.is_some() {
-            methods.push(methods::extension(
-                libraries,
-                Ask::Minimum,
-                Start::None,
-                1e-6,
-            ));
-        }
+        methods.push(methods::extension(
+            libraries,
+            Ask::Minimum,
+            Start::None,
+            1e-6,
+        ));
         all.extend(rows(bench, &scene, methods, Some(n as f64)));
         bar.inc(1);
         // Climbing supports here: DEEP walks over the same edges.

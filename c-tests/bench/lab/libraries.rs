@@ -89,7 +89,7 @@ pub struct Extension {
     pub guess: unsafe extern "C-unwind" fn(*mut Warm, *const ccd_vec3_t),
     pub mpr: WarmMpr,
     pub local: WarmQuery,
-    pub minimum: Option<WarmQuery>,
+    pub minimum: WarmQuery,
 }
 
 /// `pair_truth_t` of `c-tests/pairs.h`.
@@ -192,11 +192,7 @@ impl Classic {
         unsafe {
             Self {
                 mpr: function(library, "ccdMPRPenetration"),
-                gjk: if library.get::<*const c_void>("ccdGJKPenetration").is_ok() {
-                    function(library, "ccdGJKPenetration")
-                } else {
-                    function(library, "ccdMPRPenetration")
-                },
+                gjk: function(library, "ccdGJKPenetration"),
                 mpr_intersect: function(library, "ccdMPRIntersect"),
                 first_dir: function(library, "ccdFirstDirDefault"),
             }
@@ -289,8 +285,7 @@ impl Libraries {
                     guess: function(ours, "ccdWarmGuess"),
                     mpr: function(ours, "ccdMPRPenetrationWarm"),
                     local: function(ours, "ccdPenetrationLocal"),
-                    minimum: (!absent(ours, "ccdPenetrationMinimum"))
-                        .then(|| function(ours, "ccdPenetrationMinimum")),
+                    minimum: function(ours, "ccdPenetrationMinimum"),
                 },
                 implementation,
                 system_file: file_of(function(system, "ccdMPRPenetration")),

@@ -205,9 +205,7 @@ pub fn extension<'a>(
         let code = unsafe {
             match ask {
                 Ask::Local => (calls.local)(pair.a, pair.b, &settings, &mut state, &mut out),
-                Ask::Minimum => (calls.minimum.unwrap_or(calls.local))(
-                    pair.a, pair.b, &settings, &mut state, &mut out,
-                ),
+                Ask::Minimum => (calls.minimum)(pair.a, pair.b, &settings, &mut state, &mut out),
                 Ask::Mpr => (calls.mpr)(
                     pair.a,
                     pair.b,

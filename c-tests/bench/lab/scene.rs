@@ -484,11 +484,7 @@ impl<'a> Oracle<'a> {
         let (mut shapes, words) = room(callbacks, 2);
         let mut out = CPenetration::default();
         let mut state = Warm::COLD;
-        let ask = self
-            .libraries
-            .extension
-            .minimum
-            .unwrap_or(self.libraries.extension.local);
+        let ask = self.libraries.extension.minimum;
         // SAFETY: room for two shapes, placed before they are asked about.
         let code = unsafe {
             let at: [*mut c_void; 2] = [0, 1].map(|k| shapes.as_mut_ptr().add(k * words).cast());
