@@ -6,6 +6,8 @@
 
 #![cfg(not(feature = "single"))]
 
+// The benchmark's own parts; this test uses some.
+#[allow(dead_code)]
 #[path = "../charts/mod.rs"]
 mod charts;
 #[path = "../harness/mod.rs"]
