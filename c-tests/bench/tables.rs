@@ -114,15 +114,6 @@ pub struct Held {
     pub nonminimal: f64,
 }
 
-impl Held {
-    pub fn is_of(&self, row: &Row) -> bool {
-        self.set == row.set
-            && self.method == row.method
-            && self.start == row.start
-            && Some(self.tolerance) == row.tolerance
-    }
-}
-
 pub fn held_file() -> PathBuf {
     harness::root().join("c-tests/bench/held.csv")
 }
