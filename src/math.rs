@@ -24,12 +24,17 @@ pub const EPSILON: Real = Real::EPSILON;
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
     let scale = v.amax();
-    // NaN fails the first comparison, infinity the second.
     if !(scale > 0.0 && scale < Real::INFINITY) {
         return None;
     }
     let scaled = v / scale;
-    Some(scaled / scaled.norm())
+    let norm = scaled.norm();
+    // The largest coordinate of a vector with a NaN may be a number; its norm is not.
+    if norm > 0.0 {
+        Some(scaled / norm)
+    } else {
+        None
+    }
 }
 
 /// A unit vector perpendicular to the unit vector `n`.

@@ -35,6 +35,11 @@ fn program(name: &str) -> Program {
 }
 
 #[test]
+fn bad_input_and_what_may_be_null() {
+    program("input").build().run(NO_ARGS);
+}
+
+#[test]
 fn pairs_that_stay_apart_cost_one_support() {
     program("apart").build().run(NO_ARGS);
 }
