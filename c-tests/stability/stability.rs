@@ -49,6 +49,80 @@ fn truth_agrees_with_itself_and_the_certified_sets() {
     program("truth").run(args);
 }
 
+/// T01 to T24 and the cases of other projects, on every entry point.
+#[test]
+fn configurations() {
+    program("configurations").run(NO_ARGS);
+}
+
+/// A sample of every category of pairs, both tie rules.
+#[test]
+fn categories() {
+    let campaign = program("campaign");
+    campaign.run(["60", "0"]);
+    campaign.run(["60", "1"]);
+}
+
+/// Both libraries in one process, against each other and the truth.
+#[test]
+#[cfg(not(feature = "single"))]
+fn together_with_libccd() {
+    program("together").run(["60"]);
+}
+
+/// Swapped, rotated, translated, scaled.
+#[test]
+fn metamorphic() {
+    program("metamorphic").run(["2000"]);
+}
+
+/// Sliding, rolling, rocking.
+#[test]
+fn continuity() {
+    program("continuity").run(NO_ARGS);
+}
+
+/// Support functions that no convex shape has.
+#[test]
+fn adversarial_callbacks() {
+    program("adversary").run(["4", "1"]);
+}
+
+/// Tolerances, limits, outputs and shapes at and over the edge of what is allowed.
+#[test]
+fn bad_input() {
+    program("input").run(NO_ARGS);
+}
+
+/// Same bits in threads, in two runs, and in the debug and release builds.
+#[test]
+fn determinism() {
+    let program = Program::c("determinism")
+        .source("stability/determinism.c")
+        .standard("c11")
+        .flag("-DOURS_ALONE")
+        .flag("-DSTABILITY_PARTIAL")
+        .flag("-pthread")
+        .link_ours_shared()
+        .build();
+    let first = program.run(["12"]).stdout;
+    assert_eq!(first, program.run(["12"]).stdout, "two runs differ");
+
+    // This test's own build of the library: the debug one in an ordinary test run.
+    let test = std::env::current_exe().expect("the test's own path");
+    let library = test.with_file_name("libccd.so");
+    assert!(library.exists(), "no {}", library.display());
+    let dir = harness::output_dir().join(format!("as-tested-{}", Precision::CURRENT.name()));
+    std::fs::create_dir_all(&dir).expect("a directory for the library");
+    std::fs::copy(&library, dir.join("libccd.so.2")).expect("a copy of the library");
+    let (status, written) = harness::run_command(
+        program.command().arg("12").env("LD_LIBRARY_PATH", &dir),
+        std::time::Duration::from_secs(120),
+    );
+    assert!(status.success(), "{}", written.stderr);
+    assert_eq!(first, written.stdout, "builds differ");
+}
+
 /// Every category of pairs, 2,000 pairs each, both tie rules, on system libccd and
 /// on this library: `cargo test --test stability -- --ignored --nocapture campaign`.
 #[test]
@@ -58,4 +132,32 @@ fn campaign() {
     for tie in ["0", "1"] {
         campaign.run(["2000", tie]);
     }
+}
+
+/// A longer look at what the test run samples:
+/// `cargo test --test stability -- --ignored --nocapture long`.
+#[test]
+#[ignore = "takes minutes"]
+fn long() {
+    program("metamorphic").run(["20000"]);
+    let adversary = program("adversary");
+    for seed in 2..12 {
+        adversary.run(["40".to_owned(), seed.to_string()]);
+    }
+    #[cfg(not(feature = "single"))]
+    {
+        program("together").run(["1000"]);
+        let mut args = vec!["100000".to_owned(), "1".to_owned()];
+        args.extend(pair_sets());
+        program("truth").run(args);
+    }
+}
+
+/// The ledger of differences: where libccd is wrong among the configurations.
+/// `cargo test --test stability -- --ignored --nocapture ledger`.
+#[test]
+#[ignore = "prints a table"]
+#[cfg(not(feature = "single"))]
+fn ledger() {
+    program("configurations").run_to_end(["--ledger"]);
 }
