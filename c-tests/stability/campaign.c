@@ -120,8 +120,6 @@ int main(int argc, char **argv)
                 const entry_t *e = &entries[k];
                 double tols[2];
                 int t;
-                if (!entry_exists(e))
-                    continue;
                 tols[0] = 1e-4;
                 tols[1] = tolerance(TOL_TIGHT) * pair_size(&p.a, &p.b);
                 for (t = 0; t < (e->system ? 1 : 2); t++) {

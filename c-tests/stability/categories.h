@@ -176,31 +176,44 @@ static inline void pair_offset(pair_t *p, double x, double y, double z)
     shape_move(&p->b, (double)p->b.pos[0] + x, (double)p->b.pos[1] + y, (double)p->b.pos[2] + z);
 }
 
-/* Is there a way from n along which h hardly grows? Then a proof from support
- * points needs so many of them that the library may stop. */
+/* h on a circle of directions about n, at angle psi of it. */
+static inline double pair_around(const pair_t *p, const double u[3], const double v[3], double angle, double psi)
+{
+    double m[3];
+    int k;
+    for (k = 0; k < 3; k++)
+        m[k] = p->truth.n[k] + angle * (cos(psi) * u[k] + sin(psi) * v[k]);
+    return truth_value(&p->a, &p->b, m);
+}
+
+/* Is there a way from n along which h hardly grows? Then a proof from support points
+ * needs so many of them that the library may stop. */
 static inline int pair_is_surface(const pair_t *p)
 {
-    double u[3], v[3], m[3], angle = .05, size = pair_size(&p->a, &p->b), l;
-    const double *n = p->truth.n;
+    const double *n = p->truth.n, angle = .05, step = .1;
+    double u[3], v[3], axis[3] = {0, 0, 0}, l, psi, best = 0, least = HUGE_VAL;
     int i, k;
-    i = fabs(n[0]) < .6 ? 0 : fabs(n[1]) < .6 ? 1 : 2;
-    m[0] = m[1] = m[2] = 0;
-    m[i] = 1;
+    axis[fabs(n[0]) < .6 ? 0 : fabs(n[1]) < .6 ? 1 : 2] = 1;
     for (k = 0; k < 3; k++)
-        u[k] = n[(k + 1) % 3] * m[(k + 2) % 3] - n[(k + 2) % 3] * m[(k + 1) % 3];
+        u[k] = n[(k + 1) % 3] * axis[(k + 2) % 3] - n[(k + 2) % 3] * axis[(k + 1) % 3];
     l = sqrt(truth_dot3(u, u));
     for (k = 0; k < 3; k++)
         u[k] /= l;
     for (k = 0; k < 3; k++)
         v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
-    for (i = 0; i < 64; i++) {
-        double c = cos(i * 3.14159265358979 / 32), s = sin(i * 3.14159265358979 / 32);
-        for (k = 0; k < 3; k++)
-            m[k] = n[k] + angle * (c * u[k] + s * v[k]);
-        if (truth_value(&p->a, &p->b, m) - p->truth.depth < 1e-3 * angle * angle * size)
-            return 1;
-    }
-    return 0;
+    for (psi = 0; psi < 6.3; psi += step)
+        if (pair_around(p, u, v, angle, psi) < least) {
+            least = pair_around(p, u, v, angle, psi);
+            best = psi;
+        }
+    /* the way may be narrow: thirds of the last interval, until it is tiny */
+    for (i = 0, l = step; i < 60; i++, l *= 2. / 3)
+        for (k = -1; k <= 1; k += 2)
+            if (pair_around(p, u, v, angle, best + k * l / 3) < least) {
+                best += k * l / 3;
+                least = pair_around(p, u, v, angle, best);
+            }
+    return least - p->truth.depth < 1e-3 * angle * angle * pair_size(&p->a, &p->b);
 }
 
 /* --- the categories --------------------------------------------------------------- */

@@ -153,8 +153,6 @@ int main(void)
             int jumps = 0, needed = 0, wrong = 0;
             double depth_step = 0, pos_step = 0, error = 0;
             unsigned long calls = 0;
-            if (!entry_exists(e))
-                continue;
             memset(&warm, 0, sizeof warm);
             memset(&last, 0, sizeof last);
             memset(&before, 0, sizeof before);

@@ -52,10 +52,8 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         case 2: code = OURS(ccdPenetrationLocal)(&a, &b, &ccd, warm, &out); break;
         case 3: code = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &along, warm, &out); break;
         case 4: code = OURS(ccdMPRIntersectWarm)(&a, &b, &ccd, warm) + 10 * OURS(ccdGJKIntersect)(&a, &b, &ccd); break;
-#ifndef STABILITY_PARTIAL
         case 5: code = OURS(ccdGJKPenetration)(&a, &b, &ccd, &depth, &dir, &pos); break;
         case 6: code = OURS(ccdPenetrationMinimum)(&a, &b, &ccd, warm, &out); break;
-#endif
         default: code = OURS(ccdMPRIntersect)(&a, &b, &ccd); break;
         }
         digest_bytes(digest, &code, sizeof code);

@@ -268,7 +268,7 @@ int main(void)
     for (k = 0; k < (int)ENTRIES; k++) {
         const entry_t *e = &entries[k];
         static pair_t p;
-        if (e->system || !entry_exists(e))
+        if (e->system)
             continue;
         for (i = 0; i < 40; i++) {
             category_pair(i % 2 ? CATEGORY_GENERIC : CATEGORY_APART, (uint64_t)i, SHAPE_TIE_SIGN, &p);
@@ -277,13 +277,8 @@ int main(void)
         bad_callbacks(e);
         degenerate(e);
     }
-#ifndef STABILITY_PARTIAL
     missing_outputs();
     missing_arguments();
-#else
-    (void)missing_outputs;
-    (void)missing_arguments;
-#endif
     printf("%d questions, %d failures\n", asked, failed);
     return failed > 0;
 }

@@ -86,37 +86,6 @@ static const entry_t entries[] = {
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
-#ifdef STABILITY_PARTIAL
-#define STABILITY_WEAK(name) extern __typeof__(OURS(name)) OURS(name) __attribute__((weak));
-STABILITY_WEAK(ccdGJKPenetration)
-STABILITY_WEAK(ccdGJKSeparate)
-STABILITY_WEAK(ccdMPRPenetrationWarm)
-STABILITY_WEAK(ccdMPRIntersectWarm)
-STABILITY_WEAK(ccdWarmGuess)
-STABILITY_WEAK(ccdPenetrationLocal)
-STABILITY_WEAK(ccdPenetrationMinimum)
-STABILITY_WEAK(ccdPenetrationAlong)
-STABILITY_WEAK(ccdPenetrationPlanar)
-#endif
-
-/* Is a function of the library there at all? */
-static inline int entry_exists(const entry_t *e)
-{
-#ifdef STABILITY_PARTIAL /* while parts of the extension are not written yet */
-    switch (e->ask) {
-    case ASK_GJK: return e->system || OURS(ccdGJKPenetration) != NULL;
-    case ASK_SEPARATE: return OURS(ccdGJKSeparate) != NULL;
-    case ASK_MPR_WARM: return OURS(ccdMPRPenetrationWarm) != NULL;
-    case ASK_MPR_INTERSECT_WARM: return OURS(ccdMPRIntersectWarm) != NULL;
-    case ASK_LOCAL: return OURS(ccdPenetrationLocal) != NULL;
-    case ASK_MINIMUM: return OURS(ccdPenetrationMinimum) != NULL;
-    case ASK_ALONG: return OURS(ccdPenetrationAlong) != NULL;
-    }
-#endif
-    (void)e;
-    return 1;
-}
-
 /* Does the answer claim to be the global minimum within the tolerance? */
 static inline int entry_is_minimum(const entry_t *e)
 {
@@ -420,7 +389,9 @@ static inline double judge_reach(const shape_t *s, const double origin[3], const
  * the depth, pos their middle. */
 static inline int judge_witness(const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
-    double bound = q->tol + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p1[3], p2[3], value, l2;
+    /* at the cap they are as far off as the gap that is left */
+    double reached = x->code == CCD_LIMIT ? fmax(q->tol, x->depth - x->lower) : q->tol;
+    double bound = reached + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p1[3], p2[3], value, l2;
     int faults = 0, i, j, k;
     for (i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];

@@ -76,7 +76,7 @@ int main(int argc, char **argv)
             const entry_t *e = &entries[k];
             double tol = tolerance(TOL_TIGHT) * pair_size(&p.a, &p.b), bound, scale;
             answer_t x, y;
-            if (e->system || !entry_exists(e) || e->state != STATE_NONE || e->ask == ASK_LOCAL || e->ask == ASK_ALONG)
+            if (e->system || e->state != STATE_NONE || e->ask == ASK_LOCAL || e->ask == ASK_ALONG)
                 continue;
             x = ask(e, &p.a, &p.b, tol, p.truth.n, 100000);
             asked[k]++;

@@ -18,8 +18,7 @@ fn program(name: &str) -> Executable {
     let program = Program::c(name)
         .source(format!("stability/{name}.c"))
         .flag("-pedantic")
-        .flag("-Werror")
-        .flag("-DSTABILITY_PARTIAL");
+        .flag("-Werror");
     match Precision::CURRENT {
         Precision::Double => program.link_ours_renamed_and_system().build(),
         Precision::Single => program.flag("-DOURS_ALONE").link_ours_static().build(),
@@ -101,7 +100,6 @@ fn determinism() {
         .source("stability/determinism.c")
         .standard("c11")
         .flag("-DOURS_ALONE")
-        .flag("-DSTABILITY_PARTIAL")
         .flag("-pthread")
         .link_ours_shared()
         .build();

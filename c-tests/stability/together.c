@@ -52,7 +52,7 @@ int main(int argc, char **argv)
                 q = question(&p.a, &p.b, tol, &p.truth);
                 for (k = 0; k < 2; k++) {
                     x[k] = ask(&mpr[k], &p.a, &p.b, tol, p.truth.n, 40000);
-                    g[k] = entry_exists(&gjk[1]) ? ask(&gjk[k], &p.a, &p.b, tol, p.truth.n, 40000) : x[k];
+                    g[k] = ask(&gjk[k], &p.a, &p.b, tol, p.truth.n, 40000);
                 }
                 compared++;
                 for (k = 0; k < 2; k++) {
