@@ -186,8 +186,9 @@ static inline double pair_around(const pair_t *p, const double u[3], const doubl
     return truth_value(&p->a, &p->b, m);
 }
 
-/* Is there a way from n along which h hardly grows? Then a proof from support points
- * needs so many of them that the library may stop. */
+/* Is there a way from n along which h hardly grows? With h - depth = c angle^2, a proof
+ * needs about size / c support points for each quartering of the tolerance: from fifty
+ * on the library may stop. */
 static inline int pair_is_surface(const pair_t *p)
 {
     const double *n = p->truth.n, angle = .05, step = .1;
@@ -213,7 +214,7 @@ static inline int pair_is_surface(const pair_t *p)
                 best += k * l / 3;
                 least = pair_around(p, u, v, angle, best);
             }
-    return least - p->truth.depth < 1e-3 * angle * angle * pair_size(&p->a, &p->b);
+    return least - p->truth.depth < .02 * angle * angle * pair_size(&p->a, &p->b);
 }
 
 /* --- the categories --------------------------------------------------------------- */

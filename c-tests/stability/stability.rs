@@ -50,12 +50,14 @@ fn truth_agrees_with_itself_and_the_certified_sets() {
 
 /// T01 to T24 and the cases of other projects, on every entry point.
 #[test]
+#[ignore = "waits for the library"]
 fn configurations() {
     program("configurations").run(NO_ARGS);
 }
 
 /// A sample of every category of pairs, both tie rules.
 #[test]
+#[ignore = "waits for the library"]
 fn categories() {
     let campaign = program("campaign");
     campaign.run(["60", "0"]);
@@ -64,6 +66,7 @@ fn categories() {
 
 /// Both libraries in one process, against each other and the truth.
 #[test]
+#[ignore = "waits for the library"]
 #[cfg(not(feature = "single"))]
 fn together_with_libccd() {
     program("together").run(["60"]);
@@ -77,12 +80,14 @@ fn metamorphic() {
 
 /// Sliding, rolling, rocking.
 #[test]
+#[ignore = "waits for the library"]
 fn continuity() {
     program("continuity").run(NO_ARGS);
 }
 
 /// Support functions that no convex shape has.
 #[test]
+#[ignore = "waits for the library"]
 fn adversarial_callbacks() {
     program("adversary").run(["4", "1"]);
 }
