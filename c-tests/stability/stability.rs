@@ -12,17 +12,25 @@ use harness::{Executable, Precision, Program};
 
 const NO_ARGS: [&str; 0] = [];
 
+/// A program of this directory that holds this library alone.
+fn alone(name: &str) -> Executable {
+    source(name).flag("-DOURS_ALONE").link_ours_static().build()
+}
+
 /// A program of this directory that holds this library, and in double precision
 /// system libccd beside it.
 fn program(name: &str) -> Executable {
-    let program = Program::c(name)
+    match Precision::CURRENT {
+        Precision::Double => source(name).link_ours_renamed_and_system().build(),
+        Precision::Single => alone(name),
+    }
+}
+
+fn source(name: &str) -> Program {
+    Program::c(name)
         .source(format!("stability/{name}.c"))
         .flag("-pedantic")
-        .flag("-Werror");
-    match Precision::CURRENT {
-        Precision::Double => program.link_ours_renamed_and_system().build(),
-        Precision::Single => program.flag("-DOURS_ALONE").link_ours_static().build(),
-    }
+        .flag("-Werror")
 }
 
 /// Every pair set under c-tests/pairs.
@@ -45,7 +53,7 @@ fn pair_sets() -> Vec<String> {
 fn truth_agrees_with_itself_and_the_certified_sets() {
     let mut args = vec!["2000".to_owned(), "25".to_owned()];
     args.extend(pair_sets());
-    program("truth").run(args);
+    alone("truth").run(args);
 }
 
 /// T01 to T24 and the cases of other projects, on every entry point.
@@ -75,7 +83,7 @@ fn together_with_libccd() {
 /// Swapped, rotated, translated, scaled.
 #[test]
 fn metamorphic() {
-    program("metamorphic").run(["2000"]);
+    alone("metamorphic").run(["2000"]);
 }
 
 /// Sliding, rolling, rocking.
@@ -89,13 +97,13 @@ fn continuity() {
 #[test]
 #[ignore = "waits for the library"]
 fn adversarial_callbacks() {
-    program("adversary").run(["4", "1"]);
+    alone("adversary").run(["4", "1"]);
 }
 
 /// Tolerances, limits, outputs and shapes at and over the edge of what is allowed.
 #[test]
 fn bad_input() {
-    program("input").run(NO_ARGS);
+    alone("input").run(NO_ARGS);
 }
 
 /// Same bits in threads, in two runs, and in the debug and release builds.
@@ -142,8 +150,8 @@ fn campaign() {
 #[test]
 #[ignore = "takes minutes"]
 fn long() {
-    program("metamorphic").run(["20000"]);
-    let adversary = program("adversary");
+    alone("metamorphic").run(["20000"]);
+    let adversary = alone("adversary");
     for seed in 2..12 {
         adversary.run(["40".to_owned(), seed.to_string()]);
     }
@@ -152,7 +160,7 @@ fn long() {
         program("together").run(["1000"]);
         let mut args = vec!["100000".to_owned(), "1".to_owned()];
         args.extend(pair_sets());
-        program("truth").run(args);
+        alone("truth").run(args);
     }
 }
 
