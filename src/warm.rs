@@ -362,7 +362,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Answer, Fault> {
-        let found = self.stroll(memory, settings, known)?;
+        let found = self.stroll(memory, PATIENCE, settings, known)?;
         let Answer::Limit(tired) = found else {
             return Ok(found);
         };
@@ -380,16 +380,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 
-    /// The few-supports solver, for as long as [`PATIENCE`].
+    /// The few-supports solver, for as long as `patience`.
     fn stroll(
         &self,
         memory: &mut Memory,
+        patience: u64,
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Answer, Fault> {
         let mut seen = Seen::default();
         let first = Settings {
-            max_iterations: settings.max_iterations.min(PATIENCE),
+            max_iterations: settings.max_iterations.min(patience),
             ..*settings
         };
         let found = bundle::penetration(
@@ -418,8 +419,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let mut memory = state.solver();
         let mut known = Known::default();
-        // Where it gets tired the proof goes on from what it found.
-        let local = match self.stroll(&mut memory, settings, &mut known)? {
+        let local = match self.stroll(&mut memory, GLANCE, settings, &mut known)? {
             Answer::Hit(hit) | Answer::Limit(hit) => hit,
             other => {
                 self.remember(state, &other)?;
@@ -437,6 +437,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Answer::Hit(hit) | Answer::Limit(hit)
                 if hit.depth >= local.depth - settings.tolerance =>
             {
+                memory.dir = hit.normal;
                 *state = State::overlap(memory);
             }
             other => self.remember(state, &other)?,
@@ -586,6 +587,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 /// Support points after which the few-supports solver has failed: it needs a dozen, on
 /// the hardest pairs thirty.
 const PATIENCE: u64 = 64;
+
+/// Support points of the local search before the proof of [`Pair::minimum`]. The proof
+/// needs its upper bound only at the end, and finishes it on the way: points close to the
+/// minimum that a longer search leaves behind get in its way on curved shapes. From the
+/// centres at 1e-6, support points a query in all without a local search, after one of
+/// six, after a finished one: boxes 10.4, 10.4, 10.4; 162-vertex polytopes 18.2, 15.5,
+/// 15.6; cylinder and box 17.9, 17.5, 19.9; ellipsoids 30.2, 32.8, 33.8; spheres 31.6,
+/// 31.9, 31.9.
+const GLANCE: u64 = 6;
 
 /// Where the proof of [`Pair::mpr`] may stop: a gap of this share of the depth.
 const GAP: Real = 0.003;
