@@ -648,7 +648,7 @@ impl Model {
 ///
 /// `centre`: any inner point of D, its distance is what curvature is first guessed
 /// from. `seen`: filled with points of D for the caller's proof of the overlap, which
-/// a local minimum alone is not.
+/// a local minimum alone is not. `met`: told of every support point.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -659,6 +659,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     memory: &mut Memory,
     settings: &Settings,
     seen: &mut Seen,
+    mut met: impl FnMut(&SupportPoint),
 ) -> Result<Answer, Fault> {
     let mut n = *start;
     seen.len = 0;
@@ -699,6 +700,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut iterations = 0;
     loop {
         let p = md.support(&n)?;
+        met(&p);
         let h = n.dot(&p.v);
         if h < 0.0 {
             search.seen.len = 0;
@@ -1060,6 +1062,7 @@ mod tests {
             memory,
             &settings(tolerance),
             &mut seen,
+            |_| (),
         );
         match answer {
             Ok(answer) => (answer, md.supports()),
