@@ -197,6 +197,7 @@ fn roster<'a>(libraries: &'a Libraries, compiled: &Compiled, scene: &Scene) -> V
     all.push(peers::parry(libraries));
     all.extend(compiled.bullet(libraries));
     all.extend(compiled.fcl(libraries, 1e-6));
+    all.extend(compiled.coal(libraries, 1e-6));
     all
 }
 

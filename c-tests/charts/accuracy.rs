@@ -49,6 +49,7 @@ fn roster<'a>(bench: &Bench<'a>, scene: &Scene) -> Vec<Method<'a>> {
         all.extend(methods::deep(libraries, scene, Start::Five));
     }
     all.extend(bench.compiled.bullet(libraries));
+    all.extend(bench.compiled.coal(libraries, 1e-6));
     // Its own default: an assertion in it ends the process at others.
     all.extend(bench.compiled.fcl(libraries, 1e-6));
     all.push(peers::parry(libraries));

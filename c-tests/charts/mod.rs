@@ -85,6 +85,7 @@ pub fn look(row: &Row) -> Look {
         ("DEEP", _) => (219, 39, 119, Mark::Triangle, false),
         ("Bullet EPA", _) => (161, 98, 7, Mark::Dot, false),
         ("FCL EPA", _) => (202, 138, 4, Mark::Ring, false),
+        ("Coal EPA", _) => (13, 180, 180, Mark::Cross, false),
         ("parry EPA", _) => (120, 113, 108, Mark::Triangle, false),
         _ => (120, 113, 108, Mark::Cross, false),
     };

@@ -81,3 +81,62 @@ int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *dep
     return 0;
 }
 #endif
+
+#ifdef PEER_COAL
+// Coal's GJK and EPA. Its Minkowski difference asks through one function pointer,
+// which is replaced; the shapes it is given are never looked at.
+#include <coal/narrowphase/gjk.h>
+#include <coal/shape/geometric_shapes.h>
+
+static thread_local const void *coal_obj[2];
+static thread_local const ccd_t *coal_ccd;
+
+static void coal_support(const coal::details::MinkowskiDiff &, const coal::Vec3s &dir, coal::Vec3s &p0,
+                         coal::Vec3s &p1, coal::support_func_guess_t &, coal::details::ShapeSupportData[2])
+{
+    ccd_vec3_t d, out;
+    // Coal's directions are not unit; the callbacks are promised so.
+    double l = dir.norm();
+    coal::Vec3s u = l > 0 ? coal::Vec3s(dir / l) : coal::Vec3s(1, 0, 0);
+    for (int i = 0; i < 3; i++)
+        d.v[i] = u[i];
+    coal_ccd->support1(coal_obj[0], &d, &out);
+    p0 = coal::Vec3s(out.v[0], out.v[1], out.v[2]);
+    for (int i = 0; i < 3; i++)
+        d.v[i] = -u[i];
+    coal_ccd->support2(coal_obj[1], &d, &out);
+    p1 = coal::Vec3s(out.v[0], out.v[1], out.v[2]);
+}
+
+int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *depth, ccd_vec3_t *dir, ccd_vec3_t *)
+{
+    static thread_local coal::details::GJK gjk(128, 1e-6);
+    static thread_local coal::details::EPA epa(255, 1e-6);
+    static thread_local coal::Box unseen(1, 1, 1);
+    coal::details::MinkowskiDiff md;
+    ccd_vec3_t c0, c1;
+    md.set(&unseen, &unseen);
+    md.getSupportFunc = coal_support;
+    coal_obj[0] = a;
+    coal_obj[1] = b;
+    coal_ccd = ccd;
+    ccd->center1(a, &c0);
+    ccd->center2(b, &c1);
+    coal::Vec3s guess(c0.v[0] - c1.v[0], c0.v[1] - c1.v[1], c0.v[2] - c1.v[2]);
+    if (!(guess.norm() > 1e-12))
+        guess = coal::Vec3s(1, 0, 0);
+    gjk.reset(128, 1e-6);
+    if (gjk.evaluate(md, guess) != coal::details::GJK::Collision)
+        return -1;
+    epa.reset(255, ccd->epa_tolerance);
+    coal::details::EPA::Status status = epa.evaluate(gjk, -guess);
+    if (!(status & coal::details::EPA::Valid))
+        return -1;
+    coal::Vec3s w0, w1, normal;
+    epa.getWitnessPointsAndNormal(md, w0, w1, normal);
+    *depth = (w0 - w1).dot(normal);
+    for (int i = 0; i < 3; i++)
+        dir->v[i] = normal[i];
+    return 0;
+}
+#endif

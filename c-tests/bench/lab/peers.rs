@@ -72,6 +72,7 @@ pub fn parry<'a>(libraries: &'a Libraries) -> Method<'a> {
 pub struct Compiled {
     bullet: Option<Classic>,
     fcl: Option<Classic>,
+    coal: Option<Classic>,
     /// What is not here, and why.
     pub missing: Vec<(&'static str, String)>,
 }
@@ -93,16 +94,26 @@ impl Compiled {
                 }
             }
         };
+        // Coal is in no Debian package: `pip install --target DIR coal-library`, then
+        // COAL_PREFIX=DIR/cmeel.prefix names its headers and libraries.
+        let prefix = std::env::var("COAL_PREFIX").unwrap_or_default();
+        let [headers, folder, search] = [
+            format!("-I{prefix}/include"),
+            format!("-L{prefix}/lib"),
+            format!("-Wl,-rpath,{prefix}/lib"),
+        ];
+        let eigen = "/usr/include/eigen3";
         Self {
             bullet: build(
-                "Bullet EPA",
+                "Bullet",
                 &["-DPEER_BULLET", "-isystem", "/usr/include/bullet"],
                 &[],
             ),
-            fcl: build(
-                "FCL EPA",
-                &["-DPEER_FCL", "-isystem", "/usr/include/eigen3"],
-                &["-lfcl"],
+            fcl: build("FCL", &["-DPEER_FCL", "-isystem", eigen], &["-lfcl"]),
+            coal: build(
+                "Coal",
+                &["-DPEER_COAL", &headers, "-isystem", eigen],
+                &[&folder, &search, "-lcoal"],
             ),
             missing,
         }
@@ -122,5 +133,12 @@ impl Compiled {
         let of = self.fcl?;
         let settings = of.settings(&libraries.callbacks, tolerance);
         Some(Method::new("FCL EPA", classic(of.gjk, settings)).within(tolerance))
+    }
+
+    /// Coal's EPA.
+    pub fn coal<'a>(&self, libraries: &Libraries, tolerance: f64) -> Option<Method<'a>> {
+        let of = self.coal?;
+        let settings = of.settings(&libraries.callbacks, tolerance);
+        Some(Method::new("Coal EPA", classic(of.gjk, settings)).within(tolerance))
     }
 }
