@@ -49,7 +49,7 @@ impl Bench<'_> {
     }
 
     pub fn repetitions(&self) -> usize {
-        if self.quick { 3 } else { 7 }
+        if self.quick { 3 } else { 9 }
     }
 
     pub fn file(&self, name: &str) -> PathBuf {

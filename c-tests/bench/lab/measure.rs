@@ -4,8 +4,7 @@
 //! What a method answers on a scene, judged by the truth, and what it costs.
 //!
 //! Supports and errors are exact and repeatable. Times are medians over
-//! repetitions in which all methods take turns, so that a slow moment of the
-//! machine hits all of them.
+//! repetitions in which all methods take turns.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -46,7 +45,7 @@ pub struct Row {
     pub overlaps: usize,
     /// Support points of D per query; none for a method that does not use our callbacks.
     pub supports: Option<f64>,
-    /// Median over repetitions of the mean time of a query; none when not timed.
+    /// Mean time of a query, of medians over repetitions; none when not timed.
     pub ns: Option<f64>,
     /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
     pub mean_error: f64,
@@ -185,8 +184,13 @@ pub fn geometric_mean(values: &[f64]) -> f64 {
     values.iter().geometric_mean()
 }
 
-/// Mean time of a query of each method, ns: the median of `repetitions` passes
-/// over the scene, the methods taking turns. `between` is called after each pass.
+/// Poses timed in one go, where they are independent: long against the clock's
+/// resolution, short against a time slice.
+const CHUNK: usize = 25;
+
+/// Mean time of a query of each method, ns. All methods take turns over the scene,
+/// `repetitions` times; of every chunk of poses (or motion) the median counts, so that
+/// what else the machine does meanwhile does not. `between` is called after each turn.
 pub fn times(
     scene: &Scene,
     methods: &mut [Method],
@@ -200,30 +204,36 @@ pub fn times(
             between();
         }
     }
-    passes.iter().map(|p| median(p)).collect()
+    let of = |passes: Vec<Vec<(f64, usize)>>| {
+        let chunks = passes.first().map_or(0, Vec::len);
+        let (mut ns, mut queries) = (0.0, 0);
+        for k in 0..chunks {
+            let chunk: Vec<f64> = passes.iter().map(|p| p[k].0).collect();
+            ns += median(&chunk);
+            queries += passes[0][k].1;
+        }
+        ns / queries as f64
+    };
+    passes.into_iter().map(of).collect()
 }
 
-/// Mean time of a query over the scene, ns; a warm method's first frames untimed.
-fn pass(scene: &Scene, method: &mut Method) -> f64 {
+/// Time, ns, and number of the queries of every chunk; a warm method's first frames untimed.
+fn pass(scene: &Scene, method: &mut Method) -> Vec<(f64, usize)> {
+    let time = |method: &mut Method, pairs: &[Pair]| {
+        let begin = Instant::now();
+        for pair in pairs {
+            black_box(method.query(scene, pair));
+        }
+        (begin.elapsed().as_nanos() as f64, pairs.len())
+    };
     if !method.is_warm() {
-        let begin = Instant::now();
-        for pair in &scene.pairs {
-            black_box(method.query(scene, pair));
-        }
-        return begin.elapsed().as_nanos() as f64 / scene.pairs.len() as f64;
+        return scene.pairs.chunks(CHUNK).map(|c| time(method, c)).collect();
     }
-    let (mut spent, mut queries) = (0, 0);
-    for motion in scene.pairs.chunk_by(|_, next| next.frame > 0) {
-        let Some((first, rest)) = motion.split_first() else {
-            continue;
-        };
+    let motions = scene.pairs.chunk_by(|_, next| next.frame > 0);
+    let rests = motions.filter_map(|motion| {
+        let (first, rest) = motion.split_first()?;
         black_box(method.query(scene, first));
-        let begin = Instant::now();
-        for pair in rest {
-            black_box(method.query(scene, pair));
-        }
-        spent += begin.elapsed().as_nanos();
-        queries += rest.len();
-    }
-    spent as f64 / queries as f64
+        Some(time(method, rest))
+    });
+    rests.collect()
 }
