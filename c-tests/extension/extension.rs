@@ -40,6 +40,11 @@ fn bad_input_and_what_may_be_null() {
 }
 
 #[test]
+fn answers_from_every_kind_of_state() {
+    program("answers").build().run(NO_ARGS);
+}
+
+#[test]
 fn pairs_that_stay_apart_cost_one_support() {
     program("apart").build().run(NO_ARGS);
 }
