@@ -11,7 +11,8 @@
 //! micrometre and of a thousand kilometres are answered alike; objects that touch
 //! within rounding (a few ulps of their coordinates) count as overlapping.
 
-use crate::math::{EPSILON, Real, Vec3};
+use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::portal::{self, Exit, Plane};
 use crate::simplex::{Nearest, Simplex};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -77,14 +78,21 @@ pub fn search<A: SupportMap, B: SupportMap>(
         size = size.max(w.magnitude());
         simplex.push(w);
         match simplex.reduce() {
-            Nearest::Inside => return Ok(Overlap::Yes(simplex)),
+            Nearest::Inside => {
+                // By more than the rounding of the corners?
+                return if simplex.inner_distance() > 0.0 {
+                    Ok(Overlap::Yes(simplex))
+                } else {
+                    near_touch(md, simplex, max_iterations)
+                };
+            }
             Nearest::Outside(next) => {
                 // Where the distance is hardly above rounding, a step that turns the
                 // simplex the right way need not look nearer. NaN counts as no nearer.
                 if !(next.norm() < distance * (1.0 - EPSILON)) {
                     stalls += 1;
                     if stalls > STALLS {
-                        return Ok(Overlap::Yes(simplex));
+                        return near_touch(md, simplex, max_iterations);
                     }
                 }
                 v = next;
@@ -139,6 +147,37 @@ const WIDE: Real = 0.8;
 /// Support points that [`widen`] may ask for.
 const WIDENING: u32 = 8;
 
+/// The last word where the objects nearly touch. There v is mostly rounding error, and
+/// on a curved object its direction with it; the normals of a portal's triangles are
+/// not. The ray leaves from a point inside the simplex through the origin: if the origin
+/// is in D, the ray ends beyond it.
+fn near_touch<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    simplex: Simplex,
+    max_iterations: u64,
+) -> Result<Overlap, Fault> {
+    let inner = simplex.mean();
+    let Some(d) = unit(&-inner.v) else {
+        return Ok(Overlap::Yes(simplex));
+    };
+    let first = Plane::of(md, d)?;
+    let mut best = first;
+    let mut budget = max_iterations;
+    // Any portal that has the origin on its inner side decides.
+    let tolerance = Real::INFINITY;
+    Ok(
+        match portal::mpr(md, &first, tolerance, false, &mut best, &mut budget)? {
+            Exit::Miss(n) => Overlap::No(n),
+            Exit::Converged(portal, _) | Exit::Limit(Some(portal)) if budget > 0 => {
+                let [a, b, c] = portal.planes.map(|p| p.point);
+                Overlap::Yes(Simplex::of([inner, a, b, c]))
+            }
+            Exit::Converged(..) | Exit::Limit(_) => Overlap::Undecided,
+            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => Overlap::Yes(simplex),
+        },
+    )
+}
+
 /// The point farthest along `n`, if it lies beyond the origin.
 #[inline]
 fn farthest(known: &[SupportPoint], n: &Vec3) -> Option<SupportPoint> {
@@ -158,8 +197,7 @@ fn farthest(known: &[SupportPoint], n: &Vec3) -> Option<SupportPoint> {
 /// a difference of two points and of the nearest-point arithmetic.
 const ROUNDING: Real = 4.0 * EPSILON;
 
-/// Steps that bring the simplex no nearer before the origin counts as reached: no
-/// support plane excludes it, and the arithmetic cannot tell the difference.
+/// Steps that bring the simplex no nearer before a portal has the last word.
 const STALLS: u32 = 3;
 
 #[cfg(test)]

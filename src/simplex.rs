@@ -8,7 +8,7 @@
 //! vectors, so it is free of scale; a face whose area vanishes falls back to its
 //! edges, an edge whose length vanishes to its ends.
 
-use crate::math::{Real, Vec3, unit};
+use crate::math::{EPSILON, Real, Vec3, unit};
 use crate::support::SupportPoint;
 
 /// Up to four support points of D.
@@ -58,6 +58,30 @@ impl Simplex {
         self.len = at + 1;
     }
 
+    /// A tetrahedron.
+    pub fn of(points: [SupportPoint; 4]) -> Self {
+        Self { points, len: 4 }
+    }
+
+    /// The mean of the points.
+    pub fn mean(&self) -> SupportPoint {
+        let mut mean = SupportPoint::default();
+        let share = 1.0 / self.points().len() as Real;
+        for p in self.points() {
+            mean.v += p.v * share;
+            mean.v1 += p.v1 * share;
+            mean.v2 += p.v2 * share;
+        }
+        mean
+    }
+
+    /// Largest absolute coordinate of a witness.
+    fn magnitude(&self) -> Real {
+        self.points()
+            .iter()
+            .fold(0.0, |m: Real, p| m.max(p.magnitude()))
+    }
+
     /// The distance from the origin to the nearest face of a tetrahedron that holds
     /// it: a lower bound on the penetration depth, since the tetrahedron is inscribed
     /// in D. Zero where the origin is not strictly inside a tetrahedron.
@@ -66,9 +90,11 @@ impl Simplex {
             return 0.0;
         }
         let mut least = Real::INFINITY;
+        let rounding = 4.0 * EPSILON * self.magnitude();
         for (f, opposite) in FACES {
             let [a, b, c] = f.map(|i| self.points[i].v);
-            let Some(n) = unit(&(b - a).cross(&(c - a))) else {
+            let cross = (b - a).cross(&(c - a));
+            let Some(n) = unit(&cross) else {
                 return 0.0;
             };
             let origin = -n.dot(&a);
@@ -76,9 +102,13 @@ impl Simplex {
             if !same_sign(origin, inner) {
                 return 0.0;
             }
-            least = least.min(origin.abs());
+            // Less what the rounding of the corners may add, which a short edge
+            // magnifies by the way to the origin.
+            let edges = (b - a).amax().max((c - a).amax());
+            let room = rounding * (1.0 + edges * a.amax() / cross.amax());
+            least = least.min(origin.abs() - room);
         }
-        least
+        least.max(0.0)
     }
 
     #[inline]
@@ -117,6 +147,7 @@ impl Simplex {
 
     fn reduce_tetrahedron(&mut self) -> Nearest {
         let mut best: Option<(Real, Vec3, Face, [usize; 3])> = None;
+        let rounding = 4.0 * EPSILON * self.magnitude();
         // The last face lacks the newest vertex.
         for (f, opposite) in &FACES[..3] {
             let [a, b, c] = f.map(|i| self.points[i].v);
@@ -124,8 +155,11 @@ impl Simplex {
             let origin = -n.dot(&a);
             let inner = n.dot(&(self.points[*opposite].v - a));
             // The origin is on the inner side of this face only if both products
-            // have one sign; a flat tetrahedron (0) or NaN examines the face.
-            if same_sign(origin, inner) {
+            // have one sign; a flat tetrahedron (0) or NaN examines the face. So does
+            // an origin so near its plane that the rounding of the corners, which a
+            // short edge magnifies by the way to the origin, could turn the sign.
+            let edges = (b - a).amax().max((c - a).amax());
+            if same_sign(origin, inner) && origin.abs() > rounding * (n.amax() + edges * a.amax()) {
                 continue;
             }
             let (v, face) = nearest_on_triangle(&a, &b, &c);

@@ -45,7 +45,8 @@ impl SupportPoint {
 /// Why a query has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A support mapping returned a point that is not finite.
+    /// A support mapping returned a point that is not finite, or so large that the fourth
+    /// power of its distance from the other object overflows.
     NonFinite,
     /// Memory was needed and not to be had.
     NoMemory,
@@ -76,8 +77,10 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         let v1 = self.obj1.support(dir);
         let v2 = self.obj2.support(&-dir);
         let v = v1 - v2;
-        // A sum is finite only if every term is (overflow of finite terms is refused too).
-        if !(v.x + v.y + v.z).is_finite() {
+        // Solvers multiply four lengths; a point beyond that is as good as infinite.
+        // NaN and infinity, in v1 or in v2, end here too.
+        let q = v.norm_squared();
+        if !(q * q).is_finite() {
             return Err(Fault::NonFinite);
         }
         Ok(SupportPoint { v, v1, v2 })

@@ -24,7 +24,7 @@ use crate::gjk::{self, Overlap};
 use crate::local::{self, Shortcut};
 use crate::math::{Real, Vec3, unit};
 use crate::planar;
-use crate::portal::{self, Exit, Found, Measure, Plane, Portal};
+use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
@@ -500,9 +500,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // The bound along dir: the portal is inscribed and the origin in D.
             hit.depth_lower = match portal {
                 Some(p) => {
+                    let corner = &p.planes[0].point;
+                    let room = rounding(corner.magnitude());
                     let reach = p
                         .normal()
-                        .map_or(0.0, |n| n.dot(&p.planes[0].point.v) / n.dot(&dir));
+                        .map_or(0.0, |n| (n.dot(&corner.v) - room) / n.dot(&dir));
                     // max also drops NaN
                     reach.max(0.0).min(depth)
                 }
