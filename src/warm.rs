@@ -323,10 +323,22 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             points: known.points(),
             upper: Some((local.depth, local.normal)),
         };
-        let (Answer::Hit(global) | Answer::Limit(global)) =
-            epa::minimum(&self.md, &seed, &proof, &mut Desk::default())?
-        else {
-            return Ok(answer);
+        let mut desk = Desk::default();
+        let mut checked = epa::minimum(&self.md, &seed, &proof, &mut desk);
+        if let Ok(Answer::Undecided(_)) = checked {
+            // An overlap so thin that the search for points around the origin took all
+            // steps: this close to a touch the minimum is worth the caller's.
+            checked = epa::minimum(&self.md, &seed, settings, &mut desk);
+        }
+        let global = match checked {
+            Ok(Answer::Hit(global) | Answer::Limit(global)) => global,
+            Ok(Answer::Miss(n)) => {
+                state.remember(&Answer::Miss(n));
+                return Ok(Answer::Miss(n));
+            }
+            // The desk is full: the local answer stands.
+            Ok(Answer::Undecided(_)) | Err(Fault::NoMemory) => return Ok(answer),
+            Err(fault) => return Err(fault),
         };
         let mut best = Penetration {
             depth_lower: global.depth_lower.min(local.depth),
