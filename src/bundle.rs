@@ -84,9 +84,9 @@ use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 pub const CUTS: usize = 4;
 
 /// First reach, radians: the error of a good guess.
-const REACH: Real = 0.09;
+const REACH: Real = 0.1;
 /// The reach grows by this when the model foretold a descent on its border …
-const GROW: Real = 2.0;
+const GROW: Real = 2.5;
 /// … and shrinks by this when there was none.
 const SHRINK: Real = 0.6;
 /// Relative difference of the two excesses of a smooth pair.
@@ -94,17 +94,25 @@ const ALIKE: Real = 0.03;
 /// A pair whose slope is larger than this share of the object must be more alike.
 const STEEP: Real = 0.7;
 /// A slope larger than so many times the object is a kink's.
-const BLUNT: Real = 8.0;
+const BLUNT: Real = 50.0;
 /// Cosine of the angle beyond which R says nothing.
 const NEAR: Real = 0.9;
 /// How much more alike once a vertex was seen twice (a polytope, it seems).
-const FLAT: Real = 0.25;
+const FLAT: Real = 0.05;
 /// Residual below which two samples are one vertex of P.
 const SAME_PIECE: Real = 0.15;
 /// Smallest first step, radians: enough to see curvature.
 const ASIDE: Real = 0.01;
 /// Step across the one direction known, radians.
 const ACROSS: Real = 0.03;
+/// Relative error of a remembered R, until a pair tells.
+const REMEMBERED: Real = 0.4;
+/// Relative error above which R is not used to move cuts, and given up once refuted.
+const CONFIRMED: Real = 0.5;
+/// Tangent of the angle between the first step and the gradient.
+const OBLIQUE: Real = 0.1;
+/// Reach below which the search has lost its way, radians.
+const STUCK: Real = 1e-6;
 /// Support points after which curvature is given up.
 const TRUST_CURVATURE: u64 = 40;
 
@@ -199,6 +207,8 @@ struct Curvature {
     spread: bool,
     /// A vertex was seen from two directions.
     flat: bool,
+    /// No longer looked for.
+    give_up: bool,
     /// The extent of the object, metres.
     size: Real,
 }
@@ -272,6 +282,7 @@ impl Search<'_> {
             let gap = (ahead - behind) * (ahead - behind);
             let steep = steep * dn2;
             let alike = sum > noise
+                && !curvature.give_up
                 && ds2 <= BLUNT * BLUNT * size2 * dn2
                 && gap <= limit * limit * sum * sum
                 && gap * ds2 <= limit * limit * sum * sum * steep;
@@ -289,7 +300,10 @@ impl Search<'_> {
             let rd = curvature.r.times(&dn);
             let bend = rd.dot(&dn);
             let room = room.max(0.0);
-            if bend > room {
+            if bend > room && curvature.error > CONFIRMED {
+                // Refuted before it was confirmed.
+                curvature.known = false;
+            } else if bend > room {
                 curvature.r.add((room - bend) / (bend * bend), &rd);
             }
         }
@@ -310,6 +324,9 @@ impl Search<'_> {
             curvature.spread = true;
         }
         if ds2 <= noise * noise {
+            if curvature.error > CONFIRMED {
+                curvature.known = false;
+            }
             if curvature.known {
                 let rd = curvature.r.times(&dn);
                 let bend = rd.dot(&dn);
@@ -473,7 +490,7 @@ impl Model {
                 x: v.dot(&e1),
                 y: v.dot(&e2),
             };
-            if rho > 0.0 && i != best {
+            if rho > 0.0 && i != best && search.curvature.error <= CONFIRMED {
                 let n = &search.n[i];
                 let z = n.dot(&b);
                 let (tx, ty) = (n.dot(&e1), n.dot(&e2));
@@ -661,6 +678,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     seen: &mut Seen,
     mut met: impl FnMut(&SupportPoint),
 ) -> Result<Answer, Fault> {
+    let inner = centre.copied().unwrap_or_default();
     let mut n = *start;
     seen.len = 0;
     let mut search = Search {
@@ -676,6 +694,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             line: Vec3::zeros(),
             spread: false,
             flat: false,
+            give_up: false,
             size: 0.0,
         },
         noise: 0.0,
@@ -683,15 +702,15 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     // Directions to ask before the first model, last one first.
     let mut queue = [n; 3];
     let mut queued = 0;
+    let mut reach = REACH;
     if let Some(dir) = unit(&memory.dir) {
         n = dir;
-        queued = recall(memory, &dir, &mut queue, &mut search.curvature);
+        queued = recall(memory, &dir, &mut queue, &mut search.curvature, &mut reach);
         if queued > 0 {
             queued -= 1;
             n = queue[queued];
         }
     }
-    let mut reach = REACH;
     let mut predicted = Real::NAN;
     let mut on_border = false;
     let mut from = n;
@@ -717,14 +736,15 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         let mut newest = search.len();
         let before = search.h[search.best];
         let mut twin = CUTS;
+        let extent = (p.v - inner).norm();
         if newest == 0 {
-            let inner = centre.copied().unwrap_or_default();
-            search.curvature.forget_unless_fits((p.v - inner).norm());
+            search.curvature.forget_unless_fits(extent);
         } else {
+            search.curvature.size = search.curvature.size.max(extent);
             twin = search.learn(&n, &p, h);
             if iterations == TRUST_CURVATURE {
+                search.curvature.give_up = true;
                 search.curvature.known = false;
-                search.curvature.size = 0.0;
             }
         }
         search.n[newest] = n;
@@ -738,7 +758,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             let came = before - h;
             // False for NaN: no forecast.
             if came > 0.25 * (before - predicted) {
-                if on_border {
+                if on_border && came > 0.7 * (before - predicted) {
                     reach = (reach * GROW).min(1.0);
                 }
             } else if predicted.is_finite()
@@ -783,6 +803,12 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             from = n;
             // No gradient: one way is as good as another.
             let down = unit(&-gradient).unwrap_or_else(|| perpendicular(&n));
+            // A bold step goes a little aside, so that no symmetry of the start hides what is across.
+            let down = if on_border {
+                down + n.cross(&down) * OBLIQUE
+            } else {
+                down
+            };
             let d = n + down * length;
             n = d * (1.0 / d.norm());
             continue;
@@ -813,7 +839,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         // Depth zero within rounding cannot be lower.
         let touch = search.h[search.best] <= search.noise;
         let done = touch || close && !blind && doubt <= tolerance;
-        let broken = !step.value.is_finite();
+        // A reach that small means that the search is stuck.
+        let broken = !step.value.is_finite() || reach < STUCK;
         if done || broken || iterations >= settings.max_iterations {
             let answer = conclude(&search, &model, &step, iterations);
             remember(memory, &search.curvature, &model, &step);
@@ -854,6 +881,17 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                     least = v;
                     victim = i;
                 }
+            }
+            if victim == CUTS {
+                // The best and three others: the lowest at the best goes, and for what
+                // the model forgets the reach must pay.
+                for i in (0..CUTS).filter(|&i| i != search.best) {
+                    if model.cuts[i].a < least {
+                        least = model.cuts[i].a;
+                        victim = i;
+                    }
+                }
+                reach *= 0.5;
             }
             if victim == CUTS {
                 victim = (search.best + 1) % CUTS;
@@ -914,11 +952,14 @@ fn remember(memory: &mut Memory, curvature: &Curvature, model: &Model, step: &St
     };
     let [g, h, k] = step.set.map(|i| (model.cuts[i].x, model.cuts[i].y));
     let side = |x: Real, y: Real| model.e1 * x + model.e2 * y;
-    // Away from the line on which the other two cuts are equal.
+    // Where one cut is above the other two by as much as it can: across the line on
+    // which they are equal, and, since a face may have a fourth vertex there, towards
+    // the vertex itself.
     let apart = |a: (Real, Real), b: (Real, Real), c: (Real, Real)| {
         let (x, y) = (c.1 - b.1, b.0 - c.0);
-        let s = (1.0 as Real).copysign((a.0 - b.0) * x + (a.1 - b.1) * y);
-        side(x * s, y * s)
+        let s = (1.0 / (x * x + y * y).sqrt()).copysign((a.0 - b.0) * x + (a.1 - b.1) * y);
+        let t = 1.0 / (a.0 * a.0 + a.1 * a.1).sqrt();
+        side(x * s + a.0 * t, y * s + a.1 * t)
     };
     let (sides, count) = match step.count {
         3 => ([apart(g, h, k), apart(h, k, g), apart(k, g, h)], 3),
@@ -941,9 +982,15 @@ fn remember(memory: &mut Memory, curvature: &Curvature, model: &Model, step: &St
 
 /// Takes from the memory what still makes sense: the directions to ask first, into
 /// `queue`, and the curvature. Returns the number of directions.
-fn recall(memory: &Memory, dir: &Vec3, queue: &mut [Vec3; 3], curvature: &mut Curvature) -> usize {
+fn recall(
+    memory: &Memory,
+    dir: &Vec3,
+    queue: &mut [Vec3; 3],
+    curvature: &mut Curvature,
+    reach: &mut Real,
+) -> usize {
     // Farther aside than the pair moved; NaN becomes the least angle.
-    let drift = 3.0 * memory.drift;
+    let drift = 5.0 * memory.drift;
     let angle = if drift > 0.003 {
         drift.min(0.03)
     } else {
@@ -957,6 +1004,9 @@ fn recall(memory: &Memory, dir: &Vec3, queue: &mut [Vec3; 3], curvature: &mut Cu
             queued += 1;
         }
     }
+    if queued > 0 {
+        *reach = reach.min(2.5 * angle);
+    }
     let [xx, xy, xz, yy, yz, zz] = memory.curvature;
     if memory.curved == 1 && (xx + xy + xz + yy + yz + zz).is_finite() {
         curvature.r = Symmetric {
@@ -968,6 +1018,8 @@ fn recall(memory: &Memory, dir: &Vec3, queue: &mut [Vec3; 3], curvature: &mut Cu
             zz,
         };
         curvature.known = true;
+        // Enough to look by, not to believe.
+        curvature.error = REMEMBERED;
     }
     queued
 }

@@ -375,8 +375,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &mut Known,
     ) -> Result<Answer, Fault> {
         let mut seen = Seen::default();
-        let found = self.stroll(memory, PATIENCE, settings, &mut seen, |_| ())?;
-        for p in seen.points() {
+        // The last points lie around the answer, the first ones wider apart: together
+        // they prove most overlaps.
+        let mut first = Known::default();
+        let found = self.stroll(memory, PATIENCE, settings, &mut seen, |p| first.add(p))?;
+        for p in seen.points().iter().chain(first.points()) {
             known.add(p);
         }
         let Answer::Limit(tired) = found else {
