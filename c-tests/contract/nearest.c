@@ -79,6 +79,14 @@ static exact_t exact_triangle(const exact_vec_t *p, const exact_vec_t *a, const 
     return least;
 }
 
+/* 1 / sin of the angle at a, 1 where that is below 0.001 (single: 0.1). */
+static double amplified(const exact_vec_t *a, const exact_vec_t *b, const exact_vec_t *c)
+{
+    exact_t bc = dot(a, b, a, c), lengths2 = dot(a, b, a, b) * dot(a, c, a, c);
+    double sine2 = lengths2 > 0 ? (double)((lengths2 - bc * bc) / lengths2) : 0;
+    return sine2 > (sizeof(ccd_real_t) == 8 ? 0.99e-6 : 0.99e-2) ? 1 / sqrt(sine2) : 1;
+}
+
 /* The larger of the errors of distance and witness, in ulps of size. */
 static double error(exact_t dist2, ccd_real_t answer, exact_t witness_off, double size)
 {
@@ -94,7 +102,9 @@ static const char *const shape_names[SHAPES] = {
 /* A triangle of the kind, and a point on, near or away from it. */
 static void draw(int shape, ccd_vec3_t v[4])
 {
-    double size = pow(10, random_in(-12, 12)), thin = pow(10, random_in(-18, 0)), s = random_unit(), t = random_unit();
+    /* The fourth power must be a number of the precision, and the square of an ulp. */
+    const double digits = sizeof(ccd_real_t) == 8 ? 70 : 8;
+    double size = pow(10, random_in(-digits, digits)), thin = pow(10, random_in(-18, 0)), s = random_unit(), t = random_unit();
     ccd_vec3_t *p = &v[0], *a = &v[1], *b = &v[2], *c = &v[3];
     int i;
     for (i = 0; i < 4; i++)
@@ -140,7 +150,8 @@ static void draw(int shape, ccd_vec3_t v[4])
 int main(int argc, char **argv)
 {
     const unsigned long rounds = strtoul(argc > 1 ? argv[1] : "20000", NULL, 10);
-    /* Twice what was ever seen (3.9). */
+    /* Twice what was ever seen (3.9). A triangle's may be more by 1 / sin of its first
+     * angle where that is not too small: there the order of libccd's operations is kept. */
     const double allowed = 8;
     int shape;
     printf("worst error in ulps of the largest coordinate, triangle / segment\n");
@@ -172,7 +183,8 @@ int main(int argc, char **argv)
             dist2 = OURS(ccdVec3PointTriDist2)(&v[0], &v[1], &v[2], &v[3], &w);
             ew = exact(&w);
             err = error(truth[0], dist2, exact_triangle(&ew, &e[1], &e[2], &e[3]), size);
-            CHECK(err <= allowed, "triangle %s, round %lu: %g ulps", shape_names[shape], round, err);
+            CHECK(err <= allowed * amplified(&e[1], &e[2], &e[3]), "triangle %s, round %lu: %g ulps", shape_names[shape],
+                  round, err);
             worst[0] = fmax(worst[0], err);
             CHECK(dist2 == ccdVec3Dist2(&v[0], &w), "the distance is that of the witness");
             CHECK(dist2 == OURS(ccdVec3PointTriDist2)(&v[0], &v[1], &v[2], &v[3], NULL), "with and without witness");
