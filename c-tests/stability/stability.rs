@@ -63,6 +63,13 @@ fn configurations() {
     program("configurations").run(NO_ARGS);
 }
 
+/// T25, and the planar query.
+#[test]
+#[ignore = "waits for the library"]
+fn wrong_starts() {
+    alone("starts").run(["1500"]);
+}
+
 /// A sample of every category of pairs, both tie rules.
 #[test]
 #[ignore = "waits for the library"]

@@ -1,0 +1,341 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Properties of the exported functions over arbitrary objects, tolerances and states,
+//! with failures shrunk to small ones: rounded hulls of points on nasty grids, and
+//! objects that answer from a list whatever the direction.
+//!
+//! The seed is fixed. A longer look: `PROPTEST_CASES=200000 PROPTEST_RNG_SEED=7 cargo
+//! test --release --test arbitrary`.
+
+// C names, and calls into the C interface.
+#![allow(unsafe_code)]
+
+use std::cell::Cell;
+use std::ffi::{c_int, c_void};
+use std::mem::MaybeUninit;
+
+use ccd::ffi::collide::*;
+use ccd::ffi::support::ccdFirstDirDefault;
+use ccd::ffi::types::{ccd_t, ccd_vec3_t};
+use ccd::ffi::warm::*;
+use ccd::math::{EPSILON, Real};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// More calls of one support function than any query may take.
+const MOST_CALLS: u64 = 20_000;
+
+#[derive(Clone, Debug)]
+struct Object {
+    /// The object is their hull, inflated; or the answers, one after the other.
+    points: Vec<[Real; 3]>,
+    radius: Real,
+    position: [Real; 3],
+    scripted: bool,
+    calls: Cell<u64>,
+}
+
+fn dot(a: &[Real; 3], b: &[Real; 3]) -> Real {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl Object {
+    fn support(&self, dir: &[Real; 3]) -> [Real; 3] {
+        let calls = self.calls.get();
+        self.calls.set(calls + 1);
+        assert!(calls < MOST_CALLS, "endless");
+        let point = if self.scripted {
+            self.points[calls as usize % self.points.len()]
+        } else {
+            *self
+                .points
+                .iter()
+                .max_by(|a, b| dot(a, dir).total_cmp(&dot(b, dir)))
+                .expect("an object has points")
+        };
+        let length = dot(dir, dir).sqrt();
+        std::array::from_fn(|i| point[i] + self.radius * dir[i] / length + self.position[i])
+    }
+
+    /// Largest coordinate it computes with.
+    fn size(&self) -> Real {
+        let coordinates = self.points.iter().flatten().chain(&self.position);
+        self.radius + coordinates.fold(0.0, |m: Real, x| m + x.abs())
+    }
+}
+
+/// h(dir) of the Minkowski difference, in the objects' own arithmetic.
+fn support_value(a: &Object, b: &Object, dir: &[Real; 3]) -> Real {
+    let (p, q) = (a.support(dir), b.support(&dir.map(|x| -x)));
+    dot(dir, &std::array::from_fn(|i| p[i] - q[i]))
+}
+
+unsafe extern "C-unwind" fn support(
+    obj: *const c_void,
+    dir: *const ccd_vec3_t,
+    vec: *mut ccd_vec3_t,
+) {
+    // SAFETY: the tests below hand in Objects, and the library its own vectors.
+    unsafe { (*vec).v = (*obj.cast::<Object>()).support(&(*dir).v) };
+}
+
+unsafe extern "C-unwind" fn center(obj: *const c_void, center: *mut ccd_vec3_t) {
+    // SAFETY: as above.
+    unsafe {
+        let obj = &*obj.cast::<Object>();
+        let count = obj.points.len() as Real;
+        (*center).v = std::array::from_fn(|i| {
+            obj.position[i] + obj.points.iter().map(|p| p[i]).sum::<Real>() / count
+        });
+    }
+}
+
+fn settings(tolerance: Real) -> ccd_t {
+    ccd_t {
+        first_dir: Some(ccdFirstDirDefault),
+        support1: Some(support),
+        support2: Some(support),
+        center1: Some(center),
+        center2: Some(center),
+        max_iterations: std::ffi::c_ulong::MAX,
+        epa_tolerance: tolerance,
+        mpr_tolerance: tolerance,
+        dist_tolerance: 1e-6,
+    }
+}
+
+fn pointer(object: &Object) -> *const c_void {
+    std::ptr::from_ref(object).cast()
+}
+
+/// What a state holds before the query.
+#[derive(Clone, Debug)]
+enum Start {
+    Cold,
+    Guess([Real; 3]),
+    Bytes(Vec<u8>),
+}
+
+impl Start {
+    fn state(&self) -> ccd_warm_t {
+        let mut state = MaybeUninit::<ccd_warm_t>::zeroed();
+        // SAFETY: a state is plain numbers: zero and any other bytes are one; the guess
+        // is a live vector, and there are no more bytes than the state has.
+        unsafe {
+            match self {
+                Start::Cold => (),
+                Start::Guess(v) => ccdWarmGuess(state.as_mut_ptr(), &ccd_vec3_t { v: *v }),
+                Start::Bytes(bytes) => std::ptr::copy_nonoverlapping(
+                    bytes.as_ptr(),
+                    state.as_mut_ptr().cast(),
+                    bytes.len().min(size_of::<ccd_warm_t>()),
+                ),
+            }
+            state.assume_init()
+        }
+    }
+}
+
+/// Code, depth and direction of one of the queries that answer with them.
+fn ask(
+    query: usize,
+    a: &Object,
+    b: &Object,
+    tolerance: Real,
+    start: &Start,
+) -> (c_int, Real, [Real; 3], Real) {
+    let ccd = settings(tolerance);
+    let zero = ccd_vec3_t { v: [0.0; 3] };
+    let (mut depth, mut dir, mut pos) = (0.0, zero, zero);
+    let mut warm = start.state();
+    let mut out = MaybeUninit::<ccd_penetration_t>::zeroed();
+    let (a, b) = (pointer(a), pointer(b));
+    // SAFETY: every pointer is to a live object of its type; ccd_penetration_t is plain
+    // numbers, for which zero is a value.
+    unsafe {
+        let code = match query {
+            0 => ccdMPRPenetration(a, b, &ccd, &mut depth, &mut dir, &mut pos),
+            1 => ccdMPRPenetrationWarm(a, b, &ccd, &mut warm, &mut depth, &mut dir, &mut pos),
+            2 => ccdGJKPenetration(a, b, &ccd, &mut depth, &mut dir, &mut pos),
+            3 => ccdPenetrationLocal(a, b, &ccd, &mut warm, out.as_mut_ptr()),
+            _ => ccdPenetrationMinimum(a, b, &ccd, &mut warm, out.as_mut_ptr()),
+        };
+        let out = out.assume_init();
+        if query >= 3 {
+            (code, out.depth, out.dir.v, out.depth_lower)
+        } else {
+            (code, depth, dir.v, 0.0)
+        }
+    }
+}
+
+/// Coordinates where ties, coincidences and tiny differences are common.
+fn coordinate() -> impl Strategy<Value = Real> {
+    prop_oneof![
+        4 => -1.0..(1.0 as Real),
+        4 => (-2i8..=2).prop_map(|x| Real::from(x) / 2.0),
+        1 => (-2i8..=2).prop_map(|x| Real::from(x) * 4.0 * EPSILON),
+        1 => (-2i8..=2, -1.0..(1.0 as Real)).prop_map(|(x, y)| Real::from(x) / 2.0 + y * 1e-6),
+    ]
+}
+
+fn position() -> impl Strategy<Value = [Real; 3]> {
+    prop_oneof![
+        3 => proptest::array::uniform3(coordinate()),
+        1 => Just([0.0; 3]),
+    ]
+}
+
+/// The hull of up to nine points, perhaps inflated.
+fn convex() -> impl Strategy<Value = Object> {
+    (
+        proptest::collection::vec(proptest::array::uniform3(coordinate()), 1..10),
+        prop_oneof![Just(0.0), 0.0..(1.0 as Real)],
+        position(),
+    )
+        .prop_map(|(points, radius, position)| Object {
+            points,
+            radius,
+            position,
+            scripted: false,
+            calls: Cell::new(0),
+        })
+}
+
+/// Answers of any size, and none.
+fn wild() -> impl Strategy<Value = Real> {
+    prop_oneof![
+        4 => coordinate(),
+        2 => proptest::num::f64::ANY.prop_map(|x| x as Real),
+        1 => (-30.0..30.0f64).prop_map(|x| (10f64.powf(x)) as Real),
+    ]
+}
+
+fn scripted() -> impl Strategy<Value = Object> {
+    proptest::collection::vec(proptest::array::uniform3(wild()), 1..12).prop_map(|points| Object {
+        points,
+        radius: 0.0,
+        position: [0.0; 3],
+        scripted: true,
+        calls: Cell::new(0),
+    })
+}
+
+fn tolerance() -> impl Strategy<Value = Real> {
+    prop_oneof![Just(0.0), Just(1e-6), Just(1e-4), Just(1e-2)]
+}
+
+/// Cold, a guess, or any bytes at all.
+fn start() -> impl Strategy<Value = Start> {
+    let bytes = proptest::collection::vec(any::<u8>(), size_of::<ccd_warm_t>());
+    prop_oneof![
+        2 => Just(Start::Cold),
+        1 => bytes.prop_map(Start::Bytes),
+        1 => proptest::array::uniform3(coordinate()).prop_map(Start::Guess),
+    ]
+}
+
+fn config() -> ProptestConfig {
+    let mut config = ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    if std::env::var_os("PROPTEST_CASES").is_none() {
+        config.cases = 5_000;
+    }
+    if config.rng_seed == RngSeed::Random {
+        config.rng_seed = RngSeed::Fixed(1);
+    }
+    config
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    /// Hits are sound and their direction unit; the proven minimum is the least of all
+    /// answers and its bound below every support value; verdicts agree unless the objects
+    /// touch.
+    #[test]
+    fn answers_about_convex_objects_hold(
+        a in convex(),
+        b in convex(),
+        tolerance in tolerance(),
+        start in start(),
+        dirs in proptest::collection::vec(proptest::array::uniform3(-1.0..(1.0 as Real)), 8),
+    ) {
+        let noise = 64.0 * EPSILON * (a.size() + b.size());
+        let answers: Vec<_> = (0..5)
+            .map(|query| {
+                (a.calls.set(0), b.calls.set(0));
+                ask(query, &a, &b, tolerance, &start)
+            })
+            .collect();
+        let (minimum, proven) = (answers[4].1, answers[4].3);
+        let is_hit = |code: c_int| code == CCD_HIT || code == CCD_LIMIT;
+        (a.calls.set(0), b.calls.set(0));
+        for (query, &(code, depth, dir, _)) in answers.iter().enumerate() {
+            prop_assert!(is_hit(code) || code == CCD_MISS, "query {query}: code {code}");
+            if !is_hit(code) {
+                // Whoever says hit is at most touching then.
+                for (other, &(code, depth, ..)) in answers.iter().enumerate() {
+                    prop_assert!(
+                        !is_hit(code) || depth <= noise || other == 3 || minimum <= noise,
+                        "query {query} misses, query {other} hits {depth} deep"
+                    );
+                }
+                continue;
+            }
+            let length = dot(&dir, &dir).sqrt();
+            prop_assert!((length - 1.0).abs() <= 4.0 * EPSILON, "query {query}: {dir:?}");
+            let value = support_value(&a, &b, &dir);
+            prop_assert!(
+                (depth - value.max(0.0)).abs() <= noise,
+                "query {query}: depth {depth}, support value {value}"
+            );
+            if is_hit(answers[4].0) {
+                prop_assert!(
+                    minimum <= depth + tolerance + noise,
+                    "the minimum {minimum} is deeper than query {query}'s {depth}"
+                );
+                prop_assert!(
+                    proven <= depth + noise,
+                    "proven {proven}, query {query} has {depth}"
+                );
+            }
+        }
+        if is_hit(answers[4].0) {
+            for dir in &dirs {
+                let length = dot(dir, dir).sqrt();
+                if length > 0.1 {
+                    let value = support_value(&a, &b, &dir.map(|x| x / length));
+                    prop_assert!(proven <= value + noise, "proven {proven}, h({dir:?}) = {value}");
+                }
+            }
+            prop_assert!(proven >= 0.0 && proven <= minimum + noise);
+        }
+    }
+
+    /// Objects that answer anything: each query ends, with a documented code, and what it
+    /// claims is finite.
+    #[test]
+    fn any_answers_end(
+        a in prop_oneof![scripted(), convex()],
+        b in prop_oneof![scripted(), convex()],
+        tolerance in tolerance(),
+        start in start(),
+    ) {
+        for query in 0..5 {
+            (a.calls.set(0), b.calls.set(0));
+            let (code, depth, dir, proven) = ask(query, &a, &b, tolerance, &start);
+            let least = if query >= 3 { CCD_LIMIT } else { CCD_NO_MEMORY };
+            prop_assert!((least..=CCD_HIT).contains(&code), "query {query}: code {code}");
+            if code == CCD_HIT || code == CCD_LIMIT {
+                prop_assert!(depth >= 0.0 && depth.is_finite(), "query {query}: depth {depth}");
+                prop_assert!(proven >= 0.0 && proven.is_finite(), "query {query}: {proven}");
+                let length = dot(&dir, &dir).sqrt();
+                prop_assert!((length - 1.0).abs() <= 4.0 * EPSILON, "query {query}: {dir:?}");
+            }
+        }
+    }
+}
