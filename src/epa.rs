@@ -121,7 +121,16 @@ impl Face {
         if ac.norm_squared() > 64.0 * bc.norm_squared() {
             normal = ab.cross(&bc);
         }
-        let normal = normal * (1.0 / normal.norm());
+        let length = normal.norm();
+        if !(length > 0.0) {
+            // No area and no plane: the edges are the neighbours' too. Any point that sees
+            // a neighbour sees it.
+            self.normal = Vec3::zeros();
+            self.offset = Real::NEG_INFINITY;
+            self.key = Real::INFINITY;
+            return;
+        }
+        let normal = normal * (1.0 / length);
         let (da, db, dc) = (normal.dot(a), normal.dot(b), normal.dot(c));
         self.normal = normal;
         self.offset = larger(larger(da, db), dc);
@@ -253,10 +262,11 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
         4.0 * EPSILON * self.reach2.sqrt()
     }
 
-    /// Faces at least so far away are near enough to proven.
+    /// Faces at least so far away are proven, with room for the grain that is taken from
+    /// the lower bound and for the roundings of the bounds themselves.
     #[inline]
     fn target(&self) -> Real {
-        self.upper.depth - self.tolerance
+        self.upper.depth - (self.tolerance - 2.0 * self.grain())
     }
 
     fn penetration(&self, lower: Real, witness: &SupportPoint) -> Penetration {
@@ -418,7 +428,9 @@ impl Counts {
 
     #[inline]
     fn release(&mut self, faces: &mut [Face], f: Index) {
-        faces[usize::from(f)].next = self.first_free;
+        let face = &mut faces[usize::from(f)];
+        face.dead = true;
+        face.next = self.first_free;
         self.first_free = f;
         self.free += 1;
     }
@@ -694,8 +706,7 @@ impl<'a> Polytope<'a> {
             let face = &mut faces[usize::from(f)];
             face.renew([from, to, p], [outer, 0, previous.wrapping_mul(4) | 1]);
             face.measure(&va, &vb, &vp);
-            // False for a triangle without area, whose normal is NaN: it is harmless.
-            let folds = face.offset < face.normal.dot(&inner);
+            let folds = face.offset < face.normal.dot(&inner) && face.key < Real::INFINITY;
             faces[face_of(outer)].across[edge_of(outer)] = 4 * f;
             if previous == NONE {
                 oldest = f;
@@ -710,12 +721,12 @@ impl<'a> Polytope<'a> {
                 folded = outer / 4;
                 break;
             }
-            if next == start {
+            (at, from, va) = (next, to, vb);
+            if at == start || made == rim {
                 break;
             }
-            (at, from, va) = (next, to, vb);
         }
-        if folded == NONE && made == rim {
+        if folded == NONE && made == rim && at == start {
             faces[usize::from(previous)].across[1] = 4 * oldest + 2;
             faces[usize::from(oldest)].across[2] = 4 * previous + 1;
             return Ok(oldest);
@@ -866,8 +877,7 @@ impl<'a> Polytope<'a> {
     ) -> Result<Outcome, Stop> {
         loop {
             let (top, lower) = self.nearest();
-            let enough = query.tolerance - query.grain();
-            let proven = query.upper.depth - lower <= enough;
+            let proven = lower >= query.target();
             let Some(top) = top.filter(|_| !proven) else {
                 return Ok(Outcome::Done(proven, self.finish(query, lower, top)));
             };
@@ -882,7 +892,7 @@ impl<'a> Polytope<'a> {
 
             let dir = self.aim(top, query.target());
             let point = query.ask(&dir, &self.points[..self.counts.points])?;
-            if query.upper.depth - lower <= enough {
+            if lower >= query.target() {
                 return Ok(Outcome::Done(true, self.finish(query, lower, Some(top))));
             }
             // A point above by less than this would add faces and no distance.
@@ -1068,13 +1078,15 @@ fn flood(
 #[inline]
 fn next_rim(faces: &[Face], edge: Index, visible: Index) -> Index {
     let mut at = after(edge);
-    loop {
+    // A bound that no closed surface comes to.
+    for _ in 0..faces.len() {
         let other = faces[face_of(at)].across[edge_of(at)];
         if faces[face_of(other)].seen != visible {
-            return at;
+            break;
         }
         at = after(other);
     }
+    at
 }
 
 /// The corner where a half-edge begins.
