@@ -259,7 +259,7 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
 
     /// What coordinates so large cannot resolve.
     fn grain(&self) -> Real {
-        4.0 * EPSILON * self.reach2.sqrt()
+        2.0 * EPSILON * self.reach2.sqrt()
     }
 
     /// Faces at least so far away are proven, with room for the grain that is taken from
@@ -914,7 +914,7 @@ impl<'a> Polytope<'a> {
             let grown = lit.is_some_and(|f| self.insert(f, p, query));
             if !grown && !vain {
                 // Rounding error has the last word.
-                let close = query.upper.depth - lower <= 16.0 * query.grain();
+                let close = query.upper.depth - lower <= 6.0 * query.grain();
                 return Ok(Outcome::Done(close, self.finish(query, lower, Some(top))));
             }
         }
@@ -1000,27 +1000,47 @@ impl<'a> Polytope<'a> {
                 }
             }
         }
-        let witness = match best {
-            Some((corners, w, _)) => {
-                let w = w.map(|x| x.max(0.0));
-                let sum = w[0] + w[1] + w[2];
-                self.combine(corners, w.map(|x| x / sum))
-            }
-            None => self.points[0],
+        let exit = best.map(|(corners, w, _)| {
+            let w = w.map(|x| x.max(0.0));
+            let sum = w[0] + w[1] + w[2];
+            self.combine(corners, w.map(|x| x / sum))
+        });
+        let end = dir * query.upper.depth;
+        let error = query.tolerance + query.rounding;
+        let witness = match exit {
+            Some(exit) if (exit.v - end).norm() <= error => exit,
+            // The origin is on a face, to rounding: the ray crosses nothing clearly.
+            _ => self.nearest_to(&end),
         };
         query.penetration(lower, &witness)
     }
 
-    /// The convex combination of three points.
-    fn combine(&self, corners: [Index; 3], weights: [Real; 3]) -> SupportPoint {
-        let mut sum = SupportPoint::default();
-        for (i, w) in corners.into_iter().zip(weights) {
-            let p = &self.points[usize::from(i)];
-            sum.v += p.v * w;
-            sum.v1 += p.v1 * w;
-            sum.v2 += p.v2 * w;
+    /// The point of the surface nearest to `p`.
+    fn nearest_to(&self, p: &Vec3) -> SupportPoint {
+        let mut best = (Real::INFINITY, [0; 3], [1.0, 0.0, 0.0]);
+        for f in &self.faces[..self.counts.faces] {
+            if f.dead {
+                continue;
+            }
+            let [a, b, c] = f.corners().map(|i| self.v(i));
+            let (w, distance2) = nearest::on_triangle(p, &a, &b, &c);
+            if distance2 < best.0 {
+                best = (distance2, f.corners(), weights(&w, &a, &b, &c));
+            }
         }
-        sum
+        self.combine(best.1, best.2)
+    }
+
+    /// The convex combination of three points, from the first: far from the world's origin
+    /// weights that miss 1 by a rounding would move it.
+    fn combine(&self, corners: [Index; 3], weights: [Real; 3]) -> SupportPoint {
+        let [a, b, c] = corners.map(|i| &self.points[usize::from(i)]);
+        let mix = |a: &Vec3, b: &Vec3, c: &Vec3| a + (b - a) * weights[1] + (c - a) * weights[2];
+        SupportPoint {
+            v: mix(&a.v, &b.v, &c.v),
+            v1: mix(&a.v1, &b.v1, &c.v1),
+            v2: mix(&a.v2, &b.v2, &c.v2),
+        }
     }
 }
 

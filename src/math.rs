@@ -63,5 +63,5 @@ pub const ITERATION_CAP: u64 = 2_000;
 /// beside which a coarser answer would say nothing.
 #[inline]
 pub fn tolerance(asked: Real, size: Real, reach: Real) -> Real {
-    asked.min(1e-3 * size).max(16.0 * EPSILON * reach)
+    asked.min(1e-3 * size).max(8.0 * EPSILON * reach)
 }
