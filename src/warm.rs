@@ -315,7 +315,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         // A shallow contact of polytopes is proven by the tetrahedron that proved the
         // overlap: the centre and the face that the local search ended on.
-        if local.depth - local.depth_lower <= proof.tolerance {
+        // So, for all that is worth its supports, is a shallow one of curved objects;
+        // faces of polytopes can be nearly parallel, and a proof that compares them is
+        // cheap.
+        if local.depth - local.depth_lower <= proof.tolerance
+            || state.memory.curved == 1 && self.shallow(&local)
+        {
             return Ok(answer);
         }
         let seed = Seed {
@@ -364,6 +369,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Answer::Limit(_) => Answer::Limit(best),
             _ => Answer::Hit(best),
         })
+    }
+
+    /// Is the overlap thin beside the objects as measured along its normal? Another
+    /// minimum would have to be as near, and seldom is.
+    fn shallow(&self, hit: &Penetration) -> bool {
+        self.centre
+            .is_some_and(|c| hit.depth <= SHALLOW * (hit.depth - hit.normal.dot(&c.v)))
     }
 
     /// A local minimum, not yet a proven overlap: the few-supports solver, and where that
@@ -618,6 +630,10 @@ const PATIENCE: u64 = 64;
 /// 16.6; cylinder and box 17.9, 17.1, 19.8; capsules 30.3, 27.8, 30.3; ellipsoids 30.2,
 /// 28.2, 31.9; spheres 31.6, 31.8, 31.8.
 const GLANCE: u64 = epa::GIVEN as u64;
+
+/// Depth, as a share of the distance from the centre of D to its support plane, below
+/// which [`Pair::mpr`] takes the local minimum for the global one.
+const SHALLOW: Real = 0.004;
 
 /// Where the proof of [`Pair::mpr`] may stop: a gap of this share of the depth.
 const GAP: Real = 0.003;
