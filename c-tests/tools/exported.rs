@@ -97,6 +97,19 @@ impl Settings {
         Settings(settings)
     }
 
+    /// What ccdPenetrationMinimum reads.
+    fn minimum() -> Settings {
+        let mut settings = Settings::mpr();
+        let ccd = settings.0.as_mut_ptr();
+        unsafe {
+            (&raw mut (*ccd).mpr_tolerance)
+                .cast::<MaybeUninit<Real>>()
+                .write(MaybeUninit::uninit());
+            (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
+        }
+        settings
+    }
+
     /// What GJK's calls read.
     fn gjk() -> Settings {
         let mut settings = MaybeUninit::<ccd_t>::uninit();
@@ -112,14 +125,18 @@ impl Settings {
         Settings(settings)
     }
 
+    fn at_most(mut self, iterations: u32) -> Settings {
+        unsafe { (&raw mut (*self.0.as_mut_ptr()).max_iterations).write(iterations.into()) };
+        self
+    }
+
     fn get(&self) -> *const ccd_t {
         self.0.as_ptr()
     }
 }
 
 const TOLERANCE: Real = 1e-4;
-/// `ccdMPRPenetration`, `ccdGJKPenetration` and `ccdGJKSeparate` with a part of
-/// their outputs.
+/// `ccdMPRPenetration` and `ccdGJKPenetration`.
 type Penetration = unsafe extern "C-unwind" fn(
     *const c_void,
     *const c_void,
@@ -228,6 +245,34 @@ fn mpr() {
 }
 
 #[test]
+fn gjk() {
+    let settings = Settings::gjk();
+    penetrates(ccdGJKPenetration, &settings);
+    refuses_what_is_not_a_number(ccdGJKPenetration, &settings);
+    unwinds(ccdGJKPenetration, &settings);
+}
+
+#[test]
+fn separation() {
+    let settings = Settings::gjk();
+    for (shape1, shape2, center2, truth) in pairs() {
+        let mut obj1 = object(shape1, [0.0; 3]);
+        let mut obj2 = object(shape2, center2);
+        let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+        let untouched = ccd_vec3_t { v: [7.0; 3] };
+        let mut sep = untouched;
+        let code = unsafe { ccdGJKSeparate(obj1, obj2, settings.get(), &mut sep) };
+        assert_eq!(code, c_int::from(truth.is_some()) - 1);
+        match truth {
+            Some(truth) => assert!((dot(&sep, &sep).sqrt() - truth).abs() <= 2.0 * TOLERANCE),
+            None => assert_eq!(sep, untouched),
+        }
+        let without = unsafe { ccdGJKSeparate(obj1, obj2, settings.get(), null_mut()) };
+        assert_eq!(without, code);
+    }
+}
+
+#[test]
 fn overlap() {
     for (shape1, shape2, center2, truth) in pairs() {
         let mut obj1 = object(shape1, [0.0; 3]);
@@ -273,8 +318,7 @@ fn states() -> Vec<Option<ccd_warm_t>> {
 }
 
 /// Whatever the state holds, hits are hits, misses misses, and the depth separates.
-fn extended(call: Extended) {
-    let settings = Settings::mpr();
+fn extended(call: Extended, settings: &Settings) {
     let dir = ccd_vec3_t { v: [1.0, 0.0, 0.0] };
     for (shape1, shape2, center2, truth) in pairs() {
         for mut state in states() {
@@ -320,23 +364,63 @@ fn extended(call: Extended) {
 
 #[test]
 fn local() {
-    extended(|obj1, obj2, ccd, _, warm, out| unsafe {
-        ccdPenetrationLocal(obj1, obj2, ccd, warm, out)
-    });
+    extended(
+        |obj1, obj2, ccd, _, warm, out| unsafe { ccdPenetrationLocal(obj1, obj2, ccd, warm, out) },
+        &Settings::mpr(),
+    );
+}
+
+#[test]
+fn minimum() {
+    extended(
+        |obj1, obj2, ccd, _, warm, out| unsafe {
+            ccdPenetrationMinimum(obj1, obj2, ccd, warm, out)
+        },
+        &Settings::minimum(),
+    );
+}
+
+/// Concentric spheres: every direction is a minimum, and the proof outgrows the
+/// stack.
+#[test]
+fn memory_from_malloc() {
+    let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
+    let mut obj2 = object(Shape::Ball(0.5), [0.0; 3]);
+    let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+    let mut out = MaybeUninit::uninit();
+    let mut depth = 0.0;
+    unsafe {
+        let (minimum, gjk) = (
+            Settings::minimum().at_most(150),
+            Settings::gjk().at_most(150),
+        );
+        let code = ccdPenetrationMinimum(obj1, obj2, minimum.get(), null_mut(), out.as_mut_ptr());
+        assert_eq!(code, CCD_LIMIT);
+        assert!((out.assume_init().depth - 1.5).abs() < TOLERANCE);
+        let code = ccdGJKPenetration(obj1, obj2, gjk.get(), &mut depth, null_mut(), null_mut());
+        assert_eq!(code, 0);
+        assert!((depth - 1.5).abs() < TOLERANCE);
+    }
 }
 
 #[test]
 fn along() {
-    extended(|obj1, obj2, ccd, dir, warm, out| unsafe {
-        ccdPenetrationAlong(obj1, obj2, ccd, dir, warm, out)
-    });
+    extended(
+        |obj1, obj2, ccd, dir, warm, out| unsafe {
+            ccdPenetrationAlong(obj1, obj2, ccd, dir, warm, out)
+        },
+        &Settings::mpr(),
+    );
 }
 
 #[test]
 fn planar() {
-    extended(|obj1, obj2, ccd, dir, warm, out| unsafe {
-        ccdPenetrationPlanar(obj1, obj2, ccd, dir, warm, out)
-    });
+    extended(
+        |obj1, obj2, ccd, dir, warm, out| unsafe {
+            ccdPenetrationPlanar(obj1, obj2, ccd, dir, warm, out)
+        },
+        &Settings::mpr(),
+    );
 }
 
 /// The compatible calls' warm forms, from a guess too.
