@@ -272,7 +272,7 @@ static void make(case_t *c, int query)
         c->dir.v[k] = (ccd_real_t)random_in(-1, 1);
     }
     l = sqrt(dot(u, u));
-    c->tol = 1e-6;
+    c->tol = sizeof(ccd_real_t) == 8 ? 1e-6 : 1e-4;
     if (query == PLANAR) {
         const double x = u[0], y = u[1];
         double m[3], o[3];
