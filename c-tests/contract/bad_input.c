@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Input that no query can like: points that are not numbers, tolerances of every kind, no
+/* Ordinary input of every size, and input that no query can like: points that are not numbers, tolerances of every kind, no
  * iterations, an object against itself, objects without volume, sizes far from 1. Always a
  * return code of the call's, outputs untouched unless it is a hit, a hit sound, and an end:
  * the number of support points is bounded. */
@@ -140,8 +140,8 @@ static void degenerate(const entry_t *entry)
                              shape_box(1, 0, 1),         shape_sphere(1),            shape_box(1, 1, 1),
                              shape_ellipsoid(1, 0.5, 2), shape_cylinder(1, 1),       shape_cone(1, 1)};
     enum { PLAIN = sizeof plain / sizeof plain[0] };
-    /* The fourth power of a size must be a number of the precision. */
-    static const double sizes[] = {1, 1e-3, 1e3, 1e6, sizeof(ccd_real_t) == 8 ? 1e-70 : 1e-8, sizeof(ccd_real_t) == 8 ? 1e70 : 1e8};
+    /* The fourth power of a size must be a number of the precision, with room for rounding. */
+    static const double sizes[] = {1, 1e-3, 1e3, 1e6, sizeof(ccd_real_t) == 8 ? 1e-50 : 1e-6, sizeof(ccd_real_t) == 8 ? 1e60 : 1e6};
     int i, k, at, size;
     for (i = 0; i < PLAIN; i++)
         for (k = 0; k < PLAIN; k++)
@@ -180,6 +180,41 @@ static void degenerate(const entry_t *entry)
     }
 }
 
+/* Ordinary pairs, of every size, place and tolerance, aligned with the axes or not. */
+static void anywhere(const entry_t *entry)
+{
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    int round;
+    for (round = 0; round < 1500; round++) {
+        const double size = pow(10, random_in(-4, 4));
+        const int aligned = random_below(4);
+        ccd_real_t scaled[2][21];
+        shape_t s[2];
+        ccd_t ccd;
+        int n, c;
+        random_pair(entry, 1, &s[0], &s[1], &ccd);
+        for (n = 0; n < 2; n++) {
+            if (random_below(2))
+                shape_turn(&s[n], identity);
+            for (c = 0; c < 3; c++) {
+                if (aligned == 0)
+                    s[n].p[c] = (ccd_real_t)(0.5 * (1 + random_below(2)));
+                s[n].p[c] *= (ccd_real_t)size;
+                s[n].centre[c] *= (ccd_real_t)size;
+            }
+            for (c = 0; c < 3 * s[n].nverts; c++)
+                scaled[n][c] = s[n].verts[c] * (ccd_real_t)size;
+            if (s[n].nverts > 0)
+                s[n].verts = scaled[n];
+        }
+        shape_move(&s[1], aligned == 1 ? 0 : random_in(-1.2, 1.2) * size, aligned == 2 ? 0 : random_in(-1.2, 1.2) * size,
+                   aligned == 3 || entry->call == run_PenetrationPlanar ? 0 : random_in(-1.2, 1.2) * size);
+        ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)(size * pow(10, random_in(-9, -2)));
+        c = ask(entry, &s[0], &s[1], &ccd, 10 * size, "a pair anywhere");
+        CHECK(c == entry->hit || c == entry->miss, "%s: good input, returned %d", entry->name, c);
+    }
+}
+
 int main(void)
 {
     int i;
@@ -189,6 +224,7 @@ int main(void)
         tolerances(&entries[i]);
         iterations(&entries[i]);
         degenerate(&entries[i]);
+        anywhere(&entries[i]);
         printf("%s: %lu failed\n", entries[i].name, checks_failed - failed);
     }
     return checks_end();
