@@ -63,7 +63,8 @@ tests)
     want_command abidiff abigail-tools
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then
-        want_package libccd-dev libfcl-dev libode-dev libmujoco-dev libdart-dev
+        want_package libccd-dev libfcl-dev libode-dev libmujoco-dev \
+            libdart-dev libdart-collision-ode-dev
     fi
     ;;
 *)
