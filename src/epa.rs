@@ -248,7 +248,7 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
         if v2 > self.size2 || reach2 > self.reach2 {
             self.size2 = larger(self.size2, v2);
             self.reach2 = larger(self.reach2, reach2);
-            self.rounding = 16.0 * EPSILON * self.size2.sqrt();
+            self.rounding = 4.0 * EPSILON * self.size2.sqrt();
             self.tolerance = tolerance(
                 self.settings.tolerance,
                 self.size2.sqrt(),
@@ -294,7 +294,7 @@ enum Outcome {
 
 /// The global minimum penetration of `md`, from `seed`, within `settings.tolerance`.
 ///
-/// `Hit`: depth − depth_lower is within the tolerance (floored at 16 ulps of the largest
+/// `Hit`: depth − depth_lower is within the tolerance (floored at 8 ulps of the largest
 /// coordinate). `Limit`: the cap on iterations or points came first; depth is sound and
 /// depth_lower proven all the same. `Miss`: strictly apart.
 pub fn minimum<A: SupportMap, B: SupportMap>(
@@ -914,7 +914,7 @@ impl<'a> Polytope<'a> {
             let grown = lit.is_some_and(|f| self.insert(f, p, query));
             if !grown && !vain {
                 // Rounding error has the last word.
-                let close = query.upper.depth - lower <= 6.0 * query.grain();
+                let close = query.upper.depth - lower <= 16.0 * query.grain();
                 return Ok(Outcome::Done(close, self.finish(query, lower, Some(top))));
             }
         }
