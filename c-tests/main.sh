@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # The main job: one unmodified C program over a recorded contact sequence, first
-# on the system's libccd where there is one, then on this library. Sets itself up.
+# on the system's libccd where there is one, then on this library; then the same
+# pairs through this library's extension, cold and warm. Sets itself up.
 
 set -eu
 cd "$(dirname "$0")/.."
@@ -18,10 +19,8 @@ mkdir -p "$work"
 # LD_LIBRARY_PATH needs the file under the name that programs ask for.
 ln -sf "$release/libccd.so" "$work/libccd.so.2"
 
-compile() { # compile PROGRAM FLAG...
-    program=$1
-    shift
-    cc -std=c99 -O2 -Iinclude -Ic-tests "$@" "c-tests/record/$program.c" -o "$work/$program" \
+compile() {
+    cc -std=c99 -O2 -Iinclude -Ic-tests -DOURS_ALONE "c-tests/record/$1.c" -o "$work/$1" \
         "$work/libccd.so.2" -lm
 }
 
@@ -44,6 +43,7 @@ run_on_ours() {
 export LD_BIND_NOW=1
 unset LD_LIBRARY_PATH
 compile replay
+compile warm
 system=$(libccd_of "$work/replay")
 if [ -n "$system" ]; then
     printf '\n== The system'"'"'s libccd, %s\n\n' "$system"
@@ -53,3 +53,5 @@ else
 fi
 printf '\n== This library under the same program\n\n'
 run_on_ours "$work/replay"
+printf '\n== The extension, without and with the state of the pair from the frame before\n\n'
+run_on_ours "$work/warm"
