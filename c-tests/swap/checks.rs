@@ -539,3 +539,46 @@ pub fn pile_table(rows: &[Piles]) -> String {
     }
     out
 }
+
+/// The long simulations: what went wrong on either library. Depths in millimetres.
+pub fn long_table(rows: &[Piles]) -> String {
+    let mut out = String::from(
+        "| consumer | scene | starts × steps | library | penetration queries | energy gained, J: median (max) | deepest contact, mm \
+         | NaN, zero or bent normals, exceptions, warnings | escaped | pairs judged | contacts lost | contacts spurious | largest error of a depth, mm |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for p in rows {
+        for (library, name) in NAMES.iter().enumerate() {
+            let gained = p.all(library, "gained");
+            let bad: f64 = ["bad", "zero", "not_finite", "not_unit"]
+                .iter()
+                .map(|key| p.sum(library, key))
+                .sum();
+            let judged = |key: &str, unit: f64| match p.runs[library][0].pile.get(key) {
+                None => "–".to_owned(),
+                Some(_) if key == "error" => format!("{:.4}", unit * p.range(library, key).1),
+                Some(_) => p.sum(library, key).to_string(),
+            };
+            let _ = writeln!(
+                out,
+                "| {} | {} | {} × {} | {} | {} | {:.3} ({:.3}) | {:.1} | {} | {} | {} | {} | {} | {} |",
+                p.consumer,
+                p.scene,
+                p.runs[library].len(),
+                p.steps,
+                name,
+                p.sum(library, "queries"),
+                median(gained.clone()),
+                gained.iter().copied().fold(0.0, f64::max),
+                1e3 * p.range(library, "deepest").1,
+                bad,
+                p.sum(library, "escaped"),
+                judged("judged", 1.0),
+                judged("lost", 1.0),
+                judged("spurious", 1.0),
+                judged("error", 1e3),
+            );
+        }
+    }
+    out
+}

@@ -116,7 +116,7 @@ int main(int argc, char **argv)
             joint->setPosition(j, joint->getPosition(j) + uniform(-1e-3, 1e-3));
     }
 
-    double kinetic = 0, depth = 0, deepest = 0;
+    double kinetic = 0, depth = 0, deepest = 0, least = HUGE_VAL, gained = 0;
     long contacts = 0, bad = 0, threw = 0;
     int escaped = 0;
     for (long step = 0; step < steps; step++) {
@@ -127,12 +127,15 @@ int main(int argc, char **argv)
             threw++;
             break;
         }
-        double energy = 0;
+        double energy = 0, height = 0;
         for (auto *body : falling) {
             const Eigen::Vector3d p = body->getTransform().translation();
             escaped |= !(fabs(p[0]) < half_width && fabs(p[1]) < half_width && p[2] > 0 && p[2] < 20);
             energy += body->computeKineticEnergy();
+            height += 9.81 * body->getMass() * p[2];
         }
+        least = fmin(least, energy + height);
+        gained = fmax(gained, energy + height - least);
         for (const auto &contact : world->getLastCollisionResult().getContacts()) {
             if (!(fabs(contact.normal.norm() - 1) < 1e-6) || !(fabs(contact.penetrationDepth) < 1e3) || !(contact.point.norm() < 1e6)) {
                 bad++;
@@ -147,8 +150,8 @@ int main(int argc, char **argv)
         if (2 * step >= steps)
             kinetic += energy / (double)(steps - steps / 2);
     }
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld\n", kinetic,
-           contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, bad + threw);
+    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g\n", kinetic,
+           contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, bad + threw, gained);
     watch_report();
     return 0;
 }

@@ -94,7 +94,7 @@ int main(int argc, char **argv)
     char error[1000] = "";
     mjModel *m;
     mjData *d;
-    double kinetic = 0, depth = 0, deepest = 0;
+    double kinetic = 0, depth = 0, deepest = 0, least = HUGE_VAL, gained = 0;
     long step, steps, contacts = 0, bad = 0, warnings = 0;
     int i, out = 0, field, multi;
     if (argc != 5) {
@@ -129,6 +129,8 @@ int main(int argc, char **argv)
     for (step = 0; step < steps; step++) {
         mj_step(m, d);
         out |= escaped(m, d);
+        least = fmin(least, d->energy[0] + d->energy[1]);
+        gained = fmax(gained, d->energy[0] + d->energy[1] - least);
         if (2 * step >= steps)
             kinetic += d->energy[1] / (double)(steps - steps / 2);
         for (i = 0; i < d->ncon; i++) {
@@ -150,8 +152,8 @@ int main(int argc, char **argv)
     }
     for (i = 0; i < mjNWARNING; i++)
         warnings += d->warning[i].number;
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld\n", kinetic,
-           contacts ? depth / (double)contacts : 0, deepest, contacts, out, bad + warnings);
+    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g\n", kinetic,
+           contacts ? depth / (double)contacts : 0, deepest, contacts, out, bad + warnings, gained);
     watch_report();
     mj_deleteData(d);
     mj_deleteModel(m);

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Prints the swap table, Debian's FCL, ODE, MuJoCo and DART on libccd and on this
+//! library, as markdown; progress goes to stderr.
+//!
+//! `cargo run --example swap` the checks of the test run, on more poses (2 minutes)
+//! `cargo run --example swap -- long` whole simulations, longer and nastier (3 minutes)
+
+#[path = "../harness/mod.rs"]
+mod harness;
+
+#[path = "checks.rs"]
+mod checks;
+
+use checks::Swapped;
+
+fn piles(
+    program: &Swapped,
+    scene: &'static str,
+    starts: usize,
+    steps: usize,
+    after: &[&str],
+) -> checks::Piles {
+    checks::piles(program, scene, starts, steps, after, |seed| {
+        eprintln!("{} {scene}: start {seed} of {starts}", program.consumer);
+    })
+}
+
+fn table() {
+    let seed_and_poses = |poses: usize| vec!["2".to_owned(), poses.to_string()];
+    eprintln!("FCL and ODE: static queries");
+    let fcl = checks::fcl_static().run(&seed_and_poses(60));
+    let ode = checks::ode_static().run(&seed_and_poses(200));
+    let rows = [
+        checks::judge_collide("FCL", &fcl),
+        checks::judge_distance("FCL", &fcl),
+        checks::judge_collide("ODE", &ode),
+    ];
+    for row in &rows {
+        for line in row.against.iter().take(20) {
+            eprintln!("{} {}: {line}", row.consumer, row.what);
+        }
+    }
+    let dart = checks::dart_pile();
+    let simulations = [
+        piles(&checks::ode_pile(), "pile", 10, 1500, &["32", "pile"]),
+        piles(&checks::mujoco_pile(), "pile", 10, 1500, &["30", "pile"]),
+        piles(&dart, "over FCL", 10, 800, &["12", "fcl"]),
+        piles(&dart, "over ODE", 10, 800, &["12", "ode"]),
+    ];
+    println!("Static queries, libccd / this library:\n");
+    println!("{}", checks::static_table(&rows));
+    println!("Simulations:\n");
+    println!("{}", checks::pile_table(&simulations));
+}
+
+fn long() {
+    let (ode, mujoco, dart) = (
+        checks::ode_pile(),
+        checks::mujoco_pile(),
+        checks::dart_pile(),
+    );
+    let rows = [
+        piles(&ode, "pile", 2, 10_000, &["32", "pile"]),
+        piles(&ode, "convex hulls", 2, 10_000, &["32", "hulls"]),
+        piles(
+            &ode,
+            "towers of boxes and hulls",
+            2,
+            10_000,
+            &["20", "stack"],
+        ),
+        piles(&ode, "rolling cylinders", 2, 10_000, &["12", "roll"]),
+        piles(&mujoco, "pile", 2, 5000, &["30", "pile"]),
+        piles(
+            &mujoco,
+            "pile, several contacts a pair",
+            2,
+            5000,
+            &["30", "multi"],
+        ),
+        piles(&mujoco, "on a height field", 2, 3000, &["20", "field"]),
+        piles(&dart, "over FCL", 2, 3000, &["15", "fcl"]),
+        piles(&dart, "over FCL, triangles", 1, 400, &["10", "triangles"]),
+        piles(&dart, "over ODE", 2, 3000, &["15", "ode"]),
+    ];
+    println!("{}", checks::long_table(&rows));
+}
+
+fn main() {
+    match std::env::args().nth(1).as_deref() {
+        None => table(),
+        Some("long") => long(),
+        Some(other) => {
+            eprintln!("unknown: {other}; nothing, or `long`");
+            std::process::exit(2);
+        }
+    }
+}
