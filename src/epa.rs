@@ -364,7 +364,7 @@ fn run<A: SupportMap, B: SupportMap>(
         },
     );
     let simplex = match overlap.map_err(Stop::Fault)? {
-        Overlap::Yes(simplex) => simplex,
+        Overlap::Yes(simplex, _) => simplex,
         Overlap::No(n) => return Err(Stop::Miss(n)),
         Overlap::Undecided => {
             return Ok(Answer::Undecided(query.penetration(0.0, &start)));

@@ -19,7 +19,8 @@ use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 /// The yes or no of [`intersect`], with its proof.
 pub enum Overlap {
     /// The simplex holds the origin (within rounding, when it is no tetrahedron).
-    Yes(Simplex),
+    /// With it [`Simplex::inner_distance`], a lower bound on the depth.
+    Yes(Simplex, Real),
     /// This unit direction separates: n·s(n) < 0.
     No(Vec3),
     /// The iteration cap came first.
@@ -57,7 +58,7 @@ pub fn search<A: SupportMap, B: SupportMap>(
         let distance = v.norm();
         // Scale-free zero; also ends on NaN.
         if !(distance > ROUNDING * size) {
-            return Ok(Overlap::Yes(simplex));
+            return Ok(Overlap::Yes(simplex, 0.0));
         }
         if distance == Real::INFINITY {
             // Its square overflows: no direction to ask.
@@ -80,8 +81,9 @@ pub fn search<A: SupportMap, B: SupportMap>(
         match simplex.reduce() {
             Nearest::Inside => {
                 // By more than the rounding of the corners?
-                return if simplex.inner_distance() > 0.0 {
-                    Ok(Overlap::Yes(simplex))
+                let inner = simplex.inner_distance();
+                return if inner > 0.0 {
+                    Ok(Overlap::Yes(simplex, inner))
                 } else {
                     near_touch(md, simplex, max_iterations)
                 };
@@ -158,7 +160,7 @@ fn near_touch<A: SupportMap, B: SupportMap>(
 ) -> Result<Overlap, Fault> {
     let inner = simplex.mean();
     let Some(d) = unit(&-inner.v) else {
-        return Ok(Overlap::Yes(simplex));
+        return Ok(Overlap::Yes(simplex, 0.0));
     };
     let first = Plane::of(md, d)?;
     let mut best = first;
@@ -170,10 +172,11 @@ fn near_touch<A: SupportMap, B: SupportMap>(
             Exit::Miss(n) => Overlap::No(n),
             Exit::Converged(portal, _) | Exit::Limit(Some(portal)) if budget > 0 => {
                 let [a, b, c] = portal.planes.map(|p| p.point);
-                Overlap::Yes(Simplex::of([inner, a, b, c]))
+                let simplex = Simplex::of([inner, a, b, c]);
+                Overlap::Yes(simplex, simplex.inner_distance())
             }
             Exit::Converged(..) | Exit::Limit(_) => Overlap::Undecided,
-            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => Overlap::Yes(simplex),
+            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => Overlap::Yes(simplex, 0.0),
         },
     )
 }
@@ -215,7 +218,7 @@ mod tests {
             let md = MinkowskiDifference::new(a, b);
             let start = md.support(&dir).unwrap();
             match intersect(&md, start, &[], 1000).unwrap() {
-                Overlap::Yes(_) => true,
+                Overlap::Yes(..) => true,
                 Overlap::No(n) => {
                     assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
@@ -335,10 +338,10 @@ mod tests {
                     let there = other.support(&dir).unwrap();
                     let one = intersect(&md, start, &[], 1000).unwrap();
                     let two = intersect(&other, there, &[], 1000).unwrap();
-                    assert_eq!(matches!(one, Overlap::Yes(_)), gap < 0.0);
+                    assert_eq!(matches!(one, Overlap::Yes(..)), gap < 0.0);
                     match (one, two) {
                         (Overlap::No(n), Overlap::No(m)) => assert_eq!(n, m),
-                        (Overlap::Yes(s), Overlap::Yes(t)) => {
+                        (Overlap::Yes(s, _), Overlap::Yes(t, _)) => {
                             assert_eq!(s.inner_distance() * scale, t.inner_distance());
                         }
                         _ => panic!("the answers differ"),
@@ -462,12 +465,12 @@ mod tests {
                 let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
                 let known = [0; 3].map(|_| md.support(&r.direction()).unwrap());
                 let answer = intersect(&md, known[0], &known, 1000).unwrap();
-                assert_eq!(matches!(answer, Overlap::Yes(_)), gap < 0.0);
-                if let Overlap::Yes(simplex) = answer {
+                assert_eq!(matches!(answer, Overlap::Yes(..)), gap < 0.0);
+                if let Overlap::Yes(simplex, _) = answer {
                     let before = md.supports();
                     let again = intersect(&md, simplex.points()[0], simplex.points(), 1000);
                     if simplex.points().len() == 4 {
-                        assert!(matches!(again, Ok(Overlap::Yes(_))));
+                        assert!(matches!(again, Ok(Overlap::Yes(..))));
                         assert_eq!(md.supports(), before);
                     }
                 }

@@ -23,7 +23,7 @@ pub const EPSILON: Real = Real::EPSILON;
 /// vectors under- or overflow when squared.
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
-    let scale = v.amax();
+    let scale = largest(v);
     if !(scale > 0.0 && scale < Real::INFINITY) {
         return None;
     }
@@ -35,6 +35,18 @@ pub fn unit(v: &Vec3) -> Option<Vec3> {
     } else {
         None
     }
+}
+
+/// The larger of two numbers: one instruction, where `max` also orders NaN.
+#[inline(always)]
+pub fn larger(a: Real, b: Real) -> Real {
+    if a > b { a } else { b }
+}
+
+/// The largest absolute coordinate.
+#[inline(always)]
+pub fn largest(v: &Vec3) -> Real {
+    larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
 /// A unit vector perpendicular to the unit vector `n`.

@@ -8,7 +8,7 @@
 //! vectors, so it is free of scale; a face whose area vanishes falls back to its
 //! edges, an edge whose length vanishes to its ends.
 
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, largest};
 use crate::support::SupportPoint;
 
 /// Up to four support points of D.
@@ -79,7 +79,7 @@ impl Simplex {
     fn magnitude(&self) -> Real {
         self.points()
             .iter()
-            .fold(0.0, |m: Real, p| m.max(p.magnitude()))
+            .fold(0.0, |m, p| larger(m, p.magnitude()))
     }
 
     /// The distance from the origin to the nearest face of a tetrahedron that holds
@@ -89,26 +89,31 @@ impl Simplex {
         if self.len != 4 {
             return 0.0;
         }
-        let mut least = Real::INFINITY;
         let rounding = 4.0 * EPSILON * self.magnitude();
-        for (f, opposite) in FACES {
+        let mut least = Real::INFINITY;
+        for (f, opposite) in &FACES {
             let [a, b, c] = f.map(|i| self.points[i].v);
-            let cross = (b - a).cross(&(c - a));
-            let Some(n) = unit(&cross) else {
-                return 0.0;
-            };
+            let (ab, ac) = (b - a, c - a);
+            let n = ab.cross(&ac);
             let origin = -n.dot(&a);
-            let inner = n.dot(&(self.points[opposite].v - a));
+            let inner = n.dot(&(self.points[*opposite].v - a));
             if !same_sign(origin, inner) {
                 return 0.0;
             }
             // Less what the rounding of the corners may add, which a short edge
             // magnifies by the way to the origin.
-            let edges = (b - a).amax().max((c - a).amax());
-            let room = rounding * (1.0 + edges * a.amax() / cross.amax());
-            least = least.min(origin.abs() - room);
+            let edges = larger(largest(&ab), largest(&ac));
+            let room = rounding * (largest(&n) + edges * largest(&a));
+            let distance = (origin.abs() - room) / n.norm();
+            // A face whose area underflows makes this infinite or NaN: no bound.
+            if !(distance < Real::INFINITY) {
+                return 0.0;
+            }
+            if distance < least {
+                least = distance;
+            }
         }
-        least.max(0.0)
+        larger(least, 0.0)
     }
 
     #[inline]
@@ -158,8 +163,10 @@ impl Simplex {
             // have one sign; a flat tetrahedron (0) or NaN examines the face. So does
             // an origin so near its plane that the rounding of the corners, which a
             // short edge magnifies by the way to the origin, could turn the sign.
-            let edges = (b - a).amax().max((c - a).amax());
-            if same_sign(origin, inner) && origin.abs() > rounding * (n.amax() + edges * a.amax()) {
+            let edges = larger(largest(&(b - a)), largest(&(c - a)));
+            if same_sign(origin, inner)
+                && origin.abs() > rounding * (largest(&n) + edges * largest(&a))
+            {
                 continue;
             }
             let (v, face) = nearest_on_triangle(&a, &b, &c);

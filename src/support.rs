@@ -6,7 +6,7 @@
 
 use core::cell::Cell;
 
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, larger, largest};
 
 /// A convex object, known only by its support mapping.
 pub trait SupportMap {
@@ -38,7 +38,7 @@ impl SupportPoint {
     /// the rounding error of `v` is measured.
     #[inline]
     pub fn magnitude(&self) -> Real {
-        self.v1.amax().max(self.v2.amax())
+        larger(largest(&self.v1), largest(&self.v2))
     }
 }
 

@@ -233,12 +233,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         // whether it has an answer.
         let overlap = gjk::intersect(&self.md, start, known.points(), settings.max_iterations)?;
         Ok(match overlap {
-            Overlap::Yes(simplex) => {
+            Overlap::Yes(simplex, inner) => {
                 for p in simplex.points() {
                     known.add(p);
                 }
                 let hit = Penetration {
-                    depth_lower: simplex.inner_distance().min(hit.depth),
+                    depth_lower: inner.min(hit.depth),
                     ..hit
                 };
                 if limit {
@@ -263,7 +263,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         Ok(
             match gjk::intersect(&self.md, start, &[], max_iterations)? {
-                Overlap::Yes(_) => Some(true),
+                Overlap::Yes(..) => Some(true),
                 Overlap::No(n) => {
                     self.remember(state, &Answer::Miss(n))?;
                     Some(false)

@@ -95,7 +95,7 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
 ) -> c_int {
     // SAFETY: passed on.
     match unsafe { gjk_intersect(Query { obj1, obj2, ccd }) } {
-        Some(Ok(Overlap::Yes(_))) => 1,
+        Some(Ok(Overlap::Yes(..))) => 1,
         _ => 0,
     }
 }
