@@ -30,6 +30,8 @@
 // The safety section of every function here is the contract above.
 #![allow(clippy::missing_safety_doc)]
 
+use core::ffi::c_void;
+
 mod arena;
 pub mod callbacks;
 pub mod collide;
@@ -38,3 +40,8 @@ pub mod support;
 pub mod types;
 pub mod vec3;
 pub mod warm;
+
+unsafe extern "C" {
+    fn malloc(size: usize) -> *mut c_void;
+    fn free(block: *mut c_void);
+}

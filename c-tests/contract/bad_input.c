@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Ordinary input of every size, and input that no query can like: points that are not numbers, tolerances of every kind, no
- * iterations, an object against itself, objects without volume, sizes far from 1. Always a
- * return code of the call's, outputs untouched unless it is a hit, a hit sound, and an end:
- * the number of support points is bounded. */
+/* Ordinary input of every size, and input that no query can like: points that are not
+ * numbers, tolerances of every kind, no iterations, an object against itself, objects
+ * without volume, sizes far from 1. Always a return code of the call's, outputs untouched
+ * unless it is a hit, a hit sound, and an end: the number of support points is bounded. */
 
 #include "entries.h"
 #include <math.h>

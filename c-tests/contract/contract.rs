@@ -19,7 +19,7 @@ use harness::{Precision, Program};
 
 const NO_ARGS: [&str; 0] = [];
 
-/// What api.md's extension adds to libccd's symbols.
+/// What the extension adds to libccd's symbols.
 const EXTENSION: [&str; 8] = [
     "ccdImplementation",
     "ccdMPRIntersectWarm",

@@ -7,16 +7,11 @@
 //! A callback may throw or longjmp over this frame, so nothing here has a destructor:
 //! [`with`] frees the block when the query returns, and a callback that unwinds leaks it.
 
-use core::ffi::c_void;
 use core::mem::MaybeUninit;
 
+use super::{free, malloc};
 use crate::epa::{Arena, Entry, FACES_PER_POINT, Face, LEAST_POINTS, MAX_POINTS, Storage};
 use crate::support::{Fault, SupportPoint};
-
-unsafe extern "C" {
-    fn malloc(size: usize) -> *mut c_void;
-    fn free(block: *mut c_void);
-}
 
 /// Points on the stack: enough for all but pairs whose minima (nearly) form a curve.
 const STACK_POINTS: usize = 4 * LEAST_POINTS;

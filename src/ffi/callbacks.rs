@@ -49,9 +49,9 @@ impl Query {
     /// The Minkowski difference; `None` when a support callback is NULL.
     ///
     /// # Safety
-    /// Pointers of the module contract.
+    /// \[inputs\] of the module contract.
     pub unsafe fn difference(&self) -> Option<Difference> {
-        // SAFETY: Pointers; only the two fields are read.
+        // SAFETY: [inputs]; only the two fields are read.
         let (support1, support2) = unsafe { ((*self.ccd).support1?, (*self.ccd).support2?) };
         Some(MinkowskiDifference::new(
             Object {
@@ -69,11 +69,11 @@ impl Query {
     /// a centre callback is NULL.
     ///
     /// # Safety
-    /// Pointers of the module contract.
+    /// \[inputs\] of the module contract.
     pub unsafe fn centre(&self) -> Option<SupportPoint> {
-        // SAFETY: Pointers; only the two fields are read.
+        // SAFETY: [inputs]; only the two fields are read.
         let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
-        // SAFETY: Callbacks.
+        // SAFETY: [callbacks].
         let (v1, v2) = unsafe { (centre_of(center1, self.obj1), centre_of(center2, self.obj2)) };
         Some(SupportPoint { v: v1 - v2, v1, v2 })
     }
@@ -82,12 +82,12 @@ impl Query {
     /// callback is NULL.
     ///
     /// # Safety
-    /// Pointers of the module contract.
+    /// \[inputs\] of the module contract.
     pub unsafe fn first_dir(&self) -> Option<Vec3> {
-        // SAFETY: Pointers; only the field is read.
+        // SAFETY: [inputs]; only the field is read.
         let first_dir = unsafe { (*self.ccd).first_dir? };
         let mut dir = ccd_vec3_t::default();
-        // SAFETY: Callbacks.
+        // SAFETY: [callbacks].
         unsafe { first_dir(self.obj1, self.obj2, &mut dir) };
         Some(dir.into())
     }
@@ -96,7 +96,7 @@ impl Query {
     /// finite. `lasting`: whether the caller keeps a state.
     ///
     /// # Safety
-    /// Pointers of the module contract.
+    /// \[inputs\] of the module contract.
     pub unsafe fn pair(&self, lasting: bool) -> Option<Pair<Object, Object>> {
         // SAFETY: passed on.
         unsafe {
@@ -112,9 +112,9 @@ impl Query {
     /// The caller's cap on iterations, or the library's own where that is lower.
     ///
     /// # Safety
-    /// Pointers of the module contract.
+    /// \[inputs\] of the module contract.
     pub unsafe fn max_iterations(&self) -> u64 {
-        // SAFETY: Pointers; only the field is read.
+        // SAFETY: [inputs]; only the field is read.
         let max: c_ulong = unsafe { (*self.ccd).max_iterations };
         #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
         ITERATION_CAP.min(max as u64)
@@ -123,18 +123,18 @@ impl Query {
     /// mpr_tolerance as the caller set it.
     ///
     /// # Safety
-    /// Pointers of the module contract.
+    /// \[inputs\] of the module contract.
     pub unsafe fn mpr_tolerance(&self) -> Real {
-        // SAFETY: Pointers; only the field is read.
+        // SAFETY: [inputs]; only the field is read.
         unsafe { (*self.ccd).mpr_tolerance }
     }
 
     /// epa_tolerance as the caller set it.
     ///
     /// # Safety
-    /// Pointers of the module contract.
+    /// \[inputs\] of the module contract.
     pub unsafe fn epa_tolerance(&self) -> Real {
-        // SAFETY: Pointers; only the field is read.
+        // SAFETY: [inputs]; only the field is read.
         unsafe { (*self.ccd).epa_tolerance }
     }
 }
@@ -143,7 +143,7 @@ impl Query {
 /// Callbacks of the module contract.
 unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
     let mut c = ccd_vec3_t::default();
-    // SAFETY: Callbacks.
+    // SAFETY: [callbacks].
     unsafe { center(obj, &mut c) };
     c.into()
 }

@@ -32,14 +32,14 @@ fn or_default(tolerance: Real) -> Real {
 /// Writes the outputs that are not NULL.
 ///
 /// # Safety
-/// Outputs of the module contract.
+/// \[outputs\] of the module contract.
 pub unsafe fn write(
     hit: &Penetration,
     depth: *mut Real,
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) {
-    // SAFETY: Outputs.
+    // SAFETY: [outputs].
     unsafe {
         if let Some(depth) = depth.as_mut() {
             *depth = hit.depth;
@@ -68,7 +68,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
 }
 
 /// # Safety
-/// Pointers of the module contract.
+/// \[inputs\] of the module contract.
 unsafe fn gjk_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
     // SAFETY: passed on.
     unsafe {
@@ -103,7 +103,7 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
 /// ccdMPRPenetration with a state; `None` when nothing was decided.
 ///
 /// # Safety
-/// Pointers of the module contract.
+/// \[inputs\] of the module contract.
 pub unsafe fn mpr_penetration(query: Query, state: &mut State, lasting: bool) -> Option<Answer> {
     // SAFETY: passed on.
     unsafe {
@@ -138,7 +138,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
 /// The global minimum, from first_dir; the centres are not asked for.
 ///
 /// # Safety
-/// Pointers of the module contract.
+/// \[inputs\] of the module contract.
 unsafe fn gjk_penetration(query: Query) -> Result<Penetration, c_int> {
     // SAFETY: passed on.
     unsafe {
@@ -177,7 +177,7 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: passed on; Outputs.
+    // SAFETY: passed on; [outputs].
     unsafe {
         match gjk_penetration(Query { obj1, obj2, ccd }) {
             Ok(hit) => {
@@ -198,7 +198,7 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
     ccd: *const ccd_t,
     sep: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: passed on; Outputs.
+    // SAFETY: passed on; [outputs].
     unsafe {
         match gjk_penetration(Query { obj1, obj2, ccd }) {
             Ok(hit) => {

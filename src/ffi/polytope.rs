@@ -8,7 +8,7 @@
 //! So a node is one block of C's malloc, every link stands where libccd puts it, and
 //! `nearest` is kept by libccd's rule. The distances are [`crate::nearest`]'s.
 
-use core::ffi::{c_char, c_int, c_void};
+use core::ffi::{c_char, c_int};
 use core::mem::offset_of;
 use core::ptr::null_mut;
 
@@ -16,13 +16,9 @@ use super::types::{
     CCD_PT_EDGE, CCD_PT_FACE, CCD_PT_VERTEX, ccd_list_t, ccd_pt_edge_t, ccd_pt_el_t, ccd_pt_face_t,
     ccd_pt_t, ccd_pt_vertex_t, ccd_support_t, ccd_vec3_t,
 };
+use super::{free, malloc};
 use crate::math::{EPSILON, Real, Vec3};
 use crate::nearest;
-
-unsafe extern "C" {
-    fn malloc(size: usize) -> *mut c_void;
-    fn free(block: *mut c_void);
-}
 
 /// An empty polytope.
 #[unsafe(no_mangle)]

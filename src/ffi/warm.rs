@@ -95,7 +95,7 @@ impl ccd_penetration_t {
 /// where there is none, and writes what comes of it.
 ///
 /// # Safety
-/// Pointers and Outputs of the module contract; `solve` runs callbacks, so that nothing
+/// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
 /// with a destructor is alive here.
 unsafe fn answer(
     query: Query,
@@ -107,7 +107,7 @@ unsafe fn answer(
     if query.ccd.is_null() || out.is_null() {
         return CCD_BAD_INPUT;
     }
-    // SAFETY: Pointers.
+    // SAFETY: [inputs].
     unsafe {
         let tolerance = tolerance(&query);
         if !(tolerance >= 0.0) {
@@ -155,21 +155,21 @@ unsafe fn answer(
 /// The caller's state; cold where there is none.
 ///
 /// # Safety
-/// Pointers of the module contract.
+/// \[inputs\] of the module contract.
 unsafe fn read(warm: *const ccd_warm_t) -> State {
     if warm.is_null() {
         State::default()
     } else {
-        // SAFETY: Pointers; every bit pattern is a State of the same layout.
+        // SAFETY: [inputs]; every bit pattern is a State of the same layout.
         unsafe { *warm.cast::<State>() }
     }
 }
 
 /// # Safety
-/// Outputs of the module contract.
+/// \[outputs\] of the module contract.
 unsafe fn store(warm: *mut ccd_warm_t, state: &State) {
     if !warm.is_null() {
-        // SAFETY: Outputs.
+        // SAFETY: [outputs].
         unsafe { *warm.cast::<State>() = *state };
     }
 }
@@ -181,7 +181,7 @@ unsafe fn store(warm: *mut ccd_warm_t, state: &State) {
 /// happens.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const ccd_vec3_t) {
-    // SAFETY: Pointers, Outputs.
+    // SAFETY: [inputs], [outputs].
     unsafe {
         let guess = match dir.as_ref() {
             Some(dir) => State::guess(&(*dir).into()),
@@ -366,9 +366,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
 }
 
 /// # Safety
-/// Pointers of the module contract.
+/// \[inputs\] of the module contract.
 unsafe fn unit_of(dir: *const ccd_vec3_t) -> Option<Vec3> {
-    // SAFETY: Pointers.
+    // SAFETY: [inputs].
     unit(&unsafe { *dir.as_ref()? }.into())
 }
 
