@@ -1295,6 +1295,9 @@ mod tests {
                     let size = if i == 5 || j == 5 { 2.0 * long } else { 2.0 };
                     match solve(a, b, start, &mut Memory::default(), TOLERANCE) {
                         (Answer::Hit(p), _) => check(a, b, &p, TOLERANCE, size),
+                        // In single precision the curvature of a needle is rounding:
+                        // the search may stop at the minimum without knowing it.
+                        (Answer::Limit(p), _) if SINGLE => check(a, b, &p, TOLERANCE, size),
                         (Answer::Miss(n), _) => assert!(h(a, b, &n) < 0.0),
                         (other, supports) => panic!("{i} {j} {start:?} {other:?} after {supports}"),
                     }
