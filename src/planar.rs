@@ -170,6 +170,8 @@ mod tests {
     use crate::math::EPSILON;
     use crate::shapes::{Random, Rotation, hull};
 
+    const TAU: Real = core::f64::consts::TAU as Real;
+
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-9 } else { 1e-5 },
         max_iterations: 2000,
@@ -211,7 +213,7 @@ mod tests {
         let mut r = Random::new(1);
         for _ in 0..300 {
             let (_, x, y, m, at) = frame(&mut r);
-            let angle = r.within(0.0, 6.28);
+            let angle = r.within(0.0, TAU);
             let way = x * angle.cos() + y * angle.sin();
             let distance = r.within(0.1, 1.4);
             let disc = |centre: Vec3, radius: Real| {
@@ -221,7 +223,7 @@ mod tests {
                 }
             };
             let md = MinkowskiDifference::new(disc(at, 1.0), disc(at + way * distance, 0.5));
-            let angle = r.within(0.0, 6.28);
+            let angle = r.within(0.0, TAU);
             let hit = solve(&md, &m, x * angle.cos() + y * angle.sin());
             let error = hit.depth - (1.5 - distance);
             assert!(
@@ -252,7 +254,7 @@ mod tests {
                 let n = 3 + (r.within(0.0, 5.0) as usize);
                 (0..n)
                     .map(|i| {
-                        let angle = (i as Real + r.within(0.1, 0.9)) * 6.28 / n as Real;
+                        let angle = (i as Real + r.within(0.1, 0.9)) * TAU / n as Real;
                         centre + x * angle.cos() + y * (0.6 * angle.sin())
                     })
                     .collect::<Vec<_>>()
@@ -301,7 +303,7 @@ mod tests {
             let square = |c: Vec3| [c + x, c + y, c - x, c - y];
             let by = unit(&(x + y)).unwrap() * ((2.0 as Real).sqrt() + 0.01);
             let md = MinkowskiDifference::new(hull(&square(at)), hull(&square(at + by)));
-            let angle = r.within(0.0, 6.28);
+            let angle = r.within(0.0, TAU);
             let start = x * angle.cos() + y * angle.sin();
             match penetration(&md, &m, start, &SETTINGS).unwrap() {
                 Answer::Miss(n) => {

@@ -343,3 +343,159 @@ pub fn refine<A: SupportMap, B: SupportMap>(
     }
     Ok(Exit::Limit(Some(portal)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{Random, Rotation, corners, ellipsoid, hull, placed};
+
+    const ULPS: Real = 100.0 * EPSILON;
+
+    /// D itself, as the difference to a point.
+    fn alone<A: SupportMap>(d: A) -> MinkowskiDifference<A, fn(&Vec3) -> Vec3> {
+        MinkowskiDifference::new(d, |_| Vec3::zeros())
+    }
+
+    /// The three products T of a portal; none is negative by more than rounding.
+    fn crosses(p: &Portal) -> bool {
+        let [a, b, c] = p.planes.each_ref().map(|x| &x.point.v);
+        [(a, b), (b, c), (c, a)]
+            .iter()
+            .all(|(x, y)| triple(&p.ray, x, y) >= -ULPS)
+    }
+
+    /// Where the ray crosses the plane of the portal, and where the support plane.
+    fn reaches(p: &Portal, plane: &Plane) -> (Real, Real) {
+        let along = plane.normal.dot(&p.ray);
+        (
+            plane.normal.dot(&p.planes[0].point.v) / along,
+            plane.depth / along,
+        )
+    }
+
+    /// Algorithm 1 for the ray `d`: the exit, with its invariants checked against the
+    /// distance `exact` at which the ray leaves D.
+    fn check<A: SupportMap>(support: A, d: Vec3, exact: Real, tolerance: Real) {
+        let md = alone(support);
+        let first = Plane::of(&md, d).unwrap();
+        let mut best = first;
+        let mut budget = 1000;
+        match find_portal(&md, &first, &mut best, &mut budget).unwrap() {
+            Found::Portal(found) => {
+                assert!(crosses(&found));
+                // Each vertex is the support point of its own plane.
+                for p in &found.planes {
+                    assert_eq!(md.support(&p.normal).unwrap(), p.point);
+                }
+                // By hand: every update keeps the ray inside, and the portal only
+                // moves on along it (it may begin behind the origin).
+                let mut portal = found;
+                let mut before = Real::NEG_INFINITY;
+                for _ in 0..8 {
+                    let Some(n) = portal.normal() else { break };
+                    let plane = Plane::of(&md, n).unwrap();
+                    let (p, q) = reaches(&portal, &plane);
+                    assert!(p <= exact + ULPS && q >= exact - ULPS, "{p} {exact} {q}");
+                    assert!(p >= before - ULPS);
+                    before = p;
+                    if q - p <= ULPS {
+                        break;
+                    }
+                    portal.update(plane);
+                    assert!(crosses(&portal));
+                }
+                let exit = refine(
+                    &md,
+                    found,
+                    tolerance,
+                    Measure::Ray,
+                    false,
+                    &mut best,
+                    &mut budget,
+                );
+                let Ok(Exit::Converged(portal, plane)) = exit else {
+                    panic!("no exit");
+                };
+                let (p, q) = reaches(&portal, &plane);
+                assert!(p <= exact + ULPS && exact <= q + ULPS && q - p <= tolerance + ULPS);
+                // The witnesses: on the ray, at the portal.
+                let (w1, w2) = portal.witnesses();
+                assert!((w1 - w2 - d * p).norm() <= 10.0 * ULPS);
+            }
+            Found::Vertex => assert!((first.depth - exact).abs() <= ULPS),
+            _ => panic!("no portal"),
+        }
+    }
+
+    #[test]
+    fn algorithm_1_on_an_ellipsoid() {
+        let mut r = Random::new(1);
+        for _ in 0..500 {
+            let radii = Vec3::from_fn(|_, _| r.within(0.3, 2.0));
+            let d = r.direction();
+            let exact = 1.0 / d.component_div(&radii).norm();
+            let support = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
+            check(support, d, exact, 1e-6);
+        }
+    }
+
+    #[test]
+    fn algorithm_1_on_a_box() {
+        let mut r = Random::new(2);
+        for round in 0..500 {
+            let half = Vec3::from_fn(|_, _| r.within(0.3, 2.0));
+            let turn = r.rotation();
+            let at = half.map(|h| r.within(-0.9, 0.9) * h);
+            // Off the centre; every tenth ray along an axis, through the middle of a face.
+            let (at, d) = match round % 10 {
+                0 => (Vec3::zeros(), Vec3::ith(round / 10 % 3, 1.0)),
+                _ => (at, r.direction()),
+            };
+            // Slabs: the nearest of the three planes ahead.
+            let exact = (0..3).fold(Real::INFINITY, |t, i| {
+                t.min((half[i].copysign(d[i]) + at[i]) / d[i]).max(0.0)
+            });
+            let points = placed(&corners(half), &turn, turn * at);
+            check(hull(&points), turn * d, exact, 1e-6);
+        }
+    }
+
+    /// The origin outside: every search ends with a direction that separates, or has the
+    /// ray pass D by (no portal on this side).
+    #[test]
+    fn outside_is_found_out() {
+        let mut r = Random::new(3);
+        for _ in 0..500 {
+            let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
+            let way = r.direction();
+            let points = placed(&corners(half), &r.rotation(), way * 3.0);
+            let md = alone(hull(&points));
+            // From the centre through the origin, as from the centres of two objects.
+            let first = Plane::of(&md, -way).unwrap();
+            let mut best = first;
+            let mut budget = 1000;
+            match mpr(&md, &first, 1e-6, false, &mut best, &mut budget).unwrap() {
+                Exit::Miss(n) => assert!(n.dot(&md.support(&n).unwrap().v) < 0.0),
+                _ => panic!("the origin is outside"),
+            }
+        }
+    }
+
+    /// A budget that is too small is told, and none is exceeded.
+    #[test]
+    fn budget() {
+        let mut r = Random::new(4);
+        for given in 0..20 {
+            let radii = Vec3::new(1.0, 0.7, 0.5);
+            let md = alone(ellipsoid(radii, r.rotation(), Vec3::zeros()));
+            let first = Plane::of(&md, r.direction()).unwrap();
+            let mut best = first;
+            let mut budget = given;
+            let exit = mpr(&md, &first, 0.0, false, &mut best, &mut budget).unwrap();
+            assert!(matches!(exit, Exit::Limit(_)));
+            assert_eq!(budget, 0);
+            assert!(md.supports() <= given + 2);
+            assert!(best.depth <= first.depth);
+        }
+    }
+}

@@ -488,7 +488,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let mut budget = settings.max_iterations;
         let (exit, first) = self.along_ray(dir, state, settings, &mut budget)?;
-        let touch = |plane: &Plane| (plane.normal, plane.depth, plane.point.v1, plane.point.v2);
+        let itself = |plane: &Plane| (plane.normal, plane.depth, plane.point.v1, plane.point.v2);
         let (limit, portal, (normal, h, point1, point2)) = match &exit {
             Exit::Miss(n) => {
                 let answer = Answer::Miss(*n);
@@ -499,14 +499,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 let (p1, p2) = portal.witnesses();
                 (false, Some(portal), (plane.normal, plane.depth, p1, p2))
             }
-            // The cap, or a portal without area: the support plane of the ray itself
-            // is sound; the portal, where there is one, tells the witnesses.
-            Exit::Limit(Some(portal)) => {
-                let (p1, p2) = portal.witnesses();
-                (true, Some(portal), (first.normal, first.depth, p1, p2))
+            // The cap, or a portal without area: every support plane is sound, the one
+            // that the ray meets first is the best of them.
+            Exit::Limit(portal) => {
+                let reach = |p: &Plane| p.depth / dir.dot(&p.normal);
+                let mut best = first;
+                for p in portal.iter().flat_map(|p| &p.planes) {
+                    if dir.dot(&p.normal) > 0.0 && reach(p) < reach(&best) {
+                        best = *p;
+                    }
+                }
+                (true, portal.as_ref(), itself(&best))
             }
-            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => (false, None, touch(&first)),
-            Exit::Limit(None) => (true, None, touch(&first)),
+            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => (false, None, itself(&first)),
         };
         let depth = h / dir.dot(&normal);
         let hit = Penetration {
@@ -535,7 +540,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                     // max also drops NaN
                     reach.max(0.0).min(depth)
                 }
-                None if !limit => depth,
+                None if matches!(exit, Exit::Vertex) => depth,
                 None => 0.0,
             };
         }
