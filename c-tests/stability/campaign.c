@@ -3,7 +3,8 @@
 
 /* How often each library fails, by category of pair.
  *
- *   campaign [pairs a category [tie rule: 0 sign of zero, 1 centre [category]]]
+ *   campaign [pairs a category [tie rule: 0 sign of zero, 1 centre [category, -1 all
+ *             [compatible | extension]]]]
  *
  * Prints one table for libccd and one for this library, at the default tolerance of
  * 1e-4 m, and exits with 1 when this library breaks a promise at that tolerance or
@@ -93,12 +94,13 @@ static void report(const char *name, const char *category, row_t *r)
 int main(int argc, char **argv)
 {
     int pairs = argc > 1 ? atoi(argv[1]) : 2000, tie = argc > 2 ? atoi(argv[2]) : SHAPE_TIE_SIGN;
+    const char *group = argc > 4 ? argv[4] : NULL;
     int only = argc > 3 ? atoi(argv[3]) : -1, category, i, k, broken = 0, rows = 0;
     /* [entry][category] at the default tolerance, and the fine one for ours */
     static row_t table[ENTRIES][CATEGORY_COUNT], fine[ENTRIES][CATEGORY_COUNT];
     static pair_t p;
     if (pairs < 1) {
-        fprintf(stderr, "usage: campaign [pairs a category [tie rule [category]]]\n");
+        fprintf(stderr, "usage: campaign [pairs a category [tie rule [category [group]]]]\n");
         return 2;
     }
     judge_begin();
@@ -120,6 +122,8 @@ int main(int argc, char **argv)
                 const entry_t *e = &entries[k];
                 double tols[2];
                 int t;
+                if (!e->system && !entry_in(e, group))
+                    continue;
                 tols[0] = 1e-4;
                 tols[1] = tolerance(TOL_TIGHT) * pair_size(&p.a, &p.b);
                 for (t = 0; t < (e->system ? 1 : 2); t++) {
@@ -173,7 +177,8 @@ int main(int argc, char **argv)
             for (t = 0; t < 2; t++) {
                 const row_t *r = t ? &fine[k][category] : &table[k][category];
                 double percent = r->asked ? 100. * count_fault(r, FAULT_DEEPER) / r->asked : 0;
-                if (percent > mpr_deep_percent) {
+                /* one pair of a small sample is no rate */
+                if (percent > mpr_deep_percent && count_fault(r, FAULT_DEEPER) > 1) {
                     printf("BROKEN %s: %s is over 1 %% too deep in %.2f %% of pairs at the %s tolerance\n",
                            category_text(category), e->name, percent, t ? "fine" : "default");
                     broken++;

@@ -86,6 +86,14 @@ static const entry_t entries[] = {
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
+/* Is the entry point one of libccd's (or the same with a state), or one of the
+ * extension's own? group NULL: either. */
+static inline int entry_in(const entry_t *e, const char *group)
+{
+    int own = e->ask == ASK_LOCAL || e->ask == ASK_MINIMUM || e->ask == ASK_ALONG;
+    return !group || (strcmp(group, "extension") == 0) == own;
+}
+
 /* Does the answer claim to be the global minimum within the tolerance? */
 static inline int entry_is_minimum(const entry_t *e)
 {
