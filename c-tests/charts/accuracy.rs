@@ -98,7 +98,9 @@ fn picture(
             }
         })
         .collect();
-    figure::grid(&bench.file(file), title, 4, &panels, &bench.notes());
+    let dashes = "dashes: left of them the truth is not known".to_owned();
+    let notes = [vec![dashes], bench.notes()].concat();
+    figure::grid(&bench.file(file), title, 4, &panels, &notes);
 }
 
 /// What of an error can be seen: not less than the truth's own uncertainty, nor

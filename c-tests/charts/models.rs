@@ -175,10 +175,7 @@ fn panel(title: &str, models: &[&Model]) -> Panel {
     }
     Panel {
         title: title.to_owned(),
-        x: (
-            "mean error of the contact's depth, model and query",
-            Unit::Metres,
-        ),
+        x: ("mean error of the depth, model's or query's", Unit::Metres),
         y: ("time per query", Unit::Seconds),
         curves,
         limit: None,
@@ -215,10 +212,7 @@ pub fn run(bench: &Bench) -> Vec<Model> {
     let panels: Vec<Panel> = [("sphere", "a sphere"), ("capsule", "a capsule")]
         .map(|(body, what)| {
             let of: Vec<&Model> = all.iter().filter(|m| m.body == body).collect();
-            panel(
-                &format!("{what} against a capsule: 12 to 2,562 vertices, right to left"),
-                &of,
-            )
+            panel(&format!("{what} against a capsule"), &of)
         })
         .into();
     figure::grid(

@@ -44,6 +44,11 @@ pub const PAPER: [Published; 3] = [
     },
 ];
 
+/// The tolerance at which the paper's algorithms are as exact here as its Table I says
+/// they are there, and need the supports that its implementation needs: 58, 47 and 55
+/// on the pairs of the tables, against 56, 48 and 55 (`c-tests/bench/published.csv`).
+pub const AS_PUBLISHED: f64 = 1e-5;
+
 /// Times and judges `methods` on a scene.
 pub fn rows(bench: &Bench, scene: &Scene, mut methods: Vec<Method>, x: Option<f64>) -> Vec<Row> {
     let ns = measure::times(scene, &mut methods, bench.repetitions(), || ());
@@ -72,10 +77,10 @@ pub fn tables(bench: &Bench) -> Vec<Row> {
         let mut methods = Vec::new();
         for start in Start::GUESSES {
             methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));
-            methods.push(methods::paper(libraries, true, start, 1e-6));
+            methods.push(methods::paper(libraries, true, start, AS_PUBLISHED));
         }
-        // Squares of metres: the second is about as exact as the paper reports.
-        methods.extend([1e-6, 1e-11].map(|t| methods::libccd_epa(libraries, t)));
+        // Squares of metres: the second takes the time that the paper reports.
+        methods.extend([1e-6, 1e-10].map(|t| methods::libccd_epa(libraries, t)));
         methods.push(methods::extension(
             libraries,
             Ask::Minimum,
@@ -99,9 +104,14 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
         let mut methods = Vec::new();
         for start in [Start::Five, Start::FortyFive] {
             methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));
-            methods.push(methods::paper(libraries, true, start, 1e-6));
+            methods.push(methods::paper(libraries, true, start, AS_PUBLISHED));
         }
-        methods.push(methods::paper(libraries, false, Start::FortyFive, 1e-6));
+        methods.push(methods::paper(
+            libraries,
+            false,
+            Start::FortyFive,
+            AS_PUBLISHED,
+        ));
         methods.push(methods::libccd_epa(libraries, 1e-6));
         methods.push(methods::extension(
             libraries,
@@ -115,7 +125,7 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
         let scene = Scene::load(libraries, &format!("p{n}hc_p{n}hc"), bench.poses());
         let mut methods = vec![
             methods::extension(libraries, Ask::Local, Start::Five, 1e-6),
-            methods::paper(libraries, true, Start::Five, 1e-6),
+            methods::paper(libraries, true, Start::Five, AS_PUBLISHED),
         ];
         methods.extend(methods::deep(libraries, &scene, Start::Five));
         all.extend(rows(bench, &scene, methods, Some(n as f64)));
