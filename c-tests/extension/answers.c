@@ -28,7 +28,9 @@ typedef struct {
     double gap;   /* of the truth's bounds */
 } case_t;
 
-static unsigned long outside[QUERIES], judged[QUERIES];
+static unsigned long outside[QUERIES], judged[QUERIES], first_supports[QUERIES], repeated[QUERIES];
+/* Where curvature and depth are nearly equal a search may not end before the cap. */
+static unsigned long limited[QUERIES];
 static unsigned long most[QUERIES], asked[QUERIES], worse[QUERIES], hits[QUERIES], swapped_apart[QUERIES];
 
 static int ask(case_t *c, int swap, ccd_warm_t *warm, ccd_penetration_t *out)
@@ -81,7 +83,9 @@ static void judge(case_t *c, int swap, int code, const ccd_penetration_t *p, con
         CHECK((code != CCD_MISS) == (c->depth > 0), "%s from %s: code %d at depth %g", q, state, code, c->depth);
     if (code == CCD_MISS || c->query == OVERLAP)
         return;
-    CHECK(code == CCD_HIT || (code == CCD_LIMIT && c->query == MINIMUM), "%s from %s: code %d", q, state, code);
+    CHECK(code == CCD_HIT || (code == CCD_LIMIT && (c->query == MINIMUM || c->query == LOCAL)), "%s from %s: code %d", q,
+          state, code);
+    limited[c->query] += code == CCD_LIMIT;
     if (code != CCD_HIT && code != CCD_LIMIT)
         return;
     read3(&p->normal, n);
@@ -137,7 +141,7 @@ static void judge(case_t *c, int swap, int code, const ccd_penetration_t *p, con
         const double x = (w[k] - (double)p->depth * d[k]) - n[k] * apart;
         across += x * x;
     }
-    CHECK(sqrt(across) <= sqrt(2 * (double)p->depth * tol) + tol, "%s from %s: points %g across, at depth %g", q, state,
+    CHECK(code == CCD_LIMIT || sqrt(across) <= sqrt(2 * (double)p->depth * tol) + tol, "%s from %s: points %g across, at depth %g", q, state,
           sqrt(across), (double)p->depth);
     /* A point lies in its shape when no plane has it outside: some planes. The local query
      * finds the curvature of the surface from a few points and places the witnesses by it,
@@ -316,10 +320,59 @@ static void make(case_t *c, int query)
     c->ccd.epa_tolerance = c->ccd.mpr_tolerance = (ccd_real_t)c->tol;
 }
 
+/* Along a direction, by formula: two balls, two boxes whose axes are the world's. */
+static void along_by_formula(void)
+{
+    int i, k;
+    for (i = 0; i < 500; i++) {
+        static case_t c;
+        const double r = random_in(0.3, 1), s = random_in(0.3, 1);
+        double d[3], at[3], h1[3], h2[3], exact = HUGE_VAL, l = 0, dc = 0, cc = 0;
+        ccd_penetration_t out;
+        int code;
+        c.query = ALONG;
+        for (k = 0; k < 3; k++) {
+            d[k] = random_in(-1, 1);
+            at[k] = random_in(-0.15, 0.15);
+            h1[k] = random_in(0.2, 1);
+            h2[k] = random_in(0.2, 1);
+            l += d[k] * d[k];
+        }
+        for (k = 0, l = sqrt(l); k < 3; k++) {
+            c.dir.v[k] = (ccd_real_t)(2 * d[k]);
+            d[k] /= l;
+            dc -= d[k] * at[k];
+            cc += at[k] * at[k];
+        }
+        if (i % 2) {
+            c.a = shape_sphere(r);
+            c.b = shape_sphere(s);
+            exact = dc + sqrt(dc * dc - cc + (r + s) * (r + s));
+        } else {
+            c.a = shape_box(h1[0], h1[1], h1[2]);
+            c.b = shape_box(h2[0], h2[1], h2[2]);
+            for (k = 0; k < 3; k++)
+                exact = fmin(exact, (h1[k] + h2[k] - (d[k] < 0 ? -at[k] : at[k])) / fabs(d[k]));
+        }
+        shape_move(&c.b, at[0], at[1], at[2]);
+        shape_query(&c.ccd);
+        c.ccd.mpr_tolerance = sizeof(ccd_real_t) == 8 ? CCD_REAL(1e-9) : CCD_REAL(1e-4);
+        code = ask(&c, 0, NULL, &out);
+        CHECK(code == CCD_HIT, "along: %d", code);
+        CHECK(fabs((double)out.depth - exact) <= 2 * (double)c.ccd.mpr_tolerance, "along: %.12g, formula %.12g",
+              (double)out.depth, exact);
+        CHECK((double)out.depth_lower <= exact + 100 * (double)epsilon * (1 + exact), "along: at least %.12g, formula %.12g",
+              (double)out.depth_lower, exact);
+        CHECK((double)(out.depth - out.depth_lower) <= 2 * (double)c.ccd.mpr_tolerance, "along: %.12g to %.12g",
+              (double)out.depth_lower, (double)out.depth);
+    }
+}
+
 int main(void)
 {
     static case_t c;
     int query, i;
+    along_by_formula();
     for (query = 0; query < QUERIES; query++) {
         ccd_warm_t foreign;
         memset(&foreign, 0, sizeof foreign);
@@ -334,6 +387,7 @@ int main(void)
             judge(&c, 0, code, &cold, "cold");
             if (code == CCD_HIT && c.depth > 0) {
                 hits[query]++;
+                first_supports[query] += c.a.calls;
                 worse[query] += (double)cold.depth > 1.01 * c.depth + 2 * c.tol;
             }
 
@@ -356,6 +410,8 @@ int main(void)
             memcpy(&copy, &warm, sizeof copy);
             again = ask(&c, 0, &copy, &out);
             judge(&c, 0, again, &out, "its own state");
+            if (code == CCD_HIT && c.depth > 0)
+                repeated[query] += c.a.calls;
             again = ask(&c, 0, &warm, &cold);
             CHECK(memcmp(&out, &cold, sizeof out) == 0 && memcmp(&warm, &copy, sizeof warm) == 0, "%s: a copied state",
                   name[query]);
@@ -405,6 +461,11 @@ int main(void)
                name[query], asked[query], most[query], hits[query], worse[query], swapped_apart[query],
                outside[query], judged[query]);
         CHECK(50 * outside[query] <= judged[query], "%s: %lu witnesses outside", name[query], outside[query]);
+        printf("    %.1f supports a hit, %.1f when asked again\n", (double)first_supports[query] / (double)hits[query],
+               (double)repeated[query] / (double)hits[query]);
+        if (query == LOCAL || query == ALONG)
+            CHECK(3 * repeated[query] <= 2 * first_supports[query], "%s: asked again", name[query]);
+        CHECK(1000 * limited[query] <= 2 * asked[query], "%s: %lu at the cap", name[query], limited[query]);
         CHECK(most[query] <= MOST_CALLS, "%s: %lu supports", name[query], most[query]);
         CHECK(hits[query] > PAIRS / 4, "%s: %lu hits", name[query], hits[query]);
     }
