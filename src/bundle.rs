@@ -878,9 +878,13 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         // A reach that small means that the search is stuck.
         let broken = !step.value.is_finite() || reach < STUCK;
         if done || broken || iterations >= settings.max_iterations {
-            let answer = conclude(&search, &model, &step, iterations);
+            let (answer, across) = conclude(&search, &model, &step, tolerance, iterations);
             remember(memory, &search.curvature, &model, &step);
-            return Ok(if done {
+            // A minimum is where the support plane touches D below the origin: witness
+            // points farther apart across the normal than a curve of the object's size
+            // may be within the tolerance are not witnesses of one.
+            let size = search.curvature.size.max(answer.depth);
+            return Ok(if done && across * across <= 4.0 * tolerance * size {
                 Answer::Hit(answer)
             } else {
                 Answer::Limit(answer)
@@ -941,8 +945,14 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 }
 
 /// The answer: the best support plane, with witness points in the middle of the
-/// active cuts.
-fn conclude(search: &Search, model: &Model, step: &Step, iterations: u64) -> Penetration {
+/// active cuts; and how far across the normal these were from meeting.
+fn conclude(
+    search: &Search,
+    model: &Model,
+    step: &Step,
+    tolerance: Real,
+    iterations: u64,
+) -> (Penetration, Real) {
     let best = &search.seen.points[search.best];
     let b = &model.b;
     let share = search.curvature.share;
@@ -960,6 +970,17 @@ fn conclude(search: &Search, model: &Model, step: &Step, iterations: u64) -> Pen
             point2 -= moved * (1.0 - share);
         }
     }
+    // A direction that ties several vertices shows one of them, which may leave the
+    // model fewer cuts than the search has seen: they still enclose the origin.
+    let level = search.h[search.best] - tolerance;
+    if let Some(weights) = enclosing(&search.seen.points[..search.len()], model, level) {
+        point1 = Vec3::zeros();
+        point2 = Vec3::zeros();
+        for (i, w) in weights {
+            point1 += search.seen.points[i].v1 * w;
+            point2 += search.seen.points[i].v2 * w;
+        }
+    }
     // What is left across the normal is the distance to the model's minimum.
     let across = point1 - point2;
     let across = across - b * across.dot(b);
@@ -968,7 +989,7 @@ fn conclude(search: &Search, model: &Model, step: &Step, iterations: u64) -> Pen
     // Onto the support planes of both objects.
     point1 += b * (best.v1 - point1).dot(b);
     point2 += b * (best.v2 - point2).dot(b);
-    Penetration {
+    let answer = Penetration {
         depth: search.h[search.best],
         depth_lower: 0.0,
         dir: *b,
@@ -976,7 +997,35 @@ fn conclude(search: &Search, model: &Model, step: &Step, iterations: u64) -> Pen
         point1,
         point2,
         iterations,
+    };
+    (answer, across.norm())
+}
+
+/// Three points at or above `level` along b whose triangle the ray along b meets, and
+/// the weights of where it does.
+fn enclosing(points: &[SupportPoint], model: &Model, level: Real) -> Option<[(usize, Real); 3]> {
+    let at = |i: usize| {
+        let v = &points[i].v;
+        (v.dot(&model.b) >= level).then(|| (v.dot(&model.e1), v.dot(&model.e2)))
+    };
+    let area = |p: (Real, Real), q: (Real, Real)| p.0 * q.1 - p.1 * q.0;
+    for k in 2..points.len() {
+        for j in 1..k {
+            for i in 0..j {
+                let (Some(p), Some(q), Some(r)) = (at(i), at(j), at(k)) else {
+                    continue;
+                };
+                let w = [area(q, r), area(r, p), area(p, q)];
+                let sum = w[0] + w[1] + w[2];
+                let w = w.map(|w| w / sum);
+                // False for NaN: three points on a line.
+                if w.iter().all(|&w| w >= 0.0) {
+                    return Some([(i, w[0]), (j, w[1]), (k, w[2])]);
+                }
+            }
+        }
     }
+    None
 }
 
 /// Leaves behind what finds the same active cuts again.
