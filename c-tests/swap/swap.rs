@@ -54,7 +54,7 @@ fn ode_collide() {
 #[test]
 fn ode_pile() {
     let program = checks::ode_pile();
-    piles_must_pass(&checks::piles(&program, "pile", 10, 1500, &["32"], |_| ()));
+    piles_must_pass(&checks::piles(&program, "pile", 10, 1500, &["32", "pile"], |_| ()));
 }
 
 #[test]
