@@ -70,6 +70,7 @@ fn quick_charts_are_whole_and_ours_on_the_front() {
     let out = tempfile::tempdir().expect("a temporary directory");
     charts::run(&charts::Options {
         quick: true,
+        no_instructions: true,
         out: out.path().to_owned(),
     });
     let rows: Vec<Row> = ["accuracy", "paper", "vertices", "coherence", "recorded"]

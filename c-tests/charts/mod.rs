@@ -29,6 +29,9 @@ pub struct Options {
     /// Fewer poses, tolerances and repetitions: two minutes.
     #[arg(long)]
     pub quick: bool,
+    /// Leave out the instruction counts (which run this program under valgrind).
+    #[arg(long)]
+    pub no_instructions: bool,
     /// Where CSV and pictures go.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/c-tests/charts"))]
     pub out: PathBuf,
@@ -159,7 +162,11 @@ pub fn run(options: &Options) {
     let (paper, vertices) = paper::run(&bench);
     let (coherence, recorded) = coherence::run(&bench);
     let models = models::run(&bench);
-    let split = split::run(&bench);
+    let split = if options.no_instructions {
+        Vec::new()
+    } else {
+        split::run(&bench)
+    };
     let results = results::Results {
         accuracy,
         paper,

@@ -114,6 +114,9 @@ fn count(set: &str, number: usize, function: &str, queries: usize) -> Result<(f6
     }
     let text = std::fs::read_to_string(&out).map_err(|e| e.to_string())?;
     let (callbacks, solver) = parse(&text);
+    if callbacks == 0 {
+        return Err(format!("callgrind saw no {function}"));
+    }
     Ok((
         callbacks as f64 / queries as f64,
         solver as f64 / queries as f64,
