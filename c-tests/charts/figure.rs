@@ -307,7 +307,7 @@ pub fn bars(
         let mut chart = ChartBuilder::on(&below)
             .margin(10)
             .x_label_area_size(44)
-            .y_label_area_size(330)
+            .y_label_area_size(390)
             .build_cartesian_2d(0.0..longest * 1.02, (0..bars.len() - 1).into_segmented())?;
         // The first bar on top.
         let name = |k: usize| bars[bars.len() - 1 - k].label.clone();
