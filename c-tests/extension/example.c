@@ -19,7 +19,7 @@ static void center(const void *obj, ccd_vec3_t *out) { *out = ((const body_t *)o
 
 int main(void)
 {
-    body_t ball = { {{0, 0, 0}}, 0, 1 }, box = { {{CCD_REAL(0.1), CCD_REAL(0.2), CCD_REAL(1.52)}}, CCD_REAL(0.5), 0 };
+    body_t ball = { {{0, 0, 0}}, 0, 1 }, box = { {{CCD_REAL(0.1), CCD_REAL(0.2), CCD_REAL(1.515)}}, CCD_REAL(0.5), 0 };
     ccd_warm_t warm = { .words = {0} }; /* all zeros: cold; one for each pair of bodies */
     ccd_penetration_t hit;
     ccd_t ccd;
