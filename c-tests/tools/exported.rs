@@ -391,8 +391,8 @@ fn memory_from_malloc() {
     let mut depth = 0.0;
     unsafe {
         let (minimum, gjk) = (
-            Settings::minimum().at_most(150),
-            Settings::gjk().at_most(150),
+            Settings::minimum().at_most(110),
+            Settings::gjk().at_most(110),
         );
         let code = ccdPenetrationMinimum(obj1, obj2, minimum.get(), null_mut(), out.as_mut_ptr());
         assert_eq!(code, CCD_LIMIT);
