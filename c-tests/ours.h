@@ -12,32 +12,12 @@
 #ifndef TESTS_OURS_H
 #define TESTS_OURS_H
 
-#include <ccd/ccd.h>
-#include <stddef.h>
+#include <ccd/warm.h>
 
 #ifdef OURS_ALONE
 #define OURS(name) name
 #else
 #define OURS(name) rs_##name
-#endif
-
-/* The extension's types: from its header where that is on the path. */
-#if defined(__has_include)
-#if __has_include(<ccd/warm.h>)
-#include <ccd/warm.h>
-#define TESTS_HAVE_WARM_H 1
-#endif
-#endif
-#ifndef TESTS_HAVE_WARM_H
-typedef struct _ccd_warm_t {
-    ccd_real_t opaque[256 / sizeof(ccd_real_t)];
-} ccd_warm_t;
-typedef struct _ccd_penetration_t {
-    ccd_real_t depth, depth_lower;
-    ccd_vec3_t dir, normal, pos, point1, point2;
-    unsigned long supports, iterations;
-} ccd_penetration_t;
-enum { CCD_HIT = 0, CCD_MISS = -1, CCD_NO_MEMORY = -2, CCD_BAD_INPUT = -3, CCD_LIMIT = -4 };
 #endif
 
 #ifdef __cplusplus

@@ -47,7 +47,7 @@ static void check(const configuration_t *c, void *context)
     q.surface = c->surface;
     q.touching = q.touching || c->touching;
     checked++;
-    if (isfinite(c->expected) && !(fabs(truth.depth - c->expected) <= c->within)) {
+    if (!ledger && isfinite(c->expected) && !(fabs(truth.depth - c->expected) <= c->within)) {
         printf("%-28s truth %.17g, expected %.17g\n", c->id, truth.depth, c->expected);
         failed++;
     }
@@ -69,7 +69,9 @@ static void check(const configuration_t *c, void *context)
         }
         /* MPR, cold or warm, is no proof, but finds the minimum in all of these */
         faults &= e->ask == ASK_MPR || e->ask == ASK_MPR_WARM ? FAULTS_NEVER | FAULT_DEEPER : FAULTS_NEVER;
-        if (faults) {
+        if (faults && ledger) {
+            bad++;
+        } else if (faults) {
             if (!bad++)
                 printf("%-28s truth %.17g\n", c->id, truth.depth);
             printf("    FAILED %-22s ", e->name);
@@ -82,8 +84,7 @@ static void check(const configuration_t *c, void *context)
     }
     failed += bad > 0;
     if (ledger && theirs)
-        printf("| %s: %s | %.8g | %s | %s | %s |\n", c->id, c->what, truth.depth,
-               ENTRIES > 2 ? text[0] : "", ENTRIES > 2 ? text[1] : "", text[2]);
+        printf("| %s: %s | %.8g | %s | %s | %s | %s |\n", c->id, c->what, truth.depth, text[0], text[1], text[2], text[3]);
     else if (!ledger)
         printf("%-28.28s truth %-16.10g libccd%s ours", c->id, truth.depth, libccd[0] ? libccd : " -");
     for (i = 0; i < (int)ENTRIES && !ledger; i++)
@@ -103,7 +104,7 @@ int main(int argc, char **argv)
     group = argc > 1 && !ledger ? argv[1] : NULL;
     judge_begin();
     if (ledger)
-        printf("| configuration | true depth | libccd MPR | libccd GJK | this library |\n|---|---|---|---|---|\n");
+        printf("| configuration | true depth | libccd MPR | libccd GJK | our MPR | our GJK |\n|---|---|---|---|---|---|\n");
     configurations_listed(&run);
     configurations_ported(&run);
     if (!ledger) {
@@ -112,5 +113,5 @@ int main(int argc, char **argv)
                 printf("%-24s wrong in %d of %d\n", entries[i].name, broken[i], checked);
         printf("%d configurations, %d failed\n", checked, failed);
     }
-    return failed > 0;
+    return !ledger && failed > 0;
 }
