@@ -195,6 +195,8 @@ struct Query<'q, A, B> {
     tolerance: Real,
     /// Differences of support values below this are rounding.
     rounding: Real,
+    /// What coordinates so large cannot resolve.
+    grain: Real,
     iterations: u64,
 }
 
@@ -248,6 +250,7 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
         if v2 > self.size2 || reach2 > self.reach2 {
             self.size2 = larger(self.size2, v2);
             self.reach2 = larger(self.reach2, reach2);
+            self.grain = 2.0 * EPSILON * self.reach2.sqrt();
             self.rounding = 4.0 * EPSILON * self.size2.sqrt();
             self.tolerance = tolerance(
                 self.settings.tolerance,
@@ -257,16 +260,11 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
         }
     }
 
-    /// What coordinates so large cannot resolve.
-    fn grain(&self) -> Real {
-        2.0 * EPSILON * self.reach2.sqrt()
-    }
-
     /// Faces at least so far away are proven, with room for the grain that is taken from
     /// the lower bound and for the roundings of the bounds themselves.
     #[inline]
     fn target(&self) -> Real {
-        self.upper.depth - (self.tolerance - 2.0 * self.grain())
+        self.upper.depth - (self.tolerance - 2.0 * self.grain)
     }
 
     fn penetration(&self, lower: Real, witness: &SupportPoint) -> Penetration {
@@ -274,7 +272,7 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
         Penetration {
             depth,
             // The points themselves are rounded.
-            depth_lower: (lower - self.grain()).clamp(0.0, depth),
+            depth_lower: (lower - self.grain).clamp(0.0, depth),
             dir: self.upper.dir,
             normal: self.upper.dir,
             point1: witness.v1,
@@ -314,6 +312,7 @@ pub fn minimum<A: SupportMap, B: SupportMap>(
         size2: 0.0,
         tolerance: 0.0,
         rounding: 0.0,
+        grain: 0.0,
         iterations: 0,
     };
     match run(&mut query, seed, arena) {
@@ -914,7 +913,7 @@ impl<'a> Polytope<'a> {
             let grown = lit.is_some_and(|f| self.insert(f, p, query));
             if !grown && !vain {
                 // Rounding error has the last word.
-                let close = query.upper.depth - lower <= 16.0 * query.grain();
+                let close = query.upper.depth - lower <= 16.0 * query.grain;
                 return Ok(Outcome::Done(close, self.finish(query, lower, Some(top))));
             }
         }
