@@ -884,11 +884,13 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             // points farther apart across the normal than a curve of the object's size
             // may be within the tolerance are not witnesses of one.
             let size = search.curvature.size.max(answer.depth);
-            return Ok(if done && across * across <= 4.0 * tolerance * size {
-                Answer::Hit(answer)
-            } else {
-                Answer::Limit(answer)
-            });
+            return Ok(
+                if touch || done && across * across <= 4.0 * tolerance * size {
+                    Answer::Hit(answer)
+                } else {
+                    Answer::Limit(answer)
+                },
+            );
         }
         predicted = step.value;
         on_border = !step.inside;
@@ -1112,6 +1114,7 @@ fn recall(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::local::{self, Shortcut};
 
     /// A support function, placed.
     type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
@@ -1202,6 +1205,15 @@ mod tests {
             |_| (),
         );
         match answer {
+            // What every caller does with a search that did not end in a minimum.
+            Ok(Answer::Limit(p)) => {
+                let shortcut = Shortcut::Always;
+                let rest = settings(tolerance);
+                match local::penetration(&md, p.normal, shortcut, &rest, |_| ()) {
+                    Ok(answer) => (answer, md.supports()),
+                    Err(fault) => panic!("{fault:?}"),
+                }
+            }
             Ok(answer) => (answer, md.supports()),
             Err(fault) => panic!("{fault:?}"),
         }
@@ -1240,7 +1252,7 @@ mod tests {
         let e1 = perpendicular(&p.dir);
         let e2 = p.dir.cross(&e1);
         for k in 0..16 {
-            let (s, c) = (k as Real * 0.3927).sin_cos();
+            let (s, c) = (k as Real * 0.39).sin_cos();
             for step in [1e-3, 1e-2] {
                 let n = (p.dir + (e1 * c + e2 * s) * step).normalize();
                 let there = h(a, b, &n);
