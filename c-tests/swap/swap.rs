@@ -54,7 +54,14 @@ fn ode_collide() {
 #[test]
 fn ode_pile() {
     let program = checks::ode_pile();
-    piles_must_pass(&checks::piles(&program, "pile", 10, 1500, &["32", "pile"], |_| ()));
+    piles_must_pass(&checks::piles(
+        &program,
+        "pile",
+        10,
+        1500,
+        &["32", "pile"],
+        |_| (),
+    ));
 }
 
 #[test]
@@ -77,4 +84,11 @@ fn dart_over_fcl_and_ode() {
             |_| (),
         ));
     }
+}
+
+/// What a simulation needs most: a contact where the bodies touch.
+#[test]
+fn contacts_are_where_the_bodies_are() {
+    let place = harness::Program::c("place").source("swap/place.c");
+    place.link_ours_shared().build().run(["20000"]);
 }
