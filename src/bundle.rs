@@ -81,14 +81,17 @@
 //! the origin outside ends the query with [`Answer::Miss`] at once; the overlap itself
 //! is not proven here.
 //!
+//! So is an answer whose witness points do not meet: stationary is where the support
+//! plane touches D below the origin, and points of the plane around that spot show it.
+//!
 //! *Memory.* A face that is still there is found again by three directions aside of
 //! the last answer, each towards one active cut and farther than the pair moved, and
 //! proven by a fourth; a smooth contact by the last direction and one step with R.
 //!
 //! *Tried and left out*, on the pair sets of the benchmark: five or six samples (two
-//! percent fewer supports, twice the time); refuting R by all pairs instead of the
+//! percent fewer supports, a third more instructions on cylinders); refuting R by all pairs instead of the
 //! best one (the same); an active-set walk from the cut of b instead of the lowest
-//! candidate (the same time, and more answers in worse valleys); only candidates with
+//! candidate (the same instructions; in the one version tried, worse valleys); only candidates with
 //! the newest cut (fewer steps, stops early); lifting cuts by an R that no second pair
 //! has told (a tenth more supports on polytopes); a reach that triples.
 
