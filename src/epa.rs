@@ -62,7 +62,7 @@ pub const LEAST_POINTS: usize = 24;
 #[cfg(not(feature = "single"))]
 const SIZES: (Real, Real) = (1e-120, 1e140);
 #[cfg(feature = "single")]
-const SIZES: (Real, Real) = (1e-16, 1e16);
+const SIZES: (Real, Real) = (1e-13, 1e16);
 
 /// A triangle of the polytope.
 ///
