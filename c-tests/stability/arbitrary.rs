@@ -268,14 +268,14 @@ proptest! {
         let answers: Vec<_> = (0..5)
             .map(|query| {
                 a.calls.set(0);
-b.calls.set(0);
+                b.calls.set(0);
                 ask(query, &a, &b, tolerance, &start)
             })
             .collect();
         let (minimum, proven) = (answers[4].1, answers[4].3);
         let is_hit = |code: c_int| code == CCD_HIT || code == CCD_LIMIT;
         a.calls.set(0);
-b.calls.set(0);
+        b.calls.set(0);
         for (query, &(code, depth, dir, _)) in answers.iter().enumerate() {
             prop_assert!(is_hit(code) || code == CCD_MISS, "query {query}: code {code}");
             if !is_hit(code) {
@@ -329,7 +329,7 @@ b.calls.set(0);
     ) {
         for query in 0..5 {
             a.calls.set(0);
-b.calls.set(0);
+            b.calls.set(0);
             let (code, depth, dir, proven) = ask(query, &a, &b, tolerance, &start);
             let least = if query >= 3 { CCD_LIMIT } else { CCD_NO_MEMORY };
             prop_assert!((least..=CCD_HIT).contains(&code), "query {query}: code {code}");
