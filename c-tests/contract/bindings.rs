@@ -4,6 +4,7 @@
 //! The types of the C interface against bindgen's view of libccd's own headers, which
 //! is committed: only renewing it takes libclang.
 
+#[cfg(not(feature = "single"))]
 use std::mem::{align_of, offset_of, size_of};
 use std::panic::catch_unwind;
 use std::path::Path;

@@ -24,6 +24,13 @@ static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const 
     }
 }
 
+/* Bit by bit but for what a compiler puts between the fields. */
+static int same_answer(const ccd_penetration_t *a, const ccd_penetration_t *b)
+{
+    size_t reals = offsetof(ccd_penetration_t, point2) + sizeof a->point2;
+    return same_bits(a, b, reals) && a->supports == b->supports && a->iterations == b->iterations;
+}
+
 static const ccd_vec3_t *dir_of(int query) { return query == PLANAR ? &up : &way; }
 
 /* Two flat squares in z = 0 that overlap by 0.25 along x. */
@@ -187,7 +194,7 @@ static void freedoms(void)
                 d.v[k] = (ccd_real_t)ldexp((double)d.v[k], i);
             memset(&out, 0, sizeof out);
             CHECK(ask(query, &one, &other, &good, &d, NULL, &out) == CCD_HIT, "%s: length", name[query]);
-            CHECK(same_bits(&out, &unit, sizeof out), "%s: a direction of length 2^%d", name[query], i);
+            CHECK(same_answer(&out, &unit), "%s: a direction of length 2^%d", name[query], i);
         }
         for (i = 1; i < 4; i++) {
             ccd = good;
@@ -287,7 +294,7 @@ static void reentrant(void)
         for (frame = 0; frame < 2; frame++) {
             ask(query, &one, &other, &good, dir_of(query), &w1, &plain);
             ask(query, &one, &other, &ccd, dir_of(query), &w2, &out);
-            CHECK(same_bits(&plain, &out, sizeof out), "%s: a query inside of a query", name[query]);
+            CHECK(same_answer(&plain, &out), "%s: a query inside of a query", name[query]);
             CHECK(same_bits(&w1, &w2, sizeof w1), "%s: the state", name[query]);
         }
     }

@@ -34,6 +34,7 @@ fn source(name: &str) -> Program {
 }
 
 /// Every pair set under c-tests/pairs.
+#[cfg(not(feature = "single"))]
 fn pair_sets() -> Vec<String> {
     let dir = harness::root().join("c-tests/pairs");
     let mut sets: Vec<String> = std::fs::read_dir(&dir)

@@ -5,6 +5,9 @@
 //! library as they run on libccd. The table of `cargo run --release --example swap`
 //! is made by the same checks.
 
+// Debian's programs are compiled for double.
+#![cfg(not(feature = "single"))]
+
 #[path = "../harness/mod.rs"]
 mod harness;
 
