@@ -304,9 +304,9 @@ pub fn refine<A: SupportMap, B: SupportMap>(
 ) -> Result<Exit, Fault> {
     while *budget > 0 {
         *budget -= 1;
-        let Some(n) = portal.normal() else {
-            // Three points on a line: the ray leaves D through an edge that the
-            // arithmetic cannot split further.
+        // Three points on a line, or so near that rounding turns their triangle over:
+        // the arithmetic cannot split it further.
+        let Some(n) = portal.normal().filter(|n| n.dot(&portal.ray) > 0.0) else {
             return Ok(Exit::Limit(Some(portal)));
         };
         let along = n.dot(&portal.ray);
