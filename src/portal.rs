@@ -113,6 +113,19 @@ impl Portal {
         self.planes[replaced] = w;
     }
 
+    /// Where along the ray the triangle is: |p|, negative behind the origin. A mean of
+    /// the vertices with weights T, which rounding does not move out of the triangle.
+    fn reach(&self) -> Real {
+        let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
+        let t = [
+            triple(&self.ray, b, c),
+            triple(&self.ray, c, a),
+            triple(&self.ray, a, b),
+        ];
+        let along = t[0] * self.ray.dot(a) + t[1] * self.ray.dot(b) + t[2] * self.ray.dot(c);
+        along / (t[0] + t[1] + t[2])
+    }
+
     /// The points of obj1 and obj2 whose difference is where the ray crosses the
     /// triangle: both are convex combinations of the objects' own support points.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
@@ -333,7 +346,7 @@ pub fn refine<A: SupportMap, B: SupportMap>(
         // Within the tolerance and the origin on the inner side of the portal: a
         // support plane that may still exclude the origin is no answer yet. NaN
         // (a plane that holds the ray) ends the loop.
-        if !(gap > floor) || (gap <= tolerance && inner >= 0.0) {
+        if !(gap > floor) || (gap <= tolerance && inner >= 0.0 && portal.reach() >= 0.0) {
             return Ok(Exit::Converged(portal, plane));
         }
         if shortcut && plane.depth * along <= inner {
