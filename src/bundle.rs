@@ -776,6 +776,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         let extent = (p.v - inner).norm();
         if newest == 0 {
             search.curvature.forget_unless_fits(extent);
+            tolerance = crate::math::tolerance(settings.tolerance, extent, 0.0).max(rounding);
         } else {
             search.curvature.size = search.curvature.size.max(extent);
             twin = search.learn(&n, &p, h);

@@ -22,7 +22,7 @@ use crate::contact::{Answer, Penetration, Settings};
 use crate::epa::{self, Arena, Entry, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
 use crate::local::{self, Shortcut};
-use crate::math::{Real, Vec3, unit};
+use crate::math::{self, Real, Vec3, unit};
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -308,6 +308,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let answer = self.local_known(state, settings, &mut known)?;
         let (Answer::Hit(local) | Answer::Limit(local)) = answer else {
             return Ok(answer);
+        };
+        // As coarse as asked for, but not coarser than the objects.
+        let size = match self.centre {
+            Some(c) => local.depth - local.normal.dot(&c.v),
+            None => local.depth,
+        };
+        let settings = &Settings {
+            tolerance: math::tolerance(settings.tolerance, size, 0.0),
+            ..*settings
         };
         let proof = Settings {
             tolerance: settings.tolerance.max(GAP * local.depth),
