@@ -115,7 +115,7 @@ impl Portal {
 
     /// Where along the ray the triangle is: |p|, negative behind the origin. A mean of
     /// the vertices with weights T, which rounding does not move out of the triangle.
-    fn reach(&self) -> Real {
+    pub fn reach(&self) -> Real {
         let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
         let t = [
             triple(&self.ray, b, c),

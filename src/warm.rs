@@ -541,11 +541,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // The bound along dir: the portal is inscribed and the origin in D.
             hit.depth_lower = match portal {
                 Some(p) => {
-                    let corner = &p.planes[0].point;
-                    let room = rounding(corner.magnitude());
+                    let size = p
+                        .planes
+                        .iter()
+                        .fold(0.0, |m: Real, plane| m.max(plane.point.magnitude()));
                     let reach = p
                         .normal()
-                        .map_or(0.0, |n| (n.dot(&corner.v) - room) / n.dot(&dir));
+                        .map_or(0.0, |n| p.reach() - rounding(size) / n.dot(&dir));
                     // max also drops NaN
                     reach.max(0.0).min(depth)
                 }
