@@ -34,9 +34,6 @@ pub enum Shortcut {
     Never,
     /// Whenever |z| ≤ |p|: Algorithms 4 and 5.
     Always,
-    /// Not on the first ray, whose end is libccd's answer when it starts from the
-    /// centres; whenever |z| ≤ |p| after it.
-    AfterFirstRay,
 }
 
 /// A step aside from a stationary direction: tan of about 6°, small enough to stay
@@ -56,7 +53,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut budget = settings.max_iterations;
     let mut ray = Plane::of(md, start)?;
     let mut best = ray;
-    let mut may_leave = shortcut == Shortcut::Always;
+    let may_leave = shortcut == Shortcut::Always;
     // The ray that was stepped aside from: stationary, its depth and witnesses exact.
     let mut aside: Option<Plane> = None;
     let used = |budget: u64| settings.max_iterations - budget;
@@ -110,7 +107,6 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 if lower_elsewhere { best } else { plane }
             }
         };
-        may_leave = shortcut != Shortcut::Never;
         if budget == 0 {
             return Ok(Answer::Limit(answer(best, None, used(budget))));
         }
@@ -311,7 +307,7 @@ mod tests {
             ball(Vec3::z() * 0.2, 0.5),
             capsule(Vec3::z() * -0.5, Vec3::z() * 0.5, 0.5),
         );
-        for shortcut in [Shortcut::Never, Shortcut::Always, Shortcut::AfterFirstRay] {
+        for shortcut in [Shortcut::Never, Shortcut::Always] {
             for md in [&md, &shifted] {
                 for start in [Vec3::z(), -Vec3::z()] {
                     let hit = solve(md, start, shortcut, |_| ());
