@@ -39,7 +39,53 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
     known: &[SupportPoint],
     max_iterations: u64,
 ) -> Result<Overlap, Fault> {
+    if let Some(simplex) = around(&start, known) {
+        let inner = simplex.inner_distance();
+        if inner > 0.0 {
+            return Ok(Overlap::Yes(simplex, inner));
+        }
+    }
     search(md, start, known, max_iterations, |_, _| ())
+}
+
+/// The tetrahedron of `start`, the first of the `known` points, and two more of them,
+/// that holds the origin, if there is one and rounding does not hide it.
+///
+/// Seen along the line from `start` through the origin, that tetrahedron is a triangle
+/// around a point, and of the triangles with the first point for a corner the widest
+/// is: its other corners are the points that lie farthest round on either side.
+#[inline]
+fn around(start: &SupportPoint, known: &[SupportPoint]) -> Option<Simplex> {
+    let (first, others) = known.split_first()?;
+    let d = start.v;
+    // Perpendicular to d: a point's two coordinates seen along it are its dot products
+    // with `across` and, stretched by |d| |across|, with `up`.
+    let across = first.v.cross(&d);
+    let up = d.cross(&across);
+    // The first point itself lies where `up` points.
+    let (mut left, mut right): (Option<Side>, Option<Side>) = (None, None);
+    for point in others {
+        let x = across.dot(&point.v);
+        let y = up.dot(&point.v);
+        let side = if x > 0.0 { &mut left } else { &mut right };
+        // Farther round from the first: y / |x| is less.
+        if side.as_ref().is_none_or(|s| y * s.x.abs() < s.y * x.abs()) {
+            *side = Some(Side { point, x, y });
+        }
+    }
+    let (a, b) = (left?, right?);
+    if a.y * b.x >= b.y * a.x {
+        Some(Simplex::of([*start, *first, *a.point, *b.point]))
+    } else {
+        None
+    }
+}
+
+/// A point as it is seen along the line from the start of a search through the origin.
+struct Side<'a> {
+    point: &'a SupportPoint,
+    x: Real,
+    y: Real,
 }
 
 /// [`intersect`], telling `seen` of each direction it asks and the support point there.

@@ -18,13 +18,9 @@ pub struct Simplex {
     len: usize,
 }
 
-/// Each face of a tetrahedron with the vertex opposite to it.
-const FACES: [([usize; 3], usize); 4] = [
-    ([0, 1, 3], 2),
-    ([1, 2, 3], 0),
-    ([2, 0, 3], 1),
-    ([0, 1, 2], 3),
-];
+/// The faces of a tetrahedron, all turned outwards or all inwards. The first three hold
+/// the last vertex.
+const FACES: [[usize; 3]; 4] = [[0, 1, 3], [1, 2, 3], [2, 0, 3], [1, 0, 2]];
 
 /// Where the origin lies, seen from a simplex.
 pub enum Nearest {
@@ -90,30 +86,36 @@ impl Simplex {
             return 0.0;
         }
         let rounding = 4.0 * EPSILON * self.magnitude();
+        let [p, q, r, s] = self.points.each_ref().map(|p| &p.v);
+        // The faces around s, and the base: all turned outwards or all inwards.
+        let [sp, sq, sr] = [p - s, q - s, r - s];
+        let [pr, pq] = [r - p, q - p];
+        let [at_s, at_p] = [largest(s), largest(p)];
+        let [p_, q_, r_] = [largest(&sp), largest(&sq), largest(&sr)];
+        let faces = [
+            (sp.cross(&sq), s, at_s * larger(p_, q_)),
+            (sq.cross(&sr), s, at_s * larger(q_, r_)),
+            (sr.cross(&sp), s, at_s * larger(r_, p_)),
+            (pr.cross(&pq), p, at_p * larger(largest(&pr), largest(&pq))),
+        ];
         let mut least = Real::INFINITY;
-        for (f, opposite) in &FACES {
-            let [a, b, c] = f.map(|i| self.points[i].v);
-            let (ab, ac) = (b - a, c - a);
-            let n = ab.cross(&ac);
-            let origin = -n.dot(&a);
-            let inner = n.dot(&(self.points[*opposite].v - a));
-            if !same_sign(origin, inner) {
-                return 0.0;
-            }
+        let outwards = faces[0].0.dot(s) > 0.0;
+        for (n, a, lever) in &faces {
+            let origin = n.dot(a);
+            let origin = if outwards { origin } else { -origin };
             // Less what the rounding of the corners may add, which a short edge
             // magnifies by the way to the origin.
-            let edges = larger(largest(&ab), largest(&ac));
-            let room = rounding * (largest(&n) + edges * largest(&a));
-            let distance = (origin.abs() - room) / n.norm();
-            // A face whose area underflows makes this infinite or NaN: no bound.
-            if !(distance < Real::INFINITY) {
+            let distance = (origin - rounding * lever) / n.norm() - rounding;
+            // Not on the inner side, or within rounding of it, or a face whose area
+            // underflows (infinite or NaN): no bound.
+            if !(distance > 0.0 && distance < Real::INFINITY) {
                 return 0.0;
             }
             if distance < least {
                 least = distance;
             }
         }
-        larger(least, 0.0)
+        least
     }
 
     #[inline]
@@ -154,11 +156,11 @@ impl Simplex {
         let mut best: Option<(Real, Vec3, Face, [usize; 3])> = None;
         let rounding = 4.0 * EPSILON * self.magnitude();
         // The last face lacks the newest vertex.
-        for (f, opposite) in &FACES[..3] {
+        for (f, opposite) in FACES[..3].iter().zip([2, 0, 1]) {
             let [a, b, c] = f.map(|i| self.points[i].v);
             let n = (b - a).cross(&(c - a));
             let origin = -n.dot(&a);
-            let inner = n.dot(&(self.points[*opposite].v - a));
+            let inner = n.dot(&(self.points[opposite].v - a));
             // The origin is on the inner side of this face only if both products
             // have one sign; a flat tetrahedron (0) or NaN examines the face. So does
             // an origin so near its plane that the rounding of the corners, which a
