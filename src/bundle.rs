@@ -96,6 +96,7 @@
 //! has told (a tenth more supports on polytopes); a reach that triples.
 
 use crate::contact::{Answer, Penetration, Settings};
+use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -755,12 +756,26 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut tolerance = settings.tolerance;
     let mut iterations = 0;
     loop {
-        let p = md.support(&n)?;
+        let mut p = md.support(&n)?;
         met(&p);
-        let h = n.dot(&p.v);
+        let mut h = n.dot(&p.v);
+        if h < search.h[search.best]
+            && gjk::farthest(search.seen.points(), &n, h + search.noise).is_some()
+        {
+            // D holds what was seen: a callback that answers less is wrong there, and is
+            // asked again a little beside it.
+            n = unit(&(n + perpendicular(&n) * EPSILON.sqrt())).unwrap_or(n);
+            p = md.support(&n)?;
+            met(&p);
+            h = n.dot(&p.v);
+        }
         if h < 0.0 {
-            search.seen.len = 0;
-            return Ok(Answer::Miss(n));
+            let Some(q) = gjk::farthest(search.seen.points(), &n, 0.0) else {
+                search.seen.len = 0;
+                return Ok(Answer::Miss(n));
+            };
+            p = q;
+            h = n.dot(&p.v);
         }
         iterations += 1;
         let size = (p.v1.x.abs() + p.v1.y.abs() + p.v1.z.abs())

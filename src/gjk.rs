@@ -111,7 +111,7 @@ pub fn search<A: SupportMap, B: SupportMap>(
             return Ok(Overlap::Undecided);
         }
         let n = -v / distance;
-        let w = match farthest(known, &n) {
+        let w = match farthest(known, &n, 0.0) {
             Some(w) => w,
             None => {
                 let w = md.support(&n)?;
@@ -227,11 +227,10 @@ fn near_touch<A: SupportMap, B: SupportMap>(
     )
 }
 
-/// The point farthest along `n`, if it lies beyond the origin.
+/// The point farthest along `n`, if it reaches beyond `reach`.
 #[inline]
-fn farthest(known: &[SupportPoint], n: &Vec3) -> Option<SupportPoint> {
+pub fn farthest(known: &[SupportPoint], n: &Vec3, mut reach: Real) -> Option<SupportPoint> {
     let mut best = None;
-    let mut reach = 0.0;
     for p in known {
         let d = n.dot(&p.v);
         if d > reach {
