@@ -481,6 +481,7 @@ pub struct Executable {
     environment: Vec<(String, String)>,
     timeout: Duration,
     tools: bool,
+    quiet: bool,
 }
 
 /// What a program that succeeded wrote.
@@ -501,6 +502,7 @@ impl Executable {
             environment: Vec::new(),
             timeout: Duration::from_secs(300),
             tools: true,
+            quiet: false,
         }
     }
 
@@ -523,15 +525,22 @@ impl Executable {
         self
     }
 
+    /// Prints nothing of what the program writes.
+    pub fn quiet(mut self) -> Executable {
+        self.quiet = true;
+        self
+    }
+
     /// Runs the program to its end and prints what it wrote. Panics unless it
     /// exits with 0 in time.
     pub fn run(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Written {
         let (status, written) = self.run_to_end(args);
         assert!(
             status.success(),
-            "{} failed: {status}\n{:?}",
+            "{} failed: {status}\n{:?}\n{}",
             self.name,
-            self.command()
+            self.command(),
+            written.stderr
         );
         written
     }
@@ -548,7 +557,9 @@ impl Executable {
             1
         };
         let (status, written) = run_command(command.args(args), self.timeout * factor);
-        println!("--- {}\n{}{}", self.name, written.stdout, written.stderr);
+        if !self.quiet {
+            println!("--- {}\n{}{}", self.name, written.stdout, written.stderr);
+        }
         (status, written)
     }
 

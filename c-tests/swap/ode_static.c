@@ -8,7 +8,8 @@
  *
  * wrong 1: ODE's own callback gave a point that is not a support point.
  *
- * usage: ode_static SEED POSES   (POSES placed pairs of each two kinds) */
+ * usage: ode_static SEED POSES asis|mended   (POSES placed pairs of each two kinds)
+ *   mended: such points are replaced by the right ones, and wrong is 0 */
 
 #include "swap/poses.h"
 
@@ -16,8 +17,8 @@
  * it makes a unit vector of what rounding leaves across the axis, and answers with
  * a point up to a radius out of place. Such queries are about no convex shape; they
  * are found by holding every support point against the shape it is said to be of. */
-static int callback_wrong;
-static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v);
+static int mended, callback_wrong;
+static void audit(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v);
 #define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
 #include "swap/watch.h"
 
@@ -28,25 +29,41 @@ typedef struct {
     body_t body;
     dGeomID geom;
     dTriMeshDataID mesh;
-    double vertex[18];
+    double vertex[9];
     dTriIndex index[6];
 } placed_t;
 
 static placed_t a, b;
 
-static double excess(const placed_t *p, const ccd_vec3_t *dir, const ccd_vec3_t *v)
+/* The support point along dir; returns how far v is off it. */
+static double right_point(const shape_t *s, const ccd_vec3_t *dir, const ccd_vec3_t *v, double point[3])
 {
     static const double origin[3];
-    double point[3];
-    truth_point(&p->body.shape, origin, dir->v, point);
+    truth_point(s, origin, dir->v, point);
     return fabs(dir->v[0] * (v->v[0] - point[0]) + dir->v[1] * (v->v[1] - point[1]) + dir->v[2] * (v->v[2] - point[2]));
 }
 
-/* Which of the two an object is does not show: an answer is right when it fits one of them. */
-static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v)
+static double from(const shape_t *s, const ccd_vec3_t *p)
 {
-    (void)obj;
-    callback_wrong |= !(fmin(excess(&a, dir, v), excess(&b, dir, v)) < 1e-10 * pair_size(&a.body.shape, &b.body.shape));
+    return hypot(hypot(s->pos[0] - p->v[0], s->pos[1] - p->v[1]), s->pos[2] - p->v[2]);
+}
+
+static void audit(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
+{
+    ccd_vec3_t centre;
+    const placed_t *p;
+    double point[3];
+    if (watched.queries != watched.first)
+        return;
+    watch_centre(obj, &centre);
+    /* a's centre is where a is; that of a triangle is where ODE puts it */
+    p = from(&a.body.shape, &centre) < 1e-12 ? &a : &b;
+    if (right_point(&p->body.shape, dir, v, point) < 1e-10 * pair_size(&a.body.shape, &b.body.shape))
+        return;
+    if (mended)
+        ccdVec3Set(v, point[0], point[1], point[2]);
+    else
+        callback_wrong = 1;
 }
 
 static void geom_make(placed_t *p)
@@ -65,13 +82,12 @@ static void geom_make(placed_t *p)
         p->geom = dCreateConvex(NULL, b->hull.plane, (unsigned)b->hull.faces, b->hull.vertex, (unsigned)b->hull.vertices, b->hull.polygon);
         break;
     default:
-        /* ODE cannot have a mesh of one triangle: a copy stands far away */
-        for (i = 0; i < 18; i++)
-            p->vertex[i] = i < 9 ? b->hull.vertex[i] : b->hull.vertex[i - 9] + 100;
+        /* ODE cannot have a mesh of one triangle: the other is its back */
+        memcpy(p->vertex, b->hull.vertex, 9 * sizeof(double));
         for (i = 0; i < 6; i++)
-            p->index[i] = (dTriIndex)i;
+            p->index[i] = (dTriIndex)(i < 3 ? i : 5 - i);
         p->mesh = dGeomTriMeshDataCreate();
-        dGeomTriMeshDataBuildDouble(p->mesh, p->vertex, 3 * sizeof(double), 6, p->index, 6, 3 * sizeof(dTriIndex));
+        dGeomTriMeshDataBuildDouble(p->mesh, p->vertex, 3 * sizeof(double), 3, p->index, 6, 3 * sizeof(dTriIndex));
         dGeomTriMeshDataPreprocess2(p->mesh, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, NULL);
         p->geom = dCreateTriMesh(NULL, p->mesh, NULL, NULL, NULL);
         break;
@@ -102,18 +118,22 @@ static void geom_free(placed_t *p)
 static void collide(long number, const known_t *known)
 {
     dContactGeom contact;
-    const unsigned long before = watched.queries;
     int hit;
     callback_wrong = 0;
+    watched.first = watched.queries;
     hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
-    if (watched.queries == before)
+    if (watched.queries == watched.first)
         return; /* not libccd's */
-    printf("collide %s %s %ld %.17g %.17g %.17g %d ", KIND_NAME[a.body.kind], KIND_NAME[b.body.kind], number, known->size,
-           known->lower, known->upper, hit);
-    if (hit)
-        printf("%.17g %.17g %d\n", contact.depth, dCalcVectorLength3(contact.normal), callback_wrong);
+    printf("collide %s %s %ld %.17g %.17g %.17g ", KIND_NAME[a.body.kind], KIND_NAME[b.body.kind], number, known->size,
+           known->lower, known->upper);
+    /* A triangle that touches is turned a little and asked about again, four times: the
+     * first answer is the one about this pose. */
+    if (b.body.kind == KIND_TRIANGLE)
+        printf("%d %.17g %.17g %d\n", watched.answer == 0, watched.depth, watched.length, callback_wrong);
+    else if (hit)
+        printf("1 %.17g %.17g %d\n", contact.depth, dCalcVectorLength3(contact.normal), callback_wrong);
     else
-        printf("0 0 %d\n", callback_wrong);
+        printf("0 0 0 %d\n", callback_wrong);
 }
 
 int main(int argc, char **argv)
@@ -122,11 +142,12 @@ int main(int argc, char **argv)
     enum { COUNT = sizeof kinds / sizeof kinds[0] };
     long number = 0, k, poses;
     int i, j, d;
-    if (argc != 3) {
-        fprintf(stderr, "usage: ode_static SEED POSES\n");
+    if (argc != 4) {
+        fprintf(stderr, "usage: ode_static SEED POSES asis|mended\n");
         return 2;
     }
     poses = atol(argv[2]);
+    mended = !strcmp(argv[3], "mended");
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
     watch_library();

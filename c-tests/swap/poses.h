@@ -47,7 +47,7 @@ static inline void body_random(body_t *b, int kind)
         double area;
         do {
             for (i = 0; i < 9; i++)
-                b->hull.vertex[i] = uniform(-0.5, 0.5);
+                b->hull.vertex[i] = (float)uniform(-0.5, 0.5); /* ODE keeps floats */
             {
                 const double *v = b->hull.vertex;
                 const double p[3] = { v[3] - v[0], v[4] - v[1], v[5] - v[2] }, q[3] = { v[6] - v[0], v[7] - v[1], v[8] - v[2] };

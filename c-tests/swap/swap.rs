@@ -20,6 +20,12 @@ fn args(seed: u64, poses: usize) -> Vec<String> {
     vec![seed.to_string(), poses.to_string()]
 }
 
+fn ode_args(callbacks: &str) -> Vec<String> {
+    let mut args = args(1, 60);
+    args.push(callbacks.to_owned());
+    args
+}
+
 fn must_pass(s: &Static) {
     assert!(s.queries > 1000, "too few queries: {s:?}");
     assert!(
@@ -44,14 +50,18 @@ fn piles_must_pass(p: &Piles) {
 #[test]
 fn fcl_collide_and_signed_distance() {
     let lines = checks::fcl_static().run(&args(1, 20));
-    must_pass(&checks::judge_collide("FCL", &lines));
+    must_pass(&checks::judge_collide("FCL", "collide", &lines));
     must_pass(&checks::judge_distance("FCL", &lines));
 }
 
 #[test]
 fn ode_collide() {
-    let lines = checks::ode_static().run(&args(1, 60));
-    must_pass(&checks::judge_collide("ODE", &lines));
+    let ode = checks::ode_static();
+    let as_is = checks::judge_collide("ODE", "collide", &ode.run(&ode_args("asis")));
+    must_pass(&as_is);
+    let mended = checks::judge_collide("ODE", "mended", &ode.run(&ode_args("mended")));
+    must_pass(&mended);
+    assert!(as_is.wrong > 0 && mended.wrong == 0, "{as_is:?} {mended:?}");
 }
 
 #[test]
@@ -72,6 +82,15 @@ fn mujoco_pile() {
     let program = checks::mujoco_pile();
     let pile = ["30", "pile"];
     piles_must_pass(&checks::piles(&program, "pile", 10, 1500, &pile, |_| ()));
+    let small = ["20", "pile"];
+    piles_must_pass(&checks::taken_over(
+        &program,
+        "small pile",
+        10,
+        1500,
+        &small,
+        |_| (),
+    ));
 }
 
 #[test]

@@ -31,11 +31,16 @@ fn table() {
     let seed_and_poses = |poses: usize| vec!["2".to_owned(), poses.to_string()];
     eprintln!("FCL and ODE: static queries");
     let fcl = checks::fcl_static().run(&seed_and_poses(60));
-    let ode = checks::ode_static().run(&seed_and_poses(200));
+    let ode = |callbacks: &str| {
+        let mut args = seed_and_poses(200);
+        args.push(callbacks.to_owned());
+        checks::ode_static().run(&args)
+    };
     let rows = [
-        checks::judge_collide("FCL", &fcl),
+        checks::judge_collide("FCL", "collide", &fcl),
         checks::judge_distance("FCL", &fcl),
-        checks::judge_collide("ODE", &ode),
+        checks::judge_collide("ODE", "collide", &ode("asis")),
+        checks::judge_collide("ODE", "collide, its cylinder mended", &ode("mended")),
     ];
     for row in &rows {
         for line in row.against.iter().take(20) {
@@ -43,9 +48,15 @@ fn table() {
         }
     }
     let dart = checks::dart_pile();
+    let mujoco = checks::mujoco_pile();
+    let small = "small pile, second halves from libccd's first";
+    let taken_over = checks::taken_over(&mujoco, small, 10, 1500, &["20", "pile"], |seed| {
+        eprintln!("MuJoCo {small}: start {seed} of 10");
+    });
     let simulations = [
         piles(&checks::ode_pile(), "pile", 10, 1500, &["32", "pile"]),
-        piles(&checks::mujoco_pile(), "pile", 10, 1500, &["30", "pile"]),
+        piles(&mujoco, "pile", 10, 1500, &["30", "pile"]),
+        taken_over,
         piles(&dart, "over FCL", 10, 800, &["12", "fcl"]),
         piles(&dart, "over ODE", 10, 800, &["12", "ode"]),
     ];

@@ -7,7 +7,8 @@
  * The program that includes this file defines ccdMPRPenetration, ccdMPRIntersect
  * and __ccdSupport itself; the dynamic linker binds the consumer's calls to the
  * program's, which pass them on to the libccd.so.2 that is loaded. A program that
- * defines WATCH_ANSWER(obj, dir, v) is shown every support point as well. */
+ * defines WATCH_ANSWER(obj, dir, v) is shown every support point as well, and may
+ * change it; watch_centre(obj, &c) tells it where the object is. */
 
 #ifndef SWAP_WATCH_H
 #define SWAP_WATCH_H
@@ -28,6 +29,9 @@ static struct {
     unsigned long slanted; /* hits whose direction is not the normal of a plane that depth brings apart */
     unsigned long supports; /* of D: one is support1 and support2 */
     unsigned long raw_supports; /* __ccdSupport, the support function FCL's own GJK calls */
+    int answer; /* of the first query since `queries` was `first`, and its outputs */
+    unsigned long first;
+    double depth, length;
 } watched;
 
 typedef int (*watch_penetration_fn)(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
@@ -48,6 +52,7 @@ static void watch_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
 }
 #ifdef WATCH_ANSWER
 static ccd_support_fn watch_support2;
+static ccd_center_fn watch_centre;
 static void watch_answer(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
 {
     watch_support2(obj, dir, v);
@@ -90,11 +95,16 @@ int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_
     counted.support1 = watch_count;
 #ifdef WATCH_ANSWER
     watch_support2 = ccd->support2;
+    watch_centre = ccd->center1; /* one function for all kinds, in ODE */
     counted.support2 = watch_answer;
 #endif
     hit = next(obj1, obj2, &counted, depth, dir, pos);
     watch_support1 = outer;
-    watched.queries++;
+    if (watched.queries++ == watched.first) {
+        watched.answer = hit;
+        watched.depth = hit == 0 ? *depth : 0;
+        watched.length = hit == 0 ? sqrt(ccdVec3Len2(dir)) : 0;
+    }
     if (hit != 0)
         return hit;
     watched.hits++;
