@@ -293,8 +293,12 @@ impl Search<'_> {
 
     /// Learns the curvature from a new sample, not yet kept. Returns the nearest sample
     /// that makes a smooth pair with it, [`CUTS`] for none.
+    ///
+    /// `None`, and nothing learnt: the sample contradicts another. One of the two points
+    /// lies beyond the support plane of the other, so one is no support point. Not asked
+    /// where the sample is to be `kept` even so.
     #[inline]
-    fn learn(&mut self, n: &Vec3, p: &SupportPoint, h: Real) -> usize {
+    fn learn(&mut self, n: &Vec3, p: &SupportPoint, h: Real, kept: bool) -> Option<usize> {
         let noise = self.noise;
         let curvature = &mut self.curvature;
         let size2 = curvature.size * curvature.size;
@@ -303,6 +307,7 @@ impl Search<'_> {
         let mut twin_dn2 = Real::INFINITY;
         // What a kink between the new sample and the best leaves for R.
         let mut room = Real::INFINITY;
+        let mut contradicted = false;
         for i in 0..self.seen.len.min(CUTS) {
             let (on, ov) = (&self.n[i], &self.seen.points[i].v);
             let dn2 = 2.0 - 2.0 * n.dot(on);
@@ -315,6 +320,7 @@ impl Search<'_> {
             let behind = self.h[i] - p.v.dot(on);
             let repeated = ds2 <= noise * noise;
             curvature.flat |= repeated;
+            contradicted |= ahead < -noise || behind < -noise;
             let sum = ahead + behind;
             let limit = if curvature.flat { ALIKE * FLAT } else { ALIKE };
             let gap = (ahead - behind) * (ahead - behind);
@@ -333,6 +339,9 @@ impl Search<'_> {
                 room = 2.0 * ahead.min(behind);
             }
         }
+        if contradicted && !kept {
+            return None;
+        }
         if curvature.known && room < Real::INFINITY {
             let dn = n - self.n[self.best];
             let rd = curvature.r.times(&dn);
@@ -346,7 +355,7 @@ impl Search<'_> {
             }
         }
         if twin == CUTS {
-            return twin;
+            return Some(twin);
         }
         let (dn, dn2) = (n - self.n[twin], twin_dn2);
         let other = &self.seen.points[twin];
@@ -372,7 +381,7 @@ impl Search<'_> {
                     curvature.r.add(-1.0 / bend, &rd);
                 }
             }
-            return twin;
+            return Some(twin);
         }
         let bend = ds.dot(&dn);
         let slope = bend / dn2;
@@ -396,13 +405,13 @@ impl Search<'_> {
                 curvature.r = Symmetric::scaled_identity(slope);
                 curvature.error = PARALLEL.sqrt();
             }
-            return twin;
+            return Some(twin);
         }
         let along = w.dot(&dn);
         if along * along > 0.0025 * w2 * dn2 {
             curvature.r.add(1.0 / along, &w);
         }
-        twin
+        Some(twin)
     }
 
     /// Is sample `i` the same vertex of P as the newest, within R, and farther from
@@ -755,27 +764,24 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut probing = CUTS;
     let mut tolerance = settings.tolerance;
     let mut iterations = 0;
+    let mut beside = false;
     loop {
         let mut p = md.support(&n)?;
         met(&p);
         let mut h = n.dot(&p.v);
-        if h < search.h[search.best]
-            && gjk::farthest(search.seen.points(), &n, h + search.noise).is_some()
-        {
-            // D holds what was seen: a callback that answers less is wrong there, and is
-            // asked again a little beside it.
-            n = unit(&(n + perpendicular(&n) * EPSILON.sqrt())).unwrap_or(n);
-            p = md.support(&n)?;
-            met(&p);
-            h = n.dot(&p.v);
-        }
         if h < 0.0 {
-            let Some(q) = gjk::farthest(search.seen.points(), &n, 0.0) else {
-                search.seen.len = 0;
-                return Ok(Answer::Miss(n));
-            };
-            p = q;
-            h = n.dot(&p.v);
+            match gjk::farthest(search.seen.points(), &n, 0.0) {
+                None => {
+                    search.seen.len = 0;
+                    return Ok(Answer::Miss(n));
+                }
+                // D holds what was seen: no miss.
+                Some(q) if beside => {
+                    p = q;
+                    h = n.dot(&p.v);
+                }
+                Some(_) => (),
+            }
         }
         iterations += 1;
         let size = (p.v1.x.abs() + p.v1.y.abs() + p.v1.z.abs())
@@ -794,7 +800,16 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             tolerance = crate::math::tolerance(settings.tolerance, extent, 0.0).max(rounding);
         } else {
             search.curvature.size = search.curvature.size.max(extent);
-            twin = search.learn(&n, &p, h);
+            match search.learn(&n, &p, h, beside) {
+                Some(found) => twin = found,
+                // A callback that errs here is asked again a little beside.
+                None => {
+                    beside = true;
+                    n = unit(&(n + perpendicular(&n) * EPSILON.sqrt())).unwrap_or(n);
+                    continue;
+                }
+            }
+            beside = false;
             if iterations == TRUST_CURVATURE {
                 search.curvature.give_up = true;
                 search.curvature.known = false;
