@@ -801,9 +801,9 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         } else {
             search.curvature.size = search.curvature.size.max(extent);
             match search.learn(&n, &p, h, beside) {
-                Some(found) => twin = found,
+                Some(found) if beside || !(h < 0.0) => twin = found,
                 // A callback that errs here is asked again a little beside.
-                None => {
+                _ => {
                     beside = true;
                     n = unit(&(n + perpendicular(&n) * EPSILON.sqrt())).unwrap_or(n);
                     continue;
