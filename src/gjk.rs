@@ -12,7 +12,7 @@
 //! within rounding (a few ulps of their coordinates) count as overlapping.
 
 use crate::math::{EPSILON, Real, Vec3, unit};
-use crate::portal::{self, Exit, Plane};
+use crate::portal::{self, Exit, Found, Measure, Plane};
 use crate::simplex::{Nearest, Simplex};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -100,8 +100,10 @@ pub fn search<A: SupportMap, B: SupportMap>(
     let mut v = start.v;
     let mut size = start.magnitude();
     let mut stalls = 0;
+    let mut distance = v.norm();
+    // The way out through the base of a tetrahedron, on which the origin may lie.
+    let mut out = None;
     for _ in 0..max_iterations {
-        let distance = v.norm();
         // Scale-free zero; also ends on NaN.
         if !(distance > ROUNDING * size) {
             return Ok(Overlap::Yes(simplex, 0.0));
@@ -110,8 +112,9 @@ pub fn search<A: SupportMap, B: SupportMap>(
             // Its square overflows: no direction to ask.
             return Ok(Overlap::Undecided);
         }
-        let n = -v / distance;
-        let w = match farthest(known, &n, 0.0) {
+        let n = out.unwrap_or(-v / distance);
+        let beyond = if out.is_some() { ROUNDING * size } else { 0.0 };
+        let w = match farthest(known, &n, beyond) {
             Some(w) => w,
             None => {
                 let w = md.support(&n)?;
@@ -126,24 +129,30 @@ pub fn search<A: SupportMap, B: SupportMap>(
         simplex.push(w);
         match simplex.reduce() {
             Nearest::Inside => {
-                // By more than the rounding of the corners?
+                // By more than the rounding of the corners, or in one of the two
+                // tetrahedra on either side of their common base?
                 let inner = simplex.inner_distance();
-                return if inner > 0.0 {
-                    Ok(Overlap::Yes(simplex, inner))
-                } else {
-                    near_touch(md, simplex, max_iterations)
-                };
+                if inner > 0.0 || out.is_some() {
+                    return Ok(Overlap::Yes(simplex, inner));
+                }
+                out = simplex.out_of_base();
+                if out.is_none() {
+                    return near_touch(md, &start, simplex, max_iterations);
+                }
             }
             Nearest::Outside(next) => {
+                out = None;
+                v = next;
+                let nearer = v.norm();
                 // Where the distance is hardly above rounding, a step that turns the
                 // simplex the right way need not look nearer. NaN counts as no nearer.
-                if !(next.norm() < distance * (1.0 - EPSILON)) {
+                if !(nearer < distance * (1.0 - EPSILON)) {
                     stalls += 1;
                     if stalls > STALLS {
-                        return near_touch(md, simplex, max_iterations);
+                        return near_touch(md, &start, simplex, max_iterations);
                     }
                 }
-                v = next;
+                distance = nearer;
             }
         }
     }
@@ -197,34 +206,51 @@ const WIDENING: u32 = 8;
 
 /// The last word where the objects nearly touch. There v is mostly rounding error, and
 /// on a curved object its direction with it; the normals of a portal's triangles are
-/// not. The ray leaves from a point inside the simplex through the origin: if the origin
-/// is in D, the ray ends beyond it.
+/// not. The ray leaves from a point inside D through the origin: if the origin is in D, the
+/// ray ends beyond it.
+///
+/// The simplex alone may be as flat as the touching faces: half of the way from it to the
+/// start of the search is well inside D.
 fn near_touch<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
+    start: &SupportPoint,
     simplex: Simplex,
     max_iterations: u64,
 ) -> Result<Overlap, Fault> {
-    let inner = simplex.mean();
+    let inner = simplex.mean().middle(start);
     let Some(d) = unit(&-inner.v) else {
         return Ok(Overlap::Yes(simplex, 0.0));
     };
     let first = Plane::of(md, d)?;
     let mut best = first;
     let mut budget = max_iterations;
+    let found = portal::find_portal(md, &first, Some(&inner.v), &mut best, &mut budget)?;
+    let portal = match found {
+        Found::Portal(portal) => portal,
+        Found::Miss(n) => return Ok(Overlap::No(n)),
+        Found::Limit => return Ok(Overlap::Undecided),
+        Found::Vertex | Found::Touch => return Ok(Overlap::Yes(simplex, 0.0)),
+    };
     // Any portal that has the origin on its inner side decides.
     let tolerance = Real::INFINITY;
-    Ok(
-        match portal::mpr(md, &first, tolerance, false, &mut best, &mut budget)? {
-            Exit::Miss(n) => Overlap::No(n),
-            Exit::Converged(portal, _) | Exit::Limit(Some(portal)) if budget > 0 => {
-                let [a, b, c] = portal.planes.map(|p| p.point);
-                let simplex = Simplex::of([inner, a, b, c]);
-                Overlap::Yes(simplex, simplex.inner_distance())
-            }
-            Exit::Converged(..) | Exit::Limit(_) => Overlap::Undecided,
-            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => Overlap::Yes(simplex, 0.0),
-        },
-    )
+    let exit = portal::refine(
+        md,
+        portal,
+        tolerance,
+        Measure::Normal,
+        false,
+        &mut best,
+        &mut budget,
+    )?;
+    Ok(match exit {
+        Exit::Miss(n) => Overlap::No(n),
+        Exit::Converged(portal, _) | Exit::Limit(Some(portal)) if budget > 0 => {
+            let [a, b, c] = portal.planes.map(|p| p.point);
+            let simplex = Simplex::of([inner, a, b, c]);
+            Overlap::Yes(simplex, simplex.inner_distance())
+        }
+        _ => Overlap::Undecided,
+    })
 }
 
 /// The point farthest along `n`, if it reaches beyond `reach`.
@@ -511,13 +537,13 @@ mod tests {
                 let known = [0; 3].map(|_| md.support(&r.direction()).unwrap());
                 let answer = intersect(&md, known[0], &known, 1000).unwrap();
                 assert_eq!(matches!(answer, Overlap::Yes(..)), gap < 0.0);
-                if let Overlap::Yes(simplex, _) = answer {
+                if let Overlap::Yes(simplex, inner) = answer
+                    && inner > 0.0
+                {
                     let before = md.supports();
                     let again = intersect(&md, simplex.points()[0], simplex.points(), 1000);
-                    if simplex.points().len() == 4 {
-                        assert!(matches!(again, Ok(Overlap::Yes(..))));
-                        assert_eq!(md.supports(), before);
-                    }
+                    assert!(matches!(again, Ok(Overlap::Yes(..))));
+                    assert_eq!(md.supports(), before);
                 }
             }
         }

@@ -49,6 +49,20 @@ pub fn largest(v: &Vec3) -> Real {
     larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
+/// The normal of the triangle abc, as long as twice its area. Near the end of a search
+/// triangles are slivers, and the cross product of two long edges that are almost parallel
+/// is mostly rounding error: there the short edge is one of the two.
+#[inline]
+pub fn normal(a: &Vec3, b: &Vec3, c: &Vec3) -> Vec3 {
+    let [ab, ac, bc] = [b - a, c - a, c - b];
+    let [x, y, z] = [&ab, &ac, &bc].map(Vec3::norm_squared);
+    if z < 0.25 * x && z < 0.25 * y {
+        if x < y { ab.cross(&bc) } else { ac.cross(&bc) }
+    } else {
+        ab.cross(&ac)
+    }
+}
+
 /// A unit vector perpendicular to the unit vector `n`.
 #[inline]
 pub fn perpendicular(n: &Vec3) -> Vec3 {

@@ -19,7 +19,7 @@
 //! plane that excludes the origin ends the search with a proof that the objects
 //! are apart, wherever it is met; the best support plane seen is kept.
 
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{self, EPSILON, Real, Vec3, larger, largest, unit};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// A support plane of D: unit normal, support point, support value.
@@ -65,7 +65,7 @@ impl Portal {
     #[inline]
     pub fn normal(&self) -> Option<Vec3> {
         let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
-        unit(&(b - a).cross(&(c - a)))
+        unit(&math::normal(a, b, c))
     }
 
     /// The portal of three support planes, if the ray crosses their triangle from
@@ -179,12 +179,14 @@ pub enum Found {
 /// Portal discovery (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
 /// Game Programming Gems 7), for the ray along `first.normal`.
 ///
-/// `v0 = -d`, scaled to the portal's size, stands in for the interior point of the
-/// original algorithm: only planes through the ray matter.
+/// `behind` is the original algorithm's interior point, where one is known: a point of D
+/// on the line of the ray, behind the origin. Else `v0 = -d`, scaled to the portal's size,
+/// stands in for it.
 /// `budget` counts iterations down; `best` keeps the lowest plane seen.
 pub fn find_portal<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     first: &Plane,
+    behind: Option<&Vec3>,
     best: &mut Plane,
     budget: &mut u64,
 ) -> Result<Found, Fault> {
@@ -217,7 +219,10 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
     while *budget > 0 {
         *budget -= 1;
         let [a, b, _] = portal.planes.each_ref().map(|p| p.point.v);
-        let v0 = -d * a.amax().max(b.amax());
+        let v0 = match behind {
+            Some(inner) => *inner,
+            None => -d * larger(largest(&a), largest(&b)),
+        };
         let Some(n) = unit(&(a - v0).cross(&(b - v0))) else {
             return Ok(Found::Touch);
         };
@@ -226,9 +231,16 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
             Probe::Miss(n) => return Ok(Found::Miss(n)),
         };
         let w = third.point.v;
-        if triple(&d, &a, &w) > 0.0 {
+        // A ray that cannot be told from the cone's side is on it.
+        let size = portal.planes[..2]
+            .iter()
+            .fold(third.point.magnitude(), |m, p| {
+                larger(m, p.point.magnitude())
+            });
+        let side = |u: &Vec3| rounding(size) * larger(largest(u), largest(&w));
+        if triple(&d, &a, &w) > side(&a) {
             portal.planes[1] = third;
-        } else if triple(&d, &w, &b) > 0.0 {
+        } else if triple(&d, &w, &b) > side(&b) {
             portal.planes[0] = third;
         } else {
             portal.planes[2] = third;
@@ -296,7 +308,7 @@ pub fn mpr<A: SupportMap, B: SupportMap>(
     best: &mut Plane,
     budget: &mut u64,
 ) -> Result<Exit, Fault> {
-    match find_portal(md, first, best, budget)? {
+    match find_portal(md, first, None, best, budget)? {
         Found::Portal(p) => refine(md, p, tolerance, Measure::Normal, shortcut, best, budget),
         Found::Vertex => Ok(Exit::Vertex),
         Found::Touch => Ok(Exit::Touch),
@@ -324,10 +336,12 @@ pub fn refine<A: SupportMap, B: SupportMap>(
         };
         let along = n.dot(&portal.ray);
         let inner = n.dot(&portal.planes[0].point.v);
+        let size = (portal.planes.iter()).fold(0.0, |m, p| larger(m, p.point.magnitude()));
+        let floor = rounding(size);
         let plane = match probe(md, n, best)? {
             Probe::Plane(p) => p,
             // D holds the portal: a callback that answers less than it is wrong.
-            Probe::Miss(_) if inner >= 0.0 => {
+            Probe::Miss(_) if inner > floor => {
                 let plane = Plane {
                     normal: n,
                     point: portal.planes[0].point,
@@ -338,15 +352,15 @@ pub fn refine<A: SupportMap, B: SupportMap>(
             Probe::Miss(n) => return Ok(Exit::Miss(n)),
         };
         let mut gap = plane.depth - inner;
-        let mut floor = rounding(plane.point.magnitude());
+        let mut least = floor;
         if measure == Measure::Ray {
             gap /= along;
-            floor /= along;
+            least /= along;
         }
-        // Within the tolerance and the origin on the inner side of the portal: a
-        // support plane that may still exclude the origin is no answer yet. NaN
-        // (a plane that holds the ray) ends the loop.
-        if !(gap > floor) || (gap <= tolerance && inner >= 0.0 && portal.reach() >= 0.0) {
+        // Within the tolerance and the origin on the inner side of the portal beyond
+        // doubt: a support plane that may still exclude the origin is no answer yet.
+        // NaN (a plane that holds the ray) ends the loop.
+        if !(gap > least) || (gap <= tolerance && inner > floor) {
             return Ok(Exit::Converged(portal, plane));
         }
         if shortcut && plane.depth * along <= inner {
@@ -393,7 +407,7 @@ mod tests {
         let first = Plane::of(&md, d).unwrap();
         let mut best = first;
         let mut budget = 1000;
-        match find_portal(&md, &first, &mut best, &mut budget).unwrap() {
+        match find_portal(&md, &first, None, &mut best, &mut budget).unwrap() {
             Found::Portal(found) => {
                 assert!(crosses(&found));
                 // Each vertex is the support point of its own plane.

@@ -8,7 +8,7 @@
 //! vectors, so it is free of scale; a face whose area vanishes falls back to its
 //! edges, an edge whose length vanishes to its ends.
 
-use crate::math::{EPSILON, Real, Vec3, larger, largest};
+use crate::math::{EPSILON, Real, Vec3, larger, largest, normal, unit};
 use crate::support::SupportPoint;
 
 /// Up to four support points of D.
@@ -116,6 +116,14 @@ impl Simplex {
             }
         }
         least
+    }
+
+    /// The unit normal of the face opposite to the newest vertex of a tetrahedron, away
+    /// from it; `None` when the face has no area.
+    pub fn out_of_base(&self) -> Option<Vec3> {
+        let [a, b, c, newest] = self.points.each_ref().map(|p| &p.v);
+        let n = unit(&normal(a, b, c))?;
+        Some(if n.dot(newest) > n.dot(a) { -n } else { n })
     }
 
     #[inline]

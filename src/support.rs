@@ -40,6 +40,16 @@ impl SupportPoint {
     pub fn magnitude(&self) -> Real {
         larger(largest(&self.v1), largest(&self.v2))
     }
+
+    /// The point half-way to another.
+    #[inline]
+    pub fn middle(&self, other: &Self) -> Self {
+        Self {
+            v: (self.v + other.v) * 0.5,
+            v1: (self.v1 + other.v1) * 0.5,
+            v2: (self.v2 + other.v2) * 0.5,
+        }
+    }
 }
 
 /// Why a query has no answer.

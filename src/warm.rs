@@ -607,7 +607,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let first = Plane::of(&self.md, dir)?;
         let mut best = first;
-        let exit = match portal::find_portal(&self.md, &first, &mut best, budget)? {
+        let exit = match portal::find_portal(&self.md, &first, None, &mut best, budget)? {
             Found::Portal(portal) => finish(portal, &mut best, budget)?,
             Found::Vertex => Exit::Vertex,
             Found::Touch => Exit::Touch,
