@@ -30,7 +30,8 @@ fn piles(
 fn table() {
     let seed_and_poses = |poses: usize| vec!["2".to_owned(), poses.to_string()];
     eprintln!("FCL and ODE: static queries");
-    let fcl = checks::fcl_static().run(&seed_and_poses(60));
+    let fcl_program = checks::fcl_static();
+    let fcl = fcl_program.run(&seed_and_poses(60));
     let ode = |callbacks: &str| {
         let mut args = seed_and_poses(200);
         args.push(callbacks.to_owned());
@@ -62,6 +63,7 @@ fn table() {
     ];
     println!("Static queries, libccd / this library:\n");
     println!("{}", checks::static_table(&rows));
+    println!("{}\n", checks::epa_time(&fcl_program, &seed_and_poses(60)));
     println!("Simulations:\n");
     println!("{}", checks::pile_table(&simulations));
 }
