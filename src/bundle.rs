@@ -57,14 +57,19 @@
 //! The residual of a pair before its update, |s' − s − R (n' − n)| / |s' − s|, is the
 //! relative error of R. Until a second pair has told it, R serves for K alone, and a
 //! kink or a vertex seen twice that refutes it ends it: polytopes show a pair that
-//! looks smooth now and then. Δs exactly parallel to Δn is a ball's.
+//! looks smooth now and then. Δs exactly parallel to Δn is a ball's, while every smooth
+//! pair is so.
 //!
 //! *Finish.* When the minimum of the model lies inside the reach and no more than
 //! the tolerance below h(b), b is the answer if the model can be believed: with
 //! R = 0 always, because exact cuts are a proof that h has a local minimum within
 //! the tolerance. Otherwise (a) the error of R times the height that R has lifted any
 //! active cut by must be within the tolerance; else the next support point is taken
-//! on that cut's side of the minimum, near enough to settle it, and replaces it. And
+//! on that cut's side of the minimum, near enough to settle it, and replaces it. What
+//! is known of R is known of one piece of D: a cylinder's rim bends and its edge line
+//! does not. So each sample keeps the error that a pair of its own has told, the whole
+//! height where none has, and by as much as a later pair corrects R it is in error
+//! again. A ball alone is part of every piece. And
 //! (b) R must have been measured in two directions if the minimum rests on it (fewer
 //! than three active cuts); else the next support point is taken across the one
 //! direction known. A start where the gradient vanishes is treated like any other:
@@ -96,9 +101,11 @@
 //! has told (a tenth more supports on polytopes); a reach that triples.
 
 use crate::contact::{Answer, Penetration, Settings};
+use core::ops::{Add, Div, Mul, Sub};
+
 use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
-use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Samples kept: three active cuts and the newest.
 pub const CUTS: usize = 4;
@@ -149,29 +156,115 @@ const TRUST_CURVATURE: u64 = 40;
 pub struct Memory {
     /// The direction of the answer, or a guess of it.
     pub dir: Vec3,
-    /// Tangents at `dir` towards the sides of the active cuts.
-    pub sides: [Vec3; 3],
+    /// The gradients of the active cuts there, metres.
+    pub slopes: [Vec3; 3],
     /// R, metres: xx, xy, xz, yy, yz, zz.
     pub curvature: [Real; 6],
     /// How far `dir` moved since the query before, radians.
     pub drift: Real,
-    /// How many of `sides` are in use.
+    /// How many of `slopes` are in use.
     pub count: u32,
     /// 1 if `curvature` was measured.
     pub curved: u32,
 }
 
-/// The support points that the search keeps, for a proof of the overlap.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
-    points: [SupportPoint; CUTS],
-    len: usize,
+/// One number for each sample. Samples are kept coordinate by coordinate, so that what is
+/// computed for all of them needs no loop and compiles to vector instructions.
+#[derive(Clone, Copy, Default)]
+struct Lanes([Real; CUTS]);
+
+impl Lanes {
+    #[inline(always)]
+    fn all(a: Real) -> Self {
+        Self([a; CUTS])
+    }
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(Real) -> Real) -> Self {
+        Self(self.0.map(f))
+    }
+
+    #[inline(always)]
+    fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
+        Self(core::array::from_fn(|i| f(self.0[i], o.0[i])))
+    }
 }
 
-impl Seen {
-    /// The points, all of D.
-    pub fn points(&self) -> &[SupportPoint] {
-        self.points.get(..self.len).unwrap_or(&[])
+impl Add for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        self.zip(o, |a, b| a + b)
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        self.zip(o, |a, b| a - b)
+    }
+}
+
+impl Mul for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        self.zip(o, |a, b| a * b)
+    }
+}
+
+impl Div for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        self.zip(o, |a, b| a / b)
+    }
+}
+
+impl Mul<Real> for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, f: Real) -> Self {
+        self.map(|a| a * f)
+    }
+}
+
+/// One vector for each sample.
+#[derive(Clone, Copy, Default)]
+struct Vectors {
+    x: Lanes,
+    y: Lanes,
+    z: Lanes,
+}
+
+impl Vectors {
+    #[inline(always)]
+    fn get(&self, i: usize) -> Vec3 {
+        Vec3::new(self.x.0[i], self.y.0[i], self.z.0[i])
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, v: &Vec3) {
+        self.x.0[i] = v.x;
+        self.y.0[i] = v.y;
+        self.z.0[i] = v.z;
+    }
+
+    #[inline(always)]
+    fn dot(&self, v: &Vec3) -> Lanes {
+        self.x * v.x + self.y * v.y + self.z * v.z
+    }
+
+    /// Squared distance of each from `v`.
+    #[inline(always)]
+    fn distance2(&self, v: &Vec3) -> Lanes {
+        let (x, y, z) = (
+            self.x - Lanes::all(v.x),
+            self.y - Lanes::all(v.y),
+            self.z - Lanes::all(v.z),
+        );
+        x * x + y * y + z * z
     }
 }
 
@@ -231,6 +324,9 @@ struct Curvature {
     line: Vec3,
     /// Measured along a second direction too.
     spread: bool,
+    /// Every smooth pair so far was exactly parallel: a ball, which is part of every
+    /// piece of D.
+    round: bool,
     /// A vertex was seen from two directions.
     flat: bool,
     /// No longer looked for.
@@ -262,11 +358,21 @@ impl Curvature {
     }
 }
 
-/// The samples, their newest and best, and what they tell.
+/// The samples, the best of them, and what they tell.
 struct Search<'a> {
-    n: [Vec3; CUTS],
-    h: [Real; CUTS],
-    seen: &'a mut Seen,
+    /// Unit directions, …
+    n: Vectors,
+    /// … their support points of D, …
+    v: Vectors,
+    /// … and support values.
+    h: Lanes,
+    /// Where in `met` the support points are.
+    at: [usize; CUTS],
+    /// Relative error of R as a pair of this sample told it; 1 where none did.
+    told: Lanes,
+    met: &'a mut Known,
+    /// Samples in use; lanes beyond repeat the last one set.
+    len: usize,
     best: usize,
     curvature: Curvature,
     /// Rounding error of a support value, metres.
@@ -274,21 +380,55 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn len(&self) -> usize {
-        self.seen.len
+    /// The support point of sample `i`.
+    fn point(&self, i: usize) -> &SupportPoint {
+        self.met.get(self.at[i])
     }
 
-    /// Drops sample `i`; the last one takes its place.
+    /// Drops sample `i`; the last one takes its place. Returns where sample `j` is now.
     #[inline]
-    fn drop(&mut self, i: usize) {
-        let last = self.seen.len - 1;
-        self.n[i] = self.n[last];
-        self.h[i] = self.h[last];
-        self.seen.points[i] = self.seen.points[last];
-        if self.best == last {
-            self.best = i;
+    fn drop(&mut self, i: usize, j: usize) -> usize {
+        let last = self.len - 1;
+        let (n, v) = (self.n.get(last), self.v.get(last));
+        self.n.set(i, &n);
+        self.v.set(i, &v);
+        self.h.0[i] = self.h.0[last];
+        self.at[i] = self.at[last];
+        self.told.0[i] = self.told.0[last];
+        let moved = |k: usize| if k == last { i } else { k };
+        self.best = moved(self.best);
+        self.len = last;
+        moved(j)
+    }
+
+    /// Makes (n, p, h) sample `i`.
+    #[inline(always)]
+    fn set(&mut self, i: usize, n: &Vec3, p: &SupportPoint, h: Real, told: Real) {
+        self.at[i] = self.met.put(p, &self.at);
+        self.n.set(i, n);
+        self.v.set(i, &p.v);
+        self.h.0[i] = h;
+        self.told.0[i] = told;
+        for j in self.len..CUTS {
+            self.n.set(j, n);
+            self.v.set(j, &p.v);
+            self.h.0[j] = h;
+            self.told.0[j] = told;
+            self.at[j] = self.at[i];
         }
-        self.seen.len = last;
+    }
+
+    /// Relative error of R between sample `i` and the direction b: of R as a whole and,
+    /// but for a ball, on that piece of D.
+    #[inline]
+    fn error(&self, i: usize, b: &Vec3) -> Real {
+        let curvature = &self.curvature;
+        let error = curvature.error_along(&(self.n.get(i) - b));
+        if curvature.round {
+            error
+        } else {
+            error.max(self.told.0[i])
+        }
     }
 
     /// Learns the curvature from a new sample, not yet kept. Returns the nearest sample
@@ -308,16 +448,16 @@ impl Search<'_> {
         // What a kink between the new sample and the best leaves for R.
         let mut room = Real::INFINITY;
         let mut contradicted = false;
-        for i in 0..self.seen.len.min(CUTS) {
-            let (on, ov) = (&self.n[i], &self.seen.points[i].v);
-            let dn2 = 2.0 - 2.0 * n.dot(on);
+        let dn2s = Lanes::all(2.0) - self.n.dot(n) * 2.0;
+        let ds2s = self.v.distance2(&p.v);
+        let aheads = Lanes::all(h) - self.v.dot(n);
+        let behinds = self.h - self.n.dot(&p.v);
+        for i in 0..self.len.min(CUTS) {
+            let (dn2, ds2, ahead, behind) = (dn2s.0[i], ds2s.0[i], aheads.0[i], behinds.0[i]);
             // Also NaN.
             if !(dn2 > CLOSE) {
                 continue;
             }
-            let ds2 = (p.v - ov).norm_squared();
-            let ahead = h - ov.dot(n);
-            let behind = self.h[i] - p.v.dot(on);
             let repeated = ds2 <= noise * noise;
             curvature.flat |= repeated;
             contradicted |= ahead < -noise || behind < -noise;
@@ -343,7 +483,7 @@ impl Search<'_> {
             return None;
         }
         if curvature.known && room < Real::INFINITY {
-            let dn = n - self.n[self.best];
+            let dn = n - self.n.get(self.best);
             let rd = curvature.r.times(&dn);
             let bend = rd.dot(&dn);
             let room = room.max(0.0);
@@ -352,13 +492,14 @@ impl Search<'_> {
                 curvature.known = false;
             } else if bend > room {
                 curvature.r.add((room - bend) / (bend * bend), &rd);
+                self.told = self.told.map(|told| told.max((bend - room) / bend));
             }
         }
         if twin == CUTS {
             return Some(twin);
         }
-        let (dn, dn2) = (n - self.n[twin], twin_dn2);
-        let other = &self.seen.points[twin];
+        let (dn, dn2) = (n - self.n.get(twin), twin_dn2);
+        let other = self.met.get(self.at[twin]);
         let ds = p.v - other.v;
         let ds2 = ds.norm_squared();
         // The first pair that confirms a remembered R confirms all of it.
@@ -379,6 +520,7 @@ impl Search<'_> {
                 let bend = rd.dot(&dn);
                 if bend > 1e-6 * curvature.size * dn2 {
                     curvature.r.add(-1.0 / bend, &rd);
+                    self.told = Lanes::all(1.0);
                 }
             }
             return Some(twin);
@@ -396,6 +538,8 @@ impl Search<'_> {
         let w2 = w.norm_squared();
         if measured {
             curvature.error = (w2 / ds2).sqrt();
+            // By as much as this pair corrects it R is another for the other samples.
+            self.told = self.told.map(|told| told.max(curvature.error));
         }
         curvature.spread |= remembered && curvature.error < 0.1;
         // Exactly parallel: a ball, if the object has room for it.
@@ -407,6 +551,7 @@ impl Search<'_> {
             }
             return Some(twin);
         }
+        curvature.round = false;
         let along = w.dot(&dn);
         if along * along > 0.0025 * w2 * dn2 {
             curvature.r.add(1.0 / along, &w);
@@ -414,22 +559,42 @@ impl Search<'_> {
         Some(twin)
     }
 
-    /// Is sample `i` the same vertex of P as the newest, within R, and farther from
-    /// the best? Then it tells nothing more.
+    /// Is sample `i` the same vertex of P as (n, v), within R, and farther from the best
+    /// direction b? Then it tells nothing more.
     #[inline]
-    fn outdated(&self, i: usize) -> bool {
-        let new = self.seen.len - 1;
-        let (n, v) = (&self.n[new], &self.seen.points[new].v);
-        let mut residual = v - self.seen.points[i].v;
+    fn outdated(&self, i: usize, n: &Vec3, v: &Vec3, b: &Vec3) -> bool {
+        let old = self.n.get(i);
+        let mut residual = v - self.v.get(i);
         let mut small = self.noise * self.noise;
         if self.curvature.known {
-            let rd = self.curvature.r.times(&(n - self.n[i]));
+            let rd = self.curvature.r.times(&(n - old));
             small += SAME_PIECE * SAME_PIECE * rd.norm_squared().min(residual.norm_squared());
             residual -= rd;
         }
-        let b = &self.n[self.best];
-        i != self.best && residual.norm_squared() <= small && self.n[i].dot(b) <= n.dot(b)
+        residual.norm_squared() <= small && old.dot(b) <= n.dot(b)
     }
+}
+
+/// The chart around the best direction and the cuts α + β·x in it.
+struct Model {
+    b: Vec3,
+    e1: Vec3,
+    e2: Vec3,
+    rho: Real,
+    /// A is [[axx, axy], [axy, −axx]].
+    axx: Real,
+    axy: Real,
+    /// h(b) − ρ: K = A − core · I.
+    core: Real,
+    /// α − ρ.
+    a: Lanes,
+    /// β.
+    x: Lanes,
+    y: Lanes,
+    /// How far R lifts each cut at x = 0, metres.
+    lift: Lanes,
+    len: usize,
+    best: usize,
 }
 
 /// α + β·x.
@@ -456,24 +621,6 @@ impl Cut {
     }
 }
 
-/// The chart around the best direction and the cuts in it.
-struct Model {
-    b: Vec3,
-    e1: Vec3,
-    e2: Vec3,
-    rho: Real,
-    /// A is [[axx, axy], [axy, −axx]].
-    axx: Real,
-    axy: Real,
-    /// h(b) − ρ: K = A − core · I.
-    core: Real,
-    cuts: [Cut; CUTS],
-    /// How far R lifts each cut at x = 0, metres.
-    lift: [Real; CUTS],
-    len: usize,
-    best: usize,
-}
-
 /// A point of the chart that minimises the model, and the cuts active there.
 #[derive(Clone, Copy)]
 struct Step {
@@ -485,14 +632,14 @@ struct Step {
     inside: bool,
 }
 
+/// The lanes beside one, the last of them twice.
+const OTHERS: [[usize; CUTS]; CUTS] = [[1, 2, 3, 3], [0, 2, 3, 3], [0, 1, 3, 3], [0, 1, 2, 2]];
 impl Model {
     #[inline]
     fn new(search: &Search) -> Self {
         let best = search.best;
-        let len = search.len();
-        let b = search.n[best];
-        let h = search.h[best];
-        let points = &search.seen.points;
+        let b = search.n.get(best);
+        let h = search.h.0[best];
         // Orthonormal basis without a branch (Duff et al., JCGT 6(1), 2017).
         let sign = (1.0 as Real).copysign(b.z);
         let c = -1.0 / (sign + b.z);
@@ -516,6 +663,7 @@ impl Model {
                 axy *= rho / m;
             }
         }
+        let level = search.v.dot(&b);
         let mut model = Self {
             b,
             e1,
@@ -524,43 +672,37 @@ impl Model {
             axx,
             axy,
             core: h - rho,
-            cuts: [Cut::default(); CUTS],
-            lift: [0.0; CUTS],
-            len,
+            a: level - Lanes::all(rho),
+            x: search.v.dot(&e1),
+            y: search.v.dot(&e2),
+            lift: Lanes::default(),
+            len: search.len,
             best,
         };
-        for i in 0..len.min(CUTS) {
-            let v = &points[i].v;
-            let a = v.dot(&b);
-            let mut cut = Cut {
-                a: a - rho,
-                x: v.dot(&e1),
-                y: v.dot(&e2),
-            };
-            if rho > 0.0 && i != best && search.curvature.error <= CONFIRMED {
-                let n = &search.n[i];
-                let z = n.dot(&b);
-                let (tx, ty) = (n.dot(&e1), n.dot(&e2));
-                let zi = 1.0 / z;
-                let (x, y) = (tx * zi, ty * zi);
-                let (ax, ay) = (axx * x + axy * y, axy * x - axx * y);
-                let lift = rho * (1.0 - z) + 0.5 * (ax * x + ay * y);
-                let behind = h - a;
-                let ahead = search.h[i] - points[best].v.dot(n);
+        if rho > 0.0 && search.curvature.error <= CONFIRMED {
+            let z = search.n.dot(&b);
+            let (tx, ty) = (search.n.dot(&e1), search.n.dot(&e2));
+            let (x, y) = (tx / z, ty / z);
+            let (ax, ay) = (x * axx + y * axy, x * axy - y * axx);
+            let lift = (Lanes::all(1.0) - z) * rho + (ax * x + ay * y) * 0.5;
+            let behind = Lanes::all(h) - level;
+            let ahead = search.h - search.n.dot(&search.v.get(best));
+            let unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
+            for i in 0..CUTS {
                 // A smooth pair is one piece, which b itself represents; a lift above
                 // h(b) is refuted; far away R means nothing. All stay exact cuts.
-                if z > NEAR
-                    && lift >= 0.0
-                    && lift <= behind
-                    && (ahead - behind).abs() > ALIKE * (ahead + behind)
+                if i != best
+                    && z.0[i] > NEAR
+                    && lift.0[i] >= 0.0
+                    && lift.0[i] <= behind.0[i]
+                    && unlike.0[i] > 0.0
                 {
-                    cut.a += lift;
-                    cut.x -= rho * tx + ax;
-                    cut.y -= rho * ty + ay;
-                    model.lift[i] = lift;
+                    model.a.0[i] += lift.0[i];
+                    model.x.0[i] -= rho * tx.0[i] + ax.0[i];
+                    model.y.0[i] -= rho * ty.0[i] + ay.0[i];
+                    model.lift.0[i] = lift.0[i];
                 }
             }
-            model.cuts[i] = cut;
         }
         model
     }
@@ -578,41 +720,49 @@ impl Model {
             count: 1,
             inside: false,
         };
-        self.pivot(self.best, CUTS, reach, noise, &mut step);
+        self.pivot(self.best, reach, noise, &mut step);
         if newest != self.best {
-            self.pivot(newest, self.best, reach, noise, &mut step);
+            self.pivot(newest, reach, noise, &mut step);
         }
         // The model's own value of the depth there, exact for P and for balls.
         let (x, y) = (step.x, step.y);
-        let v = self.cuts[step.set[0]].at(x, y);
+        let i = step.set[0];
+        let v = self.a.0[i] + self.x.0[i] * x + self.y.0[i] * y;
         let bent = 0.5 * self.axx * (x * x - y * y) + self.axy * x * y;
         step.value = (v + bent) / (1.0 + x * x + y * y).sqrt() + self.rho;
         step
     }
 
-    /// The candidates of [`Self::minimise`] with cut `p` and without cut `skip`.
-    fn pivot(&self, p: usize, skip: usize, reach: Real, noise: Real, step: &mut Step) {
-        let c = self.cuts[p];
+    #[inline(always)]
+    fn cut(&self, i: usize) -> Cut {
+        Cut {
+            a: self.a.0[i],
+            x: self.x.0[i],
+            y: self.y.0[i],
+        }
+    }
+
+    /// The candidates of [`Self::minimise`] with cut `p`.
+    #[inline]
+    fn pivot(&self, p: usize, reach: Real, noise: Real, step: &mut Step) {
+        let c = self.cut(p);
         let (kxx, kxy, kyy) = (self.axx - self.core, self.axy, -self.axx - self.core);
         let reach2 = reach * reach;
-        // How far c lies above each other cut, `skip` last.
-        let mut above = [(Cut::default(), p); CUTS - 1];
-        let mut len = 0;
-        for (i, o) in self.cuts[..self.len].iter().enumerate() {
-            if i != p && i != skip {
-                above[len] = (c.minus(o), i);
-                len += 1;
-            }
-        }
-        let active = len;
-        if skip < CUTS {
-            above[len] = (c.minus(&self.cuts[skip]), skip);
-            len += 1;
-        }
-        let above = &above[..len];
+        // How far c lies above each other cut.
+        let others = &OTHERS[p];
+        let len = self.len - 1;
+        let above = [
+            c.minus(&self.cut(others[0])),
+            c.minus(&self.cut(others[1])),
+            c.minus(&self.cut(others[2])),
+        ];
         let mut offer = |x: Real, y: Real, i: usize, j: usize, count: usize, inside: bool| {
             let value = c.at(x, y) + 0.5 * (kxx * x * x + kyy * y * y) + kxy * x * y;
-            if value < step.value && above.iter().all(|(d, _)| d.at(x, y) >= -noise) {
+            if value < step.value
+                && above[0].at(x, y) >= -noise
+                && above[1].at(x, y) >= -noise
+                && above[2].at(x, y) >= -noise
+            {
                 *step = Step {
                     x,
                     y,
@@ -642,7 +792,8 @@ impl Model {
             };
         }
         offer(x, y, p, p, 1, inside);
-        for (k, (d, i)) in above[..active].iter().enumerate() {
+        for k in 0..len.min(3) {
+            let (d, i) = (&above[k], others[k]);
             // On the line d = 0, from its point nearest to x = 0.
             let q = d.x * d.x + d.y * d.y;
             let f = -d.a / q;
@@ -659,17 +810,26 @@ impl Model {
                 if !inside {
                     t = (room / q).sqrt().copysign(-slope);
                 }
-                offer(x0 + t * tx, y0 + t * ty, *i, *i, 2, inside);
+                offer(x0 + t * tx, y0 + t * ty, i, i, 2, inside);
             }
-            for (e, j) in &above[..k] {
+            for l in 0..k {
+                let (e, j) = (&above[l], others[l]);
                 let w = 1.0 / (d.x * e.y - d.y * e.x);
                 let (x, y) = ((e.a * d.y - d.a * e.y) * w, (e.x * d.a - d.x * e.a) * w);
                 // Refuses NaN and infinity too.
                 if x * x + y * y <= reach2 {
-                    offer(x, y, *i, *j, 3, true);
+                    offer(x, y, i, j, 3, true);
                 }
             }
         }
+    }
+
+    /// How far R raises cut `i`, of the support point v, at (x, y).
+    #[inline]
+    fn raise(&self, i: usize, v: &Vec3, x: Real, y: Real) -> Real {
+        let turned = (self.x.0[i] - v.dot(&self.e1)) * x + (self.y.0[i] - v.dot(&self.e2)) * y;
+        let bent = 0.5 * (self.rho + self.axx) * x * x + 0.5 * (self.rho - self.axx) * y * y;
+        self.lift.0[i] + turned + bent + self.axy * x * y
     }
 
     #[inline]
@@ -679,7 +839,7 @@ impl Model {
 
     /// Weights of the active cuts whose gradients balance at x = 0, or come nearest.
     fn weights(&self, step: &Step) -> [Real; 3] {
-        let [g, h, k] = step.set.map(|i| (self.cuts[i].x, self.cuts[i].y));
+        let [g, h, k] = step.set.map(|i| (self.x.0[i], self.y.0[i]));
         let cross = |a: (Real, Real), b: (Real, Real)| a.0 * b.1 - a.1 * b.0;
         match step.count {
             3 => {
@@ -711,8 +871,8 @@ impl Model {
 /// vector `start`.
 ///
 /// `centre`: any inner point of D, its distance is what curvature is first guessed
-/// from. `seen`: filled with points of D for the caller's proof of the overlap, which
-/// a local minimum alone is not. `met`: told of every support point.
+/// from. `met`: gains the support points, the best one first, the samples kept last among them, for
+/// the caller's proof of the overlap, which a local minimum alone is not.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -722,16 +882,18 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     start: &Vec3,
     memory: &mut Memory,
     settings: &Settings,
-    seen: &mut Seen,
-    mut met: impl FnMut(&SupportPoint),
+    met: &mut Known,
 ) -> Result<Answer, Fault> {
     let inner = centre.copied().unwrap_or_default();
     let mut n = *start;
-    seen.len = 0;
     let mut search = Search {
-        n: [Vec3::zeros(); CUTS],
-        h: [0.0; CUTS],
-        seen,
+        n: Vectors::default(),
+        v: Vectors::default(),
+        h: Lanes::default(),
+        at: [Known::NONE; CUTS],
+        told: Lanes::default(),
+        met,
+        len: 0,
         best: 0,
         curvature: Curvature {
             r: Symmetric::default(),
@@ -740,6 +902,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             share: 0.5,
             line: Vec3::zeros(),
             spread: false,
+            round: true,
             flat: false,
             give_up: false,
             size: 0.0,
@@ -767,16 +930,12 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut beside = false;
     loop {
         let mut p = md.support(&n)?;
-        met(&p);
         let mut h = n.dot(&p.v);
         if h < 0.0 {
-            match gjk::farthest(search.seen.points(), &n, 0.0) {
-                None => {
-                    search.seen.len = 0;
-                    return Ok(Answer::Miss(n));
-                }
+            match gjk::farthest(search.met.points(), &n, 0.0) {
+                None => return Ok(Answer::Miss(n)),
                 // D holds what was seen: no miss.
-                Some(q) if beside => {
+                Some(q) if beside || search.len == 0 => {
                     p = q;
                     h = n.dot(&p.v);
                 }
@@ -791,38 +950,33 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             search.noise = rounding;
             tolerance = tolerance.max(rounding);
         }
-        let mut newest = search.len();
-        let before = search.h[search.best];
-        let mut twin = CUTS;
         let extent = (p.v - inner).norm();
-        if newest == 0 {
+        let mut newest = search.len;
+        let mut told = 1.0;
+        if search.len == 0 {
             search.curvature.forget_unless_fits(extent);
             tolerance = crate::math::tolerance(settings.tolerance, extent, 0.0).max(rounding);
         } else {
             search.curvature.size = search.curvature.size.max(extent);
-            match search.learn(&n, &p, h, beside) {
-                Some(found) if beside || !(h < 0.0) => twin = found,
+            let twin = match search.learn(&n, &p, h, beside) {
+                Some(twin) if beside || !(h < 0.0) => twin,
                 // A callback that errs here is asked again a little beside.
                 _ => {
                     beside = true;
                     n = unit(&(n + perpendicular(&n) * EPSILON.sqrt())).unwrap_or(n);
                     continue;
                 }
-            }
+            };
             beside = false;
+            if twin < CUTS {
+                told = search.curvature.error;
+                search.told.0[twin] = told;
+            }
             if iterations == TRUST_CURVATURE {
                 search.curvature.give_up = true;
                 search.curvature.known = false;
             }
-        }
-        search.n[newest] = n;
-        search.h[newest] = h;
-        search.seen.points[newest] = p;
-        search.seen.len += 1;
-        if newest > 0 {
-            if h < before {
-                search.best = newest;
-            }
+            let before = search.h.0[search.best];
             let came = before - h;
             // False for NaN: no forecast.
             if came > 0.25 * (before - predicted) {
@@ -836,26 +990,28 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             {
                 reach *= SHRINK;
             }
+            let better = h < before;
+            let best = if better { n } else { search.n.get(search.best) };
+            let free = |i: usize| i < CUTS && (better || i != search.best);
             // The answer to a doubt replaces what was doubted.
-            let gone = if probing < newest && probing != search.best {
-                probing
-            } else if twin < CUTS && search.outdated(twin) {
-                twin
-            } else {
-                CUTS
-            };
-            if gone < newest {
-                search.drop(gone);
-                newest = gone;
+            if free(probing) {
+                newest = probing;
+            } else if free(twin) && search.outdated(twin, &n, &p.v, &best) {
+                newest = twin;
+            }
+            if better {
+                search.best = newest;
             }
         }
+        search.len = search.len.max(newest + 1);
+        search.set(newest, &n, &p, h, told);
         probing = CUTS;
         if queued > 0 && iterations < settings.max_iterations {
             queued -= 1;
             n = queue[queued];
             continue;
         }
-        if search.len() == 1
+        if search.len == 1
             && !search.curvature.known
             && h > search.noise
             && iterations < settings.max_iterations
@@ -889,15 +1045,21 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             model = Model::new(&search);
             step = model.minimise(newest, reach, search.noise);
         }
-        let gain = search.h[search.best] - step.value;
+        let gain = search.h.0[search.best] - step.value;
         let curved = model.rho != 0.0;
         let mut far = search.best;
         let mut doubt = 0.0;
+        // What the same error of R leaves open where the model has its minimum.
+        let mut open: Real = 0.0;
         if curved && step.count > 1 {
             for &i in &step.set[..step.count] {
-                let error = search.curvature.error_along(&(search.n[i] - model.b));
-                if model.lift[i] * error > doubt {
-                    doubt = model.lift[i] * error;
+                let error = search.error(i, &model.b);
+                if i != search.best {
+                    let raise = model.raise(i, &search.v.get(i), step.x, step.y);
+                    open = open.max(raise * error);
+                }
+                if model.lift.0[i] * error > doubt {
+                    doubt = model.lift.0[i] * error;
                     far = i;
                 }
             }
@@ -907,13 +1069,14 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         let close = gain.abs() <= tolerance && (step.inside || level);
         let blind = close && curved && step.count < 3 && !search.curvature.spread;
         // Depth zero within rounding cannot be lower.
-        let touch = search.h[search.best] <= search.noise;
-        let done = touch || close && !blind && doubt <= tolerance;
+        let touch = search.h.0[search.best] <= search.noise;
+        let done = touch || close && !blind && doubt <= tolerance && gain.abs() + open <= tolerance;
         // A reach that small means that the search is stuck.
         let broken = !step.value.is_finite() || reach < STUCK;
         if done || broken || iterations >= settings.max_iterations {
             let (answer, across) = conclude(&search, &model, &step, tolerance, iterations);
             remember(memory, &search.curvature, &model, &step);
+            search.met.lead(search.at[search.best]);
             // A minimum is where the support plane touches D below the origin: witness
             // points farther apart across the normal than a curve of the object's size
             // may be within the tolerance are not witnesses of one.
@@ -934,27 +1097,27 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             // Ask nearer to the minimum on the side of the cut in doubt.
             predicted = Real::NAN;
             let share = (0.5 * tolerance.max(0.1 * gain) / doubt).sqrt().min(0.5);
-            d += (search.n[far] - d) * share;
+            d += (search.n.get(far) - d) * share;
             probing = far;
         } else if blind {
             predicted = Real::NAN;
             let line = &search.curvature.line;
             let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
             search.curvature.spread = *line != Vec3::zeros();
-            let g = search.seen.points[search.best].v.dot(&across);
+            let g = search.v.get(search.best).dot(&across);
             d += across * ACROSS.copysign(-g);
         }
         n = d * (1.0 / d.norm());
-        if search.len() == CUTS {
+        if search.len == CUTS {
             // Room for the next: the cut that is lowest where the model has its
             // minimum. The newest may be the answer to a doubt.
             let mut least = Real::INFINITY;
             let mut victim = CUTS;
+            let levels = model.a + model.x * step.x + model.y * step.y;
             for i in 0..CUTS {
-                let kept = i == search.best || i == newest || step.set[..step.count].contains(&i);
-                let v = model.cuts[i].at(step.x, step.y);
-                if !kept && v < least {
-                    least = v;
+                let kept = i == search.best || i == newest || step.set.contains(&i);
+                if !kept && levels.0[i] < least {
+                    least = levels.0[i];
                     victim = i;
                 }
             }
@@ -962,8 +1125,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 // The best and three others: the lowest at the best goes, and for what
                 // the model forgets the reach must pay.
                 for i in (0..CUTS).filter(|&i| i != search.best) {
-                    if model.cuts[i].a < least {
-                        least = model.cuts[i].a;
+                    if model.a.0[i] < least {
+                        least = model.a.0[i];
                         victim = i;
                     }
                 }
@@ -972,10 +1135,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             if victim == CUTS {
                 victim = (search.best + 1) % CUTS;
             }
-            search.drop(victim);
-            if probing == CUTS - 1 {
-                probing = victim;
-            }
+            probing = search.drop(victim, probing);
         }
     }
 }
@@ -989,18 +1149,21 @@ fn conclude(
     tolerance: Real,
     iterations: u64,
 ) -> (Penetration, Real) {
-    let best = &search.seen.points[search.best];
+    let best = search.point(search.best);
     let b = &model.b;
     let share = search.curvature.share;
     let mut point1 = Vec3::zeros();
     let mut point2 = Vec3::zeros();
     for (&i, w) in step.set[..step.count].iter().zip(model.weights(step)) {
-        let (p, cut) = (&search.seen.points[i], &model.cuts[i]);
+        let p = search.point(i);
         point1 += p.v1 * w;
         point2 += p.v2 * w;
-        if model.lift[i] > 0.0 {
+        if model.lift.0[i] > 0.0 {
             // Where R moves the sample's point to when its direction becomes b.
-            let (x, y) = (cut.x - p.v.dot(&model.e1), cut.y - p.v.dot(&model.e2));
+            let (x, y) = (
+                model.x.0[i] - p.v.dot(&model.e1),
+                model.y.0[i] - p.v.dot(&model.e2),
+            );
             let moved = (model.e1 * x + model.e2 * y) * w;
             point1 += moved * share;
             point2 -= moved * (1.0 - share);
@@ -1008,25 +1171,30 @@ fn conclude(
     }
     // A direction that ties several vertices shows one of them, which may leave the
     // model fewer cuts than the search has seen: they still enclose the origin.
-    let level = search.h[search.best] - tolerance;
-    if let Some(weights) = enclosing(&search.seen.points[..search.len()], model, level) {
+    let off = |point1: Vec3, point2: Vec3| {
+        let difference = point1 - point2;
+        difference - b * difference.dot(b)
+    };
+    let mut across = off(point1, point2);
+    if across.norm_squared() > search.noise * search.noise
+        && let Some(weights) = enclosing(search, model, search.h.0[search.best] - tolerance)
+    {
         point1 = Vec3::zeros();
         point2 = Vec3::zeros();
         for (i, w) in weights {
-            point1 += search.seen.points[i].v1 * w;
-            point2 += search.seen.points[i].v2 * w;
+            point1 += search.point(i).v1 * w;
+            point2 += search.point(i).v2 * w;
         }
+        across = off(point1, point2);
     }
     // What is left across the normal is the distance to the model's minimum.
-    let across = point1 - point2;
-    let across = across - b * across.dot(b);
     point1 -= across * share;
     point2 += across * (1.0 - share);
     // Onto the support planes of both objects.
     point1 += b * (best.v1 - point1).dot(b);
     point2 += b * (best.v2 - point2).dot(b);
     let answer = Penetration {
-        depth: search.h[search.best],
+        depth: search.h.0[search.best],
         depth_lower: 0.0,
         dir: *b,
         normal: *b,
@@ -1037,28 +1205,22 @@ fn conclude(
     (answer, across.norm())
 }
 
-/// Three points at or above `level` along b whose triangle the ray along b meets, and
+/// Three samples at or above `level` along b whose triangle the ray along b meets, and
 /// the weights of where it does.
-fn enclosing(points: &[SupportPoint], model: &Model, level: Real) -> Option<[(usize, Real); 3]> {
-    let at = |i: usize| {
-        let v = &points[i].v;
-        (v.dot(&model.b) >= level).then(|| (v.dot(&model.e1), v.dot(&model.e2)))
-    };
-    let area = |p: (Real, Real), q: (Real, Real)| p.0 * q.1 - p.1 * q.0;
-    for k in 2..points.len() {
-        for j in 1..k {
-            for i in 0..j {
-                let (Some(p), Some(q), Some(r)) = (at(i), at(j), at(k)) else {
-                    continue;
-                };
-                let w = [area(q, r), area(r, p), area(p, q)];
-                let sum = w[0] + w[1] + w[2];
-                let w = w.map(|w| w / sum);
-                // False for NaN: three points on a line.
-                if w.iter().all(|&w| w >= 0.0) {
-                    return Some([(i, w[0]), (j, w[1]), (k, w[2])]);
-                }
-            }
+fn enclosing(search: &Search, model: &Model, level: Real) -> Option<[(usize, Real); 3]> {
+    let height = search.v.dot(&model.b);
+    let (x, y) = (search.v.dot(&model.e1), search.v.dot(&model.e2));
+    let area = |i: usize, j: usize| x.0[i] * y.0[j] - y.0[i] * x.0[j];
+    for [i, j, k, _] in OTHERS {
+        if !(height.0[i] >= level && height.0[j] >= level && height.0[k] >= level) {
+            continue;
+        }
+        let w = [area(j, k), area(k, i), area(i, j)];
+        let sum = w[0] + w[1] + w[2];
+        let w = w.map(|w| w / sum);
+        // False for NaN: three points on a line.
+        if w.iter().all(|&w| w >= 0.0) {
+            return Some([(i, w[0]), (j, w[1]), (k, w[2])]);
         }
     }
     None
@@ -1071,29 +1233,15 @@ fn remember(memory: &mut Memory, curvature: &Curvature, model: &Model, step: &St
     } else {
         0.0
     };
-    let [g, h, k] = step.set.map(|i| (model.cuts[i].x, model.cuts[i].y));
-    let side = |x: Real, y: Real| model.e1 * x + model.e2 * y;
-    // Where one cut is above the other two by as much as it can: across the line on
-    // which they are equal, and, since a face may have a fourth vertex there, towards
-    // the vertex itself.
-    let apart = |a: (Real, Real), b: (Real, Real), c: (Real, Real)| {
-        let (x, y) = (c.1 - b.1, b.0 - c.0);
-        let s = (1.0 / (x * x + y * y).sqrt()).copysign((a.0 - b.0) * x + (a.1 - b.1) * y);
-        let t = 1.0 / (a.0 * a.0 + a.1 * a.1).sqrt();
-        side(x * s + a.0 * t, y * s + a.1 * t)
-    };
-    let (sides, count) = match step.count {
-        3 => ([apart(g, h, k), apart(h, k, g), apart(k, g, h)], 3),
-        2 => {
-            let d = side(g.0 - h.0, g.1 - h.1);
-            ([d, -d, Vec3::zeros()], 2)
-        }
-        _ => ([Vec3::zeros(); 3], 0),
+    let gradient = |i: usize| model.e1 * model.x.0[i] + model.e2 * model.y.0[i];
+    let (slopes, count) = match step.count {
+        1 => ([Vec3::zeros(); 3], 0),
+        count => (step.set.map(gradient), count as u32),
     };
     let r = &curvature.r;
     *memory = Memory {
         dir: model.b,
-        sides,
+        slopes,
         curvature: [r.xx, r.xy, r.xz, r.yy, r.yz, r.zz],
         drift,
         count,
@@ -1117,10 +1265,28 @@ fn recall(
     } else {
         0.003
     };
+    let slopes = &memory.slopes;
+    let count = (memory.count as usize).min(slopes.len());
     let mut queued = 0;
-    for side in memory.sides.iter().take(memory.count as usize) {
-        let across = side - dir * dir.dot(side);
-        if let Some(n) = unit(&across).and_then(|s| unit(&(dir + s * angle))) {
+    for i in 0..count {
+        let (g, h, k) = (slopes[i], slopes[(i + 1) % count], slopes[(i + 2) % count]);
+        // Where one cut is above the other two by as much as it can: across the line on
+        // which they are equal, and, since a face may have a fourth vertex there, towards
+        // the vertex itself.
+        let side = if count == 3 {
+            let across = dir.cross(&(k - h));
+            let up = across.dot(&(g - h));
+            unit(&across)
+                .zip(unit(&g))
+                .map(|(a, g)| a * (1.0 as Real).copysign(up) + g)
+        } else {
+            Some(g - h)
+        };
+        let across = side.map(|s| s - dir * dir.dot(&s));
+        if let Some(n) = across
+            .and_then(|a| unit(&a))
+            .and_then(|s| unit(&(dir + s * angle)))
+        {
             queue[queued] = n;
             queued += 1;
         }
@@ -1228,15 +1394,14 @@ mod tests {
         tolerance: Real,
     ) -> (Answer, u64) {
         let md = MinkowskiDifference::new(a, b);
-        let mut seen = Seen::default();
+        let mut met = Known::default();
         let answer = penetration(
             &md,
             None,
             &start.normalize(),
             memory,
             &settings(tolerance),
-            &mut seen,
-            |_| (),
+            &mut met,
         );
         match answer {
             // What every caller does with a search that did not end in a minimum.
@@ -1510,7 +1675,7 @@ mod tests {
             let mut v = || Vec3::new(real(), real(), real());
             let mut memory = Memory {
                 dir: v(),
-                sides: [v(), v(), v()],
+                slopes: [v(), v(), v()],
                 ..Memory::default()
             };
             memory.curvature = [(); 6].map(|_| real());

@@ -17,7 +17,7 @@
 //!
 //! Nothing in a state is trusted: it chooses where to look first, never what is true.
 
-use crate::bundle::{self, Memory, Seen};
+use crate::bundle::{self, Memory};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::epa::{self, Arena, Entry, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
@@ -25,14 +25,14 @@ use crate::local::{self, Shortcut};
 use crate::math::{self, Real, Vec3, unit};
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
-use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct State {
     /// What the solvers remember. In a pair that was apart `dir` separated it, and its
-    /// length, metres, is the margin to aim at; after a query along a direction `sides` are the directions of the last portal.
+    /// length, metres, is the margin to aim at; after a query along a direction `slopes` are the directions of the last portal.
     pub memory: Memory,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
@@ -103,7 +103,7 @@ impl State {
 
     /// The directions of the last portal.
     fn portal(&self) -> Option<[Vec3; 3]> {
-        let [a, b, c] = &self.memory.sides;
+        let [a, b, c] = &self.memory.slopes;
         match self.kind {
             ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
             _ => None,
@@ -117,29 +117,6 @@ impl State {
             Answer::Miss(n) => *self = Self::of(APART, *n),
             Answer::Hit(hit) | Answer::Limit(hit) => *self = Self::of(OVERLAP, hit.normal),
             Answer::Undecided(_) => {}
-        }
-    }
-}
-
-/// Points of D that a query has come to know, each once.
-#[derive(Default)]
-struct Known {
-    points: [SupportPoint; epa::GIVEN],
-    len: usize,
-}
-
-impl Known {
-    fn points(&self) -> &[SupportPoint] {
-        self.points.get(..self.len).unwrap_or(&[])
-    }
-
-    /// Adds a point, unless it is there or there is no room.
-    fn add(&mut self, p: &SupportPoint) {
-        if !self.points().iter().any(|k| k.v == p.v)
-            && let Some(to) = self.points.get_mut(self.len)
-        {
-            *to = *p;
-            self.len += 1;
         }
     }
 }
@@ -395,14 +372,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Answer, Fault> {
-        let mut seen = Seen::default();
-        // The last points lie around the answer, the first ones wider apart: together
-        // they prove most overlaps.
-        let mut first = Known::default();
-        let found = self.stroll(memory, PATIENCE, settings, &mut seen, |p| first.add(p))?;
-        for p in seen.points().iter().chain(first.points()) {
-            known.add(p);
-        }
+        let found = self.stroll(memory, PATIENCE, settings, known)?;
         let Answer::Limit(tired) = found else {
             return Ok(found);
         };
@@ -432,8 +402,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         memory: &mut Memory,
         patience: u64,
         settings: &Settings,
-        seen: &mut Seen,
-        met: impl FnMut(&SupportPoint),
+        known: &mut Known,
     ) -> Result<Answer, Fault> {
         let first = Settings {
             max_iterations: settings.max_iterations.min(patience),
@@ -445,8 +414,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             &self.cold_start(),
             memory,
             &first,
-            seen,
-            met,
+            known,
         )
     }
 
@@ -462,10 +430,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let mut memory = state.solver();
         let mut known = Known::default();
-        let search = self.stroll(&mut memory, GLANCE, settings, &mut Seen::default(), |p| {
-            known.add(p)
-        });
-        let local = match search? {
+        let search = self.stroll(&mut memory, GLANCE, settings, &mut known)?;
+        let local = match search {
             Answer::Hit(hit) | Answer::Limit(hit) => hit,
             other => {
                 self.remember(state, &other)?;
@@ -564,7 +530,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.remember(state, &answer)?;
         if let (Some(p), Answer::Hit(_) | Answer::Limit(_)) = (portal, &answer) {
             state.kind = ALONG;
-            state.memory.sides = p.planes.map(|plane| plane.normal);
+            state.memory.slopes = p.planes.map(|plane| plane.normal);
         }
         Ok(answer)
     }
@@ -651,7 +617,7 @@ const PATIENCE: u64 = 64;
 /// eight, after a finished one: boxes 10.4, 10.4, 11.0; 162-vertex polytopes 18.2, 15.6,
 /// 16.6; cylinder and box 17.9, 17.1, 19.8; capsules 30.3, 27.8, 30.3; ellipsoids 30.2,
 /// 28.2, 31.9; spheres 31.6, 31.8, 31.8.
-const GLANCE: u64 = epa::GIVEN as u64;
+const GLANCE: u64 = Known::ROOM as u64;
 
 /// Depth, as a share of the distance from the centre of D to its support plane, below
 /// which [`Pair::mpr`] takes the local minimum for the global one.
