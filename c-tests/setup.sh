@@ -29,15 +29,18 @@ want_package() {
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then
         env DEBIAN_FRONTEND=noninteractive "$@"
-    else
+    elif command -v sudo >/dev/null 2>&1; then
         sudo env DEBIAN_FRONTEND=noninteractive "$@"
+    else
+        echo "setup.sh: neither root nor sudo; as root: $*" >&2
+        return 1
     fi
 }
 
 # apt_install PACKAGE...: the package lists are fetched only if they are too old
 apt_install() {
     as_root apt-get install -y -q --no-install-recommends "$@" </dev/null && return
-    as_root apt-get update -q </dev/null
+    as_root apt-get update -q </dev/null || return
     as_root apt-get install -y -q --no-install-recommends "$@" </dev/null
 }
 

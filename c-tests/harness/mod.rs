@@ -609,6 +609,16 @@ impl Executable {
             "{} runs on {loaded:?}, not on the system's libccd",
             self.name
         );
+        // Installed in /usr/local, this library comes before libccd.
+        let bytes = loaded
+            .as_ref()
+            .map(|path| fs::read(path).unwrap_or_default());
+        let name = b"ccdImplementation";
+        assert!(
+            !bytes.is_some_and(|b| b.windows(name.len()).any(|w| w == name)),
+            "{}: {loaded:?} is this library, installed; remove it to compare with libccd",
+            self.name
+        );
     }
 }
 
