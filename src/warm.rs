@@ -511,21 +511,26 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut answer = self.proven(hit, limit, &mut known, settings)?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
             // The bound along dir: the portal is inscribed and the origin in D.
-            hit.depth_lower = match portal {
+            let (lower, error) = match portal {
                 Some(p) => {
                     let size = p
                         .planes
                         .iter()
                         .fold(0.0, |m: Real, plane| m.max(plane.point.magnitude()));
-                    let reach = p
-                        .normal()
-                        .map_or(0.0, |n| p.reach() - rounding(size) / n.dot(&dir));
-                    // max also drops NaN
-                    reach.max(0.0).min(depth)
+                    p.normal().map_or((0.0, 0.0), |n| {
+                        let error = rounding(size) / n.dot(&dir);
+                        (p.reach() - error, error)
+                    })
                 }
-                None if matches!(exit, Exit::Vertex) => depth,
-                None => 0.0,
+                None if matches!(exit, Exit::Vertex) => (depth, 0.0),
+                None => (0.0, 0.0),
             };
+            // max also drops NaN
+            hit.depth_lower = lower.max(0.0).min(depth);
+            // Where rounding ended the search the answer may yet be as good as asked for.
+            if depth - hit.depth_lower <= settings.tolerance.max(2.0 * error) {
+                answer = Answer::Hit(*hit);
+            }
         }
         self.remember(state, &answer)?;
         if let (Some(p), Answer::Hit(_) | Answer::Limit(_)) = (portal, &answer) {
