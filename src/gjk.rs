@@ -229,7 +229,13 @@ fn near_touch<A: SupportMap, B: SupportMap>(
         Found::Portal(portal) => portal,
         Found::Miss(n) => return Ok(Overlap::No(n)),
         Found::Limit => return Ok(Overlap::Undecided),
-        Found::Vertex | Found::Touch => return Ok(Overlap::Yes(simplex, 0.0)),
+        // Between the inner point and the ray's own support point.
+        Found::Vertex => {
+            let mut segment = Simplex::new(inner);
+            segment.push(first.point);
+            return Ok(Overlap::Yes(segment, 0.0));
+        }
+        Found::Touch => return Ok(Overlap::Yes(simplex, 0.0)),
     };
     // Any portal that has the origin on its inner side decides.
     let tolerance = Real::INFINITY;

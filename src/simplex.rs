@@ -118,6 +118,58 @@ impl Simplex {
         least
     }
 
+    /// The point of obj1 and obj2 where they meet, for a simplex that holds the origin:
+    /// within rounding a convex combination of either's own points.
+    pub fn witnesses(&self) -> (Vec3, Vec3) {
+        let weights = self.weights();
+        let (mut p1, mut p2) = (Vec3::zeros(), Vec3::zeros());
+        for (p, w) in self.points().iter().zip(weights) {
+            p1 += p.v1 * w;
+            p2 += p.v2 * w;
+        }
+        // What the rounding of the shares leaves between them.
+        let rest = (p1 - p2) * 0.5;
+        (p1 - rest, p2 + rest)
+    }
+
+    /// The shares of the points in the point nearest to the origin, for a simplex that
+    /// holds it or has been reduced.
+    fn weights(&self) -> [Real; 4] {
+        let [a, b, c, d] = self.points.each_ref().map(|p| &p.v);
+        let shares = match self.len {
+            1 => [1.0, 0.0, 0.0, 0.0],
+            2 => {
+                let ab = b - a;
+                [b.dot(&ab), -a.dot(&ab), 0.0, 0.0]
+            }
+            3 => {
+                let n = normal(a, b, c);
+                let area = |p: &Vec3, q: &Vec3| n.dot(&p.cross(q));
+                [area(b, c), area(c, a), area(a, b), 0.0]
+            }
+            _ => {
+                // Six times the volumes of the tetrahedra between the origin and a face.
+                let volume = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
+                let whole = (b - a).dot(&(c - a).cross(&(d - a)));
+                [
+                    volume(b, d, c),
+                    volume(a, c, d),
+                    volume(a, d, b),
+                    volume(a, b, c),
+                ]
+                .map(|v| if whole > 0.0 { -v } else { v })
+            }
+        };
+        // max drops NaN.
+        let shares = shares.map(|s| s.max(0.0));
+        let sum: Real = shares.iter().sum();
+        if sum > 0.0 && sum < Real::INFINITY {
+            shares.map(|s| s / sum)
+        } else {
+            [1.0, 0.0, 0.0, 0.0]
+        }
+    }
+
     /// The unit normal of the face opposite to the newest vertex of a tetrahedron, away
     /// from it; `None` when the face has no area.
     pub fn out_of_base(&self) -> Option<Vec3> {

@@ -214,10 +214,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 for p in simplex.points() {
                     known.add(p);
                 }
-                let hit = Penetration {
+                let mut hit = Penetration {
                     depth_lower: inner.min(hit.depth),
                     ..hit
                 };
+                // Of a touch, within the tolerance, the points that meet at the origin of D
+                // are witnesses as well.
+                let apart = (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
+                if hit.depth <= settings.tolerance && apart > settings.tolerance {
+                    (hit.point1, hit.point2) = simplex.witnesses();
+                }
                 if limit {
                     Answer::Limit(hit)
                 } else {
