@@ -19,15 +19,18 @@
 //! it stays a bound when a sliver's normal is mostly rounding error. The nearest triangle
 //! of a convex surface is one that the origin projects into: the others are passed over.
 //!
-//! The nearest face nearer than upper − tolerance is taken from a heap, the support point
+//! The nearest face nearer than upper − tolerance is taken from a list, the support point
 //! along its normal replaces all faces it sees, and the upper bound is the least h met.
 //! Faces at least upper − tolerance away are never looked at again, so where the minimum
 //! is isolated the surface stays coarse away from it. It ends when upper − lower is
 //! within the tolerance.
 //!
-//! The start is [`gjk`]: it separates, or finds the origin in the hull of the points seen
-//! (given ones are used before new ones are asked for), to rounding; yes or no never
-//! depends on the tolerance. D flat in some direction, to rounding, is a touch.
+//! The start is a tetrahedron of given points, or of such as are asked for one after the
+//! other towards the origin. It need not hold the origin: a face with the origin outside
+//! is the nearest of all. That the objects overlap is proven when none is left. Where the
+//! origin ends up hardly inside or not at all, [`gjk`] separates or finds it in the hull
+//! of points, to rounding: yes or no never depends on the tolerance. D flat in some
+//! direction, to rounding, is a touch.
 //!
 //! Departures from libccd: tolerances are depths (libccd compares squared metres), all
 //! faces that the new point sees go (libccd splits one), no test is absolute, and an
@@ -35,8 +38,9 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::{self, Overlap};
-use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance};
+use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
 use crate::nearest;
+use crate::simplex::Simplex;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Index of a point, a face, or a half-edge (4 · face + edge).
@@ -46,8 +50,8 @@ const NONE: Index = Index::MAX;
 
 /// Most points a polytope may have, so that half-edges fit an [`Index`].
 pub const MAX_POINTS: usize = 5400;
-/// Faces to have room for, per point. A closed surface of V points has 2V − 4; those that
-/// wait dead in the heap and those a point replaces need room too.
+/// Faces to have room for, per point: a closed surface of V points has 2V − 4, and those
+/// that a point replaces by at most V stay until that is done.
 pub const FACES_PER_POINT: usize = 3;
 
 /// Most given points that are used.
@@ -67,89 +71,162 @@ const SIZES: (Real, Real) = (1e-13, 1e16);
 /// A triangle of the polytope.
 ///
 /// Corners run counter-clockwise seen from outside. Edge i leads from corner i to corner
-/// i + 1.
+/// i + 1. (Arrays of four, so that the low bits of a half-edge are in range.)
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Face {
-    /// Unit, outward.
-    normal: Vec3,
-    /// Largest `normal · corner`: what lies above it is outside.
-    offset: Real,
-    /// Lower bound on the distance from the origin to the triangle; negative when the
-    /// origin is outside.
-    key: Real,
-    /// (Four, so that the low bits of a half-edge are in range.)
+    plane: Plane,
     corners: [Index; 4],
     /// Half-edge on the other side of each edge.
     across: [Index; 4],
-    /// Next in the list of free or of visible faces.
+    /// Number of the insertion that last saw the face from outside, or [`DEAD`].
+    mark: Index,
+    /// Next in the list of free faces, or of those that an insertion sees.
     next: Index,
-    queued: bool,
-    dead: bool,
+    /// Place in the list of open faces, if it is there.
+    open: Index,
     /// Its common direction with its neighbours was tried in vain.
     lone: bool,
-    /// Number of the insertion that last looked at the face: 2 · insertion, + 1 if visible.
-    seen: Index,
 }
 
-impl Face {
-    /// A new face in an old one's place.
-    #[inline]
-    fn renew(&mut self, [a, b, c]: [Index; 3], [d, e, f]: [Index; 3]) {
-        self.corners = [a, b, c, 0];
-        self.across = [d, e, f, 0];
-        self.next = NONE;
-        self.queued = false;
-        self.dead = false;
-        self.lone = false;
-        self.seen = 0;
+/// Mark of a face that is no more.
+const DEAD: Index = Index::MAX;
+
+/// The plane of a triangle.
+#[derive(Clone, Copy, Debug, Default)]
+struct Plane {
+    /// The unit normal, outward, and minus the largest normal · corner: what lies above
+    /// it is outside.
+    lift: [Real; 4],
+    /// Lower bound on the distance from the origin to the triangle; negative when the
+    /// origin is outside.
+    key: Real,
+}
+
+impl Plane {
+    #[inline(always)]
+    fn normal(&self) -> Vec3 {
+        Vec3::new(self.lift[0], self.lift[1], self.lift[2])
     }
 
-    /// Its three corners.
-    #[inline]
-    fn corners(&self) -> [Index; 3] {
-        let [a, b, c, _] = self.corners;
-        [a, b, c]
+    #[inline(always)]
+    fn offset(&self) -> Real {
+        -self.lift[3]
     }
 
-    /// Sets normal, offset and distance bound from the corners.
-    #[inline]
-    fn measure(&mut self, a: &Vec3, b: &Vec3, c: &Vec3) {
-        let (ab, ac, bc) = (b - a, c - a, c - b);
-        let mut normal = ab.cross(&ac);
-        // A needle's two long edges would leave no normal but rounding. (Seldom: a choice
-        // of the shorter one for each face would cost more in branches foretold wrong.)
-        if ac.norm_squared() > 64.0 * bc.norm_squared() {
-            normal = ab.cross(&bc);
+    /// How far `v` lies outside.
+    #[inline(always)]
+    fn height(&self, v: &Vec3) -> Real {
+        let [x, y, z, w] = self.lift;
+        (x * v.x + z * v.z) + (y * v.y + w)
+    }
+}
+
+/// A triangle abp by the ways from p to a and b.
+struct Wedge {
+    a: Vec3,
+    b: Vec3,
+    /// Their cross product: outward, as long as twice the area.
+    normal: Vec3,
+    area2: Real,
+    /// Its products with p, and the largest and the least of those with a − p, b − p and
+    /// 0: rounding, but of a sliver.
+    at: Real,
+    above: Real,
+    below: Real,
+}
+
+impl Wedge {
+    /// `rounding`: of the points.
+    #[inline(always)]
+    fn new([va, vb, p]: [&Vec3; 3], a: Vec3, b: Vec3, rounding: Real) -> Self {
+        let wedge = Self::of(a, b, a.cross(&b), p);
+        let spread = wedge.above - wedge.below;
+        if spread * spread > rounding * rounding * wedge.area2 {
+            return Self::needle(a, b, &(vb - va), p);
         }
-        let length = normal.norm();
-        if !(length > 0.0) {
+        wedge
+    }
+
+    #[inline(always)]
+    fn of(a: Vec3, b: Vec3, normal: Vec3, p: &Vec3) -> Self {
+        let (da, db) = (normal.dot(&a), normal.dot(&b));
+        Self {
+            a,
+            b,
+            normal,
+            area2: normal.norm_squared(),
+            at: normal.dot(p),
+            above: larger(larger(da, db), 0.0),
+            below: lesser(lesser(da, db), 0.0),
+        }
+    }
+
+    /// Of two long edges, almost parallel, the product is rounding; not so of the short
+    /// third one, from a to b, and the shorter of them.
+    #[cold]
+    fn needle(a: Vec3, b: Vec3, ab: &Vec3, p: &Vec3) -> Self {
+        let shorter = if a.norm_squared() < b.norm_squared() {
+            a
+        } else {
+            b
+        };
+        Self::of(a, b, shorter.cross(ab), p)
+    }
+
+    #[inline(always)]
+    fn plane(&self) -> Plane {
+        if !(self.area2 > 0.0) {
             // No area and no plane: the edges are the neighbours' too. Any point that sees
             // a neighbour sees it.
-            self.normal = Vec3::zeros();
-            self.offset = Real::NEG_INFINITY;
-            self.key = Real::INFINITY;
-            return;
+            return Plane {
+                lift: [0.0, 0.0, 0.0, Real::INFINITY],
+                key: Real::INFINITY,
+            };
         }
-        let normal = normal * (1.0 / length);
-        let (da, db, dc) = (normal.dot(a), normal.dot(b), normal.dot(c));
-        self.normal = normal;
-        self.offset = larger(larger(da, db), dc);
-        self.key = lesser(lesser(da, db), dc);
+        let by = 1.0 / self.area2.sqrt();
+        let n = &self.normal;
+        Plane {
+            lift: [n.x * by, n.y * by, n.z * by, -(self.at + self.above) * by],
+            key: (self.at + self.below) * by,
+        }
+    }
+
+    /// Is a point, seen from p, on the outer side?
+    #[inline(always)]
+    fn hides(&self, way: &Vec3) -> bool {
+        self.normal.dot(way) > self.above
+    }
+
+    /// Does the origin project beyond an edge, so that a neighbour is nearer?
+    ///
+    /// By more than a share of the edge and rounding: a projection onto an edge is inside
+    /// of both faces.
+    #[inline(always)]
+    fn aside(&self, p: &Vec3) -> bool {
+        // Areas times areas: of the projection and the edge across from each corner, twice.
+        let turned = p.cross(&self.normal);
+        let (a, b) = (self.b.dot(&turned), -self.a.dot(&turned));
+        let edge2 = larger(self.a.norm_squared(), self.b.norm_squared());
+        let slack = 1e-6 * edge2 + 32.0 * EPSILON * (edge2 + p.norm_squared());
+        let least = lesser(lesser(a, b), self.area2 - a - b);
+        least < 0.0 && least * least > slack * slack * self.area2
     }
 }
 
-/// The memory of a query: a point, [`FACES_PER_POINT`] faces and as many heap slots for
-/// each point.
+/// The memory of a query: a point, [`FACES_PER_POINT`] faces, as many entries and an
+/// edge for each point.
 pub struct Storage<'a> {
     /// Support points of D.
     pub points: &'a mut [SupportPoint],
     /// Faces, live and free.
     pub faces: &'a mut [Face],
-    /// Heap of faces.
-    pub heap: &'a mut [Entry],
+    /// Faces that may have to be expanded.
+    pub open: &'a mut [Entry],
+    /// Scratch.
+    pub rim: &'a mut [Edge],
 }
 
-/// A face in the heap.
+/// An open face and its distance.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Entry {
     key: Real,
@@ -207,41 +284,6 @@ enum Stop {
 }
 
 impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
-    /// The support point along unit `dir`, and what it says of both bounds.
-    ///
-    /// A callback that errs must not lower the upper bound, nor separate: D reaches as far
-    /// as all `known` points.
-    #[inline]
-    fn ask(&mut self, dir: &Vec3, known: &[SupportPoint]) -> Result<SupportPoint, Stop> {
-        let mut point = self.md.support(dir).map_err(Stop::Fault)?;
-        self.note(&point);
-        let mut h = dir.dot(&point.v);
-        if h < self.upper.depth {
-            for p in known {
-                let d = dir.dot(&p.v);
-                if d > h {
-                    (h, point) = (d, *p);
-                }
-            }
-            if h < 0.0 {
-                return Err(Stop::Miss(*dir));
-            }
-            self.lower_to(h, dir);
-        }
-        Ok(point)
-    }
-
-    /// Takes `h`, the support value along `dir`, as upper bound if it is lower.
-    #[inline]
-    fn lower_to(&mut self, h: Real, dir: &Vec3) {
-        if h < self.upper.depth {
-            self.upper = Upper {
-                depth: h,
-                dir: *dir,
-            };
-        }
-    }
-
     /// Takes the sizes that rounding and tolerance follow from a point.
     #[inline]
     fn note(&mut self, point: &SupportPoint) {
@@ -257,6 +299,17 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
                 self.size2.sqrt(),
                 self.reach2.sqrt(),
             );
+        }
+    }
+
+    /// Takes `h`, the support value along `dir`, as upper bound if it is lower.
+    #[inline]
+    fn lower_to(&mut self, h: Real, dir: &Vec3) {
+        if h < self.upper.depth {
+            self.upper = Upper {
+                depth: h,
+                dir: *dir,
+            };
         }
     }
 
@@ -283,11 +336,12 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
 }
 
 /// What a search over the polytope came to.
-enum Outcome {
-    /// Proven within the tolerance, or (`false`) at the end of means.
-    Done(bool, Penetration),
-    /// No room for one more point.
-    Full,
+struct Found {
+    /// The bounds meet, within the tolerance. Otherwise means ended first.
+    proven: bool,
+    /// The origin is inside, by more than rounding.
+    inside: bool,
+    hit: Penetration,
 }
 
 /// The global minimum penetration of `md`, from `seed`, within `settings.tolerance`.
@@ -301,13 +355,11 @@ pub fn minimum<A: SupportMap, B: SupportMap>(
     settings: &Settings,
     arena: &mut dyn Arena,
 ) -> Result<Answer, Fault> {
+    let (depth, dir) = seed.upper.unwrap_or((Real::INFINITY, seed.dir));
     let mut query = Query {
         md,
         settings: *settings,
-        upper: Upper {
-            depth: Real::INFINITY,
-            dir: seed.dir,
-        },
+        upper: Upper { depth, dir },
         reach2: 0.0,
         size2: 0.0,
         tolerance: 0.0,
@@ -327,31 +379,43 @@ fn run<A: SupportMap, B: SupportMap>(
     seed: &Seed<'_>,
     arena: &mut dyn Arena,
 ) -> Result<Answer, Stop> {
+    let answer = |found: Found| {
+        if found.proven {
+            Answer::Hit(found.hit)
+        } else {
+            Answer::Limit(found.hit)
+        }
+    };
     let mut polytope = Polytope::new(arena.storage());
-    let given = &seed.points[..seed.points.len().min(GIVEN)];
-    for point in given {
+    for point in seed.points.iter().take(GIVEN) {
         query.note(point);
         polytope.push(*point);
     }
-    if let Some((depth, dir)) = seed.upper {
-        query.upper = Upper { depth, dir };
-    }
-    let start = match given.first() {
-        Some(point) => *point,
-        None => {
-            let point = query.ask(&seed.dir, &[])?;
-            polytope.push(point);
-            point
+    polytope.reach_out(query, &seed.dir)?;
+    // In range are the squares of areas.
+    let mut found = None;
+    if query.size2 > SIZES.0 && query.size2 < SIZES.1 && polytope.build(query)? {
+        let counts = polytope.counts;
+        let (end, counts) = search(query, counts, arena)?;
+        if end.inside {
+            return Ok(answer(end));
         }
-    };
-    // A thin overlap takes many steps: the latest points are kept.
+        found = Some(end);
+        polytope = Polytope::resume(arena.storage(), counts);
+    }
+    // Hardly inside or not at all: yes or no is the other algorithm's.
+    polytope.clear();
+    let start = polytope.points[0];
     let first = polytope.counts.points;
+    let mut given = [start; GIVEN];
+    given[..first].copy_from_slice(&polytope.points[..first]);
+    // A thin overlap takes many steps: the latest points are kept.
     let room = polytope.points.len() - SIMPLEX - WIDEN;
     let mut next = first;
     let overlap = gjk::search(
         query.md,
         start,
-        given,
+        &given[..first],
         query.settings.max_iterations,
         |n, w| {
             query.note(w);
@@ -369,25 +433,33 @@ fn run<A: SupportMap, B: SupportMap>(
             return Ok(Answer::Undecided(query.penetration(0.0, &start)));
         }
     };
-    // Squares of areas must be in range.
+    if let Some(found) = found.filter(|f| f.proven) {
+        return Ok(answer(found));
+    }
     if !(query.size2 > SIZES.0 && query.size2 < SIZES.1) && query.size2 > 0.0 {
         return Ok(Answer::Undecided(query.penetration(0.0, &start)));
     }
-    if let Some(answer) = polytope.build(query, simplex.points())? {
-        return Ok(answer);
+    let triangle = polytope.include(&simplex);
+    if !polytope.build(query)? {
+        return Ok(polytope.touch(query, triangle));
     }
+    let counts = polytope.counts;
+    Ok(answer(search(query, counts, arena)?.0))
+}
+
+/// Expands the polytope of `counts` until the bounds meet or means end.
+fn search<A: SupportMap, B: SupportMap>(
+    query: &mut Query<'_, A, B>,
+    mut counts: Counts,
+    arena: &mut dyn Arena,
+) -> Result<(Found, Counts), Stop> {
     loop {
-        match polytope.expand(query)? {
-            Outcome::Done(true, found) => return Ok(Answer::Hit(found)),
-            Outcome::Done(false, found) => return Ok(Answer::Limit(found)),
-            Outcome::Full => {
-                let counts = polytope.counts;
-                arena.grow().map_err(Stop::Fault)?;
-                polytope = Polytope {
-                    counts,
-                    ..Polytope::new(arena.storage())
-                };
-            }
+        let mut polytope = Polytope::resume(arena.storage(), counts);
+        let found = polytope.expand(query)?;
+        counts = polytope.counts;
+        match found {
+            Some(found) => return Ok((found, counts)),
+            None => arena.grow().map_err(Stop::Fault)?,
         }
     }
 }
@@ -396,87 +468,115 @@ fn run<A: SupportMap, B: SupportMap>(
 #[derive(Clone, Copy)]
 struct Counts {
     points: usize,
+    /// Faces, with those on the free list.
     faces: usize,
-    heap: usize,
-    /// Faces on the free list.
-    free: usize,
-    first_free: Index,
+    open: usize,
+    /// First of the free list.
+    free: Index,
     insertions: Index,
     /// Common directions tried in vain, and the insertion until which none is tried.
     vain: Index,
     plain: Index,
     /// A point well inside the first tetrahedron, hence inside the polytope.
     inner: Vec3,
-    /// Least key of the faces that were far enough to be left out of the heap.
+    /// Least key of the faces that were far enough to be left out of the list.
     dropped: Real,
 }
 
 impl Counts {
-    /// Takes a free face; there is one.
-    #[inline]
-    fn allocate(&mut self, faces: &[Face]) -> Index {
-        let f = self.first_free;
-        if f == NONE {
-            self.faces += 1;
-            return (self.faces - 1) as Index;
+    fn new(points: usize) -> Self {
+        Self {
+            points,
+            faces: 0,
+            open: 0,
+            free: NONE,
+            insertions: 0,
+            vain: 0,
+            plain: 0,
+            inner: Vec3::zeros(),
+            dropped: Real::INFINITY,
         }
-        self.first_free = faces[usize::from(f)].next;
-        self.free -= 1;
-        f
     }
+}
 
-    #[inline]
-    fn release(&mut self, faces: &mut [Face], f: Index) {
+/// A new point of the polytope, and the faces that it sees.
+struct View {
+    p: Index,
+    v: Vec3,
+    /// A face that the point is above by more sees it.
+    rounding: Real,
+    /// Number of the insertion.
+    stamp: Index,
+    /// How many faces, and the latest of them.
+    faces: usize,
+    last: Index,
+}
+
+impl View {
+    #[inline(always)]
+    fn add(&mut self, faces: &mut [Face], f: Index) {
         let face = &mut faces[usize::from(f)];
-        face.dead = true;
-        face.next = self.first_free;
-        self.first_free = f;
-        self.free += 1;
+        face.mark = self.stamp;
+        face.next = self.last;
+        self.last = f;
+        self.faces += 1;
     }
+}
+
+/// An edge of the rim of what a point sees, from both sides.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Edge {
+    inner: Index,
+    outer: Index,
 }
 
 /// A closed surface of triangles.
 struct Polytope<'a> {
     points: &'a mut [SupportPoint],
     faces: &'a mut [Face],
-    heap: &'a mut [Entry],
+    open: &'a mut [Entry],
+    rim: &'a mut [Edge],
     counts: Counts,
 }
 
 impl<'a> Polytope<'a> {
     fn new(storage: Storage<'a>) -> Self {
+        Self::resume(storage, Counts::new(0))
+    }
+
+    fn resume(storage: Storage<'a>, counts: Counts) -> Self {
         Self {
             points: storage.points,
             faces: storage.faces,
-            heap: storage.heap,
-            counts: Counts {
-                points: 0,
-                faces: 0,
-                heap: 0,
-                free: 0,
-                first_free: NONE,
-                insertions: 0,
-                vain: 0,
-                plain: 0,
-                inner: Vec3::zeros(),
-                dropped: Real::INFINITY,
-            },
+            open: storage.open,
+            rim: storage.rim,
+            counts,
         }
     }
 
-    #[inline]
+    /// Leaves but the latest points, as many as may be given.
+    fn clear(&mut self) {
+        let last = self.counts.points;
+        let first = last.saturating_sub(GIVEN);
+        self.points.copy_within(first..last, 0);
+        self.counts = Counts::new(last - first);
+    }
+
+    #[inline(always)]
     fn v(&self, i: Index) -> Vec3 {
         self.points[usize::from(i)].v
     }
 
-    #[inline]
+    #[inline(always)]
     fn face(&self, f: Index) -> &Face {
         &self.faces[usize::from(f)]
     }
 
-    #[inline]
-    fn face_mut(&mut self, f: Index) -> &mut Face {
-        &mut self.faces[usize::from(f)]
+    /// The faces that there are.
+    fn live(&self) -> impl Iterator<Item = (Index, &Face)> {
+        (0..)
+            .zip(&self.faces[..self.counts.faces])
+            .filter(|(_, face)| face.mark != DEAD)
     }
 
     fn push(&mut self, point: SupportPoint) -> Index {
@@ -486,7 +586,91 @@ impl<'a> Polytope<'a> {
         i as Index
     }
 
-    /// The point before `end` that is first by `measure`, and its measure.
+    /// The support point along unit `dir` becomes the last point, unless there is a
+    /// farther one; its index. What it says of both bounds is taken.
+    ///
+    /// A callback that errs must not lower the upper bound, nor separate: D reaches as far
+    /// as all known points.
+    #[inline]
+    fn ask<A: SupportMap, B: SupportMap>(
+        &mut self,
+        query: &mut Query<'_, A, B>,
+        dir: &Vec3,
+    ) -> Result<Index, Stop> {
+        let at = self.counts.points;
+        let point = query.md.support(dir).map_err(Stop::Fault)?;
+        query.note(&point);
+        query.iterations += 1;
+        let mut h = dir.dot(&point.v);
+        self.points[at] = point;
+        self.counts.points = at + 1;
+        if h < query.upper.depth {
+            for i in 0..at {
+                let d = dir.dot(&self.points[i].v);
+                if d > h {
+                    h = d;
+                    self.points[at] = self.points[i];
+                }
+            }
+            if h < 0.0 {
+                return Err(Stop::Miss(*dir));
+            }
+            query.lower_to(h, dir);
+        }
+        Ok(at as Index)
+    }
+
+    /// Asks for the corners of a tetrahedron that may hold the origin, as far as there are
+    /// not as many points: each from the nearest point of the last ones towards the origin.
+    fn reach_out<A: SupportMap, B: SupportMap>(
+        &mut self,
+        query: &mut Query<'_, A, B>,
+        dir: &Vec3,
+    ) -> Result<(), Stop> {
+        while self.counts.points < SIMPLEX {
+            let [a, b, c] = [0, 1, 2].map(|i| self.points[i].v);
+            let towards = match self.counts.points {
+                0 => *dir,
+                1 => -a,
+                2 => -nearest::on_segment(&Vec3::zeros(), &a, &b).0,
+                _ => {
+                    let normal = (b - a).cross(&(c - a));
+                    if normal.dot(&a) > 0.0 {
+                        -normal
+                    } else {
+                        normal
+                    }
+                }
+            };
+            // A line through the origin leaves a side to choose.
+            let Some(towards) = unit(&towards).or_else(|| Some(perpendicular(&unit(&(b - a))?)))
+            else {
+                break;
+            };
+            self.ask(query, &towards)?;
+        }
+        Ok(())
+    }
+
+    /// The points of `simplex` among the polytope's, as a triangle: three of them, or all
+    /// with one repeated.
+    fn include(&mut self, simplex: &Simplex) -> [Index; 3] {
+        let mut triangle = [0; 3];
+        for (i, point) in simplex.points().iter().enumerate() {
+            let known = &self.points[..self.counts.points];
+            let at = match known.iter().position(|p| p.v == point.v) {
+                Some(at) => at as Index,
+                None => self.push(*point),
+            };
+            // A simplex of less than three points is a triangle without area.
+            for corner in triangle.iter_mut().skip(i) {
+                *corner = at;
+            }
+        }
+        triangle
+    }
+
+    /// The point that is first by `measure`, and its measure.
     fn farthest(&self, measure: impl Fn(&Vec3) -> Real) -> (Index, Real) {
         let mut best = (0, Real::NEG_INFINITY);
         for (i, point) in self.points[..self.counts.points].iter().enumerate() {
@@ -498,32 +682,18 @@ impl<'a> Polytope<'a> {
         best
     }
 
-    /// The polytope of all points, made solid by new ones where they are flat; `simplex`,
-    /// of some of them, holds the origin. Where D itself is flat the origin touches it:
-    /// that answer ends the query.
+    /// The polytope of all points, made solid by new ones where they are flat. `false`: D
+    /// itself is flat.
     fn build<A: SupportMap, B: SupportMap>(
         &mut self,
         query: &mut Query<'_, A, B>,
-        simplex: &[SupportPoint],
-    ) -> Result<Option<Answer>, Stop> {
-        let mut triangle = [0; 3];
-        for (i, point) in simplex.iter().enumerate() {
-            let known = &self.points[..self.counts.points];
-            let at = match known.iter().position(|p| p.v == point.v) {
-                Some(at) => at as Index,
-                None => self.push(*point),
-            };
-            // A simplex of less than three points is a triangle without area.
-            for corner in triangle.iter_mut().skip(i) {
-                *corner = at;
-            }
-        }
-        let a = triangle[0];
+    ) -> Result<bool, Stop> {
+        let a = 0;
         let va = self.v(a);
         let (mut b, far2) = self.farthest(|v| (v - va).norm_squared());
         if far2.sqrt() <= query.rounding {
             let Some(p) = self.widen(query, a, &Vec3::x())? else {
-                return Ok(Some(self.touch(query, triangle)));
+                return Ok(false);
             };
             b = p;
         }
@@ -531,7 +701,7 @@ impl<'a> Polytope<'a> {
         let (mut c, far2) = self.farthest(|v| (v - va).cross(&along).norm_squared());
         if far2.sqrt() <= query.rounding {
             let Some(p) = self.widen(query, a, &perpendicular(&along))? else {
-                return Ok(Some(self.touch(query, triangle)));
+                return Ok(false);
             };
             c = p;
         }
@@ -540,7 +710,7 @@ impl<'a> Polytope<'a> {
         let (mut d, far) = self.farthest(|v| (v - va).dot(&normal).abs());
         if far <= query.rounding {
             let Some(p) = self.widen(query, a, &normal)? else {
-                return Ok(Some(self.touch(query, triangle)));
+                return Ok(false);
             };
             d = p;
         }
@@ -550,27 +720,36 @@ impl<'a> Polytope<'a> {
         }
         self.counts.inner = (va + self.v(b) + self.v(c) + self.v(d)) * 0.25;
         let target = query.target();
-        for (corners, across) in [
+        for (f, (corners, [x, y, z])) in [
             ([a, b, c], [6, 10, 14]),
             ([a, d, b], [13, 8, 0]),
             ([b, d, c], [5, 12, 1]),
             ([c, d, a], [9, 4, 2]),
-        ] {
-            let f = self.counts.allocate(self.faces);
-            let [x, y, z] = corners.map(|i| self.v(i));
-            let face = self.face_mut(f);
-            face.renew(corners, across);
-            face.measure(&x, &y, &z);
-            self.enqueue(f, target);
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let [va, vb, vp] = corners.map(|i| self.v(i));
+            let wedge = Wedge::new([&va, &vb, &vp], va - vp, vb - vp, query.rounding);
+            let plane = wedge.plane();
+            let [i, j, k] = corners;
+            self.faces[f] = Face {
+                plane,
+                corners: [i, j, k, 0],
+                across: [x, y, z, 0],
+                ..Face::default()
+            };
+            self.counts.faces = f + 1;
+            self.offer(f as Index, plane.key, &wedge, &vp, target);
         }
         for i in 0..self.counts.points as Index {
             if ![a, b, c, d].contains(&i)
                 && let Some(f) = self.lit(i, query.rounding)
             {
-                self.insert(f, i, query);
+                self.insert(f, i, query.rounding, target);
             }
         }
-        Ok(None)
+        Ok(true)
     }
 
     /// The farther of the support points along `dir` and `-dir`, unless both are as far
@@ -582,9 +761,8 @@ impl<'a> Polytope<'a> {
         dir: &Vec3,
     ) -> Result<Option<Index>, Stop> {
         let base = self.v(from);
-        let up = query.ask(dir, &self.points[..self.counts.points])?;
-        let down = query.ask(&-dir, &self.points[..self.counts.points])?;
-        let (up, down) = (self.push(up), self.push(down));
+        let up = self.ask(query, dir)?;
+        let down = self.ask(query, &-dir)?;
         let height = (self.v(up) - base).dot(dir);
         let drop = (base - self.v(down)).dot(dir);
         Ok(if height.max(drop) <= query.rounding {
@@ -611,10 +789,10 @@ impl<'a> Polytope<'a> {
     fn lit(&self, i: Index, rounding: Real) -> Option<Index> {
         let p = self.v(i);
         let mut best = (NONE, rounding);
-        for (f, face) in self.faces[..self.counts.faces].iter().enumerate() {
-            let height = face.normal.dot(&p) - face.offset;
-            if !face.dead && height > best.1 {
-                best = (f as Index, height);
+        for (f, face) in self.live() {
+            let height = face.plane.height(&p);
+            if height > best.1 {
+                best = (f, height);
             }
         }
         (best.0 != NONE).then_some(best.0)
@@ -627,294 +805,239 @@ impl<'a> Polytope<'a> {
     /// the cone: where it would fold back (the inner point on the outer side of a new
     /// face), the old face across that rim edge sees p after all, by less than rounding.
     /// So all faces keep the inner point on their inner side.
-    fn insert<A, B>(&mut self, first: Index, p: Index, query: &Query<'_, A, B>) -> bool
-    where
-        A: SupportMap,
-        B: SupportMap,
-    {
-        let vp = self.v(p);
-        let rounding = query.rounding;
-        let target = query.target();
+    fn insert(&mut self, first: Index, p: Index, rounding: Real, target: Real) -> bool {
         self.counts.insertions += 1;
-        let visible = 2 * self.counts.insertions + 1;
-        if self.room() < self.counts.points {
-            self.purge();
-        }
-
-        let mut last = first;
-        let seen = self.face_mut(first);
-        seen.seen = visible;
-        seen.next = NONE;
-        let cone = loop {
-            let (rim, start) = flood(self.faces, first, &mut last, &vp, rounding, visible);
-            if rim < 3 || rim > self.room() {
+        let mut view = View {
+            p,
+            v: self.v(p),
+            rounding,
+            stamp: self.counts.insertions,
+            faces: 0,
+            last: NONE,
+        };
+        view.add(self.faces, first);
+        loop {
+            // From the next corner where the first is swallowed.
+            let rim = (0..3).find_map(|edge| self.trace(4 * first + edge, &mut view));
+            let Some(rim) = rim else {
                 return false;
+            };
+            match self.cone(rim, &view, target) {
+                Ok(true) => return true,
+                Ok(false) => return false,
+                // One face more each time: it ends.
+                Err(folds) => view.add(self.faces, folds),
             }
-            match self.cone(start, rim, p, visible) {
-                Ok(cone) => break cone,
-                Err(NONE) => return false,
-                Err(folded) => {
-                    self.face_mut(last).next = folded;
-                    let seen = self.face_mut(folded);
-                    seen.seen = visible;
-                    seen.next = NONE;
-                    last = folded;
-                }
-            }
-        };
-        let mut at = first;
-        while at != NONE {
-            let next = self.face(at).next;
-            self.bury(at);
-            at = next;
-        }
-        let mut at = cone;
-        while at != NONE {
-            let next = self.face(at).next;
-            self.enqueue(at, target);
-            at = next;
-        }
-        true
-    }
-
-    /// The faces from point `p` to the `rim` edges of the visible faces, the first to
-    /// `start`, as a list. Otherwise nothing is changed: `Err` has the face across the
-    /// rim that the cone folds back on, or [`NONE`] when the rim is no single loop.
-    fn cone(&mut self, start: Index, rim: usize, p: Index, visible: Index) -> Result<Index, Index> {
-        let (inner, vp) = (self.counts.inner, self.v(p));
-        let Self {
-            points,
-            faces,
-            counts,
-            ..
-        } = self;
-        let faces = &mut **faces;
-        let mut oldest = NONE;
-        let mut previous = NONE;
-        let mut made = 0;
-        let mut folded = NONE;
-        let mut at = start;
-        let mut from = begin(faces, at);
-        let mut va = points[usize::from(from)].v;
-        loop {
-            let outer = faces[face_of(at)].across[edge_of(at)];
-            let next = next_rim(faces, at, visible);
-            let to = begin(faces, next);
-            let vb = points[usize::from(to)].v;
-            let f = counts.allocate(faces);
-            let face = &mut faces[usize::from(f)];
-            face.renew([from, to, p], [outer, 0, previous.wrapping_mul(4) | 1]);
-            face.measure(&va, &vb, &vp);
-            let folds = face.offset < face.normal.dot(&inner) && face.key < Real::INFINITY;
-            faces[face_of(outer)].across[edge_of(outer)] = 4 * f;
-            if previous == NONE {
-                oldest = f;
-            } else {
-                let before = &mut faces[usize::from(previous)];
-                before.across[1] = 4 * f + 2;
-                before.next = f;
-            }
-            previous = f;
-            made += 1;
-            if folds {
-                folded = outer / 4;
-                break;
-            }
-            (at, from, va) = (next, to, vb);
-            if at == start || made == rim {
-                break;
-            }
-        }
-        if folded == NONE && made == rim && at == start {
-            faces[usize::from(previous)].across[1] = 4 * oldest + 2;
-            faces[usize::from(oldest)].across[2] = 4 * previous + 1;
-            return Ok(oldest);
-        }
-        // Undo: back across each rim edge to the visible face, in the same order.
-        let mut back = start;
-        let mut f = oldest;
-        while f != NONE {
-            let Face { next, across, .. } = faces[usize::from(f)];
-            faces[face_of(across[0])].across[edge_of(across[0])] = back;
-            back = next_rim(faces, back, visible);
-            counts.release(faces, f);
-            f = next;
-        }
-        Err(folded)
-    }
-
-    /// Free faces.
-    fn room(&self) -> usize {
-        self.faces.len() - self.counts.faces + self.counts.free
-    }
-
-    /// Ends a face's life. Its place is free once the heap does not hold it.
-    #[inline]
-    fn bury(&mut self, f: Index) {
-        self.face_mut(f).dead = true;
-        if !self.face(f).queued {
-            self.counts.release(self.faces, f);
         }
     }
 
-    /// Puts a face nearer than `target` into the heap.
-    #[inline]
-    fn enqueue(&mut self, f: Index, target: Real) {
-        let key = self.face(f).key;
-        if key >= target {
-            self.counts.dropped = lesser(self.counts.dropped, key);
-            return;
-        }
-        if key >= 0.0 && self.aside(f) {
-            return;
-        }
-        self.face_mut(f).queued = true;
-        let mut hole = self.counts.heap;
-        self.counts.heap += 1;
-        while hole > 0 {
-            let parent = (hole - 1) / 2;
-            let above = self.heap[parent];
-            if !(key < above.key) {
-                break;
-            }
-            self.heap[hole] = above;
-            hole = parent;
-        }
-        self.heap[hole] = Entry { key, face: f };
-    }
-
-    /// Does the origin project beyond an edge of the face, so that a neighbour is nearer?
+    /// Finds the faces that the point of `view` sees, and their rim: how many edges.
     ///
-    /// By more than a share of the edge and rounding: a projection onto an edge is inside
-    /// of both faces.
-    #[inline]
-    fn aside(&self, f: Index) -> bool {
-        let face = self.face(f);
-        let [a, b, c] = face.corners().map(|i| self.v(i));
-        // n·(a × b): twice the area of the edge and the projection.
-        let least = lesser(
-            lesser(face.normal.dot(&a.cross(&b)), face.normal.dot(&b.cross(&c))),
-            face.normal.dot(&c.cross(&a)),
-        );
-        let slack = 1e-6 * larger((b - a).norm_squared(), (c - a).norm_squared())
-            + 16.0 * EPSILON * larger(a.norm_squared(), c.norm_squared());
-        least < -slack
+    /// One walk along the rim, with the faces seen on its left: from the end of a rim edge
+    /// it turns about that corner through the faces seen, up to the next edge whose other
+    /// side is hidden. No corner of the hull is swallowed by a support point, so the faces
+    /// seen form a tree, which the walk goes around.
+    fn trace(&mut self, start: Index, view: &mut View) -> Option<usize> {
+        let (faces, edges) = (&mut *self.faces, &mut *self.rim);
+        let (mut rim, mut crossings, mut first) = (0, 0, NONE);
+        let mut at = start;
+        while at != first {
+            let outer = faces[face_of(at)].across[edge_of(at)];
+            let beyond = &faces[face_of(outer)];
+            if beyond.mark != view.stamp {
+                if !(beyond.plane.height(&view.v) > view.rounding) {
+                    if rim == 0 {
+                        (first, crossings) = (at, 0);
+                    }
+                    *edges.get_mut(rim)? = Edge { inner: at, outer };
+                    rim += 1;
+                    at = after(at);
+                    continue;
+                }
+                view.add(faces, outer / 4);
+            }
+            crossings += 1;
+            // A bound that no closed surface comes to.
+            if crossings > 3 * faces.len() {
+                return None;
+            }
+            at = after(outer);
+        }
+        // Every edge of the faces seen is on the rim or was crossed both ways, else some of
+        // them do not touch the rim.
+        (3 * view.faces == rim + crossings && rim > 2).then_some(rim)
     }
 
-    /// Takes the nearest face, dead or alive, out of the heap.
-    fn pop(&mut self) {
-        let Some(end) = self.counts.heap.checked_sub(1) else {
-            return;
-        };
-        self.counts.heap = end;
-        let top = self.heap[0].face;
-        self.face_mut(top).queued = false;
-        self.sink(0, self.heap[end]);
-        if self.face(top).dead {
-            self.counts.release(self.faces, top);
-        }
-    }
-
-    /// Puts `entry` into the hole at `hole` of the heap, or below.
-    fn sink(&mut self, mut hole: usize, entry: Entry) {
-        let heap = &mut self.heap[..self.counts.heap];
-        loop {
-            let mut child = 2 * hole + 1;
-            if child >= heap.len() {
-                break;
+    /// Puts the cone from the point of `view` over the edges of the rim in the place of
+    /// what it sees. `Err`: nothing changed, for it folds back on this face; `false`: for
+    /// there is no room.
+    fn cone(&mut self, rim: usize, view: &View, target: Real) -> Result<bool, Index> {
+        let vp = view.v;
+        let inner = self.counts.inner - vp;
+        let (mut free, mut fresh) = (self.counts.free, self.counts.faces as Index);
+        let (mut first, mut previous) = (NONE, NONE);
+        let mut from = self.begin(self.rim[0].inner);
+        let mut va = self.v(from);
+        let mut wa = va - vp;
+        for i in 0..rim {
+            let Edge { outer, .. } = self.rim[i];
+            let beyond = &mut self.faces[face_of(outer)];
+            let to = beyond.corners[edge_of(outer)];
+            let f = if free == NONE { fresh } else { free };
+            beyond.across[edge_of(outer)] = 4 * f;
+            let vb = self.v(to);
+            let wb = vb - vp;
+            let wedge = Wedge::new([&va, &vb, &vp], wa, wb, view.rounding);
+            let room = usize::from(f) < self.faces.len();
+            if !room || wedge.hides(&inner) {
+                return self.undo(i, room);
             }
-            if child + 1 < heap.len() && heap[child + 1].key < heap[child].key {
-                child += 1;
-            }
-            if !(heap[child].key < entry.key) {
-                break;
-            }
-            heap[hole] = heap[child];
-            hole = child;
-        }
-        if let Some(place) = heap.get_mut(hole) {
-            *place = entry;
-        }
-    }
-
-    /// Takes all dead faces out of the heap.
-    fn purge(&mut self) {
-        let mut kept = 0;
-        for i in 0..self.counts.heap {
-            let entry = self.heap[i];
-            if self.face(entry.face).dead {
-                self.face_mut(entry.face).queued = false;
-                self.counts.release(self.faces, entry.face);
+            let face = &mut self.faces[usize::from(f)];
+            if free == NONE {
+                fresh += 1;
             } else {
-                self.heap[kept] = entry;
-                kept += 1;
+                free = face.next;
             }
+            let plane = wedge.plane();
+            face.plane = plane;
+            face.corners = [from, to, view.p, 0];
+            face.across = [outer, 0, previous.wrapping_mul(4) | 1, 0];
+            face.mark = 0;
+            face.lone = false;
+            if previous == NONE {
+                first = f;
+            } else {
+                self.faces[usize::from(previous)].across[1] = 4 * f + 2;
+            }
+            self.offer(f, plane.key, &wedge, &vp, target);
+            (previous, from, va, wa) = (f, to, vb, wb);
         }
-        self.counts.heap = kept;
-        for i in (0..kept / 2).rev() {
-            self.sink(i, self.heap[i]);
+        self.faces[usize::from(previous)].across[1] = 4 * first + 2;
+        self.faces[usize::from(first)].across[2] = 4 * previous + 1;
+        self.counts.faces = usize::from(fresh);
+        // What was seen is free.
+        self.counts.free = view.last;
+        let mut at = view.last;
+        loop {
+            self.bury(at);
+            let face = &mut self.faces[usize::from(at)];
+            if face.next == NONE {
+                face.next = free;
+                return Ok(true);
+            }
+            at = face.next;
         }
     }
 
-    /// The nearest live face, and the lower bound that it and the faces out of the heap
-    /// give.
-    fn nearest(&mut self) -> (Option<Index>, Real) {
-        while self.counts.heap > 0 {
-            let Entry { key, face } = self.heap[0];
-            if !self.face(face).dead {
-                return (Some(face), lesser(key, self.counts.dropped));
+    /// Takes back the first faces of a cone, up to the one over edge `last`.
+    #[cold]
+    fn undo(&mut self, last: usize, room: bool) -> Result<bool, Index> {
+        for i in 0..=last {
+            let Edge { inner, outer } = self.rim[i];
+            let across = &mut self.faces[face_of(outer)].across[edge_of(outer)];
+            let new = core::mem::replace(across, inner) / 4;
+            if i < last {
+                self.bury(new);
             }
-            self.pop();
         }
-        (None, self.counts.dropped)
+        if room {
+            Err(self.rim[last].outer / 4)
+        } else {
+            Ok(false)
+        }
     }
 
-    /// Expands the nearest face until the bounds meet.
+    /// The corner where a half-edge begins.
+    #[inline(always)]
+    fn begin(&self, edge: Index) -> Index {
+        self.faces[face_of(edge)].corners[edge_of(edge)]
+    }
+
+    /// Lists a face if it is nearer than `target` and can be the nearest.
+    #[inline(always)]
+    fn offer(&mut self, f: Index, key: Real, wedge: &Wedge, p: &Vec3, target: Real) {
+        let open = key < target && (key < 0.0 || !wedge.aside(p));
+        self.faces[usize::from(f)].open = self.counts.open as Index;
+        // Written all the same, without a branch.
+        self.open[self.counts.open] = Entry { key, face: f };
+        self.counts.open += usize::from(open);
+        if !open {
+            self.faces[usize::from(f)].open = NONE;
+        }
+        let far = if key < target { Real::INFINITY } else { key };
+        self.counts.dropped = lesser(self.counts.dropped, far);
+    }
+
+    /// Ends the life of a face, but for its place in the list of free ones.
+    #[inline(always)]
+    fn bury(&mut self, f: Index) {
+        let face = &mut self.faces[usize::from(f)];
+        face.mark = DEAD;
+        let at = usize::from(face.open);
+        if at < self.counts.open {
+            self.counts.open -= 1;
+            let last = self.open[self.counts.open];
+            self.open[at] = last;
+            self.faces[usize::from(last.face)].open = at as Index;
+        }
+    }
+
+    /// The nearest of the listed faces, and the lower bound that it and all others give.
+    #[inline(always)]
+    fn nearest(&self) -> (Option<Index>, Real) {
+        let mut best = Entry {
+            key: Real::INFINITY,
+            face: NONE,
+        };
+        for entry in &self.open[..self.counts.open] {
+            if entry.key < best.key {
+                best = *entry;
+            }
+        }
+        let lower = lesser(best.key, self.counts.dropped);
+        ((best.face != NONE).then_some(best.face), lower)
+    }
+
+    /// Expands the nearest face until the bounds meet. `None`: no room for one more point.
     fn expand<A: SupportMap, B: SupportMap>(
         &mut self,
         query: &mut Query<'_, A, B>,
-    ) -> Result<Outcome, Stop> {
+    ) -> Result<Option<Found>, Stop> {
         loop {
             let (top, lower) = self.nearest();
             let proven = lower >= query.target();
             let Some(top) = top.filter(|_| !proven) else {
-                return Ok(Outcome::Done(proven, self.finish(query, lower, top)));
+                return Ok(Some(self.finish(query, lower, proven)));
             };
             if query.iterations >= query.settings.max_iterations || self.counts.points >= MAX_POINTS
             {
-                return Ok(Outcome::Done(false, self.finish(query, lower, Some(top))));
+                return Ok(Some(self.finish(query, lower, false)));
             }
             if self.counts.points >= self.points.len() {
-                return Ok(Outcome::Full);
+                return Ok(None);
             }
-            query.iterations += 1;
-
             let dir = self.aim(top, query.target());
-            let point = query.ask(&dir, &self.points[..self.counts.points])?;
+            let p = self.ask(query, &dir)?;
             if lower >= query.target() {
-                return Ok(Outcome::Done(true, self.finish(query, lower, Some(top))));
+                return Ok(Some(self.finish(query, lower, true)));
             }
             // A point above by less than this would add faces and no distance.
             let least = larger(query.rounding, query.tolerance * 0.125);
-            let face = self.face_mut(top);
-            let height = face.normal.dot(&point.v) - face.offset;
-            let vain = !(height > least) && !face.lone;
+            let vp = self.v(p);
+            let face = &mut self.faces[usize::from(top)];
+            let above = face.plane.height(&vp) > least;
+            let vain = !above && !face.lone;
             if vain {
                 face.lone = true;
                 self.counts.vain += 1;
                 self.counts.plain = self.counts.insertions + 2 * self.counts.vain;
             }
-            let p = self.push(point);
-            let lit = if height > least {
-                Some(top)
-            } else {
-                self.lit(p, least)
-            };
-            let grown = lit.is_some_and(|f| self.insert(f, p, query));
+            let lit = if above { Some(top) } else { self.lit(p, least) };
+            let grown = lit.is_some_and(|f| self.insert(f, p, query.rounding, query.target()));
             if !grown && !vain {
                 // Rounding error has the last word.
                 let close = query.upper.depth - lower <= 16.0 * query.grain;
-                return Ok(Outcome::Done(close, self.finish(query, lower, Some(top))));
+                return Ok(Some(self.finish(query, lower, close)));
             }
         }
     }
@@ -931,25 +1054,27 @@ impl<'a> Polytope<'a> {
     /// 14.8, 8.08; the order in which faces are taken changes less than 3 %). Where f
     /// does not see the point that the mean leads to (facets), its normal is asked next,
     /// and normals alone for some time.
+    #[inline]
     fn aim(&self, f: Index, target: Real) -> Vec3 {
         let face = self.face(f);
+        let normal = face.plane.normal();
         if face.lone || self.counts.insertions < self.counts.plain {
-            return face.normal;
+            return normal;
         }
         let near = |f: Index| {
             let g = self.face(f);
-            (g.key < target && g.normal.dot(&face.normal) > 0.0).then_some(g)
+            (g.plane.key < target && g.plane.normal().dot(&normal) > 0.0).then_some(g)
         };
-        let mut sum = face.normal;
+        let mut sum = normal;
         for &edge in &face.across[..3] {
             let Some(neighbour) = near(edge / 4) else {
                 continue;
             };
-            sum += neighbour.normal;
+            sum += neighbour.plane.normal();
             for other in [after(edge), after(after(edge))] {
-                let beyond = neighbour.across[usize::from(other % 4)];
+                let beyond = neighbour.across[edge_of(other)];
                 if let Some(second) = near(beyond / 4) {
-                    sum += second.normal * 0.5;
+                    sum += second.plane.normal() * 0.5;
                 }
             }
         }
@@ -961,70 +1086,56 @@ impl<'a> Polytope<'a> {
     /// leaves the polytope.
     ///
     /// There t·dir is in D with lower <= t <= upper: the two witnesses are apart along
-    /// dir alone, by the depth within the tolerance. `guess` is looked at first.
+    /// dir alone, by the depth within the tolerance.
     fn finish<A: SupportMap, B: SupportMap>(
         &self,
         query: &Query<'_, A, B>,
         lower: Real,
-        guess: Option<Index>,
-    ) -> Penetration {
+        proven: bool,
+    ) -> Found {
         #[cfg(test)]
         tests::check(self, query.rounding, lower);
         let dir = query.upper.dir;
-        let shares = |f: &Face| {
-            let [a, b, c] = f.corners().map(|i| self.v(i));
-            let w = [
-                dir.dot(&b.cross(&c)),
-                dir.dot(&c.cross(&a)),
-                dir.dot(&a.cross(&b)),
-            ];
-            let sum = w[0] + w[1] + w[2];
-            (w.map(|x| x / sum), sum)
-        };
-        let mut best: Option<([Index; 3], [Real; 3], Real)> = None;
-        for f in guess
-            .map(|f| self.face(f))
-            .into_iter()
-            .chain(&self.faces[..self.counts.faces])
-        {
-            if f.dead {
-                continue;
-            }
-            let (w, sum) = shares(f);
-            let least = w[0].min(w[1]).min(w[2]);
-            if sum > 0.0 && best.is_none_or(|b| least > b.2) {
-                best = Some((f.corners(), w, least));
-                if least >= 0.0 {
-                    break;
+        let end = dir * query.upper.depth;
+        let error = query.tolerance + query.rounding;
+        // The ray leaves a convex surface where it crosses the first of the planes: by the
+        // end, and of coplanar faces by the one that has the spot inside.
+        let mut best = (Real::NEG_INFINITY, [0; 3], [1.0, 0.0, 0.0]);
+        for (_, Face { plane, corners, .. }) in self.live() {
+            let rise = dir.dot(&plane.normal());
+            if rise > 0.0 && plane.offset() <= rise * (query.upper.depth + error) {
+                let corners = [corners[0], corners[1], corners[2]];
+                let [a, b, c] = corners.map(|i| self.v(i));
+                let w = [&b.cross(&c), &c.cross(&a), &a.cross(&b)].map(|x| dir.dot(x));
+                let least = lesser(lesser(w[0], w[1]), w[2]) / (w[0] + w[1] + w[2]);
+                if least > best.0 {
+                    best = (least, corners, w);
                 }
             }
         }
-        let exit = best.map(|(corners, w, _)| {
-            let w = w.map(|x| x.max(0.0));
-            let sum = w[0] + w[1] + w[2];
-            self.combine(corners, w.map(|x| x / sum))
-        });
-        let end = dir * query.upper.depth;
-        let error = query.tolerance + query.rounding;
-        let witness = match exit {
-            Some(exit) if (exit.v - end).norm() <= error => exit,
-            // The origin is on a face, to rounding: the ray crosses nothing clearly.
-            _ => self.nearest_to(&end),
-        };
-        query.penetration(lower, &witness)
+        let (_, corners, w) = best;
+        let w = w.map(|x| larger(x, 0.0));
+        let sum = w[0] + w[1] + w[2];
+        let exit = self.combine(corners, w.map(|x| x / sum));
+        // Not so where the origin is on a face, to rounding.
+        let exit = Some(exit).filter(|x| (x.v - end).norm() <= error);
+        let witness = exit.unwrap_or_else(|| self.nearest_to(&end));
+        Found {
+            proven,
+            inside: lower > 4.0 * query.rounding + 4.0 * query.grain,
+            hit: query.penetration(lower, &witness),
+        }
     }
 
     /// The point of the surface nearest to `p`.
     fn nearest_to(&self, p: &Vec3) -> SupportPoint {
         let mut best = (Real::INFINITY, [0; 3], [1.0, 0.0, 0.0]);
-        for f in &self.faces[..self.counts.faces] {
-            if f.dead {
-                continue;
-            }
-            let [a, b, c] = f.corners().map(|i| self.v(i));
+        for (_, face) in self.live() {
+            let [i, j, k, _] = face.corners;
+            let [a, b, c] = [i, j, k].map(|i| self.v(i));
             let (w, distance2) = nearest::on_triangle(p, &a, &b, &c);
             if distance2 < best.0 {
-                best = (distance2, f.corners(), weights(&w, &a, &b, &c));
+                best = (distance2, [i, j, k], weights(&w, &a, &b, &c));
             }
         }
         self.combine(best.1, best.2)
@@ -1044,88 +1155,28 @@ impl<'a> Polytope<'a> {
 }
 
 // One instruction each, unlike the methods, which sort out NaN.
-#[inline]
+#[inline(always)]
 fn larger(x: Real, y: Real) -> Real {
     if x > y { x } else { y }
 }
 
-#[inline]
+#[inline(always)]
 fn lesser(x: Real, y: Real) -> Real {
     if x < y { x } else { y }
 }
 
-/// Finds all faces that see the point at `v`, from the ones listed at `first`, and lists
-/// them to `last`. Their rim: how many edges, and one of them.
-#[inline]
-fn flood(
-    faces: &mut [Face],
-    first: Index,
-    last: &mut Index,
-    v: &Vec3,
-    rounding: Real,
-    visible: Index,
-) -> (usize, Index) {
-    let hidden = visible - 1;
-    let (mut rim, mut start) = (0, 0);
-    // The list is the queue.
-    let mut at = first;
-    while at != NONE {
-        for edge in 0..3 {
-            let other = face_of(faces[usize::from(at)].across[edge]);
-            let face = &mut faces[other];
-            if face.seen < hidden {
-                if face.normal.dot(v) - face.offset > rounding {
-                    face.seen = visible;
-                    face.next = NONE;
-                    faces[usize::from(*last)].next = other as Index;
-                    *last = other as Index;
-                    continue;
-                }
-                face.seen = hidden;
-            }
-            if face.seen == hidden {
-                rim += 1;
-                start = 4 * at + edge as Index;
-            }
-        }
-        at = faces[usize::from(at)].next;
-    }
-    (rim, start)
-}
-
-/// The rim edge after `edge`: turns about its end through the visible faces.
-#[inline]
-fn next_rim(faces: &[Face], edge: Index, visible: Index) -> Index {
-    let mut at = after(edge);
-    // A bound that no closed surface comes to.
-    for _ in 0..faces.len() {
-        let other = faces[face_of(at)].across[edge_of(at)];
-        if faces[face_of(other)].seen != visible {
-            break;
-        }
-        at = after(other);
-    }
-    at
-}
-
-/// The corner where a half-edge begins.
-#[inline]
-fn begin(faces: &[Face], edge: Index) -> Index {
-    faces[face_of(edge)].corners[edge_of(edge)]
-}
-
-#[inline]
+#[inline(always)]
 fn face_of(edge: Index) -> usize {
     usize::from(edge / 4)
 }
 
-#[inline]
+#[inline(always)]
 fn edge_of(edge: Index) -> usize {
     usize::from(edge % 4)
 }
 
 /// The half-edge after `edge` on its face.
-#[inline]
+#[inline(always)]
 fn after(edge: Index) -> Index {
     if edge % 4 == 2 { edge - 2 } else { edge + 1 }
 }
@@ -1168,7 +1219,8 @@ mod tests {
     struct Vecs {
         points: Vec<SupportPoint>,
         faces: Vec<Face>,
-        heap: Vec<Entry>,
+        open: Vec<Entry>,
+        rim: Vec<Edge>,
     }
 
     impl Vecs {
@@ -1176,7 +1228,8 @@ mod tests {
             let mut vecs = Self {
                 points: vec![],
                 faces: vec![],
-                heap: vec![],
+                open: vec![],
+                rim: vec![],
             };
             vecs.resize(LEAST_POINTS);
             vecs
@@ -1185,7 +1238,8 @@ mod tests {
         fn resize(&mut self, n: usize) {
             self.points.resize(n, SupportPoint::default());
             self.faces.resize(n * FACES_PER_POINT, Face::default());
-            self.heap.resize(n * FACES_PER_POINT, Entry::default());
+            self.open.resize(n * FACES_PER_POINT, Entry::default());
+            self.rim.resize(n, Edge::default());
         }
     }
 
@@ -1194,7 +1248,8 @@ mod tests {
             Storage {
                 points: &mut self.points,
                 faces: &mut self.faces,
-                heap: &mut self.heap,
+                open: &mut self.open,
+                rim: &mut self.rim,
             }
         }
 
@@ -1207,35 +1262,30 @@ mod tests {
     /// The surface is closed and of one piece, and convex to rounding.
     pub fn check(polytope: &Polytope<'_>, rounding: Real, lower: Real) {
         let live: Vec<Index> = (0..polytope.counts.faces as Index)
-            .filter(|&f| !polytope.face(f).dead)
+            .filter(|&f| polytope.face(f).mark != DEAD)
             .collect();
         let mut corners = std::collections::BTreeSet::new();
         for &f in &live {
             let face = polytope.face(f);
-            corners.extend(face.corners());
+            corners.extend(&face.corners[..3]);
             for (i, other) in face.across.into_iter().take(3).enumerate() {
                 let half = 4 * f + i as Index;
                 let g = polytope.face(other / 4);
-                assert!(!g.dead);
+                assert!(g.mark != DEAD);
                 assert_eq!(g.across[usize::from(other % 4)], half);
-                assert_eq!(
-                    begin(polytope.faces, other),
-                    begin(polytope.faces, after(half))
-                );
-                assert_eq!(
-                    begin(polytope.faces, after(other)),
-                    begin(polytope.faces, half)
-                );
+                let begin = |edge| polytope.face(edge / 4).corners[edge_of(edge)];
+                assert_eq!(begin(other), begin(after(half)));
+                assert_eq!(begin(after(other)), begin(half));
             }
         }
         assert_eq!(live.len(), 2 * corners.len() - 4);
         for &f in &live {
             let face = polytope.face(f);
-            let [a, b, c] = face.corners().map(|i| polytope.v(i));
+            let [a, b, c, _] = face.corners.map(|i| polytope.v(i));
             let (_, distance2) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
-            assert!(face.key < 0.0 || lower <= distance2.sqrt() + rounding);
+            assert!(face.plane.key < 0.0 || lower <= distance2.sqrt() + rounding);
             for &i in &corners {
-                let height = face.normal.dot(&polytope.v(i)) - face.offset;
+                let height = face.plane.height(&polytope.v(i));
                 // The plane of a face as small as rounding may tilt; what the surface
                 // lacks there is the tilt times the width.
                 let area = (b - a).cross(&(c - a)).norm();

@@ -19,7 +19,7 @@
 
 use crate::bundle::{self, Memory};
 use crate::contact::{Answer, Penetration, Settings};
-use crate::epa::{self, Arena, Entry, Face, Seed, Storage};
+use crate::epa::{self, Arena, Edge, Entry, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
 use crate::local::{self, Shortcut};
 use crate::math::{self, Real, Vec3, unit};
@@ -659,7 +659,8 @@ struct Desk {
 struct Room<const POINTS: usize> {
     points: [SupportPoint; POINTS],
     faces: [[Face; epa::FACES_PER_POINT]; POINTS],
-    heap: [[Entry; epa::FACES_PER_POINT]; POINTS],
+    open: [[Entry; epa::FACES_PER_POINT]; POINTS],
+    rim: [Edge; POINTS],
 }
 
 impl<const POINTS: usize> Default for Room<POINTS> {
@@ -667,7 +668,8 @@ impl<const POINTS: usize> Default for Room<POINTS> {
         Self {
             points: [SupportPoint::default(); POINTS],
             faces: [[Face::default(); epa::FACES_PER_POINT]; POINTS],
-            heap: [[Entry::default(); epa::FACES_PER_POINT]; POINTS],
+            open: [[Entry::default(); epa::FACES_PER_POINT]; POINTS],
+            rim: [Edge::default(); POINTS],
         }
     }
 }
@@ -677,7 +679,8 @@ impl<const POINTS: usize> Room<POINTS> {
         Storage {
             points: &mut self.points,
             faces: self.faces.as_flattened_mut(),
-            heap: self.heap.as_flattened_mut(),
+            open: self.open.as_flattened_mut(),
+            rim: &mut self.rim,
         }
     }
 }
@@ -702,7 +705,7 @@ impl Arena for Desk {
         for (to, from) in large.faces.iter_mut().zip(small.faces) {
             *to = *from;
         }
-        for (to, from) in large.heap.iter_mut().zip(small.heap) {
+        for (to, from) in large.open.iter_mut().zip(small.open) {
             *to = *from;
         }
         Ok(())

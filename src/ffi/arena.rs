@@ -10,7 +10,7 @@
 use core::mem::MaybeUninit;
 
 use super::{free, malloc};
-use crate::epa::{Arena, Entry, FACES_PER_POINT, Face, LEAST_POINTS, MAX_POINTS, Storage};
+use crate::epa::{Arena, Edge, Entry, FACES_PER_POINT, Face, LEAST_POINTS, MAX_POINTS, Storage};
 use crate::support::{Fault, SupportPoint};
 
 /// Points on the stack: enough for all but pairs whose minima (nearly) form a curve.
@@ -19,15 +19,18 @@ const STACK_POINTS: usize = 4 * LEAST_POINTS;
 /// What a polytope of so many points needs, in one piece.
 const fn size(points: usize) -> usize {
     points
-        * (size_of::<SupportPoint>() + FACES_PER_POINT * (size_of::<Face>() + size_of::<Entry>()))
+        * (size_of::<SupportPoint>()
+            + FACES_PER_POINT * (size_of::<Face>() + size_of::<Entry>())
+            + size_of::<Edge>())
 }
 
-// The three arrays follow each other without a gap.
+// The arrays follow each other without a gap.
 const _: () = assert!(
     align_of::<SupportPoint>() >= align_of::<Face>()
         && align_of::<SupportPoint>() >= align_of::<Entry>()
         && size_of::<SupportPoint>().is_multiple_of(align_of::<Face>())
         && size_of::<Face>().is_multiple_of(align_of::<Entry>())
+        && size_of::<Entry>().is_multiple_of(align_of::<Edge>())
 );
 
 /// Bytes with the alignment of the arrays.
@@ -38,7 +41,7 @@ union Stack {
 }
 
 struct Memory {
-    /// Points, then faces, then heap entries, for `capacity` points.
+    /// Points, then faces, then heap entries, then edges, for `capacity` points.
     block: *mut u8,
     capacity: usize,
     /// So many of each are initialised; the polytope is shown no more.
@@ -48,23 +51,27 @@ struct Memory {
 }
 
 impl Memory {
-    fn arrays(&self) -> (*mut SupportPoint, *mut Face, *mut Entry) {
+    fn arrays(&self) -> (*mut SupportPoint, *mut Face, *mut Entry, *mut Edge) {
         let points = self.block.cast::<SupportPoint>();
         let faces = points.wrapping_add(self.capacity).cast::<Face>();
         let heap = faces
             .wrapping_add(self.capacity * FACES_PER_POINT)
             .cast::<Entry>();
-        (points, faces, heap)
+        let rim = heap
+            .wrapping_add(self.capacity * FACES_PER_POINT)
+            .cast::<Edge>();
+        (points, faces, heap, rim)
     }
 
     /// Initialises what `points` more points need, within the capacity.
     fn show(&mut self, points: usize) {
-        let (p, f, h) = self.arrays();
+        let (p, f, h, r) = self.arrays();
         let (from, to) = (self.points, points);
         // SAFETY: the block has room for `capacity` points and what belongs to them.
         unsafe {
             for i in from..to {
                 p.add(i).write(SupportPoint::default());
+                r.add(i).write(Edge::default());
             }
             for i in from * FACES_PER_POINT..to * FACES_PER_POINT {
                 f.add(i).write(Face::default());
@@ -77,14 +84,15 @@ impl Memory {
 
 impl Arena for Memory {
     fn storage(&mut self) -> Storage<'_> {
-        let (p, f, h) = self.arrays();
+        let (p, f, h, r) = self.arrays();
         let faces = self.points * FACES_PER_POINT;
         // SAFETY: so many of each are initialised, and nobody else knows the block.
         unsafe {
             Storage {
                 points: core::slice::from_raw_parts_mut(p, self.points),
                 faces: core::slice::from_raw_parts_mut(f, faces),
-                heap: core::slice::from_raw_parts_mut(h, faces),
+                open: core::slice::from_raw_parts_mut(h, faces),
+                rim: core::slice::from_raw_parts_mut(r, self.points),
             }
         }
     }
@@ -113,6 +121,7 @@ impl Arena for Memory {
                 to.0.copy_from_nonoverlapping(from.0, points);
                 to.1.copy_from_nonoverlapping(from.1, points * FACES_PER_POINT);
                 to.2.copy_from_nonoverlapping(from.2, points * FACES_PER_POINT);
+                to.3.copy_from_nonoverlapping(from.3, points);
             }
             old.release();
         }
