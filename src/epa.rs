@@ -246,7 +246,7 @@ pub trait Arena {
 pub struct Seed<'a> {
     /// The first direction asked, unit.
     pub dir: Vec3,
-    /// Known support points of this very D, such as those of a local solution.
+    /// Known points of this very D, such as those of a local solution.
     pub points: &'a [SupportPoint],
     /// A known support value and its unit direction.
     pub upper: Option<(Real, Vec3)>,
@@ -752,8 +752,8 @@ impl<'a> Polytope<'a> {
         Ok(true)
     }
 
-    /// The farther of the support points along `dir` and `-dir`, unless both are as far
-    /// as point `from`, to rounding.
+    /// The support point along `dir` or `-dir`, first towards the origin, unless both are
+    /// as far as point `from`, to rounding.
     fn widen<A: SupportMap, B: SupportMap>(
         &mut self,
         query: &mut Query<'_, A, B>,
@@ -761,17 +761,14 @@ impl<'a> Polytope<'a> {
         dir: &Vec3,
     ) -> Result<Option<Index>, Stop> {
         let base = self.v(from);
-        let up = self.ask(query, dir)?;
-        let down = self.ask(query, &-dir)?;
-        let height = (self.v(up) - base).dot(dir);
-        let drop = (base - self.v(down)).dot(dir);
-        Ok(if height.max(drop) <= query.rounding {
-            None
-        } else if height >= drop {
-            Some(up)
-        } else {
-            Some(down)
-        })
+        let inward = if base.dot(dir) > 0.0 { -dir } else { *dir };
+        for dir in [inward, -inward] {
+            let p = self.ask(query, &dir)?;
+            if (self.v(p) - base).dot(&dir) > query.rounding {
+                return Ok(Some(p));
+            }
+        }
+        Ok(None)
     }
 
     /// The answer where D is flat: the origin lies on `triangle`.
@@ -863,9 +860,37 @@ impl<'a> Polytope<'a> {
             }
             at = after(outer);
         }
-        // Every edge of the faces seen is on the rim or was crossed both ways, else some of
-        // them do not touch the rim.
-        (3 * view.faces == rim + crossings && rim > 2).then_some(rim)
+        // Else a corner was swallowed: not every edge was crossed both ways.
+        let tree = 3 * view.faces == rim + crossings;
+        (rim > 2 && (tree || self.enclose(rim, view))).then_some(rim)
+    }
+
+    /// Finds the faces seen that do not touch the rim. Is it all there is around them?
+    #[cold]
+    fn enclose(&mut self, rim: usize, view: &mut View) -> bool {
+        loop {
+            let before = view.faces;
+            let mut border = 0;
+            let mut at = view.last;
+            while at != NONE {
+                let Face { across, next, .. } = *self.face(at);
+                for outer in across.into_iter().take(3) {
+                    let beyond = self.face(outer / 4);
+                    if beyond.mark == view.stamp {
+                        continue;
+                    }
+                    if beyond.plane.height(&view.v) > view.rounding {
+                        view.add(self.faces, outer / 4);
+                    } else {
+                        border += 1;
+                    }
+                }
+                at = next;
+            }
+            if view.faces == before {
+                return border == rim;
+            }
+        }
     }
 
     /// Puts the cone from the point of `view` over the edges of the rim in the place of
@@ -1513,6 +1538,38 @@ mod tests {
             }
         }
         assert!(hits > 200, "{hits}");
+    }
+
+    /// Points inside are swallowed by the ones that follow, in any order.
+    #[test]
+    fn given_points_need_not_be_support_points() {
+        let half = Vec3::new(0.5, 0.4, 0.3);
+        let mut random = Random::new(21);
+        for i in 0..500 {
+            let at = random.vector(0.3);
+            let md =
+                MinkowskiDifference::new(cuboid(Vec3::zeros(), half, 1.0), cuboid(at, half, 1.0));
+            let mut points: Vec<_> = (0..GIVEN)
+                .map(|_| md.support(&random.direction()).unwrap())
+                .collect();
+            for k in [i, i / 3, i / 7] {
+                let other = points[(k + 1) % GIVEN];
+                points[k % GIVEN] = points[k % GIVEN]
+                    .middle(&other)
+                    .middle(&points[(k + 3) % GIVEN]);
+            }
+            let seed = Seed {
+                dir: Vec3::x(),
+                points: &points,
+                upper: None,
+            };
+            let settings = Settings {
+                tolerance: 1e-9,
+                max_iterations: 100,
+            };
+            let answer = minimum(&md, &seed, &settings, &mut Vecs::new()).unwrap();
+            expect(answer, (half * 2.0 - at.abs()).min(), 1e-9, 1.0);
+        }
     }
 
     /// No inscribed polytope proves a sphere round in few points: sound, and no worse.
