@@ -322,9 +322,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         let mut desk = Desk::default();
         let mut checked = epa::minimum(&self.md, &seed, &proof, &mut desk);
-        if let Ok(Answer::Undecided(_)) = checked {
-            // An overlap so thin that the search for points around the origin took all
-            // steps: this close to a touch the minimum is worth the caller's.
+        let thin = match &checked {
+            // The search for points around the origin took all steps.
+            Ok(Answer::Undecided(_)) => true,
+            // The gap, a share of what the local minimum was, is all there is.
+            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => {
+                hit.depth <= proof.tolerance && proof.tolerance > settings.tolerance
+            }
+            _ => false,
+        };
+        if thin {
+            // This close to a touch the minimum is worth the caller's.
             checked = epa::minimum(&self.md, &seed, settings, &mut desk);
         }
         let global = match checked {
