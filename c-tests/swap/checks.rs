@@ -21,9 +21,10 @@ fn verdict_tolerance(truth: f64) -> f64 {
 }
 
 /// A local search that stops a little early on a curved pair is deeper than libccd's
-/// answer: by no more than this many sizes, in no more than this share of queries.
-const MOST_DEEPER: f64 = 1e-4;
-const OFTEN_DEEPER: f64 = 0.005;
+/// answer, which may itself be too shallow by its tolerance: by no more than this much
+/// again, metres, in no more than this share of queries.
+const MOST_DEEPER: f64 = 2.0 * MPR_TOLERANCE;
+const OFTEN_DEEPER: f64 = 5e-4;
 
 /// A depth or gap of this many sizes is neither hit nor miss.
 const TOUCH: f64 = 1e-9;
@@ -302,7 +303,7 @@ pub fn judge_collide(
             && ours.value > system.value + verdict_tolerance(upper)
         {
             s.deeper += 1;
-            if !(ours.value <= system.value + verdict_tolerance(upper) + MOST_DEEPER * size) {
+            if !(ours.value <= system.value + verdict_tolerance(upper) + MOST_DEEPER) {
                 against(&format!("deeper than libccd's {}", system.value));
             }
         }
