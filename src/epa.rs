@@ -415,7 +415,7 @@ fn run<A: SupportMap, B: SupportMap>(
     let overlap = gjk::search(
         query.md,
         start,
-        &given[..first],
+        |n, reach| gjk::farthest(&given[..first], n, reach),
         query.settings.max_iterations,
         |n, w| {
             query.note(w);

@@ -30,9 +30,10 @@ pub enum Overlap {
 /// Decides whether the origin is in D, starting from any point of D: a support
 /// point is one, and so is the difference of two interior points.
 ///
-/// `known` points of D are used wherever they do as well as a new support point: a
-/// step needs only a point of D beyond the origin, so D is asked when none of them
-/// is. A search that has points all around the origin is proven without a call.
+/// `known` points of D, and of each object, are used wherever they do as well as a new
+/// support point: a step needs only a point of D beyond the origin, so D is asked when
+/// none of them is. A search that has points all around the origin is proven without a
+/// call.
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: SupportPoint,
@@ -45,7 +46,13 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
             return Ok(Overlap::Yes(simplex, inner));
         }
     }
-    search(md, start, known, max_iterations, |_, _| ())
+    search(
+        md,
+        start,
+        |n, reach| mixed(&start, known, n, reach),
+        max_iterations,
+        |_, _| (),
+    )
 }
 
 /// The tetrahedron of `start`, the first of the `known` points, and two more of them,
@@ -88,11 +95,13 @@ struct Side<'a> {
     y: Real,
 }
 
-/// [`intersect`], telling `seen` of each direction it asks and the support point there.
+/// [`intersect`], with `known` giving a known point of D farthest along a direction, if it
+/// reaches beyond a length, and telling `seen` of each direction it asks and the support
+/// point there.
 pub fn search<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: SupportPoint,
-    known: &[SupportPoint],
+    known: impl Fn(&Vec3, Real) -> Option<SupportPoint>,
     max_iterations: u64,
     mut seen: impl FnMut(&Vec3, &SupportPoint),
 ) -> Result<Overlap, Fault> {
@@ -114,7 +123,7 @@ pub fn search<A: SupportMap, B: SupportMap>(
         }
         let n = out.unwrap_or(-v / distance);
         let beyond = if out.is_some() { ROUNDING * size } else { 0.0 };
-        let w = match farthest(known, &n, beyond) {
+        let w = match known(&n, beyond) {
             Some(w) => w,
             None => {
                 let w = md.support(&n)?;
@@ -271,6 +280,29 @@ pub fn farthest(known: &[SupportPoint], n: &Vec3, mut reach: Real) -> Option<Sup
         }
     }
     best
+}
+
+/// The farthest along `n` of the differences of a known point of obj1 and one of obj2, if
+/// it reaches beyond `reach`: with k support points of D come k² points of D.
+fn mixed(
+    start: &SupportPoint,
+    known: &[SupportPoint],
+    n: &Vec3,
+    reach: Real,
+) -> Option<SupportPoint> {
+    let (mut v1, mut v2) = (start.v1, start.v2);
+    let (mut d1, mut d2) = (n.dot(&v1), n.dot(&v2));
+    for p in known {
+        let (a, b) = (n.dot(&p.v1), n.dot(&p.v2));
+        if a > d1 {
+            (v1, d1) = (p.v1, a);
+        }
+        if b < d2 {
+            (v2, d2) = (p.v2, b);
+        }
+    }
+    let v = v1 - v2;
+    (n.dot(&v) > reach).then_some(SupportPoint { v, v1, v2 })
 }
 
 /// Distances below this many times the largest coordinate are rounding errors of
