@@ -146,7 +146,7 @@ pub fn search<A: SupportMap, B: SupportMap>(
                 }
                 out = simplex.out_of_base();
                 if out.is_none() {
-                    return near_touch(md, &start, simplex, max_iterations);
+                    return near_touch(md, &n, simplex, max_iterations);
                 }
             }
             Nearest::Outside(next) => {
@@ -158,7 +158,7 @@ pub fn search<A: SupportMap, B: SupportMap>(
                 if !(nearer < distance * (1.0 - EPSILON)) {
                     stalls += 1;
                     if stalls > STALLS {
-                        return near_touch(md, &start, simplex, max_iterations);
+                        return near_touch(md, &n, simplex, max_iterations);
                     }
                 }
                 distance = nearer;
@@ -218,15 +218,15 @@ const WIDENING: u32 = 8;
 /// not. The ray leaves from a point inside D through the origin: if the origin is in D, the
 /// ray ends beyond it.
 ///
-/// The simplex alone may be as flat as the touching faces: half of the way from it to the
-/// start of the search is well inside D.
+/// `n` is the last direction asked. The simplex may be as flat as the touching faces: the
+/// middle between it and the far side of D is well inside.
 fn near_touch<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
-    start: &SupportPoint,
+    n: &Vec3,
     simplex: Simplex,
     max_iterations: u64,
 ) -> Result<Overlap, Fault> {
-    let inner = simplex.mean().middle(start);
+    let inner = simplex.mean().middle(&md.support(&-n)?);
     let Some(d) = unit(&-inner.v) else {
         return Ok(Overlap::Yes(simplex, 0.0));
     };

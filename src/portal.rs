@@ -231,16 +231,9 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
             Probe::Miss(n) => return Ok(Found::Miss(n)),
         };
         let w = third.point.v;
-        // A ray that cannot be told from the cone's side is on it.
-        let size = portal.planes[..2]
-            .iter()
-            .fold(third.point.magnitude(), |m, p| {
-                larger(m, p.point.magnitude())
-            });
-        let side = |u: &Vec3| rounding(size) * larger(largest(u), largest(&w));
-        if triple(&d, &a, &w) > side(&a) {
+        if triple(&d, &a, &w) > 0.0 {
             portal.planes[1] = third;
-        } else if triple(&d, &w, &b) > side(&b) {
+        } else if triple(&d, &w, &b) > 0.0 {
             portal.planes[0] = third;
         } else {
             portal.planes[2] = third;
