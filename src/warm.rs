@@ -458,7 +458,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             points: known.points(),
             upper: Some((local.depth, local.normal)),
         };
-        let answer = epa::minimum(&self.md, &seed, settings, arena)?;
+        let answer = self.global(&seed, settings, arena)?;
         match answer {
             Answer::Hit(hit) | Answer::Limit(hit)
                 if hit.depth >= local.depth - settings.tolerance =>
@@ -469,6 +469,44 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             other => self.remember(state, &other)?,
         }
         Ok(answer)
+    }
+
+    /// The global minimum of the depth from `seed`, proven.
+    ///
+    /// Where minima form a curve or a surface no polytope proves them in the steps there
+    /// are, and the least value it met need not be theirs to the tolerance. It is in the
+    /// right valley, whose floor a local search finds.
+    pub fn global(
+        &self,
+        seed: &Seed<'_>,
+        settings: &Settings,
+        arena: &mut dyn Arena,
+    ) -> Result<Answer, Fault> {
+        let answer = epa::minimum(&self.md, seed, settings, arena)?;
+        let Answer::Limit(hit) = answer else {
+            return Ok(answer);
+        };
+        let mut memory = State::of(OVERLAP, hit.normal).memory;
+        // A local search ends where its first reach, a tenth of a radian, is level; what
+        // goes on falling so over the sphere is thirty times as much.
+        let level = Settings {
+            tolerance: settings.tolerance * 0.01,
+            ..*settings
+        };
+        let (Answer::Hit(floor) | Answer::Limit(floor)) =
+            self.descend(&mut memory, &level, &mut Known::default())?
+        else {
+            return Ok(answer);
+        };
+        // Also for NaN.
+        if !(floor.depth < hit.depth) {
+            return Ok(answer);
+        }
+        Ok(Answer::Limit(Penetration {
+            depth_lower: hit.depth_lower.min(floor.depth),
+            iterations: hit.iterations + floor.iterations,
+            ..floor
+        }))
     }
 
     /// How far obj2 must move along the unit direction `dir` (Algorithm 1).

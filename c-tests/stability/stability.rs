@@ -91,6 +91,30 @@ fn categories() {
     campaign.run(["60", "1", "-1", "compatible"]);
 }
 
+/// The proven minimum against the exact one, on a sample of every kind of pair.
+#[test]
+#[cfg_attr(feature = "single", ignore = "its tolerances are below single's ulps")]
+fn exact_minima() {
+    alone("exact").run(["300"]);
+}
+
+/// The table of 100,000 pairs a kind, with its progress:
+/// `cargo test --test stability -- --ignored --nocapture exact_campaign`. Three quarters of
+/// an hour; in parts with `EXACT_PAIRS`, `EXACT_FIRST` and `EXACT_KIND`, the program's
+/// arguments.
+#[test]
+#[ignore = "takes three quarters of an hour; prints a table"]
+fn exact_campaign() {
+    let or = |name: &str, value: &str| std::env::var(name).unwrap_or(value.to_owned());
+    let args = [
+        or("EXACT_PAIRS", "100000"),
+        or("EXACT_FIRST", "0"),
+        or("EXACT_KIND", "-1"),
+    ];
+    let status = alone("exact").command().args(args).status();
+    assert!(status.is_ok_and(|s| s.success()));
+}
+
 /// The same on the extension's own.
 #[test]
 #[ignore = "witness points of the local query; the proof far from the origin"]

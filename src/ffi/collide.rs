@@ -10,11 +10,11 @@ use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
 use crate::contact::{Answer, Penetration, Settings};
-use crate::epa::{self, Seed};
+use crate::epa::Seed;
 use crate::gjk::{self, Overlap};
 use crate::math::{Real, Vec3, unit};
 use crate::support::{Fault, SupportPoint};
-use crate::warm::State;
+use crate::warm::{Pair, State};
 
 /// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
 pub const DEFAULT_TOLERANCE: Real = 1e-4;
@@ -145,6 +145,12 @@ unsafe fn gjk_penetration(query: Query) -> Result<Penetration, c_int> {
         let (Some(md), Some(first)) = (query.difference(), query.first_dir()) else {
             return Err(-1);
         };
+        let pair = Pair {
+            md,
+            centre: None,
+            first_dir: Some(first),
+            lasting: false,
+        };
         let settings = Settings {
             tolerance: or_default(query.epa_tolerance()),
             max_iterations: query.max_iterations(),
@@ -154,7 +160,7 @@ unsafe fn gjk_penetration(query: Query) -> Result<Penetration, c_int> {
             points: &[],
             upper: None,
         };
-        match arena::with(|arena| epa::minimum(&md, &seed, &settings, arena)) {
+        match arena::with(|arena| pair.global(&seed, &settings, arena)) {
             Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
             Ok(Answer::Miss(_) | Answer::Undecided(_)) | Err(Fault::NonFinite) => Err(-1),
             Err(Fault::NoMemory) => Err(-2),
