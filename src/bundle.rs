@@ -1264,12 +1264,19 @@ fn recall(
     curvature: &mut Curvature,
     reach: &mut Real,
 ) -> usize {
-    // Farther aside than the pair moved; NaN becomes the least angle.
-    let drift = 5.0 * memory.drift;
-    let angle = if drift > 0.003 {
+    // Farther aside than the pair moved, and not as far where R is known, which serves
+    // the better the nearer the samples are (in double precision); NaN becomes the least
+    // angle.
+    let (times, least) = if memory.curved == 1 && !SINGLE {
+        (2.0, 0.0005)
+    } else {
+        (5.0, 0.005)
+    };
+    let drift = times * memory.drift;
+    let angle = if drift > least {
         drift.min(0.03)
     } else {
-        0.003
+        least
     };
     let slopes = &memory.slopes;
     let count = (memory.count as usize).min(slopes.len());
