@@ -1270,7 +1270,7 @@ fn recall(
     let (times, least) = if memory.curved == 1 && !SINGLE {
         (2.0, 0.0005)
     } else {
-        (5.0, 0.005)
+        (5.0, 0.004)
     };
     let drift = times * memory.drift;
     let angle = if drift > least {
