@@ -36,14 +36,14 @@ const AGREE: f64 = 2.0 * MPR_TOLERANCE;
 /// One program of a consumer's, on either library.
 pub struct Swapped {
     pub consumer: &'static str,
+    /// What runs first: libccd, or what stands in for it.
+    names: Both<&'static str>,
     system: Executable,
     ours: Executable,
 }
 
 /// What a program wrote on either library, system's first.
 type Both<T> = [T; 2];
-
-const NAMES: Both<&str> = ["libccd", "this library"];
 
 impl Swapped {
     fn new(consumer: &'static str, program: Program) -> Swapped {
@@ -56,9 +56,17 @@ impl Swapped {
         let ours = system.swapped();
         Swapped {
             consumer,
+            names: ["libccd", "this library"],
             system,
             ours,
         }
+    }
+
+    /// The same, held against this library's proven minima instead of libccd.
+    pub fn against_minimum(mut self) -> Swapped {
+        self.names[0] = "proven minimum";
+        self.system = self.ours.clone().env("WATCH_MINIMUM", "1");
+        self
     }
 
     /// Runs on both libraries side by side. Each run's first line names the library
@@ -73,10 +81,11 @@ impl Swapped {
 
     /// Runs on one library.
     fn lines(&self, library: usize, args: &[String]) -> Vec<String> {
-        let (program, expected) = [
-            (&self.system, "library libccd"),
-            (&self.ours, "library warmccd "),
-        ][library];
+        let program = [&self.system, &self.ours][library];
+        let expected = match self.names[library] {
+            "libccd" => "library libccd",
+            _ => "library warmccd ",
+        };
         let mut lines: Vec<String> = program.run(args).stdout.lines().map(String::from).collect();
         let name = lines.remove(0);
         assert!(
@@ -499,6 +508,7 @@ impl Run {
 /// The same scene from several slightly moved starts, on each library.
 pub struct Piles {
     pub consumer: &'static str,
+    names: Both<&'static str>,
     pub scene: &'static str,
     pub steps: usize,
     runs: Both<Vec<Run>>,
@@ -516,6 +526,7 @@ pub fn piles(
 ) -> Piles {
     let mut p = Piles {
         consumer: program.consumer,
+        names: program.names,
         scene,
         steps,
         runs: [Vec::new(), Vec::new()],
@@ -542,7 +553,8 @@ pub fn piles(
 /// depths are the farthest off: from its own start a pile may settle in another way on
 /// each library, for good reason, and one body that lies on a face, held by one contact
 /// that hops from corner to corner, can make most of the mean depth. From one state both
-/// must keep the same pile.
+/// must keep the same pile. (From its own start a pile of this library must be as with
+/// [`Swapped::against_minimum`].)
 pub fn taken_over(
     program: &Swapped,
     scene: &'static str,
@@ -553,6 +565,7 @@ pub fn taken_over(
 ) -> Piles {
     let mut p = Piles {
         consumer: program.consumer,
+        names: program.names,
         scene,
         steps,
         runs: [Vec::new(), Vec::new()],
@@ -631,7 +644,8 @@ impl Piles {
             // Negated, so that NaN counts.
             if !(floor <= ours && ours <= most + width) {
                 self.against.push(format!(
-                    "{key}: median {ours:e}, libccd's {least:e} to {most:e}"
+                    "{key}: median {ours:e}, {} {least:e} to {most:e}",
+                    self.names[0]
                 ));
             }
         }
@@ -654,7 +668,7 @@ pub fn pile_table(rows: &[Piles]) -> String {
          |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for p in rows {
-        for (library, name) in NAMES.iter().enumerate() {
+        for (library, name) in p.names.iter().enumerate() {
             let spread = |key: &str, unit: f64| {
                 let (least, most) = p.range(library, key);
                 let middle = median(p.all(library, key));
@@ -705,7 +719,7 @@ pub fn long_table(rows: &[Piles]) -> String {
          |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for p in rows {
-        for (library, name) in NAMES.iter().enumerate() {
+        for (library, name) in p.names.iter().enumerate() {
             let gained = p.all(library, "gained");
             let bad: f64 = ["bad", "zero", "not_finite", "not_unit"]
                 .iter()

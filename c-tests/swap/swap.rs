@@ -91,6 +91,15 @@ fn mujoco_pile() {
         &small,
         |_| (),
     ));
+    let exact = program.against_minimum();
+    piles_must_pass(&checks::piles(
+        &exact,
+        "small pile",
+        10,
+        1500,
+        &small,
+        |_| (),
+    ));
 }
 
 #[test]

@@ -58,6 +58,13 @@ fn table() {
         piles(&checks::ode_pile(), "pile", 10, 1500, &["32", "pile"]),
         piles(&mujoco, "pile", 10, 1500, &["30", "pile"]),
         taken_over,
+        piles(
+            &mujoco.against_minimum(),
+            "small pile",
+            10,
+            1500,
+            &["20", "pile"],
+        ),
         piles(&dart, "over FCL", 10, 800, &["12", "fcl"]),
         piles(&dart, "over ODE", 10, 800, &["12", "ode"]),
     ];
@@ -79,6 +86,13 @@ fn long() {
         piles(&ode, "convex hulls", 2, 10_000, &["32", "hulls"]),
         piles(
             &ode,
+            "towers of boxes and hulls",
+            2,
+            10_000,
+            &["20", "stack"],
+        ),
+        piles(
+            &checks::ode_pile().against_minimum(),
             "towers of boxes and hulls",
             2,
             10_000,

@@ -8,13 +8,16 @@
  * and __ccdSupport itself; the dynamic linker binds the consumer's calls to the
  * program's, which pass them on to the libccd.so.2 that is loaded. A program that
  * defines WATCH_ANSWER(obj, dir, v) is shown every support point as well, and may
- * change it; watch_centre(obj, &c) tells it where the object is. */
+ * change it; watch_centre(obj, &c) tells it where the object is.
+ *
+ * With WATCH_MINIMUM in the environment, on this library: ccdMPRPenetration is answered
+ * with the proven minimum, whatever that costs. */
 
 #ifndef SWAP_WATCH_H
 #define SWAP_WATCH_H
 
 #include "harness/identity.h"
-#include <ccd/ccd.h>
+#include <ccd/warm.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,15 +84,40 @@ static double watch_support_value(const void *obj1, const void *obj2, const ccd_
     return (double)(ccdVec3Dot(&a, dir) - ccdVec3Dot(&b, dir));
 }
 
+typedef int (*watch_minimum_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, ccd_penetration_t *);
+
+static int watch_minimum(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    static watch_minimum_fn next;
+    ccd_t finer = *ccd;
+    ccd_penetration_t out;
+    int code;
+    if (!next) {
+        void *symbol = watch_next("ccdPenetrationMinimum");
+        memcpy(&next, &symbol, sizeof next);
+    }
+    finer.epa_tolerance = ccd->mpr_tolerance;
+    finer.max_iterations = 2000;
+    code = next(obj1, obj2, &finer, NULL, &out);
+    if (code != CCD_HIT && code != CCD_LIMIT)
+        return -1;
+    *depth = out.depth;
+    *dir = out.dir;
+    *pos = out.pos;
+    return 0;
+}
+
 int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
     static watch_penetration_fn next;
+    static int minimum;
     const ccd_support_fn outer = watch_support1;
     ccd_t counted = *ccd;
     int hit;
     if (!next) {
         void *symbol = watch_next("ccdMPRPenetration");
         memcpy(&next, &symbol, sizeof next);
+        minimum = getenv("WATCH_MINIMUM") != NULL;
     }
     watch_support1 = ccd->support1;
     counted.support1 = watch_count;
@@ -98,7 +126,7 @@ int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_
     watch_centre = ccd->center1; /* one function for all kinds, in ODE */
     counted.support2 = watch_answer;
 #endif
-    hit = next(obj1, obj2, &counted, depth, dir, pos);
+    hit = (minimum ? watch_minimum : next)(obj1, obj2, &counted, depth, dir, pos);
     watch_support1 = outer;
     if (watched.queries++ == watched.first) {
         watched.answer = hit;
