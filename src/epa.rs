@@ -355,6 +355,65 @@ pub fn minimum<A: SupportMap, B: SupportMap>(
     settings: &Settings,
     arena: &mut dyn Arena,
 ) -> Result<Answer, Fault> {
+    let first;
+    let mut seed = *seed;
+    if seed.points.is_empty() {
+        let point = md.support(&seed.dir)?;
+        let h = seed.dir.dot(&point.v);
+        if h < 0.0 {
+            return Ok(Answer::Miss(seed.dir));
+        }
+        first = [point];
+        seed.points = &first;
+        if seed.upper.is_none_or(|(depth, _)| h < depth) {
+            seed.upper = Some((h, seed.dir));
+        }
+    }
+    let size2 = (seed.points.iter()).fold(0.0, |m, p| larger(m, p.v.norm_squared()));
+    // Squares of areas must be in range: what is too small or too large for that is
+    // looked at through a lens.
+    if size2 > SIZES.0 && size2 < SIZES.1 || !(size2 > 0.0) {
+        return measured(md, &seed, settings, arena);
+    }
+    let scale = (2.0 as Real).powi(-(0.5 * size2.log2()) as i32);
+    let mut points = [SupportPoint::default(); GIVEN];
+    for (to, from) in points.iter_mut().zip(seed.points) {
+        *to = from.magnified(scale);
+    }
+    let magnified = Seed {
+        dir: seed.dir,
+        points: &points[..seed.points.len().min(GIVEN)],
+        upper: seed.upper.map(|(depth, dir)| (depth * scale, dir)),
+    };
+    let settings = Settings {
+        tolerance: settings.tolerance * scale,
+        ..*settings
+    };
+    md.magnify(scale);
+    let answer = measured(md, &magnified, &settings, arena);
+    md.magnify(1.0);
+    let back = |hit: Penetration| Penetration {
+        depth: hit.depth / scale,
+        depth_lower: hit.depth_lower / scale,
+        point1: hit.point1 / scale,
+        point2: hit.point2 / scale,
+        ..hit
+    };
+    answer.map(|answer| match answer {
+        Answer::Hit(hit) => Answer::Hit(back(hit)),
+        Answer::Limit(hit) => Answer::Limit(back(hit)),
+        Answer::Undecided(hit) => Answer::Undecided(back(hit)),
+        Answer::Miss(n) => Answer::Miss(n),
+    })
+}
+
+/// [`minimum`] of objects whose areas can be squared.
+fn measured<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    seed: &Seed<'_>,
+    settings: &Settings,
+    arena: &mut dyn Arena,
+) -> Result<Answer, Fault> {
     let (depth, dir) = seed.upper.unwrap_or((Real::INFINITY, seed.dir));
     let mut query = Query {
         md,
@@ -391,7 +450,7 @@ fn run<A: SupportMap, B: SupportMap>(
         query.note(point);
         polytope.push(*point);
     }
-    polytope.reach_out(query, &seed.dir)?;
+    polytope.reach_out(query)?;
     // In range are the squares of areas.
     let mut found = None;
     if query.size2 > SIZES.0 && query.size2 < SIZES.1 && polytope.build(query)? {
@@ -625,13 +684,11 @@ impl<'a> Polytope<'a> {
     fn reach_out<A: SupportMap, B: SupportMap>(
         &mut self,
         query: &mut Query<'_, A, B>,
-        dir: &Vec3,
     ) -> Result<(), Stop> {
         while self.counts.points < SIMPLEX {
             let [a, b, c] = [0, 1, 2].map(|i| self.points[i].v);
             let towards = match self.counts.points {
-                0 => *dir,
-                1 => -a,
+                0 | 1 => -a,
                 2 => -nearest::on_segment(&Vec3::zeros(), &a, &b).0,
                 _ => {
                     let normal = (b - a).cross(&(c - a));

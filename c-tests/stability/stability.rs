@@ -59,7 +59,6 @@ fn truth_agrees_with_itself_and_the_certified_sets() {
 
 /// T01 to T24 and the cases of other projects, on libccd's entry points, cold and warm.
 #[test]
-#[cfg_attr(feature = "single", ignore = "GJK misses cubes of 1 nm")]
 fn configurations() {
     program("configurations").run(["compatible"]);
 }
@@ -73,7 +72,6 @@ fn configurations_of_the_extension() {
 
 /// T25, and the planar query.
 #[test]
-#[cfg_attr(feature = "single", ignore = "proofs at the edge of rounding")]
 fn wrong_starts() {
     alone("starts").run(["1500"]);
 }
@@ -81,10 +79,6 @@ fn wrong_starts() {
 /// A sample of every category of pairs, both tie rules, on libccd's entry points, cold
 /// and warm.
 #[test]
-#[cfg_attr(
-    feature = "single",
-    ignore = "MPR on thin capsules at the finest tolerance"
-)]
 fn categories() {
     let campaign = program("campaign");
     campaign.run(["60", "0", "-1", "compatible"]);
@@ -141,7 +135,6 @@ fn metamorphic() {
 
 /// Sliding, rolling, rocking: directions and depths.
 #[test]
-#[cfg_attr(feature = "single", ignore = "MPR on a rolling ellipsoid")]
 fn continuity() {
     program("continuity").run(["motion"]);
 }
