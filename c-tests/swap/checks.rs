@@ -715,8 +715,9 @@ pub fn pile_table(rows: &[Piles]) -> String {
 pub fn long_table(rows: &[Piles]) -> String {
     let mut out = String::from(
         "| consumer | scene | starts × steps | library | penetration queries | energy gained, J: median (max) | deepest contact, mm \
-         | NaN, zero or bent normals, exceptions, warnings | escaped | pairs judged | contacts lost | contacts spurious | largest error of a depth, mm |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+         | NaN, zero or bent normals, exceptions, warnings | escaped | pairs judged | contacts lost | contacts spurious | largest error of a depth, mm \
+         | wrong callbacks: pairs, lost, spurious, error |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for p in rows {
         for (library, name) in p.names.iter().enumerate() {
@@ -727,12 +728,14 @@ pub fn long_table(rows: &[Piles]) -> String {
                 .sum();
             let judged = |key: &str, unit: f64| match p.runs[library][0].pile.get(key) {
                 None => "–".to_owned(),
-                Some(_) if key == "error" => format!("{:.4}", unit * p.range(library, key).1),
+                Some(_) if key.ends_with("error") => {
+                    format!("{:.4}", unit * p.range(library, key).1)
+                }
                 Some(_) => p.sum(library, key).to_string(),
             };
             let _ = writeln!(
                 out,
-                "| {} | {} | {} × {} | {} | {} | {:.3} ({:.3}) | {:.1} | {} | {} | {} | {} | {} | {} |",
+                "| {} | {} | {} × {} | {} | {} | {:.3} ({:.3}) | {:.1} | {} | {} | {} | {} | {} | {} | {} |",
                 p.consumer,
                 p.scene,
                 p.runs[library].len(),
@@ -748,6 +751,9 @@ pub fn long_table(rows: &[Piles]) -> String {
                 judged("lost", 1.0),
                 judged("spurious", 1.0),
                 judged("error", 1e3),
+                ["wrong", "wrong_lost", "wrong_spurious", "wrong_error"]
+                    .map(|key| judged(key, 1e3))
+                    .join(", "),
             );
         }
     }

@@ -13,16 +13,27 @@
  * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll */
 
 #include "swap/ode_scene.h"
+#include "swap/right.h"
+
+static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v);
+#define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
 #include "swap/watch.h"
-#include "truth.h"
 
 /* Contacts of one step against the truth; only of pairs that ODE put to libccd. */
 typedef struct {
-    const scene_t *scene;
-    unsigned long queries; /* watched so far */
     long judged, lost, spurious;
     double error; /* of the deepest contact's depth: the largest */
+} judged_t;
+
+typedef struct {
+    const scene_t *scene;
+    unsigned long queries; /* watched so far */
+    int callback_wrong; /* in the query that is judged next */
+    judged_t right, wrong; /* by that */
 } judge_t;
+
+static scene_t scene;
+static judge_t found = { &scene, 0, 0, { 0, 0, 0, 0 }, { 0, 0, 0, 0 } };
 
 /* A depth or gap below this is neither: ten times ODE's tolerance. */
 static const double LOST = 1e-5;
@@ -38,18 +49,39 @@ static shape_t shape_of(const scene_t *scene, int i)
     return out;
 }
 
+/* The object's centre tells which body it is. */
+static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v)
+{
+    ccd_vec3_t centre;
+    int i;
+    if (!scene.on_pair)
+        return;
+    watch_centre(obj, &centre);
+    for (i = 0; i < scene.bodies; i++) {
+        const dReal *p = dGeomGetPosition(scene.geom[i]);
+        if (p[0] == centre.v[0] && p[1] == centre.v[1] && p[2] == centre.v[2]) {
+            const shape_t s = shape_of(&scene, i);
+            double point[3];
+            found.callback_wrong |= !(right_point(&s, dir, v, point) < 1e-10 * scene.half_width);
+            return;
+        }
+    }
+}
+
 static void judge(void *user, int a, int b, const dContact *contact, int contacts)
 {
-    judge_t *j = (judge_t *)user;
+    judge_t *all = (judge_t *)user;
+    judged_t *j = all->callback_wrong ? &all->wrong : &all->right;
     shape_t sa, sb;
     truth_t t;
     double deepest = 0;
     int i;
-    if (watched.queries == j->queries)
+    if (watched.queries == all->queries)
         return;
-    j->queries = watched.queries;
-    sa = shape_of(j->scene, a);
-    sb = shape_of(j->scene, b);
+    all->queries = watched.queries;
+    all->callback_wrong = 0;
+    sa = shape_of(all->scene, a);
+    sb = shape_of(all->scene, b);
     t = truth_depth_within(&sa, &sb, 1e-7);
     j->judged++;
     j->lost += !contacts && t.lower > LOST;
@@ -62,8 +94,6 @@ static void judge(void *user, int a, int b, const dContact *contact, int contact
 
 int main(int argc, char **argv)
 {
-    static scene_t scene;
-    judge_t found = { &scene, 0, 0, 0, 0, 0 };
     double kinetic = 0, depth = 0, deepest = 0, least = HUGE_VAL, gained = 0;
     long step, contacts = 0;
     int escaped = 0;
@@ -107,9 +137,11 @@ int main(int argc, char **argv)
             contacts += scene.contact_count;
         }
     }
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g judged %ld lost %ld spurious %ld error %.9g\n",
-           kinetic, contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, scene.bad_contacts, gained, found.judged,
-           found.lost, found.spurious, found.error);
+    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g judged %ld lost %ld spurious %ld error %.9g "
+           "wrong %ld wrong_lost %ld wrong_spurious %ld wrong_error %.9g\n",
+           kinetic, contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, scene.bad_contacts, gained, found.right.judged,
+           found.right.lost, found.right.spurious, found.right.error, found.wrong.judged, found.wrong.lost, found.wrong.spurious,
+           found.wrong.error);
     watch_report();
     scene_free(&scene);
     dCloseODE();

@@ -13,14 +13,11 @@
 
 #include "swap/poses.h"
 
-/* ODE's cylinder callback is wrong for directions within about 1e-15 of the axis:
- * it makes a unit vector of what rounding leaves across the axis, and answers with
- * a point up to a radius out of place. Such queries are about no convex shape; they
- * are found by holding every support point against the shape it is said to be of. */
 static int mended, callback_wrong;
 static void audit(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v);
 #define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
 #include "swap/watch.h"
+#include "swap/right.h"
 
 #include <ode/ode.h>
 
@@ -34,19 +31,6 @@ typedef struct {
 } placed_t;
 
 static placed_t a, b;
-
-/* The support point along dir; returns how far v is off it. */
-static double right_point(const shape_t *s, const ccd_vec3_t *dir, const ccd_vec3_t *v, double point[3])
-{
-    static const double origin[3];
-    truth_point(s, origin, dir->v, point);
-    return fabs(dir->v[0] * (v->v[0] - point[0]) + dir->v[1] * (v->v[1] - point[1]) + dir->v[2] * (v->v[2] - point[2]));
-}
-
-static double from(const shape_t *s, const ccd_vec3_t *p)
-{
-    return hypot(hypot(s->pos[0] - p->v[0], s->pos[1] - p->v[1]), s->pos[2] - p->v[2]);
-}
 
 static void audit(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
 {
