@@ -837,9 +837,9 @@ impl Model {
         self.b + self.e1 * x + self.e2 * y
     }
 
-    /// Weights of the active cuts whose gradients balance at x = 0, or come nearest.
-    fn weights(&self, step: &Step) -> [Real; 3] {
-        let [g, h, k] = step.set.map(|i| (self.x.0[i], self.y.0[i]));
+    /// Weights of the active cuts whose gradients (x, y) balance, or come nearest to it.
+    fn weights(step: &Step, x: &Lanes, y: &Lanes) -> [Real; 3] {
+        let [g, h, k] = step.set.map(|i| (x.0[i], y.0[i]));
         let cross = |a: (Real, Real), b: (Real, Real)| a.0 * b.1 - a.1 * b.0;
         match step.count {
             3 => {
@@ -1140,8 +1140,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     }
 }
 
-/// The answer: the best support plane, with witness points in the middle of the
-/// active cuts; and how far across the normal these were from meeting.
+/// The answer: the best support plane, with its witness points; and how far across the
+/// normal these were from meeting.
 fn conclude(
     search: &Search,
     model: &Model,
@@ -1149,17 +1149,61 @@ fn conclude(
     tolerance: Real,
     iterations: u64,
 ) -> (Penetration, Real) {
+    let b = &model.b;
+    let depth = search.h.0[search.best];
+    // Points of the objects themselves: a mean of support points that lie below the
+    // origin, or as near to that as a depth within the tolerance allows, and no deeper
+    // than the tolerance. First of the active cuts; but a direction that ties several
+    // vertices shows one of them, which may leave the model fewer cuts than the search
+    // has seen.
+    let (x, y) = (search.v.dot(&model.e1), search.v.dot(&model.e2));
+    let height = search.v.dot(b);
+    let near = (2.0 * depth * tolerance).max(search.noise * search.noise);
+    let inside = |set: [usize; 3], w: [Real; 3]| {
+        let mean = |l: &Lanes| l.0[set[0]] * w[0] + l.0[set[1]] * w[1] + l.0[set[2]] * w[2];
+        let (x, y) = (mean(&x), mean(&y));
+        let across2 = x * x + y * y;
+        (across2 <= near && mean(&height) >= depth - tolerance).then_some((set, w, across2.sqrt()))
+    };
+    let active = inside(step.set, Model::weights(step, &x, &y));
+    let found = active.or_else(|| enclosing(&x, &y).find_map(|(set, w)| inside(set, w)));
+    let (point1, point2, across) = match found {
+        Some((set, w, across)) => {
+            let (mut point1, mut point2) = (Vec3::zeros(), Vec3::zeros());
+            for (i, w) in set.into_iter().zip(w) {
+                point1 += search.point(i).v1 * w;
+                point2 += search.point(i).v2 * w;
+            }
+            (point1, point2, across)
+        }
+        None => guessed(search, model, step, tolerance),
+    };
+    let answer = Penetration {
+        depth,
+        depth_lower: 0.0,
+        dir: *b,
+        normal: *b,
+        point1,
+        point2,
+        iterations,
+    };
+    (answer, across)
+}
+
+/// The witness points that the model foretells: the support points of the active cuts,
+/// moved to where R takes them when their directions become b; and how far across the
+/// normal these are from meeting.
+fn guessed(search: &Search, model: &Model, step: &Step, tolerance: Real) -> (Vec3, Vec3, Real) {
     let best = search.point(search.best);
     let b = &model.b;
     let share = search.curvature.share;
-    let mut point1 = Vec3::zeros();
-    let mut point2 = Vec3::zeros();
-    for (&i, w) in step.set[..step.count].iter().zip(model.weights(step)) {
+    let (mut point1, mut point2) = (Vec3::zeros(), Vec3::zeros());
+    let weights = Model::weights(step, &model.x, &model.y);
+    for (&i, w) in step.set[..step.count].iter().zip(weights) {
         let p = search.point(i);
         point1 += p.v1 * w;
         point2 += p.v2 * w;
         if model.lift.0[i] > 0.0 {
-            // Where R moves the sample's point to when its direction becomes b.
             let (x, y) = (
                 model.x.0[i] - p.v.dot(&model.e1),
                 model.y.0[i] - p.v.dot(&model.e2),
@@ -1169,67 +1213,35 @@ fn conclude(
             point2 -= moved * (1.0 - share);
         }
     }
-    // A direction that ties several vertices shows one of them, which may leave the
-    // model fewer cuts than the search has seen: they still enclose the origin.
-    let off = |point1: Vec3, point2: Vec3| {
-        let difference = point1 - point2;
-        difference - b * difference.dot(b)
-    };
-    let mut across = off(point1, point2);
-    if across.norm_squared() > search.noise * search.noise
-        && let Some(weights) = enclosing(search, model, search.h.0[search.best] - tolerance)
-    {
-        point1 = Vec3::zeros();
-        point2 = Vec3::zeros();
-        for (i, w) in weights {
-            point1 += search.point(i).v1 * w;
-            point2 += search.point(i).v2 * w;
-        }
-        across = off(point1, point2);
-    }
     // What is left across the normal is the distance to the model's minimum.
-    let size = search.curvature.size;
-    if search.h.0[search.best] <= search.noise && across.norm_squared() > 4.0 * tolerance * size {
+    let across = point1 - point2;
+    let across = across - b * across.dot(b);
+    let apart = across.norm();
+    if search.h.0[search.best] <= search.noise
+        && apart * apart > 4.0 * tolerance * search.curvature.size
+    {
         // A touch elsewhere: the proof of the overlap knows points that meet.
-        (point1, point2) = (best.v1, best.v2);
-    } else {
-        point1 -= across * share;
-        point2 += across * (1.0 - share);
-        // Onto the support planes of both objects.
-        point1 += b * (best.v1 - point1).dot(b);
-        point2 += b * (best.v2 - point2).dot(b);
+        return (best.v1, best.v2, apart);
     }
-    let answer = Penetration {
-        depth: search.h.0[search.best],
-        depth_lower: 0.0,
-        dir: *b,
-        normal: *b,
-        point1,
-        point2,
-        iterations,
-    };
-    (answer, across.norm())
+    point1 -= across * share;
+    point2 += across * (1.0 - share);
+    // Onto the support planes of both objects.
+    point1 += b * (best.v1 - point1).dot(b);
+    point2 += b * (best.v2 - point2).dot(b);
+    (point1, point2, apart)
 }
 
-/// Three samples at or above `level` along b whose triangle the ray along b meets, and
-/// the weights of where it does.
-fn enclosing(search: &Search, model: &Model, level: Real) -> Option<[(usize, Real); 3]> {
-    let height = search.v.dot(&model.b);
-    let (x, y) = (search.v.dot(&model.e1), search.v.dot(&model.e2));
+/// Each three samples whose triangle the ray along b meets, and the weights of where it
+/// does; x, y: the samples across b.
+fn enclosing(x: &Lanes, y: &Lanes) -> impl Iterator<Item = ([usize; 3], [Real; 3])> {
     let area = |i: usize, j: usize| x.0[i] * y.0[j] - y.0[i] * x.0[j];
-    for [i, j, k, _] in OTHERS {
-        if !(height.0[i] >= level && height.0[j] >= level && height.0[k] >= level) {
-            continue;
-        }
+    OTHERS.into_iter().filter_map(move |[i, j, k, _]| {
         let w = [area(j, k), area(k, i), area(i, j)];
         let sum = w[0] + w[1] + w[2];
         let w = w.map(|w| w / sum);
         // False for NaN: three points on a line.
-        if w.iter().all(|&w| w >= 0.0) {
-            return Some([(i, w[0]), (j, w[1]), (k, w[2])]);
-        }
-    }
-    None
+        w.iter().all(|&w| w >= 0.0).then_some(([i, j, k], w))
+    })
 }
 
 /// Leaves behind what finds the same active cuts again.
