@@ -88,9 +88,9 @@ static void exact_pair(int kind, uint64_t index, pair_t *p)
         break;
     }
     p->truth = truth_depth(&p->a, &p->b);
-    if (!(p->truth.lower > 1e-9 * pair_size(&p->a, &p->b))) {
-        /* a hull need not hold its centre */
-        pair_pull_out(p, pair_size(&p->a, &p->b) * dice_log(d, 1e-3, .1));
+    /* a hull need not hold its centre */
+    for (k = 0; k < 60 && !(p->truth.lower > 1e-9 * pair_size(&p->a, &p->b)); k++) {
+        pair_pull_out(p, pair_size(&p->a, &p->b) * dice_log(d, 1e-8, .1));
         p->truth = truth_depth(&p->a, &p->b);
     }
     p->surface = pair_is_surface(p);
