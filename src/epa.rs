@@ -809,7 +809,7 @@ impl<'a> Polytope<'a> {
             self.offer(f as Index, plane.key, &wedge, &vp, query.rounding, target);
         }
         // Known twice, a point differs from itself by rounding.
-        let least = larger(4.0 * query.rounding, query.worth());
+        let least = 4.0 * query.rounding;
         for i in 0..self.counts.points as Index {
             if ![a, b, c, d].contains(&i)
                 && let Some(f) = self.lit(i, least)
