@@ -486,27 +486,28 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let Answer::Limit(hit) = answer else {
             return Ok(answer);
         };
-        let mut memory = State::of(OVERLAP, hit.normal).memory;
         // A local search ends where its first reach, a tenth of a radian, is level; what
         // goes on falling so over the sphere is thirty times as much.
         let level = Settings {
             tolerance: settings.tolerance * 0.01,
             ..*settings
         };
-        let (Answer::Hit(floor) | Answer::Limit(floor)) =
-            self.descend(&mut memory, &level, &mut Known::default())?
-        else {
-            return Ok(answer);
-        };
-        // Also for NaN.
-        if !(floor.depth < hit.depth) {
-            return Ok(answer);
+        let mut best = hit;
+        // Objects with a centre of symmetry that nearly share it have two equal valleys.
+        for n in [hit.normal, -hit.normal] {
+            let mut memory = State::of(OVERLAP, n).memory;
+            if let Answer::Hit(floor) | Answer::Limit(floor) =
+                self.descend(&mut memory, &level, &mut Known::default())?
+                && floor.depth < best.depth
+            {
+                best = Penetration {
+                    depth_lower: hit.depth_lower.min(floor.depth),
+                    iterations: best.iterations + floor.iterations,
+                    ..floor
+                };
+            }
         }
-        Ok(Answer::Limit(Penetration {
-            depth_lower: hit.depth_lower.min(floor.depth),
-            iterations: hit.iterations + floor.iterations,
-            ..floor
-        }))
+        Ok(Answer::Limit(best))
     }
 
     /// How far obj2 must move along the unit direction `dir` (Algorithm 1).
