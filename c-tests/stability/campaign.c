@@ -177,8 +177,7 @@ int main(int argc, char **argv)
             for (t = 0; t < 2; t++) {
                 const row_t *r = t ? &fine[k][category] : &table[k][category];
                 double percent = r->asked ? 100. * count_fault(r, FAULT_DEEPER) / r->asked : 0;
-                /* one pair of a small sample is no rate */
-                if (percent > mpr_deep_percent && count_fault(r, FAULT_DEEPER) > 1) {
+                if (percent > mpr_deep_percent) {
                     printf("BROKEN %s: %s is over 1 %% too deep in %.2f %% of pairs at the %s tolerance\n",
                            category_text(category), e->name, percent, t ? "fine" : "default");
                     broken++;

@@ -65,7 +65,7 @@ fn configurations() {
 
 /// The same on the extension's own.
 #[test]
-#[ignore = "witness points of the local query"]
+#[cfg_attr(feature = "single", ignore = "witness points of the local query")]
 fn configurations_of_the_extension() {
     program("configurations").run(["extension"]);
 }
@@ -81,8 +81,8 @@ fn wrong_starts() {
 #[test]
 fn categories() {
     let campaign = program("campaign");
-    campaign.run(["60", "0", "-1", "compatible"]);
-    campaign.run(["60", "1", "-1", "compatible"]);
+    campaign.run(["100", "0", "-1", "compatible"]);
+    campaign.run(["100", "1", "-1", "compatible"]);
 }
 
 /// The proven minimum against the exact one, on a sample of every kind of pair.
@@ -114,8 +114,8 @@ fn exact_campaign() {
 #[ignore = "witness points of the local query; the proof far from the origin"]
 fn categories_of_the_extension() {
     let campaign = program("campaign");
-    campaign.run(["60", "0", "-1", "extension"]);
-    campaign.run(["60", "1", "-1", "extension"]);
+    campaign.run(["100", "0", "-1", "extension"]);
+    campaign.run(["100", "1", "-1", "extension"]);
 }
 
 /// Both libraries in one process, against each other and the truth.

@@ -3,7 +3,7 @@
 
 //! The exported functions called as C calls them, but from Rust: a program that
 //! Miri can run, to find undefined behaviour behind the pointers
-//! (`sh c-tests/tools/miri.sh`). In the ordinary test run it is a small test.
+//! (`sh c-tests/tools/check.sh miri`). In the ordinary test run it is a small test.
 
 // C names, and calls into the C interface.
 #![allow(unsafe_code)]
