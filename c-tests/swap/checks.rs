@@ -26,6 +26,10 @@ fn verdict_tolerance(truth: f64) -> f64 {
 const MOST_DEEPER: f64 = 2.0 * MPR_TOLERANCE;
 const OFTEN_DEEPER: f64 = 5e-4;
 
+/// The share of a simulation's contacts that a local minimum, or a search that stopped
+/// early, may put off the truth.
+const OFTEN_OFF: f64 = 2e-3;
+
 /// A depth or gap of this many sizes is neither hit nor miss.
 const TOUCH: f64 = 1e-9;
 
@@ -635,12 +639,14 @@ impl Piles {
             "slanted",
             "lost",
             "spurious",
-            "off",
             "wrong_lost",
         ] {
             if self.has(key) && self.sum(1, key) != 0.0 {
                 self.against.push(format!("{key}: {:?}", self.all(1, key)));
             }
+        }
+        if self.has("off") && self.sum(1, "off") > OFTEN_OFF * self.sum(1, "judged") {
+            self.against.push(format!("off: {:?}", self.all(1, "off")));
         }
         if self.runs[0].len() < 10 {
             return; // too few starts to speak of a spread
