@@ -924,11 +924,11 @@ impl<'a> Polytope<'a> {
                 view.add(faces, outer / 4);
             }
             crossings += 1;
-            // A bound that no closed surface comes to.
-            if crossings > 3 * faces.len() {
+            at = after(outer);
+            // All around a swallowed corner; and a bound that no closed surface comes to.
+            if rim == 0 && at == start || crossings > 3 * faces.len() {
                 return None;
             }
-            at = after(outer);
         }
         // Else a corner was swallowed: not every edge was crossed both ways.
         let tree = 3 * view.faces == rim + crossings;
