@@ -555,6 +555,13 @@ impl Search<'_> {
         let along = w.dot(&dn);
         if along * along > 0.0025 * w2 * dn2 {
             curvature.r.add(1.0 / along, &w);
+        } else {
+            // Across: the least symmetric change that makes R dn what was seen (Powell's).
+            let sum = w + dn;
+            let across = 1.0 / dn2;
+            curvature.r.add(across, &sum);
+            curvature.r.add(-across, &w);
+            curvature.r.add(-across - along * across * across, &dn);
         }
         Some(twin)
     }
@@ -1074,7 +1081,9 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         // A reach that small means that the search is stuck.
         let broken = !step.value.is_finite() || reach < STUCK;
         if done || broken || iterations >= settings.max_iterations {
-            let (answer, across) = conclude(&search, &model, &step, tolerance, iterations);
+            // As asked for, also where rounding allows the depth less.
+            let fine = tolerance.min(settings.tolerance + search.noise * 0.125);
+            let (answer, across) = conclude(&search, &model, &step, fine, iterations);
             remember(memory, &search.curvature, &model, &step);
             search.met.lead(search.at[search.best]);
             // A minimum is where the support plane touches D below the origin: witness
@@ -1169,10 +1178,11 @@ fn conclude(
     let found = active.or_else(|| enclosing(&x, &y).find_map(|(set, w)| inside(set, w)));
     let (point1, point2, across) = match found {
         Some((set, w, across)) => {
-            let (mut point1, mut point2) = (Vec3::zeros(), Vec3::zeros());
-            for (i, w) in set.into_iter().zip(w) {
-                point1 += search.point(i).v1 * w;
-                point2 += search.point(i).v2 * w;
+            let first = search.point(set[0]);
+            let (mut point1, mut point2) = (first.v1, first.v2);
+            for (i, w) in set.into_iter().zip(w).skip(1) {
+                point1 += (search.point(i).v1 - first.v1) * w;
+                point2 += (search.point(i).v2 - first.v2) * w;
             }
             (point1, point2, across)
         }
