@@ -48,9 +48,10 @@
 //! other's exact cut by. On a smooth piece the trapezoidal rule makes them equal; a
 //! kink between the two directions makes e : e' whatever it likes. So a pair with
 //! e = e' within [`ALIKE`], whose slope |s' − s| / |n' − n| is no larger than the
-//! object, is taken as smooth and R updated by the symmetric rank-one formula from
-//! it. The first such pair sets R: its slope times I; a cylinder (R of rank one)
-//! corrects that with the next pair. Samples that have the same vertex within R
+//! object, is taken as smooth and R updated from it: by the symmetric rank-one formula,
+//! and where that has no say, because what is missing lies across n' − n, by Powell's
+//! (both in Nocedal and Wright, Numerical Optimization, ch. 6). The first such pair
+//! sets R: its slope times I; a cylinder (R of rank one) corrects that with the next. Samples that have the same vertex within R
 //! are one cut: the one nearest to b is kept. A pair with a kink refutes an R
 //! that makes the one cut exceed the other's value, and R is reduced along n' − n.
 //!
