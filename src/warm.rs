@@ -121,6 +121,13 @@ impl State {
     }
 }
 
+/// A touch, within the tolerance, whose witness points do not meet? There the points that
+/// meet at the origin of D, which a proof of the overlap knows, are witnesses.
+fn unmet(hit: &Penetration, settings: &Settings) -> bool {
+    let apart = (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
+    hit.depth <= settings.tolerance && apart > settings.tolerance
+}
+
 /// Directions tried before a pair that was apart is asked about anew.
 const TRIES: u32 = 2;
 /// What a margin that was reached once is still worth at the next query.
@@ -218,10 +225,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                     depth_lower: inner.min(hit.depth),
                     ..hit
                 };
-                // Of a touch, within the tolerance, the points that meet at the origin of D
-                // are witnesses as well.
-                let apart = (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
-                if hit.depth <= settings.tolerance && apart > settings.tolerance {
+                if unmet(&hit, settings) {
                     (hit.point1, hit.point2) = simplex.witnesses();
                 }
                 if limit {
@@ -482,7 +486,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         arena: &mut dyn Arena,
     ) -> Result<Answer, Fault> {
-        let answer = epa::minimum(&self.md, seed, settings, arena)?;
+        let mut answer = epa::minimum(&self.md, seed, settings, arena)?;
+        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer
+            && unmet(hit, settings)
+        {
+            let start = match seed.points.first() {
+                Some(point) => *point,
+                None => self.md.support(&hit.normal)?,
+            };
+            let limit = settings.max_iterations;
+            if let Overlap::Yes(simplex, _) = gjk::intersect(&self.md, start, seed.points, limit)? {
+                (hit.point1, hit.point2) = simplex.witnesses();
+            }
+        }
         let Answer::Limit(hit) = answer else {
             return Ok(answer);
         };
