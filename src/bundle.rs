@@ -87,8 +87,10 @@
 //! the origin outside ends the query with [`Answer::Miss`] at once; the overlap itself
 //! is not proven here.
 //!
-//! So is an answer whose witness points do not meet: stationary is where the support
-//! plane touches D below the origin, and points of the plane around that spot show it.
+//! An answer whose witness points do not meet is none: stationary is where the support
+//! plane touches D below the origin, and points of the plane around that spot show it. R
+//! has led astray there, is forgotten, and the search goes on by exact cuts; where these
+//! do not meet either, it is a limit too.
 //!
 //! *Memory.* A face that is still there is found again by three directions aside of
 //! the last answer, each towards one active cut and farther than the pair moved, and
@@ -1046,59 +1048,62 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             n = d * (1.0 / d.norm());
             continue;
         }
-        let mut model = Model::new(&search);
-        let mut step = model.minimise(newest, reach, search.noise);
-        if !step.value.is_finite() && search.curvature.known {
-            search.curvature.known = false;
-            model = Model::new(&search);
-            step = model.minimise(newest, reach, search.noise);
-        }
-        let gain = search.h.0[search.best] - step.value;
-        let curved = model.rho != 0.0;
-        let mut far = search.best;
-        let mut doubt = 0.0;
-        // What the same error of R leaves open where the model has its minimum.
-        let mut open: Real = 0.0;
-        if curved && step.count > 1 {
-            for &i in &step.set[..step.count] {
-                let error = search.error(i, &model.b);
-                if i != search.best {
-                    let raise = model.raise(i, &search.v.get(i), step.x, step.y);
-                    open = open.max(raise * error);
-                }
-                if model.lift.0[i] * error > doubt {
-                    doubt = model.lift.0[i] * error;
-                    far = i;
+        let (model, step, gain, doubt, far, blind) = loop {
+            let model = Model::new(&search);
+            let step = model.minimise(newest, reach, search.noise);
+            let gain = search.h.0[search.best] - step.value;
+            let curved = model.rho != 0.0;
+            let mut far = search.best;
+            let mut doubt = 0.0;
+            // What the same error of R leaves open where the model has its minimum.
+            let mut open: Real = 0.0;
+            if curved && step.count > 1 {
+                for &i in &step.set[..step.count] {
+                    let error = search.error(i, &model.b);
+                    if i != search.best {
+                        let raise = model.raise(i, &search.v.get(i), step.x, step.y);
+                        open = open.max(raise * error);
+                    }
+                    if model.lift.0[i] * error > doubt {
+                        doubt = model.lift.0[i] * error;
+                        far = i;
+                    }
                 }
             }
-        }
-        // Flat as far as the eye reaches: minima that form a curve or a surface.
-        let level = reach >= REACH && search.curvature.spread;
-        let close = gain.abs() <= tolerance && (step.inside || level);
-        let blind = close && curved && step.count < 3 && !search.curvature.spread;
-        // Depth zero within rounding cannot be lower.
-        let touch = search.h.0[search.best] <= search.noise;
-        let done = touch || close && !blind && doubt <= tolerance && gain.abs() + open <= tolerance;
-        // A reach that small means that the search is stuck.
-        let broken = !step.value.is_finite() || reach < STUCK;
-        if done || broken || iterations >= settings.max_iterations {
+            // Flat as far as the eye reaches: minima that form a curve or a surface.
+            let level = reach >= REACH && search.curvature.spread;
+            let close = gain.abs() <= tolerance && (step.inside || level);
+            let blind = close && curved && step.count < 3 && !search.curvature.spread;
+            // Depth zero within rounding cannot be lower.
+            let touch = search.h.0[search.best] <= search.noise;
+            let done =
+                touch || close && !blind && doubt <= tolerance && gain.abs() + open <= tolerance;
+            // A reach that small means that the search is stuck.
+            let broken = !step.value.is_finite() || reach < STUCK;
+            let last = iterations >= settings.max_iterations;
+            if !(done || broken || last) {
+                break (model, step, gain, doubt, far, blind);
+            }
             // As asked for, also where rounding allows the depth less.
             let fine = tolerance.min(settings.tolerance + search.noise * 0.125);
             let (answer, across) = conclude(&search, &model, &step, fine, iterations);
-            remember(memory, &search.curvature, &model, &step);
-            search.met.lead(search.at[search.best]);
             // A minimum is where the support plane touches D below the origin: witness
             // points farther apart across the normal than a curve of the object's size
             // may be within the tolerance are not witnesses of one.
             let size = search.curvature.size.max(answer.depth);
-            return Ok(
-                if touch || done && across * across <= 4.0 * tolerance * size {
+            let met = touch || done && across * across <= 4.0 * tolerance * size;
+            if met || last || !search.curvature.known {
+                remember(memory, &search.curvature, &model, &step);
+                search.met.lead(search.at[search.best]);
+                return Ok(if met {
                     Answer::Hit(answer)
                 } else {
                     Answer::Limit(answer)
-                },
-            );
-        }
+                });
+            }
+            // R has led astray: on from here by exact cuts, and what the next pairs tell.
+            search.curvature.known = false;
+        };
         predicted = step.value;
         on_border = !step.inside;
         from = model.b;
