@@ -34,10 +34,17 @@ pub enum Overlap {
 /// support point: a step needs only a point of D beyond the origin, so D is asked when
 /// none of them is. A search that has points all around the origin is proven without a
 /// call.
+///
+/// `exit`: the point of the boundary where the origin leaves D, if that is known. D is
+/// first asked beside it, on the side of the origin that is open: at the angle where a
+/// ball of D's size falls back from the support plane by a quarter of the depth. A
+/// distance algorithm asks far away, and halves its way back to a thin overlap; to a
+/// deep one it does not need to.
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: SupportPoint,
     known: &[SupportPoint],
+    exit: Option<&Vec3>,
     max_iterations: u64,
 ) -> Result<Overlap, Fault> {
     if let Some(simplex) = around(&start, known) {
@@ -46,10 +53,26 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
             return Ok(Overlap::Yes(simplex, inner));
         }
     }
+    let mut beside = exit;
+    let mut near_exit = |n: &Vec3, reach: Real| {
+        let w = beside.take().and_then(|exit| {
+            let b = unit(exit)?;
+            let side = unit(&(n - b * n.dot(&b)))?;
+            let depth = exit.norm();
+            let size = depth - b.dot(&start.v);
+            let tilt = (0.5 * depth / size).sqrt();
+            // Also NaN.
+            if !(tilt <= THIN) {
+                return None;
+            }
+            md.support(&unit(&(b + side * tilt))?).ok()
+        })?;
+        (n.dot(&w.v) > reach).then_some(w)
+    };
     search(
         md,
         start,
-        |n, reach| mixed(&start, known, n, reach),
+        |n, reach| mixed(&start, known, n, reach).or_else(|| near_exit(n, reach)),
         max_iterations,
         |_, _| (),
     )
@@ -101,7 +124,7 @@ struct Side<'a> {
 pub fn search<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: SupportPoint,
-    known: impl Fn(&Vec3, Real) -> Option<SupportPoint>,
+    mut known: impl FnMut(&Vec3, Real) -> Option<SupportPoint>,
     max_iterations: u64,
     mut seen: impl FnMut(&Vec3, &SupportPoint),
 ) -> Result<Overlap, Fault> {
@@ -304,6 +327,9 @@ fn mixed(
     let v = v1 - v2;
     (n.dot(&v) > reach).then_some(SupportPoint { v, v1, v2 })
 }
+
+/// The angle, radians, that tells a thin overlap by.
+const THIN: Real = 0.2;
 
 /// Distances below this many times the largest coordinate are rounding errors of
 /// a difference of two points and of the nearest-point arithmetic.

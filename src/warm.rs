@@ -215,7 +215,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         // The proof has a budget of its own: a search cut short must still know
         // whether it has an answer.
-        let overlap = gjk::intersect(&self.md, start, known.points(), settings.max_iterations)?;
+        let overlap = gjk::intersect(
+            &self.md,
+            start,
+            known.points(),
+            Some(&(hit.normal * hit.depth)),
+            settings.max_iterations,
+        )?;
         Ok(match overlap {
             Overlap::Yes(simplex, inner) => {
                 for p in simplex.points() {
@@ -249,7 +255,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             None => self.md.support(&self.cold_start())?,
         };
         Ok(
-            match gjk::intersect(&self.md, start, &[], max_iterations)? {
+            match gjk::intersect(&self.md, start, &[], None, max_iterations)? {
                 Overlap::Yes(..) => Some(true),
                 Overlap::No(n) => {
                     self.remember(state, &Answer::Miss(n))?;
@@ -495,7 +501,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 None => self.md.support(&hit.normal)?,
             };
             let limit = settings.max_iterations;
-            if let Overlap::Yes(simplex, _) = gjk::intersect(&self.md, start, seed.points, limit)? {
+            if let Overlap::Yes(simplex, _) =
+                gjk::intersect(&self.md, start, seed.points, None, limit)?
+            {
                 (hit.point1, hit.point2) = simplex.witnesses();
             }
         }

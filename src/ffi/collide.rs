@@ -79,7 +79,7 @@ unsafe fn gjk_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
             if dir.dot(&start.v) < 0.0 {
                 return Ok(Overlap::No(dir));
             }
-            gjk::intersect(&md, start, &[], query.max_iterations())
+            gjk::intersect(&md, start, &[], None, query.max_iterations())
         }))
     }
 }
