@@ -352,7 +352,7 @@ mod tests {
         let ask = |a: &Shape, b: &Shape, dir: Vec3| {
             let md = MinkowskiDifference::new(a, b);
             let start = md.support(&dir).unwrap();
-            match intersect(&md, start, &[], 1000).unwrap() {
+            match intersect(&md, start, &[], None, 1000).unwrap() {
                 Overlap::Yes(..) => true,
                 Overlap::No(n) => {
                     assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
@@ -471,8 +471,8 @@ mod tests {
                     );
                     let start = md.support(&dir).unwrap();
                     let there = other.support(&dir).unwrap();
-                    let one = intersect(&md, start, &[], 1000).unwrap();
-                    let two = intersect(&other, there, &[], 1000).unwrap();
+                    let one = intersect(&md, start, &[], None, 1000).unwrap();
+                    let two = intersect(&other, there, &[], None, 1000).unwrap();
                     assert_eq!(matches!(one, Overlap::Yes(..)), gap < 0.0);
                     match (one, two) {
                         (Overlap::No(n), Overlap::No(m)) => assert_eq!(n, m),
@@ -599,13 +599,13 @@ mod tests {
                 let (a, b) = pair(kind, gap, &mut r);
                 let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
                 let known = [0; 3].map(|_| md.support(&r.direction()).unwrap());
-                let answer = intersect(&md, known[0], &known, 1000).unwrap();
+                let answer = intersect(&md, known[0], &known, None, 1000).unwrap();
                 assert_eq!(matches!(answer, Overlap::Yes(..)), gap < 0.0);
                 if let Overlap::Yes(simplex, inner) = answer
                     && inner > 0.0
                 {
                     let before = md.supports();
-                    let again = intersect(&md, simplex.points()[0], simplex.points(), 1000);
+                    let again = intersect(&md, simplex.points()[0], simplex.points(), None, 1000);
                     assert!(matches!(again, Ok(Overlap::Yes(..))));
                     assert_eq!(md.supports(), before);
                 }
