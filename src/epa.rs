@@ -49,7 +49,7 @@ use crate::gjk::{self, Overlap};
 use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
 use crate::nearest;
 use crate::simplex::Simplex;
-use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Index of a point, a face, or a half-edge (4 · face + edge).
 type Index = u16;
@@ -63,7 +63,7 @@ pub const MAX_POINTS: usize = 5400;
 pub const FACES_PER_POINT: usize = 3;
 
 /// Most given points that are used.
-pub const GIVEN: usize = 8;
+pub const GIVEN: usize = Known::ROOM;
 /// Room for the points of a simplex, and for those that make a flat one solid.
 const SIMPLEX: usize = 4;
 const WIDEN: usize = 6;
