@@ -453,6 +453,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Miss(n));
         }
         let mut memory = state.solver();
+        if memory.curved == 1 {
+            // A smooth contact is found again by two points, side by side, which are no
+            // start for a proof: a search from the direction alone sees more (capsules
+            // 12.2 support points instead of 16.2, ellipsoids 16.7 instead of 21.2).
+            memory = State::of(OVERLAP, memory.dir).memory;
+        }
         let mut known = Known::default();
         let search = self.stroll(&mut memory, GLANCE, settings, &mut known)?;
         let local = match search {
