@@ -887,8 +887,8 @@ impl Model {
 /// vector `start`.
 ///
 /// `centre`: any inner point of D, its distance is what curvature is first guessed
-/// from. `met`: gains the support points, the best one first, the samples kept last among them, for
-/// the caller's proof of the overlap, which a local minimum alone is not.
+/// from. `met`: gains the support points, the best one first, the samples kept last
+/// among them, for the caller's proof of the overlap, which a local minimum alone is not.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -988,7 +988,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 told = search.curvature.error;
                 search.told.0[twin] = told;
             }
-            if iterations == TRUST_CURVATURE {
+            if iterations >= TRUST_CURVATURE {
                 search.curvature.give_up = true;
                 search.curvature.known = false;
             }
@@ -1044,7 +1044,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             from = n;
             // No gradient: one way is as good as another.
             let down = unit(&-gradient).unwrap_or_else(|| perpendicular(&n));
-            // A bold step goes a little aside, so that no symmetry of the start hides what is across.
+            // A bold step goes a little aside, so that no symmetry of the start hides what
+            // is across.
             let down = if on_border {
                 down + n.cross(&down) * OBLIQUE
             } else {

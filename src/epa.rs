@@ -46,7 +46,7 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::{self, Overlap};
-use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, tolerance, unit};
 use crate::nearest;
 use crate::simplex::Simplex;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -1287,12 +1287,7 @@ impl<'a> Polytope<'a> {
     }
 }
 
-// One instruction each, unlike the methods, which sort out NaN.
-#[inline(always)]
-fn larger(x: Real, y: Real) -> Real {
-    if x > y { x } else { y }
-}
-
+/// The smaller of two numbers, as [`larger`].
 #[inline(always)]
 fn lesser(x: Real, y: Real) -> Real {
     if x < y { x } else { y }

@@ -11,6 +11,7 @@
 #include "ours.h"
 #include "polytope.h"
 #include <math.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 POLYTOPE_FUNCTIONS(OURS);
@@ -367,9 +368,12 @@ static void dump(void)
     size_t length[LIBRARIES], half;
     int lib, i, id = 0;
     for (lib = 0; lib < LIBRARIES; lib++) {
-        char name[] = "/tmp/polytope-XXXXXX";
+        char name[512];
+        const char *directory = getenv("TMPDIR");
         FILE *stream;
-        int file = mkstemp(name);
+        int file;
+        snprintf(name, sizeof name, "%s/polytope-XXXXXX", directory ? directory : P_tmpdir);
+        file = mkstemp(name);
         CHECK(file >= 0, "a temporary file");
         close(file);
         libraries[lib].dump(&pt[lib], name);

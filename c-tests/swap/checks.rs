@@ -528,14 +528,7 @@ pub fn piles(
     after: &[&str],
     progress: impl Fn(usize),
 ) -> Piles {
-    let mut p = Piles {
-        consumer: program.consumer,
-        names: program.names,
-        scene,
-        steps,
-        runs: [Vec::new(), Vec::new()],
-        against: Vec::new(),
-    };
+    let mut p = Piles::new(program, scene, steps);
     for seed in 1..=starts {
         for (i, lines) in program
             .run(&pile_args(seed, steps, after))
@@ -567,14 +560,7 @@ pub fn taken_over(
     after: &[&str],
     progress: impl Fn(usize),
 ) -> Piles {
-    let mut p = Piles {
-        consumer: program.consumer,
-        names: program.names,
-        scene,
-        steps,
-        runs: [Vec::new(), Vec::new()],
-        against: Vec::new(),
-    };
+    let mut p = Piles::new(program, scene, steps);
     let file = tempfile::NamedTempFile::new().expect("a file for the state");
     let state = file.path().to_string_lossy();
     for seed in 1..=starts {
@@ -602,6 +588,17 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 impl Piles {
+    fn new(program: &Swapped, scene: &'static str, steps: usize) -> Self {
+        Self {
+            consumer: program.consumer,
+            names: program.names,
+            scene,
+            steps,
+            runs: [Vec::new(), Vec::new()],
+            against: Vec::new(),
+        }
+    }
+
     /// A quantity over the starts.
     fn all(&self, library: usize, key: &str) -> Vec<f64> {
         let of = |run: &Run| run.pile.get(key).or_else(|| run.watched.get(key)).copied();

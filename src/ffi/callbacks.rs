@@ -24,7 +24,7 @@ impl SupportMap for Object {
         // vector loads can be forwarded from; three scalar stores would stall it.
         let dir = ccd_vec3_t::from(*dir);
         let mut point = ccd_vec3_t::default();
-        // SAFETY: Callbacks; nothing with a destructor is alive here.
+        // SAFETY: [callbacks]; nothing with a destructor is alive here.
         unsafe { (self.support)(self.obj, &dir, &mut point) };
         point.into()
     }
@@ -140,7 +140,7 @@ impl Query {
 }
 
 /// # Safety
-/// Callbacks of the module contract.
+/// \[callbacks\] of the module contract.
 unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
     let mut c = ccd_vec3_t::default();
     // SAFETY: [callbacks].
