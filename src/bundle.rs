@@ -153,8 +153,13 @@ const STUCK: Real = if SINGLE { 1e-4 } else { 1e-6 };
 const SINGLE: bool = EPSILON > 1e-10;
 /// Squared angle below which a pair tells nothing above the rounding errors.
 const CLOSE: Real = if SINGLE { 1e-4 } else { 1e-10 };
-/// Squared relative residual of a pair that is parallel.
-const PARALLEL: Real = if SINGLE { 1e-9 } else { 1e-12 };
+/// Relative residual of a pair that is parallel: a ball's.
+const BALL: Real = if SINGLE { 3e-5 } else { 1e-6 };
+/// Most of R's error, and of how unevenly the objects share it, with which it foretells
+/// the witness points of one active cut.
+const FORETOLD: Real = 0.25;
+/// Support points asked to see witness points that are only foretold.
+const SIGHTS: u32 = 4;
 /// Support points after which curvature is given up.
 const TRUST_CURVATURE: u64 = 40;
 
@@ -327,8 +332,10 @@ struct Curvature {
     known: bool,
     /// Relative error, by the last smooth pair.
     error: Real,
-    /// How much of it is obj1's.
+    /// How much of it is obj1's, …
     share: Real,
+    /// … and how far a pair's own points were from that, of its length.
+    uneven: Real,
     /// The direction of the first smooth pair; zero before it.
     line: Vec3,
     /// Measured along a second direction too.
@@ -536,7 +543,10 @@ impl Search<'_> {
         }
         let bend = ds.dot(&dn);
         let slope = bend / dn2;
-        curvature.share = ((p.v1 - other.v1).dot(&dn) / bend).clamp(0.0, 1.0);
+        let ds1 = p.v1 - other.v1;
+        curvature.share = (ds1.dot(&dn) / bend).clamp(0.0, 1.0);
+        let uneven = (ds1 - ds * curvature.share).norm_squared() / ds2;
+        curvature.uneven = curvature.uneven.max(uneven.sqrt());
         let measured = curvature.known;
         if !measured {
             curvature.known = true;
@@ -552,11 +562,11 @@ impl Search<'_> {
         }
         curvature.spread |= remembered && curvature.error < 0.1;
         // Exactly parallel: a ball, if the object has room for it.
-        if (ds - dn * slope).norm_squared() <= PARALLEL * ds2 && slope * slope <= 1.02 * size2 {
+        if (ds - dn * slope).norm_squared() <= BALL * BALL * ds2 && slope * slope <= 1.02 * size2 {
             curvature.spread = true;
-            if curvature.error * curvature.error > PARALLEL {
+            if curvature.error > BALL {
                 curvature.r = Symmetric::scaled_identity(slope);
-                curvature.error = PARALLEL.sqrt();
+                curvature.error = BALL;
             }
             return Some(twin);
         }
@@ -588,6 +598,48 @@ impl Search<'_> {
             residual -= rd;
         }
         residual.norm_squared() <= small && old.dot(b) <= n.dot(b)
+    }
+}
+
+impl Search<'_> {
+    /// Can witness points that R foretells be believed? All of a ball's; of other smooth
+    /// pairs those that are near to the one active cut's own.
+    fn foretells(&self, b: &Vec3, step: &Step) -> bool {
+        let curvature = &self.curvature;
+        let exact = |i: &usize| self.error(*i, b) <= BALL;
+        let ball = step.set.iter().all(exact);
+        let smooth = step.count == 1
+            && curvature.spread
+            && curvature.error <= FORETOLD
+            && curvature.uneven <= FORETOLD;
+        curvature.known && (ball || smooth)
+    }
+
+    /// Where to ask so that the objects' own points take the place of foretold ones: so
+    /// near to the minimum, on the side of the active cut whose point is farthest from
+    /// where R takes it, that there it is within what a witness may be off.
+    fn sight(&self, model: &Model, step: &Step, tolerance: Real) -> Next {
+        let across = (2.0 * self.h.0[self.best] * tolerance)
+            .sqrt()
+            .max(self.noise);
+        let weights = Model::weights(step, &model.x, &model.y);
+        let mut next = Next::Minimum;
+        let mut least = 1.0;
+        for (&i, w) in step.set[..step.count].iter().zip(weights) {
+            let v = self.v.get(i);
+            let (x, y) = (
+                model.x.0[i] - v.dot(&model.e1),
+                model.y.0[i] - v.dot(&model.e2),
+            );
+            // The point moves as the direction, what it lacks in height as its square.
+            let share = (0.5 * across / (w * (x * x + y * y).sqrt()))
+                .min((0.5 * tolerance / model.lift.0[i]).sqrt());
+            if i != self.best && share < least {
+                least = share;
+                next = Next::Beside(i, share);
+            }
+        }
+        next
     }
 }
 
@@ -646,6 +698,16 @@ struct Step {
     set: [usize; 3],
     count: usize,
     inside: bool,
+}
+
+/// Where to ask next.
+enum Next {
+    /// Where the model has its minimum.
+    Minimum,
+    /// On the way from there to that sample's direction, a share of it.
+    Beside(usize, Real),
+    /// Across the one direction in which R was measured.
+    Across,
 }
 
 /// The lanes beside one, the last of them twice.
@@ -916,6 +978,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             known: false,
             error: 1.0,
             share: 0.5,
+            uneven: 0.0,
             line: Vec3::zeros(),
             spread: false,
             round: true,
@@ -944,6 +1007,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut tolerance = settings.tolerance;
     let mut iterations = 0;
     let mut beside = false;
+    let mut sights = SIGHTS;
     loop {
         let mut p = md.support(&n)?;
         let mut h = n.dot(&p.v);
@@ -1055,7 +1119,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             n = d * (1.0 / d.norm());
             continue;
         }
-        let (model, step, gain, doubt, far, blind) = loop {
+        let (model, step, next) = loop {
             let model = Model::new(&search);
             let step = model.minimise(newest, reach, search.noise);
             let gain = search.h.0[search.best] - step.value;
@@ -1089,16 +1153,31 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             let broken = !step.value.is_finite() || reach < STUCK;
             let last = iterations >= settings.max_iterations;
             if !(done || broken || last) {
-                break (model, step, gain, doubt, far, blind);
+                // The probe goes near enough to the minimum to settle the doubt.
+                let next = if step.inside && doubt > tolerance && 2.0 * doubt >= gain {
+                    let share = (0.5 * tolerance.max(0.1 * gain) / doubt).sqrt();
+                    Next::Beside(far, share.min(0.5))
+                } else if blind {
+                    Next::Across
+                } else {
+                    Next::Minimum
+                };
+                break (model, step, next);
             }
             // As asked for, also where rounding allows the depth less.
             let fine = tolerance.min(settings.tolerance + search.noise * 0.125);
-            let (answer, across) = conclude(&search, &model, &step, fine, iterations);
+            let (answer, across, own) = conclude(&search, &model, &step, fine, iterations);
             // A minimum is where the support plane touches D below the origin: witness
             // points farther apart across the normal than a curve of the object's size
             // may be within the tolerance are not witnesses of one.
             let size = search.curvature.size.max(answer.depth);
             let met = touch || done && across * across <= 4.0 * tolerance * size;
+            let foretold = own || touch || last || sights == 0 || search.foretells(&model.b, &step);
+            if met && !foretold {
+                sights -= 1;
+                let next = search.sight(&model, &step, fine);
+                break (model, step, next);
+            }
             if met || last || !search.curvature.known {
                 remember(memory, &search.curvature, &model, &step);
                 search.met.lead(search.at[search.best]);
@@ -1115,19 +1194,21 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         on_border = !step.inside;
         from = model.b;
         let mut d = model.direction(step.x, step.y);
-        if step.inside && doubt > tolerance && 2.0 * doubt >= gain {
-            // Ask nearer to the minimum on the side of the cut in doubt.
-            predicted = Real::NAN;
-            let share = (0.5 * tolerance.max(0.1 * gain) / doubt).sqrt().min(0.5);
-            d += (search.n.get(far) - d) * share;
-            probing = far;
-        } else if blind {
-            predicted = Real::NAN;
-            let line = &search.curvature.line;
-            let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
-            search.curvature.spread = *line != Vec3::zeros();
-            let g = search.v.get(search.best).dot(&across);
-            d += across * ACROSS.copysign(-g);
+        match next {
+            Next::Minimum => (),
+            Next::Beside(far, share) => {
+                predicted = Real::NAN;
+                d += (search.n.get(far) - d) * share;
+                probing = far;
+            }
+            Next::Across => {
+                predicted = Real::NAN;
+                let line = &search.curvature.line;
+                let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
+                search.curvature.spread = *line != Vec3::zeros();
+                let g = search.v.get(search.best).dot(&across);
+                d += across * ACROSS.copysign(-g);
+            }
         }
         n = d * (1.0 / d.norm());
         if search.len == CUTS {
@@ -1162,15 +1243,15 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     }
 }
 
-/// The answer: the best support plane, with its witness points; and how far across the
-/// normal these were from meeting.
+/// The answer: the best support plane, with its witness points; how far across the
+/// normal these were from meeting; and whether they are means of the objects' own points.
 fn conclude(
     search: &Search,
     model: &Model,
     step: &Step,
     tolerance: Real,
     iterations: u64,
-) -> (Penetration, Real) {
+) -> (Penetration, Real, bool) {
     let b = &model.b;
     let depth = search.h.0[search.best];
     // Points of the objects themselves: a mean of support points that lie below the
@@ -1189,6 +1270,7 @@ fn conclude(
     };
     let active = inside(step.set, Model::weights(step, &x, &y));
     let found = active.or_else(|| enclosing(&x, &y).find_map(|(set, w)| inside(set, w)));
+    let own = found.is_some();
     let (point1, point2, across) = match found {
         Some((set, w, across)) => {
             let first = search.point(set[0]);
@@ -1210,7 +1292,7 @@ fn conclude(
         point2,
         iterations,
     };
-    (answer, across)
+    (answer, across, own)
 }
 
 /// The witness points that the model foretells: the support points of the active cuts,
