@@ -155,9 +155,10 @@ const SINGLE: bool = EPSILON > 1e-10;
 const CLOSE: Real = if SINGLE { 1e-4 } else { 1e-10 };
 /// Relative residual of a pair that is parallel: a ball's.
 const BALL: Real = if SINGLE { 3e-5 } else { 1e-6 };
-/// Most of R's error, and of how unevenly the objects share it, with which it foretells
-/// the witness points of one active cut.
-const FORETOLD: Real = 0.25;
+/// Relative error of R, and of the objects' shares in it, up to which it foretells the
+/// witness points of one active cut.
+const FORETOLD: Real = 0.1;
+const SHARED: Real = 0.4;
 /// Support points asked to see witness points that are only foretold.
 const SIGHTS: u32 = 4;
 /// Support points after which curvature is given up.
@@ -334,7 +335,7 @@ struct Curvature {
     error: Real,
     /// How much of it is obj1's, …
     share: Real,
-    /// … and how far a pair's own points were from that, of its length.
+    /// … and how far off that was for a pair's own points, in parts of the lesser share.
     uneven: Real,
     /// The direction of the first smooth pair; zero before it.
     line: Vec3,
@@ -545,8 +546,9 @@ impl Search<'_> {
         let slope = bend / dn2;
         let ds1 = p.v1 - other.v1;
         curvature.share = (ds1.dot(&dn) / bend).clamp(0.0, 1.0);
+        let lesser = curvature.share.min(1.0 - curvature.share) + BALL;
         let uneven = (ds1 - ds * curvature.share).norm_squared() / ds2;
-        curvature.uneven = curvature.uneven.max(uneven.sqrt());
+        curvature.uneven = curvature.uneven.max(uneven.sqrt() / lesser);
         let measured = curvature.known;
         if !measured {
             curvature.known = true;
@@ -611,17 +613,25 @@ impl Search<'_> {
         let smooth = step.count == 1
             && curvature.spread
             && curvature.error <= FORETOLD
-            && curvature.uneven <= FORETOLD;
+            && curvature.uneven <= SHARED;
         curvature.known && (ball || smooth)
     }
 
-    /// Where to ask so that the objects' own points take the place of foretold ones: so
-    /// near to the minimum, on the side of the active cut whose point is farthest from
-    /// where R takes it, that there it is within what a witness may be off.
+    /// Where to ask so that the objects' own points take the place of foretold ones.
     fn sight(&self, model: &Model, step: &Step, tolerance: Real) -> Next {
-        let across = (2.0 * self.h.0[self.best] * tolerance)
-            .sqrt()
-            .max(self.noise);
+        if step.x * step.x + step.y * step.y <= EPSILON {
+            // The minimum itself was asked, and showed one point of a face: another one is
+            // found with the direction turned towards it, by so little that it is still of
+            // that face.
+            let towards = self.towards_foot(model, tolerance);
+            if let Some(t) = unit(&towards) {
+                return Next::Aside(t * (0.5 * tolerance / self.curvature.size));
+            }
+        }
+        // Near the minimum on the side of the active cut whose point is farthest from where
+        // R takes it: so near that it is off by less than a witness may be. The point moves
+        // as the direction, what it lacks in height as its square.
+        let across = self.reach_across(tolerance);
         let weights = Model::weights(step, &model.x, &model.y);
         let mut next = Next::Minimum;
         let mut least = 1.0;
@@ -631,7 +641,6 @@ impl Search<'_> {
                 model.x.0[i] - v.dot(&model.e1),
                 model.y.0[i] - v.dot(&model.e2),
             );
-            // The point moves as the direction, what it lacks in height as its square.
             let share = (0.5 * across / (w * (x * x + y * y).sqrt()))
                 .min((0.5 * tolerance / model.lift.0[i]).sqrt());
             if i != self.best && share < least {
@@ -640,6 +649,38 @@ impl Search<'_> {
             }
         }
         next
+    }
+
+    /// How far across the normal the witness points may be apart: as far as keeps their
+    /// distance within the tolerance of the depth.
+    fn reach_across(&self, tolerance: Real) -> Real {
+        (2.0 * self.h.0[self.best] * tolerance)
+            .sqrt()
+            .max(self.noise)
+    }
+
+    /// The way across the normal from what is known of the touched face of D to the point
+    /// below the origin.
+    fn towards_foot(&self, model: &Model, tolerance: Real) -> Vec3 {
+        let least = self.h.0[self.best] - tolerance;
+        let across = |i: usize| {
+            let v = self.v.get(i);
+            let height = v.dot(&model.b);
+            (height >= least).then(|| model.b * height - v)
+        };
+        let mut nearest = model.b * self.h.0[self.best] - self.v.get(self.best);
+        for p in (0..self.len).filter_map(across) {
+            for q in (0..self.len).filter_map(across) {
+                let side = q - p;
+                let t = -p.dot(&side) / side.norm_squared();
+                // NaN, of a side without length, is its end.
+                let on = p + side * t.clamp(0.0, 1.0).max(0.0);
+                if on.norm_squared() < nearest.norm_squared() {
+                    nearest = on;
+                }
+            }
+        }
+        nearest
     }
 }
 
@@ -708,6 +749,8 @@ enum Next {
     Beside(usize, Real),
     /// Across the one direction in which R was measured.
     Across,
+    /// So far aside of there.
+    Aside(Vec3),
 }
 
 /// The lanes beside one, the last of them twice.
@@ -1209,6 +1252,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 let g = search.v.get(search.best).dot(&across);
                 d += across * ACROSS.copysign(-g);
             }
+            Next::Aside(by) => {
+                predicted = Real::NAN;
+                d += by;
+            }
         }
         n = d * (1.0 / d.norm());
         if search.len == CUTS {
@@ -1261,7 +1308,7 @@ fn conclude(
     // has seen.
     let (x, y) = (search.v.dot(&model.e1), search.v.dot(&model.e2));
     let height = search.v.dot(b);
-    let near = (2.0 * depth * tolerance).max(search.noise * search.noise);
+    let near = search.reach_across(tolerance).powi(2);
     let inside = |set: [usize; 3], w: [Real; 3]| {
         let mean = |l: &Lanes| l.0[set[0]] * w[0] + l.0[set[1]] * w[1] + l.0[set[2]] * w[2];
         let (x, y) = (mean(&x), mean(&y));
