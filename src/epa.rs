@@ -70,6 +70,9 @@ const WIDEN: usize = 6;
 /// Least points of an [`Arena`]: given ones, a few more, and that room.
 pub const LEAST_POINTS: usize = 24;
 
+/// A point above a face by less than this share of the gap hardly narrows it.
+const LITTLE: Real = 0.1;
+
 /// Squares of the sizes whose faces' areas can be squared.
 #[cfg(not(feature = "single"))]
 const SIZES: (Real, Real) = (1e-120, 1e140);
@@ -1150,7 +1153,7 @@ impl<'a> Polytope<'a> {
             if self.counts.points >= self.points.len() {
                 return Ok(None);
             }
-            let dir = self.aim(top, query.target());
+            let (dir, common) = self.aim(top, query.target());
             let p = self.ask(query, &dir)?;
             if lower >= query.target() {
                 return Ok(Some(self.finish(query, lower, true)));
@@ -1158,8 +1161,9 @@ impl<'a> Polytope<'a> {
             let least = query.worth();
             let vp = self.v(p);
             let face = &mut self.faces[usize::from(top)];
-            let above = face.plane.height(&vp) > least;
-            let vain = !above && !face.lone;
+            let height = face.plane.height(&vp);
+            let above = height > least;
+            let vain = common && !(above && height > LITTLE * (query.upper.depth - lower));
             if vain {
                 face.lone = true;
                 self.counts.vain += 1;
@@ -1186,13 +1190,17 @@ impl<'a> Polytope<'a> {
     /// 162-vertex polytopes 16.4 → 14.4, boxes 8.15 → 8.07 (neighbours alone: 34, 29,
     /// 14.8, 8.08; the order in which faces are taken changes less than 3 %). Where f
     /// does not see the point that the mean leads to (facets), its normal is asked next,
-    /// and normals alone for some time.
+    /// and normals alone for some time. So where the point is above f by [`LITTLE`] alone:
+    /// along a ridge the mean can lead back to it for ever, while the slivers between the
+    /// ridge and a far corner want points beside that corner.
+    ///
+    /// `true`: the mean.
     #[inline]
-    fn aim(&self, f: Index, target: Real) -> Vec3 {
+    fn aim(&self, f: Index, target: Real) -> (Vec3, bool) {
         let face = self.face(f);
         let normal = face.plane.normal();
         if face.lone || self.counts.insertions < self.counts.plain {
-            return normal;
+            return (normal, false);
         }
         let near = |f: Index| {
             let g = self.face(f);
@@ -1212,7 +1220,7 @@ impl<'a> Polytope<'a> {
             }
         }
         // At least as long as the face's own normal: all are on its side.
-        sum / sum.norm()
+        (sum / sum.norm(), true)
     }
 
     /// The answer of the upper bound: its witnesses where the ray along its direction
@@ -1232,27 +1240,27 @@ impl<'a> Polytope<'a> {
         let end = dir * query.upper.depth;
         let error = query.tolerance + query.rounding;
         // The ray leaves a convex surface where it crosses the first of the planes: by the
-        // end, and of coplanar faces by the one that has the spot inside.
-        let mut best = (Real::NEG_INFINITY, [0; 3], [1.0, 0.0, 0.0]);
+        // end, and of coplanar faces by the one that has the spot inside. The shares of the
+        // corners of a sliver are rounding: what counts is where they lead.
+        let mut best = (Real::INFINITY, [0; 3], [1.0, 0.0, 0.0]);
         for (_, Face { plane, corners, .. }) in self.live() {
             let rise = dir.dot(&plane.normal());
             if rise > 0.0 && plane.offset() <= rise * (query.upper.depth + error) {
-                let corners = [corners[0], corners[1], corners[2]];
-                let [a, b, c] = corners.map(|i| self.v(i));
-                let w = [&b.cross(&c), &c.cross(&a), &a.cross(&b)].map(|x| dir.dot(x));
-                let least = lesser(lesser(w[0], w[1]), w[2]) / (w[0] + w[1] + w[2]);
-                if least > best.0 {
-                    best = (least, corners, w);
+                let [i, j, k, _] = *corners;
+                let [a, b, c] = [i, j, k].map(|i| self.v(i));
+                let w = [&b.cross(&c), &c.cross(&a), &a.cross(&b)].map(|x| larger(dir.dot(x), 0.0));
+                let w = w.map(|x| x / (w[0] + w[1] + w[2]));
+                let distance2 = (mix(&a, &b, &c, &w) - end).norm_squared();
+                if distance2 < best.0 {
+                    best = (distance2, [i, j, k], w);
                 }
             }
         }
-        let (_, corners, w) = best;
-        let w = w.map(|x| larger(x, 0.0));
-        let sum = w[0] + w[1] + w[2];
-        let exit = self.combine(corners, w.map(|x| x / sum));
-        // Not so where the origin is on a face, to rounding.
-        let exit = Some(exit).filter(|x| (x.v - end).norm() <= error);
-        let witness = exit.unwrap_or_else(|| self.nearest_to(&end));
+        if best.0 > error * error {
+            // The origin is on a face, to rounding.
+            best = self.nearest_to(&end);
+        }
+        let witness = self.combine(best.1, best.2);
         Found {
             proven,
             inside: lower > 4.0 * query.rounding + 4.0 * query.grain,
@@ -1260,31 +1268,39 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// The point of the surface nearest to `p`.
-    fn nearest_to(&self, p: &Vec3) -> SupportPoint {
+    /// The point of the surface nearest to `p`: its squared distance, a face's corners and
+    /// their shares.
+    fn nearest_to(&self, p: &Vec3) -> (Real, [Index; 3], [Real; 3]) {
         let mut best = (Real::INFINITY, [0; 3], [1.0, 0.0, 0.0]);
         for (_, face) in self.live() {
             let [i, j, k, _] = face.corners;
             let [a, b, c] = [i, j, k].map(|i| self.v(i));
-            let (w, distance2) = nearest::on_triangle(p, &a, &b, &c);
+            let (w, _) = nearest::on_triangle(p, &a, &b, &c);
+            let shares = weights(&w, &a, &b, &c);
+            let distance2 = (mix(&a, &b, &c, &shares) - p).norm_squared();
             if distance2 < best.0 {
-                best = (distance2, [i, j, k], weights(&w, &a, &b, &c));
+                best = (distance2, [i, j, k], shares);
             }
         }
-        self.combine(best.1, best.2)
+        best
     }
 
-    /// The convex combination of three points, from the first: far from the world's origin
-    /// weights that miss 1 by a rounding would move it.
+    /// The convex combination of three points.
     fn combine(&self, corners: [Index; 3], weights: [Real; 3]) -> SupportPoint {
         let [a, b, c] = corners.map(|i| &self.points[usize::from(i)]);
-        let mix = |a: &Vec3, b: &Vec3, c: &Vec3| a + (b - a) * weights[1] + (c - a) * weights[2];
         SupportPoint {
-            v: mix(&a.v, &b.v, &c.v),
-            v1: mix(&a.v1, &b.v1, &c.v1),
-            v2: mix(&a.v2, &b.v2, &c.v2),
+            v: mix(&a.v, &b.v, &c.v, &weights),
+            v1: mix(&a.v1, &b.v1, &c.v1, &weights),
+            v2: mix(&a.v2, &b.v2, &c.v2, &weights),
         }
     }
+}
+
+/// The convex combination of three points, from the first: far from the world's origin
+/// weights that miss 1 by a rounding would move it.
+#[inline]
+fn mix(a: &Vec3, b: &Vec3, c: &Vec3, weights: &[Real; 3]) -> Vec3 {
+    a + (b - a) * weights[1] + (c - a) * weights[2]
 }
 
 /// The smaller of two numbers, as [`larger`].
