@@ -509,6 +509,7 @@ impl Search<'_> {
                 curvature.known = false;
             } else if bend > room {
                 curvature.r.add((room - bend) / (bend * bend), &rd);
+                curvature.round &= bend - room <= BALL * bend;
                 self.told = self.told.map(|told| told.max((bend - room) / bend));
             }
         }
@@ -605,16 +606,18 @@ impl Search<'_> {
 
 impl Search<'_> {
     /// Can witness points that R foretells be believed? All of a ball's; of other smooth
-    /// pairs those that are near to the one active cut's own.
-    fn foretells(&self, b: &Vec3, step: &Step) -> bool {
+    /// pairs those that are near to the one active cut's own. `across`: how far from meeting
+    /// they are, which three cuts must do by themselves.
+    fn foretells(&self, b: &Vec3, step: &Step, across: Real, tolerance: Real) -> bool {
         let curvature = &self.curvature;
         let exact = |i: &usize| self.error(*i, b) <= BALL;
         let ball = step.set.iter().all(exact);
+        let meet = step.count < 3 || across <= self.reach_across(tolerance);
         let smooth = step.count == 1
             && curvature.spread
             && curvature.error <= FORETOLD
             && curvature.uneven <= SHARED;
-        curvature.known && (ball || smooth)
+        curvature.known && (ball || smooth) && meet
     }
 
     /// Where to ask so that the objects' own points take the place of foretold ones.
@@ -628,24 +631,24 @@ impl Search<'_> {
                 return Next::Aside(t * (0.5 * tolerance / self.curvature.size));
             }
         }
-        // Near the minimum on the side of the active cut whose point is farthest from where
-        // R takes it: so near that it is off by less than a witness may be. The point moves
-        // as the direction, what it lacks in height as its square.
+        // At the minimum or near it, on the side of the active cut whose point is farthest
+        // from where R takes it: so near that it is off by less than a witness may be. The
+        // point moves as the direction, what it lacks in height as its square.
         let across = self.reach_across(tolerance);
         let weights = Model::weights(step, &model.x, &model.y);
         let mut next = Next::Minimum;
         let mut least = 1.0;
         for (&i, w) in step.set[..step.count].iter().zip(weights) {
-            let v = self.v.get(i);
-            let (x, y) = (
-                model.x.0[i] - v.dot(&model.e1),
-                model.y.0[i] - v.dot(&model.e2),
-            );
+            let (x, y) = model.moved(i, &self.v.get(i), step.x, step.y);
             let share = (0.5 * across / (w * (x * x + y * y).sqrt()))
                 .min((0.5 * tolerance / model.lift.0[i]).sqrt());
-            if i != self.best && share < least {
+            if share < least {
                 least = share;
-                next = Next::Beside(i, share);
+                next = if i == self.best {
+                    Next::Minimum
+                } else {
+                    Next::Beside(i, share)
+                };
             }
         }
         next
@@ -953,6 +956,14 @@ impl Model {
         self.lift.0[i] + turned + bent + self.axy * x * y
     }
 
+    /// How far across b R moves the support point v of cut `i` on the way to (x, y).
+    fn moved(&self, i: usize, v: &Vec3, x: Real, y: Real) -> (Real, Real) {
+        (
+            self.x.0[i] - v.dot(&self.e1) + (self.rho + self.axx) * x + self.axy * y,
+            self.y.0[i] - v.dot(&self.e2) + self.axy * x + (self.rho - self.axx) * y,
+        )
+    }
+
     #[inline]
     fn direction(&self, x: Real, y: Real) -> Vec3 {
         self.b + self.e1 * x + self.e2 * y
@@ -1215,7 +1226,11 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             // may be within the tolerance are not witnesses of one.
             let size = search.curvature.size.max(answer.depth);
             let met = touch || done && across * across <= 4.0 * tolerance * size;
-            let foretold = own || touch || last || sights == 0 || search.foretells(&model.b, &step);
+            let foretold = own
+                || touch
+                || last
+                || sights == 0
+                || search.foretells(&model.b, &step, across, fine);
             if met && !foretold {
                 sights -= 1;
                 let next = search.sight(&model, &step, fine);
