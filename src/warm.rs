@@ -523,13 +523,21 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             ..*settings
         };
         let mut best = hit;
-        // Objects with a centre of symmetry that nearly share it have two equal valleys.
-        for n in [hit.normal, -hit.normal] {
+        // Objects with a centre of symmetry that nearly share it have two equal valleys. A
+        // search that rounding ends on the way down is taken up again from there.
+        let (mut start, mut opposite) = (Some(hit.normal), Some(-hit.normal));
+        for _ in 0..DESCENTS {
+            let Some(n) = start.take().or_else(|| opposite.take()) else {
+                break;
+            };
             let mut memory = State::of(OVERLAP, n).memory;
             if let Answer::Hit(floor) | Answer::Limit(floor) =
                 self.descend(&mut memory, &level, &mut Known::default())?
                 && floor.depth < best.depth
             {
+                if floor.depth < best.depth - level.tolerance {
+                    start = Some(floor.normal);
+                }
                 best = Penetration {
                     depth_lower: hit.depth_lower.min(floor.depth),
                     iterations: best.iterations + floor.iterations,
@@ -696,6 +704,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 /// Support points after which the few-supports solver has failed: it needs a dozen, on
 /// the hardest pairs thirty.
 const PATIENCE: u64 = 64;
+/// Local searches that the floor of a valley is worth.
+const DESCENTS: u32 = 16;
 
 /// Support points of the local search before the proof of [`Pair::minimum`], which uses all
 /// of them: so no more than a [`Known`] holds.

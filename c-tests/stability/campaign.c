@@ -131,7 +131,7 @@ int main(int argc, char **argv)
                     unsigned long limit = !e->system ? LOOP_OURS : e->ask == ASK_MPR ? LOOP_MPR : LOOP_GJK;
                     answer_t x = ask(e, &p.a, &p.b, tols[t], p.truth.n, limit);
                     int faults;
-                    q.surface = p.surface;
+                    q.surface = pair_may_stop(&p, tols[t]);
                     faults = judge(e, &x, &p.a, &p.b, &q);
                     tally(t ? &fine[k][category] : &table[k][category], &x, &p, faults);
                     if (!e->system && faults & FAULTS_NEVER & ~shown[k]) {
@@ -139,7 +139,7 @@ int main(int argc, char **argv)
                         printf("first seen: %s, pair %d, tolerance %g, %s: ", category_text(category), i, tols[t], e->name);
                         print_faults(stdout, faults & FAULTS_NEVER);
                         printf("\n  truth %.17g (lower %.17g) along %.17g %.17g %.17g%s\n  ", p.truth.depth, p.truth.lower,
-                               p.truth.n[0], p.truth.n[1], p.truth.n[2], p.surface ? ", surface" : "");
+                               p.truth.n[0], p.truth.n[1], p.truth.n[2], q.surface ? ", surface" : "");
                         print_answer(stdout, &x);
                         printf("\n  ");
                         print_shape(stdout, "a", &p.a);
