@@ -631,9 +631,10 @@ impl Search<'_> {
                 return Next::Aside(t * (0.5 * tolerance / self.curvature.size));
             }
         }
-        // At the minimum or near it, on the side of the active cut whose point is farthest
-        // from where R takes it: so near that it is off by less than a witness may be. The
-        // point moves as the direction, what it lacks in height as its square.
+        // At the minimum, unless its own point is near enough to where R takes it: then near
+        // there, on the side of the active cut that is farthest off, and so near that it is
+        // off by less than a witness may be. A point moves as the direction, what it lacks
+        // in height as its square.
         let across = self.reach_across(tolerance);
         let weights = Model::weights(step, &model.x, &model.y);
         let mut next = Next::Minimum;
@@ -642,13 +643,12 @@ impl Search<'_> {
             let (x, y) = model.moved(i, &self.v.get(i), step.x, step.y);
             let share = (0.5 * across / (w * (x * x + y * y).sqrt()))
                 .min((0.5 * tolerance / model.lift.0[i]).sqrt());
+            if i == self.best && share < 1.0 {
+                return Next::Minimum;
+            }
             if share < least {
                 least = share;
-                next = if i == self.best {
-                    Next::Minimum
-                } else {
-                    Next::Beside(i, share)
-                };
+                next = Next::Beside(i, share);
             }
         }
         next
@@ -1218,8 +1218,12 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 };
                 break (model, step, next);
             }
-            // As asked for, also where rounding allows the depth less.
-            let fine = tolerance.min(settings.tolerance + search.noise * 0.125);
+            // As asked for, also where rounding allows the depth less, if that can be seen.
+            let fine = if sights > 0 {
+                tolerance.min(settings.tolerance + search.noise * 0.125)
+            } else {
+                tolerance
+            };
             let (answer, across, own) = conclude(&search, &model, &step, fine, iterations);
             // A minimum is where the support plane touches D below the origin: witness
             // points farther apart across the normal than a curve of the object's size
