@@ -1218,12 +1218,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 };
                 break (model, step, next);
             }
-            // As asked for, also where rounding allows the depth less, if that can be seen.
-            let fine = if sights > 0 {
-                tolerance.min(settings.tolerance + search.noise * 0.125)
-            } else {
-                tolerance
-            };
+            // As asked for, also where rounding allows the depth less.
+            let fine = tolerance.min(settings.tolerance + search.noise * 0.25);
             let (answer, across, own) = conclude(&search, &model, &step, fine, iterations);
             // A minimum is where the support plane touches D below the origin: witness
             // points farther apart across the normal than a curve of the object's size
