@@ -70,6 +70,10 @@ const WIDEN: usize = 6;
 /// Least points of an [`Arena`]: given ones, a few more, and that room.
 pub const LEAST_POINTS: usize = 24;
 
+/// So many roundings below a face, a point may see it where the cone would fold otherwise;
+/// and a face no wider is a sliver.
+const FOLD: Real = 1024.0;
+
 /// A point above a face by less than this share of the gap hardly narrows it.
 const LITTLE: Real = 0.1;
 
@@ -114,6 +118,13 @@ struct Plane {
 }
 
 impl Plane {
+    /// Of a triangle without area: the edges are the neighbours' too. Any point that sees
+    /// a neighbour sees it.
+    const NONE: Self = Self {
+        lift: [0.0, 0.0, 0.0, Real::INFINITY],
+        key: Real::INFINITY,
+    };
+
     #[inline(always)]
     fn normal(&self) -> Vec3 {
         Vec3::new(self.lift[0], self.lift[1], self.lift[2])
@@ -187,12 +198,7 @@ impl Wedge {
     #[inline(always)]
     fn plane(&self) -> Plane {
         if !(self.area2 > 0.0) {
-            // No area and no plane: the edges are the neighbours' too. Any point that sees
-            // a neighbour sees it.
-            return Plane {
-                lift: [0.0, 0.0, 0.0, Real::INFINITY],
-                key: Real::INFINITY,
-            };
+            return Plane::NONE;
         }
         let by = 1.0 / self.area2.sqrt();
         let n = &self.normal;
@@ -867,7 +873,7 @@ impl<'a> Polytope<'a> {
         let mut best = (NONE, rounding);
         for (f, face) in self.live() {
             let height = face.plane.height(&p);
-            if height > best.1 {
+            if height > best.1 && height < Real::INFINITY {
                 best = (f, height);
             }
         }
@@ -875,7 +881,8 @@ impl<'a> Polytope<'a> {
     }
 
     /// Replaces all faces that point `p` sees by the cone from p over their rim. `first`
-    /// is one of them. `false`: rounding leaves the rim no single loop; nothing changed.
+    /// is one of them. `false`: rounding leaves the rim no single loop, or has turned
+    /// `first`, whose neighbours are far from seeing p; nothing changed.
     ///
     /// A face sees p when p is above its plane by more than rounding. What decides is
     /// the cone: where it would fold back (the inner point on the outer side of a new
@@ -904,7 +911,10 @@ impl<'a> Polytope<'a> {
                 Ok(true) => return true,
                 Ok(false) => return false,
                 // One face more each time: it ends.
-                Err(folds) => view.add(self.faces, folds),
+                Err(folds) if self.face(folds).plane.height(&view.v) > -FOLD * rounding => {
+                    view.add(self.faces, folds)
+                }
+                Err(_) => return false,
             }
         }
     }
@@ -1105,17 +1115,44 @@ impl<'a> Polytope<'a> {
         self.counts.dropped = lesser(self.counts.dropped, far);
     }
 
+    /// Takes the plane from a face that rounding has turned, and the face from the list.
+    /// What it bounds the distance by: the triangle's own, unless the origin is outside of
+    /// more than a sliver.
+    #[cold]
+    fn flatten(&mut self, f: Index, rounding: Real) -> Real {
+        self.close(f);
+        let Face { plane, corners, .. } = *self.face(f);
+        self.faces[usize::from(f)].plane = Plane::NONE;
+        let [a, b, c] = [corners[0], corners[1], corners[2]].map(|i| self.v(i));
+        let (ab, ac) = (b - a, c - a);
+        let edge2 = larger(ab.norm_squared(), ac.norm_squared());
+        let sliver = ab.cross(&ac).norm_squared() <= (FOLD * rounding).powi(2) * edge2;
+        let bound = if plane.key < 0.0 && !sliver {
+            plane.key
+        } else {
+            nearest::on_triangle(&Vec3::zeros(), &a, &b, &c).1.sqrt()
+        };
+        self.counts.dropped = lesser(self.counts.dropped, bound);
+        bound
+    }
+
     /// Ends the life of a face, but for its place in the list of free ones.
     #[inline(always)]
     fn bury(&mut self, f: Index) {
-        let face = &mut self.faces[usize::from(f)];
-        face.mark = DEAD;
-        let at = usize::from(face.open);
+        self.faces[usize::from(f)].mark = DEAD;
+        self.close(f);
+    }
+
+    /// Takes a face from the list, if it is there.
+    #[inline(always)]
+    fn close(&mut self, f: Index) {
+        let at = usize::from(self.face(f).open);
         if at < self.counts.open {
             self.counts.open -= 1;
             let last = self.open[self.counts.open];
             self.open[at] = last;
             self.faces[usize::from(last.face)].open = at as Index;
+            self.faces[usize::from(f)].open = NONE;
         }
     }
 
@@ -1170,7 +1207,14 @@ impl<'a> Polytope<'a> {
                 self.counts.plain = self.counts.insertions + 2 * self.counts.vain;
             }
             let lit = if above { Some(top) } else { self.lit(p, least) };
-            let grown = lit.is_some_and(|f| self.insert(f, p, query.rounding, query.target()));
+            let mut grown = lit.is_some_and(|f| self.insert(f, p, query.rounding, query.target()));
+            if above && !grown {
+                // What is around it can still grow.
+                grown = self.flatten(top, query.rounding) >= query.target();
+                if let Some(f) = self.lit(p, least) {
+                    self.insert(f, p, query.rounding, query.target());
+                }
+            }
             if !grown && !vain {
                 // Rounding error has the last word.
                 let close = query.upper.depth - lower <= 16.0 * query.grain;
@@ -1424,6 +1468,10 @@ mod tests {
         assert_eq!(live.len(), 2 * corners.len() - 4);
         for &f in &live {
             let face = polytope.face(f);
+            if face.plane.key == Real::INFINITY {
+                // Without a plane.
+                continue;
+            }
             let [a, b, c, _] = face.corners.map(|i| polytope.v(i));
             let (_, distance2) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
             // Both faces of an edge that rounding dents take the other for the nearer.
