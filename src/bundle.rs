@@ -114,6 +114,7 @@ use core::ops::{Add, Div, Mul, Sub};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
+use crate::patch;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Samples kept: three active cuts and the newest.
@@ -1345,6 +1346,13 @@ fn conclude(
         }
         None => guessed(search, model, step, tolerance),
     };
+    // The points of the touched face of D.
+    let mut face = [SupportPoint::default(); CUTS];
+    let mut corners = 0;
+    for i in (0..search.len).filter(|&i| height.0[i] >= depth - tolerance) {
+        face[corners] = *search.point(i);
+        corners += 1;
+    }
     let answer = Penetration {
         depth,
         depth_lower: 0.0,
@@ -1352,6 +1360,7 @@ fn conclude(
         normal: *b,
         point1,
         point2,
+        width: patch::width(&face[..corners], tolerance),
         iterations,
     };
     (answer, across, own)

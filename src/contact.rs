@@ -31,6 +31,9 @@ pub struct Penetration {
     pub point1: Vec3,
     /// Witness point on obj2.
     pub point2: Vec3,
+    /// How far apart points were seen of a face of D that more than one pair of points
+    /// touches in; 0 where the witness points are the only ones, or none was looked for.
+    pub width: Real,
     /// Iterations of the solver.
     pub iterations: u64,
 }

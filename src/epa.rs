@@ -48,6 +48,7 @@ use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::{self, Overlap};
 use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, tolerance, unit};
 use crate::nearest;
+use crate::patch;
 use crate::simplex::Simplex;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -356,6 +357,7 @@ impl<A: SupportMap, B: SupportMap> Query<'_, A, B> {
             normal: self.upper.dir,
             point1: witness.v1,
             point2: witness.v2,
+            width: 0.0,
             iterations: self.iterations,
         }
     }
@@ -423,6 +425,7 @@ pub fn minimum<A: SupportMap, B: SupportMap>(
         depth_lower: hit.depth_lower / scale,
         point1: hit.point1 / scale,
         point2: hit.point2 / scale,
+        width: hit.width / scale,
         ..hit
     };
     answer.map(|answer| match answer {
@@ -1305,10 +1308,14 @@ impl<'a> Polytope<'a> {
             best = self.nearest_to(&end);
         }
         let witness = self.combine(best.1, best.2);
+        let face = best.1.map(|i| self.points[usize::from(i)]);
         Found {
             proven,
             inside: lower > 4.0 * query.rounding + 4.0 * query.grain,
-            hit: query.penetration(lower, &witness),
+            hit: Penetration {
+                width: patch::width(&face, error),
+                ..query.penetration(lower, &witness)
+            },
         }
     }
 

@@ -23,6 +23,7 @@ pub mod gjk;
 pub mod local;
 pub mod math;
 pub mod nearest;
+pub mod patch;
 pub mod planar;
 pub mod portal;
 #[cfg(test)]

@@ -24,6 +24,7 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::math::{Real, Vec3, perpendicular};
+use crate::patch;
 use crate::portal::{self, Exit, Plane, Portal, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
 
@@ -97,11 +98,16 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 let stationary = plane.depth / along - plane.depth <= floor;
                 let lower_elsewhere = best.depth < plane.depth - floor;
                 if stationary && !lower_elsewhere {
-                    return Ok(Answer::Hit(match aside {
+                    let face = last.planes.map(|plane| plane.point);
+                    let hit = match aside {
                         Some(first) if first.depth <= plane.depth => {
                             answer(first, None, used(budget))
                         }
                         _ => answer(plane, Some(last), used(budget)),
+                    };
+                    return Ok(Answer::Hit(Penetration {
+                        width: patch::width(&face, floor),
+                        ..hit
                     }));
                 }
                 if lower_elsewhere { best } else { plane }
@@ -130,6 +136,7 @@ fn answer(plane: Plane, portal: Option<Portal>, iterations: u64) -> Penetration 
         normal: plane.normal,
         point1,
         point2,
+        width: 0.0,
         iterations,
     }
 }

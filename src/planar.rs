@@ -150,6 +150,7 @@ fn answer(plane: Plane, iterations: u64) -> Penetration {
         normal: plane.normal,
         point1: plane.point.v1,
         point2: plane.point.v2,
+        width: 0.0,
         iterations,
     }
 }

@@ -15,6 +15,9 @@
 //!    [`gjk::intersect`] on the points the solver saw, the centres' difference among
 //!    them, asks for more only where these leave a side open.
 //!
+//! 4. Witness points of a face that rests on another, or on an edge, are moved to the
+//!    middle of where they touch ([`patch`]).
+//!
 //! Nothing in a state is trusted: it chooses where to look first, never what is true.
 
 use crate::bundle::{self, Memory};
@@ -23,6 +26,7 @@ use crate::epa::{self, Arena, Edge, Entry, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
 use crate::local::{self, Shortcut};
 use crate::math::{self, Real, Vec3, unit};
+use crate::patch;
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -266,9 +270,21 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         )
     }
 
+    /// Step 4: the witness points of two faces that touch in the middle of where they do.
+    pub fn settle(&self, answer: Answer, settings: &Settings) -> Result<Answer, Fault> {
+        match answer {
+            Answer::Hit(mut hit) => {
+                patch::settle(&self.md, &mut hit, settings.tolerance)?;
+                Ok(Answer::Hit(hit))
+            }
+            other => Ok(other),
+        }
+    }
+
     /// A local minimum of the depth.
     pub fn local(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        self.local_known(state, settings, &mut Known::default())
+        let answer = self.local_known(state, settings, &mut Known::default())?;
+        self.settle(answer, settings)
     }
 
     /// [`Pair::local`], and the points it came to know.
@@ -297,6 +313,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// The minimum depth at MPR's price: a local minimum, then as much of a proof that it
     /// is the global one as finds what is lower, to a gap of [`GAP`].
     pub fn mpr(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        let answer = self.guarded(state, settings)?;
+        self.settle(answer, settings)
+    }
+
+    /// [`Pair::mpr`], with whatever witness points it came to know.
+    fn guarded(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
         let mut known = Known::default();
         let answer = self.local_known(state, settings, &mut known)?;
         let (Answer::Hit(local) | Answer::Limit(local)) = answer else {
@@ -484,7 +506,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             other => self.remember(state, &other)?,
         }
-        Ok(answer)
+        self.settle(answer, settings)
     }
 
     /// The global minimum of the depth from `seed`, proven.
@@ -593,6 +615,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             normal,
             point1,
             point2,
+            width: 0.0,
             iterations: settings.max_iterations - budget,
         };
         let mut known = Known::default();

@@ -47,6 +47,17 @@ static void box_spins(int f, shape_t *a, shape_t *b)
     shape_move(b, .2, .1, .29);
 }
 
+/* Over the edge of one of the same size: what touches shrinks to a tenth. */
+static void box_overhangs(int f, shape_t *a, shape_t *b)
+{
+    double r[9];
+    *a = shape_box(.2, .3, .2);
+    *b = shape_box(.2, .3, .2);
+    rotation_about(0, 0, 1, .3, r);
+    shape_turn(b, r);
+    shape_move(b, .36 * f / FRAMES, .05, .39);
+}
+
 static void cylinder_rolls(int f, shape_t *a, shape_t *b)
 {
     static const double lying[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};
@@ -108,6 +119,7 @@ static const motion_t motions[] = {
     {"box slides on a plate", box_slides, .005, 1},
     {"cylinder slides on a plate", cylinder_slides, .005, 1},
     {"box spins on a plate", box_spins, .004, 1},
+    {"box slides off a box", box_overhangs, .0012, 1},
     {"cylinder rolls on a plate", cylinder_rolls, .009, 0},
     {"capsule over an edge", capsule_over_edge, .004, 0},
     {"box rocks on its edge", box_rocks, .004, 0},

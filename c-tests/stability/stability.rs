@@ -141,7 +141,6 @@ fn continuity() {
 
 /// The same: contact positions, and the bare local method.
 #[test]
-#[ignore = "contact positions of resting faces jump among their corners"]
 fn continuity_of_positions() {
     let continuity = program("continuity");
     continuity.run(["position"]);

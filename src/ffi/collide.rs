@@ -135,11 +135,12 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
 }
 
-/// The global minimum, from first_dir; the centres are not asked for.
+/// The global minimum, from first_dir; the centres are not asked for. `placed`: with
+/// witness points that are worth having.
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn gjk_penetration(query: Query) -> Result<Penetration, c_int> {
+unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_int> {
     // SAFETY: passed on.
     unsafe {
         let (Some(md), Some(first)) = (query.difference(), query.first_dir()) else {
@@ -160,7 +161,13 @@ unsafe fn gjk_penetration(query: Query) -> Result<Penetration, c_int> {
             points: &[],
             upper: None,
         };
-        match arena::with(|arena| pair.global(&seed, &settings, arena)) {
+        let mut answer = arena::with(|arena| pair.global(&seed, &settings, arena));
+        if let Ok(found) = answer
+            && placed
+        {
+            answer = pair.settle(found, &settings);
+        }
+        match answer {
             Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
             Ok(Answer::Miss(_) | Answer::Undecided(_)) | Err(Fault::NonFinite) => Err(-1),
             Err(Fault::NoMemory) => Err(-2),
@@ -185,7 +192,7 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
 ) -> c_int {
     // SAFETY: passed on; [outputs].
     unsafe {
-        match gjk_penetration(Query { obj1, obj2, ccd }) {
+        match gjk_penetration(Query { obj1, obj2, ccd }, true) {
             Ok(hit) => {
                 write(&hit, depth, dir, pos);
                 0
@@ -206,7 +213,7 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
 ) -> c_int {
     // SAFETY: passed on; [outputs].
     unsafe {
-        match gjk_penetration(Query { obj1, obj2, ccd }) {
+        match gjk_penetration(Query { obj1, obj2, ccd }, false) {
             Ok(hit) => {
                 if let Some(sep) = sep.as_mut() {
                     *sep = (hit.dir * hit.depth).into();

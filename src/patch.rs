@@ -1,0 +1,352 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The middle of the region in which two faces touch.
+//!
+//! Where a face of one object rests on a face or an edge of the other, the support
+//! planes touch both along more than a point, and which points a solver happens to know
+//! is no property of the contact: from frame to frame its witness points jump from corner
+//! to corner. The middle of the touching region moves as the objects do.
+//!
+//! The region is the intersection of the two faces, one of them moved by the depth. Each
+//! support point of D in a direction a little aside of the normal shows a corner of
+//! either face; five of them, evenly around, show all corners of a rectangle, however it
+//! is turned, since each is the farthest one over a right angle. Of faces with more
+//! corners the region is an inscribed polygon, still inside both objects. Convex polygons
+//! are intersected by the halfplanes of one of them (Sutherland and Hodgman, Reentrant
+//! polygon clipping, CACM 17(1), 1974).
+
+use crate::contact::Penetration;
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular};
+use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+
+/// Directions around the normal.
+const AROUND: usize = 5;
+/// Cosine and sine of their angles.
+const CIRCLE: [[Real; 2]; AROUND] = [
+    [1.0, 0.0],
+    [0.309_016_994_374_947_4, 0.951_056_516_295_153_6],
+    [-0.809_016_994_374_947_4, 0.587_785_252_292_473_1],
+    [-0.809_016_994_374_947_4, -0.587_785_252_292_473_1],
+    [0.309_016_994_374_947_4, -0.951_056_516_295_153_6],
+];
+/// Corners of an intersection, at most: each halfplane adds one.
+const ROOM: usize = 2 * AROUND;
+
+/// How far apart the points of a touched face of D are, if more than one pair of points of
+/// the two objects touches there; else 0. Within the tolerance curved faces seem to be
+/// flat, over the square root of it times their size.
+///
+/// The pairs that touch fill as many dimensions as the two faces have more than the face
+/// of D, their difference.
+pub fn width(face: &[SupportPoint], tolerance: Real) -> Real {
+    let (whole, width) = dimensions(face, |p| p.v, 0.0);
+    let blur = 8.0 * tolerance * width;
+    let (one, _) = dimensions(face, |p| p.v1, blur);
+    let (two, _) = dimensions(face, |p| p.v2, blur);
+    if one + two > whole { width } else { 0.0 }
+}
+
+/// The dimensions of a set of points in a plane, and its length; what is shorter or
+/// narrower than the square root of `blur` is nothing.
+fn dimensions(
+    face: &[SupportPoint],
+    of: impl Fn(&SupportPoint) -> Vec3,
+    blur: Real,
+) -> (u32, Real) {
+    let Some(first) = face.first().map(&of) else {
+        return (0, 0.0);
+    };
+    let sides = || face.iter().map(|p| of(p) - first);
+    let longest = sides().fold(Vec3::zeros(), |l, s| {
+        if s.norm_squared() > l.norm_squared() {
+            s
+        } else {
+            l
+        }
+    });
+    let length2 = longest.norm_squared();
+    if !(length2 > blur) {
+        return (0, 0.0);
+    }
+    let across2 = sides().fold(0.0, |w, s| larger(w, longest.cross(&s).norm_squared()));
+    (1 + u32::from(across2 > blur * length2), length2.sqrt())
+}
+
+/// Moves the witness points of a hit to the middle of the touching region, where it has
+/// one. Five support points.
+///
+/// # Errors
+/// [`Fault::NonFinite`] from a support mapping.
+pub fn settle<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    hit: &mut Penetration,
+    tolerance: Real,
+) -> Result<(), Fault> {
+    if !(hit.width > 0.0) {
+        return Ok(());
+    }
+    let n = hit.normal;
+    let e1 = perpendicular(&n);
+    let e2 = n.cross(&e1);
+    // So little aside that every corner is as good a support point as the tolerance asks.
+    let tilt = larger(0.25 * tolerance / hit.width, 64.0 * EPSILON);
+    let mut corners = [SupportPoint::default(); AROUND];
+    let mut level = Real::NEG_INFINITY;
+    let mut reach: Real = 0.0;
+    for (corner, [c, s]) in corners.iter_mut().zip(CIRCLE) {
+        let d = n + (e1 * c + e2 * s) * tilt;
+        *corner = md.support(&(d / d.norm()))?;
+        level = larger(level, n.dot(&corner.v1));
+        reach = larger(reach, corner.magnitude());
+    }
+    let slack = 4.0 * tilt * hit.width + 8.0 * EPSILON * reach;
+    let least = hit.depth - slack;
+    if corners.iter().any(|p| !(n.dot(&p.v) >= least)) {
+        // A direction aside found another face: this one is not what it seemed.
+        return Ok(());
+    }
+    let origin = hit.point1;
+    let flat = |p: Vec3| {
+        let p = p - origin;
+        [e1.dot(&p), e2.dot(&p)]
+    };
+    let lift = n * hit.depth;
+    let one = Polygon::of(corners.map(|p| flat(p.v1)));
+    let two = Polygon::of(corners.map(|p| flat(p.v2 + lift)));
+    let region = if one.area() > two.area() {
+        two.inside(&one, slack)
+    } else {
+        one.inside(&two, slack)
+    };
+    if let Some([x, y]) = region.middle() {
+        let middle = origin + e1 * x + e2 * y;
+        hit.point1 = middle + n * (level - n.dot(&middle));
+        hit.point2 = hit.point1 - lift;
+    }
+    Ok(())
+}
+
+/// A convex polygon in the plane, counterclockwise; corners may coincide.
+struct Polygon {
+    corners: [[Real; 2]; ROOM],
+    len: usize,
+}
+
+impl Polygon {
+    fn of(points: [[Real; 2]; AROUND]) -> Self {
+        let mut polygon = Self {
+            corners: [[0.0; 2]; ROOM],
+            len: 0,
+        };
+        points.into_iter().for_each(|p| polygon.push(p));
+        polygon
+    }
+
+    fn push(&mut self, p: [Real; 2]) {
+        if let Some(corner) = self.corners.get_mut(self.len) {
+            *corner = p;
+            self.len += 1;
+        }
+    }
+
+    /// Its sides, from corner to corner.
+    fn sides(&self) -> impl Iterator<Item = ([Real; 2], [Real; 2])> {
+        let corners = self.corners.iter().take(self.len);
+        let next = corners.clone().cycle().skip(1);
+        corners.copied().zip(next.copied())
+    }
+
+    /// Twice its area.
+    fn area(&self) -> Real {
+        self.sides().map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
+    }
+
+    /// What of it is inside another, or no farther than `slack` outside.
+    fn inside(&self, other: &Self, slack: Real) -> Self {
+        let mut rest = Self {
+            corners: self.corners,
+            len: self.len,
+        };
+        for (p, q) in other.sides() {
+            let side = [q[0] - p[0], q[1] - p[1]];
+            let length = (side[0] * side[0] + side[1] * side[1]).sqrt();
+            let within =
+                |a: &[Real; 2]| side[0] * (a[1] - p[1]) - side[1] * (a[0] - p[0]) + slack * length;
+            let whole = rest;
+            rest = Self {
+                corners: [[0.0; 2]; ROOM],
+                len: 0,
+            };
+            for (a, b) in whole.sides() {
+                let (at_a, at_b) = (within(&a), within(&b));
+                if at_a >= 0.0 {
+                    rest.push(a);
+                }
+                if (at_a >= 0.0) != (at_b >= 0.0) {
+                    let t = at_a / (at_a - at_b);
+                    rest.push([a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]);
+                }
+            }
+        }
+        rest
+    }
+
+    /// The centre of its outline, which is also that of a segment or a point.
+    fn middle(&self) -> Option<[Real; 2]> {
+        let mut sum = [0.0; 2];
+        let mut length = 0.0;
+        for (p, q) in self.sides() {
+            let side = ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt();
+            sum[0] += 0.5 * (p[0] + q[0]) * side;
+            sum[1] += 0.5 * (p[1] + q[1]) * side;
+            length += side;
+        }
+        let middle = sum.map(|s| s / length);
+        // Not NaN: of no corner, or of one alone.
+        if middle.iter().all(|m| m.is_finite()) {
+            Some(middle)
+        } else {
+            (self.len > 0).then_some(self.corners[0])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Answer, Settings};
+    use crate::shapes::{Rotation, ball, corners, hull, placed};
+    use crate::warm::{Pair, State};
+
+    const TOLERANCE: Real = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
+
+    /// A box turned about z, of half extents `h`.
+    fn turned(centre: Vec3, h: Vec3, angle: Real) -> impl Fn(&Vec3) -> Vec3 {
+        let rotation = Rotation::from_axis_angle(&Vec3::z_axis(), angle);
+        hull(&placed(&corners(h), &rotation, centre))
+    }
+
+    /// The middle of the witness points, and the width of what touches.
+    fn contact(a: impl SupportMap, b: impl SupportMap) -> (Vec3, Real) {
+        let pair = Pair {
+            md: MinkowskiDifference::new(a, b),
+            centre: None,
+            first_dir: Some(Vec3::new(0.1, 0.2, 1.0)),
+            lasting: false,
+        };
+        let settings = Settings {
+            tolerance: TOLERANCE,
+            max_iterations: 500,
+        };
+        match pair.local(&mut State::default(), &settings) {
+            Ok(Answer::Hit(hit)) => {
+                let apart = hit.point1 - hit.point2 - hit.dir * hit.depth;
+                assert!(apart.norm() <= TOLERANCE, "{apart}");
+                ((hit.point1 + hit.point2) * 0.5, hit.width)
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_box_rests_on_a_plate_at_its_middle() {
+        let plate = || turned(Vec3::zeros(), Vec3::new(2.0, 3.0, 0.1), 0.0);
+        for k in 0..40 {
+            // Right angles among them: the corners tie.
+            let angle = k as Real * core::f64::consts::FRAC_PI_8 as Real * 0.5;
+            let centre = Vec3::new(0.3, -0.4, 0.39);
+            let small = turned(centre, Vec3::new(0.5, 0.2, 0.3), angle);
+            let (pos, width) = contact(plate(), small);
+            assert!(width > 0.0);
+            assert!(
+                (pos - Vec3::new(0.3, -0.4, 0.095)).norm() < 4.0 * TOLERANCE,
+                "{k}: {pos}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_hangs_over_does_not_count() {
+        let a = turned(Vec3::zeros(), Vec3::repeat(1.0), 0.0);
+        let b = turned(Vec3::new(1.5, 0.8, 1.9), Vec3::repeat(1.0), 0.0);
+        // Of [-1, 1] and [0.5, 2.5]; of [-1, 1] and [-0.2, 1.8].
+        let (pos, _) = contact(a, b);
+        assert!(
+            (pos - Vec3::new(0.75, 0.4, 0.95)).norm() < 4.0 * TOLERANCE,
+            "{pos}"
+        );
+    }
+
+    #[test]
+    fn an_edge_on_a_face_is_a_segment() {
+        let plate = turned(Vec3::zeros(), Vec3::new(1.0, 1.0, 0.5), 0.3);
+        let bar = |d: &Vec3| {
+            Vec3::new(
+                0.2,
+                0.1 + (0.6 as Real).copysign(d.y),
+                0.45 + 0.2 * Real::from(d.z > 0.0),
+            )
+        };
+        let (pos, width) = contact(plate, bar);
+        assert!(width > 0.0);
+        assert!(
+            (pos - Vec3::new(0.2, 0.1, 0.475)).norm() < 4.0 * TOLERANCE,
+            "{pos}"
+        );
+    }
+
+    #[test]
+    fn a_contact_of_one_point_costs_nothing() {
+        let plate = || turned(Vec3::zeros(), Vec3::new(1.0, 1.0, 0.5), 0.3);
+        let ball = ball(Vec3::new(0.2, 0.1, 0.9), 0.5);
+        let octahedron = |d: &Vec3| {
+            let at = d.iamax();
+            let mut p = Vec3::new(0.2, 0.1, 0.9);
+            p[at] += (0.5 as Real).copysign(d[at]);
+            p
+        };
+        let (at_ball, of_ball) = contact(plate(), ball);
+        let (at_vertex, of_vertex) = contact(plate(), octahedron);
+        assert_eq!((of_ball, of_vertex), (0.0, 0.0));
+        for pos in [at_ball, at_vertex] {
+            assert!((pos - Vec3::new(0.2, 0.1, 0.45)).norm() < 1e-2, "{pos}");
+        }
+    }
+
+    #[test]
+    fn polygons() {
+        let square = |x: Real, y: Real, h: Real| {
+            let c = |s: Real, t: Real| [x + s * h, y + t * h];
+            Polygon::of([
+                c(-1.0, -1.0),
+                c(1.0, -1.0),
+                c(1.0, 1.0),
+                c(1.0, 1.0),
+                c(-1.0, 1.0),
+            ])
+        };
+        let near = |p: Option<[Real; 2]>, q: [Real; 2]| {
+            let p = p.expect("a middle");
+            assert!(
+                (p[0] - q[0]).abs() + (p[1] - q[1]).abs() < 16.0 * EPSILON,
+                "{p:?}"
+            );
+        };
+        let whole = square(0.0, 0.0, 1.0);
+        assert_eq!(whole.area(), 8.0);
+        near(
+            whole.inside(&square(1.0, 1.0, 1.0), 0.0).middle(),
+            [0.5, 0.5],
+        );
+        near(
+            square(0.1, 0.2, 0.25).inside(&whole, 0.0).middle(),
+            [0.1, 0.2],
+        );
+        assert!(whole.inside(&square(3.0, 0.0, 1.0), 0.0).middle().is_none());
+        let segment = Polygon::of([[-3.0, 0.5], [-3.0, 0.5], [0.5, 0.5], [0.5, 0.5], [0.5, 0.5]]);
+        near(segment.inside(&whole, 0.0).middle(), [-0.25, 0.5]);
+        let point = Polygon::of([[0.3, 0.4]; AROUND]);
+        near(point.inside(&whole, 0.0).middle(), [0.3, 0.4]);
+    }
+}
