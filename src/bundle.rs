@@ -92,6 +92,15 @@
 //! has led astray there, is forgotten, and the search goes on by exact cuts; where these
 //! do not meet either, it is a limit too.
 //!
+//! *Witness points* are means of the objects' own points, hence inside them, where the
+//! points seen have a mean that lies low enough and below the origin. Otherwise they are
+//! where R takes the points of the active cuts, which is believed of balls, and of one
+//! active cut whose curvature the objects share evenly; of anything else (a cylinder's rim
+//! moves along the rim alone) up to [`SIGHTS`] more support points are asked, at the
+//! minimum, beside it or, of a face that ties, aside towards the point below the origin,
+//! until own points serve: a third of a support point on cylinders and cones, an eighth on
+//! ellipsoids.
+//!
 //! *Memory.* A face that is still there is found again by three directions aside of
 //! the last answer, each towards one active cut and farther than the pair moved, and
 //! proven by a fourth; a smooth contact by the last direction and one step with R.

@@ -86,7 +86,8 @@ typedef struct ccd_penetration_t {
    */
   ccd_vec3_t normal;
   /**
-   * Contact position: the middle of the witness points.
+   * Contact position: the middle of the witness points. Where a face rests on a face or
+   * an edge these are in the middle of where the two touch, and move as the objects do.
    */
   ccd_vec3_t pos;
   /**

@@ -62,7 +62,8 @@ pub struct ccd_penetration_t {
     pub dir: ccd_vec3_t,
     /// Unit; normal of the separating plane. Equal to dir except in ccdPenetrationAlong.
     pub normal: ccd_vec3_t,
-    /// Contact position: the middle of the witness points.
+    /// Contact position: the middle of the witness points. Where a face rests on a face or
+    /// an edge these are in the middle of where the two touch, and move as the objects do.
     pub pos: ccd_vec3_t,
     /// Witness point of obj1, within the tolerance of its supporting plane.
     pub point1: ccd_vec3_t,
