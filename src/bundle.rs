@@ -1369,7 +1369,7 @@ fn conclude(
         normal: *b,
         point1,
         point2,
-        width: patch::width(&face[..corners], tolerance),
+        width: patch::width(&face[..corners], tolerance, search.curvature.size),
         iterations,
     };
     (answer, across, own)

@@ -23,7 +23,7 @@
 //! one, met on the way in another valley, are searched as well.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::math::{Real, Vec3, perpendicular};
+use crate::math::{Real, Vec3, larger, perpendicular};
 use crate::patch;
 use crate::portal::{self, Exit, Plane, Portal, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
@@ -99,6 +99,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 let lower_elsewhere = best.depth < plane.depth - floor;
                 if stationary && !lower_elsewhere {
                     let face = last.planes.map(|plane| plane.point);
+                    let size = face.iter().fold(0.0, |m, p| larger(m, p.v.norm()));
                     let hit = match aside {
                         Some(first) if first.depth <= plane.depth => {
                             answer(first, None, used(budget))
@@ -106,7 +107,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                         _ => answer(plane, Some(last), used(budget)),
                     };
                     return Ok(Answer::Hit(Penetration {
-                        width: patch::width(&face, floor),
+                        width: patch::width(&face, floor, size),
                         ..hit
                     }));
                 }

@@ -17,7 +17,7 @@
 //! polygon clipping, CACM 17(1), 1974).
 
 use crate::contact::Penetration;
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular};
+use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Directions around the normal.
@@ -34,14 +34,14 @@ const CIRCLE: [[Real; 2]; AROUND] = [
 const ROOM: usize = 2 * AROUND;
 
 /// How far apart the points of a touched face of D are, if more than one pair of points of
-/// the two objects touches there; else 0. Within the tolerance curved faces seem to be
-/// flat, over the square root of it times their size.
+/// the two objects touches there; else 0. Within the tolerance curved faces of objects of
+/// this `size` seem to be flat, over the square root of their product.
 ///
 /// The pairs that touch fill as many dimensions as the two faces have more than the face
 /// of D, their difference.
-pub fn width(face: &[SupportPoint], tolerance: Real) -> Real {
+pub fn width(face: &[SupportPoint], tolerance: Real, size: Real) -> Real {
     let (whole, width) = dimensions(face, |p| p.v, 0.0);
-    let blur = 8.0 * tolerance * width;
+    let blur = 8.0 * tolerance * size;
     let (one, _) = dimensions(face, |p| p.v1, blur);
     let (two, _) = dimensions(face, |p| p.v2, blur);
     if one + two > whole { width } else { 0.0 }
@@ -90,6 +90,7 @@ pub fn settle<A: SupportMap, B: SupportMap>(
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);
     // So little aside that every corner is as good a support point as the tolerance asks.
+    let tolerance = math::tolerance(tolerance, hit.width, 0.0);
     let tilt = larger(0.25 * tolerance / hit.width, 64.0 * EPSILON);
     let mut corners = [SupportPoint::default(); AROUND];
     let mut level = Real::NEG_INFINITY;
@@ -114,11 +115,16 @@ pub fn settle<A: SupportMap, B: SupportMap>(
     let lift = n * hit.depth;
     let one = Polygon::of(corners.map(|p| flat(p.v1)));
     let two = Polygon::of(corners.map(|p| flat(p.v2 + lift)));
-    let region = if one.area() > two.area() {
-        two.inside(&one, slack)
+    let (smaller, larger) = if one.area() > two.area() {
+        (two, one)
     } else {
-        one.inside(&two, slack)
+        (one, two)
     };
+    if !(larger.area() > 4.0 * slack * hit.width) {
+        // No halfplanes: two edges, or less.
+        return Ok(());
+    }
+    let region = smaller.inside(&larger, slack);
     if let Some([x, y]) = region.middle() {
         let middle = origin + e1 * x + e2 * y;
         hit.point1 = middle + n * (level - n.dot(&middle));
