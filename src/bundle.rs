@@ -1355,13 +1355,7 @@ fn conclude(
         }
         None => guessed(search, model, step, tolerance),
     };
-    // The points of the touched face of D.
-    let mut face = [SupportPoint::default(); CUTS];
-    let mut corners = 0;
-    for i in (0..search.len).filter(|&i| height.0[i] >= depth - tolerance) {
-        face[corners] = *search.point(i);
-        corners += 1;
-    }
+    let seen: [SupportPoint; CUTS] = core::array::from_fn(|i| *search.point(i));
     let answer = Penetration {
         depth,
         depth_lower: 0.0,
@@ -1369,7 +1363,7 @@ fn conclude(
         normal: *b,
         point1,
         point2,
-        width: patch::width(&face[..corners], tolerance, search.curvature.size),
+        width: patch::width(&seen, b, tolerance, search.curvature.size),
         iterations,
     };
     (answer, across, own)

@@ -1313,7 +1313,7 @@ impl<'a> Polytope<'a> {
             proven,
             inside: lower > 4.0 * query.rounding + 4.0 * query.grain,
             hit: Penetration {
-                width: patch::width(&face, error, query.size2.sqrt()),
+                width: patch::width(&face, &dir, error, query.size2.sqrt()),
                 ..query.penetration(lower, &witness)
             },
         }

@@ -107,7 +107,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                         _ => answer(plane, Some(last), used(budget)),
                     };
                     return Ok(Answer::Hit(Penetration {
-                        width: patch::width(&face, floor, size),
+                        width: patch::width(&face, &hit.normal, floor, size),
                         ..hit
                     }));
                 }

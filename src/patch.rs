@@ -34,31 +34,32 @@ const CIRCLE: [[Real; 2]; AROUND] = [
 const ROOM: usize = 2 * AROUND;
 
 /// How far apart the points of a touched face of D are, if more than one pair of points of
-/// the two objects touches there; else 0. Within the tolerance curved faces of objects of
-/// this `size` seem to be flat, over the square root of their product.
+/// the two objects touches there; else 0. The face is what lies within the tolerance below
+/// the highest of the points along the normal n, within which curved faces of objects of
+/// this `size` seem to be flat, over the square root of the product of the two.
 ///
 /// The pairs that touch fill as many dimensions as the two faces have more than the face
 /// of D, their difference.
-pub fn width(face: &[SupportPoint], tolerance: Real, size: Real) -> Real {
-    let (whole, width) = dimensions(face, |p| p.v, 0.0);
+pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> Real {
+    let top = points
+        .iter()
+        .fold(Real::NEG_INFINITY, |m, p| larger(m, n.dot(&p.v)));
+    let face = || points.iter().filter(|p| n.dot(&p.v) >= top - tolerance);
     let blur = 8.0 * tolerance * size;
-    let (one, _) = dimensions(face, |p| p.v1, blur);
-    let (two, _) = dimensions(face, |p| p.v2, blur);
+    let (whole, width) = dimensions(face().map(|p| p.v), 0.0);
+    let (one, _) = dimensions(face().map(|p| p.v1), blur);
+    let (two, _) = dimensions(face().map(|p| p.v2), blur);
     if one + two > whole { width } else { 0.0 }
 }
 
 /// The dimensions of a set of points in a plane, and its length; what is shorter or
 /// narrower than the square root of `blur` is nothing.
-fn dimensions(
-    face: &[SupportPoint],
-    of: impl Fn(&SupportPoint) -> Vec3,
-    blur: Real,
-) -> (u32, Real) {
-    let Some(first) = face.first().map(&of) else {
+fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: Real) -> (u32, Real) {
+    let Some(first) = points.clone().next() else {
         return (0, 0.0);
     };
-    let sides = || face.iter().map(|p| of(p) - first);
-    let longest = sides().fold(Vec3::zeros(), |l, s| {
+    let sides = points.map(|p| p - first);
+    let longest = sides.clone().fold(Vec3::zeros(), |l, s| {
         if s.norm_squared() > l.norm_squared() {
             s
         } else {
@@ -69,7 +70,7 @@ fn dimensions(
     if !(length2 > blur) {
         return (0, 0.0);
     }
-    let across2 = sides().fold(0.0, |w, s| larger(w, longest.cross(&s).norm_squared()));
+    let across2 = sides.fold(0.0, |w, s| larger(w, longest.cross(&s).norm_squared()));
     (1 + u32::from(across2 > blur * length2), length2.sqrt())
 }
 
