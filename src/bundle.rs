@@ -122,7 +122,7 @@ use core::ops::{Add, Div, Mul, Sub};
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk;
-use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
 use crate::patch;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -651,7 +651,7 @@ impl Search<'_> {
         let mut least = 1.0;
         for (&i, w) in step.set[..step.count].iter().zip(weights) {
             let (x, y) = model.moved(i, &self.v.get(i), step.x, step.y);
-            let share = (0.5 * across / (w * (x * x + y * y).sqrt()))
+            let share = (0.5 * across / (larger(w, 0.0) * (x * x + y * y).sqrt()))
                 .min((0.5 * tolerance / model.lift.0[i]).sqrt());
             if i == self.best && share < 1.0 {
                 return Next::Minimum;
