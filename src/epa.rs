@@ -1746,6 +1746,77 @@ mod tests {
         }
     }
 
+    /// The way out may cross a face no wider than rounding, on which it is anywhere.
+    #[test]
+    fn witnesses_are_not_those_of_a_sliver() {
+        let mut random = Random::new(22);
+        let half = Vec3::new(0.5, 0.4, 0.3);
+        for _ in 0..2000 {
+            let at = Vec3::new(0.0, 0.0, -random.within(0.4, 0.59));
+            let md =
+                MinkowskiDifference::new(cuboid(Vec3::zeros(), half, 1.0), cuboid(at, half, 1.0));
+            let top = |x: Real, y: Real| {
+                let v1 = Vec3::new(0.5 * x, 0.5 * y, -half.z);
+                let v2 = at + Vec3::new(-0.5 * x, -0.5 * y, half.z);
+                SupportPoint { v: v1 - v2, v1, v2 }
+            };
+            let (x, y) = (random.within(0.01, 0.1), random.within(0.01, 0.1));
+            let tiny = 200.0 * EPSILON;
+            let points = [
+                top(-x, y),
+                top(
+                    -x + random.within(-tiny, tiny),
+                    y + random.within(-tiny, tiny),
+                ),
+                top(9.0 * x, -9.0 * y),
+                top(9.0 * x, 3.0 * y),
+                top(-0.5 * x, -9.0 * y),
+                md.support(&Vec3::new(1.0, 0.3, 0.5)).unwrap(),
+                md.support(&Vec3::new(-1.0, -0.3, 0.5)).unwrap(),
+            ];
+            let seed = Seed {
+                dir: Vec3::z(),
+                points: &points,
+                upper: None,
+            };
+            let settings = Settings {
+                tolerance: 1e-9,
+                max_iterations: 100,
+            };
+            let answer = minimum(&md, &seed, &settings, &mut Vecs::new()).unwrap();
+            expect(answer, 2.0 * half.z + at.z, 1e-9, 1.0);
+        }
+    }
+
+    /// A body of revolution about a line through the origin: at the cap the gap is that of
+    /// a thousand points on each of its two edges, not of all on one.
+    #[test]
+    fn a_ridge_does_not_take_all_points() {
+        let cone = |c: Vec3, r: Real, half: Real| {
+            move |d: &Vec3| {
+                let across = (d.x * d.x + d.y * d.y).sqrt();
+                if d.z * 2.0 * half >= across * r {
+                    c + Vec3::new(0.0, 0.0, half)
+                } else {
+                    let by = r / larger(across, Real::MIN_POSITIVE);
+                    c + Vec3::new(d.x * by, d.y * by, -half)
+                }
+            }
+        };
+        let mut random = Random::new(23);
+        for _ in 0..20 {
+            let (r, half) = (random.within(0.1, 0.5), random.within(0.5, 1.0));
+            let a = cone(Vec3::zeros(), r, half);
+            let (r, half) = (random.within(0.1, 0.5), random.within(0.5, 1.0));
+            let b = cone(Vec3::new(0.0, 0.0, random.within(-0.05, 0.05)), r, half);
+            let Answer::Limit(hit) = solve(a, b, 1e-9) else {
+                panic!()
+            };
+            let gap = hit.depth - hit.depth_lower;
+            assert!(gap < 1e-5, "{gap:e}");
+        }
+    }
+
     /// No inscribed polytope proves a sphere round in few points: sound, and no worse.
     #[test]
     fn concentric_spheres_come_to_the_limit() {
