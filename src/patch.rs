@@ -90,20 +90,19 @@ pub fn settle<A: SupportMap, B: SupportMap>(
     let n = hit.normal;
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);
-    // So little aside that every corner is as good a support point as the tolerance asks.
+    // Farther aside than a normal within the tolerance may be turned.
     let tolerance = math::tolerance(tolerance, hit.width, 0.0);
-    let tilt = larger(0.25 * tolerance / hit.width, 64.0 * EPSILON);
+    let tilt = larger(2.0 * tolerance / hit.width, 64.0 * EPSILON);
     let mut corners = [SupportPoint::default(); AROUND];
-    let mut level = Real::NEG_INFINITY;
     let mut reach: Real = 0.0;
     for (corner, [c, s]) in corners.iter_mut().zip(CIRCLE) {
         let d = n + (e1 * c + e2 * s) * tilt;
         *corner = md.support(&(d / d.norm()))?;
-        level = larger(level, n.dot(&corner.v1));
         reach = larger(reach, corner.magnitude());
     }
-    let slack = 4.0 * tilt * hit.width + 8.0 * EPSILON * reach;
-    let least = hit.depth - slack;
+    let slack = 0.5 * tilt * hit.width + 8.0 * EPSILON * reach;
+    // Corners far from where the objects touch may lie a little lower.
+    let least = hit.depth - 2.0 * slack;
     if corners.iter().any(|p| !(n.dot(&p.v) >= least)) {
         // A direction aside found another face: this one is not what it seemed.
         return Ok(());
@@ -128,7 +127,7 @@ pub fn settle<A: SupportMap, B: SupportMap>(
     let region = smaller.inside(&larger, slack);
     if let Some([x, y]) = region.middle() {
         let middle = origin + e1 * x + e2 * y;
-        hit.point1 = middle + n * (level - n.dot(&middle));
+        hit.point1 = middle + n * n.dot(&(hit.point1 - middle));
         hit.point2 = hit.point1 - lift;
     }
     Ok(())

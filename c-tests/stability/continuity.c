@@ -5,7 +5,7 @@
  * to frame the direction turns by more than a degree only where the true minimum does,
  * the depth steps as the truth steps, and the contact position of a resting face moves
  * no faster than the bodies allow. Each motion is run cold, and warm with one state
- * carried along; both find the same depth.
+ * carried along; both find the same depth, and the same place for a resting face.
  *
  *   continuity [motion | position | local]   prints, per motion and method, jumps and
  *       largest steps; judges directions and depths, contact positions, or the bare local
@@ -19,7 +19,8 @@ typedef struct {
     const char *name;
     void (*pose)(int frame, shape_t *a, shape_t *b);
     double step;     /* how far a point of either body moves in a frame, at most */
-    int face;        /* a resting face contact: pos must not run away */
+    int face;        /* a resting face contact: pos must not run away, and is the same for every
+                      * method, warm or cold */
 } motion_t;
 
 /* T22: over a plate that is larger than the way */
@@ -115,16 +116,21 @@ static void hull_on_hull(int f, shape_t *a, shape_t *b)
     shape_move(b, .1, .05, .55);
 }
 
+/* Corners are the same points whoever asks; the points of a round face that stand for it
+ * are not, where the normals differ within the tolerance. Metres. */
+enum { NO_FACE, CORNERS, ROUND };
+static const double same_place[] = {HUGE_VAL, sizeof(ccd_real_t) == 8 ? 1e-9 : 1e-3, 5e-3};
+
 static const motion_t motions[] = {
-    {"box slides on a plate", box_slides, .005, 1},
-    {"cylinder slides on a plate", cylinder_slides, .005, 1},
-    {"box spins on a plate", box_spins, .004, 1},
-    {"box slides off a box", box_overhangs, .0012, 1},
-    {"cylinder rolls on a plate", cylinder_rolls, .009, 0},
-    {"capsule over an edge", capsule_over_edge, .004, 0},
-    {"box rocks on its edge", box_rocks, .004, 0},
-    {"ellipsoid rolls on a plate", ellipsoid_rolls, .012, 0},
-    {"hull turns in a hull", hull_on_hull, .012, 0},
+    {"box slides on a plate", box_slides, .005, CORNERS},
+    {"cylinder slides on a plate", cylinder_slides, .005, ROUND},
+    {"box spins on a plate", box_spins, .004, CORNERS},
+    {"box slides off a box", box_overhangs, .0012, CORNERS},
+    {"cylinder rolls on a plate", cylinder_rolls, .009, NO_FACE},
+    {"capsule over an edge", capsule_over_edge, .004, NO_FACE},
+    {"box rocks on its edge", box_rocks, .004, NO_FACE},
+    {"ellipsoid rolls on a plate", ellipsoid_rolls, .012, NO_FACE},
+    {"hull turns in a hull", hull_on_hull, .012, NO_FACE},
 };
 enum { MOTIONS = sizeof motions / sizeof motions[0] };
 
@@ -156,6 +162,8 @@ int main(int argc, char **argv)
         {"minimum", 0, ASK_MINIMUM, STATE_NONE},
         {"minimum, warm", 0, ASK_MINIMUM, STATE_ZERO},
     };
+    /* where the first method, a cold one, has the contact in each frame */
+    static double place[FRAMES][3];
     int m, k, f, i, failed = 0;
     const int motion = argc < 2 || strcmp(argv[1], "motion") == 0, position = argc < 2 || strcmp(argv[1], "position") == 0,
         local = argc < 2 || strcmp(argv[1], "local") == 0;
@@ -167,7 +175,7 @@ int main(int argc, char **argv)
             answer_t last;
             truth_t before;
             int jumps = 0, needed = 0, wrong = 0;
-            double depth_step = 0, pos_step = 0, error = 0;
+            double depth_step = 0, pos_step = 0, pos_off = 0, error = 0;
             unsigned long calls = 0;
             memset(&warm, 0, sizeof warm);
             memset(&last, 0, sizeof last);
@@ -222,6 +230,10 @@ int main(int argc, char **argv)
                         step += (x.pos[i] - last.pos[i]) * (x.pos[i] - last.pos[i]);
                     pos_step = fmax(pos_step, sqrt(step));
                 }
+                if (k == 0 || methods[k - 1].system)
+                    memcpy(place[f], x.pos, sizeof place[f]);
+                for (i = 0; i < 3; i++)
+                    pos_off = fmax(pos_off, fabs(x.pos[i] - place[f][i]));
                 last = x;
                 before = t;
             }
@@ -229,7 +241,7 @@ int main(int argc, char **argv)
                    motions[m].name, e->name, jumps, needed, depth_step, pos_step, error, (double)calls / FRAMES);
             if (!e->system
                 && (((e->ask == ASK_LOCAL ? local : motion) && ((jumps > 0 && (e->ask != ASK_LOCAL || motions[m].face)) || wrong > 0))
-                    || (position && motions[m].face && pos_step > pos_speed * motions[m].step))) {
+                    || (position && motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
                 printf("FAILED the line above\n");
                 failed++;
             }

@@ -141,6 +141,10 @@ fn continuity() {
 
 /// The same: contact positions, and the bare local method.
 #[test]
+#[cfg_attr(
+    feature = "single",
+    ignore = "a normal that is off within a float's tolerance tilts the faces by more than it"
+)]
 fn continuity_of_positions() {
     let continuity = program("continuity");
     continuity.run(["position"]);
