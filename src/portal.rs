@@ -95,21 +95,17 @@ impl Portal {
     #[inline]
     pub fn update(&mut self, w: Plane) {
         let c = self.ray.cross(&w.point.v);
-        // Which side of the plane through the ray and w each vertex is on.
+        // Which side of the plane through the ray and w each vertex is on: between two that
+        // are on either side, w takes the place of the third. That of a vertex on the ray
+        // is rounding, so the pair that is most so counts.
         let [t1, t2, t3] = self.planes.each_ref().map(|p| c.dot(&p.point.v));
-        let replaced = if t1 >= 0.0 {
-            if t2 <= 0.0 {
-                2
-            } else if t3 <= 0.0 {
-                0
-            } else {
-                1
+        let split = [t2.min(-t3), t3.min(-t1), t1.min(-t2)];
+        let mut replaced = 2;
+        for i in 0..2 {
+            if split[i] > split[replaced] {
+                replaced = i;
             }
-        } else if t3 >= 0.0 {
-            1
-        } else {
-            0
-        };
+        }
         self.planes[replaced] = w;
     }
 

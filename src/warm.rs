@@ -567,7 +567,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 };
             }
         }
-        Ok(Answer::Limit(best))
+        // The proof may have lacked no more than the floor.
+        let reach =
+            (seed.points.iter()).fold(0.0, |m: Real, p| m.max(p.v1.norm()).max(p.v2.norm()));
+        let tolerance = math::tolerance(settings.tolerance, Real::INFINITY, reach);
+        Ok(if best.depth - best.depth_lower <= tolerance {
+            Answer::Hit(best)
+        } else {
+            Answer::Limit(best)
+        })
     }
 
     /// How far obj2 must move along the unit direction `dir` (Algorithm 1).

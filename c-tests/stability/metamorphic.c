@@ -75,7 +75,8 @@ int main(int argc, char **argv)
         category_pair(i % 2 ? CATEGORY_GENERIC : CATEGORY_SHALLOW3, (uint64_t)(i / 2), SHAPE_TIE_SIGN, &p);
         for (k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
-            double tol = tolerance(TOL_TIGHT) * pair_size(&p.a, &p.b), bound, scale;
+            int exact = polyhedral(&p.a) && polyhedral(&p.b);
+            double tol = (exact ? real_ulp() : tolerance(TOL_TIGHT)) * pair_size(&p.a, &p.b), bound, scale;
             answer_t x, y;
             if (e->system || e->state != STATE_NONE || e->ask == ASK_LOCAL || e->ask == ASK_ALONG)
                 continue;
@@ -90,7 +91,7 @@ int main(int argc, char **argv)
                 t = truth_depth(&a, &b);
                 y = ask(e, &a, &b, tol * scale, t.n, 100000);
                 bound = 4 * (pair_noise(&p.a, &p.b) + pair_noise(&a, &b) / scale);
-                bound += polyhedral(&a) && polyhedral(&b) ? 1e-9 * p.truth.depth : 2 * tol;
+                bound += exact ? 0 : 2 * tol;
                 if (x.code != y.code) {
                     wrong = much = 1;
                 } else if (x.code == CCD_HIT && e->ask != ASK_MPR_INTERSECT && e->ask != ASK_GJK_INTERSECT) {

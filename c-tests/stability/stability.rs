@@ -87,7 +87,6 @@ fn categories() {
 
 /// The proven minimum against the exact one, on a sample of every kind of pair.
 #[test]
-#[cfg_attr(feature = "single", ignore = "its tolerances are below single's ulps")]
 fn exact_minima() {
     alone("exact").run(["300"]);
 }
@@ -128,7 +127,6 @@ fn together_with_libccd() {
 
 /// Swapped, rotated, translated, scaled.
 #[test]
-#[cfg_attr(feature = "single", ignore = "proofs at the edge of rounding")]
 fn metamorphic() {
     alone("metamorphic").run(["2000"]);
 }
