@@ -23,6 +23,7 @@ use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 /// Directions around the normal.
 const AROUND: usize = 5;
 /// Cosine and sine of their angles.
+#[allow(clippy::excessive_precision)] // In single precision.
 const CIRCLE: [[Real; 2]; AROUND] = [
     [1.0, 0.0],
     [0.309_016_994_374_947_4, 0.951_056_516_295_153_6],
