@@ -16,7 +16,7 @@
       "position, the difference of two such points is dotted with a rounded unit vector") \
     X(UNIT, 4e-16, 2.5e-7, \
       "|dir| - 1: normalising a vector rounds three coordinates, one length, one division") \
-    X(TIGHT, 1e-9, 1e-4, \
+    X(TIGHT, 1e-9, 256 * FLT_EPSILON, \
       "tolerance of a tight query relative to the size: a thousandth of the 1e-6 that " \
       "configurations are judged to; in single what eight bits above rounding leave") \
     X(LOOSE, 1e-4, 1e-3, \
