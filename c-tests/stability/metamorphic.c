@@ -14,7 +14,7 @@
 
 enum { SWAPPED, ROTATED, TRANSLATED, SCALED, CHANGES };
 static const char *const change_text[] = {"swapped", "rotated", "translated", "scaled"};
-static const double mpr_percent = .5;
+static const double mpr_percent = .2;
 
 /* The pair changed; scale is the factor of all lengths. */
 static void change(const pair_t *p, int what, dice_t *d, shape_t *a, shape_t *b, ccd_real_t verts[2][3 * PAIR_VERTICES],
