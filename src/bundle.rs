@@ -70,10 +70,13 @@
 //! is known of R is known of one piece of D: a cylinder's rim bends and its edge line
 //! does not. So each sample keeps the error that a pair of its own has told, the whole
 //! height where none has, and by as much as a later pair corrects R it is in error
-//! again. A ball alone is part of every piece. And
+//! again. A ball alone is part of every piece.
 //! (b) R must have been measured in two directions if the minimum rests on it (fewer
 //! than three active cuts); else the next support point is taken across the one
-//! direction known. A start where the gradient vanishes is treated like any other:
+//! direction known. And (c) along what one or two active cuts leave free, where a valley may
+//! go on, R may bend by its error less than is believed: what that would leave of the
+//! descent must be within the tolerance, too; else the minimum itself is asked.
+//! A start where the gradient vanishes is treated like any other:
 //! the second sample, a step aside, tells minimum from maximum. Where minima form a
 //! curve or a surface, a model that is level over the whole first reach ends the
 //! search.
@@ -628,6 +631,40 @@ impl Search<'_> {
             && curvature.error <= FORETOLD
             && curvature.uneven <= SHARED;
         curvature.known && (ball || smooth) && meet
+    }
+
+    /// How much deeper the minimum can be along what one or two active cuts leave free,
+    /// if R bends as much less there as it may be in error.
+    fn unsure(&self, model: &Model, step: &Step, reach: Real) -> Real {
+        let [i, j, _] = step.set;
+        let (x, y) = if step.count == 2 {
+            (model.y.0[j] - model.y.0[i], model.x.0[i] - model.x.0[j])
+        } else {
+            (step.x, step.y)
+        };
+        let length2 = x * x + y * y;
+        let way = step.x * x + step.y * y;
+        let r = model.rho * length2 + model.axx * (x * x - y * y) + 2.0 * model.axy * x * y;
+        let bend = r - self.h.0[self.best] * length2;
+        let weights = Model::weights(step, &model.x, &model.y);
+        let error: Real = step
+            .set
+            .iter()
+            .zip(weights)
+            .map(|(&i, w)| w * self.error(i, &model.b))
+            .sum();
+        let less = error.min(1.0) * r;
+        // How far along, in parts of (x, y).
+        let way = way / length2;
+        let open = 0.5 * bend * way * way * less / (bend - less);
+        // Where no bend is left the slope goes on to the border.
+        let slope = bend * way.abs() * reach / length2.sqrt();
+        // Neither NaN, of no way.
+        if bend > less {
+            open.min(slope)
+        } else {
+            slope.max(0.0)
+        }
     }
 
     /// Where to ask so that the objects' own points take the place of foretold ones.
@@ -1204,6 +1241,9 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                         far = i;
                     }
                 }
+            }
+            if curved && step.count < 3 && step.inside {
+                open = open.max(search.unsure(&model, &step, reach));
             }
             // Flat as far as the eye reaches: minima that form a curve or a surface.
             let level = reach >= REACH && search.curvature.spread;

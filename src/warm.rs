@@ -410,25 +410,41 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .is_some_and(|c| hit.depth <= SHALLOW * (hit.depth - hit.normal.dot(&c.v)))
     }
 
-    /// A local minimum, not yet a proven overlap: the few-supports solver, and where that
-    /// does not end in time the paper's method from there on.
+    /// A local minimum, not yet a proven overlap: the few-supports solver, from where it
+    /// tired with a fresh view for as long as it goes on down (the floor of a long valley
+    /// bends away from any straight step), and where it does not end in time the paper's
+    /// method from there on.
     fn descend(
         &self,
         memory: &mut Memory,
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Answer, Fault> {
-        let found = self.stroll(memory, PATIENCE, settings, known)?;
+        let mut found = self.stroll(memory, PATIENCE, settings, known)?;
+        let mut left = settings.max_iterations;
+        let mut before = Real::INFINITY;
+        for _ in 0..STROLLS {
+            let Answer::Limit(tired) = found else {
+                return Ok(found);
+            };
+            left = left.saturating_sub(PATIENCE);
+            if left == 0 {
+                return Ok(found);
+            }
+            if !(tired.depth < before - settings.tolerance) {
+                break;
+            }
+            before = tired.depth;
+            *memory = State::of(OVERLAP, tired.normal).memory;
+            found = self.stroll(memory, PATIENCE.min(left), settings, known)?;
+        }
         let Answer::Limit(tired) = found else {
             return Ok(found);
         };
         let rest = Settings {
-            max_iterations: settings.max_iterations.saturating_sub(PATIENCE),
+            max_iterations: left,
             ..*settings
         };
-        if rest.max_iterations == 0 {
-            return Ok(found);
-        }
         let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
         if let Answer::Miss(n) = &answer
             && gjk::farthest(known.points(), n, 0.0).is_some()
@@ -735,6 +751,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 /// Support points after which the few-supports solver has failed: it needs a dozen, on
 /// the hardest pairs thirty.
 const PATIENCE: u64 = 64;
+/// Fresh starts it is given, at most.
+const STROLLS: u32 = 14;
 /// Local searches that the floor of a valley is worth.
 const DESCENTS: u32 = 16;
 

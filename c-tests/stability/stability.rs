@@ -110,7 +110,6 @@ fn exact_campaign() {
 
 /// The same on the extension's own.
 #[test]
-#[ignore = "witness points of the local query lie outside curved shapes in up to 1 % of pairs"]
 fn categories_of_the_extension() {
     let campaign = program("campaign");
     campaign.run(["100", "0", "-1", "extension"]);
@@ -119,7 +118,6 @@ fn categories_of_the_extension() {
 
 /// Both libraries in one process, against each other and the truth.
 #[test]
-#[ignore = "MPR ends in flat valleys, deeper than libccd by up to a few 1e-4 of the size"]
 #[cfg(not(feature = "single"))]
 fn together_with_libccd() {
     program("together").run(["60"]);
