@@ -1242,7 +1242,9 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                     }
                 }
             }
-            if curved && step.count < 3 && step.inside {
+            // So near to b another point would tell nothing.
+            let far2 = step.x * step.x + step.y * step.y;
+            if curved && step.count < 3 && step.inside && far2 > CLOSE {
                 open = open.max(search.unsure(&model, &step, reach));
             }
             // Flat as far as the eye reaches: minima that form a curve or a surface.
