@@ -423,7 +423,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut found = self.stroll(memory, PATIENCE, settings, known)?;
         let mut left = settings.max_iterations;
         let mut before = Real::INFINITY;
-        for _ in 0..STROLLS {
+        // Ends: `left` falls.
+        let tired = loop {
             let Answer::Limit(tired) = found else {
                 return Ok(found);
             };
@@ -432,14 +433,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 return Ok(found);
             }
             if !(tired.depth < before - settings.tolerance) {
-                break;
+                break tired;
             }
             before = tired.depth;
             *memory = State::of(OVERLAP, tired.normal).memory;
             found = self.stroll(memory, PATIENCE.min(left), settings, known)?;
-        }
-        let Answer::Limit(tired) = found else {
-            return Ok(found);
         };
         let rest = Settings {
             max_iterations: left,
@@ -751,8 +749,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 /// Support points after which the few-supports solver has failed: it needs a dozen, on
 /// the hardest pairs thirty.
 const PATIENCE: u64 = 64;
-/// Fresh starts it is given, at most.
-const STROLLS: u32 = 14;
 /// Local searches that the floor of a valley is worth.
 const DESCENTS: u32 = 16;
 
