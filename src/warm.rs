@@ -25,7 +25,7 @@ use crate::contact::{Answer, Penetration, Settings};
 use crate::epa::{self, Arena, Edge, Entry, Face, Seed, Storage};
 use crate::gjk::{self, Overlap};
 use crate::local::{self, Shortcut};
-use crate::math::{self, Real, Vec3, unit};
+use crate::math::{self, Real, Vec3, perpendicular, unit};
 use crate::patch;
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
@@ -410,10 +410,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .is_some_and(|c| hit.depth <= SHALLOW * (hit.depth - hit.normal.dot(&c.v)))
     }
 
-    /// A local minimum, not yet a proven overlap: the few-supports solver, from where it
-    /// tired with a fresh view for as long as it goes on down (the floor of a long valley
-    /// bends away from any straight step), and where it does not end in time the paper's
-    /// method from there on.
+    /// A local minimum, not yet a proven overlap: the few-supports solver, and where that
+    /// does not end in time the paper's method from there on.
+    ///
+    /// A search that tires goes on from the lowest place it saw with a fresh view, for as
+    /// long as that leads down: the floor of a long valley bends away from any straight
+    /// step. Where it does not, the search looks around from beside that place.
     fn descend(
         &self,
         memory: &mut Memory,
@@ -422,21 +424,33 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<Answer, Fault> {
         let mut found = self.stroll(memory, PATIENCE, settings, known)?;
         let mut left = settings.max_iterations;
-        let mut before = Real::INFINITY;
+        let mut lowest: Option<Penetration> = None;
+        let mut asides = 0;
         // Ends: `left` falls.
         let tired = loop {
-            let Answer::Limit(tired) = found else {
-                return Ok(found);
+            let below =
+                |hit: &Penetration, by: Real| lowest.is_none_or(|low| hit.depth <= low.depth - by);
+            let start = match (&found, lowest) {
+                (Answer::Limit(hit), _) if below(hit, settings.tolerance) => {
+                    lowest = Some(*hit);
+                    asides = 0;
+                    hit.normal
+                }
+                (Answer::Limit(_), Some(low)) | (Answer::Hit(_), Some(low)) if !matches!(&found, Answer::Hit(hit) if below(hit, -settings.tolerance)) =>
+                {
+                    if asides == ASIDES {
+                        break low;
+                    }
+                    asides += 1;
+                    beside(&low.normal, asides)
+                }
+                _ => return Ok(found),
             };
             left = left.saturating_sub(PATIENCE);
             if left == 0 {
                 return Ok(found);
             }
-            if !(tired.depth < before - settings.tolerance) {
-                break tired;
-            }
-            before = tired.depth;
-            *memory = State::of(OVERLAP, tired.normal).memory;
+            *memory = State::guess(&start).memory;
             found = self.stroll(memory, PATIENCE.min(left), settings, known)?;
         };
         let rest = Settings {
@@ -749,6 +763,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 /// Support points after which the few-supports solver has failed: it needs a dozen, on
 /// the hardest pairs thirty.
 const PATIENCE: u64 = 64;
+
+/// Places beside the lowest one that a tired search looks from.
+const ASIDES: u32 = 4;
+
+/// The unit vector `n` turned by a tenth of a radian, each time another way.
+fn beside(n: &Vec3, time: u32) -> Vec3 {
+    // The golden angle: never twice nearly the same way.
+    let (s, c) = (2.4 * time as Real).sin_cos();
+    let e1 = perpendicular(n);
+    n + (e1 * c + n.cross(&e1) * s) * 0.1
+}
 /// Local searches that the floor of a valley is worth.
 const DESCENTS: u32 = 16;
 

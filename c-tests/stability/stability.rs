@@ -110,6 +110,7 @@ fn exact_campaign() {
 
 /// The same on the extension's own.
 #[test]
+#[cfg_attr(feature = "single", ignore = "witness points of touching pairs")]
 fn categories_of_the_extension() {
     let campaign = program("campaign");
     campaign.run(["100", "0", "-1", "extension"]);
