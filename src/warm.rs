@@ -428,23 +428,28 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut asides = 0;
         // Ends: `left` falls.
         let tired = loop {
-            let below =
-                |hit: &Penetration, by: Real| lowest.is_none_or(|low| hit.depth <= low.depth - by);
-            let start = match (&found, lowest) {
-                (Answer::Limit(hit), _) if below(hit, settings.tolerance) => {
-                    lowest = Some(*hit);
-                    asides = 0;
-                    hit.normal
-                }
-                (Answer::Limit(_), Some(low)) | (Answer::Hit(_), Some(low)) if !matches!(&found, Answer::Hit(hit) if below(hit, -settings.tolerance)) =>
-                {
+            let (hit, ended) = match found {
+                Answer::Hit(hit) => (hit, true),
+                Answer::Limit(hit) => (hit, false),
+                other => return Ok(other),
+            };
+            let before = lowest.map_or(Real::INFINITY, |low| low.depth);
+            if ended && hit.depth <= before + settings.tolerance {
+                return Ok(found);
+            }
+            let start = match lowest {
+                Some(low) if ended || !(hit.depth <= before - settings.tolerance) => {
                     if asides == ASIDES {
                         break low;
                     }
                     asides += 1;
                     beside(&low.normal, asides)
                 }
-                _ => return Ok(found),
+                _ => {
+                    lowest = Some(hit);
+                    asides = 0;
+                    hit.normal
+                }
             };
             left = left.saturating_sub(PATIENCE);
             if left == 0 {
