@@ -453,7 +453,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             };
             left = left.saturating_sub(PATIENCE);
             if left == 0 {
-                return Ok(found);
+                return Ok(lowest.map_or(found, Answer::Limit));
             }
             *memory = State::guess(&start).memory;
             found = self.stroll(memory, PATIENCE.min(left), settings, known)?;
