@@ -85,9 +85,9 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
 pub const ITERATION_CAP: u64 = 2_000;
 
 /// The tolerance in force where `asked` is wanted, metres: no finer than coordinates up
-/// to `reach` resolve, and no coarser than a thousandth of an object of this `size`,
+/// to `reach` resolve, and no coarser than a four-thousandth of an object of this `size`,
 /// beside which a coarser answer would say nothing.
 #[inline]
 pub fn tolerance(asked: Real, size: Real, reach: Real) -> Real {
-    asked.min(1e-3 * size).max(8.0 * EPSILON * reach)
+    asked.min(2.5e-4 * size).max(8.0 * EPSILON * reach)
 }

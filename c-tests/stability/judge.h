@@ -518,6 +518,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (!(fabs(x->depth - fmax(value, 0)) <= 2 * q->noise))
         faults |= x->depth < value ? FAULT_NOT_SUPPORT | FAULT_UNSOUND : FAULT_NOT_SUPPORT;
     if (entry_is_minimum(e)) {
+        if (faults & (FAULT_OVER | FAULT_UNDER))
+            faults |= FAULT_NOT_MINIMUM;
         if (!(x->depth <= fmax(t->depth, 0) + q->tol + gap + 2 * q->noise))
             faults |= FAULT_NOT_MINIMUM;
         if (e->ask == ASK_MINIMUM && x->code == CCD_HIT
