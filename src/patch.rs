@@ -47,6 +47,14 @@ pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> 
         .fold(Real::NEG_INFINITY, |m, p| larger(m, n.dot(&p.v)));
     let face = || points.iter().filter(|p| n.dot(&p.v) >= top - tolerance);
     let blur = 8.0 * tolerance * size;
+    // Mostly one of the two touches with a point: told without a root.
+    let first = face().next();
+    let extended = |of: fn(&SupportPoint) -> Vec3| {
+        first.is_some_and(|f| face().any(|p| (of(p) - of(f)).norm_squared() > blur))
+    };
+    if !(extended(|p| p.v1) && extended(|p| p.v2)) {
+        return 0.0;
+    }
     let (whole, width) = dimensions(face().map(|p| p.v), 0.0);
     let (one, _) = dimensions(face().map(|p| p.v1), blur);
     let (two, _) = dimensions(face().map(|p| p.v2), blur);
