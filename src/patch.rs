@@ -124,16 +124,16 @@ pub fn settle<A: SupportMap, B: SupportMap>(
     let lift = n * hit.depth;
     let one = Polygon::of(corners.map(|p| flat(p.v1)));
     let two = Polygon::of(corners.map(|p| flat(p.v2 + lift)));
-    let (smaller, larger) = if one.area() > two.area() {
+    let (small, large) = if one.area() > two.area() {
         (two, one)
     } else {
         (one, two)
     };
-    if !(larger.area() > 4.0 * slack * hit.width) {
+    if !(large.area() > 4.0 * slack * hit.width) {
         // No halfplanes: two edges, or less.
         return Ok(());
     }
-    let region = smaller.inside(&larger, slack);
+    let region = small.inside(&large, slack);
     if let Some([x, y]) = region.middle() {
         let middle = origin + e1 * x + e2 * y;
         hit.point1 = middle + n * n.dot(&(hit.point1 - middle));
