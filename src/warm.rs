@@ -439,11 +439,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             let start = match lowest {
                 Some(low) if ended || !(hit.depth <= before - settings.tolerance) => {
-                    if asides == ASIDES {
+                    let Some(way) = WAYS.get(asides) else {
                         break low;
-                    }
+                    };
                     asides += 1;
-                    beside(&low.normal, asides)
+                    beside(&low.normal, *way)
                 }
                 _ => {
                     lowest = Some(hit);
@@ -770,15 +770,24 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 const PATIENCE: u64 = 64;
 
 /// Places beside the lowest one that a tired search looks from.
-const ASIDES: u32 = 4;
+const ASIDES: usize = 4;
 
-/// The unit vector `n` turned by a tenth of a radian, each time another way.
-fn beside(n: &Vec3, time: u32) -> Vec3 {
-    // The golden angle: never twice nearly the same way.
-    let (s, c) = (2.4 * time as Real).sin_cos();
+/// Cosine and sine of the ways there: the golden angle apart, never twice nearly the same
+/// way. Written down, for the same bits in every build.
+#[allow(clippy::excessive_precision)] // In single precision.
+const WAYS: [[Real; 2]; ASIDES] = [
+    [-0.7373937155412454, 0.675463180551151],
+    [0.0874989834394464, -0.9961646088358407],
+    [0.6083513145322552, 0.7936678638491527],
+    [-0.984687855794127, -0.17432678122297965],
+];
+
+/// The unit vector `n` turned by a tenth of a radian, not normalised.
+fn beside(n: &Vec3, [c, s]: [Real; 2]) -> Vec3 {
     let e1 = perpendicular(n);
     n + (e1 * c + n.cross(&e1) * s) * 0.1
 }
+
 /// Local searches that the floor of a valley is worth.
 const DESCENTS: u32 = 16;
 
