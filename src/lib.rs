@@ -26,8 +26,10 @@ pub mod nearest;
 pub mod patch;
 pub mod planar;
 pub mod portal;
+pub mod precision;
 #[cfg(test)]
 mod shapes;
 pub mod simplex;
 pub mod support;
+pub mod support_set;
 pub mod warm;

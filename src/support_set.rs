@@ -1,0 +1,304 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The support points of a query, each kept once and named by its index, and the one
+//! place where a solver asks for them.
+//!
+//! [`Inquiry::ask`] counts, notes the sizes, keeps the lowest support plane, and sees
+//! whether the objects are apart. The points live in a [`SupportSet`], whose room is the
+//! solver's to choose: an inquiry goes on when its points move to a larger one.
+//!
+//! A callback that is no support function can contradict itself: what it answers along n
+//! is less far along n than a point it gave before. D reaches as far as all its known
+//! points, so the farther point stands in, and nothing is lowered or separated by less.
+
+use crate::math::{Real, Vec3};
+use crate::precision::Precision;
+use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+
+/// Room for `N` support points with the directions they were asked along.
+///
+/// A point of D is not stored: it is the difference of its two witnesses, to the bit.
+pub struct SupportSet<const N: usize> {
+    witnesses: [[Vec3; 2]; N],
+    directions: [Vec3; N],
+    len: usize,
+}
+
+impl<const N: usize> SupportSet<N> {
+    /// No point.
+    pub const EMPTY: Self = Self {
+        witnesses: [[Vec3::new(0.0, 0.0, 0.0); 2]; N],
+        directions: [Vec3::new(0.0, 0.0, 0.0); N],
+        len: 0,
+    };
+
+    /// A place that is in range whatever `i` is: the compiler sees it, and checks nothing.
+    #[inline(always)]
+    fn at(i: usize) -> usize {
+        if N.is_power_of_two() {
+            i & (N - 1)
+        } else {
+            i.min(N - 1)
+        }
+    }
+
+    /// How many points there are.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Is there no point?
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Is there no room for another point?
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.len >= N
+    }
+
+    /// The point of D with this index.
+    #[inline(always)]
+    pub fn v(&self, i: usize) -> Vec3 {
+        let [v1, v2] = &self.witnesses[Self::at(i)];
+        v1 - v2
+    }
+
+    /// The point with its witnesses.
+    #[inline(always)]
+    pub fn point(&self, i: usize) -> SupportPoint {
+        let [v1, v2] = self.witnesses[Self::at(i)];
+        SupportPoint { v: v1 - v2, v1, v2 }
+    }
+
+    /// The unit direction that the point was asked along; zero for one that was not.
+    #[inline(always)]
+    pub fn direction(&self, i: usize) -> Vec3 {
+        self.directions[Self::at(i)]
+    }
+
+    /// Adds a point and returns its index; where there is no room it takes the place of
+    /// the last.
+    #[inline(always)]
+    pub fn push(&mut self, direction: &Vec3, point: &SupportPoint) -> usize {
+        let i = self.len.min(N - 1);
+        self.put(i, direction, point);
+        self.len = i + 1;
+        i
+    }
+
+    /// Puts a point in the place of another.
+    #[inline(always)]
+    pub fn put(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
+        self.witnesses[Self::at(i)] = [point.v1, point.v2];
+        self.directions[Self::at(i)] = *direction;
+    }
+
+    /// Forgets all points from this index on.
+    #[inline(always)]
+    pub fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
+    }
+
+    /// Takes the points of a smaller set, with their indices.
+    pub fn take<const M: usize>(&mut self, other: &SupportSet<M>) {
+        let len = other.len.min(M).min(N);
+        self.witnesses[..len].copy_from_slice(&other.witnesses[..len]);
+        self.directions[..len].copy_from_slice(&other.directions[..len]);
+        self.len = len;
+    }
+
+    /// The point farthest along `n` of those that were asked for, if it reaches beyond
+    /// `reach`.
+    #[inline(always)]
+    pub fn farther(&self, n: &Vec3, mut reach: Real) -> Option<usize> {
+        let mut best = None;
+        for i in 0..self.len.min(N) {
+            let d = n.dot(&self.v(i));
+            if d > reach && self.directions[i] != Vec3::zeros() {
+                reach = d;
+                best = Some(i);
+            }
+        }
+        best
+    }
+}
+
+/// A support plane of D: h(dir) = dir · s(dir).
+#[derive(Clone, Copy, Debug)]
+pub struct Lowest {
+    /// The support value, metres: moving obj2 by depth · dir separates the objects.
+    pub depth: Real,
+    /// Unit.
+    pub dir: Vec3,
+    /// The support point, in the set that was asked into.
+    pub index: usize,
+}
+
+/// Why a query ends where it asks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// The objects are apart, or touch within rounding: along this unit direction D
+    /// reaches no farther than the origin.
+    Apart(Vec3),
+    /// A callback's answer that no query can work with, or no memory.
+    Fault(Fault),
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+/// What a query has learned by asking, wherever its points are kept.
+pub struct Inquiry<'q, A, B> {
+    /// What is asked.
+    pub md: &'q MinkowskiDifference<A, B>,
+    /// Sizes and roundings.
+    pub precision: Precision,
+    /// The lowest support plane met; of infinite depth before the first.
+    pub lowest: Lowest,
+}
+
+impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
+    /// Nothing asked yet.
+    #[inline(always)]
+    pub fn new(md: &'q MinkowskiDifference<A, B>) -> Self {
+        Self {
+            md,
+            precision: Precision::default(),
+            lowest: Lowest {
+                depth: Real::INFINITY,
+                dir: Vec3::x(),
+                index: 0,
+            },
+        }
+    }
+
+    /// Asks for the support point along unit `dir`, puts it into the set, and returns its
+    /// index and support value, metres.
+    ///
+    /// Where a known point lies farther along `dir` than the answer, the index is that
+    /// point's and nothing is put. It is looked for only where it matters: when the value
+    /// would lower the bound or separate.
+    #[inline(always)]
+    pub fn ask<const N: usize>(
+        &mut self,
+        set: &mut SupportSet<N>,
+        dir: &Vec3,
+    ) -> Result<(usize, Real), Stop> {
+        let point = self.md.support(dir)?;
+        self.precision.note(&point);
+        let h = dir.dot(&point.v);
+        if h < self.lowest.depth {
+            return self.lower(set, dir, &point, h);
+        }
+        Ok((set.push(dir, &point), h))
+    }
+
+    #[inline(always)]
+    fn lower<const N: usize>(
+        &mut self,
+        set: &mut SupportSet<N>,
+        dir: &Vec3,
+        point: &SupportPoint,
+        h: Real,
+    ) -> Result<(usize, Real), Stop> {
+        let (index, h) = match set.farther(dir, h + self.precision.grain()) {
+            Some(i) => (i, dir.dot(&set.v(i))),
+            None => {
+                // NaN is no depth.
+                if !(h > self.precision.touch()) {
+                    return Err(Stop::Apart(*dir));
+                }
+                (set.push(dir, point), h)
+            }
+        };
+        if h < self.lowest.depth {
+            self.lowest = Lowest {
+                depth: h,
+                dir: *dir,
+                index,
+            };
+        }
+        Ok((index, h))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::ball;
+    use core::cell::Cell;
+
+    #[test]
+    fn points_have_names_and_the_lowest_plane_is_kept() {
+        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 1.5, 1.0));
+        let mut inquiry = Inquiry::new(&md);
+        let mut set = SupportSet::<4>::EMPTY;
+        let (a, h) = inquiry.ask(&mut set, &Vec3::y()).unwrap();
+        assert_eq!((a, h), (0, 2.0));
+        let (b, h) = inquiry.ask(&mut set, &Vec3::x()).unwrap();
+        assert_eq!((b, h, inquiry.lowest.index), (1, 0.5, 1));
+        assert_eq!(set.point(b).v1, Vec3::x());
+        assert_eq!(set.v(b), Vec3::x() * 0.5);
+        assert_eq!(set.direction(b), Vec3::x());
+        assert_eq!(md.supports(), 2);
+    }
+
+    #[test]
+    fn apart_and_touching_end_the_query() {
+        for gap in [1.0, 0.0] {
+            let other = ball(Vec3::x() * (2.0 + gap), 1.0);
+            let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), other);
+            let mut set = SupportSet::<4>::EMPTY;
+            let stop = Inquiry::new(&md).ask(&mut set, &Vec3::x()).unwrap_err();
+            assert_eq!(stop, Stop::Apart(Vec3::x()));
+        }
+    }
+
+    #[test]
+    fn a_callback_that_contradicts_itself_separates_nothing() {
+        let asked = Cell::new(0);
+        let lying = |_: &Vec3| {
+            asked.set(asked.get() + 1);
+            Vec3::x() * if asked.get() == 1 { 1.0 } else { -1.0 }
+        };
+        let md = MinkowskiDifference::new(lying, |_: &Vec3| Vec3::zeros());
+        let mut inquiry = Inquiry::new(&md);
+        let mut set = SupportSet::<4>::EMPTY;
+        inquiry.ask(&mut set, &Vec3::x()).unwrap();
+        assert_eq!(inquiry.ask(&mut set, &Vec3::x()), Ok((0, 1.0)));
+        assert_eq!(inquiry.lowest.depth, 1.0);
+    }
+
+    #[test]
+    fn points_that_are_not_finite_are_faults() {
+        let md =
+            MinkowskiDifference::new(|_: &Vec3| Vec3::x() * Real::NAN, |_: &Vec3| Vec3::zeros());
+        let mut set = SupportSet::<4>::EMPTY;
+        let stop = Inquiry::new(&md).ask(&mut set, &Vec3::x()).unwrap_err();
+        assert_eq!(stop, Stop::Fault(Fault::NonFinite));
+    }
+
+    #[test]
+    fn a_larger_room_keeps_the_names() {
+        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 1.0));
+        let mut inquiry = Inquiry::new(&md);
+        let mut small = SupportSet::<4>::EMPTY;
+        for n in [Vec3::x(), Vec3::y(), Vec3::z()] {
+            inquiry.ask(&mut small, &n).unwrap();
+        }
+        let mut large = SupportSet::<6>::EMPTY;
+        large.take(&small);
+        assert_eq!(large.len(), 3);
+        for i in 0..3 {
+            assert_eq!(large.point(i), small.point(i));
+            assert_eq!(large.direction(i), small.direction(i));
+        }
+    }
+}
