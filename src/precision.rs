@@ -26,9 +26,10 @@ impl Precision {
     /// Takes a point into account.
     #[inline(always)]
     pub fn note(&mut self, point: &SupportPoint) {
-        self.size2 = larger(self.size2, point.v.norm_squared());
+        // In this order NaN is passed over.
+        self.size2 = larger(point.v.norm_squared(), self.size2);
         let reach2 = larger(point.v1.norm_squared(), point.v2.norm_squared());
-        self.reach2 = larger(self.reach2, reach2);
+        self.reach2 = larger(reach2, self.reach2);
     }
 
     /// Square of [`Precision::size`], m².
