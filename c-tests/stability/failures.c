@@ -368,6 +368,44 @@ static int swapped_state(int which)
     return deeper == 0;
 }
 
+/* ccdMPRPenetrationWarm keeps its promise whatever the state holds: what the swapped
+ * pair left, or another pair. */
+static int state_of_others(int which)
+{
+    static const entry_t warm_mpr = {"MPR, warm", 0, ASK_MPR_WARM, STATE_NONE};
+    static const int kinds[4] = {SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, PAIR_ROUND};
+    ccd_warm_t warm;
+    ccd_t ccd;
+    double worst = 1;
+    int i, wrong = 0;
+    shape_query(&ccd);
+    ccd.support1 = ccd.support2 = judge_support;
+    ccd.mpr_tolerance = ccd.epa_tolerance = tol;
+    memset(&warm, 0, sizeof warm);
+    for (i = 0; i < 300; i++) {
+        static pair_t p;
+        dice_t dd = dice(2450, (uint64_t)i), *d = &dd;
+        const int first = kinds[dice_below(d, 4)], second = kinds[dice_below(d, 4)];
+        shape_t a, b;
+        answer_t x;
+        corner_pair(d, &p, first, second, dice_log(d, 1e-5, 1e-1));
+        a = p.a;
+        b = p.b;
+        if (which == 0) {
+            memset(&warm, 0, sizeof warm);
+            ask_guarded(&warm_mpr, &b, &a, &ccd, &warm, NULL, no_end);
+        }
+        x = ask_guarded(&warm_mpr, &a, &b, &ccd, &warm, NULL, no_end);
+        if (x.code != CCD_HIT || !(fabs(x.depth - truth_value(&a, &b, x.dir)) <= 2 * pair_noise(&a, &b))
+            || !mpr_within(x.depth, p.truth.depth, tol, 2 * pair_noise(&a, &b), answer_supports(&x))) {
+            wrong++;
+            worst = fmax(worst, x.depth / p.truth.depth);
+        }
+    }
+    printf("%d of %d wrong, worst %.4g of the least depth", wrong, i, worst);
+    return wrong == 0;
+}
+
 /* --- U12: proofs between parallel discs ------------------------------------------------------ */
 
 static int judged_minimum(const shape_t *a, const shape_t *b, int loud)
@@ -538,6 +576,8 @@ int main(int argc, char **argv)
         {"U06", "ellipsoids that touch", touching_ellipsoids, 0, BROKEN},
         {"U06", "touches by one rule", touches, 0, BROKEN},
         {"U09", "boxes with a state of the swapped pair", swapped_state, 0, BROKEN},
+        {"U09", "MPR with a state of the swapped pair", state_of_others, 0, BROKEN},
+        {"U09", "MPR with a state of another pair", state_of_others, 1, BROKEN},
         {"U12", "the minimum of two cones 11 um apart", cones_apart, 0, BROKEN},
         {"U12", "the minimum of cylinders and cones on each other", discs_resting, 0, BROKEN},
     };
