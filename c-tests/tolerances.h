@@ -23,6 +23,10 @@
       "tolerance of an ordinary query relative to the size: CCD_INIT's for unit shapes") \
     X(MPR_DEEP, 1e-2, 1e-2, \
       "relative excess from which an answer of MPR counts as another local minimum") \
+    X(PROMISED, 1e-3, 1e-3, \
+      "part of its depth by which an answer of MPR may be above the least: its promise") \
+    X(LATE, 1e-2, 1e-2, \
+      "the same where MPR's support points were used up: nearly concentric round objects") \
     X(TABLE, 1e-2, 1e-2, \
       "the rate table's verdict: 1 % of the depth and two tolerances, for libccd's sake") \
     X(TABLE_CAP, 1e-3, 1e-3, \

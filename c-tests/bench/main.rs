@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The benchmark: `cargo bench --bench charts -- tables` prints supports, times and
-//! errors per pair set beside system libccd's and the paper's.
+//! errors per pair set beside system libccd's and the paper's; `-- phases` instructions
+//! of each query by phase, beside libccd's and Bullet's.
 //!
 //! Double precision only, as Debian's libccd is.
 
@@ -42,6 +43,8 @@ mod command {
         Hold,
         /// Every chart as CSV and SVG.
         Charts(charts::Options),
+        /// Instructions of a query by phase, as Markdown; runs this program under valgrind.
+        Phases(charts::phases::Options),
         /// One method over one set, for a profiler to watch.
         #[command(hide = true)]
         Once(charts::split::Once),
@@ -52,6 +55,7 @@ mod command {
             Command::Tables(options) => tables::run(&options),
             Command::Hold => tables::hold(),
             Command::Charts(options) => charts::run(&options),
+            Command::Phases(options) => charts::phases::run(&options),
             Command::Once(options) => charts::split::once(&options),
         }
     }

@@ -9,6 +9,7 @@ pub mod coherence;
 pub mod figure;
 pub mod models;
 pub mod paper;
+pub mod phases;
 pub mod results;
 pub mod split;
 
@@ -119,6 +120,7 @@ fn named(method: &str, start: &str) -> String {
     match method {
         "MPR" => "warmccd MPR (cold)".to_owned(),
         "MPR warm" => format!("warmccd MPR{start}"),
+        "GJK" | "MPR intersect" => format!("warmccd {method}{start}"),
         "local" | "minimum" => format!("warmccd {method}{start}"),
         method => format!("{method}{start}"),
     }

@@ -70,6 +70,33 @@ fn configurations_of_the_extension() {
     program("configurations").run(["extension"]);
 }
 
+/// Wrong answers that were found, as promises. A known failure that is mended fails this
+/// too: take its mark out of the table at the program's end.
+#[test]
+#[cfg(not(feature = "single"))]
+fn known_failures() {
+    program("failures").run(NO_ARGS);
+}
+
+/// What a query may cost in support points and stack, in the same way.
+#[test]
+#[cfg(not(feature = "single"))]
+fn known_costs() {
+    program("costs").run(NO_ARGS);
+}
+
+/// The slowest query of a million: prints a table, fails if one is too slow.
+#[test]
+#[ignore = "takes minutes"]
+#[cfg(not(feature = "single"))]
+fn slowest_of_a_million() {
+    let status = program("costs")
+        .command()
+        .args(["--mix", "1000000"])
+        .status();
+    assert!(status.is_ok_and(|s| s.success()));
+}
+
 /// T25, and the planar query.
 #[test]
 fn wrong_starts() {

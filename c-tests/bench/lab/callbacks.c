@@ -80,6 +80,16 @@ void bench_shape(shape_t *s, int type, const double p[3], const double *verts, i
     shape_turn(s, rot);
 }
 
+void bench_shape_shift(shape_t *s, const double by[3])
+{
+    shape_move(s, s->pos[0] + by[0], s->pos[1] + by[1], s->pos[2] + by[2]);
+}
+
+/* Where a profiler is told to begin and to end a part of its output. */
+__attribute__((noinline)) void bench_begin(void) { __asm__ volatile(""); }
+
+__attribute__((noinline)) void bench_end(void) { __asm__ volatile(""); }
+
 /* Where a shape is, and what it is. */
 void bench_shape_pose(const shape_t *s, double pos[3], double rot[9], int *type, double p[3])
 {

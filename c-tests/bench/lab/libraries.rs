@@ -74,6 +74,9 @@ type WarmMpr = unsafe extern "C-unwind" fn(
     *mut ccd_vec3_t,
 ) -> c_int;
 
+type WarmYes =
+    unsafe extern "C-unwind" fn(*const c_void, *const c_void, *const ccd_t, *mut Warm) -> c_int;
+
 /// What libccd's API offers, of either library.
 #[derive(Clone, Copy)]
 pub struct Classic {
@@ -88,6 +91,7 @@ pub struct Classic {
 pub struct Extension {
     pub guess: unsafe extern "C-unwind" fn(*mut Warm, *const ccd_vec3_t),
     pub mpr: WarmMpr,
+    pub mpr_intersect: WarmYes,
     pub local: WarmQuery,
     pub minimum: WarmQuery,
 }
@@ -150,6 +154,9 @@ pub struct Callbacks {
         *mut f64,
     ),
     pub shape_pose: unsafe extern "C" fn(*const c_void, *mut f64, *mut f64, *mut c_int, *mut f64),
+    pub shape_shift: unsafe extern "C" fn(*mut c_void, *const f64),
+    pub begin: unsafe extern "C" fn(),
+    pub end: unsafe extern "C" fn(),
 }
 
 /// Everything opened; lives as long as the process.
@@ -278,12 +285,16 @@ impl Libraries {
                     recording_frame: function(callbacks, "bench_recording_frame"),
                     recording_pair: function(callbacks, "bench_recording_pair"),
                     shape_pose: function(callbacks, "bench_shape_pose"),
+                    shape_shift: function(callbacks, "bench_shape_shift"),
+                    begin: function(callbacks, "bench_begin"),
+                    end: function(callbacks, "bench_end"),
                 },
                 system: Classic::of(system),
                 ours: Classic::of(ours),
                 extension: Extension {
                     guess: function(ours, "ccdWarmGuess"),
                     mpr: function(ours, "ccdMPRPenetrationWarm"),
+                    mpr_intersect: function(ours, "ccdMPRIntersectWarm"),
                     local: function(ours, "ccdPenetrationLocal"),
                     minimum: function(ours, "ccdPenetrationMinimum"),
                 },

@@ -19,7 +19,7 @@ use super::methods::Method;
 use super::scene::{Pair, Scene};
 
 /// What a query answered.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Answer {
     pub depth: f64,
     /// The way obj2 moves.

@@ -156,12 +156,50 @@ pub fn mpr<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a
 
 /// libccd's GJK and EPA.
 pub fn libccd_epa<'a>(libraries: &Libraries, tolerance: f64) -> Method<'a> {
-    let of = &libraries.system;
-    Method::new(
-        "libccd EPA",
-        classic(of.gjk, of.settings(&libraries.callbacks, tolerance)),
-    )
-    .within(tolerance)
+    gjk(libraries, &libraries.system, tolerance)
+}
+
+/// libccd's GJK and EPA, or what takes their place in this library.
+pub fn gjk<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
+    let query = classic(of.gjk, of.settings(&libraries.callbacks, tolerance));
+    if std::ptr::eq(of, &libraries.ours) {
+        Method::new("GJK", query).within(tolerance).of_ours()
+    } else {
+        Method::new("libccd EPA", query).within(tolerance)
+    }
+}
+
+/// Yes or no by MPR, of either library; the answer's numbers say nothing.
+pub fn intersect<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
+    let settings = of.settings(&libraries.callbacks, tolerance);
+    let query = of.mpr_intersect;
+    let run = move |_: &Scene, pair: &Pair| {
+        // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
+        let yes = unsafe { query(pair.a, pair.b, &settings) };
+        (yes == 1).then(Answer::default)
+    };
+    if std::ptr::eq(of, &libraries.ours) {
+        Method::new("MPR intersect", run).of_ours()
+    } else {
+        Method::new("libccd MPR intersect", run)
+    }
+}
+
+/// The same with one state a motion.
+pub fn intersect_warm<'a>(libraries: &'a Libraries, tolerance: f64) -> Method<'a> {
+    let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
+    let query = libraries.extension.mpr_intersect;
+    let mut state = Warm::COLD;
+    Method::new("MPR intersect", move |_, pair| {
+        if pair.frame == 0 {
+            state = Warm::COLD;
+        }
+        // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
+        let yes = unsafe { query(pair.a, pair.b, &settings, &mut state) };
+        (yes == 1).then(Answer::default)
+    })
+    .from(Start::Warm)
+    .of_ours()
 }
 
 /// What of the extension is asked.

@@ -77,21 +77,39 @@ pub struct Compiled {
     pub missing: Vec<(&'static str, String)>,
 }
 
+/// One part of peers.cpp, or why it does not compile.
+fn peer(libraries: &Libraries, flags: &[&str], with: &[&str]) -> Result<Classic, String> {
+    let flags = [&["-O3", "-march=x86-64-v2", "-std=c++17", "-w"], flags].concat();
+    let library = libraries.helper("peers.cpp", "c++", &flags, with)?;
+    Ok(Classic {
+        // SAFETY: peer_penetration has the type of libccd's queries.
+        gjk: unsafe { function(library, "peer_penetration") },
+        ..libraries.system
+    })
+}
+
+const BULLET: [&str; 3] = ["-DPEER_BULLET", "-isystem", "/usr/include/bullet"];
+
+/// Bullet's btGjkEpa3 alone, or why it is not here.
+pub fn bullet<'a>(libraries: &Libraries) -> Result<Method<'a>, String> {
+    peer(libraries, &BULLET, &[]).map(|of| bullet_of(libraries, of))
+}
+
+fn bullet_of<'a>(libraries: &Libraries, of: Classic) -> Method<'a> {
+    Method::new(
+        "Bullet EPA",
+        classic(of.gjk, of.settings(&libraries.callbacks, 1e-4)),
+    )
+}
+
 impl Compiled {
     pub fn build(libraries: &Libraries) -> Self {
         let mut missing = Vec::new();
-        let mut build = |name, flags: &[&str], with: &[&str]| {
-            let flags = [&["-O3", "-march=x86-64-v2", "-std=c++17", "-w"], flags].concat();
-            match libraries.helper("peers.cpp", "c++", &flags, with) {
-                // SAFETY: peer_penetration has the type of libccd's queries.
-                Ok(library) => Some(Classic {
-                    gjk: unsafe { function(library, "peer_penetration") },
-                    ..libraries.system
-                }),
-                Err(why) => {
-                    missing.push((name, why));
-                    None
-                }
+        let mut build = |name, flags: &[&str], with: &[&str]| match peer(libraries, flags, with) {
+            Ok(of) => Some(of),
+            Err(why) => {
+                missing.push((name, why));
+                None
             }
         };
         // Coal is in no Debian package: `pip install --target DIR coal-library`, then
@@ -104,11 +122,7 @@ impl Compiled {
         ];
         let eigen = "/usr/include/eigen3";
         Self {
-            bullet: build(
-                "Bullet",
-                &["-DPEER_BULLET", "-isystem", "/usr/include/bullet"],
-                &[],
-            ),
+            bullet: build("Bullet", &BULLET, &[]),
             fcl: build("FCL", &["-DPEER_FCL", "-isystem", eigen], &["-lfcl"]),
             coal: build(
                 "Coal",
@@ -121,11 +135,7 @@ impl Compiled {
 
     /// Bullet's btGjkEpa3, double.
     pub fn bullet<'a>(&self, libraries: &Libraries) -> Option<Method<'a>> {
-        let of = self.bullet?;
-        Some(Method::new(
-            "Bullet EPA",
-            classic(of.gjk, of.settings(&libraries.callbacks, 1e-4)),
-        ))
+        Some(bullet_of(libraries, self.bullet?))
     }
 
     /// FCL's own EPA.

@@ -282,6 +282,17 @@ impl Scene {
         }
     }
 
+    /// Moves the second shape of every pair out along its least direction until they
+    /// are `gap` apart, metres.
+    pub fn part(&mut self, libraries: &Libraries, gap: f64) {
+        for pair in &mut self.pairs {
+            let by = pair.truth.normal.map(|n| n * (pair.truth.depth + gap));
+            // SAFETY: a shape of the scene.
+            unsafe { (libraries.callbacks.shape_shift)(pair.b, by.as_ptr()) };
+            pair.truth.depth = -gap;
+        }
+    }
+
     /// Shapes at given poses, `motion` steps to a motion.
     pub fn placed(
         libraries: &Libraries,

@@ -1,0 +1,399 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Instructions of a query by phase, counted by callgrind on this very program: the
+//! search for a direction, the proof, the contact position, the callbacks, the rest;
+//! beside libccd's and Bullet's.
+//!
+//! Phases are told by module. Inlined code keeps its source file in the debug
+//! information, so an instruction belongs to the module of its own line; where that is
+//! one of those that every phase uses, or another crate's, to the module of ours that
+//! came last in the same function.
+
+use std::path::Path;
+use std::process::Command;
+
+use clap::Args;
+use comfy_table::{Table, presets::ASCII_MARKDOWN};
+
+use crate::harness;
+use crate::lab::libraries::Libraries;
+use crate::lab::methods::{self, Ask, Method, Start};
+use crate::lab::peers;
+use crate::lab::progress;
+use crate::lab::scene::Scene;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Finds a direction, or yes or no.
+    Search,
+    /// Encloses the origin until the bounds meet.
+    Proof,
+    /// Where the objects touch.
+    Patch,
+    /// C interface, state, bookkeeping, memory.
+    Rest,
+    /// In the callbacks' own object.
+    Callbacks,
+}
+
+/// The modules of `src`; `None` is used by every phase and counts as its user's. A
+/// module that is missing here fails this file's test.
+const MODULES: &[(&str, Option<Phase>)] = &[
+    ("bundle", Some(Phase::Search)),
+    ("descent", Some(Phase::Search)),
+    ("gjk", Some(Phase::Search)),
+    ("local", Some(Phase::Search)),
+    ("planar", Some(Phase::Search)),
+    ("portal", Some(Phase::Search)),
+    ("simplex", Some(Phase::Search)),
+    ("start", Some(Phase::Search)),
+    ("epa", Some(Phase::Proof)),
+    ("expansion", Some(Phase::Proof)),
+    ("plane", Some(Phase::Proof)),
+    ("polytope", Some(Phase::Proof)),
+    ("contact_patch", Some(Phase::Patch)),
+    ("patch", Some(Phase::Patch)),
+    ("polygon", Some(Phase::Patch)),
+    ("contact", Some(Phase::Rest)),
+    ("contact_manifold", Some(Phase::Rest)),
+    ("ffi", Some(Phase::Rest)),
+    ("global", Some(Phase::Rest)),
+    ("query", Some(Phase::Rest)),
+    ("shapes", Some(Phase::Rest)),
+    ("state", Some(Phase::Rest)),
+    ("support", Some(Phase::Rest)),
+    ("support_set", Some(Phase::Rest)),
+    ("warm", Some(Phase::Rest)),
+    ("barycentric", None),
+    ("lib", None),
+    ("math", None),
+    ("nearest", None),
+    ("precision", None),
+];
+
+/// What the rows are about: a pair set, moved this far apart if it is.
+const SCENES: [(&str, &str, Option<f64>); 13] = [
+    ("boxes, shallow", "box_box_sh", None),
+    ("boxes, deep", "box_box", None),
+    ("hulls, shallow", "p162_p162_sh", None),
+    ("hulls, deep", "p162_p162", None),
+    ("capsules, shallow", "cap_cap_sh", None),
+    ("capsules, deep", "cap_cap", None),
+    ("boxes, 1 cm apart", "box_box_sh", Some(0.01)),
+    ("hulls, 1 cm apart", "p162_p162_sh", Some(0.01)),
+    ("capsules, 1 cm apart", "cap_cap_sh", Some(0.01)),
+    ("boxes, 2 m apart", "box_box_sh", Some(2.0)),
+    ("boxes in motion", "box_box_trajS", None),
+    ("hulls in motion", "p162_p162_trajS", None),
+    ("capsules in motion", "cap_cap_trajS", None),
+];
+
+#[derive(Args)]
+pub struct Options {
+    /// Poses of a pair set.
+    #[arg(long, default_value_t = 100)]
+    poses: usize,
+    /// Only scenes whose name holds this.
+    #[arg(long, default_value = "")]
+    scene: String,
+    /// What callgrind watches.
+    #[arg(long, hide = true)]
+    watched: bool,
+}
+
+struct Part {
+    name: &'static str,
+    scene: Scene,
+}
+
+fn parts(libraries: &Libraries, options: &Options) -> Vec<Part> {
+    let wanted = SCENES.iter().filter(|s| s.0.contains(&options.scene));
+    wanted
+        .map(|&(name, set, gap)| {
+            let mut scene = Scene::load(libraries, set, options.poses);
+            if let Some(gap) = gap {
+                scene.part(libraries, gap);
+            }
+            Part { name, scene }
+        })
+        .collect()
+}
+
+/// The methods of a part, in the order of the table; the same in both processes.
+fn asked<'a>(libraries: &'a Libraries, part: &Part) -> Vec<Method<'a>> {
+    let tolerance = 1e-6;
+    let (ours, system) = (&libraries.ours, &libraries.system);
+    let mut all = vec![methods::mpr(libraries, ours, tolerance)];
+    if part.scene.motion > 0 {
+        let warm = |ask| methods::extension(libraries, ask, Start::Warm, tolerance);
+        all.push(warm(Ask::Mpr));
+        all.push(warm(Ask::Minimum));
+        all.push(methods::intersect(libraries, ours, tolerance));
+        all.push(methods::intersect_warm(libraries, tolerance));
+        all.push(methods::mpr(libraries, system, tolerance));
+        return all;
+    }
+    let minimum = methods::extension(libraries, Ask::Minimum, Start::None, tolerance);
+    all.push(methods::gjk(libraries, ours, tolerance));
+    all.push(minimum);
+    all.push(methods::intersect(libraries, ours, tolerance));
+    all.push(methods::mpr(libraries, system, tolerance));
+    all.push(methods::libccd_epa(libraries, tolerance));
+    all.push(methods::intersect(libraries, system, tolerance));
+    all
+}
+
+/// The part's methods and, where it is here, Bullet.
+fn everyone<'a>(
+    libraries: &'a Libraries,
+    part: &Part,
+    bullet: &mut Option<Method<'a>>,
+    mut each: impl FnMut(&mut Method<'a>),
+) {
+    asked(libraries, part).iter_mut().for_each(&mut each);
+    if part.scene.motion == 0 {
+        bullet.iter_mut().for_each(each);
+    }
+}
+
+/// Instructions of one method over one part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Count {
+    search: u64,
+    proof: u64,
+    patch: u64,
+    rest: u64,
+    callbacks: u64,
+}
+
+impl Count {
+    fn of(&mut self, phase: Phase) -> &mut u64 {
+        match phase {
+            Phase::Search => &mut self.search,
+            Phase::Proof => &mut self.proof,
+            Phase::Patch => &mut self.patch,
+            Phase::Rest => &mut self.rest,
+            Phase::Callbacks => &mut self.callbacks,
+        }
+    }
+
+    fn solver(&self) -> u64 {
+        self.search + self.proof + self.patch + self.rest
+    }
+}
+
+/// What a module's name says, if it is one of ours: outer `None` if not.
+fn module(name: &str) -> Option<Option<Phase>> {
+    MODULES.iter().find(|(m, _)| *m == name).map(|(_, p)| *p)
+}
+
+/// The module of a source file under `src`.
+fn file_module<'a>(file: &'a str, src: &str) -> Option<&'a str> {
+    let inner = file.strip_prefix(src)?.trim_start_matches('/');
+    inner.split('/').next()?.split('.').next()
+}
+
+/// The module that a function's path begins with: `ccd::epa::…`, `<ccd::epa::… as …>::…`.
+fn function_module(function: &str) -> Option<&str> {
+    let (_, path) = function.split_once("ccd::")?;
+    path.split(|c: char| !c.is_alphanumeric() && c != '_')
+        .next()
+}
+
+/// Self cost by phase of a callgrind file written without name compression, but for what
+/// the watched program itself spends.
+fn parse(text: &str, src: &str, program: &str) -> Count {
+    let mut count = Count::default();
+    let (mut object, mut called) = ("", false);
+    let (mut phase, mut own) = (Phase::Rest, Phase::Rest);
+    for line in text.lines() {
+        let file = ["fl=", "fi=", "fe="]
+            .iter()
+            .find_map(|key| line.strip_prefix(key));
+        if let Some(name) = line.strip_prefix("ob=") {
+            object = name;
+        } else if let Some(name) = line.strip_prefix("fn=") {
+            own = function_module(name)
+                .and_then(module)
+                .flatten()
+                .unwrap_or(Phase::Rest);
+            phase = own;
+        } else if let Some(file) = file {
+            match file_module(file, src).and_then(module) {
+                Some(Some(told)) => phase = told,
+                // The line of a shared module, or of another crate: as it was.
+                _ if line.starts_with("fl=") => phase = own,
+                _ => (),
+            }
+        } else if line.starts_with("calls=") {
+            // The next line is the callee's cost, counted where it is spent.
+            called = true;
+        } else if line.starts_with(|c: char| c.is_ascii_digit()) {
+            let cost = line
+                .split_whitespace()
+                .nth(1)
+                .and_then(|c| c.parse::<u64>().ok());
+            if !std::mem::take(&mut called) && object != program {
+                let phase = if object.ends_with("callbacks.so") {
+                    Phase::Callbacks
+                } else {
+                    phase
+                };
+                *count.of(phase) += cost.unwrap_or(0);
+            }
+        }
+    }
+    count
+}
+
+/// The watched process: every method over every part, between a begin and an end.
+fn watched(libraries: &Libraries, options: &Options) {
+    let mut bullet = peers::bullet(libraries).ok();
+    for part in parts(libraries, options) {
+        everyone(libraries, &part, &mut bullet, |method| {
+            // SAFETY: does nothing.
+            unsafe { (libraries.callbacks.begin)() };
+            for pair in &part.scene.pairs {
+                std::hint::black_box(method.query(&part.scene, pair));
+            }
+            // SAFETY: does nothing.
+            unsafe { (libraries.callbacks.end)() };
+        });
+    }
+}
+
+/// Runs this program under callgrind: the counts in the order in which they were made.
+fn counts(options: &Options) -> Result<Vec<Count>, String> {
+    let work = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let out = work.path().join("out");
+    let program = std::env::current_exe().map_err(|e| e.to_string())?;
+    let run = Command::new("valgrind")
+        .args(["--tool=callgrind", "--compress-strings=no"])
+        .args(["--compress-pos=no"])
+        .args(["--zero-before=bench_begin", "--dump-after=bench_end"])
+        .arg(format!("--callgrind-out-file={}", out.display()))
+        .arg(&program)
+        .args(["phases", "--watched", "--scene", &options.scene])
+        .args(["--poses", &options.poses.to_string()])
+        // A lazy binding would be counted as the query's.
+        .env("LD_BIND_NOW", "1")
+        .output()
+        .map_err(|e| format!("valgrind: {e}"))?;
+    if !run.status.success() {
+        return Err(String::from_utf8_lossy(&run.stderr).into_owned());
+    }
+    let src = harness::root().join("src").display().to_string();
+    let file = |i: usize| Path::new(&out).with_extension(i.to_string());
+    Ok((1..)
+        .map_while(|i| std::fs::read_to_string(file(i)).ok())
+        .map(|text| parse(&text, &src, &program.display().to_string()))
+        .collect())
+}
+
+pub fn run(options: &Options) {
+    let libraries = Libraries::open();
+    if options.watched {
+        return watched(&libraries, options);
+    }
+    println!("{}\n", progress::machine(&libraries));
+    let mut bullet = match peers::bullet(&libraries) {
+        Ok(bullet) => Some(bullet),
+        Err(why) => {
+            println!(
+                "not measured here: Bullet: {}",
+                why.lines().next().unwrap_or("")
+            );
+            None
+        }
+    };
+    let mut counts = match counts(options) {
+        Ok(counts) => counts.into_iter(),
+        Err(why) => {
+            println!("instructions not counted: {why}");
+            return;
+        }
+    };
+    let mut table = Table::new();
+    table.load_style(ASCII_MARKDOWN);
+    table.set_header([
+        "pairs",
+        "query",
+        "supports",
+        "instructions",
+        "search",
+        "proof",
+        "patch",
+        "rest",
+        "callbacks",
+    ]);
+    for part in parts(&libraries, options) {
+        let queries = part.scene.pairs.len() as f64;
+        everyone(&libraries, &part, &mut bullet, |method| {
+            let count = counts.next().expect("a count for every method");
+            assert!(count.callbacks > 0, "callgrind saw no {}", method.name);
+            // SAFETY: shapes of the scene.
+            let calls = |p: &crate::lab::scene::Pair| unsafe { (libraries.callbacks.calls)(p.a) };
+            let before: u64 = part.scene.pairs.iter().map(calls).sum();
+            for pair in &part.scene.pairs {
+                method.query(&part.scene, pair);
+            }
+            let after: u64 = part.scene.pairs.iter().map(calls).sum();
+            let each = |n: u64| format!("{:.0}", n as f64 / queries);
+            // Others' phases are not told apart.
+            let phase = |n: u64| {
+                if method.ours { each(n) } else { String::new() }
+            };
+            table.add_row([
+                part.name.to_owned(),
+                super::name_of(method),
+                format!("{:.1}", (after - before) as f64 / queries),
+                each(count.solver()),
+                phase(count.search),
+                phase(count.proof),
+                phase(count.patch),
+                phase(count.rest),
+                each(count.callbacks),
+            ]);
+        });
+    }
+    assert!(counts.next().is_none(), "more counts than methods");
+    println!(
+        "Instructions a query, without callbacks but in the last column; the solver's by phase.\n\n{table}"
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn callgrind_self_cost_by_phase() {
+        let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/src/epa.rs\n\
+            fn=ccd::epa::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/patch.rs\n3 100\n\
+            fi=/w/src/math.rs\n4 200\nfe=/w/src/epa.rs\n5 1\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
+            fl=/rustc/core/zip.rs\nfn=<core::Zip<ccd::descent::model::M> as X>::next\n7 1000\n\
+            ob=/bin/charts\nfl=/w/c-tests/lab.rs\nfn=run\n1 77\nob=/l/libccd.so\n\
+            fl=/w/src/ffi/collide.rs\nfn=ccdMPRPenetration\n8 10000\nfi=/w/src/portal.rs\n9 3\n";
+        let expected = super::Count {
+            search: 1003,
+            proof: 15,
+            patch: 300,
+            rest: 10000,
+            callbacks: 10,
+        };
+        assert_eq!(super::parse(text, "/w/src", "/bin/charts"), expected);
+    }
+
+    #[test]
+    fn every_module_has_its_phase() {
+        let src = crate::harness::root().join("src");
+        let names = std::fs::read_dir(src).expect("the sources");
+        for entry in names {
+            let path = entry.expect("an entry").path();
+            let name = path.file_stem().and_then(|n| n.to_str()).expect("a name");
+            assert!(
+                super::MODULES.iter().any(|(m, _)| *m == name),
+                "{name} is missing in the table of phases"
+            );
+        }
+    }
+}

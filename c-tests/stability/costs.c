@@ -1,0 +1,526 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What a query may cost, as promises: support points of warm queries and of the slowest
+ * ones, bytes of stack.
+ *
+ *   costs [ID]             exit code 1 if a promise is not as the table at the end marks it
+ *   costs --mix N          the slowest of the first N pairs of the mix, a line a placement */
+
+#define _GNU_SOURCE /* MAP_ANONYMOUS */
+#include "known.h"
+#include "mix.h"
+
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <ucontext.h>
+
+static const double tol = 1e-6; /* metres */
+static const unsigned long no_end = 400000;
+
+static ccd_t query(void)
+{
+    ccd_t ccd;
+    shape_query(&ccd);
+    ccd.support1 = ccd.support2 = judge_support;
+    ccd.mpr_tolerance = ccd.epa_tolerance = tol;
+    return ccd;
+}
+
+/* Support points of one call. */
+static unsigned long supports(int what, const shape_t *a, const shape_t *b, ccd_warm_t *warm)
+{
+    entry_t e = {"", 0, 0, STATE_NONE};
+    shape_t sa = *a, sb = *b;
+    const ccd_t ccd = query();
+    answer_t x;
+    e.ask = what;
+    x = ask_guarded(&e, &sa, &sb, &ccd, warm, NULL, no_end);
+    return answer_supports(&x);
+}
+
+/* The same of ccdMPRPenetrationWarm where nobody reads the position. */
+static unsigned long supports_unread(const shape_t *a, const shape_t *b, ccd_warm_t *warm)
+{
+    shape_t sa = *a, sb = *b;
+    const ccd_t ccd = query();
+    ccd_real_t depth;
+    ccd_vec3_t dir;
+    judge_limit = no_end;
+    judge_calls = 0;
+    OURS(ccdMPRPenetrationWarm)(&sa, &sb, &ccd, warm, &depth, &dir, NULL);
+    return judge_calls / 2;
+}
+
+static ccd_warm_t fresh(void)
+{
+    ccd_warm_t warm;
+    memset(&warm, 0, sizeof warm);
+    return warm;
+}
+
+/* Two shapes of these kinds that overlap by this part of the size. */
+static void overlapping(dice_t *d, pair_t *p, const int *kinds, int n, double part)
+{
+    do {
+        p->a = pair_shape(d, p->verts[0], kinds[dice_below(d, n)], .1, 1);
+        p->b = pair_shape(d, p->verts[1], kinds[dice_below(d, n)], .1, 1);
+        pair_turn(d, &p->a);
+        pair_turn(d, &p->b);
+        pair_scatter(d, p, 1, 1e-3);
+        p->truth = truth_depth(&p->a, &p->b);
+    } while (!(p->truth.lower > part * pair_size(&p->a, &p->b)));
+    pair_pull_out(p, part * pair_size(&p->a, &p->b));
+}
+
+static const int any_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, PAIR_ROUND};
+static const int flat_kind[] = {SHAPE_BOX, PAIR_ROUND};
+static const int round_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_ELLIPSOID};
+
+static void move_along(shape_t *s, const double n[3], double by)
+{
+    shape_move(s, (double)s->pos[0] + by * n[0], (double)s->pos[1] + by * n[1], (double)s->pos[2] + by * n[2]);
+}
+
+/* --- U07: pairs that overlap pay nothing for having been apart ------------------------------ */
+
+static int having_been_apart(int what)
+{
+    unsigned long apart = 0, never = 0, cold = 0;
+    int i;
+    for (i = 0; i < 200; i++) {
+        static pair_t p;
+        dice_t d = dice(4000, (uint64_t)i);
+        ccd_warm_t first = fresh(), second = fresh();
+        shape_t away;
+        overlapping(&d, &p, any_kind, 7, 1e-2);
+        away = p.b;
+        move_along(&away, p.truth.n, 2e-2 * pair_size(&p.a, &p.b));
+        supports(what, &p.a, &away, &first);
+        supports(what, &p.a, &p.b, &first); /* the old direction is found to be none */
+        apart += supports(what, &p.a, &p.b, &first);
+        supports(what, &p.a, &p.b, &second);
+        never += supports(what, &p.a, &p.b, &second);
+        cold += supports(what, &p.a, &p.b, NULL);
+    }
+    printf("%.2f supports, never apart %.2f, cold %.2f", (double)apart / i, (double)never / i, (double)cold / i);
+    return (double)apart <= 1.02 * (double)never && (double)apart <= 1.02 * (double)cold;
+}
+
+/* --- U08: nor do pairs asked once ------------------------------------------------------------- */
+
+static int asked_once(int which)
+{
+    const double gap = which % 2 ? 3 : .05;
+    const int what = which < 2 ? ASK_LOCAL : ASK_MPR_WARM;
+    unsigned long warm = 0, cold = 0;
+    int i;
+    for (i = 0; i < 200; i++) {
+        static pair_t p;
+        dice_t d = dice(4100, (uint64_t)i);
+        ccd_warm_t state = fresh();
+        double axis[3], rot[9], n[3];
+        int k;
+        overlapping(&d, &p, any_kind, 7, 1e-2);
+        move_along(&p.b, p.truth.n, gap * pair_size(&p.a, &p.b));
+        if (what == ASK_LOCAL) {
+            /* a guess ten degrees off */
+            ccd_vec3_t guess;
+            dice_unit(&d, axis);
+            n[0] = axis[1] * p.truth.n[2] - axis[2] * p.truth.n[1];
+            n[1] = axis[2] * p.truth.n[0] - axis[0] * p.truth.n[2];
+            n[2] = axis[0] * p.truth.n[1] - axis[1] * p.truth.n[0];
+            rotation_about(n[0], n[1], n[2], 3.14159265358979323846 / 18, rot);
+            for (k = 0; k < 3; k++)
+                guess.v[k] = (ccd_real_t)truth_dot3(rot + 3 * k, p.truth.n);
+            OURS(ccdWarmGuess)(&state, &guess);
+        }
+        warm += supports(what, &p.a, &p.b, &state);
+        cold += supports(what, &p.a, &p.b, NULL);
+    }
+    printf("%.2f supports with a state for once, %.2f without", (double)warm / i, (double)cold / i);
+    return (double)warm <= 1.02 * (double)cold;
+}
+
+/* --- U11: contacts that do not change ------------------------------------------------------------ */
+
+/* A box that rests on a box, turned about the vertical: faces over each other. */
+static void resting_boxes(dice_t *d, pair_t *p)
+{
+    double rot[9], turned[9], about[9], v[3], pos[3];
+    int k;
+    p->a = pair_shape(d, p->verts[0], SHAPE_BOX, .3, 1);
+    p->b = pair_shape(d, p->verts[1], SHAPE_BOX, .1, .3);
+    dice_rotation(d, rot);
+    rotation_about(0, 0, 1, dice_in(d, .1, 1.4), about);
+    rotation_times(rot, about, turned);
+    v[0] = dice_in(d, -.5, .5) * (double)p->a.p[0];
+    v[1] = dice_in(d, -.5, .5) * (double)p->a.p[1];
+    v[2] = (double)p->a.p[2] + (double)p->b.p[2] - dice_log(d, 1e-5, 1e-3);
+    for (k = 0; k < 3; k++)
+        pos[k] = truth_dot3(rot + 3 * k, v);
+    shape_turn(&p->a, rot);
+    shape_turn(&p->b, turned);
+    shape_move(&p->b, pos[0], pos[1], pos[2]);
+}
+
+enum { UNCHANGED_FACES, UNCHANGED_FACES_UNREAD, UNCHANGED_FLAT, UNCHANGED_ROUND, UNCHANGED_ROUND_DEEP };
+
+static int unchanged(int which)
+{
+    unsigned long again = 0, cold = 0;
+    int i, k;
+    for (i = 0; i < 200; i++) {
+        static pair_t p;
+        dice_t d = dice(4200 + (uint64_t)which, (uint64_t)i);
+        ccd_warm_t warm = fresh();
+        unsigned long n = 0;
+        if (which <= UNCHANGED_FACES_UNREAD)
+            resting_boxes(&d, &p);
+        else if (which == UNCHANGED_FLAT)
+            overlapping(&d, &p, flat_kind, 2, dice_log(&d, 1e-5, 1e-2));
+        else
+            overlapping(&d, &p, round_kind, 3, which == UNCHANGED_ROUND ? dice_log(&d, 1e-5, 1e-2) : .1);
+        for (k = 0; k < 3; k++) {
+            n = which == UNCHANGED_FACES_UNREAD ? supports_unread(&p.a, &p.b, &warm)
+                                                : supports(ASK_MPR_WARM, &p.a, &p.b, &warm);
+            cold += k ? 0 : n;
+        }
+        again += n;
+    }
+    printf("%.2f supports asked again, cold %.2f", (double)again / i, (double)cold / i);
+    return which < UNCHANGED_ROUND ? (double)again <= 4.5 * i : (double)again <= .7 * (double)cold;
+}
+
+/* --- U04: the slowest queries ---------------------------------------------------------------------- */
+
+/* ccdMPRPenetration cold, from the state of the pair before, and asked again: never more
+ * than this. */
+enum { MPR_MOST = 400, MINIMUM_MOST = 1500 };
+
+static int slowest_mpr(int placement)
+{
+    static mix_t p;
+    ccd_warm_t foreign = fresh();
+    unsigned long most[3] = {0, 0, 0}, at[3] = {0, 0, 0}, over = 0;
+    int i, k;
+    for (i = 0; i < 10000; i++) {
+        ccd_warm_t again = fresh();
+        unsigned long n[3];
+        mix_pair((uint64_t)i, placement, &p);
+        n[0] = supports(ASK_MPR_WARM, &p.a, &p.b, &again);
+        n[1] = supports(ASK_MPR_WARM, &p.a, &p.b, &foreign);
+        n[2] = supports(ASK_MPR_WARM, &p.a, &p.b, &again);
+        for (k = 0; k < 3; k++) {
+            over += n[k] > MPR_MOST;
+            if (n[k] > most[k]) {
+                most[k] = n[k];
+                at[k] = (unsigned long)i;
+            }
+        }
+    }
+    printf("at most %lu supports cold (pair %lu), %lu from another's state (%lu), %lu again (%lu), %lu over %d", most[0], at[0],
+           most[1], at[1], most[2], at[2], over, MPR_MOST);
+    return over == 0;
+}
+
+/* Minima that form a curve or a surface, by every query that promises the minimum. */
+static int slowest_minimum(int which)
+{
+    static const struct {
+        const char *what;
+        int a, b;
+        double pa[3], pb[3], at[3];
+    } pairs[] = {
+        {"concentric spheres", SHAPE_SPHERE, SHAPE_SPHERE, {1, 0, 0}, {.1, 0, 0}, {0, 0, 0}},
+        {"one sphere twice", SHAPE_SPHERE, SHAPE_SPHERE, {1, 0, 0}, {1, 0, 0}, {0, 0, 0}},
+        {"a point in a sphere's centre", SHAPE_SPHERE, SHAPE_BOX, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+        {"coaxial capsules", SHAPE_CAPSULE, SHAPE_CAPSULE, {.1, .5, 0}, {.1, .5, 0}, {0, 0, .3}},
+        {"parallel capsules", SHAPE_CAPSULE, SHAPE_CAPSULE, {.3, .5, 0}, {.2, .4, 0}, {1e-7, 0, .1}},
+        {"coaxial cylinders", SHAPE_CYLINDER, SHAPE_CYLINDER, {.3, 1, 0}, {.2, 1, 0}, {0, 0, .1}},
+        {"nearly coaxial cylinders", SHAPE_CYLINDER, SHAPE_CYLINDER, {.3, 1, 0}, {.2, 1, 0}, {1e-4, 1e-5, .1}},
+        {"a sphere on a cylinder's axis", SHAPE_CYLINDER, SHAPE_SPHERE, {.3, 1, 0}, {.2, 0, 0}, {0, 0, .1}},
+        {"coaxial cone and capsule", SHAPE_CONE, SHAPE_CAPSULE, {.4, 1, 0}, {.2, .3, 0}, {0, 0, -.3}},
+        {"a spheroid around a sphere", SHAPE_ELLIPSOID, SHAPE_SPHERE, {.3, .3, 1}, {.2, 0, 0}, {0, 0, 0}},
+    };
+    static const int asks[] = {ASK_GJK, ASK_MINIMUM};
+    unsigned long most = 0;
+    int i, k, slow = 0, wrong = 0;
+    (void)which;
+    for (i = 0; i < (int)(sizeof pairs / sizeof pairs[0]); i++) {
+        shape_t a = shape_make(pairs[i].a, pairs[i].pa[0], pairs[i].pa[1], pairs[i].pa[2]);
+        shape_t b = shape_make(pairs[i].b, pairs[i].pb[0], pairs[i].pb[1], pairs[i].pb[2]);
+        double noise;
+        truth_t t;
+        shape_move(&b, pairs[i].at[0], pairs[i].at[1], pairs[i].at[2]);
+        noise = 2 * pair_noise(&a, &b);
+        t = truth_depth_within(&a, &b, 1e-6);
+        for (k = 0; k < 2; k++) {
+            entry_t e = {"", 0, 0, STATE_NONE};
+            answer_t x;
+            e.ask = asks[k];
+            x = ask(&e, &a, &b, tol, t.n, no_end);
+            if (answer_supports(&x) > MINIMUM_MOST) {
+                printf("%s %lu; ", pairs[i].what, answer_supports(&x));
+                slow++;
+            }
+            most = answer_supports(&x) > most ? answer_supports(&x) : most;
+            if ((x.code != CCD_HIT && x.code != CCD_LIMIT) || !(fabs(x.depth - truth_value(&a, &b, x.dir)) <= noise)
+                || !(x.depth <= t.depth + tol + noise) || (x.has_proof && !(x.lower <= t.depth + noise))) {
+                printf("%s %.17g wrong, truth %.17g; ", pairs[i].what, x.depth, t.depth);
+                wrong++;
+            }
+        }
+    }
+    printf("at most %lu supports, %d over %d, %d wrong", most, slow, MINIMUM_MOST, wrong);
+    return slow == 0 && wrong == 0;
+}
+
+/* The same over nearly coincident pairs of the mix. */
+static int slowest_minimum_mix(int what)
+{
+    static mix_t p;
+    unsigned long most = 0, at = 0, over = 0;
+    int i;
+    for (i = 0; i < 1500; i++) {
+        unsigned long n;
+        mix_pair((uint64_t)i, MIX_COINCIDENT, &p);
+        n = supports(what, &p.a, &p.b, NULL);
+        over += n > MINIMUM_MOST;
+        if (n > most) {
+            most = n;
+            at = (unsigned long)i;
+        }
+    }
+    printf("at most %lu supports (pair %lu), %lu of %d over %d", most, at, over, i, MINIMUM_MOST);
+    return over == 0;
+}
+
+/* --- U03: stack --------------------------------------------------------------------------------------- */
+
+/* A painted stack of its own for one call; how far the paint is gone tells how deep the
+ * call went. What the callbacks take alone, and a call that is refused at once, is taken
+ * off. */
+enum { STACK_WORDS = 1 << 15 };
+static const uint64_t paint = UINT64_C(0xa5a5a5a55a5a5a5a);
+static uint64_t *stack_floor;
+static ucontext_t stack_outer, stack_inner;
+static const entry_t *stack_entry; /* NULL: the callbacks alone */
+static shape_t *stack_a, *stack_b;
+static ccd_t stack_query;
+static ccd_warm_t *stack_warm;
+static const ccd_vec3_t stack_along = {{1, 0, 0}};
+static const ccd_vec3_t *stack_dir; /* NULL: refused by those that need one */
+
+static void on_the_stack(void)
+{
+    static answer_t out;
+    ccd_vec3_t point;
+    if (stack_entry) {
+        ask_once(stack_entry, stack_a, stack_b, &stack_query, stack_warm, stack_dir, &out);
+    } else {
+        judge_support(stack_a, &stack_along, &point);
+        judge_support(stack_b, &stack_along, &point);
+    }
+}
+
+static size_t stack_touched(void)
+{
+    size_t i, touched;
+    getcontext(&stack_inner);
+    stack_inner.uc_stack.ss_sp = stack_floor;
+    stack_inner.uc_stack.ss_size = STACK_WORDS * sizeof *stack_floor;
+    stack_inner.uc_link = &stack_outer;
+    makecontext(&stack_inner, on_the_stack, 0);
+    swapcontext(&stack_outer, &stack_inner);
+    for (i = 0; i < STACK_WORDS && stack_floor[i] == paint; i++)
+        ;
+    touched = (STACK_WORDS - i) * sizeof *stack_floor;
+    for (; i < STACK_WORDS; i++)
+        stack_floor[i] = paint;
+    return touched;
+}
+
+enum { STACK_MISS, STACK_SHALLOW, STACK_POLYTOPES, STACK_ANY };
+
+static int stack_class(const mix_t *p)
+{
+    static const double none[3] = {0, 0, 0};
+    entry_t least = {"", 0, ASK_MINIMUM, STATE_NONE};
+    const answer_t x = ask(&least, &p->a, &p->b, tol, none, no_end);
+    const int flat = (p->a.type == SHAPE_BOX || p->a.type == SHAPE_POLYTOPE) && (p->b.type == SHAPE_BOX || p->b.type == SHAPE_POLYTOPE);
+    return x.code == CCD_MISS ? STACK_MISS
+        : x.depth <= 1e-2 * pair_size(&p->a, &p->b) ? STACK_SHALLOW
+        : flat ? STACK_POLYTOPES
+               : STACK_ANY;
+}
+
+/* All MPR calls of one class, or every call of all: the deepest. */
+static int stack_of(int class)
+{
+    static const entry_t refused = {"", 0, ASK_ALONG, STATE_NONE};
+    static mix_t p;
+    size_t empty, most[ENTRIES] = {0}, limit = class == STACK_ANY ? 44 * 1024 : 12 * 1024, deepest = 0;
+    int i, k, asked = 0;
+    stack_query = query();
+    if (!stack_floor)
+        stack_floor = (uint64_t *)malloc(STACK_WORDS * sizeof *stack_floor);
+    if (!stack_floor)
+        return 0;
+    for (i = 0; i < STACK_WORDS; i++)
+        stack_floor[i] = paint;
+    judge_limit = no_end;
+    for (i = 0; i < 2000; i++) {
+        mix_pair((uint64_t)i, -1, &p);
+        stack_a = &p.a;
+        stack_b = &p.b;
+        stack_entry = NULL;
+        empty = stack_touched();
+        stack_entry = &refused;
+        stack_dir = NULL;
+        empty += stack_touched();
+        stack_dir = &stack_along;
+        if (class != STACK_ANY && stack_class(&p) != class)
+            continue;
+        asked++;
+        for (k = 0; k < (int)ENTRIES; k++) {
+            const entry_t *e = &entries[k];
+            const int is_mpr = e->ask == ASK_MPR || e->ask == ASK_MPR_WARM || e->ask == ASK_MPR_INTERSECT
+                || e->ask == ASK_MPR_INTERSECT_WARM;
+            ccd_warm_t warm = fresh();
+            size_t n;
+            if (e->system || (class != STACK_ANY && !is_mpr))
+                continue;
+            stack_entry = e;
+            stack_warm = e->state == STATE_NONE ? NULL : &warm;
+            judge_calls = 0;
+            n = stack_touched();
+            if (e->state == STATE_AGAIN) {
+                judge_calls = 0;
+                n = stack_touched();
+            }
+            n = n > empty ? n - empty : 0;
+            most[k] = n > most[k] ? n : most[k];
+        }
+    }
+    for (k = 0; k < (int)ENTRIES; k++) {
+        if (most[k] > limit)
+            printf("%s %zu; ", entries[k].name, most[k]);
+        deepest = most[k] > deepest ? most[k] : deepest;
+    }
+    printf("at most %zu bytes in %d pairs, %zu asked for", deepest, asked, limit);
+    return deepest <= limit;
+}
+
+/* A clear miss on a fiber of 48 KB with a guard page below. */
+static int small_fiber(int which)
+{
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE), room = 48 * 1024;
+    shape_t a = shape_box(.5, .4, .3), b = shape_cylinder(.3, .4);
+    int broken = 0, k;
+    (void)which;
+    shape_move(&b, 5, 0, 0);
+    for (k = 0; k < (int)ENTRIES; k++) {
+        int status = 0;
+        pid_t child;
+        if (entries[k].system)
+            continue;
+        fflush(stdout);
+        child = fork();
+        if (child == 0) {
+            unsigned char *memory = (unsigned char *)mmap(NULL, room + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+            ccd_warm_t warm = fresh();
+            signal(SIGSEGV, SIG_DFL);
+            signal(SIGBUS, SIG_DFL);
+            if (memory == MAP_FAILED || mprotect(memory, page, PROT_NONE) != 0)
+                _exit(2);
+            judge_limit = no_end;
+            stack_entry = &entries[k];
+            stack_a = &a;
+            stack_b = &b;
+            stack_query = query();
+            stack_warm = &warm;
+            stack_dir = &stack_along;
+            getcontext(&stack_inner);
+            stack_inner.uc_stack.ss_sp = memory + page;
+            stack_inner.uc_stack.ss_size = room;
+            stack_inner.uc_link = &stack_outer;
+            makecontext(&stack_inner, on_the_stack, 0);
+            swapcontext(&stack_outer, &stack_inner);
+            _exit(0);
+        }
+        if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+            printf("%s dies; ", entries[k].name);
+            broken++;
+        }
+    }
+    printf("%d entry points die", broken);
+    return broken == 0;
+}
+
+/* The slowest query of a long run. */
+static int long_mix(unsigned long count)
+{
+    static const char *const names[] = {"random", "near", "corners", "grid", "coincident", "resting"};
+    static const int asks[] = {ASK_MPR, ASK_GJK, ASK_MINIMUM};
+    static mix_t p;
+    unsigned long most[MIX_PLACEMENTS][3] = {{0}}, at[MIX_PLACEMENTS][3] = {{0}}, over[MIX_PLACEMENTS][3] = {{0}}, i, all = 0;
+    int k;
+    judge_begin();
+    for (i = 0; i < count; i++) {
+        mix_pair(i, -1, &p);
+        for (k = 0; k < 3; k++) {
+            const unsigned long n = supports(asks[k], &p.a, &p.b, NULL);
+            over[p.placement][k] += n > (k ? MINIMUM_MOST : MPR_MOST);
+            if (n > most[p.placement][k]) {
+                most[p.placement][k] = n;
+                at[p.placement][k] = i;
+            }
+        }
+    }
+    for (i = 0; i < MIX_PLACEMENTS; i++) {
+        printf("%-11s", names[i]);
+        for (k = 0; k < 3; k++) {
+            printf("  %s at most %lu (pair %lu), %lu over %d", k == 0 ? "MPR" : k == 1 ? "GJK" : "minimum", most[i][k], at[i][k], over[i][k],
+                   k ? MINIMUM_MOST : MPR_MOST);
+            all += over[i][k];
+        }
+        printf("\n");
+    }
+    return all > 0;
+}
+
+int main(int argc, char **argv)
+{
+    enum { HOLDS = 0, BROKEN = 1 };
+    static const promise_t listed[] = {
+        {"U03", "a clear miss on a fiber of 48 KB", small_fiber, 0, BROKEN},
+        {"U03", "stack of MPR, misses", stack_of, STACK_MISS, BROKEN},
+        {"U03", "stack of MPR, shallow contacts", stack_of, STACK_SHALLOW, BROKEN},
+        {"U03", "stack of MPR, polytopes", stack_of, STACK_POLYTOPES, BROKEN},
+        {"U03", "stack of any call", stack_of, STACK_ANY, BROKEN},
+        {"U04", "the slowest MPR, random poses", slowest_mpr, MIX_RANDOM, BROKEN},
+        {"U04", "the slowest MPR, near contact", slowest_mpr, MIX_NEAR, HOLDS},
+        {"U04", "the slowest MPR, corners and rims", slowest_mpr, MIX_CORNERS, BROKEN},
+        {"U04", "the slowest MPR, on a grid", slowest_mpr, MIX_GRID, HOLDS},
+        {"U04", "the slowest MPR, nearly coincident", slowest_mpr, MIX_COINCIDENT, BROKEN},
+        {"U04", "the slowest MPR, resting", slowest_mpr, MIX_RESTING, HOLDS},
+        {"U04", "minima that form a curve or surface", slowest_minimum, 0, BROKEN},
+        {"U04", "the slowest GJK, nearly coincident", slowest_minimum_mix, ASK_GJK, BROKEN},
+        {"U04", "the slowest minimum, nearly coincident", slowest_minimum_mix, ASK_MINIMUM, BROKEN},
+        {"U07", "yes or no after having been apart", having_been_apart, ASK_MPR_INTERSECT_WARM, BROKEN},
+        {"U07", "MPR after having been apart", having_been_apart, ASK_MPR_WARM, BROKEN},
+        {"U08", "local with a guess, a little apart", asked_once, 0, BROKEN},
+        {"U08", "local with a guess, far apart", asked_once, 1, BROKEN},
+        {"U08", "MPR with a fresh state, a little apart", asked_once, 2, BROKEN},
+        {"U08", "MPR with a fresh state, far apart", asked_once, 3, BROKEN},
+        {"U11", "a face that rests on a face", unchanged, UNCHANGED_FACES, BROKEN},
+        {"U11", "the same, its position not read", unchanged, UNCHANGED_FACES_UNREAD, BROKEN},
+        {"U11", "shallow polytopes, unchanged", unchanged, UNCHANGED_FLAT, HOLDS},
+        {"U11", "shallow round pairs, unchanged", unchanged, UNCHANGED_ROUND, HOLDS},
+        {"U11", "deep round pairs, unchanged", unchanged, UNCHANGED_ROUND_DEEP, BROKEN},
+    };
+    if (argc > 2 && strcmp(argv[1], "--mix") == 0)
+        return long_mix(strtoul(argv[2], NULL, 10));
+    return promises_run(listed, (int)(sizeof listed / sizeof listed[0]), argc > 1 ? argv[1] : NULL) > 0;
+}
