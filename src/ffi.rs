@@ -43,5 +43,6 @@ pub mod warm;
 
 unsafe extern "C" {
     fn malloc(size: usize) -> *mut c_void;
+    fn calloc(count: usize, size: usize) -> *mut c_void;
     fn free(block: *mut c_void);
 }

@@ -15,21 +15,26 @@
 )]
 #![allow(clippy::large_enum_variant, reason = "no heap")]
 
+pub mod barycentric;
 pub mod bundle;
 pub mod contact;
-pub mod epa;
+pub mod expansion;
 pub mod ffi;
 pub mod gjk;
+pub mod global;
 pub mod local;
 pub mod math;
 pub mod nearest;
 pub mod patch;
 pub mod planar;
+pub mod plane;
+pub mod polytope;
 pub mod portal;
 pub mod precision;
 #[cfg(test)]
 mod shapes;
 pub mod simplex;
+pub mod start;
 pub mod support;
 pub mod support_set;
 pub mod warm;

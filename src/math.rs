@@ -43,6 +43,13 @@ pub fn larger(a: Real, b: Real) -> Real {
     if a > b { a } else { b }
 }
 
+/// The same number as an `f64`.
+#[inline(always)]
+#[allow(clippy::useless_conversion, reason = "it is one in single precision")]
+pub fn wide(a: Real) -> f64 {
+    f64::from(a)
+}
+
 /// The largest absolute coordinate.
 #[inline(always)]
 pub fn largest(v: &Vec3) -> Real {

@@ -61,6 +61,73 @@ pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> 
     if one + two > whole { width } else { 0.0 }
 }
 
+/// What the points that a query knows say of a resting face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rest {
+    /// The objects touch in one pair of points.
+    Point,
+    /// In one pair, as far as is known; but one of them, or each across the other, touches
+    /// with an edge or a face of this length, metres.
+    Unsure(Real),
+    /// They touch along a length, metres.
+    Along(Real),
+}
+
+/// How the objects touch where the support plane along `n` is, as far as `count` points
+/// tell: points of either object within `tolerance` of its own support plane, whether
+/// the point of D is on its face or not.
+pub fn rest(
+    point: impl Fn(usize) -> [Vec3; 2] + Copy,
+    count: usize,
+    n: &Vec3,
+    tolerance: Real,
+    size: Real,
+) -> Rest {
+    let heights = |i: usize| {
+        let [v1, v2] = point(i);
+        [n.dot(&v1), -n.dot(&v2)]
+    };
+    let mut top = [Real::NEG_INFINITY; 2];
+    for i in 0..count {
+        let h = heights(i);
+        top = [larger(h[0], top[0]), larger(h[1], top[1])];
+    }
+    // The first touching point of each, and the way to the one farthest from it.
+    let (mut first, mut side) = ([None; 2], [Vec3::zeros(); 2]);
+    for i in 0..count {
+        let (h, v) = (heights(i), point(i));
+        for k in 0..2 {
+            if h[k] >= top[k] - tolerance {
+                let way = v[k] - *first[k].get_or_insert(v[k]);
+                if way.norm_squared() > side[k].norm_squared() {
+                    side[k] = way;
+                }
+            }
+        }
+    }
+    let blur = 8.0 * tolerance * size;
+    let [one, two] = side.map(|s| s.norm_squared());
+    if !(one > blur) && !(two > blur) {
+        return Rest::Point;
+    }
+    let length = larger(one, two).sqrt();
+    if !(one > blur && two > blur) {
+        return Rest::Unsure(length);
+    }
+    // Two edges that cross touch in a point.
+    let crossing = side[0].cross(&side[1]).norm_squared() > blur * larger(one, two);
+    let touching = |k: usize| {
+        (0..count)
+            .filter(move |&i| heights(i)[k] >= top[k] - tolerance)
+            .map(move |i| point(i)[k])
+    };
+    if crossing && dimensions(touching(0), blur).0 < 2 && dimensions(touching(1), blur).0 < 2 {
+        Rest::Unsure(length)
+    } else {
+        Rest::Along(length)
+    }
+}
+
 /// The dimensions of a set of points in a plane, and its length; what is shorter or
 /// narrower than the square root of `blur` is nothing.
 fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: Real) -> (u32, Real) {

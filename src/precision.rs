@@ -72,6 +72,13 @@ impl Precision {
         4.0 * self.grain()
     }
 
+    /// What two products of one direction with points of D may differ by where the points
+    /// are equally far along it, metres: both points and both products are rounded.
+    #[inline(always)]
+    pub fn tie(&self) -> Real {
+        2.0 * (self.rounding() + 2.0 * self.grain())
+    }
+
     /// The tolerance in force where `asked` is wanted, metres: no finer than coordinates
     /// so large resolve, and no coarser than a four-thousandth of D, beside which a
     /// coarser answer would say nothing.

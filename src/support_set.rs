@@ -74,6 +74,12 @@ impl<const N: usize> SupportSet<N> {
         SupportPoint { v: v1 - v2, v1, v2 }
     }
 
+    /// The points of obj1 and obj2 that it is the difference of.
+    #[inline(always)]
+    pub fn witnesses(&self, i: usize) -> [Vec3; 2] {
+        self.witnesses[Self::at(i)]
+    }
+
     /// The unit direction that the point was asked along; zero for one that was not.
     #[inline(always)]
     pub fn direction(&self, i: usize) -> Vec3 {
@@ -179,6 +185,23 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         }
     }
 
+    /// Asks for the first support point, which needs no set: its name is to be 1.
+    #[inline(always)]
+    pub fn first(&mut self, dir: &Vec3) -> Result<SupportPoint, Stop> {
+        let point = self.md.support(dir)?;
+        self.precision.note(&point);
+        let depth = dir.dot(&point.v);
+        if !(depth > self.precision.touch()) {
+            return Err(Stop::Apart(*dir));
+        }
+        self.lowest = Lowest {
+            depth,
+            dir: *dir,
+            index: 1,
+        };
+        Ok(point)
+    }
+
     /// Asks for the support point along unit `dir`, puts it into the set, and returns its
     /// index and support value, metres.
     ///
@@ -208,15 +231,17 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         point: &SupportPoint,
         h: Real,
     ) -> Result<(usize, Real), Stop> {
-        let (index, h) = match set.farther(dir, h + self.precision.grain()) {
+        let (index, h) = match set.farther(dir, h + self.precision.tie()) {
             Some(i) => (i, dir.dot(&set.v(i))),
-            None => {
-                // NaN is no depth.
-                if !(h > self.precision.touch()) {
-                    return Err(Stop::Apart(*dir));
-                }
-                (set.push(dir, point), h)
-            }
+            None => (usize::MAX, h),
+        };
+        // NaN is no depth.
+        if !(h > self.precision.touch()) {
+            return Err(Stop::Apart(*dir));
+        }
+        let index = match index {
+            usize::MAX => set.push(dir, point),
+            known => known,
         };
         if h < self.lowest.depth {
             self.lowest = Lowest {

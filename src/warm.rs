@@ -22,14 +22,18 @@
 
 use crate::bundle::{self, Memory};
 use crate::contact::{Answer, Penetration, Settings};
-use crate::epa::{self, Arena, Edge, Entry, Face, Seed, Storage};
+use crate::expansion::Limits;
 use crate::gjk::{self, Overlap};
+use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
-use crate::math::{self, Real, Vec3, perpendicular, unit};
+use crate::math::{ITERATION_CAP, Real, Vec3, perpendicular, unit};
 use crate::patch;
 use crate::planar;
 use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+
+/// [`State::padding`] of a pair that rested face on face.
+const RESTED: u32 = 1;
 
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,6 +54,9 @@ const APART: u32 = 1;
 const OVERLAP: u32 = 2;
 /// The pair overlapped, and was asked about along a direction.
 const ALONG: u32 = 3;
+/// The pair overlapped, and its minimum was proven: `slopes` are the directions of the
+/// points that the proof stands on, besides the minimum's own.
+const PROVEN: u32 = 4;
 
 impl State {
     /// A fresh state that starts from `dir`; cold when it is zero or not finite.
@@ -91,7 +98,7 @@ impl State {
     /// was apart and is no longer has just met there.
     fn leaving(&self) -> Option<Vec3> {
         match self.kind {
-            APART | OVERLAP | ALONG => unit(&self.memory.dir),
+            APART | OVERLAP | ALONG | PROVEN => unit(&self.memory.dir),
             _ => None,
         }
     }
@@ -100,7 +107,7 @@ impl State {
     fn solver(&self) -> Memory {
         match self.kind {
             OVERLAP => self.memory,
-            APART | ALONG => Self::of(OVERLAP, self.memory.dir).memory,
+            APART | ALONG | PROVEN => Self::of(OVERLAP, self.memory.dir).memory,
             _ => Memory::default(),
         }
     }
@@ -112,6 +119,31 @@ impl State {
             ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
             _ => None,
         }
+    }
+
+    /// The directions that a proof starts from: `first`, and those of the last one.
+    fn basis(&self, first: Vec3) -> Basis {
+        let mut basis = Basis::default();
+        basis.add(&first);
+        if self.kind == PROVEN {
+            for slope in &self.memory.slopes {
+                if let Some(n) = unit(slope) {
+                    basis.add(&n);
+                }
+            }
+        }
+        basis
+    }
+
+    fn proven(basis: &Basis) -> Self {
+        let mut state = Self::default();
+        if let Some((first, others)) = basis.directions().split_first() {
+            state = Self::of(PROVEN, *first);
+            for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
+                *slope = *n;
+            }
+        }
+        state
     }
 
     /// The kind of the answer and its direction; a query without an answer leaves
@@ -310,104 +342,110 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 
-    /// The minimum depth at MPR's price: a local minimum, then as much of a proof that it
-    /// is the global one as finds what is lower, to a gap of [`GAP`].
-    pub fn mpr(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        let answer = self.guarded(state, settings)?;
-        self.settle(answer, settings)
+    /// The minimum depth at MPR's price: within the tolerance or a thousandth of the depth,
+    /// in at most [`MPR_SUPPORTS`] support points; trusts the centre.
+    pub fn mpr(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        placed: bool,
+    ) -> Result<Answer, Fault> {
+        let limits = Limits {
+            tolerance: settings.tolerance,
+            gap: GAP,
+            supports: MPR_SUPPORTS,
+            iterations: settings.max_iterations,
+        };
+        self.global(self.centre, state, limits, None, placed)
     }
 
-    /// [`Pair::mpr`], with whatever witness points it came to know.
-    fn guarded(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        let mut known = Known::default();
-        let answer = self.local_known(state, settings, &mut known)?;
-        let (Answer::Hit(local) | Answer::Limit(local)) = answer else {
-            return Ok(answer);
+    /// The global minimum of the depth, proven by support points alone: from the state,
+    /// else from the centres, else from the first direction.
+    pub fn minimum(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        arena: &mut dyn Arena,
+        placed: bool,
+    ) -> Result<Answer, Fault> {
+        let limits = Limits {
+            tolerance: settings.tolerance,
+            gap: 0.0,
+            supports: MOST_SUPPORTS,
+            iterations: settings.max_iterations,
         };
-        // As coarse as asked for, but not coarser than the objects.
-        let size = match self.centre {
-            Some(c) => local.depth - local.normal.dot(&c.v),
-            None => local.depth,
+        self.global(None, state, limits, Some(arena), placed)
+    }
+
+    /// The global machine, from the state and with an apex that may be trusted.
+    fn global(
+        &self,
+        apex: Option<SupportPoint>,
+        state: &mut State,
+        limits: Limits,
+        arena: Option<&mut dyn Arena>,
+        placed: bool,
+    ) -> Result<Answer, Fault> {
+        if let Some(n) = self.still_apart(state)? {
+            return Ok(Answer::Miss(n));
+        }
+        let first = state.leaving().unwrap_or_else(|| self.cold_start());
+        let known = state.basis(first);
+        let request = Request {
+            centre: apex,
+            directions: known.directions(),
+            limits,
+            placed,
+            rested: state.kind == PROVEN && state.padding == RESTED,
         };
-        let settings = &Settings {
-            tolerance: math::tolerance(settings.tolerance, size, 0.0),
-            ..*settings
+        let mut basis = Basis::default();
+        let kept = self.lasting.then_some(&mut basis);
+        // For as long as the call takes.
+        let arena: Option<&mut dyn Arena> = match arena {
+            Some(arena) => Some(arena),
+            None => None,
         };
-        let proof = Settings {
-            tolerance: settings.tolerance.max(GAP * local.depth),
-            max_iterations: settings.max_iterations.min(STEPS),
+        let mut answer = global::minimum(&self.md, &request, arena, kept)?;
+        if let Answer::Limit(hit) = &mut answer {
+            self.floor(hit, limits.tolerance)?;
+        }
+        match &answer {
+            Answer::Hit(_) | Answer::Limit(_) => *state = State::proven(&basis),
+            other => self.remember(state, other)?,
+        }
+        let settings = Settings {
+            tolerance: limits.tolerance,
+            max_iterations: limits.iterations,
         };
-        // A shallow contact of polytopes is proven by the tetrahedron that proved the
-        // overlap: the centre and the face that the local search ended on.
-        // So, for all that is worth its supports, is a shallow one of curved objects;
-        // faces of polytopes can be nearly parallel, and a proof that compares them is
-        // cheap.
-        if local.depth - local.depth_lower <= proof.tolerance
-            || state.memory.curved == 1 && self.shallow(&local)
+        let settled = self.settle(answer, &settings)?;
+        state.padding = u32::from(settled != answer) * RESTED;
+        Ok(settled)
+    }
+
+    /// Where minima form a curve or a surface no polytope proves them in the steps there
+    /// are, and the least value it met need not be theirs to the tolerance. It is in the
+    /// right valley, whose floor a local search finds: to a hundredth of the tolerance,
+    /// since what falls so little over its first reach falls thirty times as much over the
+    /// sphere.
+    #[cold]
+    fn floor(&self, hit: &mut Penetration, tolerance: Real) -> Result<(), Fault> {
+        let level = Settings {
+            tolerance: tolerance * 0.01,
+            max_iterations: ITERATION_CAP,
+        };
+        let mut memory = State::of(OVERLAP, hit.normal).memory;
+        if let Answer::Hit(floor) | Answer::Limit(floor) =
+            self.stroll(&mut memory, PATIENCE, &level, &mut Known::default())?
         {
-            return Ok(answer);
-        }
-        let seed = Seed {
-            dir: local.normal,
-            points: known.points(),
-            upper: Some((local.depth, local.normal)),
-        };
-        let mut desk = Desk::default();
-        let mut checked = epa::minimum(&self.md, &seed, &proof, &mut desk);
-        let thin = match &checked {
-            // The search for points around the origin took all steps.
-            Ok(Answer::Undecided(_)) => true,
-            // The gap, a share of what the local minimum was, is all there is.
-            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => {
-                hit.depth <= proof.tolerance && proof.tolerance > settings.tolerance
-            }
-            _ => false,
-        };
-        if thin {
-            // This close to a touch the minimum is worth the caller's.
-            checked = epa::minimum(&self.md, &seed, settings, &mut desk);
-        }
-        let global = match checked {
-            Ok(Answer::Hit(global) | Answer::Limit(global)) => global,
-            Ok(Answer::Miss(n)) => {
-                state.remember(&Answer::Miss(n));
-                return Ok(Answer::Miss(n));
-            }
-            // The desk is full: the local answer stands.
-            Ok(Answer::Undecided(_)) | Err(Fault::NoMemory) => return Ok(answer),
-            Err(fault) => return Err(fault),
-        };
-        let mut best = Penetration {
-            depth_lower: global.depth_lower.min(local.depth),
-            ..local
-        };
-        if global.depth < local.depth - settings.tolerance {
-            // Another valley: its floor is where the proof got to, or below.
-            let mut memory = State::of(OVERLAP, global.normal).memory;
-            best = global;
-            if global.depth - global.depth_lower > settings.tolerance
-                && let Answer::Hit(hit) | Answer::Limit(hit) =
-                    self.descend(&mut memory, settings, &mut known)?
-                && hit.depth < global.depth
-            {
-                best = Penetration {
-                    depth_lower: global.depth_lower.min(hit.depth),
-                    ..hit
+            if floor.depth < hit.depth {
+                *hit = Penetration {
+                    depth_lower: hit.depth_lower.min(floor.depth),
+                    iterations: hit.iterations + floor.iterations,
+                    ..floor
                 };
             }
-            *state = State::overlap(memory);
         }
-        Ok(match answer {
-            Answer::Limit(_) => Answer::Limit(best),
-            _ => Answer::Hit(best),
-        })
-    }
-
-    /// Is the overlap thin beside the objects as measured along its normal? Another
-    /// minimum would have to be as near, and seldom is.
-    fn shallow(&self, hit: &Penetration) -> bool {
-        self.centre
-            .is_some_and(|c| hit.depth <= SHALLOW * (hit.depth - hit.normal.dot(&c.v)))
+        Ok(())
     }
 
     /// A local minimum, not yet a proven overlap: the few-supports solver, and where that
@@ -495,120 +533,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             &first,
             known,
         )
-    }
-
-    /// The global minimum of the depth, proven.
-    pub fn minimum(
-        &self,
-        state: &mut State,
-        settings: &Settings,
-        arena: &mut dyn Arena,
-    ) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
-            return Ok(Answer::Miss(n));
-        }
-        let mut memory = state.solver();
-        if memory.curved == 1 {
-            // A smooth contact is found again by two points, side by side, which are no
-            // start for a proof: a search from the direction alone sees more (capsules
-            // 12.2 support points instead of 16.2, ellipsoids 16.7 instead of 21.2).
-            memory = State::of(OVERLAP, memory.dir).memory;
-        }
-        let mut known = Known::default();
-        let search = self.stroll(&mut memory, GLANCE, settings, &mut known)?;
-        let local = match search {
-            Answer::Hit(hit) | Answer::Limit(hit) => hit,
-            other => {
-                self.remember(state, &other)?;
-                return Ok(other);
-            }
-        };
-        // The centres are the caller's word, not support points: no part of a proof.
-        let seed = Seed {
-            dir: local.normal,
-            points: known.points(),
-            upper: Some((local.depth, local.normal)),
-        };
-        let answer = self.global(&seed, settings, arena)?;
-        match answer {
-            Answer::Hit(hit) | Answer::Limit(hit)
-                if hit.depth >= local.depth - settings.tolerance =>
-            {
-                memory.dir = hit.normal;
-                *state = State::overlap(memory);
-            }
-            other => self.remember(state, &other)?,
-        }
-        self.settle(answer, settings)
-    }
-
-    /// The global minimum of the depth from `seed`, proven.
-    ///
-    /// Where minima form a curve or a surface no polytope proves them in the steps there
-    /// are, and the least value it met need not be theirs to the tolerance. It is in the
-    /// right valley, whose floor a local search finds.
-    pub fn global(
-        &self,
-        seed: &Seed<'_>,
-        settings: &Settings,
-        arena: &mut dyn Arena,
-    ) -> Result<Answer, Fault> {
-        let mut answer = epa::minimum(&self.md, seed, settings, arena)?;
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer
-            && unmet(hit, settings)
-        {
-            let start = match seed.points.first() {
-                Some(point) => *point,
-                None => self.md.support(&hit.normal)?,
-            };
-            let limit = settings.max_iterations;
-            if let Overlap::Yes(simplex, _) =
-                gjk::intersect(&self.md, start, seed.points, None, limit)?
-            {
-                (hit.point1, hit.point2) = simplex.witnesses();
-            }
-        }
-        let Answer::Limit(hit) = answer else {
-            return Ok(answer);
-        };
-        // A local search ends where its first reach, a tenth of a radian, is level; what
-        // goes on falling so over the sphere is thirty times as much.
-        let level = Settings {
-            tolerance: settings.tolerance * 0.01,
-            ..*settings
-        };
-        let mut best = hit;
-        // Objects with a centre of symmetry that nearly share it have two equal valleys. A
-        // search that rounding ends on the way down is taken up again from there.
-        let (mut start, mut opposite) = (Some(hit.normal), Some(-hit.normal));
-        for _ in 0..DESCENTS {
-            let Some(n) = start.take().or_else(|| opposite.take()) else {
-                break;
-            };
-            let mut memory = State::of(OVERLAP, n).memory;
-            if let Answer::Hit(floor) | Answer::Limit(floor) =
-                self.descend(&mut memory, &level, &mut Known::default())?
-                && floor.depth < best.depth
-            {
-                if floor.depth < best.depth - level.tolerance {
-                    start = Some(floor.normal);
-                }
-                best = Penetration {
-                    depth_lower: hit.depth_lower.min(floor.depth),
-                    iterations: best.iterations + floor.iterations,
-                    ..floor
-                };
-            }
-        }
-        // The proof may have lacked no more than the floor.
-        let reach =
-            (seed.points.iter()).fold(0.0, |m: Real, p| m.max(p.v1.norm()).max(p.v2.norm()));
-        let tolerance = math::tolerance(settings.tolerance, Real::INFINITY, reach);
-        Ok(if best.depth - best.depth_lower <= tolerance {
-            Answer::Hit(best)
-        } else {
-            Answer::Limit(best)
-        })
     }
 
     /// How far obj2 must move along the unit direction `dir` (Algorithm 1).
@@ -788,97 +712,9 @@ fn beside(n: &Vec3, [c, s]: [Real; 2]) -> Vec3 {
     n + (e1 * c + n.cross(&e1) * s) * 0.1
 }
 
-/// Local searches that the floor of a valley is worth.
-const DESCENTS: u32 = 16;
-
-/// Support points of the local search before the proof of [`Pair::minimum`], which uses all
-/// of them: so no more than a [`Known`] holds.
-///
-/// The proof needs its upper bound only at the end and finishes it on the way. Support
-/// points a query in all, from the centres at 1e-6, without a local search, after one of
-/// eight, after a finished one: boxes 10.4, 10.4, 11.0; 162-vertex polytopes 18.2, 15.6,
-/// 16.6; cylinder and box 17.9, 17.1, 19.8; capsules 30.3, 27.8, 30.3; ellipsoids 30.2,
-/// 28.2, 31.9; spheres 31.6, 31.8, 31.8.
-const GLANCE: u64 = Known::ROOM as u64;
-
-/// Depth, as a share of the distance from the centre of D to its support plane, below
-/// which [`Pair::mpr`] takes the local minimum for the global one.
-const SHALLOW: Real = 0.004;
-
-// What guards [`Pair::mpr`] against other minima, and what else was measured, cold from the
-// centres on the benchmark's random sets (supports on boxes, share of answers over 1 mm too
-// deep on boxes / 12 vertices / cylinder-box): the local search alone 6.8, 13 / 8 / 8 %; one
-// more start, 45° from the answer towards the centres' line, 14.6, 4 / 5 / 2 %; four starts
-// around it 38, 0.6 / 0.2 / 1 %; the nearest faces of the points seen asked one by one, eight
-// of them, 9.6, 2 / 5 / 2 %; this proof to a gap of 1 % 10.1, 0.4 / 1.6 / 0.4 %; to 0.3 %
-// 10.2, 0 / 0.4 / 0 %. Guessing how far D bulges over an unasked face from how far it did over
-// asked ones stops too early on polytopes (7 % left at any useful saving).
-
-/// Where the proof of [`Pair::mpr`] may stop: a gap of this share of the depth.
-const GAP: Real = 0.003;
-/// Steps it may take, at most.
-const STEPS: u64 = 48;
-
-/// Room for the short proof of [`Pair::mpr`]: most end with a dozen points, and only
-/// those that do not pay for more.
-#[derive(Default)]
-struct Desk {
-    small: Room<{ epa::LEAST_POINTS }>,
-    large: Option<Room<{ 2 * epa::LEAST_POINTS + STEPS as usize }>>,
-}
-
-struct Room<const POINTS: usize> {
-    points: [SupportPoint; POINTS],
-    faces: [[Face; epa::FACES_PER_POINT]; POINTS],
-    open: [[Entry; epa::FACES_PER_POINT]; POINTS],
-    rim: [Edge; POINTS],
-}
-
-impl<const POINTS: usize> Default for Room<POINTS> {
-    fn default() -> Self {
-        Self {
-            points: [SupportPoint::default(); POINTS],
-            faces: [[Face::default(); epa::FACES_PER_POINT]; POINTS],
-            open: [[Entry::default(); epa::FACES_PER_POINT]; POINTS],
-            rim: [Edge::default(); POINTS],
-        }
-    }
-}
-
-impl<const POINTS: usize> Room<POINTS> {
-    fn storage(&mut self) -> Storage<'_> {
-        Storage {
-            points: &mut self.points,
-            faces: self.faces.as_flattened_mut(),
-            open: self.open.as_flattened_mut(),
-            rim: &mut self.rim,
-        }
-    }
-}
-
-impl Arena for Desk {
-    fn storage(&mut self) -> Storage<'_> {
-        match &mut self.large {
-            Some(large) => large.storage(),
-            None => self.small.storage(),
-        }
-    }
-
-    fn grow(&mut self) -> Result<(), Fault> {
-        if self.large.is_some() {
-            return Err(Fault::NoMemory);
-        }
-        let large = self.large.insert(Room::default()).storage();
-        let small = self.small.storage();
-        for (to, from) in large.points.iter_mut().zip(small.points) {
-            *to = *from;
-        }
-        for (to, from) in large.faces.iter_mut().zip(small.faces) {
-            *to = *from;
-        }
-        for (to, from) in large.open.iter_mut().zip(small.open) {
-            *to = *from;
-        }
-        Ok(())
-    }
-}
+/// Support points of an MPR query, at most.
+const MPR_SUPPORTS: u64 = 160;
+/// Of a proven minimum, which may take a local search more.
+const MOST_SUPPORTS: u64 = 1_400;
+/// Where an MPR query may stop: a gap of this share of the depth.
+const GAP: Real = 1e-3;

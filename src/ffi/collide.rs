@@ -10,7 +10,6 @@ use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
 use crate::contact::{Answer, Penetration, Settings};
-use crate::epa::Seed;
 use crate::gjk::{self, Overlap};
 use crate::math::{Real, Vec3, unit};
 use crate::support::{Fault, SupportPoint};
@@ -104,7 +103,12 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-pub unsafe fn mpr_penetration(query: Query, state: &mut State, lasting: bool) -> Option<Answer> {
+pub unsafe fn mpr_penetration(
+    query: Query,
+    state: &mut State,
+    lasting: bool,
+    placed: bool,
+) -> Option<Answer> {
     // SAFETY: passed on.
     unsafe {
         let pair = query.pair(lasting)?;
@@ -112,7 +116,7 @@ pub unsafe fn mpr_penetration(query: Query, state: &mut State, lasting: bool) ->
             tolerance: or_default(query.mpr_tolerance()),
             max_iterations: query.max_iterations(),
         };
-        pair.mpr(state, &settings).ok()
+        pair.mpr(state, &settings, placed).ok()
     }
 }
 
@@ -156,17 +160,8 @@ unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_i
             tolerance: or_default(query.epa_tolerance()),
             max_iterations: query.max_iterations(),
         };
-        let seed = Seed {
-            dir: unit(&first).unwrap_or(Vec3::x()),
-            points: &[],
-            upper: None,
-        };
-        let mut answer = arena::with(|arena| pair.global(&seed, &settings, arena));
-        if let Ok(found) = answer
-            && placed
-        {
-            answer = pair.settle(found, &settings);
-        }
+        let mut cold = State::default();
+        let answer = arena::with(|arena| pair.minimum(&mut cold, &settings, arena, placed));
         match answer {
             Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
             Ok(Answer::Miss(_) | Answer::Undecided(_)) | Err(Fault::NonFinite) => Err(-1),

@@ -208,7 +208,12 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     // SAFETY: passed on.
     unsafe {
         let mut state = read(warm);
-        let answer = mpr_penetration(Query { obj1, obj2, ccd }, &mut state, !warm.is_null());
+        let answer = mpr_penetration(
+            Query { obj1, obj2, ccd },
+            &mut state,
+            !warm.is_null(),
+            !pos.is_null(),
+        );
         if answer.is_some() {
             store(warm, &state);
         }
@@ -299,7 +304,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationMinimum(
             Query::epa_tolerance,
             warm,
             out,
-            |pair, state, settings| arena::with(|arena| pair.minimum(state, settings, arena)),
+            |pair, state, settings| arena::with(|arena| pair.minimum(state, settings, arena, true)),
         )
     }
 }

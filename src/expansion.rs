@@ -1,0 +1,447 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The global minimum penetration, proven: where to ask, and when the bounds meet
+//! (expanding polytope; G. van den Bergen, "Proximity Queries and Penetration Depth
+//! Computation on 3D Game Objects", GDC 2001).
+//!
+//! PD = min over unit n of h(n), h(n) = n·s(n) the support value of D. *Upper bound*: the
+//! least h met; moving obj2 by h(n)·n separates the objects. *Lower bound*: the distance
+//! from the origin to the nearest face of a polytope of support points ([`crate::polytope`]).
+//! The nearest face is expanded until its distance is no less than the *target*, the upper
+//! bound less the tolerance; faces at least that far away are never looked at, so the
+//! polytope stays coarse where no minimum is.
+//!
+//! The polytope need not hold the origin: a face with the origin outside is the nearest of
+//! all. Whether the objects overlap is found on the way, and does not depend on the
+//! tolerance: while a face has the origin outside, points count as above it by more than
+//! rounding. A support value no greater than rounding ends the query: a touch is a miss.
+//!
+//! # Where the apex comes from
+//!
+//! The first tetrahedron has a point inside D for a corner, the apex. The MPR calls rely on
+//! the centres' difference, as libccd does. Without centres, and in every query that
+//! trusts none, it is the middle of two support points in opposite directions, which is in
+//! D for certain.
+//!
+//! # Aims
+//!
+//! The normal of the nearest face finds the point farthest above it; the mean of normals
+//! around it is asked where several faces are to go ([`Polytope::mean_normal`]). Near a
+//! round part both are behind what curvature tells: two samples (n, s), (n′, s′) of a ball
+//! of radius ρ agree on ρ = (e + e′)/|n′ − n|², e = n′·(s′ − s), e′ = n·(s − s′). With
+//! v_i = s_i − ρ n_i of the face's corners, the ball's centre or the core that the ball is
+//! around, the minimum is foretold at −w/|w| with the depth ρ − |w|, w the point of the
+//! triangle v nearest to the origin; where the core holds the origin, along the normal of
+//! that triangle. *It chooses where to ask, and proves nothing.*
+//!
+//! # Where rounding has the last word
+//!
+//! A face that no support point is above is recomputed from its corners. If that takes it
+//! no farther the search ends with what it has; if the origin is outside of it, by rounding
+//! then, yes or no is left to the caller.
+
+use crate::barycentric;
+use crate::math::{Real, Vec3, larger, unit, wide};
+use crate::plane::Plane;
+use crate::polytope::{Inserted, Polytope, Top};
+use crate::precision::Precision;
+use crate::support::SupportMap;
+use crate::support_set::{Inquiry, Stop, SupportSet};
+
+/// A point above a face by less than this share of the tolerance counts as on it. Measured:
+/// from 0.005 to 0.05 the supports are the same to 1 %; the planes' error stays below it.
+pub const LEVEL: Real = 0.02;
+/// Tolerances below this share of the size are finer than interpolated planes: derived from
+/// their error, 20 ulps a point, at 160 points (single precision likewise).
+const EXACT: Real = 2e4 * crate::math::EPSILON;
+/// Points before means of normals are asked: fewer make no neighbourhood. Measured.
+const FEW: usize = 10;
+/// Relative difference of e and e′ up to which a pair is of one ball. Measured: 0.03 costs
+/// polytopes 1 %, 0.001 ellipsoids 2 %.
+const ALIKE: Real = 0.003;
+/// The share of the allowed gap that the ball must promise. Free.
+const PROMISE: Real = 0.3;
+/// The share of a promise that may be missed before the ball is distrusted. Free.
+const MISSED: Real = 0.2;
+/// Steps of distrust for each failure. Measured: 2 to 8 differ by less than 1 %.
+const PAUSE: i32 = 4;
+/// |n′ − n|² within which two samples tell of one ball: below it rounding speaks, above it
+/// other parts of D do.
+const NEIGHBOURS: core::ops::Range<Real> = if cfg!(feature = "single") {
+    1e-4..0.5
+} else {
+    1e-8..0.5
+};
+
+/// How far a search goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Largest gap between the bounds, metres, as asked for.
+    pub tolerance: Real,
+    /// The same as a share of the depth; the larger one counts.
+    pub gap: Real,
+    /// Cap on the support points of the query.
+    pub supports: u64,
+    /// Cap on those after the first tetrahedron.
+    pub iterations: u64,
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The bounds meet.
+    Proven,
+    /// A cap came first, or rounding; the origin is inside.
+    Inside,
+    /// The same, and the origin is not shown to be inside.
+    Open,
+    /// There is no room for another point.
+    NoRoom,
+}
+
+/// What a search knows besides the points and the polytope.
+pub struct Progress {
+    limits: Limits,
+    /// Support points after the tetrahedron.
+    pub iterations: u64,
+    /// The upper bound that the target belongs to, and the planes' error then.
+    known: Real,
+    error: Real,
+    /// The gap counts.
+    coarse: bool,
+    /// Signed square of the distance that proves a face, m².
+    target: f64,
+    /// The tolerance in force, and the gap that is allowed, metres.
+    pub tolerance: Real,
+    allowed: Real,
+    /// A point is above a face by more than this, metres: while the origin is outside, and
+    /// after.
+    rounding: Real,
+    level: Real,
+    size2: Real,
+    /// Steps for which plain normals are asked; how many means were asked in vain.
+    plain: i32,
+    vain: i32,
+    /// The key of the face whose mean was.
+    lone: f64,
+    core: Core,
+}
+
+/// The ball that the samples tell of.
+struct Core {
+    radius: Real,
+    pause: i32,
+    failures: i32,
+    /// The face it was last asked for.
+    key: f64,
+    /// The value foretold, and the upper bound then.
+    foretold: Real,
+    before: Real,
+}
+
+/// What a direction was chosen by.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Aim {
+    Normal,
+    Mean,
+    Core,
+}
+
+impl Progress {
+    /// Before the first step. `points`: how many there are.
+    pub fn new(limits: &Limits, points: usize) -> Self {
+        Self {
+            limits: *limits,
+            iterations: 0,
+            known: Real::INFINITY,
+            error: 0.0,
+            coarse: false,
+            target: 0.0,
+            tolerance: 0.0,
+            allowed: 0.0,
+            rounding: 0.0,
+            level: 0.0,
+            size2: -1.0,
+            plain: FEW as i32 - points as i32,
+            vain: 0,
+            lone: 0.0,
+            core: Core {
+                radius: 0.0,
+                pause: 0,
+                failures: 0,
+                key: 0.0,
+                foretold: 0.0,
+                before: 0.0,
+            },
+        }
+    }
+
+    /// Sizes and bounds as they are now.
+    #[inline(always)]
+    fn update<A: SupportMap, B: SupportMap, const F: usize>(
+        &mut self,
+        inquiry: &Inquiry<'_, A, B>,
+        hull: &mut Polytope<F>,
+    ) {
+        let precision = &inquiry.precision;
+        let depth = inquiry.lowest.depth;
+        if precision.size2() > self.size2 {
+            self.size2 = precision.size2();
+            self.tolerance = precision.tolerance(self.limits.tolerance);
+            self.rounding = rounding(precision);
+            self.level = self.rounding + LEVEL * self.tolerance;
+            hull.grow(precision.size());
+            self.known = Real::INFINITY;
+        }
+        if depth < self.known {
+            self.known = depth;
+            self.aim_at(hull.error() + precision.grain());
+        }
+    }
+
+    /// The target for planes that are off by up to `error`, metres.
+    fn aim_at(&mut self, error: Real) {
+        // A share of the least depth, not of this one.
+        let gap = self.limits.gap / (1.0 + self.limits.gap);
+        self.allowed = if self.coarse {
+            larger(gap * self.known, self.tolerance)
+        } else {
+            self.tolerance
+        };
+        self.error = lesser(error, 0.5 * self.allowed);
+        let target = wide(self.known - self.allowed + self.error);
+        self.target = target * target.abs();
+    }
+
+    /// Is the bound of the nearest face good enough with the error that planes have by now?
+    /// Else the target is farther from here on.
+    #[inline(always)]
+    fn proven<const F: usize>(&mut self, hull: &Polytope<F>, grain: Real) -> bool {
+        let error = hull.error() + grain;
+        let good = !(error > 1.1 * self.error) || 0.5 * self.allowed <= self.error;
+        if !good {
+            self.aim_at(error);
+        }
+        good
+    }
+
+    /// The search has left the first room: from here on the gap counts.
+    pub fn coarsen(&mut self) {
+        self.coarse = true;
+        self.known = Real::INFINITY;
+    }
+}
+
+/// A point above a face by no more than this, metres, is on it: products round, and the
+/// points of both are uncertain.
+pub fn rounding(precision: &Precision) -> Real {
+    precision.rounding() + 2.0 * precision.grain()
+}
+
+/// Is this tolerance finer than what interpolated planes are good for?
+pub fn exact(tolerance: Real, precision: &Precision) -> bool {
+    !(tolerance > EXACT * precision.size() && tolerance > 64.0 * precision.grain())
+}
+
+/// Expands the polytope until the bounds meet or means end.
+#[inline(always)]
+pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    hull: &mut Polytope<F>,
+    state: &mut Progress,
+) -> Result<End, Stop> {
+    // Each turn asks once or moves the target, and there are caps on both.
+    loop {
+        if set.is_full() {
+            return Ok(End::NoRoom);
+        }
+        let top = hull.nearest();
+        state.update(inquiry, hull);
+        let inside = top.key >= 0.0;
+        if top.key >= state.target && inside {
+            if state.proven(hull, inquiry.precision.grain()) {
+                return Ok(End::Proven);
+            }
+            continue;
+        }
+        // While the origin is outside the room is the cap: an overlap is no miss because
+        // the caller has no patience.
+        let spent = state.iterations >= state.limits.iterations
+            || inquiry.md.supports() >= state.limits.supports;
+        if spent && inside {
+            return Ok(End::Inside);
+        }
+        let (dir, aim) = state.aim(set, hull, &top);
+        let Some(n) = normalised(&dir).or_else(|| unit(&hull.normal(top.face))) else {
+            return Ok(if inside { End::Inside } else { End::Open });
+        };
+        let before = inquiry.lowest.depth;
+        let count = set.len();
+        let (i, h) = inquiry.ask(set, &n)?;
+        state.iterations += 1;
+        state.plain -= 1;
+        state.core.pause -= 1;
+        state.core.learn(aim, h);
+        let v = set.v(i);
+        let height = hull.height(top.face, &Plane::point(&v));
+        let level = if inside { state.level } else { state.rounding };
+        if height > level && !(hull.borrowed(top.face) && is_corner(set, hull, top.face, &v)) {
+            state.core.measure(set, &hull.corners(top.face), i, level);
+            match hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
+                Inserted::Yes => continue,
+                Inserted::NoRoom => {
+                    // It is asked again in the larger room.
+                    set.truncate(count);
+                    return Ok(End::NoRoom);
+                }
+            }
+        }
+        match aim {
+            Aim::Core => set.truncate(count),
+            Aim::Mean => {
+                set.truncate(count);
+                state.lone = top.key;
+                state.vain += 1;
+                state.plain = 1 + 2 * state.vain;
+            }
+            // What lowered the upper bound has moved the target.
+            Aim::Normal if inquiry.lowest.depth < before => {}
+            Aim::Normal if hull.refine(top.face, &|i| set.v(i)) => set.truncate(count),
+            Aim::Normal => return Ok(if inside { End::Inside } else { End::Open }),
+        }
+    }
+}
+
+/// v / |v| of a vector whose length can be squared.
+#[inline(always)]
+fn normalised(v: &Vec3) -> Option<Vec3> {
+    let n2 = v.norm_squared();
+    (n2 > Real::MIN_POSITIVE && n2 < Real::INFINITY).then(|| v * (1.0 / n2.sqrt()))
+}
+
+#[cold]
+fn is_corner<const P: usize, const F: usize>(
+    set: &SupportSet<P>,
+    hull: &Polytope<F>,
+    face: usize,
+    v: &Vec3,
+) -> bool {
+    hull.corners(face).into_iter().any(|i| set.v(i) == *v)
+}
+
+impl Progress {
+    /// The direction to ask for the nearest face; not unit.
+    #[inline(always)]
+    fn aim<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &Polytope<F>,
+        top: &Top,
+    ) -> (Vec3, Aim) {
+        if top.key > 0.0 {
+            if self.core.radius > 0.0 && self.core.pause <= 0 && self.core.key != top.key {
+                if let Some(n) = self.core.aim(set, hull, top, self.known, self.allowed) {
+                    return (n, Aim::Core);
+                }
+            }
+            if self.plain <= 0 && top.key != self.lone {
+                return (hull.mean_normal(top.face, self.target), Aim::Mean);
+            }
+        }
+        (hull.normal(top.face), Aim::Normal)
+    }
+}
+
+impl Core {
+    /// What the ball promises of a face, where that is worth a support point.
+    #[inline(always)]
+    fn aim<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &Polytope<F>,
+        top: &Top,
+        upper: Real,
+        allowed: Real,
+    ) -> Option<Vec3> {
+        let names = hull.corners(top.face);
+        if names.contains(&0) {
+            // The apex was not asked for.
+            return None;
+        }
+        let [a, b, c] = names.map(|i| set.v(i) - set.direction(i) * self.radius);
+        let normal = hull.normal(top.face);
+        let (n, foretold) = if self.radius <= upper {
+            let m = normalised(&(b - a).cross(&(c - a)))?;
+            let m = if m.dot(&normal) < 0.0 { -m } else { m };
+            (m, m.dot(&a) + self.radius)
+        } else {
+            let w = barycentric::triangle(&Vec3::zeros(), &a, &b, &c).point;
+            let m = normalised(&-w)?;
+            (m, self.radius - w.norm())
+        };
+        let along = n.dot(&normal);
+        // Within 45 degrees of the face's normal, and no touch.
+        let sees = along > 0.0 && along * along > 0.5 * normal.norm_squared();
+        if !(sees && foretold > 0.0 && foretold < upper - PROMISE * allowed) {
+            return None;
+        }
+        (self.key, self.foretold, self.before) = (top.key, foretold, upper);
+        Some(n)
+    }
+
+    /// Was the promise kept?
+    #[inline(always)]
+    fn learn(&mut self, aim: Aim, h: Real) {
+        if aim == Aim::Core && h > self.foretold + MISSED * (self.before - self.foretold) {
+            self.failures += 1;
+            self.pause = PAUSE * self.failures;
+        }
+    }
+
+    /// The radius that a new point and the corners of the face it is above tell.
+    #[inline(always)]
+    fn measure<const P: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        corners: &[usize; 3],
+        new: usize,
+        least: Real,
+    ) {
+        for &i in corners {
+            if i > 0 {
+                self.pair(set, i, new, least);
+            }
+        }
+    }
+
+    /// The radius that two samples tell, if they are of one ball.
+    #[inline(always)]
+    pub fn pair<const P: usize>(&mut self, set: &SupportSet<P>, i: usize, j: usize, least: Real) {
+        let (n, n_) = (set.direction(i), set.direction(j));
+        let between = set.v(j) - set.v(i);
+        let (e, e_) = (n_.dot(&between), -n.dot(&between));
+        let turn2 = 2.0 - 2.0 * n.dot(&n_);
+        let sum = e + e_;
+        if NEIGHBOURS.contains(&turn2) && (e - e_).abs() <= ALIKE * sum && sum > least {
+            self.radius = sum / turn2;
+        }
+    }
+}
+
+impl Progress {
+    /// Takes what the points of the start tell of a ball.
+    pub fn look_back<const P: usize>(&mut self, set: &SupportSet<P>, least: Real) {
+        for j in 2..set.len() {
+            for i in 1..j {
+                self.core.pair(set, i, j, least);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn lesser(a: Real, b: Real) -> Real {
+    if a < b { a } else { b }
+}

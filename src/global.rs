@@ -1,0 +1,579 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The global minimum of the depth from start to end: the first direction, the apex, the
+//! first tetrahedron ([`crate::start`]), the expansion ([`crate::expansion`]) in rooms
+//! that grow, and the answer.
+//!
+//! The points live in a small room on the stack that most queries never leave, in larger
+//! ones that are frames of their own, entered only then, and in a block that the caller
+//! lends ([`Arena`]), where it does.
+
+use crate::barycentric;
+use crate::contact::{Answer, Penetration};
+use crate::expansion::{self, End, Limits, Progress, expand};
+use crate::gjk::{self, Overlap};
+use crate::math::{Real, Vec3, larger};
+use crate::patch::{self, Rest};
+use crate::plane::Plane;
+use crate::polytope::{Inserted, Polytope};
+use crate::start;
+use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
+
+/// Points and faces of the rooms on the stack, 3, 6 and 33 KB: for shallow contacts; for
+/// polytopes; for the 160 support points of an MPR query. A closed surface of V points has
+/// 2V − 4 faces, and a fan is there before what it replaces is gone.
+const FIRST: (usize, usize) = (16, 32);
+const SECOND: (usize, usize) = (32, 64);
+const THIRD: (usize, usize) = (168, 344);
+/// Of the one that is lent.
+const LENT: (usize, usize) = (1536, crate::polytope::MOST_FACES);
+/// Places that the start needs for its own points.
+const START: usize = 9;
+
+/// Memory for the largest polytopes. All bytes zero is a valid one.
+pub struct Room {
+    set: SupportSet<{ LENT.0 }>,
+    hull: Polytope<{ LENT.1 }>,
+}
+
+/// Where a query gets a [`Room`] from, once and only if it needs it.
+pub trait Arena {
+    /// A room with any contents.
+    ///
+    /// # Errors
+    /// [`Fault::NoMemory`].
+    fn room(&mut self) -> Result<&mut Room, Fault>;
+}
+
+/// What is wanted, and where to start.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// A point that the caller says is in D, the difference of the centres; trusted.
+    pub centre: Option<SupportPoint>,
+    /// Unit directions to ask first, of which there is at least one.
+    pub directions: &'a [Vec3],
+    /// How far to go.
+    pub limits: Limits,
+    /// Does anybody read the witness points? Else the width of the contact is 0.
+    pub placed: bool,
+    /// Did the pair rest face on face when it was asked last?
+    pub rested: bool,
+}
+
+impl Request<'_> {
+    /// Is nothing known but where to begin?
+    fn cold(&self) -> bool {
+        self.directions.len() == 1
+    }
+}
+
+/// Directions that a proof stands on, unit, the minimum's first.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Basis {
+    directions: [Vec3; Basis::ROOM],
+    len: usize,
+}
+
+impl Basis {
+    /// How many there is room for: the minimum's and a face's.
+    pub const ROOM: usize = 4;
+
+    /// The directions.
+    pub fn directions(&self) -> &[Vec3] {
+        &self.directions[..self.len.min(Self::ROOM)]
+    }
+
+    /// Adds a direction, unless it is there, is zero, or there is no room.
+    pub fn add(&mut self, n: &Vec3) {
+        if self.len < Self::ROOM && *n != Vec3::zeros() && !self.directions().contains(n) {
+            self.directions[self.len] = *n;
+            self.len += 1;
+        }
+    }
+}
+
+/// The global minimum penetration of `md`. `basis` takes the directions that the proof
+/// stands on, where somebody remembers them; without an `arena` the rooms on the stack are
+/// all there is.
+///
+/// `Hit`: proven to within the limits' gap; `depth_lower` is what the polytope proves.
+/// `Limit`: a cap or rounding came first; the depth is sound, the lower bound proven all
+/// the same. `Miss`: apart, or touching within rounding. `Undecided`: the caps of the yes
+/// or no came first.
+///
+/// # Errors
+/// A callback's answer that is not finite, or an arena without memory.
+#[inline(always)]
+pub fn minimum<'r, A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    request: &'r Request<'r>,
+    arena: Option<&'r mut dyn Arena>,
+    basis: Option<&'r mut Basis>,
+) -> Result<Answer, Fault> {
+    let mut inquiry = Inquiry::new(md);
+    let Some(dir) = request.directions.first() else {
+        return Ok(Answer::Miss(Vec3::x()));
+    };
+    // A pair that is told apart by one support point costs no room.
+    let ended = match inquiry.first(dir) {
+        Ok(first) => {
+            let mut search = Search {
+                inquiry,
+                request,
+                arena,
+                basis,
+            };
+            search.run(&first)
+        }
+        Err(stop) => Err(stop),
+    };
+    match ended {
+        Ok(answer) => Ok(answer),
+        Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
+        Err(Stop::Fault(fault)) => Err(fault),
+    }
+}
+
+/// The ways to a first tetrahedron, see [`crate::start`].
+#[derive(Clone, Copy)]
+enum Way {
+    Known,
+    Ring,
+    Portal,
+    Solid,
+}
+
+/// A query on its way.
+struct Search<'q, 'r, A, B> {
+    inquiry: Inquiry<'q, A, B>,
+    request: &'r Request<'r>,
+    arena: Option<&'r mut dyn Arena>,
+    basis: Option<&'r mut Basis>,
+}
+
+impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
+    /// After the first support point.
+    #[inline(never)]
+    fn run(&mut self, first: &SupportPoint) -> Result<Answer, Stop> {
+        let mut set = SupportSet::<{ FIRST.0 }>::EMPTY;
+        let opposite = self.begin(&mut set, first)?;
+        let tolerance = self.tolerance();
+        let gap = self.request.limits.gap;
+        let within = |depth: Real| larger(gap * depth, tolerance);
+        let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
+        let mut skip = usize::MAX;
+        for way in [Way::Known, Way::Ring, Way::Portal, Way::Solid] {
+            let names = match way {
+                Way::Known => start::known(&set),
+                Way::Ring => start::ring_of_ball(&mut self.inquiry, &mut set, within)?,
+                Way::Portal => start::portal(&mut self.inquiry, &mut set, skip)?,
+                Way::Solid => start::solid(&mut self.inquiry, &mut set)?,
+            };
+            if let (Way::Known, true, Some((n, point))) = (way, names.is_some(), &opposite) {
+                skip = set.push(n, point);
+            }
+            if let (Way::Ring, true, Some((n, point))) = (way, skip == usize::MAX, &opposite) {
+                skip = set.push(n, point);
+            }
+            if !names.is_some_and(|names| self.build(&set, &mut hull, names)) {
+                continue;
+            }
+            let mut state = Progress::new(&self.request.limits, set.len());
+            state.look_back(&set, self.inquiry.precision.rounding());
+            match expand(&mut self.inquiry, &mut set, &mut hull, &mut state)? {
+                End::NoRoom => {
+                    return self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
+                        &set, &hull, &mut state,
+                    );
+                }
+                // From another apex, or none, rounding may not have the last word.
+                End::Open => {}
+                end => return Ok(self.conclude(&set, &hull, &state, end)),
+            }
+        }
+        self.decided::<_, { FIRST.1 }>(&set, None)
+    }
+
+    fn tolerance(&self) -> Real {
+        self.inquiry
+            .precision
+            .tolerance(self.request.limits.tolerance)
+    }
+
+    /// The apex, as point 0, and the first points. Where the apex is the middle of two
+    /// points, the other of them is returned: on a line with the apex and the first it is
+    /// no corner of a tetrahedron.
+    #[inline(always)]
+    fn begin<const P: usize>(
+        &mut self,
+        set: &mut SupportSet<P>,
+        first: &SupportPoint,
+    ) -> Result<Option<(Vec3, SupportPoint)>, Stop> {
+        let Request {
+            centre, directions, ..
+        } = self.request;
+        let apex = centre.as_ref().unwrap_or(first);
+        set.push(&Vec3::zeros(), apex);
+        set.push(&directions[0], first);
+        let mut opposite = None;
+        if centre.is_some() {
+            self.inquiry.precision.note(apex);
+        } else {
+            let n = -directions[0];
+            let (i, _) = self.inquiry.ask(set, &n)?;
+            let point = set.point(i);
+            set.truncate(2);
+            set.put(0, &Vec3::zeros(), &first.middle(&point));
+            opposite = Some((n, point));
+        }
+        for n in &directions[1..] {
+            if set.len() + START <= P {
+                self.inquiry.ask(set, n)?;
+            }
+        }
+        Ok(opposite)
+    }
+
+    /// The polytope of a tetrahedron and all other points. `false`: it is flat.
+    #[inline(always)]
+    fn build<const P: usize, const F: usize>(
+        &self,
+        set: &SupportSet<P>,
+        hull: &mut Polytope<F>,
+        names: [usize; 4],
+    ) -> bool {
+        let precision = &self.inquiry.precision;
+        let tolerance = self.tolerance();
+        let rounding = expansion::rounding(precision);
+        let fine = expansion::exact(tolerance, precision);
+        let points = names.map(|i| set.v(i));
+        if !hull.tetrahedron(names, points, precision.size(), 2.0 * rounding, fine) {
+            return false;
+        }
+        let level = rounding + expansion::LEVEL * tolerance;
+        for i in 1..set.len() {
+            if names.contains(&i) {
+                continue;
+            }
+            let v = set.v(i);
+            if let Some(f) = hull.farthest_below(&Plane::point(&v), level) {
+                // A point without room is left out: the polytope is none the worse.
+                if hull.insert(f, i, &v, level, &|i| set.v(i)) == Inserted::NoRoom {
+                    break;
+                }
+            }
+        }
+        true
+    }
+
+    /// The expansion goes on in a larger room of `Q` points and `G` faces.
+    #[cold]
+    #[inline(never)]
+    fn widened<const P: usize, const F: usize, const Q: usize, const G: usize>(
+        &mut self,
+        small: &SupportSet<P>,
+        polytope: &Polytope<F>,
+        state: &mut Progress,
+    ) -> Result<Answer, Stop> {
+        let mut set = SupportSet::<Q>::EMPTY;
+        let mut hull = Polytope::<G>::BLANK;
+        set.take(small);
+        polytope.moved_to(&mut hull);
+        state.coarsen();
+        match expand(&mut self.inquiry, &mut set, &mut hull, state)? {
+            End::NoRoom if Q < THIRD.0 => {
+                self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, state)
+            }
+            End::NoRoom => self.lent(&set, &hull, state),
+            End::Open => self.decided(&set, Some((&hull, state))),
+            end => Ok(self.conclude(&set, &hull, state, end)),
+        }
+    }
+
+    /// And in the room that is lent; without one it ends here.
+    #[cold]
+    #[inline(never)]
+    fn lent<const P: usize, const F: usize>(
+        &mut self,
+        small: &SupportSet<P>,
+        polytope: &Polytope<F>,
+        state: &mut Progress,
+    ) -> Result<Answer, Stop> {
+        let Some(arena) = self.arena.take() else {
+            return Ok(self.conclude(small, polytope, state, End::Inside));
+        };
+        let Room { set, hull } = arena.room()?;
+        set.take(small);
+        polytope.moved_to(hull);
+        let end = expand(&mut self.inquiry, set, hull, state)?;
+        if end == End::Open || end == End::NoRoom && !(hull.nearest().key >= 0.0) {
+            return self.decided(set, Some((hull, state)));
+        }
+        Ok(self.conclude(set, hull, state, end))
+    }
+
+    /// The polytope has not come to hold the origin, by rounding or by contradictions: yes
+    /// or no is left to the distance algorithm.
+    #[cold]
+    #[inline(never)]
+    fn decided<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        expanded: Option<(&Polytope<F>, &Progress)>,
+    ) -> Result<Answer, Stop> {
+        let start = set.point(1);
+        let lowest = &mut self.inquiry.lowest;
+        let touch = self.inquiry.precision.touch();
+        let overlap = gjk::search(
+            self.inquiry.md,
+            start,
+            |n, reach| set.farther(n, reach).map(|i| set.point(i)),
+            crate::math::ITERATION_CAP,
+            |n, w| {
+                let depth = n.dot(&w.v);
+                if depth < lowest.depth && depth > touch {
+                    *lowest = Lowest {
+                        depth,
+                        dir: *n,
+                        index: 0,
+                    };
+                }
+            },
+        )?;
+        match overlap {
+            Overlap::No(n) => Err(Stop::Apart(n)),
+            Overlap::Undecided => Ok(Answer::Undecided(self.bare(&start))),
+            Overlap::Yes(..) => match expanded {
+                Some((hull, state)) => Ok(self.conclude(set, hull, state, End::Inside)),
+                None => Ok(Answer::Limit(self.bare(&start))),
+            },
+        }
+    }
+
+    /// The upper bound alone.
+    fn bare(&self, witness: &SupportPoint) -> Penetration {
+        let Lowest { depth, dir, .. } = self.inquiry.lowest;
+        Penetration {
+            depth,
+            depth_lower: 0.0,
+            dir,
+            normal: dir,
+            point1: witness.v1,
+            point2: witness.v2,
+            width: 0.0,
+            iterations: 0,
+        }
+    }
+
+    /// The answer of the upper bound, with the polytope's.
+    #[inline(never)]
+    fn conclude<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &Polytope<F>,
+        state: &Progress,
+        end: End,
+    ) -> Answer {
+        let Lowest { depth, dir, .. } = self.inquiry.lowest;
+        let top = hull.nearest();
+        let precision = &self.inquiry.precision;
+        let near = if top.key > 0.0 {
+            hull.distance(top.face)
+        } else {
+            0.0
+        };
+        let lower = larger(near - precision.grain(), 0.0).min(depth);
+        let (face, nearest) = leaves(set, hull, top.face, &dir, depth, state.tolerance);
+        let [a, b, c] = hull.corners(face).map(|i| set.point(i));
+        let (point1, point2) = barycentric::witnesses(&nearest.weights, [&a, &b, &c]);
+        let mut hit = Penetration {
+            depth,
+            depth_lower: lower,
+            dir,
+            normal: dir,
+            point1,
+            point2,
+            width: 0.0,
+            iterations: state.iterations,
+        };
+        if self.request.placed {
+            let error = state.tolerance + precision.rounding();
+            let count = set.len() - 1;
+            let witnesses = |i| set.witnesses(i + 1);
+            let rest = patch::rest(witnesses, count, &dir, error, precision.size());
+            // Of ties along a normal a support mapping picks one: a point asked along the
+            // normal of two faces shows one corner of each.
+            let along = |length: Real| (dir - set.direction(1)).norm() * length <= error;
+            let blind = |length| self.request.rested || self.request.cold() && along(length);
+            hit.width = match rest {
+                Rest::Along(length) => length,
+                Rest::Unsure(length) if blind(length) => length,
+                _ => 0.0,
+            };
+        }
+        if let Some(basis) = &mut self.basis {
+            basis.add(&dir);
+            // Asked along dir, the first point is found again by itself.
+            let lowest = set.v(self.inquiry.lowest.index);
+            for i in hull.corners(top.face) {
+                if set.v(i) != lowest {
+                    basis.add(&set.direction(i));
+                }
+            }
+        }
+        // Where rounding ended the search.
+        let close = state.tolerance + 16.0 * precision.grain();
+        if end == End::Proven || depth - lower <= close {
+            Answer::Hit(hit)
+        } else {
+            Answer::Limit(hit)
+        }
+    }
+}
+
+/// The face where the ray along `dir` leaves, and its point nearest to depth · dir.
+///
+/// That is a face no farther than the depth along the ray: mostly the nearest one, `top`;
+/// of faces in one plane the one that has the spot.
+#[inline(always)]
+fn leaves<const P: usize, const F: usize>(
+    set: &SupportSet<P>,
+    hull: &Polytope<F>,
+    top: usize,
+    dir: &Vec3,
+    depth: Real,
+    tolerance: Real,
+) -> (usize, barycentric::Nearest<3>) {
+    let spot = dir * depth;
+    let nearest = |f: usize| {
+        let [a, b, c] = hull.corners(f).map(|i| set.v(i));
+        barycentric::triangle(&spot, &a, &b, &c)
+    };
+    let mut best = (top, nearest(top));
+    if best.1.distance2 <= tolerance * tolerance {
+        return best;
+    }
+    for f in hull.faces() {
+        let rise = hull.normal(f).dot(dir);
+        if rise > 0.0 && hull.offset(f) <= rise * (depth + tolerance) {
+            let other = nearest(f);
+            if other.distance2 < best.1.distance2 {
+                best = (f, other);
+            }
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{Random, capsule};
+
+    struct Heap(Option<Box<Room>>);
+    impl Arena for Heap {
+        fn room(&mut self) -> Result<&mut Room, Fault> {
+            Ok(self.0.get_or_insert_with(|| {
+                Box::new(Room {
+                    set: SupportSet::EMPTY,
+                    hull: Polytope::BLANK,
+                })
+            }))
+        }
+    }
+
+    #[test]
+    fn capsules_are_no_deeper_than_their_cores_tell() {
+        let mut r = Random::new(1);
+        for round in 0..3000 {
+            let (a, b) = (r.direction() * 0.5, r.direction() * 0.5);
+            let c = r.direction() * 0.6;
+            let (pa, pb) = (capsule(-a, a, 0.5), capsule(c - b, c + b, 0.5));
+            let md = MinkowskiDifference::new(pa, pb);
+            // cores: parallelogram; exact: facets of segment difference + 1
+            let n = a.cross(&b).normalize();
+            let core = |n: &Vec3| n.dot(&-c) + n.dot(&a).abs() + n.dot(&b).abs();
+            let exact = core(&n).min(core(&-n));
+            let limits = Limits {
+                tolerance: 1e-6,
+                gap: 0.0,
+                supports: 1500,
+                iterations: 1000,
+            };
+            let n = c.normalize();
+            let request = Request {
+                centre: None,
+                directions: &[n],
+                limits,
+                placed: true,
+                rested: false,
+            };
+            let Answer::Hit(hit) = minimum(&md, &request, Some(&mut Heap(None)), None).unwrap()
+            else {
+                continue;
+            };
+            let md_h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
+            assert!((md_h - hit.depth).abs() < 1e-9);
+            if exact > 0.0 {
+                assert!(
+                    hit.depth <= exact + 1.0 + 1e-5,
+                    "{round} {hit:?} {}",
+                    exact + 1.0
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_cone_is_proven_from_any_direction() {
+        let mut r = Random::new(1);
+        let mut bad = 0;
+        for round in 0..20000 {
+            let rb = r.rotation();
+            let (rad, h): (Real, Real) = (0.7046, 0.583);
+            let pb = r.vector(0.3);
+            let b = move |n: &Vec3| {
+                let d: Vec3 = rb.inverse() * n;
+                let l = d.x.hypot(d.y);
+                let sin = rad / (rad * rad + 4.0 * h * h).sqrt();
+                let p = if d.z > sin {
+                    Vec3::z() * h
+                } else if l > 0.0 {
+                    Vec3::new(d.x / l * rad, d.y / l * rad, -h)
+                } else {
+                    -Vec3::z() * h
+                };
+                rb * p + pb
+            };
+            let md = MinkowskiDifference::new(|_: &Vec3| Vec3::zeros(), b);
+            let limits = Limits {
+                tolerance: 1e-6,
+                gap: 0.0,
+                supports: 1500,
+                iterations: 1000,
+            };
+            let n = if round % 2 == 0 {
+                r.direction()
+            } else {
+                rb * Vec3::z()
+            };
+            let request = Request {
+                centre: None,
+                directions: &[n],
+                limits,
+                placed: true,
+                rested: false,
+            };
+            let a = minimum(&md, &request, Some(&mut Heap(None)), None);
+            if let Ok(Answer::Limit(hit)) = a {
+                if hit.depth_lower == 0.0 {
+                    bad += 1;
+                    println!("{round} {hit:?}");
+                }
+            }
+        }
+        assert_eq!(bad, 0);
+    }
+}

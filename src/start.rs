@@ -1,0 +1,369 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The first tetrahedron of the global search: a point inside D, the *apex*, and three
+//! support points where the minimum is likely to be.
+//!
+//! A small first polytope around the right place saves support points: faces far from
+//! the origin never need to be expanded. Two kinds of places are told apart.
+//!
+//! *Round.* As long as D looks like a ball, with s(n) = m + ρn, the minimum of h is along
+//! −m, of depth ρ − |m|. The apex is the first m; a pair of samples (n, s), (n′, s′) tells
+//! the radius: e = n′·(s′ − s) and e′ = n·(s − s′) are what each exceeds the other's
+//! support plane by, for a ball both are ½ρ|n′ − n|², and ρ = (e + e′) / |n′ − n|². Where
+//! the next step promises less than a quarter of the tolerance, three points in a ring
+//! around the last direction are the face; the ring is as wide as a face may be that bounds
+//! a ball's distance to the tolerance.
+//!
+//! *Else* a small portal: seen along the axis from the apex through the origin, D is flat
+//! and the origin a point of the plane, and a triangle around it is wanted. That is GJK in
+//! the plane: from the point or edge nearest to the origin, ask towards the origin. A
+//! direction that lies in the plane is MPR's first portal, a quarter turn wide; here the
+//! axis is tilted as far as the portal seen so far suggests, and farther, up to the plane
+//! itself, where that brings nothing (162 vertices, shallow: 10.4 support points to 5.9;
+//! boxes 7.0 to 6.0).
+
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
+use crate::support::SupportMap;
+use crate::support_set::{Inquiry, Stop, SupportSet};
+
+/// Steps on the ball. Measured: the third is rare, and no pair set takes a sixth.
+const STEPS: usize = 6;
+/// |n′ − n|² above which the first step is no neighbour: 31 degrees.
+const FAR: Real = 0.3;
+/// Relative difference of e and e′ up to which two samples are of one ball.
+const ALIKE: Real = 0.1;
+/// The tilt for each unit of width seen: the portal's other corners lie about opposite.
+const TILT: Real = 1.5;
+/// The share of the size below which known points are no good measure of an extent. Free.
+const LITTLE: Real = 0.05;
+/// Tilts tried; from the fifth on the direction lies in the plane.
+const TRIES: usize = 12;
+const PATIENT: usize = 4;
+
+/// The apex and three different points that were known, if there are so many: in a warm
+/// query the corners of the last proof's nearest face.
+#[inline(always)]
+pub fn known<const P: usize>(set: &SupportSet<P>) -> Option<[usize; 4]> {
+    let mut names = [0; 4];
+    let mut count = 1;
+    for i in 1..set.len() {
+        if count < 4 && names[1..count].iter().all(|&j| set.v(j) != set.v(i)) {
+            names[count] = i;
+            count += 1;
+        }
+    }
+    (count == 4).then_some(names)
+}
+
+/// The ball's centre, as one sample shows it, for a radius.
+struct Ball {
+    n: Vec3,
+    s: Vec3,
+    h: Real,
+    radius: Real,
+}
+
+/// The apex and three points in a ring, where D looks like a ball; else `None`. `set` holds
+/// the apex as point 0 and the known points after it, of which there is at least one;
+/// `within` is the tolerance for a depth.
+#[inline(always)]
+pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    within: impl Fn(Real) -> Real,
+) -> Result<Option<[usize; 4]>, Stop> {
+    let (n, s) = (set.direction(1), set.v(1));
+    let mut ball = Ball {
+        n,
+        s,
+        h: n.dot(&s),
+        radius: n.dot(&(s - set.v(0))),
+    };
+    let mut smooth = false;
+    for step in 0..STEPS {
+        let away = ball.n * ball.radius - ball.s;
+        let Some(n) = unit(&away) else { break };
+        let turn2 = (n - ball.n).norm_squared();
+        let promise = 0.5 * turn2 * (ball.radius - ball.h);
+        if !(promise > 0.25 * within(ball.h)) {
+            smooth = true;
+            break;
+        }
+        if step == 0 && turn2 > FAR {
+            break;
+        }
+        let (i, h) = inquiry.ask(set, &n)?;
+        let s = set.v(i);
+        let (e, e_) = (h - n.dot(&ball.s), ball.h - ball.n.dot(&s));
+        let sum = e + e_;
+        smooth = (e - e_).abs() <= ALIKE * sum && sum > inquiry.precision.rounding();
+        if smooth {
+            ball.radius = sum / turn2;
+        }
+        if h < ball.h {
+            (ball.n, ball.s, ball.h) = (n, s, h);
+        }
+        if !(smooth && ball.radius > 1.05 * ball.h) {
+            break;
+        }
+    }
+    if !smooth {
+        return Ok(None);
+    }
+    ring(inquiry, set, &ball, within(ball.h)).map(Some)
+}
+
+/// Three points around the ball's direction: of the known points the one farthest aside
+/// is one of them.
+#[inline(always)]
+fn ring<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    ball: &Ball,
+    tolerance: Real,
+) -> Result<[usize; 4], Stop> {
+    // The middle of a triangle with corners at this angle lies a tolerance below the ball.
+    let tilt = (2.0 * tolerance / (ball.h + tolerance)).sqrt();
+    let tilt = tilt.clamp(2e-4, 0.3);
+    let (mut aside, mut farthest, mut old) = (Vec3::zeros(), 0.0, 0);
+    for i in 1..set.len() {
+        let v = set.v(i);
+        let across = v - ball.n * ball.n.dot(&v);
+        let far2 = across.norm_squared();
+        if far2 > farthest && v != ball.s {
+            (aside, farthest, old) = (across, far2, i);
+        }
+    }
+    let rounding = inquiry.precision.rounding();
+    if !(farthest > rounding * rounding) {
+        old = 0;
+    }
+    let a = match unit(&aside) {
+        Some(a) if old > 0 => a,
+        _ => perpendicular(&ball.n),
+    };
+    let b = ball.n.cross(&a);
+    // A third of a turn apart.
+    let (cos, sin) = (-0.5, 0.75_f64.sqrt() as Real);
+    let by = 1.0 / (1.0 + tilt * tilt).sqrt();
+    let mut names = [0, 0, 0, old];
+    for (name, (x, y)) in names[1..]
+        .iter_mut()
+        .zip([(cos, sin), (cos, -sin), (1.0, 0.0)])
+    {
+        if *name == 0 {
+            let n = (ball.n + (a * x + b * y) * tilt) * by;
+            *name = inquiry.ask(set, &n)?.0;
+        }
+    }
+    Ok(names)
+}
+
+/// What is seen along the axis: the origin is the middle.
+struct View {
+    axis: Vec3,
+    x: Vec3,
+    y: Vec3,
+}
+
+impl View {
+    #[inline(always)]
+    fn see(&self, v: &Vec3) -> [Real; 2] {
+        [self.x.dot(v), self.y.dot(v)]
+    }
+}
+
+#[inline(always)]
+fn cross(a: &[Real; 2], b: &[Real; 2]) -> Real {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[inline(always)]
+fn dot(a: &[Real; 2], b: &[Real; 2]) -> Real {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The apex and three points whose triangle the axis goes through. Point `skip` is no
+/// corner.
+///
+/// `None` where none was found: the apex is on the boundary of D or outside, or D is flat.
+#[inline(always)]
+pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    skip: usize,
+) -> Result<Option<[usize; 4]>, Stop> {
+    let apex = set.v(0);
+    let rounding = inquiry.precision.rounding();
+    let from_apex = apex.norm();
+    let axis = if from_apex > rounding {
+        apex / -from_apex
+    } else {
+        inquiry.lowest.dir
+    };
+    let mut a = 1;
+    let mut side = set.v(1) - axis * axis.dot(&set.v(1));
+    let mut width = side.norm();
+    if !(width > rounding) {
+        // On the axis: any side will do.
+        side = perpendicular(&axis);
+        width = 0.0;
+    } else {
+        side /= width;
+    }
+    let view = View {
+        axis,
+        x: side,
+        y: axis.cross(&side),
+    };
+    // The way from the apex to where the axis leaves D, about.
+    let length = larger(axis.dot(&(set.v(1) - apex)), width);
+    let mut seen_a = [width, 0.0];
+    let mut b: Option<(usize, [Real; 2])> = None;
+    let mut wider = 0;
+    for _ in 0..TRIES {
+        let (towards, off, span) = match &b {
+            None => ([-1.0, 0.0], width, 0.0),
+            Some((_, seen)) => {
+                let d = [seen[0] - seen_a[0], seen[1] - seen_a[1]];
+                let span = dot(&d, &d).sqrt();
+                let w = [-d[1] / span, d[0] / span];
+                let off = -dot(&w, &seen_a);
+                if off < 0.0 {
+                    ([-w[0], -w[1]], -off, span)
+                } else {
+                    (w, off, span)
+                }
+            }
+        };
+        let sideways = view.x * towards[0] + view.y * towards[1];
+        let known = beyond(set, skip, &sideways, rounding);
+        let i = match known {
+            Some(i) => i,
+            None => {
+                let extent = larger(2.0 * off, 0.6 * span);
+                let tilt = TILT * extent / length * [1.0, 2.0, 4.0, 16.0][wider.min(3)];
+                let n = if wider < PATIENT && tilt > 0.0 {
+                    unit(&(view.axis + sideways * tilt)).unwrap_or(sideways)
+                } else {
+                    sideways
+                };
+                inquiry.ask(set, &n)?.0
+            }
+        };
+        let seen = view.see(&set.v(i));
+        let gain = dot(&towards, &seen);
+        if !(gain > rounding - off) || gain <= 0.0 && wider >= PATIENT {
+            // No nearer to the origin than before. In the plane itself that is the end.
+            if wider >= PATIENT {
+                return Ok(None);
+            }
+            wider += 1;
+            continue;
+        }
+        if gain <= 0.0 {
+            wider += 1;
+        }
+        let Some((name_b, seen_b)) = b else {
+            b = Some((i, seen));
+            continue;
+        };
+        let turn = cross(&seen_b, &seen_a);
+        let (with_a, with_b) = (cross(&seen_a, &seen), cross(&seen, &seen_b));
+        if gain > 0.0 && with_a * turn >= 0.0 && with_b * turn >= 0.0 {
+            return Ok(Some([0, a, name_b, i]));
+        }
+        // The origin lies beyond one of the new edges.
+        if with_a * turn < 0.0 {
+            b = Some((i, seen));
+        } else {
+            (a, seen_a) = (i, seen);
+        }
+    }
+    Ok(None)
+}
+
+/// The known point farthest along a direction across the axis, if it is past the origin
+/// by more than rounding.
+#[inline(always)]
+fn beyond<const P: usize>(
+    set: &SupportSet<P>,
+    skip: usize,
+    sideways: &Vec3,
+    rounding: Real,
+) -> Option<usize> {
+    let (mut best, mut farthest) = (None, rounding);
+    for i in 1..set.len() {
+        let d = sideways.dot(&set.v(i));
+        if d > farthest && i != skip {
+            (best, farthest) = (Some(i), d);
+        }
+    }
+    best
+}
+
+/// A tetrahedron of known support points, the largest in sight, and of new ones where
+/// these have no extent: for D that is thin, and for an apex that was no point of D.
+///
+/// `Apart` where D is flat to rounding: a touch. `None` where the callbacks contradict
+/// that.
+#[cold]
+#[inline(never)]
+pub fn solid<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+) -> Result<Option<[usize; 4]>, Stop> {
+    let a = 1;
+    let va = set.v(a);
+    let b = extent(inquiry, set, a, &inquiry.lowest.dir.clone(), |v| {
+        (v - va).norm()
+    })?;
+    let Some(along) = unit(&(set.v(b) - va)) else {
+        return Ok(None);
+    };
+    let across = |v: &Vec3| (v - va) - along * along.dot(&(v - va));
+    let c = extent(inquiry, set, a, &perpendicular(&along), |v| {
+        across(v).norm()
+    })?;
+    let Some(normal) = unit(&along.cross(&across(&set.v(c)))) else {
+        return Ok(None);
+    };
+    let d = extent(inquiry, set, a, &normal, |v| normal.dot(&(v - va)).abs())?;
+    Ok(Some([a, b, c, d]))
+}
+
+/// The point that is farthest by `measure`: of the known ones, and where these measure
+/// little of the support points along `n` and `-n`.
+fn extent<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    from: usize,
+    n: &Vec3,
+    measure: impl Fn(&Vec3) -> Real,
+) -> Result<usize, Stop> {
+    let rounding = 16.0 * (inquiry.precision.rounding() + inquiry.precision.grain());
+    let mut best = (from, rounding);
+    for i in 1..set.len() {
+        let m = measure(&set.v(i));
+        if m > best.1 {
+            best = (i, m);
+        }
+    }
+    if !(best.1 > LITTLE * inquiry.precision.size()) {
+        // Towards the origin first.
+        let inward = if set.v(from).dot(n) > 0.0 { -n } else { *n };
+        for n in [inward, -inward] {
+            let (i, _) = inquiry.ask(set, &n)?;
+            let m = measure(&set.v(i));
+            if m > best.1 {
+                best = (i, m);
+            }
+        }
+    }
+    if best.0 == from {
+        // No wider than rounding: the depth is less.
+        return Err(Stop::Apart(inquiry.lowest.dir));
+    }
+    Ok(best.0)
+}
