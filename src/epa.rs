@@ -878,9 +878,10 @@ impl<'a> Polytope<'a> {
         // Known twice, a point differs from itself by rounding.
         let least = 4.0 * query.rounding;
         for i in 0..self.counts.points as Index {
-            if ![a, b, c, d].contains(&i)
-                && let Some(f) = self.lit(i, least)
-            {
+            if [a, b, c, d].contains(&i) {
+                continue;
+            }
+            if let Some(f) = self.lit(i, least) {
                 self.insert(f, i, query.rounding, target);
             }
         }

@@ -385,15 +385,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // Another valley: its floor is where the proof got to, or below.
             let mut memory = State::of(OVERLAP, global.normal).memory;
             best = global;
-            if global.depth - global.depth_lower > settings.tolerance
-                && let Answer::Hit(hit) | Answer::Limit(hit) =
-                    self.descend(&mut memory, settings, &mut known)?
-                && hit.depth < global.depth
-            {
-                best = Penetration {
-                    depth_lower: global.depth_lower.min(hit.depth),
-                    ..hit
-                };
+            if global.depth - global.depth_lower > settings.tolerance {
+                match self.descend(&mut memory, settings, &mut known)? {
+                    Answer::Hit(hit) | Answer::Limit(hit) if hit.depth < global.depth => {
+                        best = Penetration {
+                            depth_lower: global.depth_lower.min(hit.depth),
+                            ..hit
+                        };
+                    }
+                    _ => {}
+                }
             }
             *state = State::overlap(memory);
         }
@@ -463,14 +464,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             ..*settings
         };
         let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
-        if let Answer::Miss(n) = &answer
-            && gjk::farthest(known.points(), n, 0.0).is_some()
-        {
+        match &answer {
             // D reaches beyond that plane: a callback that errs must not separate.
-            return Ok(found);
-        }
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &answer {
-            *memory = State::of(OVERLAP, hit.normal).memory;
+            Answer::Miss(n) if gjk::farthest(known.points(), n, 0.0).is_some() => return Ok(found),
+            Answer::Hit(hit) | Answer::Limit(hit) => {
+                *memory = State::of(OVERLAP, hit.normal).memory;
+            }
+            _ => {}
         }
         Ok(answer)
     }
@@ -554,19 +554,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: &mut dyn Arena,
     ) -> Result<Answer, Fault> {
         let mut answer = epa::minimum(&self.md, seed, settings, arena)?;
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer
-            && unmet(hit, settings)
-        {
-            let start = match seed.points.first() {
-                Some(point) => *point,
-                None => self.md.support(&hit.normal)?,
-            };
-            let limit = settings.max_iterations;
-            if let Overlap::Yes(simplex, _) =
-                gjk::intersect(&self.md, start, seed.points, None, limit)?
-            {
-                (hit.point1, hit.point2) = simplex.witnesses();
+        match &mut answer {
+            Answer::Hit(hit) | Answer::Limit(hit) if unmet(hit, settings) => {
+                let start = match seed.points.first() {
+                    Some(point) => *point,
+                    None => self.md.support(&hit.normal)?,
+                };
+                let limit = settings.max_iterations;
+                if let Overlap::Yes(simplex, _) =
+                    gjk::intersect(&self.md, start, seed.points, None, limit)?
+                {
+                    (hit.point1, hit.point2) = simplex.witnesses();
+                }
             }
+            _ => {}
         }
         let Answer::Limit(hit) = answer else {
             return Ok(answer);
@@ -586,18 +587,18 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 break;
             };
             let mut memory = State::of(OVERLAP, n).memory;
-            if let Answer::Hit(floor) | Answer::Limit(floor) =
-                self.descend(&mut memory, &level, &mut Known::default())?
-                && floor.depth < best.depth
-            {
-                if floor.depth < best.depth - level.tolerance {
-                    start = Some(floor.normal);
+            match self.descend(&mut memory, &level, &mut Known::default())? {
+                Answer::Hit(floor) | Answer::Limit(floor) if floor.depth < best.depth => {
+                    if floor.depth < best.depth - level.tolerance {
+                        start = Some(floor.normal);
+                    }
+                    best = Penetration {
+                        depth_lower: hit.depth_lower.min(floor.depth),
+                        iterations: best.iterations + floor.iterations,
+                        ..floor
+                    };
                 }
-                best = Penetration {
-                    depth_lower: hit.depth_lower.min(floor.depth),
-                    iterations: best.iterations + floor.iterations,
-                    ..floor
-                };
+                _ => {}
             }
         }
         // The proof may have lacked no more than the floor.

@@ -243,6 +243,54 @@ fn precision_is_held() {
     assert!(!compiles(&[other]));
 }
 
+/// The oldest Rust that Cargo.toml promises builds the library without a warning:
+/// rustup's, or the system's where it is that one (Debian 13).
+#[test]
+fn oldest_rust() {
+    let version = env!("CARGO_PKG_RUST_VERSION");
+    let is_that_one = |command: &[&str]| {
+        let said = Command::new(command[0])
+            .args(&command[1..])
+            .arg("--version")
+            .output();
+        said.is_ok_and(|said| {
+            String::from_utf8_lossy(&said.stdout).starts_with(&format!("cargo {version}."))
+        })
+    };
+    let choices = [
+        &["rustup", "run", version, "cargo"][..],
+        &["/usr/bin/cargo"][..],
+    ];
+    let Some(cargo) = choices.into_iter().find(|cargo| is_that_one(cargo)) else {
+        println!("skipped: no Rust {version} (rustup toolchain install {version})");
+        return;
+    };
+    let mut build = Command::new(cargo[0]);
+    build
+        .args(&cargo[1..])
+        .args(["build", "--release", "--lib", "--locked"])
+        .args([
+            "--manifest-path".as_ref(),
+            root().join("Cargo.toml").as_os_str(),
+        ])
+        .arg("--target-dir")
+        .arg(output_dir().join("oldest-rust"))
+        .env("RUSTFLAGS", "-D warnings");
+    // What cargo told this test about the compiler it was made with.
+    for variable in [
+        "CARGO",
+        "RUSTC",
+        "RUSTUP_TOOLCHAIN",
+        "CARGO_ENCODED_RUSTFLAGS",
+    ] {
+        build.env_remove(variable);
+    }
+    if Precision::CURRENT == Precision::Single {
+        build.args(["--features", "single"]);
+    }
+    must_succeed(&mut build, "cargo");
+}
+
 /// The README's C program compiles without a warning and answers rightly.
 #[test]
 fn readme_program() {

@@ -28,9 +28,9 @@ const fn size(points: usize) -> usize {
 const _: () = assert!(
     align_of::<SupportPoint>() >= align_of::<Face>()
         && align_of::<SupportPoint>() >= align_of::<Entry>()
-        && size_of::<SupportPoint>().is_multiple_of(align_of::<Face>())
-        && size_of::<Face>().is_multiple_of(align_of::<Entry>())
-        && size_of::<Entry>().is_multiple_of(align_of::<Edge>())
+        && size_of::<SupportPoint>() % align_of::<Face>() == 0
+        && size_of::<Face>() % align_of::<Entry>() == 0
+        && size_of::<Entry>() % align_of::<Edge>() == 0
 );
 
 /// Bytes with the alignment of the arrays.

@@ -162,10 +162,8 @@ unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_i
             upper: None,
         };
         let mut answer = arena::with(|arena| pair.global(&seed, &settings, arena));
-        if let Ok(found) = answer
-            && placed
-        {
-            answer = pair.settle(found, &settings);
+        if placed {
+            answer = answer.and_then(|found| pair.settle(found, &settings));
         }
         match answer {
             Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
