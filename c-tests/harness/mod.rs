@@ -18,8 +18,9 @@
 //! | `link_ours_renamed_and_system` | the system's `libccd.so.2`, and this library with `rs_` before every name |
 //! | `link_system` | the system's; `.swapped()` gives the same program on this library |
 //!
-//! Environment, read for every program but those marked `without_tools`:
-//! `C_TESTS_CC`, `C_TESTS_CXX` name the compilers (default `cc`, `c++`);
+//! The compilers are those that the `cc` crate finds for the target this test is
+//! compiled for: `CC`, `CXX`, `CFLAGS`, `CXXFLAGS` and its other variables are heard.
+//! Further environment, read for every program but those marked `without_tools`:
 //! `C_TESTS_FLAGS` is appended when compiling and linking (`-fsanitize=address`);
 //! `C_TESTS_RUNNER` goes before the program (`valgrind --error-exitcode=99`).
 
@@ -77,6 +78,38 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// What this test is compiled for; its programs and the library are compiled for it too.
+pub const TARGET: &str = env!("TARGET");
+
+/// The C or C++ compiler for [`TARGET`], with the flags that all programs have.
+pub fn compiler(cpp: bool) -> cc::Build {
+    let mut build = cc::Build::new();
+    build
+        .cpp(cpp)
+        .target(TARGET)
+        .host(env!("HOST"))
+        .opt_level(2)
+        .debug(true)
+        .warnings(true)
+        .extra_warnings(true)
+        .cargo_metadata(false)
+        .out_dir(output_dir())
+        // One rounding an operation, whatever the machine has: the same bits everywhere.
+        .flag("-ffp-contract=off");
+    if cfg!(target_arch = "x86") {
+        build.flag("-msse2").flag("-mfpmath=sse");
+    }
+    build
+}
+
+/// The command that runs a compiler; panics where there is none.
+pub fn compile_with(build: &cc::Build) -> Command {
+    let found = build.try_get_compiler();
+    found
+        .unwrap_or_else(|e| panic!("{e}: run `sh c-tests/setup.sh` first"))
+        .to_command()
+}
+
 /// Where everything this module makes goes: `target/c-tests`.
 pub fn output_dir() -> PathBuf {
     // Cargo names target/tmp to integration tests and benchmarks, wherever target is.
@@ -123,6 +156,11 @@ fn build_library(precision: Precision) -> Built {
     if precision == Precision::Single {
         cargo.args(["--features", "single"]);
     }
+    let mut release = target.join("release");
+    if TARGET != env!("HOST") {
+        cargo.args(["--target", TARGET]);
+        release = target.join(TARGET).join("release");
+    }
     // Cargo repeats what rustc said even when nothing has to be built again.
     cargo.args(["--", "--print", "native-static-libs"]);
     let said = must_succeed(&mut cargo, "Rust's cargo").stderr;
@@ -135,7 +173,6 @@ fn build_library(precision: Precision) -> Built {
         .map(String::from)
         .collect();
 
-    let release = target.join("release");
     let dir = target.join("lib");
     fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
     for (name, file) in [
@@ -313,7 +350,7 @@ impl Program {
     }
 
     /// A flag for compiling and linking, after the usual
-    /// `-O2 -g -Wall -Wextra`; `-Werror` makes warnings fail the build.
+    /// ones of [`compiler`]; `-Werror` makes warnings fail the build.
     pub fn flag(mut self, flag: impl AsRef<OsStr>) -> Program {
         self.flags.push(flag.as_ref().to_owned());
         self
@@ -384,20 +421,10 @@ impl Program {
             "{}: the system's libccd is double, this program single",
             self.name
         );
-        let (compiler, default, standard) = if self.cpp {
-            ("C_TESTS_CXX", "c++", "c++17")
-        } else {
-            ("C_TESTS_CC", "cc", "c99")
-        };
-        let mut compiler = words(compiler);
-        if compiler.is_empty() {
-            compiler.push(default.to_owned());
-        }
-
-        let mut args: Vec<OsString> = compiler[1..].iter().map(OsString::from).collect();
-        let standard = self.standard.as_deref().unwrap_or(standard);
-        args.push(format!("-std={standard}").into());
-        args.extend(["-O2", "-g", "-Wall", "-Wextra"].map(OsString::from));
+        let mut compile = compile_with(&compiler(self.cpp));
+        let default = ["c99", "c++17"][usize::from(self.cpp)];
+        let standard = self.standard.as_deref().unwrap_or(default);
+        let mut args: Vec<OsString> = vec![format!("-std={standard}").into()];
         if self.precision == Precision::Single {
             args.push("-DCCD_SINGLE".into());
         }
@@ -445,15 +472,14 @@ impl Program {
 
         // The command's hash keeps two programs of one name apart.
         let mut hash = DefaultHasher::new();
-        (&compiler, &args).hash(&mut hash);
+        (compile.get_program(), &args).hash(&mut hash);
+        compile.get_args().for_each(|arg| arg.hash(&mut hash));
         let dir = output_dir().join("programs");
         fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
         let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
         replace(&path, |new| {
-            let said = must_succeed(
-                Command::new(&compiler[0]).args(&args).arg("-o").arg(new),
-                &format!("{} (compiling {})", compiler[0], self.name),
-            );
+            let what = format!("the compiler (for {})", self.name);
+            let said = must_succeed(compile.args(&args).arg("-o").arg(new), &what);
             print!("{}", said.stderr);
             Ok(())
         });

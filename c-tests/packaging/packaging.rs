@@ -32,6 +32,10 @@ fn cmake(args: impl IntoIterator<Item = impl AsRef<OsStr>>) {
     must_succeed(Command::new("cmake").args(args), "cmake");
 }
 
+fn c_compiler() -> Command {
+    harness::compile_with(&harness::compiler(false))
+}
+
 fn define(name: &str, value: impl AsRef<OsStr>) -> std::ffi::OsString {
     let mut definition = std::ffi::OsString::from(format!("-D{name}="));
     definition.push(value);
@@ -155,7 +159,7 @@ fn pkg_config() {
     assert_eq!(ask(&["--modversion"]), ["2.0"]);
     let compile = |name: &str, flags: &[String]| {
         let program = programs.join(name);
-        let mut cc = Command::new("cc");
+        let mut cc = c_compiler();
         cc.arg(root().join("c-tests/packaging/consumer/main.c"));
         must_succeed(cc.args(flags).arg("-o").arg(&program), "cc");
         program
@@ -192,7 +196,7 @@ fn destdir_and_multiarch() {
             .arg(&build),
         "cmake",
     );
-    let triplet = must_succeed(Command::new("cc").arg("-print-multiarch"), "cc");
+    let triplet = must_succeed(c_compiler().arg("-print-multiarch"), "cc");
     let libdir = Path::new("usr/lib").join(triplet.stdout.trim());
     for file in [
         "libccd.a",
@@ -231,7 +235,7 @@ fn precision_is_held() {
     };
     let prefix = installed_and_moved();
     let compiles = |flags: &[&str]| {
-        let mut cc = Command::new("cc");
+        let mut cc = c_compiler();
         cc.arg("-fsyntax-only")
             .arg(root().join("c-tests/packaging/consumer/main.c"))
             .arg("-I")
