@@ -63,6 +63,8 @@ tests)
     want_command pkg-config pkg-config
     want_command cmake cmake
     want_command make make
+    want_command ninja ninja-build
+    want_command git git
     want_command abidiff abigail-tools
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then
