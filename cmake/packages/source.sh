@@ -21,8 +21,10 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 tree=$work/$name
 mkdir "$tree"
-git ls-files -z -- . ':!c-tests' ':!.ci' c-tests/packaging/consumer |
-    tar -c --null -T - | tar -x -C "$tree"
+{
+    git ls-files -z -- . ':!c-tests' ':!.ci'
+    git ls-files -z -- c-tests/packaging/consumer
+} | tar -c --null -T - | tar -x -C "$tree"
 
 # Cargo wants every crate of the manifest at hand, those of the tests too.
 awk '/^\[/ { drop = /^\[(dev-dependencies|\[(test|bench|example)\])/ } !drop' Cargo.toml >"$tree/Cargo.toml"
