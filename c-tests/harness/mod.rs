@@ -23,6 +23,9 @@
 //! Further environment, read for every program but those marked `without_tools`:
 //! `C_TESTS_FLAGS` is appended when compiling and linking (`-fsanitize=address`);
 //! `C_TESTS_RUNNER` goes before the program (`valgrind --error-exitcode=99`).
+//! Compiled for another platform, programs run as cargo runs this test: by what
+//! `CARGO_TARGET_<its name>_RUNNER` says (`qemu-aarch64`). `NM` and `OBJCOPY` name that
+//! platform's, if the usual ones do not know it.
 
 // Every driver uses a part of this module.
 #![allow(dead_code)]
@@ -157,7 +160,7 @@ fn build_library(precision: Precision) -> Built {
         cargo.args(["--features", "single"]);
     }
     let mut release = target.join("release");
-    if TARGET != env!("HOST") {
+    if emulated() {
         cargo.args(["--target", TARGET]);
         release = target.join(TARGET).join("release");
     }
@@ -193,6 +196,36 @@ fn build_library(precision: Precision) -> Built {
     }
 }
 
+/// A tool for object files: as the environment names it, or by its own name.
+pub fn binutils(name: &str) -> Command {
+    Command::new(std::env::var_os(name.to_uppercase()).unwrap_or_else(|| name.into()))
+}
+
+/// Whether a command is there; `--version` shows it.
+pub fn installed(command: &str) -> bool {
+    let said = Command::new(command).arg("--version").output();
+    said.is_ok_and(|said| said.status.success())
+}
+
+/// Whether the programs are for another processor than this machine's.
+pub fn emulated() -> bool {
+    TARGET != env!("HOST")
+}
+
+/// What runs a program for [`TARGET`]: nothing, where that is this machine.
+fn emulator() -> Vec<String> {
+    let target = TARGET.to_uppercase().replace('-', "_");
+    words(&format!("CARGO_TARGET_{target}_RUNNER"))
+}
+
+/// A command that runs `path` by the words before it.
+fn run_by(runner: &[String], path: &Path) -> Command {
+    let mut words = runner.iter().map(OsString::from).chain([path.into()]);
+    let mut command = Command::new(words.next().expect("a path at least"));
+    command.args(words);
+    command
+}
+
 /// Puts `rs_` before every name of libccd's in a copy of the archive, so that
 /// one process can hold this library and the system's.
 fn rename_symbols(archive: &Path, renamed: &Path) {
@@ -201,9 +234,7 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
         return;
     }
     let symbols = must_succeed(
-        Command::new("nm")
-            .args(["-g", "--defined-only"])
-            .arg(archive),
+        binutils("nm").args(["-g", "--defined-only"]).arg(archive),
         "nm (Debian: binutils)",
     )
     .stdout;
@@ -224,7 +255,7 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
     fs::write(&table, lines).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
     replace(renamed, |new| {
         must_succeed(
-            Command::new("objcopy")
+            binutils("objcopy")
                 .arg(format!("--redefine-syms={}", table.display()))
                 .arg(archive)
                 .arg(new),
@@ -549,7 +580,7 @@ impl Executable {
         self
     }
 
-    /// Longest run, 300 s if not said; twenty times that under a tool.
+    /// Longest run, 300 s if not said; twenty times that under a tool or an emulator.
     pub fn timeout(mut self, timeout: Duration) -> Executable {
         self.timeout = timeout;
         self
@@ -581,11 +612,7 @@ impl Executable {
         args: impl IntoIterator<Item = impl AsRef<OsStr>>,
     ) -> (ExitStatus, Written) {
         let mut command = self.command();
-        let factor = if self.tools && !words("C_TESTS_RUNNER").is_empty() {
-            20
-        } else {
-            1
-        };
+        let factor = if self.runner().is_empty() { 1 } else { 20 };
         let (status, written) = run_command(command.args(args), self.timeout * factor);
         if !self.quiet {
             println!("--- {}\n{}{}", self.name, written.stdout, written.stderr);
@@ -593,16 +620,18 @@ impl Executable {
         (status, written)
     }
 
+    /// What goes before the program.
+    fn runner(&self) -> Vec<String> {
+        let mut runner = emulator();
+        if self.tools {
+            runner.extend(words("C_TESTS_RUNNER"));
+        }
+        runner
+    }
+
     /// The command that runs the program, without arguments.
     pub fn command(&self) -> Command {
-        let mut command = match words("C_TESTS_RUNNER").as_slice() {
-            [runner, rest @ ..] if self.tools => {
-                let mut command = Command::new(runner);
-                command.args(rest).arg(&self.path);
-                command
-            }
-            _ => Command::new(&self.path),
-        };
+        let mut command = run_by(&self.runner(), &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
         command.envs(self.environment.iter().map(|(name, value)| (name, value)));
         command
@@ -610,7 +639,7 @@ impl Executable {
 
     /// The libccd.so.2 the dynamic linker gives this program, as ldd would say.
     pub fn loaded_ccd(&self) -> Option<PathBuf> {
-        let mut command = Command::new(&self.path);
+        let mut command = run_by(&emulator(), &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
         let said = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
         let line = said
