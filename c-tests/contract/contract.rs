@@ -7,6 +7,8 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
+// The committed bindings are those of 64-bit pointers.
+#[cfg(target_pointer_width = "64")]
 mod bindings;
 
 use std::collections::BTreeSet;
