@@ -63,6 +63,8 @@ tests)
     want_command pkg-config pkg-config
     want_command cmake cmake
     want_command make make
+    want_command ninja ninja-build
+    want_command git git
     want_command abidiff abigail-tools
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then
@@ -83,6 +85,14 @@ if [ -n "$missing" ]; then
     fi
     # shellcheck disable=SC2086  # one word per package
     apt_install $missing
+fi
+
+# One test builds the library with the oldest Rust that it promises, where that is.
+if [ "${1:-tests}" = tests ] && command -v rustup >/dev/null 2>&1; then
+    oldest=$(sed -n 's/^rust-version = "\(.*\)"$/\1/p' "$(dirname "$0")/../Cargo.toml")
+    rustup run "$oldest" cargo --version >/dev/null 2>&1 ||
+        rustup toolchain install "$oldest" --profile minimal ||
+        echo "setup.sh: no Rust $oldest: its test will be skipped" >&2
 fi
 
 # The main job compares with the system's libccd where it can be had, and goes

@@ -501,14 +501,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             ..*settings
         };
         let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
-        if let Answer::Miss(n) = &answer
-            && gjk::farthest(known.points(), n, 0.0).is_some()
-        {
+        match &answer {
             // D reaches beyond that plane: a callback that errs must not separate.
-            return Ok(found);
-        }
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &answer {
-            *memory = State::of(OVERLAP, hit.normal).memory;
+            Answer::Miss(n) if gjk::farthest(known.points(), n, 0.0).is_some() => return Ok(found),
+            Answer::Hit(hit) | Answer::Limit(hit) => {
+                *memory = State::of(OVERLAP, hit.normal).memory;
+            }
+            _ => {}
         }
         Ok(answer)
     }

@@ -2,7 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Sizes and offsets, asserted when compiled: of the headers' types as of the polytope's,
- * double / single. The Rust side asserts the same numbers. */
+ * double / single, with 8-byte pointers and longs. The Rust side asserts the same numbers.
+ * With other pointers C's rules, which Rust follows, lay out the same declarations. */
 
 #include "polytope.h"
 #include <ccd/quat.h>
@@ -23,6 +24,7 @@
 #define SIZE(type, of_double, of_single) ASSERT(sizeof(type) == BYTES(of_double, of_single))
 #define AT(type, member, of_double, of_single) ASSERT(offsetof(type, member) == BYTES(of_double, of_single))
 
+#if __SIZEOF_POINTER__ == 8
 SIZE(ccd_real_t, 8, 4);
 SIZE(ccd_vec3_t, 24, 12);
 SIZE(ccd_quat_t, 32, 16);
@@ -74,6 +76,7 @@ AT(pt_t, faces, 32, 32);
 AT(pt_t, nearest, 48, 48);
 AT(pt_t, nearest_dist, 56, 56);
 AT(pt_t, nearest_type, 64, 60);
+#endif
 
 int main(void)
 {

@@ -13,7 +13,7 @@
 #include <float.h>
 #include <math.h>
 
-typedef __float128 exact_t;
+__extension__ typedef _Float128 exact_t;
 typedef struct { exact_t v[3]; } exact_vec_t;
 
 static exact_vec_t exact(const ccd_vec3_t *a)

@@ -18,10 +18,14 @@
 //! | `link_ours_renamed_and_system` | the system's `libccd.so.2`, and this library with `rs_` before every name |
 //! | `link_system` | the system's; `.swapped()` gives the same program on this library |
 //!
-//! Environment, read for every program but those marked `without_tools`:
-//! `C_TESTS_CC`, `C_TESTS_CXX` name the compilers (default `cc`, `c++`);
+//! The compilers are those that the `cc` crate finds for the target this test is
+//! compiled for: `CC`, `CXX`, `CFLAGS`, `CXXFLAGS` and its other variables are heard.
+//! Further environment, read for every program but those marked `without_tools`:
 //! `C_TESTS_FLAGS` is appended when compiling and linking (`-fsanitize=address`);
 //! `C_TESTS_RUNNER` goes before the program (`valgrind --error-exitcode=99`).
+//! Compiled for another platform, programs run as cargo runs this test: by what
+//! `CARGO_TARGET_<its name>_RUNNER` says (`qemu-aarch64`). `NM` and `OBJCOPY` name that
+//! platform's, if the usual ones do not know it.
 
 // Every driver uses a part of this module.
 #![allow(dead_code)]
@@ -77,6 +81,38 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// What this test is compiled for; its programs and the library are compiled for it too.
+pub const TARGET: &str = env!("TARGET");
+
+/// The C or C++ compiler for [`TARGET`], with the flags that all programs have.
+pub fn compiler(cpp: bool) -> cc::Build {
+    let mut build = cc::Build::new();
+    build
+        .cpp(cpp)
+        .target(TARGET)
+        .host(env!("HOST"))
+        .opt_level(2)
+        .debug(true)
+        .warnings(true)
+        .extra_warnings(true)
+        .cargo_metadata(false)
+        .out_dir(output_dir())
+        // One rounding an operation, whatever the machine has: the same bits everywhere.
+        .flag("-ffp-contract=off");
+    if cfg!(target_arch = "x86") {
+        build.flag("-msse2").flag("-mfpmath=sse");
+    }
+    build
+}
+
+/// The command that runs a compiler; panics where there is none.
+pub fn compile_with(build: &cc::Build) -> Command {
+    let found = build.try_get_compiler();
+    found
+        .unwrap_or_else(|e| panic!("{e}: run `sh c-tests/setup.sh` first"))
+        .to_command()
+}
+
 /// Where everything this module makes goes: `target/c-tests`.
 pub fn output_dir() -> PathBuf {
     // Cargo names target/tmp to integration tests and benchmarks, wherever target is.
@@ -106,6 +142,10 @@ fn build_library(precision: Precision) -> Built {
     let target = output.join(precision.name());
     // Test binaries may run side by side: one builds, the others wait for it.
     let lock_path = output.join(format!("{}.lock", precision.name()));
+    #[expect(
+        clippy::incompatible_msrv,
+        reason = "the tests' own crates need 1.89 too"
+    )]
     let lock = File::create(&lock_path)
         .and_then(|file| file.lock().map(|()| file))
         .unwrap_or_else(|e| panic!("cannot lock {}: {e}", lock_path.display()));
@@ -119,6 +159,11 @@ fn build_library(precision: Precision) -> Built {
     if precision == Precision::Single {
         cargo.args(["--features", "single"]);
     }
+    let mut release = target.join("release");
+    if emulated() {
+        cargo.args(["--target", TARGET]);
+        release = target.join(TARGET).join("release");
+    }
     // Cargo repeats what rustc said even when nothing has to be built again.
     cargo.args(["--", "--print", "native-static-libs"]);
     let said = must_succeed(&mut cargo, "Rust's cargo").stderr;
@@ -131,7 +176,6 @@ fn build_library(precision: Precision) -> Built {
         .map(String::from)
         .collect();
 
-    let release = target.join("release");
     let dir = target.join("lib");
     fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
     for (name, file) in [
@@ -152,6 +196,36 @@ fn build_library(precision: Precision) -> Built {
     }
 }
 
+/// A tool for object files: as the environment names it, or by its own name.
+pub fn binutils(name: &str) -> Command {
+    Command::new(std::env::var_os(name.to_uppercase()).unwrap_or_else(|| name.into()))
+}
+
+/// Whether a command is there; `--version` shows it.
+pub fn installed(command: &str) -> bool {
+    let said = Command::new(command).arg("--version").output();
+    said.is_ok_and(|said| said.status.success())
+}
+
+/// Whether the programs are for another processor than this machine's.
+pub fn emulated() -> bool {
+    TARGET != env!("HOST")
+}
+
+/// What runs a program for [`TARGET`]: nothing, where that is this machine.
+fn emulator() -> Vec<String> {
+    let target = TARGET.to_uppercase().replace('-', "_");
+    words(&format!("CARGO_TARGET_{target}_RUNNER"))
+}
+
+/// A command that runs `path` by the words before it.
+fn run_by(runner: &[String], path: &Path) -> Command {
+    let mut words = runner.iter().map(OsString::from).chain([path.into()]);
+    let mut command = Command::new(words.next().expect("a path at least"));
+    command.args(words);
+    command
+}
+
 /// Puts `rs_` before every name of libccd's in a copy of the archive, so that
 /// one process can hold this library and the system's.
 fn rename_symbols(archive: &Path, renamed: &Path) {
@@ -160,9 +234,7 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
         return;
     }
     let symbols = must_succeed(
-        Command::new("nm")
-            .args(["-g", "--defined-only"])
-            .arg(archive),
+        binutils("nm").args(["-g", "--defined-only"]).arg(archive),
         "nm (Debian: binutils)",
     )
     .stdout;
@@ -183,7 +255,7 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
     fs::write(&table, lines).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
     replace(renamed, |new| {
         must_succeed(
-            Command::new("objcopy")
+            binutils("objcopy")
                 .arg(format!("--redefine-syms={}", table.display()))
                 .arg(archive)
                 .arg(new),
@@ -309,7 +381,7 @@ impl Program {
     }
 
     /// A flag for compiling and linking, after the usual
-    /// `-O2 -g -Wall -Wextra`; `-Werror` makes warnings fail the build.
+    /// ones of [`compiler`]; `-Werror` makes warnings fail the build.
     pub fn flag(mut self, flag: impl AsRef<OsStr>) -> Program {
         self.flags.push(flag.as_ref().to_owned());
         self
@@ -380,20 +452,10 @@ impl Program {
             "{}: the system's libccd is double, this program single",
             self.name
         );
-        let (compiler, default, standard) = if self.cpp {
-            ("C_TESTS_CXX", "c++", "c++17")
-        } else {
-            ("C_TESTS_CC", "cc", "c99")
-        };
-        let mut compiler = words(compiler);
-        if compiler.is_empty() {
-            compiler.push(default.to_owned());
-        }
-
-        let mut args: Vec<OsString> = compiler[1..].iter().map(OsString::from).collect();
-        let standard = self.standard.as_deref().unwrap_or(standard);
-        args.push(format!("-std={standard}").into());
-        args.extend(["-O2", "-g", "-Wall", "-Wextra"].map(OsString::from));
+        let mut compile = compile_with(&compiler(self.cpp));
+        let default = ["c99", "c++17"][usize::from(self.cpp)];
+        let standard = self.standard.as_deref().unwrap_or(default);
+        let mut args: Vec<OsString> = vec![format!("-std={standard}").into()];
         if self.precision == Precision::Single {
             args.push("-DCCD_SINGLE".into());
         }
@@ -441,15 +503,14 @@ impl Program {
 
         // The command's hash keeps two programs of one name apart.
         let mut hash = DefaultHasher::new();
-        (&compiler, &args).hash(&mut hash);
+        (compile.get_program(), &args).hash(&mut hash);
+        compile.get_args().for_each(|arg| arg.hash(&mut hash));
         let dir = output_dir().join("programs");
         fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
         let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
         replace(&path, |new| {
-            let said = must_succeed(
-                Command::new(&compiler[0]).args(&args).arg("-o").arg(new),
-                &format!("{} (compiling {})", compiler[0], self.name),
-            );
+            let what = format!("the compiler (for {})", self.name);
+            let said = must_succeed(compile.args(&args).arg("-o").arg(new), &what);
             print!("{}", said.stderr);
             Ok(())
         });
@@ -519,7 +580,7 @@ impl Executable {
         self
     }
 
-    /// Longest run, 300 s if not said; twenty times that under a tool.
+    /// Longest run, 300 s if not said; twenty times that under a tool or an emulator.
     pub fn timeout(mut self, timeout: Duration) -> Executable {
         self.timeout = timeout;
         self
@@ -551,11 +612,7 @@ impl Executable {
         args: impl IntoIterator<Item = impl AsRef<OsStr>>,
     ) -> (ExitStatus, Written) {
         let mut command = self.command();
-        let factor = if self.tools && !words("C_TESTS_RUNNER").is_empty() {
-            20
-        } else {
-            1
-        };
+        let factor = if self.runner().is_empty() { 1 } else { 20 };
         let (status, written) = run_command(command.args(args), self.timeout * factor);
         if !self.quiet {
             println!("--- {}\n{}{}", self.name, written.stdout, written.stderr);
@@ -563,16 +620,18 @@ impl Executable {
         (status, written)
     }
 
+    /// What goes before the program.
+    fn runner(&self) -> Vec<String> {
+        let mut runner = emulator();
+        if self.tools {
+            runner.extend(words("C_TESTS_RUNNER"));
+        }
+        runner
+    }
+
     /// The command that runs the program, without arguments.
     pub fn command(&self) -> Command {
-        let mut command = match words("C_TESTS_RUNNER").as_slice() {
-            [runner, rest @ ..] if self.tools => {
-                let mut command = Command::new(runner);
-                command.args(rest).arg(&self.path);
-                command
-            }
-            _ => Command::new(&self.path),
-        };
+        let mut command = run_by(&self.runner(), &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
         command.envs(self.environment.iter().map(|(name, value)| (name, value)));
         command
@@ -580,7 +639,7 @@ impl Executable {
 
     /// The libccd.so.2 the dynamic linker gives this program, as ldd would say.
     pub fn loaded_ccd(&self) -> Option<PathBuf> {
-        let mut command = Command::new(&self.path);
+        let mut command = run_by(&emulator(), &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
         let said = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
         let line = said

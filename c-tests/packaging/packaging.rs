@@ -3,13 +3,15 @@
 
 //! Installs the library with CMake and uses it from throw-away projects, in
 //! every way its users do: find_package, add_subdirectory, FetchContent and
-//! pkg-config, shared and static, in the precision of this test binary.
+//! pkg-config, shared and static, in the precision of this test binary. What is
+//! installed is small, the same wherever it is built, and names whose work is in it.
 
 #[path = "../harness/mod.rs"]
 mod harness;
 
-use harness::{Executable, Precision, Program, library, must_succeed, output_dir, root};
-use std::ffi::OsStr;
+use harness::{Executable, Precision, Program, must_succeed, output_dir, root};
+use std::collections::BTreeSet;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -32,23 +34,32 @@ fn cmake(args: impl IntoIterator<Item = impl AsRef<OsStr>>) {
     must_succeed(Command::new("cmake").args(args), "cmake");
 }
 
-fn define(name: &str, value: impl AsRef<OsStr>) -> std::ffi::OsString {
-    let mut definition = std::ffi::OsString::from(format!("-D{name}="));
+fn c_compiler() -> Command {
+    harness::compile_with(&harness::compiler(false))
+}
+
+fn define(name: &str, value: impl AsRef<OsStr>) -> OsString {
+    let mut definition = OsString::from(format!("-D{name}="));
     definition.push(value);
     definition
 }
 
-/// What configures a build of the library; cargo's part is the harness's own.
-fn library_options() -> [std::ffi::OsString; 2] {
+fn precision_option() -> OsString {
     let double = ["OFF", "ON"][usize::from(Precision::CURRENT == Precision::Double)];
-    let built = library(Precision::CURRENT);
-    [
-        define("ENABLE_DOUBLE_PRECISION", double),
-        define("CCD_CARGO_TARGET_DIR", built.dir.join("..")),
-    ]
+    define("ENABLE_DOUBLE_PRECISION", double)
 }
 
-fn build_library(build: &Path, prefix: &Path) {
+/// What configures a build of the library; cargo builds for all tests of this file at
+/// one place.
+fn library_options() -> [OsString; 2] {
+    let cargo = output_dir()
+        .join("packaging")
+        .join(Precision::CURRENT.name())
+        .join("cargo");
+    [precision_option(), define("CCD_CARGO_TARGET_DIR", cargo)]
+}
+
+fn build_library(build: &Path, prefix: &Path, options: &[OsString]) {
     let mut configure = Command::new("cmake");
     configure
         .arg("-S")
@@ -56,7 +67,8 @@ fn build_library(build: &Path, prefix: &Path) {
         .arg("-B")
         .arg(build)
         .arg(define("CMAKE_INSTALL_PREFIX", prefix))
-        .args(library_options());
+        .args(library_options())
+        .args(options);
     must_succeed(&mut configure, "cmake");
     cmake(["--build".as_ref(), build.as_os_str()]);
 }
@@ -68,7 +80,7 @@ fn installed_and_moved() -> &'static Path {
     PREFIX.get_or_init(|| {
         let dir = fresh("installed");
         let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
-        build_library(&build, &first);
+        build_library(&build, &first, &[]);
         cmake(["--install".as_ref(), build.as_os_str()]);
         fs::remove_dir_all(&build).expect("the build tree can be removed");
         fs::rename(&first, &prefix).expect("the prefix can be moved");
@@ -77,7 +89,7 @@ fn installed_and_moved() -> &'static Path {
 }
 
 /// Configures and builds the consumer, with what is needed to find libccd.
-fn consumer(name: &str, options: &[std::ffi::OsString]) -> PathBuf {
+fn consumer(name: &str, options: &[OsString]) -> PathBuf {
     let build = fresh(name);
     let mut configure = Command::new("cmake");
     configure
@@ -140,6 +152,294 @@ fn add_subdirectory_and_fetch_content() {
     }
 }
 
+/// Ninja and a generator of several configurations build what make does.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn generators() {
+    for (name, generator, programs) in [
+        ("ninja", "Ninja", ""),
+        ("multi-config", "Ninja Multi-Config", "Debug"),
+    ] {
+        let mut options = vec![define("WAY", "add_subdirectory")];
+        options.extend([define("REPOSITORY", root()), "-G".into(), generator.into()]);
+        options.extend(library_options());
+        let build = consumer(name, &options);
+        runs_on_ours(&build.join(programs).join("plain"), Some(&build));
+        runs_on_ours(&build.join(programs).join("static"), None);
+    }
+}
+
+/// By FetchContent from a repository with a tag, as the README says it.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn git_tag() {
+    if !root().join(".git").exists() {
+        println!("skipped: not a git repository");
+        return;
+    }
+    let git = |dir: &Path, args: &[&str]| {
+        let mut git = Command::new("git");
+        git.arg("-C").arg(dir).args(args);
+        must_succeed(&mut git, "git").stdout.trim().to_owned()
+    };
+    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
+    let tag = readme
+        .split_once("GIT_TAG ")
+        .and_then(|(_, rest)| rest.split([' ', ')']).next())
+        .expect("the README names a tag");
+    assert_eq!(tag, format!("v{}", env!("CARGO_PKG_VERSION")));
+    // The files as they are now; HEAD where git knows no change.
+    let mut commit = git(root(), &["stash", "create"]);
+    if commit.is_empty() {
+        commit = git(root(), &["rev-parse", "HEAD"]);
+    }
+    let upstream = fresh("upstream");
+    git(&upstream, &["init", "--quiet", "--bare"]);
+    let to = format!("{commit}:refs/tags/{tag}");
+    git(
+        root(),
+        &["push", "--quiet", &upstream.to_string_lossy(), &to],
+    );
+
+    let mut options = vec![define("WAY", "git"), define("TAG", tag)];
+    options.push(define("REPOSITORY", upstream));
+    options.extend(library_options());
+    let build = consumer("git", &options);
+    all_run_on_ours(&build, &build, &["plain", "namespaced"]);
+}
+
+/// Another project installs this library only if it asks to.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn a_part_of_another_project_installs_nothing() {
+    for (name, asked) in [("unasked", false), ("asked", true)] {
+        let prefix = fresh("parent").join(name);
+        let mut options = vec![define("WAY", "add_subdirectory")];
+        options.push(define("REPOSITORY", root()));
+        options.push(define("CMAKE_INSTALL_PREFIX", &prefix));
+        options.extend(asked.then(|| define("CCD_INSTALL", "ON")));
+        options.extend(library_options());
+        let build = consumer(name, &options);
+        cmake(["--install".as_ref(), build.as_os_str()]);
+        assert!(prefix.join("bin/plain").is_file());
+        assert_eq!(prefix.join("include").exists(), asked);
+        let cache = fs::read_to_string(build.join("CMakeCache.txt")).expect("CMake's cache");
+        assert!(!cache.contains("BUILD_SHARED_LIBS"), "set for its parent");
+    }
+}
+
+/// BUILD_SHARED_LIBS=OFF: `ccd` is the archive, in a build tree and installed.
+#[test]
+fn static_alone() {
+    let dir = fresh("static-alone");
+    let (build, prefix) = (dir.join("build"), dir.join("prefix"));
+    // Cargo builds elsewhere than for the tests that want both libraries.
+    let cargo = define("CCD_CARGO_TARGET_DIR", dir.join("cargo"));
+    let own = [define("BUILD_SHARED_LIBS", "OFF"), cargo];
+    build_library(&build, &prefix, &own);
+    cmake(["--install".as_ref(), build.as_os_str()]);
+    find(&prefix, "libccd.a");
+    assert!(!prefix.join("lib/libccd.so").exists());
+    let installed = [
+        define("WAY", "find_package"),
+        define("CMAKE_PREFIX_PATH", &prefix),
+    ];
+    let mut part = vec![define("WAY", "add_subdirectory"), precision_option()];
+    part.push(define("REPOSITORY", root()));
+    part.extend(own);
+    for (name, options) in [("static-installed", &installed[..]), ("static-part", &part)] {
+        let build = consumer(name, options);
+        for program in ["plain", "namespaced", "static"] {
+            runs_on_ours(&build.join(program), None);
+        }
+    }
+}
+
+/// A Rust that is missing or too old is named when CMake configures.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn rust_is_looked_at() {
+    let dir = fresh("rust");
+    let says = |name: &str, line: &str| {
+        let script = dir.join(name);
+        fs::write(&script, format!("#!/bin/sh\necho '{line}'\n")).expect("a script");
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+        fs::set_permissions(&script, mode).expect("a mode");
+        define("CARGO", script)
+    };
+    let oldest = env!("CARGO_PKG_RUST_VERSION");
+    for (name, option, expected) in [
+        (
+            "missing",
+            define("CARGO", "CARGO-NOTFOUND"),
+            "cargo is missing",
+        ),
+        ("old", says("old-cargo", "cargo 1.63.0"), "is Rust 1.63"),
+        (
+            "odd",
+            says("odd-cargo", "no such toolchain"),
+            "no such toolchain",
+        ),
+    ] {
+        let mut configure = Command::new("cmake");
+        configure
+            .arg("-S")
+            .arg(root().join("cmake"))
+            .arg("-B")
+            .arg(dir.join(name))
+            // find_program finds nothing anywhere.
+            .args([
+                "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF",
+                "-DCMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH=OFF",
+            ])
+            .env("CARGO_HOME", &dir)
+            .env("HOME", &dir)
+            .arg(option);
+        let said = configure.output().expect("cmake runs");
+        assert!(!said.status.success(), "{name}");
+        let said = String::from_utf8_lossy(&said.stderr);
+        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains(expected), "{name}: {said}");
+        if name != "odd" {
+            assert!(said.contains(&format!("Rust {oldest} or later")), "{said}");
+        }
+    }
+}
+
+/// The source archive builds without a network, and gives the same bytes wherever it
+/// is unpacked.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn source_archive_offline_and_reproducible() {
+    if !root().join(".git").exists() {
+        println!("skipped: not a git repository");
+        return;
+    }
+    let dir = fresh("source");
+    let mut make = Command::new("sh");
+    make.arg(root().join("cmake/packages/source.sh")).arg(&dir);
+    let archive = must_succeed(&mut make, "source.sh").stdout;
+    let libraries: Vec<[Vec<u8>; 2]> = ["a", "another/place"]
+        .into_iter()
+        .map(|place| {
+            let place = dir.join(place);
+            fs::create_dir_all(&place).expect("a directory");
+            let mut unpack = Command::new("tar");
+            unpack.arg("-xf").arg(archive.trim()).arg("-C").arg(&place);
+            must_succeed(unpack.arg("--strip-components=1"), "tar");
+            let build = place.join("build");
+            let mut configure = Command::new("cmake");
+            configure
+                .arg("-S")
+                .arg(place.join("cmake"))
+                .arg("-B")
+                .arg(&build);
+            must_succeed(configure.arg(precision_option()), "cmake");
+            let mut make = Command::new("cmake");
+            make.arg("--build").arg(&build);
+            // No crate that was fetched before, and no way to fetch one.
+            make.env("CARGO_HOME", place.join("cargo-home"));
+            must_succeed(make.env("CARGO_NET_OFFLINE", "true"), "cmake");
+            ["libccd.so.2.0", "libccd.a"]
+                .map(|name| fs::read(build.join("lib").join(name)).expect("a library"))
+        })
+        .collect();
+    for (name, i) in [("libccd.so.2.0", 0), ("libccd.a", 1)] {
+        assert!(libraries[0][i] == libraries[1][i], "{name} differs");
+    }
+}
+
+/// The notices that are installed name each crate that is compiled in.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn notices_are_whole() {
+    let prefix = installed_and_moved();
+    let installed = |name| {
+        fs::read_to_string(prefix.join("share/doc/ccd").join(name)).expect("an installed text")
+    };
+    assert!(installed("LICENSE").starts_with("BSD 3-Clause License"));
+    let notices = installed("THIRD-PARTY");
+    let named: BTreeSet<&str> = notices
+        .lines()
+        .skip_while(|line| !line.starts_with("Taken from crates.io"))
+        .skip_while(|line| !line.starts_with("  "))
+        .map_while(|line| line.strip_prefix("  ")?.split(' ').next())
+        .collect();
+    let mut tree = Command::new(env!("CARGO"));
+    tree.current_dir(root())
+        .args(["tree", "--offline", "--prefix=none"]);
+    tree.args(["--edges=normal,no-proc-macro", "--format={p} {l}"]);
+    let tree = must_succeed(&mut tree, "cargo").stdout;
+    let compiled: BTreeSet<&str> = tree
+        .lines()
+        .filter(|line| !line.starts_with("warmccd "))
+        .map(|line| {
+            assert!(line.contains("Apache-2.0"), "another licence: {line}");
+            line.split(' ').next().expect("a crate")
+        })
+        .collect();
+    assert_eq!(named, compiled);
+}
+
+/// Nothing that is installed carries debug information.
+#[test]
+fn no_debug_information() {
+    let prefix = installed_and_moved();
+    for name in ["libccd.so.2.0", "libccd.a"] {
+        let mut read = Command::new("readelf");
+        read.args(["--wide", "--sections"]).arg(find(prefix, name));
+        let sections = must_succeed(&mut read, "readelf (Debian: binutils)").stdout;
+        assert!(sections.contains(".text"), "{name}");
+        assert!(!sections.contains(".debug_"), "{name}");
+    }
+}
+
+/// Sizes in bytes, and the most that they may be.
+#[test]
+#[ignore = "not yet so small; run with --ignored --nocapture to see"]
+fn sizes() {
+    let prefix = installed_and_moved();
+    let size = |path: &Path| fs::metadata(path).expect("a file").len();
+    let archive = find(prefix, "libccd.a");
+    let programs = fresh("sizes");
+    // A program that calls one query, and the same without the call.
+    let program = |name: &str, libraries: &[&OsStr]| {
+        let source = programs.join(format!("{name}.c"));
+        let body = if libraries.is_empty() {
+            "int main(void) { return 0; }\n"
+        } else {
+            "#include <ccd/ccd.h>\nint main(int n, char **v) {\n    ccd_t ccd; ccd_real_t d; ccd_vec3_t x, y; CCD_INIT(&ccd);\n    return ccdMPRPenetration(v, v + n, &ccd, &d, &x, &y); }\n"
+        };
+        fs::write(&source, body).expect("a file can be written");
+        let path = programs.join(name);
+        let mut cc = c_compiler();
+        cc.arg("-I").arg(prefix.join("include")).arg(&source);
+        cc.args(libraries).args(["-Wl,--gc-sections", "-s", "-o"]);
+        must_succeed(cc.arg(&path), "cc");
+        size(&path)
+    };
+    let linked = program("linked", &[archive.as_os_str(), "-lm".as_ref()]);
+    let rows = [
+        (
+            "libccd.so.2.0",
+            size(&find(prefix, "libccd.so.2.0")),
+            430_000,
+        ),
+        ("libccd.a", size(&archive), 15_000_000),
+        (
+            "a program's growth",
+            linked - program("empty", &[]),
+            420_000,
+        ),
+    ];
+    for (name, size, most) in rows {
+        println!("{name}: {size} bytes, at most {most}");
+    }
+    for (name, size, most) in rows {
+        assert!(size <= most, "{name}");
+    }
+}
+
 #[test]
 fn pkg_config() {
     let prefix = installed_and_moved();
@@ -155,7 +455,7 @@ fn pkg_config() {
     assert_eq!(ask(&["--modversion"]), ["2.0"]);
     let compile = |name: &str, flags: &[String]| {
         let program = programs.join(name);
-        let mut cc = Command::new("cc");
+        let mut cc = c_compiler();
         cc.arg(root().join("c-tests/packaging/consumer/main.c"));
         must_succeed(cc.args(flags).arg("-o").arg(&program), "cc");
         program
@@ -184,7 +484,7 @@ fn pkg_config() {
 fn destdir_and_multiarch() {
     let dir = fresh("destdir");
     let (build, stage) = (dir.join("build"), dir.join("stage"));
-    build_library(&build, Path::new("/usr"));
+    build_library(&build, Path::new("/usr"), &[]);
     must_succeed(
         Command::new("cmake")
             .env("DESTDIR", &stage)
@@ -192,7 +492,7 @@ fn destdir_and_multiarch() {
             .arg(&build),
         "cmake",
     );
-    let triplet = must_succeed(Command::new("cc").arg("-print-multiarch"), "cc");
+    let triplet = must_succeed(c_compiler().arg("-print-multiarch"), "cc");
     let libdir = Path::new("usr/lib").join(triplet.stdout.trim());
     for file in [
         "libccd.a",
@@ -231,7 +531,7 @@ fn precision_is_held() {
     };
     let prefix = installed_and_moved();
     let compiles = |flags: &[&str]| {
-        let mut cc = Command::new("cc");
+        let mut cc = c_compiler();
         cc.arg("-fsyntax-only")
             .arg(root().join("c-tests/packaging/consumer/main.c"))
             .arg("-I")
@@ -241,6 +541,54 @@ fn precision_is_held() {
     };
     assert!(compiles(&[]));
     assert!(!compiles(&[other]));
+}
+
+/// The oldest Rust that Cargo.toml promises builds the library without a warning:
+/// rustup's, or the system's where it is that one (Debian 13).
+#[test]
+fn oldest_rust() {
+    let version = env!("CARGO_PKG_RUST_VERSION");
+    let is_that_one = |command: &[&str]| {
+        let said = Command::new(command[0])
+            .args(&command[1..])
+            .arg("--version")
+            .output();
+        said.is_ok_and(|said| {
+            String::from_utf8_lossy(&said.stdout).starts_with(&format!("cargo {version}."))
+        })
+    };
+    let choices = [
+        &["rustup", "run", version, "cargo"][..],
+        &["/usr/bin/cargo"][..],
+    ];
+    let Some(cargo) = choices.into_iter().find(|cargo| is_that_one(cargo)) else {
+        println!("skipped: no Rust {version} (rustup toolchain install {version})");
+        return;
+    };
+    let mut build = Command::new(cargo[0]);
+    build
+        .args(&cargo[1..])
+        .args(["build", "--release", "--lib", "--locked"])
+        .args([
+            "--manifest-path".as_ref(),
+            root().join("Cargo.toml").as_os_str(),
+        ])
+        .arg("--target-dir")
+        .arg(output_dir().join("oldest-rust"))
+        .env("RUSTFLAGS", "-D warnings");
+    // What cargo told this test about the compiler it was made with.
+    for variable in [
+        "CARGO",
+        "RUSTC",
+        "RUSTUP_TOOLCHAIN",
+        "CARGO_ENCODED_RUSTFLAGS",
+    ] {
+        build.env_remove(variable);
+    }
+    if Precision::CURRENT == Precision::Single {
+        build.args(["--features", "single"]);
+    }
+    must_succeed(&mut build, "cargo");
 }
 
 /// The README's C program compiles without a warning and answers rightly.

@@ -227,16 +227,10 @@ impl Libraries {
     pub fn open() -> Self {
         let work = tempfile::tempdir().expect("a temporary directory");
         let tests = harness::root().join("c-tests");
-        let flags = ["-O3", "-march=x86-64-v2"];
         let object = work.path().join("callbacks.so");
-        let compiler = compile(
-            "cc",
-            &flags,
-            &tests.join("bench/lab/callbacks.c"),
-            &object,
-            &[],
-        )
-        .unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
+        let source = tests.join("bench/lab/callbacks.c");
+        let compiler = compile(&compiler(false), &[], &source, &object, &[])
+            .unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
 
         // The bare name: what the system's loader finds, which must not be ours. First,
         // because both answer to that name, and the loader takes the first that does:
@@ -306,11 +300,10 @@ impl Libraries {
         }
     }
 
-    /// Compiles another helper and opens it; why not, where that fails.
+    /// Compiles another helper, in C++, and opens it; why not, where that fails.
     pub fn helper(
         &self,
         source: &str,
-        compiler: &str,
         flags: &[&str],
         libraries: &[&str],
     ) -> Result<&'static Library, String> {
@@ -319,7 +312,7 @@ impl Libraries {
             .path()
             .join(format!("{source}{}.so", flags.concat().replace('/', "_")));
         let source: PathBuf = harness::root().join("c-tests/bench/lab").join(source);
-        compile(compiler, flags, &source, &object, libraries)?;
+        compile(&compiler(true), flags, &source, &object, libraries)?;
         open(&object).map_err(|e| e.to_string())
     }
 
@@ -345,16 +338,31 @@ fn file_of(address: *const c_void) -> String {
         .unwrap_or_default()
 }
 
+/// The compiler that callbacks and peers are compiled with: fast code, and on x86-64 that
+/// of every machine of the last ten years.
+fn compiler(cpp: bool) -> cc::Build {
+    let mut compiler = harness::compiler(cpp);
+    compiler.opt_level(3).debug(false);
+    if cfg!(target_arch = "x86_64") {
+        compiler.flag("-march=x86-64-v2");
+    }
+    compiler
+}
+
 /// Compiles one source file to a shared object; answers the command's essence.
 fn compile(
-    compiler: &str,
+    compiler: &cc::Build,
     flags: &[&str],
     source: &Path,
     object: &Path,
     libraries: &[&str],
 ) -> Result<String, String> {
     let root = harness::root();
-    let run = Command::new(compiler)
+    let mut compile = harness::compile_with(compiler);
+    let tool = compile.get_program().to_owned();
+    let own = compile.get_args().map(|arg| arg.to_string_lossy());
+    let shown: Vec<String> = own.map(String::from).collect();
+    let run = compile
         .args(flags)
         .args(["-shared", "-fPIC"])
         .arg("-I")
@@ -367,15 +375,15 @@ fn compile(
         .args(libraries)
         .arg("-lm")
         .output()
-        .map_err(|e| format!("{compiler}: {e}"))?;
+        .map_err(|e| format!("{tool:?}: {e}"))?;
     if !run.status.success() {
         return Err(String::from_utf8_lossy(&run.stderr).into_owned());
     }
-    let version = Command::new(compiler).arg("--version").output().ok();
+    let version = Command::new(tool).arg("--version").output().ok();
     let version = version.map(|v| String::from_utf8_lossy(&v.stdout).into_owned());
     let version = version
         .as_deref()
         .and_then(|v| v.lines().next())
         .unwrap_or("");
-    Ok(format!("{version}, {}", flags.join(" ")))
+    Ok(format!("{version}, {}", shown.join(" ")))
 }

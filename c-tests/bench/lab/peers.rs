@@ -79,8 +79,8 @@ pub struct Compiled {
 
 /// One part of peers.cpp, or why it does not compile.
 fn peer(libraries: &Libraries, flags: &[&str], with: &[&str]) -> Result<Classic, String> {
-    let flags = [&["-O3", "-march=x86-64-v2", "-std=c++17", "-w"], flags].concat();
-    let library = libraries.helper("peers.cpp", "c++", &flags, with)?;
+    let flags = [&["-std=c++17", "-w"], flags].concat();
+    let library = libraries.helper("peers.cpp", &flags, with)?;
     Ok(Classic {
         // SAFETY: peer_penetration has the type of libccd's queries.
         gjk: unsafe { function(library, "peer_penetration") },

@@ -1,0 +1,60 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: 2026 The warmccd developers
+# SPDX-License-Identifier: BSD-3-Clause
+#
+#   cross.sh arm64|i386   builds and tests the library for another processor
+#
+# In a chroot of Debian 13, with Debian's cross compilers and its Rust library for that
+# processor; programs run under qemu-user. The files are those of this folder that git
+# knows. As root; chroot.sh says more.
+
+set -eu
+case ${1:-} in
+arm64) rust=aarch64-unknown-linux-gnu tools=aarch64-linux-gnu qemu=qemu-aarch64 ;;
+i386) rust=i686-unknown-linux-gnu tools=i686-linux-gnu qemu=qemu-i386 ;;
+*) echo "usage: cross.sh arm64|i386" >&2; exit 2 ;;
+esac
+here=$(dirname "$(realpath "$0")")
+# shellcheck source=cmake/packages/chroot.sh
+. "$here/chroot.sh"
+
+# The tests' crates need a newer Rust than Debian 13's rustc: its rustc-web.
+make_chroot cross trixie
+in_chroot cross dpkg --add-architecture "$1"
+apt_in_chroot cross rustc-web cargo-web "libstd-rust-web-dev:$1" "g++-$tools" g++ libc6-dev \
+    qemu-user "libccd-dev:$1" libccd-dev abigail-tools ca-certificates cmake make pkg-config
+
+tree=$chroots/cross/tree
+rm -rf "$tree"
+mkdir "$tree"
+(cd "$here/../.." && git ls-files -z | tar -c --null -T -) | tar -x -C "$tree"
+
+upper=$(echo "$rust" | tr a-z- A-Z_)
+# there ARGUMENT...: cargo test for the other processor; here ARGUMENT...: for this one
+there() {
+    in_chroot cross env -C /tree CARGO_TARGET_DIR=/target \
+        "CARGO_TARGET_${upper}_LINKER=$tools-gcc" "CARGO_TARGET_${upper}_RUNNER=$qemu" \
+        NM="$tools-nm" OBJCOPY="$tools-objcopy" READELF="$tools-readelf" \
+        cargo test --locked --target "$rust" "$@"
+}
+# shellcheck disable=SC2317  # called by name
+here() {
+    in_chroot cross env -C /tree CARGO_TARGET_DIR=/target cargo test --locked "$@"
+}
+# digest WHERE: of every answer of every entry point over all categories of pairs
+digest() {
+    "$1" --test stability determinism -- --nocapture | sed -n 's/^warmccd.*: \([0-9a-f]*\)$/\1/p' | head -n 1
+}
+
+# All are run, so that one failure does not hide another.
+failed=0
+echo "== $1: contract, configurations, recorded support counts"
+there --no-fail-fast --test harness --test contract || failed=1
+there --test stability configurations || failed=1
+there --test held supports_and_errors_are_held || failed=1
+echo "== $1: the same bits as on this machine"
+one=$(digest there)
+other=$(digest here)
+echo "$1 $one, this machine $other"
+[ -n "$one" ] && [ "$one" = "$other" ] || failed=1
+exit "$failed"
