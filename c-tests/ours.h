@@ -41,8 +41,11 @@ int OURS(ccdMPRPenetrationWarm)(const void *obj1, const void *obj2, const ccd_t 
                                 ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 int OURS(ccdMPRIntersectWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
 void OURS(ccdWarmGuess)(ccd_warm_t *warm, const ccd_vec3_t *dir);
+void OURS(ccdWarmFlip)(ccd_warm_t *warm);
 int OURS(ccdPenetrationLocal)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
                               ccd_penetration_t *out);
+int OURS(ccdPenetrationIncremental)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+                                    ccd_penetration_t *out);
 int OURS(ccdPenetrationMinimum)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
                                 ccd_penetration_t *out);
 int OURS(ccdPenetrationAlong)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *dir,

@@ -20,14 +20,16 @@ use harness::{Precision, Program};
 const NO_ARGS: [&str; 0] = [];
 
 /// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 8] = [
+const EXTENSION: [&str; 10] = [
     "ccdImplementation",
     "ccdMPRIntersectWarm",
     "ccdMPRPenetrationWarm",
     "ccdPenetrationAlong",
+    "ccdPenetrationIncremental",
     "ccdPenetrationLocal",
     "ccdPenetrationMinimum",
     "ccdPenetrationPlanar",
+    "ccdWarmFlip",
     "ccdWarmGuess",
 ];
 

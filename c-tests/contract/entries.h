@@ -92,6 +92,15 @@ static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t
     return stored(ccdPenetrationLocal(a, b, ccd, &warm, &p), &p, out);
 }
 
+static inline int run_PenetrationIncremental(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    ccd_warm_t warm;
+    ccd_penetration_t p;
+    memset(&warm, 0, sizeof warm);
+    ccdPenetrationIncremental(a, b, ccd, &warm, &p);
+    return stored(ccdPenetrationIncremental(a, b, ccd, &warm, &p), &p, out);
+}
+
 static inline int run_PenetrationMinimum(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     ccd_warm_t warm;
@@ -130,6 +139,8 @@ static const entry_t entries[] = {
     {"ccdMPRPenetrationWarm", run_MPRPenetrationWarm, 0, -1, FROM_CENTERS | STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdMPRIntersectWarm", run_MPRIntersectWarm, 1, 0, FROM_CENTERS | EXTENSION},
     {"ccdPenetrationLocal", run_PenetrationLocal, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
+    {"ccdPenetrationIncremental", run_PenetrationIncremental, CCD_HIT, CCD_MISS,
+     STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdPenetrationMinimum", run_PenetrationMinimum, CCD_HIT, CCD_MISS,
      STORES_DEPTH | STORES_DIR_POS | MAY_ALLOCATE | EXTENSION},
     {"ccdPenetrationAlong", run_PenetrationAlong, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},

@@ -371,6 +371,16 @@ fn local() {
 }
 
 #[test]
+fn incremental() {
+    extended(
+        |obj1, obj2, ccd, _, warm, out| unsafe {
+            ccdPenetrationIncremental(obj1, obj2, ccd, warm, out)
+        },
+        &Settings::mpr(),
+    );
+}
+
+#[test]
 fn minimum() {
     extended(
         |obj1, obj2, ccd, _, warm, out| unsafe {
@@ -444,6 +454,9 @@ fn warm_forms() {
                 let hit = c_int::from(truth.is_some());
                 assert_eq!(ccdMPRIntersectWarm(obj1, obj2, settings.get(), warm), hit);
                 ccdWarmGuess(warm, &guess);
+                // Twice is nothing.
+                ccdWarmFlip(warm);
+                ccdWarmFlip(warm);
                 let code = ccdMPRPenetrationWarm(
                     obj1,
                     obj2,

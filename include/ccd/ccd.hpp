@@ -9,8 +9,9 @@
  *     V centre() const;                        a point inside it, the deeper the better
  *
  * where V is ccd::Vec3, ccd_vec3_t or anything with v[0], v[1], v[2] (std::array, the vectors
- * of the usual libraries). centre() is needed by the MPR queries; penetration_local, _minimum,
- * _along and _planar use it where both shapes have it; the GJK queries never do.
+ * of the usual libraries). centre() is needed by the MPR queries; penetration_local,
+ * _incremental, _minimum, _along and _planar use it where both shapes have it; the GJK queries
+ * never do.
  *
  *     ccd::Warm warm;                               // one for each pair, kept between frames
  *     if (auto hit = ccd::penetration_local(box, ball, {1e-6}, &warm))
@@ -101,6 +102,9 @@ public:
         ccdWarmGuess(&warm.state_, &d);
         return warm;
     }
+
+    /* For the same two shapes in the other order. */
+    void flip() { ccdWarmFlip(&state_); }
 
     ccd_warm_t *get() { return &state_; }
 
@@ -229,13 +233,24 @@ Contact penetration_gjk(const A &a, const B &b, const Settings &settings = {})
     return detail::contact(code, depth, dir, pos);
 }
 
-/* A local minimum of the depth, from the state, else from the centres: ccdPenetrationLocal. */
+/* A local minimum of the depth, from the state, else from the centres, by the fastest search
+ * there is: ccdPenetrationLocal. */
 template <class A, class B>
 Penetration penetration_local(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
     const ccd_t c = detail::query<A, B>(settings);
     ccd_penetration_t out{};
     const int code = ccdPenetrationLocal(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
+    return detail::penetration(code, out);
+}
+
+/* The same by the paper's method as published: ccdPenetrationIncremental. */
+template <class A, class B>
+Penetration penetration_incremental(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
+{
+    const ccd_t c = detail::query<A, B>(settings);
+    ccd_penetration_t out{};
+    const int code = ccdPenetrationIncremental(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
     return detail::penetration(code, out);
 }
 

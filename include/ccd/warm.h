@@ -123,6 +123,14 @@ extern "C" {
 CCD_EXPORT void ccdWarmGuess(struct ccd_warm_t *warm, const ccd_vec3_t *dir);
 
 /**
+ * Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
+ * state a pair and meets its objects in either order.
+ *
+ * Cold stays cold. `warm` NULL: nothing happens.
+ */
+CCD_EXPORT void ccdWarmFlip(struct ccd_warm_t *warm);
+
+/**
  * ccdMPRPenetration with memory.
  *
  * `warm` may be NULL (cold). Returns and outputs as ccdMPRPenetration.
@@ -149,8 +157,9 @@ int ccdMPRIntersectWarm(const void *obj1,
                         struct ccd_warm_t *warm);
 
 /**
- * A local minimum of the penetration depth, by the paper's method: from the state, else
- * from the centres, else from first_dir.
+ * A local minimum of the penetration depth, by the fastest search there is: cutting planes
+ * with curvature, not the paper's method, which is ccdPenetrationIncremental. From the
+ * state, else from the centres, else from first_dir.
  *
  * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
  *
@@ -163,6 +172,25 @@ int ccdPenetrationLocal(const void *obj1,
                         const ccd_t *ccd,
                         struct ccd_warm_t *warm,
                         struct ccd_penetration_t *out);
+
+/**
+ * A local minimum of the penetration depth by the paper's method as published (Algorithms
+ * 4 and 5, the shortcut on), with a sound answer: the depth is that of the least support
+ * plane met, and an overlap is proven. For comparisons; ccdPenetrationLocal answers the
+ * same in fewer support points. From the state's direction, else from the centres, else
+ * from first_dir.
+ *
+ * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+ *
+ * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
+ * alone.
+ */
+CCD_EXPORT
+int ccdPenetrationIncremental(const void *obj1,
+                              const void *obj2,
+                              const ccd_t *ccd,
+                              struct ccd_warm_t *warm,
+                              struct ccd_penetration_t *out);
 
 /**
  * The global minimum of the penetration depth, proven: depth - depth_lower <=

@@ -192,6 +192,20 @@ pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const 
     }
 }
 
+/// Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
+/// state a pair and meets its objects in either order.
+///
+/// Cold stays cold. `warm` NULL: nothing happens.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdWarmFlip(warm: *mut ccd_warm_t) {
+    // SAFETY: [inputs], [outputs].
+    unsafe {
+        let mut state = read(warm);
+        state.flip();
+        store(warm, &state);
+    }
+}
+
 /// ccdMPRPenetration with memory.
 ///
 /// `warm` may be NULL (cold). Returns and outputs as ccdMPRPenetration.
@@ -247,8 +261,9 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     }
 }
 
-/// A local minimum of the penetration depth, by the paper's method: from the state, else
-/// from the centres, else from first_dir.
+/// A local minimum of the penetration depth, by the fastest search there is: cutting planes
+/// with curvature, not the paper's method, which is ccdPenetrationIncremental. From the
+/// state, else from the centres, else from first_dir.
 ///
 /// Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
 ///
@@ -271,6 +286,37 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
             warm,
             out,
             |pair, state, settings| pair.local(state, settings),
+        )
+    }
+}
+
+/// A local minimum of the penetration depth by the paper's method as published (Algorithms
+/// 4 and 5, the shortcut on), with a sound answer: the depth is that of the least support
+/// plane met, and an overlap is proven. For comparisons; ccdPenetrationLocal answers the
+/// same in fewer support points. From the state's direction, else from the centres, else
+/// from first_dir.
+///
+/// Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+///
+/// Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
+/// alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    let query = Query { obj1, obj2, ccd };
+    // SAFETY: passed on.
+    unsafe {
+        answer(
+            query,
+            Query::mpr_tolerance,
+            warm,
+            out,
+            |pair, state, settings| pair.incremental(state, settings),
         )
     }
 }
