@@ -17,6 +17,7 @@
 
 pub mod bundle;
 pub mod contact;
+pub mod contact_manifold;
 pub mod epa;
 pub mod ffi;
 pub mod gjk;
@@ -25,6 +26,7 @@ pub mod math;
 pub mod nearest;
 pub mod patch;
 pub mod planar;
+pub mod polygon;
 pub mod portal;
 pub mod precision;
 #[cfg(test)]

@@ -20,7 +20,8 @@ use harness::{Precision, Program};
 const NO_ARGS: [&str; 0] = [];
 
 /// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 10] = [
+const EXTENSION: [&str; 11] = [
+    "ccdContacts",
     "ccdImplementation",
     "ccdMPRIntersectWarm",
     "ccdMPRPenetrationWarm",

@@ -45,6 +45,11 @@ fn answers_from_every_kind_of_state() {
 }
 
 #[test]
+fn contacts_are_the_exact_ones() {
+    program("contacts").build().run(NO_ARGS);
+}
+
+#[test]
 fn pairs_that_stay_apart_cost_one_support() {
     program("apart").build().run(NO_ARGS);
 }

@@ -139,6 +139,17 @@ static void same_as_c()
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after all queries");
         }
 
+        ccd_contact_t c_contacts[4];
+        std::array<ccd::ContactPoint, 4> contacts;
+        const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts);
+        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), c_contacts, 4) && count >= 1, "contacts");
+        for (int k = 0; k < count; k++) {
+            const ccd::ContactPoint &p = contacts[static_cast<std::size_t>(k)];
+            CHECK(same(p.point1, c_contacts[k].point1) && same(p.point2, c_contacts[k].point2) &&
+                      p.depth == c_contacts[k].depth,
+                  "contact %d", k);
+        }
+
         ccd_real_t depth;
         ccd_vec3_t d, pos;
         const int code = ccdGJKPenetration(o1, o2, &c, &depth, &d, &pos);
@@ -185,6 +196,10 @@ static void exceptions()
     throws_through("incremental", [](auto &a, auto &b) { ccd::penetration_incremental(a, b); });
     throws_through("minimum", [](auto &a, auto &b) { ccd::penetration_minimum(a, b); });
     throws_through("along", [](auto &a, auto &b) { ccd::penetration_along(a, b, {0, 1, 0}); });
+    throws_through("contacts", [](auto &a, auto &b) {
+        std::array<ccd::ContactPoint, 2> out;
+        ccd::contacts(a, b, {0, 0, 1}, 0, out);
+    });
     throws_through("planar", [](auto &a, auto &b) { ccd::penetration_planar(a, b, {0, 0, 1}); });
 
     /* A query that was left has not touched the state. */

@@ -26,6 +26,8 @@
 #include <ccd/ccd.h>
 #include <ccd/warm.h>
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -86,6 +88,12 @@ struct Penetration : Contact {
     Vec3 point1, point2;          /* witness points; pos is their middle */
     unsigned long supports = 0;   /* calls of each shape's support() */
     unsigned long iterations = 0; /* of the solver */
+};
+
+/* One point of a contact manifold. */
+struct ContactPoint {
+    Vec3 point1, point2; /* point2 = point1 - depth * normal */
+    Real depth = 0;      /* metres; negative where the shapes are apart */
 };
 
 /* What one query of a pair leaves for the next: a value, cold at first, copied freely. */
@@ -263,6 +271,26 @@ Penetration penetration_minimum(const A &a, const B &b, const Settings &settings
     ccd_penetration_t out{};
     const int code = ccdPenetrationMinimum(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
     return detail::penetration(code, out);
+}
+
+/* Where the shapes touch: up to N points of the region in which the faces that look along normal
+ * lie over each other, the deepest first; the number of them, or Status::bad_input's:
+ * ccdContacts. */
+template <std::size_t N, class A, class B>
+int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<ContactPoint, N> &out)
+{
+    const ccd_t c = detail::query<A, B>({});
+    const ccd_vec3_t n = normal;
+    ccd_contact_t found[N > 0 ? N : 1];
+    const int count =
+        ccdContacts(std::addressof(a), std::addressof(b), &c, &n, slop, found, static_cast<int>(N));
+    for (int i = 0; i < count; i++) {
+        ContactPoint &point = out[static_cast<std::size_t>(i)];
+        point.point1 = found[i].point1;
+        point.point2 = found[i].point2;
+        point.depth = found[i].depth;
+    }
+    return count;
 }
 
 /* How far b must move along dir (of any length): ccdPenetrationAlong. */
