@@ -433,6 +433,38 @@ fn planar() {
     );
 }
 
+/// A box on a box: four corners, and no more room than was asked for.
+#[test]
+fn contacts() {
+    let mut obj1 = object(Shape::Box([1.0, 1.0, 0.5]), [0.0; 3]);
+    let mut obj2 = object(Shape::Box([0.5, 0.4, 0.5]), [0.1, 0.2, 0.99]);
+    let (a, b) = (pointer(&mut obj1), pointer(&mut obj2));
+    let settings = Settings::mpr();
+    let normal = ccd_vec3_t { v: [0.0, 0.0, 3.0] };
+    for max in [1, 4, 9] {
+        let mut out = vec![MaybeUninit::<ccd_contact_t>::uninit(); max];
+        let room = out.as_mut_ptr().cast();
+        let n = unsafe { ccdContacts(a, b, settings.get(), &normal, 1e-3, room, max as c_int) };
+        assert_eq!(n, max.min(4) as c_int);
+        for contact in &out[..n as usize] {
+            let contact = unsafe { contact.assume_init() };
+            assert!((contact.depth - 0.01).abs() < TOLERANCE);
+        }
+    }
+    let mut strange = object(Shape::NotANumber, [0.0; 3]);
+    let (strange, room) = (pointer(&mut strange), null_mut());
+    let mut contact = MaybeUninit::<ccd_contact_t>::uninit();
+    unsafe {
+        let one = contact.as_mut_ptr();
+        let bad = ccdContacts(a, strange, settings.get(), &normal, 0.0, one, 1);
+        assert_eq!(bad, CCD_BAD_INPUT);
+        let bad = ccdContacts(a, b, settings.get(), null(), 0.0, one, 1);
+        assert_eq!(bad, CCD_BAD_INPUT);
+        let bad = ccdContacts(a, b, settings.get(), &normal, 0.0, room, 1);
+        assert_eq!(bad, CCD_BAD_INPUT);
+    }
+}
+
 /// The compatible calls' warm forms, from a guess too.
 #[test]
 fn warm_forms() {
