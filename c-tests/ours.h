@@ -41,14 +41,19 @@ int OURS(ccdMPRPenetrationWarm)(const void *obj1, const void *obj2, const ccd_t 
                                 ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 int OURS(ccdMPRIntersectWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
 void OURS(ccdWarmGuess)(ccd_warm_t *warm, const ccd_vec3_t *dir);
+void OURS(ccdWarmFlip)(ccd_warm_t *warm);
 int OURS(ccdPenetrationLocal)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
                               ccd_penetration_t *out);
+int OURS(ccdPenetrationIncremental)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+                                    ccd_penetration_t *out);
 int OURS(ccdPenetrationMinimum)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
                                 ccd_penetration_t *out);
 int OURS(ccdPenetrationAlong)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *dir,
                               ccd_warm_t *warm, ccd_penetration_t *out);
 int OURS(ccdPenetrationPlanar)(const void *obj1, const void *obj2, const ccd_t *ccd,
                                const ccd_vec3_t *plane_normal, ccd_warm_t *warm, ccd_penetration_t *out);
+int OURS(ccdContacts)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
+                      ccd_contact_t *contacts, int max);
 const char *OURS(ccdImplementation)(void);
 
 #ifdef __cplusplus

@@ -18,6 +18,7 @@
 pub mod barycentric;
 pub mod bundle;
 pub mod contact;
+pub mod contact_manifold;
 pub mod expansion;
 pub mod ffi;
 pub mod gjk;
@@ -28,6 +29,7 @@ pub mod nearest;
 pub mod patch;
 pub mod planar;
 pub mod plane;
+pub mod polygon;
 pub mod polytope;
 pub mod portal;
 pub mod precision;

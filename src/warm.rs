@@ -67,6 +67,16 @@ impl State {
         }
     }
 
+    /// The state of a pair becomes that of the same objects in the other order, whose D is
+    /// this one's mirror image in the origin: points, directions and slopes change sign,
+    /// lengths and curvatures stay.
+    pub fn flip(&mut self) {
+        for v in self.memory.slopes.iter_mut().chain([&mut self.memory.dir]) {
+            // Not -v: a cold state is one of plain zeros.
+            *v = Vec3::zeros() - *v;
+        }
+    }
+
     fn overlap(memory: Memory) -> Self {
         Self {
             memory,
@@ -340,6 +350,23 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             other => self.remember(state, &other)?,
         }
         Ok(answer)
+    }
+
+    /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
+    /// the last direction, else from the centres.
+    pub fn incremental(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        if let Some(n) = self.still_apart(state)? {
+            return Ok(Answer::Miss(n));
+        }
+        let start = state.leaving().unwrap_or_else(|| self.cold_start());
+        let found = local::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
+        let answer = match found {
+            Answer::Hit(hit) => self.proven(hit, false, &mut Known::default(), settings)?,
+            Answer::Limit(hit) => self.proven(hit, true, &mut Known::default(), settings)?,
+            other => other,
+        };
+        self.remember(state, &answer)?;
+        self.settle(answer, settings)
     }
 
     /// The minimum depth at MPR's price: within the tolerance or a thousandth of the depth,
@@ -717,3 +744,64 @@ const MPR_SUPPORTS: u64 = 160;
 const MOST_SUPPORTS: u64 = 1_400;
 /// Where an MPR query may stop: a gap of this share of the depth.
 const GAP: Real = 1e-3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::shapes::{Random, capsule, corners, hull, placed};
+
+    const SETTINGS: Settings = Settings {
+        tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-4 },
+        max_iterations: 1000,
+    };
+
+    /// What a query from this state costs and answers.
+    fn ask<A: SupportMap, B: SupportMap>(a: A, b: B, mut state: State) -> (u64, Real, State) {
+        let pair = Pair {
+            md: MinkowskiDifference::new(a, b),
+            centre: None,
+            first_dir: None,
+            lasting: true,
+        };
+        match pair.local(&mut state, &SETTINGS).unwrap() {
+            Answer::Hit(hit) => (pair.md.supports(), hit.depth, state),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_flipped_state_serves_the_swapped_pair() {
+        let mut r = Random::new(7);
+        for _ in 0..100 {
+            let points = placed(
+                &corners(Vec3::new(0.5, 0.6, 0.7)),
+                &r.rotation(),
+                r.vector(0.2),
+            );
+            let (p, q) = (r.vector(0.5), r.vector(0.5));
+            let (cube, rod) = (|| hull(&points), || capsule(p, q, 0.3));
+            let start = State::guess(&r.direction());
+            let (_, _, after) = ask(cube(), rod(), start);
+            let (supports, depth, _) = ask(cube(), rod(), after);
+            let mut flipped = after;
+            flipped.flip();
+            let (swapped_supports, swapped_depth, _) = ask(rod(), cube(), flipped);
+            assert_eq!(supports, swapped_supports);
+            assert!((depth - swapped_depth).abs() < 16.0 * EPSILON);
+        }
+    }
+
+    #[test]
+    fn flipped_twice_is_as_it_was() {
+        let mut cold = State::default();
+        cold.flip();
+        assert!(cold.memory.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
+        let mut state = State::guess(&Vec3::new(1.0, -2.0, 3.0));
+        let dir = state.memory.dir;
+        state.flip();
+        assert_eq!(state.memory.dir, -dir);
+        state.flip();
+        assert_eq!(state.memory.dir, dir);
+    }
+}

@@ -15,6 +15,7 @@ static struct {
     const void *obj1, *obj2;
     pthread_t thread;
     int expect_second;
+    int apart; /* each object is asked on its own */
     ccd_vec3_t dir;
     unsigned long pairs, centers, first_dirs;
     ccd_vec3_t first;
@@ -32,9 +33,9 @@ static void check_direction(const ccd_vec3_t *dir)
 static void support1(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     CHECK(obj == seen.obj1, "obj1 passed through");
-    CHECK(!seen.expect_second, "support1 after support2");
+    CHECK(seen.apart || !seen.expect_second, "support1 after support2");
     check_direction(dir);
-    seen.expect_second = 1;
+    seen.expect_second = !seen.apart;
     seen.dir = *dir;
     shape_support(obj, dir, out);
 }
@@ -43,9 +44,9 @@ static void support2(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     int i;
     CHECK(obj == seen.obj2, "obj2 passed through");
-    CHECK(seen.expect_second, "support2 after support1");
+    CHECK(seen.apart || seen.expect_second, "support2 after support1");
     check_direction(dir);
-    for (i = 0; i < 3; i++)
+    for (i = 0; i < 3 && !seen.apart; i++)
         CHECK(dir->v[i] == -seen.dir.v[i], "the opposite direction");
     seen.expect_second = 0;
     seen.pairs++;
@@ -100,6 +101,7 @@ int main(void)
             }
             memset(&seen, 0, sizeof seen);
             seen.obj1 = &a;
+            seen.apart = (entries[i].traits & ONE_BY_ONE) != 0;
             seen.obj2 = &b;
             seen.thread = pthread_self();
             for (k = 0; k < 3; k++)
@@ -119,7 +121,7 @@ int main(void)
             /* Equal centers alone prove an overlap. */
             CHECK((seen.pairs > 0 || round % 5 == 0) && !seen.expect_second, "%s: both supports every time",
                   entries[i].name);
-            CHECK(a.calls == seen.pairs && b.calls == seen.pairs, "callbacks may write through their objects");
+            CHECK(b.calls == seen.pairs && (seen.apart || a.calls == seen.pairs), "callbacks may write through their objects");
             if (entries[i].traits & FROM_FIRST_DIR)
                 CHECK(seen.first_dirs > 0, "%s asks first_dir", entries[i].name);
             if (entries[i].traits & FROM_CENTERS)

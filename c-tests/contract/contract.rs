@@ -22,14 +22,17 @@ use harness::{Precision, Program};
 const NO_ARGS: [&str; 0] = [];
 
 /// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 8] = [
+const EXTENSION: [&str; 11] = [
+    "ccdContacts",
     "ccdImplementation",
     "ccdMPRIntersectWarm",
     "ccdMPRPenetrationWarm",
     "ccdPenetrationAlong",
+    "ccdPenetrationIncremental",
     "ccdPenetrationLocal",
     "ccdPenetrationMinimum",
     "ccdPenetrationPlanar",
+    "ccdWarmFlip",
     "ccdWarmGuess",
 ];
 

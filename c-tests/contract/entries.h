@@ -18,7 +18,8 @@ typedef struct {
     support_t support;
 } outputs_t;
 
-enum { FROM_FIRST_DIR = 1, FROM_CENTERS = 2, STORES_DEPTH = 4, STORES_DIR_POS = 8, MAY_ALLOCATE = 16, EXTENSION = 32 };
+enum { FROM_FIRST_DIR = 1, FROM_CENTERS = 2, STORES_DEPTH = 4, STORES_DIR_POS = 8, MAY_ALLOCATE = 16, EXTENSION = 32,
+       ONE_BY_ONE = 64 /* asks the objects one by one */ };
 
 typedef struct {
     const char *name;
@@ -92,6 +93,15 @@ static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t
     return stored(ccdPenetrationLocal(a, b, ccd, &warm, &p), &p, out);
 }
 
+static inline int run_PenetrationIncremental(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    ccd_warm_t warm;
+    ccd_penetration_t p;
+    memset(&warm, 0, sizeof warm);
+    ccdPenetrationIncremental(a, b, ccd, &warm, &p);
+    return stored(ccdPenetrationIncremental(a, b, ccd, &warm, &p), &p, out);
+}
+
 static inline int run_PenetrationMinimum(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     ccd_warm_t warm;
@@ -121,6 +131,15 @@ static inline int run_PenetrationPlanar(const void *a, const void *b, const ccd_
     return stored(ccdPenetrationPlanar(a, b, ccd, &normal, &warm, &p), &p, out);
 }
 
+/* Contacts whatever the pose is; what it returns is whether the pair overlaps. */
+static inline int run_Contacts(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    const ccd_vec3_t normal = {{1, 2, -2}};
+    ccd_contact_t contacts[4];
+    int n = ccdContacts(a, b, ccd, &normal, CCD_REAL(0.01), contacts, 4);
+    return n < 1 ? n : run_PenetrationLocal(a, b, ccd, out);
+}
+
 static const entry_t entries[] = {
     {"ccdGJKIntersect", run_GJKIntersect, 1, 0, FROM_FIRST_DIR},
     {"ccdGJKSeparate", run_GJKSeparate, 0, -1, FROM_FIRST_DIR | MAY_ALLOCATE},
@@ -130,9 +149,12 @@ static const entry_t entries[] = {
     {"ccdMPRPenetrationWarm", run_MPRPenetrationWarm, 0, -1, FROM_CENTERS | STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdMPRIntersectWarm", run_MPRIntersectWarm, 1, 0, FROM_CENTERS | EXTENSION},
     {"ccdPenetrationLocal", run_PenetrationLocal, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
+    {"ccdPenetrationIncremental", run_PenetrationIncremental, CCD_HIT, CCD_MISS,
+     STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdPenetrationMinimum", run_PenetrationMinimum, CCD_HIT, CCD_MISS,
      STORES_DEPTH | STORES_DIR_POS | MAY_ALLOCATE | EXTENSION},
     {"ccdPenetrationAlong", run_PenetrationAlong, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
+    {"ccdContacts", run_Contacts, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION | ONE_BY_ONE},
     {"ccdPenetrationPlanar", run_PenetrationPlanar, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
 };
 

@@ -12,10 +12,10 @@
 
 #include <float.h>
 
-enum { LOCAL, MINIMUM, ALONG, PLANAR, MPR, OVERLAP, QUERIES };
+enum { LOCAL, INCREMENTAL, MINIMUM, ALONG, PLANAR, MPR, OVERLAP, QUERIES };
 enum { PAIRS = 400, MOST_CALLS = 2500 };
 
-static const char *const name[QUERIES] = {"local", "minimum", "along", "planar", "mpr", "overlap"};
+static const char *const name[QUERIES] = {"local", "incremental", "minimum", "along", "planar", "mpr", "overlap"};
 static const ccd_real_t epsilon = sizeof(ccd_real_t) == 8 ? (ccd_real_t)DBL_EPSILON : (ccd_real_t)FLT_EPSILON;
 
 typedef struct {
@@ -32,6 +32,7 @@ static unsigned long first_supports[QUERIES], repeated[QUERIES];
 /* Where curvature and depth are nearly equal a search may not end before the cap. */
 static unsigned long limited[QUERIES];
 static unsigned long most[QUERIES], asked[QUERIES], worse[QUERIES], hits[QUERIES], swapped_apart[QUERIES];
+static unsigned long flipped_apart[QUERIES], flipped_calls[QUERIES], unflipped_calls[QUERIES];
 
 static int ask(case_t *c, int swap, ccd_warm_t *warm, ccd_penetration_t *out)
 {
@@ -44,6 +45,7 @@ static int ask(case_t *c, int swap, ccd_warm_t *warm, ccd_penetration_t *out)
         dir.v[k] = -dir.v[k];
     switch (c->query) {
     case LOCAL: code = OURS(ccdPenetrationLocal)(a, b, &c->ccd, warm, out); break;
+    case INCREMENTAL: code = OURS(ccdPenetrationIncremental)(a, b, &c->ccd, warm, out); break;
     case MINIMUM: code = OURS(ccdPenetrationMinimum)(a, b, &c->ccd, warm, out); break;
     case ALONG: code = OURS(ccdPenetrationAlong)(a, b, &c->ccd, &dir, warm, out); break;
     case PLANAR: code = OURS(ccdPenetrationPlanar)(a, b, &c->ccd, &dir, warm, out); break;
@@ -83,7 +85,7 @@ static void judge(case_t *c, int swap, int code, const ccd_penetration_t *p, con
         CHECK((code != CCD_MISS) == (c->depth > 0), "%s from %s: code %d at depth %g", q, state, code, c->depth);
     if (code == CCD_MISS || c->query == OVERLAP)
         return;
-    CHECK(code == CCD_HIT || (code == CCD_LIMIT && (c->query == MINIMUM || c->query == LOCAL)), "%s from %s: code %d", q,
+    CHECK(code == CCD_HIT || (code == CCD_LIMIT && c->query <= MINIMUM), "%s from %s: code %d", q,
           state, code);
     limited[c->query] += code == CCD_LIMIT;
     if (code != CCD_HIT && code != CCD_LIMIT)
@@ -412,6 +414,20 @@ int main(void)
             CHECK(memcmp(&out, &cold, sizeof out) == 0 && memcmp(&warm, &copy, sizeof warm) == 0, "%s: a copied state",
                   name[query]);
 
+            /* a state flipped serves the swapped pair */
+            memcpy(&copy, &warm, sizeof copy);
+            again = ask(&c, 0, &copy, &cold);
+            k = (int)c.a.calls;
+            memcpy(&copy, &warm, sizeof copy);
+            OURS(ccdWarmFlip)(&copy);
+            CHECK(ask(&c, 1, &copy, &out) == again || fabs(c.depth) <= c.gap + 64 * (double)epsilon * c.size,
+                  "%s from a flipped state", name[query]);
+            judge(&c, 1, again, &out, "a flipped state");
+            unflipped_calls[query] += (unsigned long)k;
+            flipped_calls[query] += c.a.calls;
+            flipped_apart[query] += c.a.calls != (unsigned long)k ||
+                                    fabs((double)(out.depth - cold.depth)) > 64 * (double)epsilon * c.size;
+
             /* the state of another pair */
             again = ask(&c, 0, &foreign, &out);
             judge(&c, 0, again, &out, "a foreign state");
@@ -457,6 +473,11 @@ int main(void)
                name[query], asked[query], most[query], hits[query], worse[query], swapped_apart[query]);
         printf("    %.1f supports a hit, %.1f when asked again\n", (double)first_supports[query] / (double)hits[query],
                (double)repeated[query] / (double)hits[query]);
+        printf("    from a flipped state %.2f for %.2f supports, %lu of %d answers differ\n",
+               (double)flipped_calls[query] / PAIRS, (double)unflipped_calls[query] / PAIRS, flipped_apart[query], PAIRS);
+        CHECK(20 * flipped_calls[query] <= 21 * unflipped_calls[query], "%s: a flipped state is worth less", name[query]);
+        if (query == LOCAL || query == ALONG || query == PLANAR)
+            CHECK(flipped_apart[query] <= PAIRS / 50, "%s: %lu differ", name[query], flipped_apart[query]);
         if (query == LOCAL || query == ALONG)
             CHECK(3 * repeated[query] <= 2 * first_supports[query], "%s: asked again", name[query]);
         CHECK(1000 * limited[query] <= 2 * asked[query], "%s: %lu at the cap", name[query], limited[query]);

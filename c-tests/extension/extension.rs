@@ -45,6 +45,11 @@ fn answers_from_every_kind_of_state() {
 }
 
 #[test]
+fn contacts_are_the_exact_ones() {
+    program("contacts").build().run(NO_ARGS);
+}
+
+#[test]
 fn pairs_that_stay_apart_cost_one_support() {
     program("apart").build().run(NO_ARGS);
 }
@@ -67,4 +72,24 @@ fn example() {
         assert!(line.starts_with(&expected), "{line}");
         assert!(supports(line) <= supports(lines[2]), "{line}");
     }
+}
+
+/// What the two small worlds print: everything comes to rest on the table, the box on four
+/// points, the capsule on two, the hull, a square pyramid, on four.
+#[test]
+fn small_worlds() {
+    let c = program("world").build().run(NO_ARGS).stdout;
+    let cpp = Program::cpp("world")
+        .source("extension/world.cpp")
+        .standard("c++17")
+        .flag("-pedantic")
+        .flag("-Werror")
+        .link_ours_shared()
+        .build()
+        .run(NO_ARGS)
+        .stdout;
+    assert_eq!(c, cpp);
+    let lines: Vec<&str> = c.lines().collect();
+    assert_eq!(lines[0], "frame 9: 0 pairs touch in 0 points");
+    assert_eq!(lines[5], "frame 59: 3 pairs touch in 10 points");
 }

@@ -8,9 +8,9 @@
 #include "ours.h"
 #include "shapes.h"
 
-enum { LOCAL, MINIMUM, ALONG, PLANAR, QUERIES };
+enum { LOCAL, INCREMENTAL, MINIMUM, ALONG, PLANAR, QUERIES };
 
-static const char *const name[QUERIES] = {"local", "minimum", "along", "planar"};
+static const char *const name[QUERIES] = {"local", "incremental", "minimum", "along", "planar"};
 static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}};
 
 static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm,
@@ -18,6 +18,7 @@ static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const 
 {
     switch (query) {
     case LOCAL: return OURS(ccdPenetrationLocal)(a, b, ccd, warm, out);
+    case INCREMENTAL: return OURS(ccdPenetrationIncremental)(a, b, ccd, warm, out);
     case MINIMUM: return OURS(ccdPenetrationMinimum)(a, b, ccd, warm, out);
     case ALONG: return OURS(ccdPenetrationAlong)(a, b, ccd, dir, warm, out);
     default: return OURS(ccdPenetrationPlanar)(a, b, ccd, dir, warm, out);
@@ -300,6 +301,21 @@ static void reentrant(void)
     }
 }
 
+static void flip(void)
+{
+    const ccd_vec3_t back = {{-1, -2, 2}};
+    ccd_warm_t warm, other_way, cold;
+    memset(&cold, 0, sizeof cold);
+    warm = cold;
+    OURS(ccdWarmFlip)(NULL);
+    OURS(ccdWarmFlip)(&warm);
+    CHECK(same_bits(&warm, &cold, sizeof warm), "a cold state flipped");
+    OURS(ccdWarmGuess)(&warm, &way);
+    OURS(ccdWarmGuess)(&other_way, &back);
+    OURS(ccdWarmFlip)(&warm);
+    CHECK(same_bits(&warm, &other_way, sizeof warm), "a guess flipped");
+}
+
 static void guess(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2;
@@ -328,5 +344,6 @@ int main(void)
     iterations();
     reentrant();
     guess();
+    flip();
     return checks_end();
 }

@@ -122,6 +122,8 @@ static void same_as_c()
             check_same("local", ccd::penetration_local(a, b, settings, &warm), code, out);
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after a local query");
             (code == CCD_HIT ? hits : misses)++;
+            code = ccdPenetrationIncremental(o1, o2, &c, &c_warm, &out);
+            check_same("incremental", ccd::penetration_incremental(a, b, settings, &warm), code, out);
             code = ccdPenetrationMinimum(o1, o2, &c, &c_warm, &out);
             check_same("minimum", ccd::penetration_minimum(a, b, settings, &warm), code, out);
             code = ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, &out);
@@ -135,6 +137,17 @@ static void same_as_c()
             CHECK(!mpr || (mpr.depth == depth && same(mpr.dir, d) && same(mpr.pos, pos)), "mpr");
             CHECK(ccd::intersect(a, b, settings, &warm) == (ccdMPRIntersectWarm(o1, o2, &c, &c_warm) == 1), "intersect");
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after all queries");
+        }
+
+        ccd_contact_t c_contacts[4];
+        std::array<ccd::ContactPoint, 4> contacts;
+        const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts);
+        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), c_contacts, 4) && count >= 1, "contacts");
+        for (int k = 0; k < count; k++) {
+            const ccd::ContactPoint &p = contacts[static_cast<std::size_t>(k)];
+            CHECK(same(p.point1, c_contacts[k].point1) && same(p.point2, c_contacts[k].point2) &&
+                      p.depth == c_contacts[k].depth,
+                  "contact %d", k);
         }
 
         ccd_real_t depth;
@@ -180,8 +193,13 @@ static void exceptions()
     throws_through("mpr", [](auto &a, auto &b) { ccd::penetration_mpr(a, b); });
     throws_through("gjk", [](auto &a, auto &b) { ccd::penetration_gjk(a, b); });
     throws_through("local", [](auto &a, auto &b) { ccd::penetration_local(a, b); });
+    throws_through("incremental", [](auto &a, auto &b) { ccd::penetration_incremental(a, b); });
     throws_through("minimum", [](auto &a, auto &b) { ccd::penetration_minimum(a, b); });
     throws_through("along", [](auto &a, auto &b) { ccd::penetration_along(a, b, {0, 1, 0}); });
+    throws_through("contacts", [](auto &a, auto &b) {
+        std::array<ccd::ContactPoint, 2> out;
+        ccd::contacts(a, b, {0, 0, 1}, 0, out);
+    });
     throws_through("planar", [](auto &a, auto &b) { ccd::penetration_planar(a, b, {0, 0, 1}); });
 
     /* A query that was left has not touched the state. */
@@ -211,6 +229,9 @@ static void values()
     ccd::Warm warm = ccd::Warm::guess({0, -5, 0});
     const auto hit = ccd::penetration_local(a, a, {CCD_REAL(1e-5)}, &warm);
     CHECK(hit && hit.dir.y < CCD_REAL(-0.9), "dir %g %g %g", double(hit.dir.x), double(hit.dir.y), double(hit.dir.z));
+    warm.flip();
+    const auto flipped = ccd::penetration_local(a, a, {CCD_REAL(1e-5)}, &warm);
+    CHECK(flipped && flipped.dir.y > CCD_REAL(0.9), "dir %g after a flip", double(flipped.dir.y));
     ccd::Warm zero = ccd::Warm::guess({0, 0, 0}), cold;
     CHECK(same_bits(zero.get(), cold.get(), sizeof(ccd_warm_t)), "a guess of zero is cold");
 }

@@ -764,3 +764,112 @@ pub fn long_table(rows: &[Piles]) -> String {
     }
     out
 }
+
+// --- ODE worlds that this library collides itself ---------------------------------
+
+/// An ODE scene from several starts: through libccd as ODE asks it, and through this
+/// library behind ODE's own class of geoms, with one contact a pair and with several.
+pub struct Worlds {
+    pub scene: &'static str,
+    pub steps: usize,
+    runs: [Vec<Run>; 3],
+}
+
+const WAYS: [&str; 3] = [
+    "ODE's own, libccd",
+    "this library, one contact a pair",
+    "this library, `ccdContacts`",
+];
+
+pub fn worlds(
+    scene: &'static str,
+    starts: usize,
+    steps: usize,
+    bodies: usize,
+    progress: impl Fn(usize),
+) -> Worlds {
+    let ode = ode_pile();
+    let world = c("ode_world")
+        .library("ode")
+        .flag("-D_GNU_SOURCE")
+        .flag("-DOURS_ALONE")
+        .link_ours_shared()
+        .without_tools()
+        .build()
+        .quiet();
+    let mut runs = [const { Vec::new() }; 3];
+    for seed in 1..=starts {
+        let args = pile_args(seed, steps, &[&bodies.to_string(), scene]);
+        runs[0].push(Run::of(&ode.lines(0, &args)));
+        for (way, contacts) in [(1, "one"), (2, "many")] {
+            let mut args = args.clone();
+            args.push(contacts.to_owned());
+            let lines: Vec<String> = (world.run(&args).stdout.lines().map(String::from)).collect();
+            runs[way].push(Run::of(&lines));
+        }
+        progress(seed);
+    }
+    Worlds { scene, steps, runs }
+}
+
+impl Worlds {
+    fn all(&self, way: usize, key: &str) -> Vec<f64> {
+        let of = |run: &Run| run.pile.get(key).or_else(|| run.watched.get(key)).copied();
+        let told = self.runs[way].iter().map(of);
+        told.map(|x| x.unwrap_or_else(|| panic!("no {key}")))
+            .collect()
+    }
+
+    fn largest(&self, way: usize, key: &str) -> f64 {
+        self.all(way, key).into_iter().fold(0.0, f64::max)
+    }
+
+    /// What speaks against several contacts: they are to hold as well as libccd's one at its
+    /// worst.
+    pub fn against(&self) -> Vec<String> {
+        let mut against = Vec::new();
+        for key in ["gained", "deepest"] {
+            let (here, there) = (median(self.all(2, key)), self.largest(0, key));
+            if !(here <= there) {
+                against.push(format!("{key}: median {here}, libccd's largest {there}"));
+            }
+        }
+        for key in ["escaped", "bad", "limits"] {
+            if self.largest(2, key) > 0.0 {
+                against.push(format!("{key}: {:?}", self.all(2, key)));
+            }
+        }
+        against
+    }
+}
+
+pub fn world_table(rows: &[Worlds]) -> String {
+    let mut out = String::from(
+        "| ODE scene | starts × steps | contacts from | energy gained, J: median (min to max) | greatest depth, mm: median (max) \
+         | mean depth, mm: median | kinetic energy, second half, J: median | supports a query | escaped |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    for w in rows {
+        for (way, name) in WAYS.iter().enumerate() {
+            let gained = w.all(way, "gained");
+            let least = gained.iter().copied().fold(f64::INFINITY, f64::min);
+            let sum = |key: &str| w.all(way, key).iter().sum::<f64>();
+            let _ = writeln!(
+                out,
+                "| {} | {} × {} | {name} | {:.3} ({least:.3} to {:.3}) | {:.1} ({:.1}) | {:.3} | {:.4} | {:.1} | {} |",
+                w.scene,
+                gained.len(),
+                w.steps,
+                median(gained.clone()),
+                w.largest(way, "gained"),
+                1e3 * median(w.all(way, "deepest")),
+                1e3 * w.largest(way, "deepest"),
+                1e3 * median(w.all(way, "depth")),
+                median(w.all(way, "kinetic")),
+                sum("supports") / sum("queries"),
+                sum("escaped"),
+            );
+        }
+    }
+    out
+}

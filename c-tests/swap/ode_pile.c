@@ -12,7 +12,7 @@
  *
  * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll */
 
-#include "swap/ode_scene.h"
+#include "swap/ode_shape.h"
 #include "swap/right.h"
 
 static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v);
@@ -41,13 +41,7 @@ static const double LOST = 1e-5;
 
 static shape_t shape_of(const scene_t *scene, int i)
 {
-    const scene_shape_t *s = &scene->shape[scene->shape_of[i]];
-    const dReal *p = dGeomGetPosition(scene->geom[i]), *R = dGeomGetRotation(scene->geom[i]);
-    const double rot[9] = { R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10] };
-    shape_t out = s->kind == SCENE_HULL ? shape_polytope(s->hull.vertex, s->hull.vertices) : shape_make(s->kind, s->p[0], s->p[1], s->p[2]);
-    shape_move(&out, p[0], p[1], p[2]);
-    shape_turn(&out, rot);
-    return out;
+    return ode_shape(&scene->shape[scene->shape_of[i]], scene->geom[i]);
 }
 
 /* The object's centre tells which body it is. */

@@ -44,8 +44,16 @@ typedef struct {
     void *user;
 } scene_t;
 
+/* Where set, makes the geoms in ODE's place. */
+static dGeomID (*scene_make_geom)(const scene_shape_t *s);
+
 static inline dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
 {
+    if (scene_make_geom) {
+        const dGeomID geom = scene_make_geom(s);
+        dSpaceAdd(scene->space, geom);
+        return geom;
+    }
     switch (s->kind) {
     case SCENE_CAPSULE: return dCreateCapsule(scene->space, s->p[0], 2 * s->p[1]);
     case SCENE_BOX: return dCreateBox(scene->space, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]);

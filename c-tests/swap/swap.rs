@@ -117,6 +117,13 @@ fn dart_over_fcl_and_ode() {
     }
 }
 
+/// Towers on several contacts a pair hold at least as well as on libccd's one.
+#[test]
+fn towers_stand() {
+    let towers = checks::worlds("stack", 10, 1500, 20, |_| ());
+    assert!(towers.against().is_empty(), "{:?}", towers.against());
+}
+
 /// What a simulation needs most: a contact where the bodies touch.
 #[test]
 fn contacts_are_where_the_bodies_are() {

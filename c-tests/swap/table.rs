@@ -5,6 +5,7 @@
 //! library, as markdown; progress goes to stderr.
 //!
 //! `cargo run --example swap` the checks of the test run, on more poses (2 minutes)
+//! `cargo run --example swap -- world` ODE worlds collided by this library alone (3 minutes)
 //! `cargo run --example swap -- long` whole simulations, longer and nastier (3 minutes)
 
 #[path = "../harness/mod.rs"]
@@ -115,12 +116,27 @@ fn long() {
     println!("{}", checks::long_table(&rows));
 }
 
+fn world() {
+    let rows = [("stack", 20), ("hulls", 32), ("roll", 12)].map(|(scene, bodies)| {
+        let steps = if scene == "stack" { 10_000 } else { 3000 };
+        let row = checks::worlds(scene, 10, steps, bodies, |seed| {
+            eprintln!("{scene}: start {seed} of 10");
+        });
+        for line in row.against() {
+            eprintln!("{scene}: {line}");
+        }
+        row
+    });
+    println!("{}", checks::world_table(&rows));
+}
+
 fn main() {
     match std::env::args().nth(1).as_deref() {
         None => table(),
         Some("long") => long(),
+        Some("world") => world(),
         Some(other) => {
-            eprintln!("unknown: {other}; nothing, or `long`");
+            eprintln!("unknown: {other}; nothing, `world` or `long`");
             std::process::exit(2);
         }
     }

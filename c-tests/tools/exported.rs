@@ -371,6 +371,16 @@ fn local() {
 }
 
 #[test]
+fn incremental() {
+    extended(
+        |obj1, obj2, ccd, _, warm, out| unsafe {
+            ccdPenetrationIncremental(obj1, obj2, ccd, warm, out)
+        },
+        &Settings::mpr(),
+    );
+}
+
+#[test]
 fn minimum() {
     extended(
         |obj1, obj2, ccd, _, warm, out| unsafe {
@@ -423,6 +433,38 @@ fn planar() {
     );
 }
 
+/// A box on a box: four corners, and no more room than was asked for.
+#[test]
+fn contacts() {
+    let mut obj1 = object(Shape::Box([1.0, 1.0, 0.5]), [0.0; 3]);
+    let mut obj2 = object(Shape::Box([0.5, 0.4, 0.5]), [0.1, 0.2, 0.99]);
+    let (a, b) = (pointer(&mut obj1), pointer(&mut obj2));
+    let settings = Settings::mpr();
+    let normal = ccd_vec3_t { v: [0.0, 0.0, 3.0] };
+    for max in [1, 4, 9] {
+        let mut out = vec![MaybeUninit::<ccd_contact_t>::uninit(); max];
+        let room = out.as_mut_ptr().cast();
+        let n = unsafe { ccdContacts(a, b, settings.get(), &normal, 1e-3, room, max as c_int) };
+        assert_eq!(n, max.min(4) as c_int);
+        for contact in &out[..n as usize] {
+            let contact = unsafe { contact.assume_init() };
+            assert!((contact.depth - 0.01).abs() < TOLERANCE);
+        }
+    }
+    let mut strange = object(Shape::NotANumber, [0.0; 3]);
+    let (strange, room) = (pointer(&mut strange), null_mut());
+    let mut contact = MaybeUninit::<ccd_contact_t>::uninit();
+    unsafe {
+        let one = contact.as_mut_ptr();
+        let bad = ccdContacts(a, strange, settings.get(), &normal, 0.0, one, 1);
+        assert_eq!(bad, CCD_BAD_INPUT);
+        let bad = ccdContacts(a, b, settings.get(), null(), 0.0, one, 1);
+        assert_eq!(bad, CCD_BAD_INPUT);
+        let bad = ccdContacts(a, b, settings.get(), &normal, 0.0, room, 1);
+        assert_eq!(bad, CCD_BAD_INPUT);
+    }
+}
+
 /// The compatible calls' warm forms, from a guess too.
 #[test]
 fn warm_forms() {
@@ -444,6 +486,9 @@ fn warm_forms() {
                 let hit = c_int::from(truth.is_some());
                 assert_eq!(ccdMPRIntersectWarm(obj1, obj2, settings.get(), warm), hit);
                 ccdWarmGuess(warm, &guess);
+                // Twice is nothing.
+                ccdWarmFlip(warm);
+                ccdWarmFlip(warm);
                 let code = ccdMPRPenetrationWarm(
                     obj1,
                     obj2,

@@ -9,8 +9,9 @@
  *     V centre() const;                        a point inside it, the deeper the better
  *
  * where V is ccd::Vec3, ccd_vec3_t or anything with v[0], v[1], v[2] (std::array, the vectors
- * of the usual libraries). centre() is needed by the MPR queries; penetration_local, _minimum,
- * _along and _planar use it where both shapes have it; the GJK queries never do.
+ * of the usual libraries). centre() is needed by the MPR queries; penetration_local,
+ * _incremental, _minimum, _along and _planar use it where both shapes have it; the GJK queries
+ * never do.
  *
  *     ccd::Warm warm;                               // one for each pair, kept between frames
  *     if (auto hit = ccd::penetration_local(box, ball, {1e-6}, &warm))
@@ -25,6 +26,8 @@
 #include <ccd/ccd.h>
 #include <ccd/warm.h>
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -87,6 +90,12 @@ struct Penetration : Contact {
     unsigned long iterations = 0; /* of the solver */
 };
 
+/* One point of a contact manifold. */
+struct ContactPoint {
+    Vec3 point1, point2; /* point2 = point1 - depth * normal */
+    Real depth = 0;      /* metres; negative where the shapes are apart */
+};
+
 /* What one query of a pair leaves for the next: a value, cold at first, copied freely. */
 class Warm {
 public:
@@ -101,6 +110,9 @@ public:
         ccdWarmGuess(&warm.state_, &d);
         return warm;
     }
+
+    /* For the same two shapes in the other order. */
+    void flip() { ccdWarmFlip(&state_); }
 
     ccd_warm_t *get() { return &state_; }
 
@@ -229,13 +241,24 @@ Contact penetration_gjk(const A &a, const B &b, const Settings &settings = {})
     return detail::contact(code, depth, dir, pos);
 }
 
-/* A local minimum of the depth, from the state, else from the centres: ccdPenetrationLocal. */
+/* A local minimum of the depth, from the state, else from the centres, by the fastest search
+ * there is: ccdPenetrationLocal. */
 template <class A, class B>
 Penetration penetration_local(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
     const ccd_t c = detail::query<A, B>(settings);
     ccd_penetration_t out{};
     const int code = ccdPenetrationLocal(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
+    return detail::penetration(code, out);
+}
+
+/* The same by the paper's method as published: ccdPenetrationIncremental. */
+template <class A, class B>
+Penetration penetration_incremental(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
+{
+    const ccd_t c = detail::query<A, B>(settings);
+    ccd_penetration_t out{};
+    const int code = ccdPenetrationIncremental(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
     return detail::penetration(code, out);
 }
 
@@ -248,6 +271,26 @@ Penetration penetration_minimum(const A &a, const B &b, const Settings &settings
     ccd_penetration_t out{};
     const int code = ccdPenetrationMinimum(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
     return detail::penetration(code, out);
+}
+
+/* Where the shapes touch: up to N points of the region in which the faces that look along normal
+ * lie over each other, the deepest first; the number of them, or Status::bad_input's:
+ * ccdContacts. */
+template <std::size_t N, class A, class B>
+int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<ContactPoint, N> &out)
+{
+    const ccd_t c = detail::query<A, B>({});
+    const ccd_vec3_t n = normal;
+    ccd_contact_t found[N > 0 ? N : 1];
+    const int count =
+        ccdContacts(std::addressof(a), std::addressof(b), &c, &n, slop, found, static_cast<int>(N));
+    for (int i = 0; i < count; i++) {
+        ContactPoint &point = out[static_cast<std::size_t>(i)];
+        point.point1 = found[i].point1;
+        point.point2 = found[i].point2;
+        point.depth = found[i].depth;
+    }
+    return count;
 }
 
 /* How far b must move along dir (of any length): ccdPenetrationAlong. */

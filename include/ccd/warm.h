@@ -109,6 +109,25 @@ typedef struct ccd_penetration_t {
   unsigned long iterations;
 } ccd_penetration_t;
 
+/**
+ * One point of a contact manifold.
+ */
+typedef struct ccd_contact_t {
+  /**
+   * Within slop of the surface of obj1.
+   */
+  ccd_vec3_t point1;
+  /**
+   * point1 - depth * normal; within slop of the surface of obj2.
+   */
+  ccd_vec3_t point2;
+  /**
+   * Metres: at least the support value of normal less 2 slop; negative where the objects
+   * are apart.
+   */
+  ccd_real_t depth;
+} ccd_contact_t;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -121,6 +140,14 @@ extern "C" {
  * happens.
  */
 CCD_EXPORT void ccdWarmGuess(struct ccd_warm_t *warm, const ccd_vec3_t *dir);
+
+/**
+ * Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
+ * state a pair and meets its objects in either order.
+ *
+ * Cold stays cold. `warm` NULL: nothing happens.
+ */
+CCD_EXPORT void ccdWarmFlip(struct ccd_warm_t *warm);
 
 /**
  * ccdMPRPenetration with memory.
@@ -149,8 +176,9 @@ int ccdMPRIntersectWarm(const void *obj1,
                         struct ccd_warm_t *warm);
 
 /**
- * A local minimum of the penetration depth, by the paper's method: from the state, else
- * from the centres, else from first_dir.
+ * A local minimum of the penetration depth, by the fastest search there is: cutting planes
+ * with curvature, not the paper's method, which is ccdPenetrationIncremental. From the
+ * state, else from the centres, else from first_dir.
  *
  * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
  *
@@ -163,6 +191,25 @@ int ccdPenetrationLocal(const void *obj1,
                         const ccd_t *ccd,
                         struct ccd_warm_t *warm,
                         struct ccd_penetration_t *out);
+
+/**
+ * A local minimum of the penetration depth by the paper's method as published (Algorithms
+ * 4 and 5, the shortcut on), with a sound answer: the depth is that of the least support
+ * plane met, and an overlap is proven. For comparisons; ccdPenetrationLocal answers the
+ * same in fewer support points. From the state's direction, else from the centres, else
+ * from first_dir.
+ *
+ * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+ *
+ * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
+ * alone.
+ */
+CCD_EXPORT
+int ccdPenetrationIncremental(const void *obj1,
+                              const void *obj2,
+                              const ccd_t *ccd,
+                              struct ccd_warm_t *warm,
+                              struct ccd_penetration_t *out);
 
 /**
  * The global minimum of the penetration depth, proven: depth - depth_lower <=
@@ -214,6 +261,39 @@ int ccdPenetrationPlanar(const void *obj1,
                          const ccd_vec3_t *plane_normal,
                          struct ccd_warm_t *warm,
                          struct ccd_penetration_t *out);
+
+/**
+ * Where two objects touch, not only how deep: the region in which the faces that look along
+ * `normal` lie over each other, reduced to at most `max` points: the deepest first, the
+ * others in order around the normal, spread to the largest area.
+ *
+ * `normal`: of an answer for this pose (dir where there is no other), not necessarily unit.
+ * `slop`, metres, >= 0: how far below its support plane a corner may lie and still belong to
+ * the face; a thousandth of the objects' size is good for contacts that rest. Corners
+ * between half the slop and the slop may be either. It is floored at a few ulps of the
+ * coordinates and is no more than the size of the face.
+ *
+ * Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
+ * Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
+ * one point, midway between them. The region moves as the objects do. Points carry no names:
+ * match those of two frames by position. For objects that are meant with margins, move the
+ * points by them along the normal.
+ *
+ * Reads no tolerance, centre or max_iterations; at most 24 support points of each object, 12
+ * of a box. Allocates nothing.
+ *
+ * Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
+ * that is zero, not finite or NULL, a slop that is negative or NaN, max < 1, no contacts, a
+ * callback's point that is not finite), and nothing was written.
+ */
+CCD_EXPORT
+int ccdContacts(const void *obj1,
+                const void *obj2,
+                const ccd_t *ccd,
+                const ccd_vec3_t *normal,
+                ccd_real_t slop,
+                struct ccd_contact_t *contacts,
+                int max);
 
 /**
  * Which library a process really runs, and in which precision: "warmccd 0.1.0 double", a

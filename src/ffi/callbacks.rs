@@ -46,14 +46,14 @@ pub struct Query {
 }
 
 impl Query {
-    /// The Minkowski difference; `None` when a support callback is NULL.
+    /// The two objects; `None` when a support callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
-    pub unsafe fn difference(&self) -> Option<Difference> {
+    pub unsafe fn objects(&self) -> Option<(Object, Object)> {
         // SAFETY: [inputs]; only the two fields are read.
         let (support1, support2) = unsafe { ((*self.ccd).support1?, (*self.ccd).support2?) };
-        Some(MinkowskiDifference::new(
+        Some((
             Object {
                 obj: self.obj1,
                 support: support1,
@@ -63,6 +63,16 @@ impl Query {
                 support: support2,
             },
         ))
+    }
+
+    /// The Minkowski difference; `None` when a support callback is NULL.
+    ///
+    /// # Safety
+    /// \[inputs\] of the module contract.
+    pub unsafe fn difference(&self) -> Option<Difference> {
+        // SAFETY: passed on.
+        let (obj1, obj2) = unsafe { self.objects()? };
+        Some(MinkowskiDifference::new(obj1, obj2))
     }
 
     /// The difference of the objects' centres, an interior point of D; `None` when

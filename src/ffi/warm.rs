@@ -10,6 +10,7 @@ use super::callbacks::{Object, Query};
 use super::collide::{mpr_penetration, write};
 use super::types::{ccd_t, ccd_vec3_t};
 use crate::contact::{Answer, Penetration, Settings};
+use crate::contact_manifold;
 use crate::math::{Real, Vec3, unit};
 use crate::support::Fault;
 use crate::warm::{Pair, State};
@@ -192,6 +193,20 @@ pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const 
     }
 }
 
+/// Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
+/// state a pair and meets its objects in either order.
+///
+/// Cold stays cold. `warm` NULL: nothing happens.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdWarmFlip(warm: *mut ccd_warm_t) {
+    // SAFETY: [inputs], [outputs].
+    unsafe {
+        let mut state = read(warm);
+        state.flip();
+        store(warm, &state);
+    }
+}
+
 /// ccdMPRPenetration with memory.
 ///
 /// `warm` may be NULL (cold). Returns and outputs as ccdMPRPenetration.
@@ -252,8 +267,9 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     }
 }
 
-/// A local minimum of the penetration depth, by the paper's method: from the state, else
-/// from the centres, else from first_dir.
+/// A local minimum of the penetration depth, by the fastest search there is: cutting planes
+/// with curvature, not the paper's method, which is ccdPenetrationIncremental. From the
+/// state, else from the centres, else from first_dir.
 ///
 /// Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
 ///
@@ -276,6 +292,37 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
             warm,
             out,
             |pair, state, settings| pair.local(state, settings),
+        )
+    }
+}
+
+/// A local minimum of the penetration depth by the paper's method as published (Algorithms
+/// 4 and 5, the shortcut on), with a sound answer: the depth is that of the least support
+/// plane met, and an overlap is proven. For comparisons; ccdPenetrationLocal answers the
+/// same in fewer support points. From the state's direction, else from the centres, else
+/// from first_dir.
+///
+/// Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
+///
+/// Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
+/// alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    let query = Query { obj1, obj2, ccd };
+    // SAFETY: passed on.
+    unsafe {
+        answer(
+            query,
+            Query::mpr_tolerance,
+            warm,
+            out,
+            |pair, state, settings| pair.incremental(state, settings),
         )
     }
 }
@@ -369,6 +416,75 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
             |pair, state, settings| pair.planar(m, state, settings),
         )
     }
+}
+
+/// One point of a contact manifold.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ccd_contact_t {
+    /// Within slop of the surface of obj1.
+    pub point1: ccd_vec3_t,
+    /// point1 - depth * normal; within slop of the surface of obj2.
+    pub point2: ccd_vec3_t,
+    /// Metres: at least the support value of normal less 2 slop; negative where the objects
+    /// are apart.
+    pub depth: Real,
+}
+
+/// Where two objects touch, not only how deep: the region in which the faces that look along
+/// `normal` lie over each other, reduced to at most `max` points: the deepest first, the
+/// others in order around the normal, spread to the largest area.
+///
+/// `normal`: of an answer for this pose (dir where there is no other), not necessarily unit.
+/// `slop`, metres, >= 0: how far below its support plane a corner may lie and still belong to
+/// the face; a thousandth of the objects' size is good for contacts that rest. Corners
+/// between half the slop and the slop may be either. It is floored at a few ulps of the
+/// coordinates and is no more than the size of the face.
+///
+/// Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
+/// Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
+/// one point, midway between them. The region moves as the objects do. Points carry no names:
+/// match those of two frames by position. For objects that are meant with margins, move the
+/// points by them along the normal.
+///
+/// Reads no tolerance, centre or max_iterations; at most 24 support points of each object, 12
+/// of a box. Allocates nothing.
+///
+/// Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
+/// that is zero, not finite or NULL, a slop that is negative or NaN, max < 1, no contacts, a
+/// callback's point that is not finite), and nothing was written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdContacts(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    normal: *const ccd_vec3_t,
+    slop: Real,
+    contacts: *mut ccd_contact_t,
+    max: c_int,
+) -> c_int {
+    if ccd.is_null() || contacts.is_null() || max < 1 || !(slop >= 0.0) {
+        return CCD_BAD_INPUT;
+    }
+    // SAFETY: [inputs].
+    let (normal, objects) = unsafe { (unit_of(normal), Query { obj1, obj2, ccd }.objects()) };
+    let (Some(normal), Some((one, two))) = (normal, objects) else {
+        return CCD_BAD_INPUT;
+    };
+    let max = (max as usize).min(contact_manifold::ROOM);
+    let Ok(manifold) = contact_manifold::contacts(&one, &two, &normal, slop, max) else {
+        return CCD_BAD_INPUT;
+    };
+    for (i, contact) in manifold.contacts().iter().enumerate() {
+        let out = ccd_contact_t {
+            point1: contact.point1.into(),
+            point2: contact.point2.into(),
+            depth: contact.depth,
+        };
+        // SAFETY: [outputs]; `contacts` has room for `max`.
+        unsafe { contacts.add(i).write(out) };
+    }
+    manifold.contacts().len() as c_int
 }
 
 /// # Safety

@@ -1,0 +1,750 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* ccdContacts against exact regions: boxes and hulls at rest and tilted, edges, corners;
+ * round objects by formula; flat ones; how many support points it takes; that the region
+ * moves as the objects do; what it refuses. */
+
+#include "contract/check.h"
+#include "manifold.h"
+#include "ours.h"
+
+enum { ROOM = 32 };
+
+static const double epsilon = sizeof(ccd_real_t) == 8 ? DBL_EPSILON : (double)FLT_EPSILON;
+
+static unsigned long most_calls, most_box_calls;
+
+typedef struct {
+    shape_t a, b;
+    double n[3], slop;
+} scene_t;
+
+typedef struct {
+    int n;
+    ccd_contact_t c[ROOM];
+} contacts_t;
+
+static double dot3(const double a[3], const ccd_vec3_t *b)
+{
+    return a[0] * (double)b->v[0] + a[1] * (double)b->v[1] + a[2] * (double)b->v[2];
+}
+
+static double largest(const scene_t *s)
+{
+    double most = 0;
+    int k;
+    for (k = 0; k < 3; k++)
+        most = fmax(most, fmax(fabs((double)s->a.pos[k]), fabs((double)s->b.pos[k])));
+    return most + 4;
+}
+
+/* What rounding does to a coordinate. */
+static double noise_of(const scene_t *s) { return 4 * epsilon * largest(s); }
+
+/* The height along n of a shape's support plane in the direction sign * n. */
+static double reach(const shape_t *shape, const double n[3], int sign)
+{
+    ccd_vec3_t d, p;
+    int k;
+    for (k = 0; k < 3; k++)
+        d.v[k] = (ccd_real_t)(sign * n[k]);
+    shape_support(shape, &d, &p);
+    return dot3(n, &p);
+}
+
+static contacts_t ask_at_most(scene_t *s, int max)
+{
+    contacts_t out;
+    ccd_vec3_t normal;
+    ccd_t ccd;
+    int k;
+    shape_query(&ccd);
+    ccd.center1 = ccd.center2 = NULL;
+    ccd.first_dir = NULL;
+    for (k = 0; k < 3; k++)
+        normal.v[k] = (ccd_real_t)(3 * s->n[k]);
+    s->a.calls = s->b.calls = 0;
+    memset(&out, 0, sizeof out);
+    out.n = OURS(ccdContacts)(&s->a, &s->b, &ccd, &normal, (ccd_real_t)s->slop, out.c, max);
+    CHECK(out.n >= 1 && out.n <= max, "%d contacts", out.n);
+    for (k = 0; k < 2; k++) {
+        const shape_t *shape = k ? &s->b : &s->a;
+        if (shape->calls > most_calls)
+            most_calls = shape->calls;
+        if (shape->type == SHAPE_BOX && shape->calls > most_box_calls)
+            most_box_calls = shape->calls;
+        CHECK(shape->calls <= (shape->type == SHAPE_BOX ? 12 : 24), "%lu calls of type %d", shape->calls, shape->type);
+    }
+    return out;
+}
+
+static contacts_t ask(scene_t *s) { return ask_at_most(s, ROOM); }
+
+static flats_t flats_of(const contacts_t *c, const frame_t *f)
+{
+    flats_t flats;
+    int i, k;
+    flats.n = 0;
+    for (i = 0; i < c->n; i++) {
+        double p[3];
+        for (k = 0; k < 3; k++)
+            p[k] = (double)c->c[i].point1.v[k];
+        flats.p[flats.n++] = manifold_flat(f, p);
+    }
+    return flats;
+}
+
+/* What holds of every point: the depth, the two witnesses, that each lies in its object and
+ * within the slop of its support plane. */
+static void judge(scene_t *s, const contacts_t *c, const char *what)
+{
+    const double noise = 4 * noise_of(s), room = s->slop + 8 * noise;
+    const double h1 = reach(&s->a, s->n, 1), h2 = reach(&s->b, s->n, -1);
+    int i, k, trial;
+    for (i = 0; i < c->n; i++) {
+        const ccd_contact_t *p = &c->c[i];
+        double out = 0;
+        for (k = 0; k < 3; k++)
+            out = fmax(out, fabs((double)p->point1.v[k] - (double)p->depth * s->n[k] - (double)p->point2.v[k]));
+        CHECK(out <= noise, "%s: points %g across", what, out);
+        CHECK((double)p->depth <= h1 - h2 + noise && (double)p->depth >= h1 - h2 - 2 * room, "%s: depth %g of %g", what,
+              (double)p->depth, h1 - h2);
+        CHECK(i == 0 || p->depth <= c->c[0].depth + (ccd_real_t)noise, "%s: point %d is the deepest", what, i);
+        CHECK(fabs(dot3(s->n, &p->point1) - h1) <= room && fabs(dot3(s->n, &p->point2) - h2) <= room,
+              "%s: %g and %g from the support planes, slop %g", what, dot3(s->n, &p->point1) - h1,
+              dot3(s->n, &p->point2) - h2, s->slop);
+        if (c->n == 1)
+            continue;
+        for (trial = 0, out = 0; trial < 40; trial++) {
+            ccd_vec3_t m = random_vec3(1), q;
+            double l = 0, v[3];
+            for (k = 0; k < 3; k++)
+                l += (double)m.v[k] * (double)m.v[k];
+            for (k = 0, l = sqrt(l); k < 3; k++) {
+                m.v[k] = (ccd_real_t)((double)m.v[k] / l);
+                v[k] = (double)m.v[k];
+            }
+            shape_support(trial % 2 ? &s->a : &s->b, &m, &q);
+            out = fmax(out, dot3(v, trial % 2 ? &p->point1 : &p->point2) - dot3(v, &q));
+        }
+        CHECK(out <= room, "%s: a point %g outside, slop %g", what, out, s->slop);
+    }
+}
+
+/* The region of two polytopes; 0 where the truth is not one. */
+static int thin; /* neither face is more than a segment */
+
+static int truth(const scene_t *s, const frame_t *f, flats_t *region, double *apart)
+{
+    flats_t one, two;
+    double top1, top2;
+    int clear = manifold_face(&s->a, f, 1, s->slop, noise_of(s), &one, &top1) &
+                manifold_face(&s->b, f, -1, s->slop, noise_of(s), &two, &top2);
+    thin = 1;
+    region->n = 0;
+    if (one.n < 3 && two.n < 3)
+        return 0;
+    thin = 0;
+    *region = two.n < 3 ? flat_clip(&two, &one) : flat_clip(&one, &two);
+    *apart = 0;
+    if (region->n == 0) {
+        int i;
+        for (i = 0, *apart = HUGE_VAL; i < one.n; i++)
+            *apart = fmin(*apart, (double)flat_distance(&two, one.p[i]));
+        for (i = 0; i < two.n; i++)
+            *apart = fmin(*apart, (double)flat_distance(&one, two.p[i]));
+    }
+    return clear;
+}
+
+static unsigned long regions, segments, points, beside, doubtful;
+
+/* The contacts of two polytopes against the truth. */
+static void compare(scene_t *s, const char *what)
+{
+    const frame_t f = manifold_frame(s->n);
+    flats_t region, found;
+    double apart, room = 4 * s->slop + 64 * noise_of(s);
+    contacts_t c = ask(s);
+    judge(s, &c, what);
+    if (!truth(s, &f, &region, &apart)) {
+        doubtful += !thin;
+        return;
+    }
+    found = flats_of(&c, &f);
+    if (region.n == 0) {
+        if (apart > room) {
+            beside++;
+            CHECK(c.n == 1, "%s: %d contacts of faces %g apart", what, c.n, apart);
+        }
+        return;
+    }
+    if (region.n > 2)
+        regions++;
+    else if (region.n == 2)
+        segments++;
+    else
+        points++;
+    CHECK((double)flat_apart(&region, &found) <= room, "%s: %g from the truth of %d corners, %d found, slop %g, calls %lu %lu", what,
+          (double)flat_apart(&region, &found), region.n, found.n, s->slop, s->a.calls, s->b.calls);
+    if (region.n > 2) {
+        const double area = (double)flat_area(&region), here = (double)flat_area(&found);
+        CHECK(here >= 0 && fabs(area - here) <= 0.01 * area + room * room, "%s: area %g of %g", what, here, area);
+    }
+}
+
+/* --- scenes: a stands below the plane z = 0, b on it, depth deep; then all is turned ------- */
+
+static ccd_real_t prism_verts[4][16 * 3];
+
+/* A frustum with a face of k corners at either end of z; its local z from -half to half. */
+static shape_t prism(int which, int k, double half)
+{
+    ccd_real_t *v = prism_verts[which];
+    const double top = random_in(0.7, 1.3), turn = random_in(0, 6);
+    int i;
+    for (i = 0; i < k; i++) {
+        const double angle = turn + 2 * 3.14159265358979 * (i + random_in(0, 0.8)) / k;
+        v[3 * i] = (ccd_real_t)cos(angle);
+        v[3 * i + 1] = (ccd_real_t)sin(angle);
+        v[3 * i + 2] = (ccd_real_t)-half;
+        v[3 * (k + i)] = (ccd_real_t)(top * cos(angle));
+        v[3 * (k + i) + 1] = (ccd_real_t)(top * sin(angle));
+        v[3 * (k + i) + 2] = (ccd_real_t)half;
+    }
+    return shape_polytope(v, 2 * k);
+}
+
+static shape_t block(int which, double *half)
+{
+    *half = random_in(0.2, 0.8);
+    if (random_below(3) == 0)
+        return shape_box(random_in(0.3, 1.2), random_in(0.3, 1.2), *half);
+    return prism(which, 3 + random_below(6), *half);
+}
+
+/* Turns and moves the shape by what it has and then by this. */
+static void turn_by(shape_t *s, const double rot[9], const double by[3])
+{
+    double old[9], all[9], pos[3];
+    int i;
+    for (i = 0; i < 9; i++)
+        old[i] = (double)s->rot[i];
+    rotation_times(rot, old, all);
+    shape_turn(s, all);
+    for (i = 0; i < 3; i++)
+        pos[i] = rot[3 * i] * (double)s->pos[0] + rot[3 * i + 1] * (double)s->pos[1] + rot[3 * i + 2] * (double)s->pos[2] + by[i];
+    shape_move(s, pos[0], pos[1], pos[2]);
+}
+
+/* Where the scene is in the world. */
+static double scene_rot[9], scene_at[3];
+
+/* A scene that stays where it is: n is the way b leaves. */
+static void put(scene_t *s)
+{
+    int k;
+    turn_by(&s->a, scene_rot, scene_at);
+    turn_by(&s->b, scene_rot, scene_at);
+    for (k = 0; k < 3; k++)
+        s->n[k] = (double)(ccd_real_t)scene_rot[3 * k + 2];
+}
+
+/* The whole scene somewhere into the world. */
+static void place(scene_t *s, double far_off)
+{
+    int k;
+    for (k = 0; k < 3; k++)
+        scene_at[k] = random_in(-far_off, far_off);
+    rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), scene_rot);
+    put(s);
+}
+
+static void yaw(shape_t *s)
+{
+    const double zero[3] = {0, 0, 0};
+    double rot[9];
+    rotation_about(0, 0, 1, random_in(0, 6.28), rot);
+    turn_by(s, rot, zero);
+}
+
+static double slop_of(void)
+{
+    const double least = sizeof(ccd_real_t) == 8 ? -9 : -5;
+    return random_below(8) == 0 ? 0 : pow(10, random_in(least, -2.5));
+}
+
+static void rest(void)
+{
+    int i;
+    for (i = 0; i < 4000; i++) {
+        const double zero[3] = {0, 0, 0}, depth = random_in(-0.01, 0.05);
+        double half;
+        scene_t s;
+        s.slop = slop_of();
+        s.a = block(0, &half);
+        shape_move(&s.a, 0, 0, -half);
+        yaw(&s.a);
+        s.b = block(1, &half);
+        yaw(&s.b);
+        if (i % 2) {
+            /* tilted, by what the slop forgives or not */
+            double rot[9];
+            const double angle = random_in(0, 6.28);
+            rotation_about(cos(angle), sin(angle), 0, i % 4 == 1 ? s.slop * random_in(0, 3) : pow(10, random_in(-4, -0.3)),
+                           rot);
+            turn_by(&s.b, rot, zero);
+        }
+        {
+            const double up[3] = {0, 0, 1};
+            shape_move(&s.b, random_in(-1, 1), random_in(-1, 1), 0);
+            shape_move(&s.b, (double)s.b.pos[0], (double)s.b.pos[1], -depth - reach(&s.b, up, -1));
+        }
+        place(&s, i % 3 ? 1 : 30);
+        compare(&s, i % 2 ? "tilted" : "rest");
+    }
+}
+
+/* Hulls of random points, or boxes, anywhere in touch, with the normal of an answer. */
+static void anywhere(void)
+{
+    int i, k;
+    for (i = 0; i < 3000; i++) {
+        static ccd_real_t points_of[2][36];
+        ccd_penetration_t hit;
+        scene_t s;
+        ccd_t ccd;
+        s.slop = slop_of();
+        for (k = 0; k < 36; k++) {
+            points_of[0][k] = (ccd_real_t)random_in(-1, 1);
+            points_of[1][k] = (ccd_real_t)random_in(-1, 1);
+        }
+        s.a = i % 3 ? shape_polytope(points_of[0], 12) : shape_box(0.5, 0.7, 0.9);
+        s.b = i % 2 ? shape_polytope(points_of[1], 12) : shape_box(0.3, 0.8, 0.6);
+        shape_move(&s.b, random_in(0, 1.5), 0, 0);
+        place(&s, 1);
+        shape_query(&ccd);
+        ccd.epa_tolerance = CCD_REAL(0.0);
+        if (OURS(ccdPenetrationMinimum)(&s.a, &s.b, &ccd, NULL, &hit) != CCD_HIT)
+            continue;
+        for (k = 0; k < 3; k++)
+            s.n[k] = (double)hit.normal.v[k];
+        compare(&s, "anywhere");
+    }
+}
+
+/* --- round, flat and thin objects, by formula ----------------------------------------------- */
+
+static shape_t at(shape_t s, double x, double y, double z)
+{
+    shape_move(&s, x, y, z);
+    return s;
+}
+
+static shape_t turned(shape_t s, double x, double y, double z, double angle)
+{
+    double rot[9];
+    rotation_about(x, y, z, angle, rot);
+    shape_turn(&s, rot);
+    return s;
+}
+
+/* The contacts of a scene in its own frame: as many as said, at these places, in any order. */
+static void expect(const char *what, shape_t a, shape_t b, int n, const double (*xy)[2])
+{
+    int round;
+    for (round = 0; round < 40; round++) {
+        const double error = sizeof(ccd_real_t) == 8 ? 1e-6 : 1e-4;
+        scene_t s;
+        contacts_t c;
+        double room;
+        int i, k, j;
+        s.a = a;
+        s.b = b;
+        s.slop = sizeof(ccd_real_t) == 8 ? pow(10, random_in(-6, -3)) : pow(10, random_in(-4, -3));
+        place(&s, 1);
+        /* an answer's normal is not exact either: turned by less than the slop forgives */
+        for (k = 0, room = 0; k < 3; k++) {
+            s.n[k] += 0.1 * fmin(s.slop, error) * random_in(-1, 1);
+            room += s.n[k] * s.n[k];
+        }
+        for (k = 0; k < 3; k++)
+            s.n[k] = (double)(ccd_real_t)(s.n[k] / sqrt(room));
+        room = 4 * s.slop + 64 * noise_of(&s);
+        c = ask(&s);
+        CHECK(c.n == n, "%s: %d contacts, slop %g", what, c.n, s.slop);
+        for (i = 0; i < n; i++) {
+            double least = HUGE_VAL;
+            for (j = 0; j < c.n; j++) {
+                double local[2] = {0, 0};
+                for (k = 0; k < 3; k++) {
+                    const double d = (double)c.c[j].point1.v[k] - scene_at[k];
+                    local[0] += scene_rot[3 * k] * d;
+                    local[1] += scene_rot[3 * k + 1] * d;
+                }
+                least = fmin(least, hypot(local[0] - xy[i][0], local[1] - xy[i][1]));
+            }
+            CHECK(least <= room, "%s: nothing at %g %g, nearest %g, slop %g", what, xy[i][0], xy[i][1], least, s.slop);
+        }
+        if (n > 1)
+            judge(&s, &c, what);
+    }
+}
+
+static void shapes(void)
+{
+    static const ccd_real_t square[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, rod[] = {-1, 0, 0, 1, 0, 0}, dot[] = {0, 0, 0};
+    const double pi = 3.14159265358979;
+    const double middle[][2] = {{0, 0}}, ends[][2] = {{-0.5, 0}, {0.5, 0}}, over[][2] = {{1, 0}, {0.2, 0}};
+    const double plate[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, rods[][2] = {{-1, 0}, {1, 0}}, off[][2] = {{0.3, -0.2}};
+    const double slant[][2] = {{0, 0}, {-sqrt(1.25), 0}}, shared[][2] = {{-0.2, 0}, {0.5, 0}};
+    const shape_t table = at(shape_box(2, 2, 0.5), 0, 0, -0.5), edge = at(shape_box(1, 2, 0.5), 0, 0, -0.5);
+    const shape_t lying_capsule = turned(shape_capsule(0.3, 0.5), 0, 1, 0, pi / 2);
+    const shape_t lying_cylinder = turned(shape_cylinder(0.3, 0.5), 0, 1, 0, pi / 2);
+
+    expect("ball on table", table, at(shape_sphere(0.5), 0, 0, 0.49), 1, middle);
+    expect("ball on ball", at(shape_sphere(0.5), 0, 0, -0.5), at(shape_sphere(0.3), 0, 0, 0.29), 1, middle);
+    expect("table on ball", at(shape_sphere(0.5), 0, 0, -0.5), at(shape_box(1, 1, 0.5), 0, 0, 0.5), 1, middle);
+    expect("ellipsoid", table, at(shape_ellipsoid(1, 0.6, 0.3), 0.3, -0.2, 0.29), 1, off);
+    expect("flat ellipsoid", table, at(shape_ellipsoid(1, 1, 0.05), 0.3, -0.2, 0.05), 1, off);
+    expect("lying capsule", table, at(lying_capsule, 0, 0, 0.29), 2, ends);
+    expect("lying capsule over the edge", edge, at(lying_capsule, 0.7, 0, 0.3), 2, over);
+    expect("capsule on its end", table, at(shape_capsule(0.3, 0.5), 0.3, -0.2, 0.8), 1, off);
+    expect("lying cylinder", table, at(lying_cylinder, 0, 0, 0.29), 2, ends);
+    expect("cone on its tip", table, at(turned(shape_cone(0.3, 0.5), 1, 0, 0, pi), 0.3, -0.2, 0.5), 1, off);
+    /* half height 0.5, radius 0.5: the slant is sqrt(1.25) long, the apex over the origin */
+    expect("lying cone", table, at(turned(shape_cone(0.5, 0.5), 0, 1, 0, pi / 2 + atan(0.5)),
+                                   -0.5 * sin(pi / 2 + atan(0.5)), 0, -0.5 * cos(pi / 2 + atan(0.5))),
+           2, slant);
+    expect("crossed capsules", at(lying_capsule, 0, 0, -0.3),
+           at(turned(shape_capsule(0.2, 0.5), 1, 0, 0, pi / 2), 0, 0, 0.19), 1, middle);
+    expect("parallel capsules", at(lying_capsule, 0, 0, -0.3), at(lying_capsule, 0.3, 0, 0.29), 2, shared);
+    expect("plate on table", table, shape_polytope(square, 4), 4, plate);
+    expect("rod on table", table, shape_polytope(rod, 2), 2, rods);
+    expect("point on table", table, at(shape_polytope(dot, 1), 0.3, -0.2, 0), 1, off);
+    expect("crossed rods", shape_polytope(rod, 2), turned(shape_polytope(rod, 2), 0, 0, 1, 1), 1, middle);
+    expect("point on rod", shape_polytope(rod, 2), shape_polytope(dot, 1), 1, middle);
+    expect("point on point", shape_polytope(dot, 1), shape_polytope(dot, 1), 1, middle);
+    expect("standing plate", table, at(turned(shape_polytope(square, 4), 1, 0, 0, pi / 2), 0, 0, 1), 2, rods);
+    expect("box on its edge", table, at(turned(shape_box(1, 0.5, 0.5), 1, 0, 0, pi / 4), 0, 0, sqrt(0.5) - 0.01), 2, rods);
+    expect("box on its corner", table,
+           at(turned(shape_box(0.5, 0.5, 0.5), 1, -1, 0, atan(sqrt(2))), 0, 0, sqrt(0.75)), 1, middle);
+    expect("edge across edge", at(turned(shape_box(1, 0.5, 0.5), 1, 0, 0, pi / 4), 0, 0, -sqrt(0.5)),
+           at(turned(shape_box(0.5, 1, 0.5), 0, 1, 0, pi / 4), 0, 0, sqrt(0.5) - 0.01), 1, middle);
+}
+
+/* A disc is inscribed: all points within it, most of its area. */
+static void discs(void)
+{
+    int i, j;
+    for (i = 0; i < 200; i++) {
+        const double radius = random_in(0.3, 1), tilt = i % 2 ? 0 : random_in(0, 0.1), angle = random_in(0, 6.28);
+        frame_t f;
+        flats_t found;
+        contacts_t c;
+        scene_t s;
+        double axis[3];
+        s.slop = pow(10, random_in(sizeof(ccd_real_t) == 8 ? -6 : -4, -3));
+        s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+        s.b = i % 3 ? shape_cylinder(radius, 0.5) : shape_cone(radius, 0.5);
+        s.b = at(turned(s.b, cos(angle), sin(angle), 0, tilt * s.slop), 0, 0, 0.5);
+        place(&s, 1);
+        f = manifold_frame(s.n);
+        c = ask(&s);
+        judge(&s, &c, "disc");
+        found = flats_of(&c, &f);
+        for (j = 0; j < 3; j++)
+            axis[j] = (double)s.b.pos[j];
+        for (j = 0; j < found.n; j++) {
+            const flat_t o = manifold_flat(&f, axis);
+            const double from = (double)hypotl(found.p[j].x - o.x, found.p[j].y - o.y);
+            CHECK(fabs(from - radius) <= 4 * s.slop + 64 * noise_of(&s), "disc: %g from the axis, radius %g", from, radius);
+        }
+        CHECK((double)flat_area(&found) >= 0.85 * 3.14159 * radius * radius, "disc: area %g of %g, %d points",
+              (double)flat_area(&found), 3.14159 * radius * radius, c.n);
+    }
+}
+
+/* --- steadiness ------------------------------------------------------------------------------ */
+
+/* Do the sides of the region meet at more than 10 degrees, everywhere? A segment: does it meet
+ * those of the face that it lies on? */
+static int crisp(const flats_t *f, const flats_t *face)
+{
+    int i;
+    for (i = 0; i < face->n && f->n == 2; i++) {
+        const flat_t p = face->p[i], q = face->p[(i + 1) % face->n], r = f->p[0], t = f->p[1];
+        const double across = (double)((q.x - p.x) * (t.y - r.y) - (q.y - p.y) * (t.x - r.x));
+        if (fabs(across) < 0.1745 * (double)(hypotl(q.x - p.x, q.y - p.y) * hypotl(t.x - r.x, t.y - r.y)))
+            return 0;
+    }
+    for (i = 0; i < f->n && f->n > 2; i++) {
+        const flat_t p = f->p[i], q = f->p[(i + 1) % f->n], r = f->p[(i + 2) % f->n];
+        const double turn = fabs(atan2((double)flat_cross(p, q, r),
+                                       (double)((q.x - p.x) * (r.x - q.x) + (q.y - p.y) * (r.y - q.y))));
+        if (turn < 0.1745 || turn > 3.1416 - 0.1745)
+            return 0;
+    }
+    return 1;
+}
+
+/* The largest distance from a corner of one to the nearest corner of the other. */
+static double moved(const flats_t *a, const flats_t *b)
+{
+    double most = 0;
+    int way, i, j;
+    for (way = 0; way < 2; way++) {
+        const flats_t *p = way ? b : a, *q = way ? a : b;
+        for (i = 0; i < p->n; i++) {
+            double least = HUGE_VAL;
+            for (j = 0; j < q->n; j++)
+                least = fmin(least, (double)hypotl(p->p[i].x - q->p[j].x, p->p[i].y - q->p[j].y));
+            most = fmax(most, least);
+        }
+    }
+    return most;
+}
+
+enum { SLIDE, SPIN, ROCK, ROLL, MOTIONS };
+static const char *const motion_name[MOTIONS] = {"sliding", "spinning", "rocking", "rolling"};
+static unsigned long frames[MOTIONS], compared[MOTIONS];
+
+static void steady(int motion, scene_t start, double step)
+{
+    const double zero[3] = {0, 0, 0};
+    const double angle = random_in(0, 6.28), axis[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
+    double by[3] = {0, 0, 0}, turn[9], world[9], old[9];
+    flats_t before;
+    frame_t f;
+    int frame, k;
+    before.n = 0;
+    switch (motion) {
+    case SLIDE:
+        by[0] = step * cos(angle);
+        by[1] = step * sin(angle);
+        rotation_about(0, 0, 1, 0, turn);
+        break;
+    case SPIN: rotation_about(0, 0, 1, step, turn); break;
+    case ROCK: rotation_about(cos(angle), sin(angle), 0, fmin(step, 0.005 * start.slop), turn); break;
+    default: /* along x, about y */
+        by[0] = step;
+        rotation_about(0, 1, 0, step / 0.3, turn);
+    }
+    rotation_about(axis[0], axis[1], axis[2], 0.1 * step, world);
+    for (frame = 0; frame < 20; frame++) {
+        const shape_t b = start.b;
+        scene_t s = start;
+        contacts_t c;
+        flats_t found;
+        /* b's own step, and that of the world */
+        const double motion_length = 2 * step + noise_of(&start);
+        put(&s);
+        /* one frame for all: the normal hardly turns */
+        if (frame == 0)
+            f = manifold_frame(s.n);
+        c = ask(&s);
+        judge(&s, &c, motion_name[motion]);
+        found = flats_of(&c, &f);
+        frames[motion]++;
+        if (frame > 0) {
+            const double change = fabs((double)(flat_area(&found) - flat_area(&before)));
+            const double allowed = 10 * (motion_length + 16 * noise_of(&s));
+            CHECK(change <= allowed * ((double)flat_perimeter(&before) + (double)flat_perimeter(&found)) / 2,
+                  "%s by %g: the area changes by %g, %d and %d points, slop %g", motion_name[motion], step, change, before.n,
+                  found.n, s.slop);
+            flats_t face;
+            double top;
+            manifold_face(&s.a, &f, 1, s.slop, noise_of(&s), &face, &top);
+            if (crisp(&before, &face) && crisp(&found, &face)) {
+                compared[motion]++;
+                CHECK(moved(&before, &found) <= allowed, "%s by %g: a point moves by %g, %d and %d points, slop %g",
+                      motion_name[motion], step, moved(&before, &found), before.n, found.n, s.slop);
+            }
+        }
+        before = found;
+        /* the next frame */
+        start.b = b;
+        if (motion == ROLL || motion == SPIN) {
+            const double pos[3] = {(double)b.pos[0], (double)b.pos[1], (double)b.pos[2]};
+            shape_move(&start.b, 0, 0, 0);
+            turn_by(&start.b, turn, zero);
+            shape_move(&start.b, pos[0] + by[0], pos[1] + by[1], pos[2]);
+        } else
+            turn_by(&start.b, turn, by);
+        for (k = 0; k < 9; k++)
+            old[k] = scene_rot[k];
+        rotation_times(world, old, scene_rot);
+    }
+}
+
+static void motions(void)
+{
+    const double pi = 3.14159265358979, finest = sizeof(ccd_real_t) == 8 ? -8 : -4;
+    int i;
+    for (i = 0; i < 600; i++) {
+        const int motion = i % MOTIONS;
+        double half;
+        scene_t s;
+        s.slop = pow(10, random_in(sizeof(ccd_real_t) == 8 ? -7 : -4, -3));
+        s.a = block(0, &half);
+        shape_move(&s.a, 0, 0, -half);
+        yaw(&s.a);
+        s.b = block(1, &half);
+        if (motion == SPIN && i % 8 == 1) {
+            half = 0.4;
+            s.b = shape_cylinder(random_in(0.3, 0.8), half);
+        }
+        if (motion == ROLL) {
+            half = 0.3;
+            s.b = i % 8 == 3 ? shape_capsule(half, 0.5) : shape_cylinder(half, 0.5);
+            s.b = turned(s.b, 1, 0, 0, pi / 2);
+        }
+        shape_move(&s.b, random_in(-0.5, 0.5), random_in(-0.5, 0.5), half - 0.01);
+        if (motion == SLIDE)
+            yaw(&s.b);
+        place(&s, 0); /* the scene's place; then frame by frame */
+        {
+            scene_t local = s;
+            double back[9], zero[3] = {0, 0, 0};
+            int r, q;
+            for (r = 0; r < 3; r++)
+                for (q = 0; q < 3; q++)
+                    back[3 * r + q] = scene_rot[3 * q + r];
+            turn_by(&local.a, back, zero);
+            turn_by(&local.b, back, zero);
+            steady(motion, local, pow(10, random_in(finest, -3)));
+        }
+    }
+    for (i = 0; i < MOTIONS; i++) {
+        printf("%s: %lu frames, the points compared in %lu\n", motion_name[i], frames[i], compared[i]);
+        CHECK(compared[i] > 1000, "%s: few points compared", motion_name[i]);
+    }
+}
+
+/* --- fewer points, and what is refused ---------------------------------------------------------- */
+
+static void fewer(void)
+{
+    int i, max, k;
+    for (i = 0; i < 300; i++) {
+        double half, last = 0;
+        frame_t f;
+        contacts_t all;
+        scene_t s;
+        s.slop = 1e-4;
+        s.a = block(0, &half);
+        shape_move(&s.a, 0, 0, -half);
+        s.b = block(1, &half);
+        shape_move(&s.b, random_in(-0.3, 0.3), random_in(-0.3, 0.3), half - 0.01);
+        yaw(&s.b);
+        place(&s, 1);
+        f = manifold_frame(s.n);
+        all = ask(&s);
+        for (max = 1; max <= all.n; max++) {
+            const contacts_t some = ask_at_most(&s, max);
+            const flats_t flats = flats_of(&some, &f);
+            const double area = (double)flat_area(&flats);
+            CHECK(some.n == max, "%d of at most %d of %d", some.n, max, all.n);
+            CHECK(same_bits(&some.c[0], &all.c[0], sizeof all.c[0]), "the first of %d", max);
+            CHECK(area >= last - 1e-6, "area %g of %d points, %g before", area, max, last);
+            /* the best of all is not less than what a fan over every so many would be */
+            CHECK(max < 3 || area >= 0.9 * (double)(max - 2) / all.n * last, "area %g", area);
+            for (k = max; k < ROOM; k++) {
+                static const ccd_contact_t none;
+                CHECK(same_bits(&some.c[k], &none, sizeof none), "written beyond max");
+            }
+            last = area;
+        }
+        {
+            const flats_t flats = flats_of(&all, &f);
+            CHECK(all.n < 3 || fabs(last - (double)flat_area(&flats)) < 1e-9, "all of them");
+        }
+    }
+}
+
+static ccd_real_t strange;
+static unsigned long strange_from;
+
+static void strange_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    shape_support(obj, dir, out);
+    if (((const shape_t *)obj)->calls > strange_from)
+        out->v[strange_from % 3] = strange;
+}
+
+static void refuse(const shape_t *a, const shape_t *b, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
+                   int max, const char *why)
+{
+    ccd_contact_t out[4], before[4];
+    int code;
+    memset(before, 0x5a, sizeof before);
+    memcpy(out, before, sizeof out);
+    code = OURS(ccdContacts)(a, b, ccd, normal, slop, out, max);
+    CHECK(code == CCD_BAD_INPUT, "%s: %d", why, code);
+    CHECK(same_bits(out, before, sizeof out), "%s: contacts were written", why);
+}
+
+static void bad_input(void)
+{
+    const ccd_real_t inf = CCD_REAL_MAX * 2, nan = inf - inf, slop = CCD_REAL(1e-3);
+    const ccd_real_t values[3] = {nan, inf, -inf};
+    const ccd_vec3_t up = {{0, 0, 1}}, zero = {{0, 0, 0}};
+    shape_t a = shape_box(1, 1, 1), b = shape_box(1, 1, 1);
+    ccd_contact_t out[4];
+    ccd_t ccd, other;
+    int i;
+    shape_move(&b, 0.1, 0.2, 1.9);
+    memset(&ccd, 0xff, sizeof ccd); /* nothing else is read */
+    ccd.support1 = ccd.support2 = shape_support;
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, out, 4) == 4, "the good query");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, 0, out, 4) == 4, "no slop");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, inf, out, 4) >= 1, "any slop");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, out, 2147483647) == 4, "any number");
+    refuse(&a, &b, NULL, &up, slop, 4, "no ccd");
+    refuse(&a, &b, &ccd, NULL, slop, 4, "no normal");
+    refuse(&a, &b, &ccd, &zero, slop, 4, "zero normal");
+    refuse(&a, &b, &ccd, &up, CCD_REAL(-1e-9), 4, "negative slop");
+    refuse(&a, &b, &ccd, &up, nan, 4, "NaN slop");
+    refuse(&a, &b, &ccd, &up, slop, 0, "no room");
+    refuse(&a, &b, &ccd, &up, slop, -1, "less room");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, NULL, 4) == CCD_BAD_INPUT, "no contacts");
+    other = ccd;
+    other.support1 = NULL;
+    refuse(&a, &b, &other, &up, slop, 4, "no support1");
+    other = ccd;
+    other.support2 = NULL;
+    refuse(&a, &b, &other, &up, slop, 4, "no support2");
+    for (i = 0; i < 9; i++) {
+        ccd_vec3_t normal = up;
+        normal.v[i % 3] = values[i / 3];
+        refuse(&a, &b, &ccd, &normal, slop, 4, "a normal that is no number");
+    }
+    for (i = 0; i < 3; i++)
+        for (strange_from = 0; strange_from < 8; strange_from++) {
+            strange = values[i];
+            a.calls = b.calls = 0;
+            other = ccd;
+            other.support1 = strange_support;
+            refuse(&a, &b, &other, &up, slop, 4, "a point of obj1 that is no number");
+            a.calls = b.calls = 0;
+            other = ccd;
+            other.support2 = strange_support;
+            refuse(&a, &b, &other, &up, slop, 4, "a point of obj2 that is no number");
+        }
+}
+
+int main(void)
+{
+    rest();
+    anywhere();
+    shapes();
+    discs();
+    motions();
+    fewer();
+    bad_input();
+    printf("%lu regions, %lu segments, %lu points, %lu beside each other, %lu doubtful; at most %lu support points, %lu of a box\n",
+           regions, segments, points, beside, doubtful, most_calls, most_box_calls);
+    CHECK(regions > 1000 && segments > 10 && points > 10 && beside > 300, "too few of a kind");
+    return checks_end();
+}

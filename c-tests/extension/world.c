@@ -1,0 +1,60 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* A small world: a box, a capsule and a hull fall on a table. One warm state for each pair. */
+
+#include <ccd/warm.h>
+#include <stdio.h>
+
+enum { BODIES = 4, FRAMES = 60 };
+
+typedef struct { /* points, swept along x, y, z by half, with a ball all around */
+    ccd_vec3_t pos, point[5];
+    ccd_real_t half[3], radius, speed;
+    int points;
+} body_t;
+
+static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    const body_t *b = obj;
+    int i, best = 0;
+    for (i = 1; i < b->points; i++)
+        if (ccdVec3Dot(&b->point[i], dir) > ccdVec3Dot(&b->point[best], dir))
+            best = i;
+    for (i = 0; i < 3; i++)
+        out->v[i] = b->pos.v[i] + b->point[best].v[i] + (dir->v[i] < 0 ? -b->half[i] : b->half[i]) + b->radius * dir->v[i];
+}
+
+static void center(const void *obj, ccd_vec3_t *out) { *out = ((const body_t *)obj)->pos; }
+
+int main(void)
+{
+    static body_t body[BODIES] = {{ .pos = {{0, 0, -1}}, .half = {3, 3, 1} }, /* the table */
+        { .pos = {{-1, 0, 2}}, .half = {CCD_REAL(0.5), CCD_REAL(0.5), CCD_REAL(0.25)} },
+        { .pos = {{1, 0, 2}}, .half = {0, CCD_REAL(0.5), 0}, .radius = CCD_REAL(0.25) },
+        { .pos = {{1, 2, 3}}, .points = 5, .point = {{{1, 0, 0}}, {{0, 1, 0}}, {{-1, 0, 0}}, {{0, -1, 0}}, {{0, 0, 1}}} }};
+    static ccd_warm_t warm[BODIES][BODIES]; /* all zeros: cold */
+    ccd_contact_t contact[4];
+    ccd_penetration_t hit;
+    ccd_t ccd;
+    CCD_INIT(&ccd);
+    ccd.support1 = ccd.support2 = support;
+    ccd.center1 = ccd.center2 = center;
+    for (int frame = 0; frame < FRAMES; frame++) {
+        int touching = 0, contacts = 0;
+        for (int i = 1; i < BODIES; i++) /* they fall */
+            body[i].pos.v[2] += (body[i].speed -= CCD_REAL(9.81) / 60) / 60;
+        for (int i = 0; i < BODIES; i++)
+            for (int j = i + 1; j < BODIES; j++) {
+                if (ccdPenetrationLocal(&body[i], &body[j], &ccd, &warm[i][j], &hit) != CCD_HIT)
+                    continue; /* apart: one support while the last separating direction still separates */
+                touching++;
+                contacts += ccdContacts(&body[i], &body[j], &ccd, &hit.dir, CCD_REAL(1e-3), contact, 4);
+                for (int k = 0; k < 3; k++) /* what a solver would do with the contacts */
+                    body[j].pos.v[k] += hit.depth * hit.dir.v[k];
+                body[j].speed = 0;
+            }
+        if (frame % 10 == 9)
+            printf("frame %d: %d pairs touch in %d points\n", frame, touching, contacts);
+    }
+}

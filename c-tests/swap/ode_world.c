@@ -1,0 +1,141 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* An ODE world whose geoms this library collides: a class of ODE's dCreateGeomClass, with a
+ * state for each pair, and one contact a pair or those of ccdContacts. Scenes and starts are
+ * those of ode_pile.c; prints the same about energy and depth.
+ *
+ * usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many */
+
+#include "swap/ode_shape.h"
+
+#include <ccd/warm.h>
+
+static scene_t scene;
+static int convex;                 /* the class */
+static ccd_warm_t warm[SCENE_BODIES][SCENE_BODIES];
+static int most = 1;               /* contacts of a pair */
+static unsigned long queries, supports, limits;
+
+/* How far below its face a corner may be and still carry: the layer that ODE lets contacts
+ * sink into. */
+static const double SLOP = 1e-3;
+
+static void aabb(dGeomID geom, dReal box[6])
+{
+    const shape_t s = ode_shape(*(const scene_shape_t **)dGeomGetClassData(geom), geom);
+    int k, side;
+    for (k = 0; k < 3; k++)
+        for (side = 0; side < 2; side++) {
+            ccd_vec3_t dir = {{0, 0, 0}}, v;
+            dir.v[k] = side ? 1 : -1;
+            shape_support(&s, &dir, &v);
+            box[2 * k + side] = v.v[k];
+        }
+}
+
+/* ODE's normal is the way the first body leaves. */
+static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int skip)
+{
+    const int i = (int)(intptr_t)dGeomGetData(o1), j = (int)(intptr_t)dGeomGetData(o2);
+    const int room = flags & 0xffff, max = room < most ? room : most;
+    shape_t a = ode_shape(*(const scene_shape_t **)dGeomGetClassData(o1), o1);
+    shape_t b = ode_shape(*(const scene_shape_t **)dGeomGetClassData(o2), o2);
+    ccd_contact_t contact[8];
+    ccd_penetration_t hit;
+    ccd_t ccd;
+    int n, k, m, written = 0, code;
+    shape_query(&ccd);
+    ccd.mpr_tolerance = 1e-6; /* as ODE's */
+    /* The pair's state, whichever order the broad phase hands the two over in. */
+    if (i > j)
+        ccdWarmFlip(&warm[j][i]);
+    code = ccdPenetrationLocal(&a, &b, &ccd, i < j ? &warm[i][j] : &warm[j][i], &hit);
+    if (i > j)
+        ccdWarmFlip(&warm[j][i]);
+    queries++;
+    limits += code == CCD_LIMIT;
+    if (code != CCD_HIT && code != CCD_LIMIT)
+        return 0;
+    contact[0].point1 = hit.point1;
+    contact[0].point2 = hit.point2;
+    contact[0].depth = hit.depth;
+    n = max > 1 ? ccdContacts(&a, &b, &ccd, &hit.normal, SLOP, contact, max) : 1;
+    supports += a.calls;
+    for (k = 0; k < n; k++) {
+        dContactGeom *g = (dContactGeom *)((char *)out + written * skip);
+        if (!(contact[k].depth >= 0))
+            continue;
+        for (m = 0; m < 3; m++) {
+            g->pos[m] = 0.5 * (contact[k].point1.v[m] + contact[k].point2.v[m]);
+            g->normal[m] = -hit.normal.v[m];
+        }
+        g->depth = contact[k].depth;
+        g->g1 = o1;
+        g->g2 = o2;
+        g->side1 = g->side2 = -1;
+        written++;
+    }
+    return written;
+}
+
+static dColliderFn *collider(int other) { return other == convex ? collide : NULL; }
+
+static dGeomID make(const scene_shape_t *s)
+{
+    const dGeomID geom = dCreateGeom(convex);
+    *(const scene_shape_t **)dGeomGetClassData(geom) = s;
+    return geom;
+}
+
+int main(int argc, char **argv)
+{
+    dGeomClass class = { sizeof(const scene_shape_t *), collider, aabb, NULL, NULL };
+    double deepest = 0, depth = 0, kinetic = 0, least = HUGE_VAL, gained = 0;
+    long step, contacts = 0;
+    int escaped = 0, i;
+    if (argc != 6) {
+        fprintf(stderr, "usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many\n");
+        return 2;
+    }
+    const unsigned long seed = strtoul(argv[1], NULL, 10);
+    const long steps = atol(argv[2]);
+    const int bodies = atoi(argv[3]);
+    const char *name = argv[4];
+    most = strcmp(argv[5], "many") ? 1 : 8;
+    dInitODE2(0);
+    convex = dCreateGeomClass(&class);
+    scene_make_geom = make;
+    scene_world(&scene, 11);
+    if (!strcmp(name, "stack"))
+        scene_stack(&scene, (bodies + 4) / 5, 0.8);
+    else if (!strcmp(name, "roll"))
+        scene_roll(&scene, bodies, 1.5);
+    else {
+        for (i = 0; i < 4 && !strcmp(name, "hulls"); i++)
+            scene.kinds[i] = SCENE_HULL;
+        scene_pile(&scene, bodies, 0.55, 0.33);
+    }
+    scene_nudge(&scene, seed, !strcmp(name, "pile") || !strcmp(name, "hulls") ? 1e-3 : 1e-5);
+    for (step = 0; step < steps; step++) {
+        double height, energy, moving;
+        scene_step(&scene, 0.005);
+        escaped |= scene_escaped(&scene);
+        deepest = fmax(deepest, scene.depth_max);
+        moving = scene_energy(&scene, &height);
+        energy = moving + height;
+        least = fmin(least, energy);
+        gained = fmax(gained, energy - least);
+        if (2 * step >= steps) {
+            kinetic += moving / (double)(steps - steps / 2);
+            depth += scene.depth_sum;
+            contacts += scene.contact_count;
+        }
+    }
+    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g limits %lu\n", kinetic,
+           contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, scene.bad_contacts, gained, limits);
+    printf("watched queries %lu supports %lu\n", queries, supports);
+    scene_free(&scene);
+    dCloseODE();
+    return 0;
+}

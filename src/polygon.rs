@@ -1,0 +1,470 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Convex polygons in a plane, whose corners lie a little below it; segments and points
+//! are polygons of two corners and of one.
+
+use crate::math::Real;
+
+/// A point of the plane.
+pub type Flat = [Real; 2];
+
+/// `b - a`.
+#[inline]
+pub fn side(a: &Flat, b: &Flat) -> Flat {
+    [b[0] - a[0], b[1] - a[1]]
+}
+
+/// The scalar product.
+#[inline]
+pub fn dot(a: &Flat, b: &Flat) -> Real {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Twice the area of the triangle from the origin to `a` and `b`; positive
+/// counterclockwise.
+#[inline]
+pub fn cross(a: &Flat, b: &Flat) -> Real {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// The length.
+#[inline]
+pub fn length(a: &Flat) -> Real {
+    dot(a, a).sqrt()
+}
+
+/// The point at `t` on the way from `a` (0) to `b` (1).
+#[inline]
+pub fn between(a: &Flat, b: &Flat, t: Real) -> Flat {
+    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
+}
+
+/// How far along the way from `a` (0) to `b` (1) the nearest point to `p` is.
+#[inline]
+pub fn nearest_to(p: &Flat, a: &Flat, b: &Flat) -> Real {
+    let along = side(a, b);
+    let t = dot(&along, &side(a, p)) / dot(&along, &along);
+    // NaN, of a side without length, becomes 0.
+    if t > 0.0 { t.min(1.0) } else { 0.0 }
+}
+
+/// A corner: where it is in the plane, and how far below it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Corner {
+    /// Where in the plane.
+    pub at: Flat,
+    /// How far below the plane.
+    pub low: Real,
+}
+
+/// A convex polygon of at most `ROOM` corners, counterclockwise.
+#[derive(Clone, Copy, Debug)]
+pub struct Polygon<const ROOM: usize> {
+    corners: [Corner; ROOM],
+    len: usize,
+}
+
+impl<const ROOM: usize> Default for Polygon<ROOM> {
+    fn default() -> Self {
+        Self {
+            corners: [Corner::default(); ROOM],
+            len: 0,
+        }
+    }
+}
+
+impl<const ROOM: usize> Polygon<ROOM> {
+    /// The corners.
+    pub fn corners(&self) -> &[Corner] {
+        self.corners.get(..self.len).unwrap_or(&[])
+    }
+
+    /// The corners, to be changed.
+    pub fn corners_mut(&mut self) -> &mut [Corner] {
+        self.corners.get_mut(..self.len).unwrap_or(&mut [])
+    }
+
+    /// Adds a corner after the last; without room nothing happens.
+    pub fn push(&mut self, corner: Corner) {
+        if let Some(place) = self.corners.get_mut(self.len) {
+            *place = corner;
+            self.len += 1;
+        }
+    }
+
+    /// Adds corners after the last, as many as there is room for.
+    pub fn extend(&mut self, corners: &[Corner]) {
+        corners.iter().for_each(|c| self.push(*c));
+    }
+
+    /// Its sides, from corner to corner; a point has one without length.
+    pub fn sides(&self) -> impl Iterator<Item = (Corner, Corner)> + Clone + '_ {
+        let corners = self.corners().iter().copied();
+        corners.clone().zip(corners.cycle().skip(1))
+    }
+
+    /// Twice its area.
+    pub fn area(&self) -> Real {
+        let Some(first) = self.corners().first() else {
+            return 0.0;
+        };
+        // About a corner: far from the origin the products would round.
+        self.sides()
+            .map(|(p, q)| cross(&side(&first.at, &p.at), &side(&first.at, &q.at)))
+            .sum()
+    }
+
+    /// The convex hull of the points (Andrew's monotone chain). Of points nearer than
+    /// `merged` to each other the first stays; what sticks out by `flat` or less is no corner.
+    pub fn hull(points: &[Corner], merged: Real, flat: Real) -> Self {
+        let mut sorted = Self::default();
+        for p in points {
+            let near = |k: &Corner| length(&side(&k.at, &p.at)) <= merged;
+            if !sorted.corners().iter().any(near) {
+                sorted.push(*p);
+            }
+        }
+        let order = |a: &Corner, b: &Corner| {
+            let x = a.at[0].total_cmp(&b.at[0]);
+            x.then(a.at[1].total_cmp(&b.at[1]))
+        };
+        sorted.corners_mut().sort_unstable_by(order);
+        if sorted.len < 3 {
+            return sorted;
+        }
+        let mut hull = Self::default();
+        hull.chain(sorted.corners().iter(), flat);
+        let mut upper = Self::default();
+        upper.chain(sorted.corners().iter().rev(), flat);
+        for corner in upper
+            .corners()
+            .iter()
+            .skip(1)
+            .take(upper.len.saturating_sub(2))
+        {
+            hull.push(*corner);
+        }
+        hull
+    }
+
+    /// The half of the hull to the right of the way from the first point to the last.
+    fn chain<'a>(&mut self, points: impl Iterator<Item = &'a Corner>, flat: Real) {
+        for p in points {
+            while self.len >= 2 {
+                let (a, b) = (
+                    &self.corners[self.len - 2].at,
+                    &self.corners[self.len - 1].at,
+                );
+                let whole = side(a, &p.at);
+                if cross(&side(a, b), &whole) > flat * length(&whole) {
+                    break;
+                }
+                self.len -= 1;
+            }
+            self.push(*p);
+        }
+    }
+
+    /// What of it is inside another polygon of three corners or more, or no farther than
+    /// `slack` outside (Sutherland and Hodgman, Reentrant polygon clipping, CACM 17(1), 1974).
+    pub fn inside<const OTHER: usize>(&self, other: &Polygon<OTHER>, slack: Real) -> Self {
+        let mut rest = *self;
+        for (p, q) in other.sides() {
+            let along = side(&p.at, &q.at);
+            let room = slack * length(&along);
+            let within = |a: &Corner| cross(&along, &side(&p.at, &a.at)) + room;
+            let whole = rest;
+            rest = Self::default();
+            for (a, b) in whole.sides() {
+                let (at_a, at_b) = (within(&a), within(&b));
+                if at_a >= 0.0 {
+                    rest.push(a);
+                }
+                if (at_a >= 0.0) != (at_b >= 0.0) {
+                    let t = at_a / (at_a - at_b);
+                    rest.push(Corner {
+                        at: between(&a.at, &b.at, t),
+                        low: a.low + (b.low - a.low) * t,
+                    });
+                }
+            }
+        }
+        rest
+    }
+
+    /// How far below the plane it is at a point of it: between its corners, as triangles
+    /// about the first of them span it.
+    pub fn low(&self, at: &Flat) -> Real {
+        let Some(first) = self.corners().first() else {
+            return 0.0;
+        };
+        let mut best = (Real::NEG_INFINITY, first.low);
+        for (a, b) in self.sides() {
+            let [u, v, p] = [&a.at, &b.at, at].map(|x| side(&first.at, x));
+            let whole = cross(&u, &v);
+            let (least, low) = if whole > 0.0 {
+                let (s, t) = (cross(&p, &v) / whole, cross(&u, &p) / whole);
+                let low = first.low + (a.low - first.low) * s + (b.low - first.low) * t;
+                (s.min(t).min(1.0 - s - t), low)
+            } else {
+                // A segment; the sides of a polygon at its first corner.
+                let t = nearest_to(at, &a.at, &b.at);
+                let least = if self.len > 2 {
+                    Real::NEG_INFINITY
+                } else {
+                    0.0
+                };
+                (least, a.low + (b.low - a.low) * t)
+            };
+            if least > best.0 {
+                best = (least, low);
+            }
+        }
+        // A sliver cannot tell how high it is beside itself.
+        let lows = self.corners().iter().map(|c| c.low);
+        let least = lows.clone().fold(Real::INFINITY, Real::min);
+        best.1.max(least).min(lows.fold(least, Real::max))
+    }
+
+    /// The two sides, of this polygon and of another, that are nearest to each other, and a
+    /// nearest point of each; of polygons that do not overlap.
+    pub fn nearest<const OTHER: usize>(&self, other: &Polygon<OTHER>) -> Option<Nearest> {
+        let mut best: Option<Nearest> = None;
+        for one in self.sides().map(|(a, b)| [a.at, b.at]) {
+            for two in other.sides().map(|(a, b)| [a.at, b.at]) {
+                for pair in 0..4 {
+                    let end = pair % 2;
+                    let (p, q) = if pair < 2 {
+                        let t = nearest_to(&one[end], &two[0], &two[1]);
+                        (one[end], between(&two[0], &two[1], t))
+                    } else {
+                        let t = nearest_to(&two[end], &one[0], &one[1]);
+                        (between(&one[0], &one[1], t), two[end])
+                    };
+                    let apart = length(&side(&p, &q));
+                    if best.as_ref().is_none_or(|b| apart < b.apart) {
+                        best = Some(Nearest {
+                            sides: [one, two],
+                            points: [p, q],
+                            apart,
+                        });
+                    }
+                }
+            }
+        }
+        best
+    }
+}
+
+/// What [`Polygon::nearest`] found.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest {
+    /// A side of each.
+    pub sides: [[Flat; 2]; 2],
+    /// A point of each side.
+    pub points: [Flat; 2],
+    /// How far the points are apart.
+    pub apart: Real,
+}
+
+impl<const ROOM: usize> Polygon<ROOM> {
+    /// At most `most` of its corners, `first` among them and leading, the others in their
+    /// order: the polygon with the largest area, or of two corners the longest side.
+    ///
+    /// An inscribed polygon is a fan of triangles about `first`, so the best that ends at a
+    /// corner is the best that ends at the one before, and a triangle.
+    pub fn reduced(&self, first: usize, most: usize) -> Self {
+        let mut turned = *self;
+        if first < turned.len {
+            turned.corners_mut().rotate_left(first);
+        }
+        if turned.len <= most || most == 0 {
+            return turned;
+        }
+        let root = turned.corners[0].at;
+        let spoke = turned.corners.map(|c| side(&root, &c.at));
+        // The best area of a fan that ends at a corner, and the corner before: after one
+        // triangle less. A fan of no triangle is a spoke.
+        let mut best = [0.0; ROOM];
+        let mut before = [[0; ROOM]; ROOM];
+        for chosen in before.iter_mut().take(most).skip(2) {
+            let shorter = best;
+            for j in 1..turned.len {
+                best[j] = Real::NEG_INFINITY;
+                for i in 1..j {
+                    let area = shorter[i] + cross(&spoke[i], &spoke[j]);
+                    if area > best[j] {
+                        (best[j], chosen[j]) = (area, i);
+                    }
+                }
+            }
+        }
+        let score = |j: usize| {
+            if most == 2 {
+                length(&spoke[j])
+            } else {
+                best[j]
+            }
+        };
+        let mut at = 1;
+        for j in 2..turned.len {
+            if score(j) > score(at) {
+                at = j;
+            }
+        }
+        let mut taken = [0; ROOM];
+        for (count, place) in taken.iter_mut().enumerate().take(most).skip(1).rev() {
+            *place = at;
+            at = before[count][at];
+        }
+        let mut rest = Self::default();
+        for place in taken.iter().take(most) {
+            rest.push(turned.corners[*place]);
+        }
+        rest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+
+    type Eight = Polygon<8>;
+
+    fn corners(points: &[Flat]) -> Vec<Corner> {
+        let low = |at: &Flat| at[0] + 2.0 * at[1];
+        let corner = |at: &Flat| Corner {
+            at: *at,
+            low: low(at),
+        };
+        points.iter().map(corner).collect()
+    }
+
+    fn polygon(points: &[Flat]) -> Eight {
+        let mut p = Eight::default();
+        p.extend(&corners(points));
+        p
+    }
+
+    fn square(x: Real, y: Real, h: Real) -> Eight {
+        polygon(&[
+            [x - h, y - h],
+            [x + h, y - h],
+            [x + h, y + h],
+            [x - h, y + h],
+        ])
+    }
+
+    #[test]
+    fn hull_of_points() {
+        let points = [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [0.5, 0.5],
+            [1.0, 1.0],
+            [0.0, 1.0],
+            [0.5, 0.0],
+            [1.0, 1e-9],
+        ];
+        let hull = Eight::hull(&corners(&points), 1e-6, 1e-6);
+        assert_eq!(hull.corners().len(), 4);
+        assert_eq!(hull.area(), 2.0);
+        let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
+        assert_eq!(Eight::hull(&corners(&line), 1e-6, 1e-6).corners().len(), 2);
+        assert_eq!(
+            Eight::hull(&corners(&[[3.0, 3.0]; 5]), 0.0, 0.0)
+                .corners()
+                .len(),
+            1
+        );
+        assert!(Eight::hull(&[], 0.0, 0.0).corners().is_empty());
+    }
+
+    #[test]
+    fn inside_of_another() {
+        let shared = square(0.0, 0.0, 1.0).inside(&square(1.0, 1.0, 1.0), 0.0);
+        assert_eq!(shared.area(), 2.0);
+        let segment = polygon(&[[-3.0, 0.5], [0.5, 0.5]]).inside(&square(0.0, 0.0, 1.0), 0.0);
+        let ends = Eight::hull(segment.corners(), EPSILON, 0.0);
+        assert_eq!(
+            ends.corners().iter().map(|c| c.at).collect::<Vec<_>>(),
+            [[-1.0, 0.5], [0.5, 0.5]]
+        );
+        assert!(
+            polygon(&[[3.0, 0.0]])
+                .inside(&square(0.0, 0.0, 1.0), 0.0)
+                .corners()
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn low_is_linear_between_corners() {
+        for at in [[0.1, 0.2], [-0.7, 0.9], [1.0, 1.0], [0.0, 0.0]] {
+            let low = square(0.0, 0.0, 1.0).low(&at);
+            assert!((low - (at[0] + 2.0 * at[1])).abs() < 8.0 * EPSILON);
+        }
+        assert!((polygon(&[[0.0, 0.0], [1.0, 0.0]]).low(&[0.25, 0.3]) - 0.25).abs() < EPSILON);
+        assert_eq!(polygon(&[[1.0, 1.0]]).low(&[5.0, 5.0]), 3.0);
+    }
+
+    #[test]
+    fn nearest_sides() {
+        let near = square(0.0, 0.0, 1.0)
+            .nearest(&square(4.0, 0.5, 1.0))
+            .unwrap();
+        assert_eq!(near.apart, 2.0);
+        let point = polygon(&[[0.0, 3.0]]);
+        assert_eq!(
+            square(0.0, 0.0, 1.0).nearest(&point).unwrap().points,
+            [[0.0, 1.0], [0.0, 3.0]]
+        );
+        assert_eq!(point.nearest(&polygon(&[[4.0, 0.0]])).unwrap().apart, 5.0);
+        assert!(Eight::default().nearest(&point).is_none());
+    }
+
+    /// Against all subsets.
+    #[test]
+    fn reduced_to_the_largest_area() {
+        let points: [Flat; 7] = [
+            [0.0, 0.0],
+            [2.0, -0.5],
+            [3.0, 0.2],
+            [3.3, 1.0],
+            [2.0, 2.4],
+            [1.0, 2.5],
+            [-0.4, 1.0],
+        ];
+        let whole = polygon(&points);
+        for first in 0..7 {
+            for most in 1..=7 {
+                let rest = whole.reduced(first, most);
+                assert_eq!(rest.corners().len(), most);
+                assert_eq!(rest.corners()[0].at, points[first]);
+                let mut best: Real = 0.0;
+                for set in 0..128_usize {
+                    if set & (1 << first) != 0 && set.count_ones() as usize == most {
+                        let chosen: Vec<Flat> = (0..7)
+                            .filter(|i| set & (1 << i) != 0)
+                            .map(|i| points[i])
+                            .collect();
+                        best = best.max(polygon(&chosen).area());
+                    }
+                }
+                assert!(
+                    (rest.area() - best).abs() < 64.0 * EPSILON,
+                    "{first} {most}"
+                );
+            }
+            let two = whole.reduced(first, 2);
+            let far = length(&side(&two.corners()[0].at, &two.corners()[1].at));
+            let longest = points
+                .iter()
+                .map(|p| length(&side(&points[first], p)))
+                .fold(0.0, Real::max);
+            assert_eq!(far, longest);
+        }
+    }
+}
