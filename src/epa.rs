@@ -44,10 +44,10 @@
 //! faces that the new point sees go (libccd splits one), no test is absolute, and an
 //! origin on a face is no special case.
 
+use crate::barycentric;
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::{self, Overlap};
 use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, tolerance, unit};
-use crate::nearest;
 use crate::patch;
 use crate::simplex::Simplex;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -765,7 +765,7 @@ impl<'a> Polytope<'a> {
             let [a, b, c] = [0, 1, 2].map(|i| self.points[i].v);
             let towards = match self.counts.points {
                 0 | 1 => -a,
-                2 => -nearest::on_segment(&Vec3::zeros(), &a, &b).0,
+                2 => -barycentric::segment(&Vec3::zeros(), &a, &b).point,
                 _ => {
                     let normal = (b - a).cross(&(c - a));
                     if normal.dot(&a) > 0.0 {
@@ -913,7 +913,7 @@ impl<'a> Polytope<'a> {
         triangle: [Index; 3],
     ) -> Answer {
         let [a, b, c] = triangle.map(|i| self.v(i));
-        let w = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c).0;
+        let w = barycentric::triangle(&Vec3::zeros(), &a, &b, &c).point;
         Answer::Hit(query.penetration(0.0, &self.combine(triangle, weights(&w, &a, &b, &c))))
     }
 
@@ -1184,7 +1184,9 @@ impl<'a> Polytope<'a> {
         let bound = if plane.key < 0.0 && !sliver {
             plane.key
         } else {
-            nearest::on_triangle(&Vec3::zeros(), &a, &b, &c).1.sqrt()
+            barycentric::triangle(&Vec3::zeros(), &a, &b, &c)
+                .distance2
+                .sqrt()
         };
         self.counts.flat = lesser(self.counts.flat, bound);
         bound
@@ -1318,7 +1320,7 @@ impl<'a> Polytope<'a> {
     fn measure(&mut self, f: Index, rounding: Real) -> bool {
         let Face { corners, open, .. } = *self.face(f);
         let [a, b, c, _] = corners.map(|i| self.v(i));
-        let Some(n) = unit(&nearest::on_triangle(&Vec3::zeros(), &a, &b, &c).0) else {
+        let Some(n) = unit(&barycentric::triangle(&Vec3::zeros(), &a, &b, &c).point) else {
             return false;
         };
         let key = lesser(lesser(n.dot(&a), n.dot(&b)), n.dot(&c));
@@ -1432,7 +1434,7 @@ impl<'a> Polytope<'a> {
         for (_, face) in self.live() {
             let [i, j, k, _] = face.corners;
             let [a, b, c] = [i, j, k].map(|i| self.v(i));
-            let (w, _) = nearest::on_triangle(p, &a, &b, &c);
+            let w = barycentric::triangle(p, &a, &b, &c).point;
             let shares = weights(&w, &a, &b, &c);
             let distance2 = (mix(&a, &b, &c, &shares) - p).norm_squared();
             if distance2 < best.0 {
@@ -1586,7 +1588,7 @@ mod tests {
                 continue;
             }
             let [a, b, c, _] = face.corners.map(|i| polytope.v(i));
-            let (_, distance2) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
+            let distance2 = barycentric::triangle(&Vec3::zeros(), &a, &b, &c).distance2;
             // Both faces of an edge that rounding dents take the other for the nearer.
             assert!(face.plane.key < 0.0 || lower <= distance2.sqrt() + 2.0 * rounding);
             for &i in &corners {

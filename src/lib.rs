@@ -15,6 +15,7 @@
 )]
 #![allow(clippy::large_enum_variant, reason = "no heap")]
 
+pub mod barycentric;
 pub mod bundle;
 pub mod contact;
 pub mod epa;
@@ -22,7 +23,6 @@ pub mod ffi;
 pub mod gjk;
 pub mod local;
 pub mod math;
-pub mod nearest;
 pub mod patch;
 pub mod planar;
 pub mod portal;
