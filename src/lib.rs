@@ -18,9 +18,11 @@
 pub mod barycentric;
 pub mod bundle;
 pub mod contact;
+pub mod distance;
 pub mod epa;
 pub mod ffi;
 pub mod gjk;
+pub mod intersect;
 pub mod local;
 pub mod math;
 pub mod patch;

@@ -10,6 +10,8 @@ use super::callbacks::{Object, Query};
 use super::collide::{mpr_penetration, write};
 use super::types::{ccd_t, ccd_vec3_t};
 use crate::contact::{Answer, Penetration, Settings};
+use crate::distance;
+use crate::intersect;
 use crate::math::{Real, Vec3, unit};
 use crate::support::Fault;
 use crate::warm::{Pair, State};
@@ -236,14 +238,20 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
     unsafe {
-        let mut state = read(warm);
-        let overlap = query
-            .pair(!warm.is_null())
-            .and_then(|pair| pair.intersect(&mut state, query.max_iterations()).ok());
-        if overlap.is_some() {
-            store(warm, &state);
+        let (Some(md), Some(centre)) = (query.difference(), query.centre()) else {
+            return 0;
+        };
+        if warm.is_null() {
+            return c_int::from(distance::from_centre(&md, &centre).is_ok());
         }
-        c_int::from(overlap == Some(Some(true)))
+        let mut state = read(warm);
+        match intersect::intersect(&md, &centre, &mut state) {
+            Ok(overlap) => {
+                store(warm, &state);
+                c_int::from(overlap)
+            }
+            Err(_) => 0,
+        }
     }
 }
 
