@@ -100,7 +100,7 @@ impl Simplex {
 
     /// A place where there is no corner.
     #[inline(always)]
-    fn place(&self) -> usize {
+    pub fn place(&self) -> usize {
         let [i, j, k] = self.order;
         (!(1_u32 << i | 1 << j | 1 << k)).trailing_zeros() as usize & 3
     }
@@ -140,6 +140,46 @@ impl Simplex {
         self.order = face.order;
         self.len = face.len;
         Some((face.way, face.distance2))
+    }
+
+    /// As [`Simplex::add`] without a new point, and without trust in that the last one is
+    /// nearer than the others: every face of the simplex counts.
+    pub fn settle(&mut self, noise: Real) -> (Vec3, Real) {
+        let [i, j, k] = self.order;
+        let at = self.order.map(|p| self.at[p & 3]);
+        let face = match self.len {
+            0 | 1 => self.corner(i),
+            2 => self.line(i, j, noise),
+            _ => {
+                let [a, b, c] = &at;
+                let weights = barycentric::triangle(&Vec3::zeros(), a, b, c).weights;
+                match weights.map(|w| w > 0.0) {
+                    [true, true, true] => {
+                        let n = normal(a, b, c);
+                        let height = n.dot(a);
+                        let (order, way) = if height > 0.0 {
+                            ([j, i, k], -n)
+                        } else {
+                            ([i, j, k], n)
+                        };
+                        Face {
+                            order,
+                            len: 3,
+                            way,
+                            distance2: height / n.norm_squared() * height,
+                        }
+                    }
+                    [true, true, _] => self.line(i, j, noise),
+                    [true, _, true] => self.line(i, k, noise),
+                    [_, true, true] => self.line(j, k, noise),
+                    [_, _, true] => self.corner(k),
+                    [_, true, _] => self.corner(j),
+                    _ => self.corner(i),
+                }
+            }
+        };
+        (self.order, self.len) = (face.order, face.len);
+        (face.way, face.distance2)
     }
 
     #[inline(always)]
@@ -494,7 +534,7 @@ const WIDENING: usize = 8;
 
 /// The unit vector along `way`, and `None` for none.
 #[inline(always)]
-fn direction(way: &Vec3) -> Option<Vec3> {
+pub fn direction(way: &Vec3) -> Option<Vec3> {
     let length2 = way.norm_squared();
     // Squares that are neither rounded to nothing nor beyond numbers.
     // (In single precision those of areas soon are.)

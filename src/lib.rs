@@ -31,6 +31,7 @@ pub mod portal;
 pub mod precision;
 #[cfg(test)]
 mod shapes;
+pub mod signed_distance;
 pub mod simplex;
 pub mod support;
 pub mod support_set;

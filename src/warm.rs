@@ -230,7 +230,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// The way from the centre of D through the origin, or the caller's first
     /// direction, or any.
-    fn cold_start(&self) -> Vec3 {
+    pub fn cold_start(&self) -> Vec3 {
         let from_centre = self.centre.and_then(|c| unit(&-c.v));
         from_centre
             .or_else(|| self.first_dir.and_then(|d| unit(&d)))

@@ -20,7 +20,7 @@ use harness::{Precision, Program};
 const NO_ARGS: [&str; 0] = [];
 
 /// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 8] = [
+const EXTENSION: [&str; 9] = [
     "ccdImplementation",
     "ccdMPRIntersectWarm",
     "ccdMPRPenetrationWarm",
@@ -28,6 +28,7 @@ const EXTENSION: [&str; 8] = [
     "ccdPenetrationLocal",
     "ccdPenetrationMinimum",
     "ccdPenetrationPlanar",
+    "ccdSignedDistance",
     "ccdWarmGuess",
 ];
 

@@ -45,6 +45,16 @@ fn answers_from_every_kind_of_state() {
 }
 
 #[test]
+fn signed_distance() {
+    let dir = harness::root().join("c-tests/pairs");
+    let sets = [
+        "box_box", "p42_p42", "cone_cyl", "cyl_box", "ell_ell", "cap_cap", "p162_cap", "sph_cap",
+    ];
+    let sets = sets.map(|set| dir.join(set).with_extension("bin"));
+    program("distance").build().run(sets);
+}
+
+#[test]
 fn pairs_that_stay_apart_cost_one_support() {
     program("apart").build().run(NO_ARGS);
 }
