@@ -142,6 +142,25 @@ impl Simplex {
         Some((face.way, face.distance2))
     }
 
+    /// How many corners there are: at most three.
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Adds a corner, one of at most three, wherever it is: [`Simplex::settle`] tells the rest.
+    pub fn put(&mut self, id: usize, at: Vec3) {
+        let w = self.place();
+        self.ids[w] = id;
+        self.at[w] = at;
+        self.order = match (self.order, self.len) {
+            ([i, ..], 1) => [i, w, w],
+            ([i, j, _], 2) => [i, j, w],
+            _ => [w; 3],
+        };
+        self.len = (self.len + 1).min(3);
+    }
+
     /// As [`Simplex::add`] without a new point, and without trust in that the last one is
     /// nearer than the others: every face of the simplex counts.
     pub fn settle(&mut self, noise: Real) -> (Vec3, Real) {

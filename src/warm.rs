@@ -86,6 +86,23 @@ impl State {
         Self::of(APART, dir)
     }
 
+    /// [`State::apart`], with the directions of up to three support points around the nearest
+    /// one (zero for none), and the radius of a ball that rounds D there, metres.
+    pub fn near(dir: Vec3, directions: [Vec3; 3], ball: Real) -> Self {
+        let mut state = Self::apart(dir);
+        state.memory.slopes = directions;
+        state.memory.curvature[0] = ball;
+        state
+    }
+
+    /// What [`State::near`] left.
+    pub fn nearest(&self) -> ([Vec3; 3], Real) {
+        match self.kind {
+            APART => (self.memory.slopes, self.memory.curvature[0]),
+            _ => ([Vec3::zeros(); 3], 0.0),
+        }
+    }
+
     /// The margin to aim at, metres, where the pair was apart.
     pub fn aim(&self) -> Real {
         self.memory.dir.norm()
