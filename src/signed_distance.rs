@@ -345,7 +345,24 @@ impl<'p, A: SupportMap, B: SupportMap> Search<'p, A, B> {
     fn ask(&mut self, n: &Vec3) -> Result<bool, Fault> {
         let point = self.sample(n)?;
         self.pause = self.pause.saturating_sub(1);
-        Ok(self.add(n, &point))
+        if self.beyond(&point) {
+            return Ok(self.add(n, &point));
+        }
+        // What is left is rounding, or the plane of a touching face, in which the simplex's
+        // last point was no nearer than the others.
+        self.settle();
+        Ok(false)
+    }
+
+    /// Does the point lie beyond the simplex, as seen along the way, by more than rounding?
+    /// Only such a one is a corner of the next.
+    fn beyond(&self, point: &SupportPoint) -> bool {
+        if self.simplex.len() == 0 {
+            return true;
+        }
+        let corner = self.set.v(self.simplex.ids()[0]);
+        let ahead = self.way.dot(&(point.v - corner));
+        ahead > 0.5 * self.precision.touch() * self.way.norm()
     }
 
     fn add(&mut self, n: &Vec3, point: &SupportPoint) -> bool {
@@ -365,9 +382,7 @@ impl<'p, A: SupportMap, B: SupportMap> Search<'p, A, B> {
     fn try_out(&mut self, n: &Vec3, promise: Real) -> Result<bool, Fault> {
         let before = self.lower;
         let point = self.sample(n)?;
-        // Only a point beyond the simplex, as seen along the way, is a corner of the next.
-        let corner = self.set.v(self.simplex.ids()[0]);
-        let inside = self.way.dot(&(point.v - corner)) > 0.0 && self.add(n, &point);
+        let inside = self.beyond(&point) && self.add(n, &point);
         if !(self.lower - before >= KEPT * (promise - before)) {
             self.pause = self.penalty;
             self.penalty += 2;
