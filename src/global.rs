@@ -11,8 +11,8 @@
 
 use crate::barycentric;
 use crate::contact::{Answer, Penetration};
+use crate::distance;
 use crate::expansion::{self, End, Limits, Progress, expand};
-use crate::gjk::{self, Overlap};
 use crate::math::{Real, Vec3, larger};
 use crate::patch::{self, Rest};
 use crate::plane::Plane;
@@ -100,8 +100,7 @@ impl Basis {
 ///
 /// `Hit`: proven to within the limits' gap; `depth_lower` is what the polytope proves.
 /// `Limit`: a cap or rounding came first; the depth is sound, the lower bound proven all
-/// the same. `Miss`: apart, or touching within rounding. `Undecided`: the caps of the yes
-/// or no came first.
+/// the same. `Miss`: apart, or touching within rounding.
 ///
 /// # Errors
 /// A callback's answer that is not finite, or an arena without memory.
@@ -323,33 +322,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         set: &SupportSet<P>,
         expanded: Option<(&Polytope<F>, &Progress)>,
     ) -> Result<Answer, Stop> {
-        let start = set.point(1);
-        let lowest = &mut self.inquiry.lowest;
-        let touch = self.inquiry.precision.touch();
-        let overlap = gjk::search(
-            self.inquiry.md,
-            start,
-            |n, reach| set.farther(n, reach).map(|i| set.point(i)),
-            crate::math::ITERATION_CAP,
-            |n, w| {
-                let depth = n.dot(&w.v);
-                if depth < lowest.depth && depth > touch {
-                    *lowest = Lowest {
-                        depth,
-                        dir: *n,
-                        index: 0,
-                    };
-                }
-            },
-        )?;
-        match overlap {
-            Overlap::No(n) => Err(Stop::Apart(n)),
-            Overlap::Undecided => Ok(Answer::Undecided(self.bare(&start))),
-            Overlap::Yes(..) => match expanded {
-                Some((hull, state)) => Ok(self.conclude(set, hull, state, End::Inside)),
-                None => Ok(Answer::Limit(self.bare(&start))),
-            },
-        }
+        let mut few = SupportSet::<{ FIRST.0 }>::EMPTY;
+        few.take(set);
+        let dir = self.inquiry.lowest.dir;
+        distance::overlap(&mut self.inquiry, &mut few, None, &dir)?;
+        Ok(match expanded {
+            Some((hull, state)) => self.conclude(set, hull, state, End::Inside),
+            None => Answer::Limit(self.bare(&set.point(1))),
+        })
     }
 
     /// The upper bound alone.

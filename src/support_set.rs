@@ -12,7 +12,7 @@
 //! is less far along n than a point it gave before. D reaches as far as all its known
 //! points, so the farther point stands in, and nothing is lowered or separated by less.
 
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, larger};
 use crate::precision::Precision;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -96,6 +96,15 @@ impl<const N: usize> SupportSet<N> {
         i
     }
 
+    /// Adds a point behind the others, or puts it in the place of one of them.
+    #[inline(always)]
+    pub fn place(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
+        self.put(i, direction, point);
+        if i >= self.len {
+            self.len = (i + 1).min(N);
+        }
+    }
+
     /// Puts a point in the place of another.
     #[inline(always)]
     pub fn put(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
@@ -142,6 +151,20 @@ pub struct Lowest {
     pub dir: Vec3,
     /// The support point, in the set that was asked into.
     pub index: usize,
+}
+
+/// A point of D that lies beyond the origin along the direction asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Beyond {
+    /// The answer, which is in the set now.
+    Put {
+        /// The point of D.
+        v: Vec3,
+        /// [`Precision::touch`], metres.
+        touch: Real,
+    },
+    /// A point of the set, where the answer contradicts it.
+    Known(usize),
 }
 
 /// Why a query ends where it asks.
@@ -221,6 +244,42 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
             return self.lower(set, dir, &point, h);
         }
         Ok((set.push(dir, &point), h))
+    }
+
+    /// The support point along unit `dir`, where no other is known, if the origin is not
+    /// beyond it.
+    #[inline(always)]
+    pub fn ask_first(&mut self, dir: &Vec3) -> Result<SupportPoint, Stop> {
+        let point = self.md.support(dir)?;
+        self.precision.note(&point);
+        // NaN is no depth.
+        if dir.dot(&point.v) > self.precision.touch() {
+            Ok(point)
+        } else {
+            Err(Stop::Apart(*dir))
+        }
+    }
+
+    /// As [`Inquiry::ask`], for a query that wants yes or no: the point goes to this place
+    /// in the set, and the lowest plane is not kept.
+    #[inline(always)]
+    pub fn ask_at<const N: usize>(
+        &mut self,
+        set: &mut SupportSet<N>,
+        place: usize,
+        dir: &Vec3,
+    ) -> Result<Beyond, Stop> {
+        let point = self.md.support(dir)?;
+        self.precision.note(&point);
+        let h = dir.dot(&point.v);
+        let touch = self.precision.touch();
+        // NaN is no depth.
+        if h > touch {
+            set.place(place, dir, &point);
+            return Ok(Beyond::Put { v: point.v, touch });
+        }
+        let known = set.farther(dir, larger(h + self.precision.grain(), touch));
+        known.map(Beyond::Known).ok_or(Stop::Apart(*dir))
     }
 
     #[inline(always)]

@@ -57,6 +57,8 @@ const ALONG: u32 = 3;
 /// The pair overlapped, and its minimum was proven: `slopes` are the directions of the
 /// points that the proof stands on, besides the minimum's own.
 const PROVEN: u32 = 4;
+/// The pair overlapped, and was asked yes or no.
+const SURROUNDED: u32 = 5;
 
 impl State {
     /// A fresh state that starts from `dir`; cold when it is zero or not finite.
@@ -96,8 +98,57 @@ impl State {
         }
     }
 
+    /// The pair is apart: the length of `dir`, metres, is the margin to aim at.
+    pub fn apart(dir: Vec3) -> Self {
+        Self::of(APART, dir)
+    }
+
+    /// [`State::apart`], with the directions of up to three support points around the nearest
+    /// one (zero for none), and the radius of a ball that rounds D there, metres.
+    pub fn near(dir: Vec3, directions: [Vec3; 3], ball: Real) -> Self {
+        let mut state = Self::apart(dir);
+        state.memory.slopes = directions;
+        state.memory.curvature[0] = ball;
+        state
+    }
+
+    /// What [`State::near`] left.
+    pub fn nearest(&self) -> ([Vec3; 3], Real) {
+        match self.kind {
+            APART => (self.memory.slopes, self.memory.curvature[0]),
+            _ => ([Vec3::zeros(); 3], 0.0),
+        }
+    }
+
+    /// The margin to aim at, metres, where the pair was apart.
+    pub fn aim(&self) -> Real {
+        self.memory.dir.norm()
+    }
+
+    /// Did the pair overlap when its depth was asked?
+    pub fn overlapped(&self) -> bool {
+        matches!(self.kind, OVERLAP | ALONG)
+    }
+
+    /// The pair overlaps: support points along these directions surround the origin. Zero
+    /// for none.
+    pub fn surrounded([a, b, c, d]: [Vec3; 4]) -> Self {
+        let mut state = Self::of(SURROUNDED, a);
+        state.memory.slopes = [b, c, d];
+        state
+    }
+
+    /// The directions of [`State::surrounded`], where the pair was.
+    pub fn surrounding(&self) -> [Vec3; 4] {
+        let [b, c, d] = self.memory.slopes;
+        match self.kind {
+            SURROUNDED => [self.memory.dir, b, c, d],
+            _ => [Vec3::zeros(); 4],
+        }
+    }
+
     /// The direction that separated the pair.
-    fn separating(&self) -> Option<Vec3> {
+    pub fn separating(&self) -> Option<Vec3> {
         match self.kind {
             APART => unit(&self.memory.dir),
             _ => None,
@@ -238,7 +289,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// The way from the centre of D through the origin, or the caller's first
     /// direction, or any.
-    fn cold_start(&self) -> Vec3 {
+    pub fn cold_start(&self) -> Vec3 {
         let from_centre = self.centre.and_then(|c| unit(&-c.v));
         from_centre
             .or_else(|| self.first_dir.and_then(|d| unit(&d)))
@@ -289,27 +340,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Overlap::No(n) => Answer::Miss(n),
             Overlap::Undecided => Answer::Undecided(hit),
         })
-    }
-
-    /// Do the objects overlap? (`Ok(None)`: the iterations ran out.)
-    pub fn intersect(&self, state: &mut State, max_iterations: u64) -> Result<Option<bool>, Fault> {
-        if self.still_apart(state)?.is_some() {
-            return Ok(Some(false));
-        }
-        let start = match self.centre {
-            Some(c) => c,
-            None => self.md.support(&self.cold_start())?,
-        };
-        Ok(
-            match gjk::intersect(&self.md, start, &[], None, max_iterations)? {
-                Overlap::Yes(..) => Some(true),
-                Overlap::No(n) => {
-                    self.remember(state, &Answer::Miss(n))?;
-                    Some(false)
-                }
-                Overlap::Undecided => None,
-            },
-        )
     }
 
     /// Step 4: the witness points of two faces that touch in the middle of where they do.

@@ -22,7 +22,7 @@ use harness::{Precision, Program};
 const NO_ARGS: [&str; 0] = [];
 
 /// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 11] = [
+const EXTENSION: [&str; 12] = [
     "ccdContacts",
     "ccdImplementation",
     "ccdMPRIntersectWarm",
@@ -32,6 +32,7 @@ const EXTENSION: [&str; 11] = [
     "ccdPenetrationLocal",
     "ccdPenetrationMinimum",
     "ccdPenetrationPlanar",
+    "ccdSignedDistance",
     "ccdWarmFlip",
     "ccdWarmGuess",
 ];

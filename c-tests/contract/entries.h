@@ -140,6 +140,27 @@ static inline int run_Contacts(const void *a, const void *b, const ccd_t *ccd, o
     return n < 1 ? n : run_PenetrationLocal(a, b, ccd, out);
 }
 
+static inline int run_SignedDistance(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    ccd_warm_t warm;
+    ccd_distance_t d;
+    int code;
+    memset(&warm, 0, sizeof warm);
+    ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, &d);
+    code = ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, &d);
+    /* Open bounds have a sign too. */
+    if (code == CCD_LIMIT)
+        code = d.distance < 0 ? CCD_HIT : CCD_MISS;
+    if (code == CCD_HIT) {
+        out->depth = -d.distance;
+        out->dir = d.normal;
+        for (code = 0; code < 3; code++)
+            out->pos.v[code] = (d.point1.v[code] + d.point2.v[code]) / 2;
+        return CCD_HIT;
+    }
+    return code;
+}
+
 static const entry_t entries[] = {
     {"ccdGJKIntersect", run_GJKIntersect, 1, 0, FROM_FIRST_DIR},
     {"ccdGJKSeparate", run_GJKSeparate, 0, -1, FROM_FIRST_DIR | MAY_ALLOCATE},
@@ -156,6 +177,8 @@ static const entry_t entries[] = {
     {"ccdPenetrationAlong", run_PenetrationAlong, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdContacts", run_Contacts, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION | ONE_BY_ONE},
     {"ccdPenetrationPlanar", run_PenetrationPlanar, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
+    {"ccdSignedDistance", run_SignedDistance, CCD_HIT, CCD_MISS,
+     STORES_DEPTH | STORES_DIR_POS | MAY_ALLOCATE | EXTENSION},
 };
 
 enum { ENTRIES = sizeof entries / sizeof entries[0] };

@@ -68,6 +68,8 @@ int main(void)
             }
             if (entry->traits & FROM_FIRST_DIR || entry->call == run_PenetrationMinimum)
                 garbage.epa_tolerance = ccd.epa_tolerance;
+            else if (entry->call == run_SignedDistance)
+                garbage.dist_tolerance = ccd.dist_tolerance;
             else
                 garbage.mpr_tolerance = ccd.mpr_tolerance;
             again = before;

@@ -49,6 +49,36 @@ fn contacts_are_the_exact_ones() {
     program("contacts").build().run(NO_ARGS);
 }
 
+/// Signed distance against exact truth.
+#[test]
+fn signed_distance() {
+    let dir = harness::root().join("c-tests/pairs");
+    let sets = [
+        "box_box", "p42_p42", "cone_cyl", "cyl_box", "ell_ell", "cap_cap", "p162_cap", "sph_cap",
+    ];
+    let sets = sets.map(|set| dir.join(set).with_extension("bin"));
+    program("distance").build().run(sets);
+}
+
+/// Supports beside FCL's own GJK, on the eleven random sets and six motions.
+#[test]
+#[cfg(not(feature = "single"))]
+fn signed_distance_beside_fcl() {
+    let dir = harness::root().join("c-tests/pairs");
+    let sets = "box_box p12_p12 p162_p162 p642_p642 cyl_box cone_cyl p162_cap cap_cap sph_cap ell_ell \
+        sph_sph box_box_trajS cap_cap_trajS cyl_box_trajS ell_ell_trajS p162_p162_trajS p642_cap_trajS";
+    let sets = sets.split_whitespace();
+    let sets = sets.map(|set| dir.join(set).with_extension("bin"));
+    Program::cpp("distance_fcl")
+        .source("extension/distance_fcl.cpp")
+        .standard("c++17")
+        .flag("-isystem/usr/include/eigen3")
+        .flag("-Wno-unused-parameter")
+        .link_ours_shared()
+        .build()
+        .run(sets);
+}
+
 #[test]
 fn pairs_that_stay_apart_cost_one_support() {
     program("apart").build().run(NO_ARGS);

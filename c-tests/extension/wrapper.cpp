@@ -109,7 +109,7 @@ static void same_as_c()
         const ccd_vec3_t c_dir = dir;
         ccd_t c;
         shape_query(&c);
-        c.mpr_tolerance = c.epa_tolerance = settings.tolerance;
+        c.mpr_tolerance = c.epa_tolerance = c.dist_tolerance = settings.tolerance;
 
         ccd::Warm warm;
         ccd_warm_t c_warm;
@@ -130,6 +130,16 @@ static void same_as_c()
             check_same("along", ccd::penetration_along(a, b, dir, settings, &warm), code, out);
             code = ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, &out);
             check_same("planar", ccd::penetration_planar(a, b, dir, settings, &warm), code, out);
+
+            ccd_distance_t away;
+            code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), 0, CCD_REAL(0.5), &c_warm, &away);
+            const ccd::Distance distance = ccd::signed_distance(a, b, settings, {CCD_REAL(0.1), 0, CCD_REAL(0.5)}, &warm);
+            CHECK(int(distance.status) == code && distance, "distance");
+            CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&
+                      same(distance.normal, away.normal) && same(distance.point1, away.point1) &&
+                      same(distance.point2, away.point2) && distance.supports == away.supports &&
+                      distance.iterations == away.iterations,
+                  "distance");
 
             code = ccdMPRPenetrationWarm(o1, o2, &c, &c_warm, &depth, &d, &pos);
             const ccd::Contact mpr = ccd::penetration_mpr(a, b, settings, &warm);
@@ -200,6 +210,7 @@ static void exceptions()
         std::array<ccd::ContactPoint, 2> out;
         ccd::contacts(a, b, {0, 0, 1}, 0, out);
     });
+    throws_through("distance", [](auto &a, auto &b) { ccd::signed_distance(a, b); });
     throws_through("planar", [](auto &a, auto &b) { ccd::penetration_planar(a, b, {0, 0, 1}); });
 
     /* A query that was left has not touched the state. */

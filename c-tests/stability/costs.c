@@ -508,7 +508,7 @@ int main(int argc, char **argv)
         {"U04", "minima that form a curve or surface", slowest_minimum, 0, HOLDS},
         {"U04", "the slowest GJK, nearly coincident", slowest_minimum_mix, ASK_GJK, HOLDS},
         {"U04", "the slowest minimum, nearly coincident", slowest_minimum_mix, ASK_MINIMUM, HOLDS},
-        {"U07", "yes or no after having been apart", having_been_apart, ASK_MPR_INTERSECT_WARM, BROKEN},
+        {"U07", "yes or no after having been apart", having_been_apart, ASK_MPR_INTERSECT_WARM, HOLDS},
         {"U07", "MPR after having been apart", having_been_apart, ASK_MPR_WARM, BROKEN},
         {"U08", "local with a guess, a little apart", asked_once, 0, BROKEN},
         {"U08", "local with a guess, far apart", asked_once, 1, BROKEN},

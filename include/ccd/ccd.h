@@ -33,7 +33,7 @@ typedef struct _ccd_t {
     unsigned long max_iterations; /* cap on every loop */
     ccd_real_t epa_tolerance;     /* largest error of a GJK query's depth, metres */
     ccd_real_t mpr_tolerance;     /* largest error of an MPR query's depth, metres */
-    ccd_real_t dist_tolerance;    /* not read */
+    ccd_real_t dist_tolerance;    /* ccdSignedDistance alone */
 } ccd_t;
 
 /* Stores (1, 0, 0) in dir. */

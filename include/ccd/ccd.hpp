@@ -28,6 +28,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -96,6 +97,27 @@ struct ContactPoint {
     Real depth = 0;      /* metres; negative where the shapes are apart */
 };
 
+/* How far apart, or how deep. Zero but for the status where that is bad_input or no_memory. */
+struct Distance {
+    Status status = Status::bad_input;
+    Real distance = 0;            /* metres: the gap along normal, or minus the depth; never above the truth */
+    Real distance_upper = 0;      /* never below the truth */
+    Vec3 normal;                  /* unit; from the first shape to the second */
+    Vec3 point1, point2;          /* witness points, on the surfaces of the shapes with their margins */
+    unsigned long supports = 0;   /* calls of each shape's support() */
+    unsigned long iterations = 0; /* of the solver */
+
+    /* Is there an answer? */
+    explicit operator bool() const { return status != Status::bad_input && status != Status::no_memory; }
+};
+
+/* Balls added all around two shapes, and how far their distance matters, metres. */
+struct Margins {
+    Real margin1 = 0;
+    Real margin2 = 0;
+    Real beyond = std::numeric_limits<Real>::infinity();
+};
+
 /* What one query of a pair leaves for the next: a value, cold at first, copied freely. */
 class Warm {
 public:
@@ -158,7 +180,7 @@ ccd_t query(const Settings &settings)
     c.center1 = centre_of<A>();
     c.center2 = centre_of<B>();
     c.max_iterations = settings.max_iterations;
-    c.mpr_tolerance = c.epa_tolerance = settings.tolerance;
+    c.mpr_tolerance = c.epa_tolerance = c.dist_tolerance = settings.tolerance;
     return c;
 }
 
@@ -316,6 +338,29 @@ Penetration penetration_planar(const A &a, const B &b, const Vec3 &plane_normal,
     ccd_penetration_t out{};
     const int code = ccdPenetrationPlanar(std::addressof(a), std::addressof(b), &c, &n, detail::state(warm), &out);
     return detail::penetration(code, out);
+}
+
+/* How far apart, or how deep, one continuous function through the touch: ccdSignedDistance. The
+ * shapes are meant with a ball of their margin added all around. */
+template <class A, class B>
+Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, const Margins &margins = {},
+                         Warm *warm = nullptr)
+{
+    const ccd_t c = detail::query<A, B>(settings);
+    ccd_distance_t out{};
+    Distance d;
+    d.status = static_cast<Status>(ccdSignedDistance(std::addressof(a), std::addressof(b), &c, margins.margin1,
+                                                     margins.margin2, margins.beyond, detail::state(warm), &out));
+    if (d) {
+        d.distance = out.distance;
+        d.distance_upper = out.distance_upper;
+        d.normal = out.normal;
+        d.point1 = out.point1;
+        d.point2 = out.point2;
+        d.supports = out.supports;
+        d.iterations = out.iterations;
+    }
+    return d;
 }
 
 } // namespace ccd

@@ -128,6 +128,44 @@ typedef struct ccd_contact_t {
   ccd_real_t depth;
 } ccd_contact_t;
 
+/**
+ * What ccdSignedDistance answers.
+ */
+typedef struct ccd_distance_t {
+  /**
+   * Metres: the gap along normal where the objects are apart, minus the depth where they
+   * overlap. Never more than the true signed distance: obj2 may come nearer by it.
+   */
+  ccd_real_t distance;
+  /**
+   * Metres, never less than the true signed distance: apart |point1 - point2|, overlapping
+   * minus the least depth proven. distance_upper - distance <= dist_tolerance unless
+   * CCD_LIMIT was returned or distance > beyond.
+   */
+  ccd_real_t distance_upper;
+  /**
+   * Unit, from obj1 to obj2: the way obj2 moves to be farther.
+   */
+  ccd_vec3_t normal;
+  /**
+   * Witness point on the surface of obj1 with its margin.
+   */
+  ccd_vec3_t point1;
+  /**
+   * Witness point on the surface of obj2 with its margin.
+   */
+  ccd_vec3_t point2;
+  /**
+   * Support points of the Minkowski difference evaluated; one is one call of support1
+   * and one of support2.
+   */
+  unsigned long supports;
+  /**
+   * Iterations of the solver.
+   */
+  unsigned long iterations;
+} ccd_distance_t;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -294,6 +332,32 @@ int ccdContacts(const void *obj1,
                 ccd_real_t slop,
                 struct ccd_contact_t *contacts,
                 int max);
+
+/**
+ * How far apart, or how deep: one continuous function through the touch.
+ *
+ * margin1, margin2, metres, >= 0: the objects are meant with a ball of that radius added all
+ * around, and the support functions give the cores. (A sphere is a point with a margin, a
+ * capsule a segment, a rounded box a box.) The signed distance is the cores' minus both
+ * margins, overlapping cores included.
+ *
+ * `beyond`, metres, >= 0: the search ends as soon as the distance is known to be greater.
+ * INFINITY: it is always refined. Reads dist_tolerance. center1, center2 and first_dir may
+ * be NULL. `warm` may be NULL (cold). Takes no memory from malloc while the cores are apart.
+ *
+ * Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding, whose distance is
+ * 0) or CCD_LIMIT (the bounds are still open) and fills `out`; CCD_BAD_INPUT or
+ * CCD_NO_MEMORY (cores that overlap only) and leaves it alone.
+ */
+CCD_EXPORT
+int ccdSignedDistance(const void *obj1,
+                      const void *obj2,
+                      const ccd_t *ccd,
+                      ccd_real_t margin1,
+                      ccd_real_t margin2,
+                      ccd_real_t beyond,
+                      struct ccd_warm_t *warm,
+                      struct ccd_distance_t *out);
 
 /**
  * Which library a process really runs, and in which precision: "warmccd 0.1.0 double", a

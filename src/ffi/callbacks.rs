@@ -119,6 +119,33 @@ impl Query {
         }
     }
 
+    /// The difference, and where to look first: from the centres, or where these are not
+    /// given from first_dir; `None` when a support callback is NULL or a centre not finite.
+    /// `lasting`: whether the caller keeps a state.
+    ///
+    /// # Safety
+    /// \[inputs\] of the module contract.
+    pub unsafe fn asked(&self, lasting: bool) -> Option<Pair<Object, Object>> {
+        // SAFETY: passed on.
+        unsafe {
+            let md = self.difference()?;
+            let centre = self.centre();
+            if centre.is_some_and(|c| !c.v.sum().is_finite()) {
+                return None;
+            }
+            let first_dir = match centre {
+                Some(_) => None,
+                None => self.first_dir(),
+            };
+            Some(Pair {
+                md,
+                centre,
+                first_dir,
+                lasting,
+            })
+        }
+    }
+
     /// The caller's cap on iterations, or the library's own where that is lower.
     ///
     /// # Safety
@@ -137,6 +164,15 @@ impl Query {
     pub unsafe fn mpr_tolerance(&self) -> Real {
         // SAFETY: [inputs]; only the field is read.
         unsafe { (*self.ccd).mpr_tolerance }
+    }
+
+    /// dist_tolerance as the caller set it.
+    ///
+    /// # Safety
+    /// \[inputs\] of the module contract.
+    pub unsafe fn dist_tolerance(&self) -> Real {
+        // SAFETY: [inputs]; only the field is read.
+        unsafe { (*self.ccd).dist_tolerance }
     }
 
     /// epa_tolerance as the caller set it.

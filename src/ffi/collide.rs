@@ -8,11 +8,12 @@ use core::ffi::{c_int, c_void};
 use super::arena;
 use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
-use super::warm::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
+use super::warm::ccdMPRPenetrationWarm;
 use crate::contact::{Answer, Penetration, Settings};
-use crate::gjk::{self, Overlap};
+use crate::distance;
 use crate::math::{Real, Vec3, unit};
-use crate::support::{Fault, SupportPoint};
+use crate::support::Fault;
+use crate::support_set::Stop;
 use crate::warm::{Pair, State};
 
 /// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
@@ -62,24 +63,26 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     obj2: *const c_void,
     ccd: *const ccd_t,
 ) -> c_int {
+    let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, core::ptr::null_mut()) }
+    let overlap = unsafe {
+        let (Some(md), Some(centre)) = (query.difference(), query.centre()) else {
+            return 0;
+        };
+        distance::from_centre(&md, &centre)
+    };
+    c_int::from(overlap.is_ok())
 }
 
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn gjk_intersect(query: Query) -> Option<Result<Overlap, Fault>> {
+unsafe fn gjk_intersect(query: Query) -> Option<Result<(), Stop>> {
     // SAFETY: passed on.
     unsafe {
         let md = query.difference()?;
         let first = query.first_dir()?;
         let dir = unit(&first).unwrap_or(Vec3::x());
-        Some(md.support(&dir).and_then(|start: SupportPoint| {
-            if dir.dot(&start.v) < 0.0 {
-                return Ok(Overlap::No(dir));
-            }
-            gjk::intersect(&md, start, &[], None, query.max_iterations())
-        }))
+        Some(distance::from_direction(&md, &dir))
     }
 }
 
@@ -94,7 +97,7 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
 ) -> c_int {
     // SAFETY: passed on.
     match unsafe { gjk_intersect(Query { obj1, obj2, ccd }) } {
-        Some(Ok(Overlap::Yes(..))) => 1,
+        Some(Ok(_)) => 1,
         _ => 0,
     }
 }

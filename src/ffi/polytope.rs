@@ -6,7 +6,7 @@
 //! functions of its own that unlink and free() what is allocated here.
 //!
 //! So a node is one block of C's malloc, every link stands where libccd puts it, and
-//! `nearest` is kept by libccd's rule. The distances are [`crate::nearest`]'s.
+//! `nearest` is kept by libccd's rule. The distances are [`crate::barycentric`]'s.
 
 use core::ffi::{c_char, c_int};
 use core::mem::offset_of;
@@ -17,8 +17,8 @@ use super::types::{
     ccd_pt_t, ccd_pt_vertex_t, ccd_support_t, ccd_vec3_t,
 };
 use super::{free, malloc};
+use crate::barycentric;
 use crate::math::{EPSILON, Real, Vec3};
-use crate::nearest;
 
 /// An empty polytope.
 #[unsafe(no_mangle)]
@@ -346,8 +346,8 @@ fn equal(a: Real, b: Real) -> bool {
 unsafe fn edge_distance(edge: *const ccd_pt_edge_t) -> (ccd_vec3_t, Real) {
     // SAFETY: [polytope].
     let [a, b] = unsafe { (*edge).vertex.map(|v| Vec3::from((*v).v.v)) };
-    let (witness, dist) = nearest::on_segment(&Vec3::zeros(), &a, &b);
-    (witness.into(), dist)
+    let nearest = barycentric::segment(&Vec3::zeros(), &a, &b);
+    (nearest.point.into(), nearest.distance2)
 }
 
 /// The point of a face nearest to the origin and its squared distance.
@@ -355,8 +355,8 @@ unsafe fn edge_distance(edge: *const ccd_pt_edge_t) -> (ccd_vec3_t, Real) {
 unsafe fn face_distance(face: *const ccd_pt_face_t) -> (ccd_vec3_t, Real) {
     // SAFETY: [polytope].
     let [a, b, c] = unsafe { corners(face).map(|v| Vec3::from((*v).v.v)) };
-    let (witness, dist) = nearest::on_triangle(&Vec3::zeros(), &a, &b, &c);
-    (witness.into(), dist)
+    let nearest = barycentric::triangle(&Vec3::zeros(), &a, &b, &c);
+    (nearest.point.into(), nearest.distance2)
 }
 
 /// The two vertices of the first edge, and the one of the second that is neither.

@@ -4,8 +4,8 @@
 //! Point to segment and point to triangle distances, and the library's three data objects.
 
 use super::types::ccd_vec3_t;
+use crate::barycentric::{self, Nearest};
 use crate::math::{Real, Vec3};
-use crate::nearest;
 
 /// Squared distance, m², of point `p` from segment `ab`; the nearest point goes to
 /// `witness` unless that is NULL. The distance is that of the witness, asked for or not.
@@ -19,7 +19,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
     // SAFETY: [inputs].
     let (p, a, b) = unsafe { (read(p), read(a), read(b)) };
     // SAFETY: [outputs].
-    unsafe { answer(nearest::on_segment(&p, &a, &b), witness) }
+    unsafe { answer(barycentric::segment(&p, &a, &b), witness) }
 }
 
 /// Squared distance, m², of point `p` from triangle `abc`; the nearest point goes to
@@ -35,7 +35,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     // SAFETY: [inputs].
     let (p, a, b, c) = unsafe { (read(p), read(a), read(b), read(c)) };
     // SAFETY: [outputs].
-    unsafe { answer(nearest::on_triangle(&p, &a, &b, &c), witness) }
+    unsafe { answer(barycentric::triangle(&p, &a, &b, &c), witness) }
 }
 
 #[inline(always)]
@@ -45,12 +45,12 @@ unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
 }
 
 #[inline(always)]
-unsafe fn answer((point, dist2): (Vec3, Real), witness: *mut ccd_vec3_t) -> Real {
+unsafe fn answer<const N: usize>(nearest: Nearest<N>, witness: *mut ccd_vec3_t) -> Real {
     if !witness.is_null() {
         // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
-        unsafe { *witness = point.into() };
+        unsafe { *witness = nearest.point.into() };
     }
-    dist2
+    nearest.distance2
 }
 
 /// Points to the origin. An object of 8 bytes, not a function: programs copy it.

@@ -11,7 +11,10 @@ use super::collide::{mpr_penetration, write};
 use super::types::{ccd_t, ccd_vec3_t};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contact_manifold;
+use crate::distance;
+use crate::intersect;
 use crate::math::{Real, Vec3, unit};
+use crate::signed_distance::{Distance, Wanted, signed_distance};
 use crate::support::Fault;
 use crate::warm::{Pair, State};
 
@@ -115,27 +118,12 @@ unsafe fn answer(
         if !(tolerance >= 0.0) {
             return CCD_BAD_INPUT;
         }
-        let Some(md) = query.difference() else {
+        let Some(pair) = query.asked(!warm.is_null()) else {
             return CCD_BAD_INPUT;
-        };
-        let centre = query.centre();
-        if centre.is_some_and(|c| !c.v.sum().is_finite()) {
-            return CCD_BAD_INPUT;
-        }
-        let first_dir = if centre.is_none() {
-            query.first_dir()
-        } else {
-            None
         };
         let settings = Settings {
             tolerance,
             max_iterations: query.max_iterations(),
-        };
-        let pair = Pair {
-            md,
-            centre,
-            first_dir,
-            lasting: !warm.is_null(),
         };
         let mut state = read(warm);
         let result = solve(&pair, &mut state, &settings);
@@ -256,14 +244,20 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
     unsafe {
-        let mut state = read(warm);
-        let overlap = query
-            .pair(!warm.is_null())
-            .and_then(|pair| pair.intersect(&mut state, query.max_iterations()).ok());
-        if overlap.is_some() {
-            store(warm, &state);
+        let (Some(md), Some(centre)) = (query.difference(), query.centre()) else {
+            return 0;
+        };
+        if warm.is_null() {
+            return c_int::from(distance::from_centre(&md, &centre).is_ok());
         }
-        c_int::from(overlap == Some(Some(true)))
+        let mut state = read(warm);
+        match intersect::intersect(&md, &centre, &mut state) {
+            Ok(overlap) => {
+                store(warm, &state);
+                c_int::from(overlap)
+            }
+            Err(_) => 0,
+        }
     }
 }
 
@@ -485,6 +479,113 @@ pub unsafe extern "C-unwind" fn ccdContacts(
         unsafe { contacts.add(i).write(out) };
     }
     manifold.contacts().len() as c_int
+}
+
+/// What ccdSignedDistance answers.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ccd_distance_t {
+    /// Metres: the gap along normal where the objects are apart, minus the depth where they
+    /// overlap. Never more than the true signed distance: obj2 may come nearer by it.
+    pub distance: Real,
+    /// Metres, never less than the true signed distance: apart |point1 - point2|, overlapping
+    /// minus the least depth proven. distance_upper - distance <= dist_tolerance unless
+    /// CCD_LIMIT was returned or distance > beyond.
+    pub distance_upper: Real,
+    /// Unit, from obj1 to obj2: the way obj2 moves to be farther.
+    pub normal: ccd_vec3_t,
+    /// Witness point on the surface of obj1 with its margin.
+    pub point1: ccd_vec3_t,
+    /// Witness point on the surface of obj2 with its margin.
+    pub point2: ccd_vec3_t,
+    /// Support points of the Minkowski difference evaluated; one is one call of support1
+    /// and one of support2.
+    pub supports: c_ulong,
+    /// Iterations of the solver.
+    pub iterations: c_ulong,
+}
+
+impl ccd_distance_t {
+    fn new(distance: &Distance, supports: u64) -> Self {
+        Self {
+            distance: distance.lower,
+            distance_upper: distance.upper,
+            normal: distance.normal.into(),
+            point1: distance.point1.into(),
+            point2: distance.point2.into(),
+            supports: supports as c_ulong,
+            iterations: distance.iterations as c_ulong,
+        }
+    }
+}
+
+/// How far apart, or how deep: one continuous function through the touch.
+///
+/// margin1, margin2, metres, >= 0: the objects are meant with a ball of that radius added all
+/// around, and the support functions give the cores. (A sphere is a point with a margin, a
+/// capsule a segment, a rounded box a box.) The signed distance is the cores' minus both
+/// margins, overlapping cores included.
+///
+/// `beyond`, metres, >= 0: the search ends as soon as the distance is known to be greater.
+/// INFINITY: it is always refined. Reads dist_tolerance. center1, center2 and first_dir may
+/// be NULL. `warm` may be NULL (cold). Takes no memory from malloc while the cores are apart.
+///
+/// Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding, whose distance is
+/// 0) or CCD_LIMIT (the bounds are still open) and fills `out`; CCD_BAD_INPUT or
+/// CCD_NO_MEMORY (cores that overlap only) and leaves it alone.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdSignedDistance(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    margin1: Real,
+    margin2: Real,
+    beyond: Real,
+    warm: *mut ccd_warm_t,
+    out: *mut ccd_distance_t,
+) -> c_int {
+    let margins = margin1 + margin2;
+    // Negated for NaN.
+    let given = margin1 >= 0.0 && margin2 >= 0.0 && beyond >= 0.0 && margins < Real::INFINITY;
+    if ccd.is_null() || out.is_null() || !given {
+        return CCD_BAD_INPUT;
+    }
+    let query = Query { obj1, obj2, ccd };
+    // SAFETY: [inputs], [outputs]; passed on.
+    unsafe {
+        let tolerance = query.dist_tolerance();
+        if !(tolerance >= 0.0) {
+            return CCD_BAD_INPUT;
+        }
+        let Some(pair) = query.asked(!warm.is_null()) else {
+            return CCD_BAD_INPUT;
+        };
+        let wanted = Wanted {
+            margin1,
+            margin2,
+            beyond,
+            settings: Settings {
+                tolerance,
+                max_iterations: query.max_iterations(),
+            },
+        };
+        let mut state = read(warm);
+        let minimum = |pair: &Pair<Object, Object>, state: &mut State, settings: &Settings| {
+            arena::with(|arena| pair.minimum(state, settings, arena, true))
+        };
+        let distance = match signed_distance(&pair, &mut state, &wanted, minimum) {
+            Ok(distance) => distance,
+            Err(Fault::NoMemory) => return CCD_NO_MEMORY,
+            Err(Fault::NonFinite) => return CCD_BAD_INPUT,
+        };
+        *out = ccd_distance_t::new(&distance, pair.md.supports());
+        store(warm, &state);
+        match (distance.limit, distance.hit) {
+            (true, _) => CCD_LIMIT,
+            (false, true) => CCD_HIT,
+            (false, false) => CCD_MISS,
+        }
+    }
 }
 
 /// # Safety

@@ -1,0 +1,326 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* ccdSignedDistance: pairs of certified depth moved along their normal, from deep to apart,
+ * where the signed distance is the way left; margins; beyond; states of every kind; bad
+ * input; objects without area; one continuous function for every category of pairs.
+ *
+ *   distance [pair set...] */
+
+#include "stability/categories.h"
+
+#include "contract/check.h"
+#include "ours.h"
+#include "pairs.h"
+
+#include <float.h>
+#include <math.h>
+
+static const int single = sizeof(ccd_real_t) == sizeof(float);
+
+static double dot3(const ccd_vec3_t *a, const ccd_vec3_t *b)
+{
+    return (double)a->v[0] * b->v[0] + (double)a->v[1] * b->v[1] + (double)a->v[2] * b->v[2];
+}
+
+static double support_value(const ccd_t *ccd, const void *a, const void *b, const ccd_vec3_t *n)
+{
+    ccd_vec3_t back = {{-n->v[0], -n->v[1], -n->v[2]}}, p, q;
+    ccd->support1(a, n, &p);
+    ccd->support2(b, &back, &q);
+    return dot3(n, &p) - dot3(n, &q);
+}
+
+static double between(const ccd_vec3_t *p, const ccd_vec3_t *q)
+{
+    double x = p->v[0] - q->v[0], y = p->v[1] - q->v[1], z = p->v[2] - q->v[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+static void move_along(shape_t *s, const double n[3], double by)
+{
+    shape_move(s, s->pos[0] + by * n[0], s->pos[1] + by * n[1], s->pos[2] + by * n[2]);
+}
+
+/* What holds of every answer; `error` is what rounding may do. */
+static void sound(int code, const ccd_distance_t *d, const ccd_t *ccd, const void *a, const void *b, double margin,
+                  double error, const char *what)
+{
+    double h = support_value(ccd, a, b, &d->normal), apart = between(&d->point1, &d->point2);
+    CHECK(fabs(dot3(&d->normal, &d->normal) - 1) < 16 * (single ? FLT_EPSILON : DBL_EPSILON), "%s: normal", what);
+    CHECK(d->distance <= -h - margin + error, "%s: distance %g, along normal %g", what, (double)d->distance, -h - margin);
+    CHECK(d->distance_upper >= d->distance, "%s: %g above %g", what, (double)d->distance, (double)d->distance_upper);
+    CHECK(!(d->distance == 0 && signbit((double)d->distance)), "%s: -0", what);
+    CHECK(code == CCD_LIMIT || (code == CCD_HIT) == (d->distance < 0), "%s: code %d, distance %g", what, code,
+          (double)d->distance);
+    if (d->distance > 0)
+        CHECK(fabs(apart - (double)d->distance_upper) <= error, "%s: points %g apart, not %g", what, apart,
+              (double)d->distance_upper);
+}
+
+/* --- certified pairs ---------------------------------------------------------- */
+
+static const double ways[] = {-0.5, -1e-2, -1e-4, -1e-7, 0, 1e-7, 1e-4, 1e-2, 0.1, 1};
+enum { WAYS = sizeof ways / sizeof ways[0] };
+
+static void certified(const char *path, int poses)
+{
+    pair_set_t set;
+    int i, k, pass;
+    if (pair_set_read(path, &set) != 0) {
+        CHECK(0, "cannot read %s", path);
+        return;
+    }
+    for (i = 0; i < set.n; i += set.n / poses > 0 ? set.n / poses : 1) {
+        ccd_warm_t warm;
+        pair_truth_t truth;
+        shape_t a, b;
+        ccd_t ccd;
+        memset(&warm, 0, sizeof warm);
+        shape_query(&ccd);
+        ccd.max_iterations = 500;
+        pair_set_pose(&set, i, &a, &b, &truth);
+        for (k = 0; k < WAYS; k++)
+            for (pass = 0; pass < 3; pass++) {
+                double way = ways[k], error = single ? 2e-5 : 1e-9 + truth.gap, r1 = 0, r2 = 0, tolerance, width;
+                shape_t moved = b;
+                ccd_distance_t d;
+                char what[200];
+                int code;
+                if (way < -truth.depth)
+                    continue;
+                move_along(&moved, truth.normal, truth.depth + way);
+                /* Cold; with margins, apart to rounding; warm, whatever came before. */
+                if (pass == 1)
+                    r1 = random_in(0, 0.3), r2 = random_in(0, 0.3);
+                tolerance = way > 0 && pass == 1 ? 0 : 1e-6;
+                ccd.dist_tolerance = (ccd_real_t)tolerance;
+                code = OURS(ccdSignedDistance)(&a, &moved, &ccd, (ccd_real_t)r1, (ccd_real_t)r2, INFINITY,
+                                               pass == 2 ? &warm : NULL, &d);
+                sprintf(what, "%.120s %d way %g pass %d", strrchr(path, '/') + 1, i, way, pass);
+                sound(code, &d, &ccd, &a, &moved, r1 + r2, error, what);
+                CHECK(fabs(d.distance - (way - r1 - r2)) <= tolerance + error, "%s: %.12g", what, (double)d.distance);
+                CHECK(d.distance_upper >= way - r1 - r2 - error, "%s: upper %.12g", what, (double)d.distance_upper);
+                width = d.distance_upper - d.distance;
+                CHECK(code == CCD_LIMIT || width <= tolerance + error, "%s: open by %g", what, width);
+                CHECK(way <= 0 || code != CCD_LIMIT, "%s: limit", what);
+            }
+    }
+    pair_set_free(&set);
+}
+
+/* --- spheres and capsules as cores ---------------------------------------------- */
+
+static void cores(void)
+{
+    double supports = 0;
+    int i, count = 0;
+    for (i = 0; i < 2000; i++) {
+        double r1 = random_in(0.1, 1), r2 = random_in(0.1, 1), error = single ? 1e-5 : 2e-9, rot[9];
+        int one = random_below(2), other = random_below(2);
+        shape_t a = one ? shape_capsule(r1, 0.5) : shape_sphere(r1), b = other ? shape_capsule(r2, 0.7) : shape_sphere(r2);
+        shape_t p = one ? shape_capsule(0, 0.5) : shape_sphere(0), q = other ? shape_capsule(0, 0.7) : shape_sphere(0);
+        ccd_distance_t full, core;
+        ccd_vec3_t to = random_vec3(3);
+        ccd_t ccd;
+        int code;
+        shape_query(&ccd);
+        ccd.max_iterations = 500;
+        ccd.dist_tolerance = CCD_REAL(1e-6);
+        rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
+        shape_turn(&b, rot), shape_turn(&q, rot);
+        shape_move(&b, to.v[0], to.v[1], to.v[2]), shape_move(&q, to.v[0], to.v[1], to.v[2]);
+        OURS(ccdSignedDistance)(&a, &b, &ccd, 0, 0, INFINITY, NULL, &full);
+        code = OURS(ccdSignedDistance)(&p, &q, &ccd, (ccd_real_t)r1, (ccd_real_t)r2, INFINITY, NULL, &core);
+        sound(code, &core, &ccd, &p, &q, r1 + r2, error, "cores");
+        CHECK(code == CCD_HIT || code == CCD_MISS, "cores: %d", code);
+        CHECK(core.distance <= full.distance_upper + error && full.distance <= core.distance_upper + error,
+              "cores %d: %g and %g", i, (double)core.distance, (double)full.distance);
+        supports += core.supports, count++;
+    }
+    printf("spheres and capsules as cores: %.2f supports\n", supports / count);
+    CHECK(supports / count <= 3.5, "%g supports", supports / count);
+}
+
+/* --- beyond, states, swapped objects --------------------------------------------- */
+
+static void beyond_and_states(void)
+{
+    int i, k;
+    for (i = 0; i < 300; i++) {
+        pair_t p;
+        ccd_warm_t warm;
+        ccd_distance_t d, far, again;
+        ccd_t ccd;
+        double error = single ? 1e-4 : 1e-8, limit = random_in(0, 1);
+        int code;
+        category_pair(0, (uint64_t)i, 0, &p);
+        shape_move(&p.b, p.b.pos[0] + random_in(0, 4), p.b.pos[1], p.b.pos[2]);
+        shape_query(&ccd);
+        ccd.max_iterations = 500;
+        ccd.dist_tolerance = CCD_REAL(1e-6);
+        code = OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, INFINITY, NULL, &d);
+        OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, (ccd_real_t)limit, NULL, &far);
+        CHECK(far.supports <= d.supports, "beyond: %lu above %lu", far.supports, d.supports);
+        CHECK(far.distance <= d.distance_upper + error && far.distance_upper >= d.distance - error, "beyond: %g, %g",
+              (double)far.distance, (double)d.distance);
+        CHECK(d.distance <= limit + 1e-6 || far.distance > limit, "beyond %g: %g", limit, (double)far.distance);
+        /* Zero, random, and the swapped pair's state. */
+        for (k = 0; k < 3 && code != CCD_LIMIT; k++) {
+            size_t byte;
+            memset(&warm, 0, sizeof warm);
+            for (byte = 0; k == 1 && byte < sizeof warm; byte++)
+                ((unsigned char *)&warm)[byte] = (unsigned char)random_below(256);
+            if (k == 2)
+                OURS(ccdSignedDistance)(&p.b, &p.a, &ccd, 0, 0, INFINITY, &warm, &again);
+            OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, INFINITY, &warm, &again);
+            CHECK(fabs(again.distance - d.distance) <= 2e-6 + error, "state %d: %g, %g", k, (double)again.distance,
+                  (double)d.distance);
+        }
+    }
+}
+
+/* --- continuity ------------------------------------------------------------------- */
+
+/* Along any way, from deep to apart: the signed distance changes by no more than the step. */
+static void continuous(void)
+{
+    enum { STEPS = 24 };
+    int category, i, k;
+    for (category = 0; category < CATEGORY_COUNT; category++)
+        for (i = 0; i < 4; i++) {
+            pair_t p;
+            ccd_warm_t warm;
+            ccd_t ccd;
+            double last = 0, size, reach, u[3] = {0, 0, 0}, from;
+            ccd_vec3_t ca, cb;
+            category_pair(category, (uint64_t)i, i & 1, &p);
+            shape_center(&p.a, &ca), shape_center(&p.b, &cb);
+            shape_query(&ccd);
+            ccd.max_iterations = 500;
+            memset(&warm, 0, sizeof warm);
+            for (k = 0, size = 0; k < 3; k++) {
+                ccd_vec3_t n = {{k == 0, k == 1, k == 2}}, m = {{-n.v[0], -n.v[1], -n.v[2]}};
+                double w = support_value(&ccd, &p.a, &p.b, &n) + support_value(&ccd, &p.a, &p.b, &m);
+                size = w > size ? w : size;
+                u[k] = cb.v[k] - ca.v[k];
+            }
+            from = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+            for (k = 0; k < 3; k++)
+                u[k] = from > 1e-6 * size ? u[k] / from : k == 2;
+            ccd.dist_tolerance = (ccd_real_t)(1e-5 * size);
+            for (k = 0, reach = size; k < 3; k++)
+                reach = fmax(reach, fmax(fabs(ca.v[k]), fabs(cb.v[k])));
+            for (k = 0; k < STEPS; k++) {
+                shape_t b = p.b;
+                ccd_distance_t d;
+                char what[80];
+                double way = size * (-0.3 + 1.3 * k / (STEPS - 1)), step = size * 1.3 / (STEPS - 1);
+                double error = size * (single ? 1e-4 : 1e-9) + reach * (single ? 1e-5 : 1e-14);
+                int code;
+                move_along(&b, u, way);
+                code = OURS(ccdSignedDistance)(&p.a, &b, &ccd, 0, 0, INFINITY, i < 2 ? NULL : &warm, &d);
+                sprintf(what, "category %d pair %d step %d", category, i, k);
+                sound(code, &d, &ccd, &p.a, &b, 0, error, what);
+                /* Where minima form a curve or a surface the depth is right and the proof open. */
+                if (k > 0)
+                    CHECK(fabs(d.distance - last) <= step + 2e-5 * size + error, "%s: %g after %g, step %g", what,
+                          (double)d.distance, last, step);
+                last = d.distance;
+            }
+        }
+}
+
+/* --- objects without area, touches ------------------------------------------------- */
+
+static double of_points(const ccd_real_t *p, int np, const ccd_real_t *q, int nq, double z, int *code)
+{
+    shape_t a = shape_polytope(p, np), b = shape_polytope(q, nq);
+    ccd_distance_t d;
+    ccd_t ccd;
+    shape_move(&b, 0, 0, z);
+    shape_query(&ccd);
+    ccd.max_iterations = 500;
+    ccd.dist_tolerance = 0;
+    *code = OURS(ccdSignedDistance)(&a, &b, &ccd, 0, 0, INFINITY, NULL, &d);
+    sound(*code, &d, &ccd, &a, &b, 0, 1e-6, "flat");
+    return d.distance;
+}
+
+static void flat(void)
+{
+    static const ccd_real_t point[3] = {0, 0, 0}, along_x[6] = {-1, 0, 0, 1, 0, 0}, along_y[6] = {0, -1, 0, 0, 1, 0},
+                            square[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0},
+                            beside[12] = {1.5, -1, 0, 3, -1, 0, 3, 1, 0, 1.5, 1, 0};
+    static const ccd_real_t *shapes[] = {point, along_x, along_y, square};
+    static const int counts[] = {1, 2, 2, 4};
+    int i, k, code;
+    for (i = 0; i < 4; i++)
+        for (k = 0; k < 4; k++) {
+            double error = single ? 1e-6 : 1e-14, d;
+            d = of_points(shapes[i], counts[i], shapes[k], counts[k], 0.5, &code);
+            CHECK(code == CCD_MISS && fabs(d - 0.5) <= error, "%d over %d: %d, %g", i, k, code, d);
+            /* Through each other: a touch. */
+            d = of_points(shapes[i], counts[i], shapes[k], counts[k], 0, &code);
+            CHECK(code == CCD_MISS && d == 0, "%d on %d: %d, %g", i, k, code, d);
+        }
+    CHECK(fabs(of_points(square, 4, beside, 4, 0, &code) - 0.5) < 1e-6 && code == CCD_MISS, "side by side: %d", code);
+}
+
+/* --- bad input --------------------------------------------------------------------- */
+
+static void refused(const ccd_t *ccd, double r1, double r2, double beyond, int no_out, const char *what)
+{
+    shape_t a = shape_box(1, 1, 1), b = shape_sphere(1);
+    ccd_distance_t out, before;
+    ccd_warm_t warm, warm_before;
+    int code;
+    memset(&before, 0x5a, sizeof before);
+    memset(&warm_before, 0, sizeof warm_before);
+    out = before, warm = warm_before;
+    code = OURS(ccdSignedDistance)(&a, &b, ccd, (ccd_real_t)r1, (ccd_real_t)r2, (ccd_real_t)beyond, &warm,
+                                   no_out ? NULL : &out);
+    CHECK(code == CCD_BAD_INPUT, "%s: %d", what, code);
+    CHECK(same_bits(&out, &before, sizeof out) && same_bits(&warm, &warm_before, sizeof warm), "%s: written", what);
+}
+
+static void nan_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    shape_support(obj, dir, out);
+    out->v[1] = (ccd_real_t)NAN;
+}
+
+static void bad_input(void)
+{
+    ccd_t good, ccd;
+    shape_query(&good);
+    good.dist_tolerance = 0;
+    refused(NULL, 0, 0, 1, 0, "no ccd");
+    refused(&good, 0, 0, 1, 1, "no out");
+    refused(&good, -1, 0, 1, 0, "margin1 < 0");
+    refused(&good, 0, NAN, 1, 0, "margin2 NaN");
+    refused(&good, INFINITY, 0, 1, 0, "margin1 infinite");
+    refused(&good, 0, 0, -1, 0, "beyond < 0");
+    refused(&good, 0, 0, NAN, 0, "beyond NaN");
+    ccd = good, ccd.dist_tolerance = -1;
+    refused(&ccd, 0, 0, 1, 0, "dist_tolerance < 0");
+    ccd = good, ccd.dist_tolerance = (ccd_real_t)NAN;
+    refused(&ccd, 0, 0, 1, 0, "dist_tolerance NaN");
+    ccd = good, ccd.support2 = NULL;
+    refused(&ccd, 0, 0, 1, 0, "no support2");
+    ccd = good, ccd.support1 = nan_support;
+    refused(&ccd, 0, 0, 1, 0, "support1 NaN");
+}
+
+int main(int argc, char **argv)
+{
+    int i;
+    bad_input();
+    flat();
+    cores();
+    beyond_and_states();
+    continuous();
+    for (i = 1; i < argc; i++)
+        certified(argv[i], 12);
+    return checks_end();
+}

@@ -1,0 +1,1060 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Do two objects overlap, and how far apart are they? The distance algorithm of Gilbert,
+//! Johnson and Keerthi (1988) on D − target, for the target 0 or any other point.
+//!
+//! A simplex of up to four points of D, and its point nearest to the target. The way from
+//! there to the target, of unit length n, is asked next. D lies behind the support plane of
+//! n: a support value h(n) <= 0 separates. The new point lies beyond the simplex as seen
+//! along n, so that of the new simplex only the faces with the newest point can hold the
+//! nearest: with w newest and the base abc wound such that its normal is n, the target is
+//! on the inner side of the face w a b when det(w, a, b) > 0, and inside the tetrahedron
+//! when all three such are. No product but these decides, and none is compared with an
+//! absolute epsilon.
+//!
+//! **Near the target** the nearest point is mostly rounding error, and the way from it is
+//! noise; the normal of a face is not. So the way from a face is its normal, outwards, and
+//! a target within rounding of an edge counts as one in the face. Where the target stays
+//! within rounding of the simplex's surface (it lies on an edge between points of D, as in
+//! stacks of aligned boxes), a *portal* has the last word (G. Snethen, "XenoCollide", Game
+//! Programming Gems 7): a ray from a point well inside D through the origin, and a triangle
+//! of support points around it, moved outwards along its normals until the origin lies on
+//! the inner side or a plane separates. Ties do no harm there.
+//!
+//! **A touch is a miss**: [`Inquiry::ask`] ends the search where a support value is no
+//! greater than rounding. What is proven to overlap has the origin strictly inside; a flat
+//! D has no inside, and its normal is asked for before a tetrahedron is believed.
+//!
+//! Departures from libccd: both its yes-or-no queries are this one, with the centres'
+//! difference for a first corner where they are given and trusted; on a million pairs of the
+//! kinds in use that is a sixth fewer support points than libccd's portal asks for.
+
+use crate::barycentric;
+use crate::math::{EPSILON, Real, Vec3, larger, normal, perpendicular, unit};
+use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support_set::{Beyond, Inquiry, Stop, SupportSet};
+
+/// A simplex of points of a set, seen from the target.
+///
+/// A point stays in its place as long as it is a corner: what changes is the order.
+#[derive(Clone, Copy)]
+pub struct Simplex {
+    /// The points' indices in their set, by place.
+    ids: [usize; 4],
+    /// The points less the target, by place.
+    at: [Vec3; 4],
+    /// The places of the corners, the last repeated where there are fewer. Of three the
+    /// winding tells the way: outwards, where the target is.
+    order: [usize; 3],
+    len: usize,
+    /// The place of a point that is well inside D, if one is a corner; else [`NOWHERE`].
+    inner: usize,
+}
+
+/// No place.
+const NOWHERE: usize = 4;
+
+/// A face of a simplex that holds the point nearest to the target.
+#[derive(Clone, Copy)]
+struct Face {
+    order: [usize; 3],
+    len: usize,
+    way: Vec3,
+    distance2: Real,
+}
+
+impl Simplex {
+    /// No point.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self {
+            ids: [0; 4],
+            at: [Vec3::zeros(); 4],
+            order: [3; 3],
+            len: 0,
+            inner: NOWHERE,
+        }
+    }
+
+    /// One point, well inside D.
+    #[inline(always)]
+    fn around(id: usize, at: &Vec3) -> Self {
+        let mut simplex = Self::new();
+        simplex.add(id, *at, 0.0, 0.0);
+        simplex.inner = 0;
+        simplex
+    }
+
+    /// The corners' indices, as many as there are corners.
+    #[inline(always)]
+    pub fn ids(&self) -> [usize; 3] {
+        self.order.map(|p| self.ids[p & 3])
+    }
+
+    /// Is this point a corner?
+    #[inline(always)]
+    fn has(&self, id: usize) -> bool {
+        self.ids().iter().take(self.len).any(|i| *i == id)
+    }
+
+    /// A place where there is no corner.
+    #[inline(always)]
+    pub fn place(&self) -> usize {
+        let [i, j, k] = self.order;
+        (!(1_u32 << i | 1 << j | 1 << k)).trailing_zeros() as usize & 3
+    }
+
+    /// Adds a point, `at` from the target, and keeps the face that holds the point nearest
+    /// to it. What is nearer than `noise` is as good as touching, metres; `size2` is
+    /// the square of a length that no corner is farther from the target than.
+    ///
+    /// Returns the way from there to the target, of any length, and the square of the
+    /// distance, m². The way is zero where a triangle without area holds the target. `None`:
+    /// the target is inside the tetrahedron, off its faces by more than the noise; but from
+    /// its base, on which the last point was put, it may be less far.
+    #[inline(always)]
+    pub fn add(&mut self, id: usize, at: Vec3, noise: Real, size2: Real) -> Option<(Vec3, Real)> {
+        let w = self.place();
+        self.ids[w] = id;
+        self.at[w] = at;
+        if w == self.inner {
+            self.inner = NOWHERE;
+        }
+        let [i, j, _] = self.order;
+        let face = match self.len {
+            0 => self.corner(w),
+            1 => self.line(i, w, noise),
+            2 => {
+                let [a, b] = [i, j].map(|p| self.at[p & 3]);
+                let n = normal(&a, &b, &at);
+                // Outwards is where the target is. NaN, or a flat D: either.
+                if n.dot(&at) > 0.0 {
+                    self.triangle([j, i, w], -n, a.cross(&at), at.cross(&b), noise)
+                } else {
+                    self.triangle([i, j, w], n, b.cross(&at), at.cross(&a), noise)
+                }
+            }
+            _ => self.tetrahedron(w, noise, size2)?,
+        };
+        self.order = face.order;
+        self.len = face.len;
+        Some((face.way, face.distance2))
+    }
+
+    /// How many corners there are: at most three.
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Adds a corner, one of at most three, wherever it is: [`Simplex::settle`] tells the rest.
+    pub fn put(&mut self, id: usize, at: Vec3) {
+        let w = self.place();
+        self.ids[w] = id;
+        self.at[w] = at;
+        self.order = match (self.order, self.len) {
+            ([i, ..], 1) => [i, w, w],
+            ([i, j, _], 2) => [i, j, w],
+            _ => [w; 3],
+        };
+        self.len = (self.len + 1).min(3);
+    }
+
+    /// As [`Simplex::add`] without a new point, and without trust in that the last one is
+    /// nearer than the others: every face of the simplex counts.
+    pub fn settle(&mut self, noise: Real) -> (Vec3, Real) {
+        let [i, j, k] = self.order;
+        let at = self.order.map(|p| self.at[p & 3]);
+        let face = match self.len {
+            0 | 1 => self.corner(i),
+            2 => self.line(i, j, noise),
+            _ => {
+                let [a, b, c] = &at;
+                let weights = barycentric::triangle(&Vec3::zeros(), a, b, c).weights;
+                match weights.map(|w| w > 0.0) {
+                    [true, true, true] => {
+                        let n = normal(a, b, c);
+                        let height = n.dot(a);
+                        let (order, way) = if height > 0.0 {
+                            ([j, i, k], -n)
+                        } else {
+                            ([i, j, k], n)
+                        };
+                        Face {
+                            order,
+                            len: 3,
+                            way,
+                            distance2: height / n.norm_squared() * height,
+                        }
+                    }
+                    [true, true, _] => self.line(i, j, noise),
+                    [true, _, true] => self.line(i, k, noise),
+                    [_, true, true] => self.line(j, k, noise),
+                    [_, _, true] => self.corner(k),
+                    [_, true, _] => self.corner(j),
+                    _ => self.corner(i),
+                }
+            }
+        };
+        (self.order, self.len) = (face.order, face.len);
+        (face.way, face.distance2)
+    }
+
+    #[inline(always)]
+    fn corner(&self, i: usize) -> Face {
+        Face {
+            order: [i; 3],
+            len: 1,
+            way: -self.at[i & 3],
+            distance2: self.at[i & 3].norm_squared(),
+        }
+    }
+
+    /// The nearest point of the segment from `i` to the newest point `w`.
+    #[inline(always)]
+    fn segment(&self, i: usize, w: usize) -> Face {
+        let (a, b) = (&self.at[i & 3], &self.at[w & 3]);
+        let ab = a - b;
+        let t = -b.dot(&ab);
+        let length2 = ab.norm_squared();
+        // NaN and a segment without length end at a corner.
+        if !(t > 0.0) {
+            self.corner(w)
+        } else if !(t < length2) {
+            self.corner(i)
+        } else {
+            // Close to the target the sum is all rounding error: what of it lies along
+            // the segment is taken away, so that the way stays perpendicular.
+            let v = b + ab * (t / length2);
+            let v = v - ab * (v.dot(&ab) / length2);
+            Face {
+                order: [i, w, w],
+                len: 2,
+                way: -v,
+                distance2: v.norm_squared(),
+            }
+        }
+    }
+
+    /// The nearest point of two; where they hold the target, any way aside.
+    #[inline(always)]
+    fn line(&self, i: usize, w: usize, noise: Real) -> Face {
+        let mut face = self.segment(i, w);
+        if !(face.distance2 > noise * noise) {
+            let along = unit(&(self.at[w & 3] - self.at[i & 3])).unwrap_or(Vec3::x());
+            face.way = perpendicular(&along);
+        }
+        face
+    }
+
+    /// The nearest point of the triangle of `i`, `j` and the newest point `w`, with the normal
+    /// `n` outwards, j × w and w × i, among those that can hold it.
+    #[inline(always)]
+    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, noise: Real) -> Face {
+        let [i, j, w] = order;
+        // The weights of i and j, as multiples of n².
+        let (beyond_i, beyond_j) = (!(n.dot(&jw) > 0.0), !(n.dot(&wi) > 0.0));
+        let edge = match (beyond_i, beyond_j) {
+            (false, false) => {
+                let height = n.dot(&self.at[w & 3]);
+                return Face {
+                    order,
+                    len: 3,
+                    way: n,
+                    distance2: height / n.norm_squared() * height,
+                };
+            }
+            (true, false) => self.segment(j, w),
+            (false, true) => self.segment(i, w),
+            (true, true) => {
+                let (one, other) = (self.segment(i, w), self.segment(j, w));
+                if other.distance2 < one.distance2 {
+                    other
+                } else {
+                    one
+                }
+            }
+        };
+        if edge.distance2 > noise * noise {
+            return edge;
+        }
+        // On the edge within rounding.
+        Face {
+            order,
+            len: 3,
+            way: n,
+            distance2: edge.distance2,
+        }
+    }
+
+    /// The face nearest to the target; `None` where it is inside.
+    #[inline(always)]
+    fn tetrahedron(&self, place: usize, noise: Real, size2: Real) -> Option<Face> {
+        let [i, j, k] = self.order;
+        let [a, b, c, w] = [i, j, k, place].map(|p| &self.at[p & 3]);
+        let (wa, wb, wc) = (w.cross(a), w.cross(b), w.cross(c));
+        let heights = [wa.dot(b), wb.dot(c), wc.dot(a)];
+        // The normal of a face is at most four squares of the farthest corner long: what is
+        // higher is off it by more than twice the rounding.
+        let least = 8.0 * size2 * noise;
+        // A face that has the inner point for a corner is inside D, and so is the target where
+        // rounding puts it on either side of that: what counts is the face opposite.
+        let kept = [i, j, k].map(|p| p == self.inner);
+        let inside = kept != [false; 3];
+        // NaN is outside.
+        let clear = |height: Real, p: &Vec3, q: &Vec3, opposite: bool| {
+            let slack = if inside && !opposite { -noise } else { noise };
+            height > least || height > -least && off(height, p, q, w, slack)
+        };
+        let mut best: Option<Face> = None;
+        let corners = [i, j, k, i];
+        let crosses = [wa, wb, wc, wa];
+        for s in 0..3 {
+            let (p, q) = (&self.at[corners[s] & 3], &self.at[corners[s + 1] & 3]);
+            if clear(heights[s], p, q, kept[(s + 2) % 3]) {
+                continue;
+            }
+            let order = [corners[s], corners[s + 1], place];
+            let n = normal(p, q, w);
+            let face = self.triangle(order, n, -crosses[s + 1], crosses[s], noise);
+            if best.as_ref().is_none_or(|b| face.distance2 < b.distance2) {
+                best = Some(face);
+            }
+        }
+        best
+    }
+
+    /// The points of the objects whose difference is nearest to the target.
+    pub fn witnesses<const N: usize>(&self, set: &SupportSet<N>, target: &Vec3) -> (Vec3, Vec3) {
+        let [a, b, c] = self.ids().map(|i| set.point(i));
+        match self.len {
+            0 | 1 => (a.v1, a.v2),
+            2 => {
+                let nearest = barycentric::segment(target, &a.v, &b.v);
+                barycentric::witnesses(&nearest.weights, [&a, &b])
+            }
+            _ => {
+                let nearest = barycentric::triangle(target, &a.v, &b.v, &c.v);
+                barycentric::witnesses(&nearest.weights, [&a, &b, &c])
+            }
+        }
+    }
+}
+
+/// Is the target off the face of p, q and w by more than twice the slack, where the cheaper
+/// bound does not tell? `height` is the distance times twice the face's area.
+#[cold]
+fn off(height: Real, p: &Vec3, q: &Vec3, w: &Vec3, slack: Real) -> bool {
+    height > 2.0 * slack * normal(p, q, w).norm()
+}
+
+impl Default for Simplex {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Do the objects overlap? `centre`, an interior point of D, is trusted.
+#[inline]
+pub fn from_centre<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    centre: &SupportPoint,
+) -> Result<(), Stop> {
+    // A centre at the origin is no corner to look from.
+    match direction(&-centre.v) {
+        Some(dir) => from(md, Some(centre), &dir),
+        None => from(md, None, &Vec3::x()),
+    }
+}
+
+/// Do the objects overlap? From unit `dir`.
+#[inline]
+pub fn from_direction<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    dir: &Vec3,
+) -> Result<(), Stop> {
+    from(md, None, dir)
+}
+
+#[inline(always)]
+fn from<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    centre: Option<&SupportPoint>,
+    dir: &Vec3,
+) -> Result<(), Stop> {
+    let mut inquiry = Inquiry::new(md);
+    // Most misses are told here, and pay for nothing more.
+    let first = inquiry.ask_first(dir)?;
+    beyond_first(&mut inquiry, centre, dir, &first)
+}
+
+/// What is left where the first support point does not separate.
+#[inline(never)]
+fn beyond_first<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    centre: Option<&SupportPoint>,
+    dir: &Vec3,
+    first: &SupportPoint,
+) -> Result<(), Stop> {
+    let mut set = SupportSet::<4>::EMPTY;
+    let mut simplex = Simplex::new();
+    if let Some(centre) = centre {
+        let c = set.push(&Vec3::zeros(), centre);
+        simplex = Simplex::around(c, &centre.v);
+        inquiry.precision.note(centre);
+    }
+    let w = set.push(dir, first);
+    let (touch, size2) = (inquiry.precision.touch(), inquiry.precision.size2());
+    let way = simplex.add(w, first.v, touch, size2);
+    let next = way.and_then(|(way, _)| direction(&way)).unwrap_or(*dir);
+    search(inquiry, &mut set, simplex, false, next)?;
+    Ok(())
+}
+
+/// Support points after which the portal decides: of a hundred thousand pairs of every kind
+/// in use none needs forty.
+const STEPS: u32 = 64;
+
+/// Steps within rounding of the simplex's surface before the portal decides. One finds the
+/// other side of a face that the origin lies on.
+const STALLS: u32 = 3;
+
+/// Support points after which the portal's answer is its last one. It halves what is open
+/// at each but few; what is open then is rounding.
+const LAST: u32 = 200;
+
+/// Shows that the objects overlap: the origin is strictly inside D, beyond rounding, or no
+/// direction asked separates. Or [`Stop::Apart`]. Returns the corners of the tetrahedron
+/// that shows it, in the set; of the last simplex, where none did.
+///
+/// `centre` is the index of a point of D that is trusted to be one, and need not be a
+/// support point: the origin is looked for between it and others. `dir`, unit, is asked
+/// first. Other points in the set stand in for a support point where they do as well. The
+/// set has room for four points or more; where it is full, points out of use give way.
+#[inline]
+pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<N>,
+    centre: Option<usize>,
+    dir: &Vec3,
+) -> Result<[usize; 4], Stop> {
+    let simplex = match centre {
+        Some(c) => Simplex::around(c, &set.v(c)),
+        None => Simplex::new(),
+    };
+    let known = set.len() > simplex.len;
+    search(inquiry, set, simplex, known, *dir)
+}
+
+/// [`overlap`], from a simplex and a direction to ask. `known`: the set has other points.
+#[inline(always)]
+fn search<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<N>,
+    mut simplex: Simplex,
+    known: bool,
+    mut dir: Vec3,
+) -> Result<[usize; 4], Stop> {
+    // The square of the distance from the simplex; and whether points on the other side of
+    // it, where it is a triangle, are known.
+    let (mut nearest, mut backed) = (Real::INFINITY, false);
+    let mut stalls = 0;
+    for _ in 0..STEPS {
+        let stand_in = if known {
+            set.farther(&dir, inquiry.precision.touch())
+        } else {
+            None
+        };
+        let (w, at, noise) = match stand_in {
+            Some(w) => (w, set.v(w), inquiry.precision.touch()),
+            None => {
+                let place = room(set, &simplex);
+                match inquiry.ask_at(set, place, &dir)? {
+                    Beyond::Put { v, touch } => (place, v, touch),
+                    // A callback that contradicts itself.
+                    Beyond::Known(_) => break,
+                }
+            }
+        };
+        // A corner, by rounding.
+        if known && simplex.has(w) {
+            break;
+        }
+        let solid = simplex.len == 3;
+        let Some((way, distance2)) = simplex.add(w, at, noise, inquiry.precision.size2()) else {
+            let inside = simplex.inner != NOWHERE;
+            if !(nearest > noise * noise || backed || inside) {
+                // The origin is in the base's plane, within rounding: in one of the two
+                // tetrahedra on either side of it, if there is another.
+                let place = room(set, &simplex);
+                inquiry.ask_at(set, place, &-dir)?;
+            }
+            let [i, j, k] = simplex.ids();
+            return Ok([i, j, k, w]);
+        };
+        // Negated for NaN.
+        if !(distance2 > noise * noise && distance2 < nearest) {
+            stalls += 1;
+            if stalls > STALLS {
+                break;
+            }
+        }
+        (nearest, backed) = (distance2, solid && simplex.len == 3);
+        match direction(&way) {
+            Some(n) => dir = n,
+            None => break,
+        }
+    }
+    decide(inquiry, set, &simplex, &dir)?;
+    let [i, j, k] = simplex.ids();
+    Ok([i, j, k, k])
+}
+
+/// From a unit direction that separates to one that separates by a good part of the
+/// distance, and so for longer while the objects move: the steps of the distance
+/// algorithm, each at a support point, until the margin −n·s(n) is [`WIDE`] enough.
+/// Returns n and its margin, metres.
+pub fn separate<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    separating: Vec3,
+) -> Result<(Vec3, Real), Fault> {
+    let mut n = separating;
+    let mut best = (n, 0.0);
+    let mut simplex = Simplex::new();
+    for i in 0..WIDENING {
+        let point = inquiry.md.support(&n)?;
+        inquiry.precision.note(&point);
+        let margin = -n.dot(&point.v);
+        if margin > best.1 {
+            best = (n, margin);
+        }
+        let precision = &inquiry.precision;
+        let added = simplex.add(i, point.v, precision.touch(), precision.size2());
+        // The distance is less than that of the simplex, and more than the margin.
+        let Some((way, distance2)) = added else {
+            break;
+        };
+        if !(best.1 < WIDE * distance2.sqrt()) {
+            break;
+        }
+        match direction(&way) {
+            Some(next) => n = next,
+            None => break,
+        }
+    }
+    Ok(best)
+}
+
+/// The share of the distance that is wide enough.
+const WIDE: Real = 0.8;
+/// Support points that [`separate`] may ask for.
+const WIDENING: usize = 8;
+
+/// The unit vector along `way`, and `None` for none.
+#[inline(always)]
+pub fn direction(way: &Vec3) -> Option<Vec3> {
+    let length2 = way.norm_squared();
+    // Squares that are neither rounded to nothing nor beyond numbers.
+    // (In single precision those of areas soon are.)
+    let safe = length2 > Real::MIN_POSITIVE / EPSILON && length2 < Real::INFINITY;
+    if safe && !cfg!(feature = "single") {
+        Some(way / length2.sqrt())
+    } else {
+        unit(way)
+    }
+}
+
+/// Where the next point goes: behind the others, or, in a set without room, in the place of
+/// one that is no corner.
+#[inline(always)]
+fn room<const N: usize>(set: &SupportSet<N>, simplex: &Simplex) -> usize {
+    if N == 4 {
+        // Indices and places are the same.
+        return simplex.place();
+    }
+    if !set.is_full() {
+        return set.len();
+    }
+    (0..N).find(|i| !simplex.has(*i)).unwrap_or(N - 1)
+}
+
+/// The last word where the origin is as good as on the surface of the simplex: a portal.
+#[cold]
+fn decide<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &SupportSet<N>,
+    simplex: &Simplex,
+    dir: &Vec3,
+) -> Result<(), Stop> {
+    // The simplex may be as flat as touching faces: the middle between it and the far
+    // side of D is well inside.
+    let mut seen = SupportSet::<8>::EMPTY;
+    let corners = simplex.ids().map(|i| set.point(i));
+    for corner in &corners[..simplex.len.min(3)] {
+        seen.push(&Vec3::zeros(), corner);
+    }
+    let last = seen.len();
+    inquiry.ask_at(&mut seen, last, &-dir)?;
+    let mut inner = mean(&seen, last).middle(&seen.point(last));
+    if !(inner.v.norm() > inquiry.precision.touch()) {
+        inner = inner.middle(&seen.point(0));
+    }
+    let mut search = Search {
+        inquiry,
+        set: SupportSet::EMPTY,
+        corners: [0; 4],
+    };
+    search.set.push(&Vec3::zeros(), &inner);
+    let ray = unit(&-inner.v).unwrap_or(*dir);
+    search.corners[1] = search.ask(&ray)?;
+    let a = search.set.v(search.corners[1]);
+    let side = unit(&inner.v.cross(&a)).unwrap_or_else(|| perpendicular(&ray));
+    search.corners[2] = search.ask(&side)?;
+    search.discover()?;
+    search.refine(&ray)
+}
+
+/// A search by portal.
+struct Search<'i, 'q, A, B> {
+    inquiry: &'i mut Inquiry<'q, A, B>,
+    set: SupportSet<8>,
+    /// The inner point, and three support points around the ray from it through the origin.
+    corners: [usize; 4],
+}
+
+impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
+    fn ask(&mut self, dir: &Vec3) -> Result<usize, Stop> {
+        let used = self.corners;
+        // The first that is free is no farther than behind the others.
+        let place = (1..8).find(|i| !used.contains(i)).unwrap_or(7);
+        Ok(match self.inquiry.ask_at(&mut self.set, place, dir)? {
+            Beyond::Put { .. } => place,
+            Beyond::Known(id) => id,
+        })
+    }
+
+    /// From the inner point and two support points to a portal, wound so that its triangle's
+    /// normal looks along the ray.
+    fn discover(&mut self) -> Result<(), Stop> {
+        let inner = self.set.v(self.corners[0]);
+        let across = |set: &SupportSet<8>, [_, a, b, _]: [usize; 4]| {
+            (set.v(a) - inner).cross(&(set.v(b) - inner))
+        };
+        // The third point lies where the origin does, seen from the plane of the others.
+        if across(&self.set, self.corners).dot(&inner) > 0.0 {
+            self.corners.swap(1, 2);
+        }
+        for _ in 0..LAST {
+            let Some(n) = unit(&across(&self.set, self.corners)) else {
+                break;
+            };
+            self.corners[3] = self.ask(&n)?;
+            let [_, a, b, w] = self.corners.map(|i| self.set.v(i));
+            // Beyond a side, the corner opposite to that side goes.
+            if a.cross(&w).dot(&inner) < 0.0 {
+                self.corners[2] = self.corners[3];
+            } else if w.cross(&b).dot(&inner) < 0.0 {
+                self.corners[1] = self.corners[3];
+            } else {
+                break;
+            }
+        }
+        let [_, p, q, r] = self.corners.map(|i| self.set.v(i));
+        if normal(&p, &q, &r).dot(&inner) > 0.0 {
+            self.corners.swap(1, 2);
+        }
+        Ok(())
+    }
+
+    /// Moves a portal outwards until the origin lies on its inner side or a plane separates.
+    fn refine(&mut self, ray: &Vec3) -> Result<(), Stop> {
+        for _ in 0..LAST {
+            let [_, p, q, r] = self.corners.map(|i| self.set.v(i));
+            // Without area, or turned over: rounding is all that is left.
+            let Some(n) = unit(&normal(&p, &q, &r)).filter(|n| n.dot(ray) > 0.0) else {
+                break;
+            };
+            let noise = self.inquiry.precision.touch();
+            let inside = n.dot(&p);
+            if inside > noise {
+                break;
+            }
+            let w = self.ask(&n)?;
+            let v = self.set.v(w);
+            if !(n.dot(&v) - inside > noise) {
+                break;
+            }
+            // w takes the place of the corner that is not one of the pair on either side of
+            // the plane through the ray and w. That of a corner on it is rounding: the pair
+            // that is most so counts.
+            let across = ray.cross(&v);
+            let [t1, t2, t3] = [p, q, r].map(|x| across.dot(&x));
+            let split = [t2.min(-t3), t3.min(-t1), t1.min(-t2)];
+            let mut replaced = 0;
+            for i in 1..3 {
+                if split[i] > split[replaced] {
+                    replaced = i;
+                }
+            }
+            self.corners[replaced + 1] = w;
+        }
+        Ok(())
+    }
+}
+
+/// The mean of the first points of a set.
+fn mean<const N: usize>(set: &SupportSet<N>, count: usize) -> SupportPoint {
+    let mut mean = SupportPoint::default();
+    let share = 1.0 / larger(count as Real, 1.0);
+    for i in 0..count {
+        let p = set.point(i);
+        mean.v1 += p.v1 * share;
+        mean.v2 += p.v2 * share;
+    }
+    mean.v = mean.v1 - mean.v2;
+    mean
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::precision::Precision;
+    use crate::shapes::{Random, ball, capsule, corners, ellipsoid, hull, placed};
+
+    type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
+
+    /// Do they overlap? Also: a miss must come with a direction that separates, and
+    /// swapped objects must give the same answer.
+    fn overlap(a: &Shape, b: &Shape, dir: &Vec3) -> bool {
+        either(a, b, dir, false)
+    }
+
+    /// [`overlap`], where a touch may be either.
+    fn either(a: &Shape, b: &Shape, dir: &Vec3, within_rounding: bool) -> bool {
+        let ask = |a: &Shape, b: &Shape, dir: Vec3| {
+            let md = MinkowskiDifference::new(a, b);
+            let answer = from_direction(&md, &dir);
+            assert!(md.supports() < 300, "{}", md.supports());
+            match answer {
+                Ok(()) => true,
+                Err(Stop::Apart(n)) => {
+                    assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
+                    let point = md.support(&n).unwrap();
+                    let mut precision = Precision::default();
+                    precision.note(&point);
+                    // Other points may be farther off.
+                    for dir in [Vec3::x(), Vec3::y(), Vec3::z()] {
+                        precision.note(&md.support(&dir).unwrap());
+                        precision.note(&md.support(&-dir).unwrap());
+                    }
+                    assert!(n.dot(&point.v) <= 2.0 * precision.touch());
+                    false
+                }
+                Err(fault) => panic!("{fault:?}"),
+            }
+        };
+        let answer = ask(a, b, *dir);
+        if !within_rounding {
+            assert_eq!(answer, ask(b, a, -dir), "swapped");
+        }
+        answer
+    }
+
+    /// A pair of unit size whose distance is `gap` (less than zero: the depth).
+    fn pair(kind: usize, gap: Real, r: &mut Random) -> (Shape, Shape) {
+        let rot = r.rotation();
+        let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
+        let cube = placed(&corners(half), &rot, Vec3::zeros());
+        let [x, y, up] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
+        // A point of the cube's upper face.
+        let top = x * r.within(-0.9, 0.9) * half.x + y * r.within(-0.9, 0.9) * half.y + up * half.z;
+        let lifted = |points: &[Vec3], by: Vec3| points.iter().map(|p| p + by).collect::<Vec<_>>();
+        match kind {
+            // A vertex over a face.
+            0 => {
+                let points = r.points(12, 1.0);
+                let low = hull(&points)(&-up);
+                let points = lifted(&points, top + up * gap - low);
+                (Box::new(hull(&cube)), Box::new(hull(&points)))
+            }
+            // A face on the same face, on a part of it; along an edge, at a corner:
+            // touches, whatever the gap.
+            1..=4 => {
+                let shift = match kind {
+                    1 => Vec3::zeros(),
+                    2 => x * (0.8 * half.x) + y * (0.3 * half.y),
+                    3 => x * (2.0 * half.x),
+                    _ => x * (2.0 * half.x) + y * (2.0 * half.y),
+                };
+                let other = lifted(&cube, shift + up * (2.0 * half.z + gap));
+                (Box::new(hull(&cube)), Box::new(hull(&other)))
+            }
+            // An edge across an edge.
+            5 => {
+                let n = unit(&(x + y)).unwrap();
+                let edge = n.cross(&up) + up * 0.5;
+                let at = x * half.x + y * half.y + n * gap + up * r.within(-0.2, 0.2);
+                let other = [at - edge, at + edge, at + n + up, at + n - up];
+                (Box::new(hull(&cube)), Box::new(hull(&other)))
+            }
+            6 => (
+                Box::new(hull(&cube)),
+                Box::new(ball(top + up * (gap + 0.5), 0.5)),
+            ),
+            7 => (
+                Box::new(ball(Vec3::zeros(), 1.0)),
+                Box::new(ball(up * (1.5 + gap), 0.5)),
+            ),
+            8 => {
+                let at = up * (1.0 + gap) + x * r.within(-0.5, 0.5) + y * r.within(-0.5, 0.5);
+                (
+                    Box::new(capsule(-x, x, 0.5)),
+                    Box::new(capsule(at - y, at + y, 0.5)),
+                )
+            }
+            // Two ellipsoids with a common normal.
+            _ => {
+                let mut side = |n: Vec3, at: Vec3| {
+                    let radii = Vec3::from_fn(|_, _| r.within(0.2, 1.0));
+                    let turn = r.rotation();
+                    let extreme = ellipsoid(radii, turn, Vec3::zeros())(&n);
+                    Box::new(ellipsoid(radii, turn, at - extreme))
+                };
+                (side(up, Vec3::zeros()), side(-up, up * gap))
+            }
+        }
+    }
+
+    /// Is the pair of that kind an overlap? Nothing is known of a touch within rounding.
+    fn truth(kind: usize, gap: Real) -> Option<bool> {
+        let touch = gap < 0.0 && (matches!(kind, 3 | 4) || gap > -50.0 * EPSILON);
+        (!touch).then_some(gap < 0.0)
+    }
+
+    /// Gaps and depths from 20 ulps to a tenth of the size: no false hit, no false miss.
+    #[test]
+    fn no_false_answer_down_to_a_few_ulps() {
+        let mut r = Random::new(1);
+        for ulps in [20.0, 100.0, 4500.0, 1e6, 1e10] {
+            let gap = (ulps * EPSILON).min(0.1);
+            for round in 0..200 {
+                for kind in 0..10 {
+                    for gap in [gap, -gap] {
+                        let (a, b) = pair(kind, gap, &mut r);
+                        let truth = truth(kind, gap);
+                        let answer = either(&a, &b, &r.direction(), truth.is_none());
+                        if let Some(hit) = truth {
+                            assert_eq!(answer, hit, "kind {kind}, gap {gap:e}, round {round}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The same bits at every power of two from a micrometre to 1000 km and beyond.
+    #[test]
+    fn free_of_scale() {
+        let mut r = Random::new(2);
+        for _ in 0..100 {
+            for kind in 0..10 {
+                let gap = r.within(-0.1, 0.1);
+                let (a, b) = pair(kind, gap, &mut r);
+                let dir = r.direction();
+                for exponent in [-20, 20] {
+                    let scale = (2.0 as Real).powi(exponent);
+                    let scaled = |s: &Shape, d: &Vec3| s(d) * scale;
+                    let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
+                    let other = MinkowskiDifference::new(
+                        |d: &Vec3| scaled(&a, d),
+                        |d: &Vec3| scaled(&b, d),
+                    );
+                    let one = from_direction(&md, &dir);
+                    if let Some(hit) = truth(kind, gap) {
+                        assert_eq!(one.is_ok(), hit);
+                    }
+                    assert_eq!(one, from_direction(&other, &dir));
+                    assert_eq!(md.supports(), other.supports());
+                }
+            }
+        }
+    }
+
+    /// Boxes a million times longer than thick (single: a thousand), one across the other.
+    #[test]
+    fn needles_and_plates() {
+        let mut r = Random::new(3);
+        // In single precision 1e-6 would be a few ulps of the length.
+        let thin: Real = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
+        for round in 0..300 {
+            let rot = r.rotation();
+            let mut half = || Vec3::new(r.within(0.1, 1.0), r.within(1e2, 1e3) * thin, thin);
+            let (one, other) = (half(), half());
+            // Turned about the thin axis.
+            let turned = rot * nalgebra::Rotation3::new(Vec3::z() * r.within(-3.0, 3.0));
+            let long = placed(&corners(one), &rot, Vec3::zeros());
+            for gap in [0.1 * thin, -0.1 * thin] {
+                let at = rot * Vec3::z() * (2.0 * thin + gap);
+                let across = placed(&corners(other), &turned, at);
+                let (a, b): (Shape, Shape) = (Box::new(hull(&long)), Box::new(hull(&across)));
+                let hit = overlap(&a, &b, &r.direction());
+                assert_eq!(hit, gap < 0.0, "{round}");
+            }
+        }
+    }
+
+    /// Polygons, segments and points, alone and against each other, in a common plane
+    /// and across it: apart by a tenth, or overlapping by that much.
+    #[test]
+    fn flat_shapes() {
+        let mut r = Random::new(4);
+        for round in 0..500 {
+            let rot = r.rotation();
+            let at = r.vector(3.0);
+            let [x, y, z] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
+            let triangle = [at, at + x, at + x * 0.3 + y];
+            let inner = at + x * 0.45 + y * 0.3;
+            let flat = |points: &[Vec3]| -> Shape { Box::new(hull(points)) };
+            let shifted = |by: Vec3| triangle.map(|p| p + by);
+            // In one plane: overlap is exact in the plane only, within rounding across
+            // it; so only what is apart can be told for certain.
+            for by in [y * 1.1, y * -1.1, x * 1.1, x * -1.1] {
+                let (a, b) = (flat(&triangle), flat(&shifted(by)));
+                assert!(!overlap(&a, &b, &r.direction()), "side by side, {round}");
+            }
+            // Across the plane.
+            let segment = flat(&[inner - z * 0.5, inner + z * 0.4]);
+            assert!(
+                overlap(&flat(&triangle), &segment, &r.direction()),
+                "{round}"
+            );
+            let short = flat(&[inner + z * 0.1, inner + z * 0.4]);
+            assert!(
+                !overlap(&flat(&triangle), &short, &r.direction()),
+                "{round}"
+            );
+            let outside = at + x * 0.45 - y * 0.1;
+            let beside = flat(&[outside - z, outside + z]);
+            assert!(
+                !overlap(&flat(&triangle), &beside, &r.direction()),
+                "{round}"
+            );
+            // Points in and out of a solid.
+            let cube = flat(&placed(&corners(Vec3::new(0.5, 0.6, 0.7)), &rot, at));
+            let point = |p: Vec3| flat(&[p]);
+            assert!(
+                overlap(&cube, &point(at + x * 0.4), &r.direction()),
+                "{round}"
+            );
+            assert!(
+                !overlap(&cube, &point(at + x * 0.6), &r.direction()),
+                "{round}"
+            );
+            // Segments that miss each other by a tenth, and parallel ones.
+            let a = flat(&[at - x, at + x]);
+            let lifted = at + z * 0.1;
+            for b in [[lifted - y, lifted + y], [lifted - x, lifted + x * 0.5]] {
+                assert!(!overlap(&a, &flat(&b), &r.direction()), "{round}");
+            }
+            // A point on itself is a touch, and two points are apart.
+            assert!(!overlap(&point(at), &point(at), &r.direction()), "{round}");
+            assert!(!overlap(&point(at), &point(at + x * 1e-3), &r.direction()));
+            // So is what is flat, whatever it shares.
+            let other = flat(&shifted(x * 0.2));
+            assert!(
+                !overlap(&flat(&triangle), &other, &r.direction()),
+                "{round}"
+            );
+        }
+    }
+
+    /// Shapes that touch exactly, on a grid where nothing is rounded, are apart.
+    #[test]
+    fn exact_touch_is_a_miss() {
+        let cube = corners(Vec3::new(0.5, 0.25, 0.5));
+        let mut r = Random::new(5);
+        for by in [
+            Vec3::new(1.0, 0.0, 0.0),
+            Vec3::new(1.0, 0.125, -0.25),
+            Vec3::new(1.0, 0.5, 0.0),
+            Vec3::new(1.0, 0.5, 1.0),
+        ] {
+            let other: Vec<_> = cube.iter().map(|p| p + by).collect();
+            let (a, b): (Shape, Shape) = (Box::new(hull(&cube)), Box::new(hull(&other)));
+            for _ in 0..50 {
+                assert!(!overlap(&a, &b, &r.direction()), "{by}");
+            }
+        }
+    }
+
+    /// Known points of D do not change the answer, and those all around the origin are a
+    /// proof by themselves.
+    #[test]
+    fn known_points() {
+        let mut r = Random::new(6);
+        let mut without = 0;
+        for _ in 0..300 {
+            for kind in 0..10 {
+                let gap = r.within(-0.1, 0.1);
+                let (a, b) = pair(kind, gap, &mut r);
+                let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
+                let mut inquiry = Inquiry::new(&md);
+                let mut set = SupportSet::<64>::EMPTY;
+                for _ in 0..3 {
+                    let _ = inquiry.ask(&mut set, &r.direction());
+                }
+                let dir = r.direction();
+                let answer = super::overlap(&mut inquiry, &mut set, None, &dir);
+                let before = md.supports();
+                let again = super::overlap(&mut inquiry, &mut set, None, &dir);
+                if let Some(hit) = truth(kind, gap) {
+                    assert_eq!(answer.is_ok(), hit, "kind {kind} gap {gap}");
+                    assert_eq!(again.is_ok(), hit, "kind {kind} gap {gap}");
+                    without += u32::from(hit && md.supports() == before);
+                }
+            }
+        }
+        assert!(without > 1000, "{without}");
+    }
+
+    /// From the centre, which is trusted: the same answers.
+    #[test]
+    fn from_centres() {
+        let mut r = Random::new(7);
+        for ulps in [100.0, 1e6, 1e13] {
+            for _ in 0..300 {
+                let size = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
+                let turn = r.rotation();
+                let cube = placed(&corners(size), &turn, Vec3::zeros());
+                let mut gap = (ulps * EPSILON).min(0.2) * r.within(0.5, 1.0);
+                gap *= if r.within(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
+                let up = turn * Vec3::z();
+                // On the line of the centres, beside it, and round.
+                let aside = turn * Vec3::x() * (0.3 * size.x);
+                for by in [Vec3::zeros(), aside] {
+                    let at = up * (2.0 * size.z + gap) + by;
+                    let other: Vec<_> = cube.iter().map(|p| p + at).collect();
+                    let md = MinkowskiDifference::new(hull(&cube), hull(&other));
+                    let centre = SupportPoint {
+                        v: -at,
+                        v1: Vec3::zeros(),
+                        v2: at,
+                    };
+                    assert_eq!(from_centre(&md, &centre).is_ok(), gap < 0.0, "{gap}");
+                }
+                let at = up * (1.5 + gap);
+                let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
+                let centre = SupportPoint {
+                    v: -at,
+                    v1: Vec3::zeros(),
+                    v2: at,
+                };
+                assert_eq!(from_centre(&md, &centre).is_ok(), gap < 0.0, "{gap}");
+            }
+        }
+        // The same centre.
+        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
+        assert_eq!(from_centre(&md, &SupportPoint::default()), Ok(()));
+    }
+}
