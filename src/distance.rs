@@ -511,6 +511,79 @@ fn search<A: SupportMap, B: SupportMap, const N: usize>(
     Ok([i, j, k, k])
 }
 
+/// Points of the objects whose difference is within `tolerance` of `target`, a point of D
+/// (for a penetration the foot depth · normal), or as near as `steps` support points bring
+/// it; and how near that is, metres.
+///
+/// The points of the set come first, and those asked for go into it: what a query knows
+/// of the face that the target lies in is often enough. A set without any is asked along
+/// `dir`, unit.
+pub fn witnesses<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<N>,
+    target: &Vec3,
+    dir: &Vec3,
+    tolerance: Real,
+    steps: usize,
+) -> Result<(Vec3, Vec3, Real), Fault> {
+    let mut simplex = Simplex::new();
+    let mut left = steps;
+    let far2 = |i: usize, set: &SupportSet<N>| (set.v(i) - target).norm_squared();
+    let nearer = |a: usize, b: usize| if far2(b, set) < far2(a, set) { b } else { a };
+    let mut id = match (0..set.len()).reduce(nearer) {
+        Some(id) => id,
+        None => {
+            let point = inquiry.md.support(dir)?;
+            inquiry.precision.note(&point);
+            set.push(dir, &point)
+        }
+    };
+    // Each pass takes a known point or asks for one.
+    for _ in 0..steps + N {
+        let touch = inquiry.precision.touch();
+        let size2 = 4.0 * larger(inquiry.precision.size2(), target.norm_squared());
+        let corners = simplex.ids();
+        let Some((mut way, distance2)) = simplex.add(id, set.v(id) - target, touch, size2) else {
+            // D holds the target well inside.
+            let [a, b, c] = corners.map(|i| set.point(i));
+            let d = set.point(id);
+            let weights = barycentric::tetrahedron(target, [&a.v, &b.v, &c.v, &d.v]).weights;
+            let (p1, p2) = barycentric::witnesses(&weights, [&a, &b, &c, &d]);
+            return Ok((p1, p2, (p1 - p2 - target).norm()));
+        };
+        if !(distance2 > tolerance * tolerance) {
+            let (p1, p2) = simplex.witnesses(set, target);
+            if (p1 - p2 - target).norm() <= tolerance {
+                break;
+            }
+            // In the plane of a face the last point was no nearer than the others.
+            (way, _) = simplex.settle(touch);
+        }
+        let Some(n) = direction(&way) else {
+            break;
+        };
+        let least = n.dot(&set.v(simplex.ids()[0])) + touch;
+        if let Some(known) = set.farther(&n, least) {
+            id = known;
+            continue;
+        }
+        if left == 0 {
+            break;
+        }
+        left -= 1;
+        let point = inquiry.md.support(&n)?;
+        inquiry.precision.note(&point);
+        // As near as D comes.
+        if !(n.dot(&point.v) > least) {
+            break;
+        }
+        id = room(set, &simplex);
+        set.place(id, &n, &point);
+    }
+    let (p1, p2) = simplex.witnesses(set, target);
+    Ok((p1, p2, (p1 - p2 - target).norm()))
+}
+
 /// From a unit direction that separates to one that separates by a good part of the
 /// distance, and so for longer while the objects move: the steps of the distance
 /// algorithm, each at a support point, until the margin −n·s(n) is [`WIDE`] enough.
@@ -1016,6 +1089,47 @@ mod tests {
             }
         }
         assert!(without > 1000, "{without}");
+    }
+
+    /// Witness points of known depths: points of the objects, the depth along the normal
+    /// apart; a foot that the known points surround costs nothing.
+    #[test]
+    fn witnesses_of_a_foot() {
+        let mut r = Random::new(8);
+        let mut count = 0;
+        for _ in 0..300 {
+            for kind in 0..10 {
+                let depth = r.within(1e-6, 0.1);
+                let (a, b) = pair(kind, -depth, &mut r);
+                let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
+                // Any point of D's surface has a foot: in the middle of three of its points.
+                let n = r.direction();
+                let mut set = SupportSet::<16>::EMPTY;
+                let mut inquiry = Inquiry::new(&md);
+                for _ in 0..3 {
+                    let tilted = unit(&(n + r.direction() * 0.3)).unwrap();
+                    let point = md.support(&tilted).unwrap();
+                    inquiry.precision.note(&point);
+                    set.push(&tilted, &point);
+                }
+                let target = (set.v(0) + set.v(1) + set.v(2)) / 3.0;
+                let tolerance = 100.0 * EPSILON;
+                let before = md.supports();
+                let known =
+                    super::witnesses(&mut inquiry, &mut set, &target, &n, tolerance, 50).unwrap();
+                assert!(known.2 <= 20.0 * tolerance, "kind {kind}: {}", known.2);
+                count += md.supports() - before;
+                // From nothing.
+                let mut empty = SupportSet::<8>::EMPTY;
+                let mut inquiry = Inquiry::new(&md);
+                let tolerance = 1e-3;
+                let (p1, p2, distance) =
+                    super::witnesses(&mut inquiry, &mut empty, &target, &n, tolerance, 50).unwrap();
+                assert!(distance <= tolerance, "kind {kind}: {distance}");
+                assert!((p1 - p2 - target).norm() <= tolerance);
+            }
+        }
+        assert!(count < 300, "{count}");
     }
 
     /// From the centre, which is trusted: the same answers.

@@ -221,7 +221,7 @@ inline Penetration penetration(int code, const ccd_penetration_t &out)
 
 } // namespace detail
 
-/* Do the shapes overlap or touch? By MPR: ccdMPRIntersectWarm. A pair that stays apart costs one
+/* Do the shapes overlap? (A touch is none.) ccdMPRIntersectWarm. A pair that stays apart costs one
  * call of each support() while its last separating direction still separates. */
 template <class A, class B>
 bool intersect(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
@@ -231,7 +231,7 @@ bool intersect(const A &a, const B &b, const Settings &settings = {}, Warm *warm
     return ccdMPRIntersectWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
 }
 
-/* Do the shapes overlap or touch? By GJK: ccdGJKIntersect, without centres. */
+/* Do the shapes overlap? ccdGJKIntersect, without centres. */
 template <class A, class B>
 bool intersect_gjk(const A &a, const B &b, const Settings &settings = {})
 {

@@ -53,10 +53,10 @@ pub unsafe fn write(
     }
 }
 
-/// Do the objects overlap? Starts from the centres.
+/// Do the objects overlap? Starts from the centres, and relies on their lying in the objects.
 ///
-/// Returns 1 when they overlap or touch, 0 when they do not, when a callback is
-/// NULL or a point not finite, or when the iterations run out.
+/// Returns 1 when they overlap, 0 when they do not (a touch within rounding is no overlap),
+/// when a callback is NULL or a point not finite. max_iterations is not read.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     obj1: *const c_void,
