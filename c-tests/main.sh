@@ -6,6 +6,7 @@
 # on the system's libccd where there is one, then on this library; then the same
 # pairs through this library's extension, cold and warm. Times are those of the best
 # of several passes. The last line is the verdict. Sets itself up.
+#   main.sh readme   writes the table of README.md too
 
 set -eu
 cd "$(dirname "$0")/.."
@@ -95,5 +96,51 @@ verdict() {
             printf " (libccd %d), %.1f supports (%.1f), %.1f x %s\n", wrong[theirs], supports[ours], supports[theirs], ratio, word
         }' "$@"
 }
+
+# The table of README.md. A call is faster than libccd's MPR where two support calls
+# cost more than the break-even: its longer arithmetic over the support points it saves.
+readme_table() {
+    awk '
+        function row(call, file, name, proven) {
+            n = file SUBSEP name
+            ratio = ns[n] / ns[base]
+            even = "-"
+            if (n == base) even = ""
+            else if (ratio <= 1) even = "always"
+            else if (supports[base] > supports[n])
+                even = sprintf("%.2f µs", (price[theirs] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
+            printf "| %s | %.1f | %.2f | %.2f %% | %s | %s |\n", call, supports[n], ratio, 100 * deep[n] / overlaps, proven, even
+        }
+        / of them overlap/ { overlaps = $7 }
+        NF >= 10 && $(NF - 8) ~ /^[0-9]+$/ {
+            name = $1
+            for (i = 2; i <= NF - 9; i++) name = name " " $i
+            n = FILENAME SUBSEP name
+            deep[n] = $(NF - 5); supports[n] = $(NF - 1); ns[n] = $NF
+        }
+        /^a support point alone/ { price[FILENAME] = $5 }
+        END {
+            theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
+            base = theirs SUBSEP "MPR"
+            print "| call | supports | time over libccd\47s MPR | > 1 % too deep | proven | break-even |"
+            print "|---|---|---|---|---|---|"
+            row("libccd `ccdMPRPenetration`", theirs, "MPR", "no")
+            row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "no")
+            row("`ccdMPRPenetration`", ours, "MPR", "0.1 %")
+            row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
+            row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
+            row("`ccdPenetrationLocal`, warm", warm, "local, warm", "no")
+            row("`ccdPenetrationMinimum`, warm", warm, "minimum, warm", "tolerance")
+        }' theirs.txt ours.txt warm.txt
+}
+
 cd "$work"
+if [ "${1:-}" = readme ] && [ -e theirs.txt ]; then
+    readme_table >table.md
+    # Between the two marks stands what this command says.
+    awk '/^<!-- main.sh readme -->/ { print; while ((getline line < "table.md") > 0) print line; skip = 1 }
+        /^<!-- end -->/ { skip = 0 }
+        !skip' "$OLDPWD/README.md" >README.new
+    cat README.new >"$OLDPWD/README.md"
+fi
 if [ -e theirs.txt ]; then verdict ours.txt theirs.txt; else verdict ours.txt; fi

@@ -61,7 +61,8 @@ fn table(written: &str) -> (u64, Vec<Row>) {
             unsound: count(4),
         }
     };
-    (overlaps, lines.skip(1).map(row).collect())
+    let lines = lines.skip(1).take_while(|l| !l.is_empty());
+    (overlaps, lines.map(row).collect())
 }
 
 impl Row {

@@ -70,7 +70,7 @@ fn configurations_of_the_extension() {
     program("configurations").run(["extension"]);
 }
 
-/// Wrong answers that were found, as promises. A known failure that is mended fails this
+/// Wrong answers that were found, as promises. A known failure that is repaired fails this
 /// too: take its mark out of the table at the program's end.
 #[test]
 #[cfg(not(feature = "single"))]

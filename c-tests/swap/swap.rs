@@ -59,9 +59,12 @@ fn ode_collide() {
     let ode = checks::ode_static();
     let as_is = checks::judge_collide("ODE", "collide", &ode.run(&ode_args("asis")));
     must_pass(&as_is);
-    let mended = checks::judge_collide("ODE", "mended", &ode.run(&ode_args("mended")));
-    must_pass(&mended);
-    assert!(as_is.wrong > 0 && mended.wrong == 0, "{as_is:?} {mended:?}");
+    let corrected = checks::judge_collide("ODE", "corrected", &ode.run(&ode_args("corrected")));
+    must_pass(&corrected);
+    assert!(
+        as_is.wrong > 0 && corrected.wrong == 0,
+        "{as_is:?} {corrected:?}"
+    );
 }
 
 #[test]
