@@ -104,6 +104,7 @@ fn quick_charts_are_whole_and_ours_on_the_front() {
         assert!(fewest.ours, "{set}: fewest supports: {fewest:?}");
     }
     for name in [
+        "front",
         "accuracy_supports",
         "accuracy_time",
         "frames_supports",

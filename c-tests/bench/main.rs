@@ -43,6 +43,8 @@ mod command {
         Hold,
         /// Every chart as CSV and SVG.
         Charts(charts::Options),
+        /// The pictures and their page again, from the CSV that is there.
+        Redraw(charts::Options),
         /// Instructions of a query by phase, as Markdown; runs this program under valgrind.
         Phases(charts::phases::Options),
         /// One method over one set, for a profiler to watch.
@@ -55,6 +57,7 @@ mod command {
             Command::Tables(options) => tables::run(&options),
             Command::Hold => tables::hold(),
             Command::Charts(options) => charts::run(&options),
+            Command::Redraw(options) => charts::redraw(&options),
             Command::Phases(options) => charts::phases::run(&options),
             Command::Once(options) => charts::split::once(&options),
         }

@@ -94,12 +94,7 @@ pub struct Published {
 
 /// Figures of the paper's own implementation and of MuJoCo, measured elsewhere.
 pub fn published() -> Vec<Published> {
-    let path = harness::root().join("c-tests/bench/published.csv");
-    csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .from_path(&path)
-        .and_then(|mut r| r.deserialize().collect())
-        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    progress::read_csv(&harness::root().join("c-tests/bench/published.csv"))
 }
 
 /// What a later change may not lose: one of ours on one set.
@@ -148,7 +143,7 @@ pub fn hold() {
             nonminimal: row.nonminimal,
         })
         .collect();
-    progress::write_csv(&held_file(), &libraries, &rows);
+    progress::write_csv(&held_file(), &progress::machine(&libraries), &rows);
 }
 
 /// This library's queries on a scene, from every start it has.
@@ -417,7 +412,7 @@ pub fn run(options: &Options) {
          measured on another machine and day. Their supports compare, their times only roughly."
     );
     if let Some(path) = &options.csv {
-        progress::write_csv(path, &libraries, &rows);
+        progress::write_csv(path, &progress::machine(&libraries), &rows);
     }
     std::io::stdout().flush().expect("standard output");
 }
