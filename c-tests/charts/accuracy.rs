@@ -101,7 +101,8 @@ fn picture(
     title: &str,
     rows: &[&Row],
     (sets, columns): (&[&str], usize),
-    (y, cost): ((&'static str, Unit), &dyn Fn(&Row) -> Option<f64>),
+    y: (&'static str, Unit),
+    cost: &dyn Fn(&Row) -> Option<f64>,
 ) {
     let panels: Vec<Panel> = sets
         .iter()
@@ -260,7 +261,8 @@ pub fn draw(page: &Page, rows: &[Row]) {
         "Time of a query against its error",
         &some.collect::<Vec<_>>(),
         (&FRONT, 2),
-        (TIME, &seconds),
+        TIME,
+        &seconds,
     );
     for (sets, file, what) in [
         (&RANDOM[..], "accuracy", "independent poses, guesses 5° off"),
@@ -276,7 +278,8 @@ pub fn draw(page: &Page, rows: &[Row]) {
             &format!("Time against error: {what}"),
             &all,
             (sets, 3),
-            (TIME, &seconds),
+            TIME,
+            &seconds,
         );
         picture(
             page,
@@ -284,7 +287,8 @@ pub fn draw(page: &Page, rows: &[Row]) {
             &format!("Support points against error: {what}"),
             &all,
             (sets, 3),
-            (SUPPORTS, &|r| r.supports),
+            SUPPORTS,
+            &|r| r.supports,
         );
     }
 }

@@ -384,7 +384,7 @@ fn thousands(v: f64) -> String {
     let digits = format!("{v:.0}");
     let mut out = String::new();
     for (k, c) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+        if k > 0 && (digits.len() - k) % 3 == 0 {
             out.push(',');
         }
         out.push(c);
