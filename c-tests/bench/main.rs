@@ -39,8 +39,8 @@ mod command {
     enum Command {
         /// Supports, times and errors of every pair set, as Markdown.
         Tables(tables::Options),
-        /// Writes the support counts and errors that a test holds.
-        Hold,
+        /// Writes the support counts and errors that a test holds changes to.
+        Record,
         /// Every chart as CSV and SVG.
         Charts(charts::Options),
         /// The pictures and their page again, from the CSV that is there.
@@ -55,7 +55,7 @@ mod command {
     pub fn run() {
         match Arguments::parse().command {
             Command::Tables(options) => tables::run(&options),
-            Command::Hold => tables::hold(),
+            Command::Record => tables::record(),
             Command::Charts(options) => charts::run(&options),
             Command::Redraw(options) => charts::redraw(&options),
             Command::Phases(options) => charts::phases::run(&options),

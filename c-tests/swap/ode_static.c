@@ -16,8 +16,8 @@
 static int corrected, callback_wrong;
 static void audit(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v);
 #define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
-#include "swap/watch.h"
-#include "swap/right.h"
+#include "swap/interpose.h"
+#include "swap/callback_errors.h"
 
 #include <ode/ode.h>
 

@@ -130,6 +130,6 @@ fn towers_stand() {
 /// What a simulation needs most: a contact where the bodies touch.
 #[test]
 fn contacts_are_where_the_bodies_are() {
-    let place = harness::Program::c("place").source("swap/place.c");
+    let place = harness::Program::c("contact_position").source("swap/contact_position.c");
     place.link_ours_shared().build().run(["20000"]);
 }
