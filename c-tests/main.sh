@@ -4,7 +4,9 @@
 #
 # The main job: one unmodified C program over a recorded contact sequence, first
 # on the system's libccd where there is one, then on this library; then the same
-# pairs through this library's extension, cold and warm. Sets itself up.
+# pairs through this library's extension, cold and warm. Times are those of the best
+# of several passes. The last line is the verdict. Sets itself up.
+#   main.sh readme   writes the table of README.md too
 
 set -eu
 cd "$(dirname "$0")/.."
@@ -15,6 +17,7 @@ cargo build --release --lib
 release=$(cd "${CARGO_TARGET_DIR:-target}/release" && pwd)
 work=$release/main-job
 recording=c-tests/record/contacts.bin
+passes=5
 mkdir -p "$work"
 # LD_LIBRARY_PATH needs the file under the name that programs ask for.
 ln -sf "$release/libccd.so" "$work/libccd.so.2"
@@ -29,13 +32,19 @@ libccd_of() {
     ldd "$1" | sed -n 's|.*libccd\.so\.2 => \(/[^ ]*\).*|\1|p'
 }
 
+# run PROGRAM TABLE: prints what it writes, and keeps it
+run() {
+    "$work/$1" "$recording" "$passes" >"$work/$2"
+    cat "$work/$2"
+}
+
 run_on_ours() {
     export LD_LIBRARY_PATH="$work"
-    if [ "$(libccd_of "$1")" != "$work/libccd.so.2" ]; then
+    if [ "$(libccd_of "$work/$1")" != "$work/libccd.so.2" ]; then
         echo "main.sh: $1 does not run on this library" >&2
         exit 1
     fi
-    "$1" "$recording"
+    run "$1" "$2"
     unset LD_LIBRARY_PATH
 }
 
@@ -44,17 +53,94 @@ export LD_BIND_NOW=1
 unset LD_LIBRARY_PATH
 compile replay
 compile warm
+rm -f "$work/theirs.txt"
 system=$(libccd_of "$work/replay")
 # This library, where it is installed before libccd, is nothing to compare with.
 if [ -n "$system" ] && grep -q ccdImplementation "$system"; then
     printf '\n== %s is this library, installed: no libccd to compare with\n' "$system"
 elif [ -n "$system" ]; then
-    printf '\n== The system'"'"'s libccd, %s\n\n' "$system"
-    "$work/replay" "$recording"
+    printf '\n== libccd: %s\n' "$system"
+    run replay theirs.txt
 else
     printf '\n== No libccd on this system: this library alone\n'
 fi
-printf '\n== This library under the same program\n\n'
-run_on_ours "$work/replay"
-printf '\n== The extension, without and with the state of the pair from the frame before\n\n'
-run_on_ours "$work/warm"
+printf '\n== This library under the same program\n'
+run_on_ours replay ours.txt
+printf '\n== Its extension, without and with the state of the pair from the frame before\n'
+run_on_ours warm warm.txt
+cat <<'END'
+
+missed    overlaps that are not seen        deep      more than 1 % too deep
+false     overlaps that are none            unsound   the move does not separate
+broken    NaN or a direction of no length   mean max  errors of the depth
+supports  support points a query            ns        a query, best of all passes
+
+END
+
+# The wrong answers, the support points and the time of MPR, which a program that
+# exists is most likely to call.
+verdict() {
+    awk '
+        $1 == "MPR" { wrong[FILENAME] = $2 + $3 + $4 + $5 + $6; supports[FILENAME] = $9; ns[FILENAME] = $10 }
+        / pairs, / { pairs = $5 }
+        END {
+            ours = ARGV[1]; theirs = ARGV[2]
+            printf "MPR: %d of %d answers wrong", wrong[ours], pairs
+            if (!(theirs in ns)) {
+                printf ", %.1f supports, %d ns\n", supports[ours], ns[ours]
+                exit
+            }
+            ratio = ns[ours] / ns[theirs]
+            word = "slower"
+            if (ratio < 1) { ratio = 1 / ratio; word = "faster" }
+            printf " (libccd %d), %.1f supports (%.1f), %.1f x %s\n", wrong[theirs], supports[ours], supports[theirs], ratio, word
+        }' "$@"
+}
+
+# The table of README.md. A call is faster than libccd's MPR where two support calls
+# cost more than the break-even: its longer arithmetic over the support points it saves.
+readme_table() {
+    awk '
+        function row(call, file, name, proven) {
+            n = file SUBSEP name
+            ratio = ns[n] / ns[base]
+            even = "-"
+            if (n == base) even = ""
+            else if (ratio <= 1) even = "always"
+            else if (supports[base] > supports[n])
+                even = sprintf("%.2f µs", (price[theirs] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
+            printf "| %s | %.1f | %.2f | %.2f %% | %s | %s |\n", call, supports[n], ratio, 100 * deep[n] / overlaps, proven, even
+        }
+        / of them overlap/ { overlaps = $7 }
+        NF >= 10 && $(NF - 8) ~ /^[0-9]+$/ {
+            name = $1
+            for (i = 2; i <= NF - 9; i++) name = name " " $i
+            n = FILENAME SUBSEP name
+            deep[n] = $(NF - 5); supports[n] = $(NF - 1); ns[n] = $NF
+        }
+        /^a support point alone/ { price[FILENAME] = $5 }
+        END {
+            theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
+            base = theirs SUBSEP "MPR"
+            print "| call | supports | time over libccd\47s MPR | > 1 % too deep | proven | break-even |"
+            print "|---|---|---|---|---|---|"
+            row("libccd `ccdMPRPenetration`", theirs, "MPR", "no")
+            row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "no")
+            row("`ccdMPRPenetration`", ours, "MPR", "0.1 %")
+            row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
+            row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
+            row("`ccdPenetrationLocal`, warm", warm, "local, warm", "no")
+            row("`ccdPenetrationMinimum`, warm", warm, "minimum, warm", "tolerance")
+        }' theirs.txt ours.txt warm.txt
+}
+
+cd "$work"
+if [ "${1:-}" = readme ] && [ -e theirs.txt ]; then
+    readme_table >table.md
+    # Between the two marks stands what this command says.
+    awk '/^<!-- main.sh readme -->/ { print; while ((getline line < "table.md") > 0) print line; skip = 1 }
+        /^<!-- end -->/ { skip = 0 }
+        !skip' "$OLDPWD/README.md" >README.new
+    cat README.new >"$OLDPWD/README.md"
+fi
+if [ -e theirs.txt ]; then verdict ours.txt theirs.txt; else verdict ours.txt; fi

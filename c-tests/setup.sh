@@ -5,11 +5,19 @@
 # Installs the Debian packages that are missing, and nothing when none is.
 #   setup.sh        what the tests need
 #   setup.sh main   what the main job needs
-# As root, or through sudo.
+#   setup.sh check  installs nothing; says what the tests miss, in one line
+# As root, or through sudo. A Rust that is too old is named before anything is installed.
 
 set -eu
 
+cd "$(dirname "$0")/.."
+job=${1:-tests}
 missing=
+
+# rust_version MANIFEST: the oldest Rust that it takes
+rust_version() {
+    sed -n 's/^rust-version = "\(.*\)"$/\1/p' "$1"
+}
 
 # want_command COMMAND PACKAGE...: the packages, unless the command is there
 want_command() {
@@ -44,10 +52,27 @@ apt_install() {
     as_root apt-get install -y -q --no-install-recommends "$@" </dev/null
 }
 
-if ! command -v cargo >/dev/null 2>&1; then
-    echo "setup.sh: cargo is missing: install Rust first (rustup)" >&2
-    exit 1
-fi
+case $job in
+main) oldest=$(rust_version Cargo.toml) ;;
+tests | check) oldest=$(rust_version c-tests/setup/Cargo.toml) ;;
+*)
+    echo "usage: setup.sh [tests|main|check]" >&2
+    exit 2
+    ;;
+esac
+for tool in cargo rustc; do
+    # A shim of rustup's is there and fails where no toolchain is.
+    if ! found=$($tool --version 2>/dev/null); then
+        echo "setup.sh: $tool is missing: install Rust $oldest or later first (https://rustup.rs)" >&2
+        exit 1
+    fi
+    found=${found#* }
+    found=${found%%[ -]*}
+    if [ "$(printf '%s\n' "$oldest" "$found" | sort -V | head -n 1)" != "$oldest" ]; then
+        echo "setup.sh: $tool is $found, too old: Rust $oldest or later is needed (rustup update)" >&2
+        exit 1
+    fi
+done
 
 want_command cc gcc libc6-dev
 # Any program that compiles shows that the C library's headers are there.
@@ -55,9 +80,7 @@ if command -v cc >/dev/null 2>&1; then
     echo '#include <stdio.h>' | cc -E -o /dev/null - 2>/dev/null || missing="$missing libc6-dev"
 fi
 
-case ${1:-tests} in
-main) ;;
-tests)
+if [ "$job" != main ]; then
     want_command c++ g++
     want_command objcopy binutils
     want_command pkg-config pkg-config
@@ -71,12 +94,13 @@ tests)
         want_package libccd-dev libfcl-dev libode-dev libmujoco-dev \
             libdart-dev libdart-collision-ode-dev
     fi
-    ;;
-*)
-    echo "usage: setup.sh [tests|main]" >&2
-    exit 2
-    ;;
-esac
+fi
+
+if [ "$job" = check ]; then
+    [ -n "$missing" ] || exit 0
+    echo "not set up for tests (missing:$missing): run \`sh c-tests/setup.sh\` first"
+    exit 1
+fi
 
 if [ -n "$missing" ]; then
     if ! command -v apt-get >/dev/null 2>&1; then
@@ -88,8 +112,8 @@ if [ -n "$missing" ]; then
 fi
 
 # One test builds the library with the oldest Rust that it promises, where that is.
-if [ "${1:-tests}" = tests ] && command -v rustup >/dev/null 2>&1; then
-    oldest=$(sed -n 's/^rust-version = "\(.*\)"$/\1/p' "$(dirname "$0")/../Cargo.toml")
+if [ "$job" = tests ] && command -v rustup >/dev/null 2>&1; then
+    oldest=$(rust_version Cargo.toml)
     rustup run "$oldest" cargo --version >/dev/null 2>&1 ||
         rustup toolchain install "$oldest" --profile minimal ||
         echo "setup.sh: no Rust $oldest: its test will be skipped" >&2
@@ -97,7 +121,7 @@ fi
 
 # The main job compares with the system's libccd where it can be had, and goes
 # on without it where not.
-if [ "${1:-tests}" = main ] && command -v apt-get >/dev/null 2>&1; then
+if [ "$job" = main ] && command -v apt-get >/dev/null 2>&1; then
     missing=
     want_package libccd2
     if [ -n "$missing" ]; then

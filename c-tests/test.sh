@@ -3,19 +3,56 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # All tests, in double and in single precision, and the C programs of the contract
-# under sanitizers and valgrind. Sets itself up.
+# under sanitizers and valgrind. Sets itself up. The last line counts the tests.
 
 set -eu
 cd "$(dirname "$0")/.."
 
+cat <<'END'
+All tests, in 5 steps: about 10 minutes on 2 cores, once packages and crates are
+there; the first time some minutes more, to fetch and compile them.
+END
 sh c-tests/setup.sh
 
-# All are run, so that one failure does not hide another.
+log=$(mktemp)
+trap 'rm -f "$log" "$log.code"' EXIT
+step=0
+passed=0
 failed=0
-cargo test --no-fail-fast || failed=1
-cargo test --no-fail-fast --features single || failed=1
+skipped=0
+
+# sum KIND: of the last step's "test result" lines
+sum() {
+    awk -v kind="$1" '/^test result: / {
+        for (i = 2; i <= NF; i++) if ($i ~ "^" kind) n += $(i - 1)
+    } END { print n + 0 }' "$log"
+}
+
+# run WHAT COMMAND...: one step. All are run, so that one failure does not hide another.
+run() {
+    step=$((step + 1))
+    printf '\n== step %s of 5, %s s after the start: %s\n\n' "$step" "$(($(date +%s) - start))" "$1"
+    shift
+    {
+        code=0
+        "$@" || code=$?
+        echo "$code" >"$log.code"
+    } | tee "$log"
+    wrong=$(sum failed)
+    # What does not compile, or dies, counts no test.
+    [ "$(cat "$log.code")" -eq 0 ] || [ "$wrong" -gt 0 ] || wrong=1
+    passed=$((passed + $(sum passed)))
+    failed=$((failed + wrong))
+    skipped=$((skipped + $(sum ignored)))
+}
+
+start=$(date +%s)
+run "double precision" cargo test --no-fail-fast
+run "single precision" cargo test --no-fail-fast --features single
 # The same C programs where errors that leave no trace show.
-sh c-tests/tools/check.sh address --test contract --test extension || failed=1
-sh c-tests/tools/check.sh memcheck --test contract -- --skip bad_input || failed=1
-sh c-tests/tools/check.sh helgrind --test contract threads || failed=1
-exit "$failed"
+run "gcc's sanitizers" sh c-tests/tools/check.sh address --test contract --test extension
+run "valgrind, memory" sh c-tests/tools/check.sh memcheck --test contract -- --skip bad_input
+run "valgrind, threads" sh c-tests/tools/check.sh helgrind --test contract threads
+
+printf '\n%s passed, %s failed, %s skipped\n' "$passed" "$failed" "$skipped"
+[ "$failed" -eq 0 ]

@@ -90,7 +90,7 @@ static inline void truth_point(const shape_t *s, const double origin[3], const d
         for (i = 0; i < 3 && l > 0; i++)
             v[i] = p[i] * p[i] * d[i] / l;
         break;
-    default: {
+    case SHAPE_POLYTOPE: {
         int best = 0;
         double most = -HUGE_VAL;
         for (k = 0; k < s->nverts; k++) {
@@ -155,13 +155,13 @@ static inline double shape_reach(const shape_t *s)
         return sqrt(p0 * p0 + p1 * p1);
     case SHAPE_ELLIPSOID:
         return fmax(p0, fmax(p1, p2));
-    default:
+    case SHAPE_POLYTOPE:
         for (i = 0; i < s->nverts; i++) {
             double x = (double)s->verts[3 * i], y = (double)s->verts[3 * i + 1], z = (double)s->verts[3 * i + 2];
             most = fmax(most, sqrt(x * x + y * y + z * z));
         }
-        return most;
     }
+    return most;
 }
 
 /* The unit of length that relative tolerances refer to: both reaches. */
@@ -309,7 +309,9 @@ static inline int truth_core(const shape_t *s, const ccd_real_t origin[3], truth
             for (k = 0; k < 3; k++)
                 local[i][k] = s->verts[3 * i + k];
         break;
-    default:
+    case SHAPE_CYLINDER:
+    case SHAPE_CONE:
+    case SHAPE_ELLIPSOID:
         return 0;
     }
     for (i = 0; i < c->nv; i++)

@@ -4,8 +4,35 @@
 //! libccd's penetration queries for convex objects given by support mappings:
 //! overlap, depth, direction, position; started warm from the last answer.
 //!
-//! The C interface lives in [`ffi`]; everything else is safe Rust that never
-//! allocates and never sees C.
+//! An object is any function that answers a direction with the object's point farthest
+//! along it. A [`warm::Pair`] of them is asked, and leaves what it learnt in a
+//! [`warm::State`] for the next query of the same pair:
+//!
+//! ```
+//! use ccd::contact::{Answer, Settings};
+//! use ccd::math::Vec3;
+//! use ccd::support::MinkowskiDifference;
+//! use ccd::warm::{Pair, State};
+//!
+//! let ball = |at: Vec3| move |dir: &Vec3| at + dir; // of radius 1
+//! let pair = Pair {
+//!     md: MinkowskiDifference::new(ball(Vec3::zeros()), ball(Vec3::new(1.5, 0.0, 0.0))),
+//!     centre: None,
+//!     first_dir: Some(Vec3::new(1.0, 0.5, 0.0)),
+//!     lasting: true,
+//! };
+//! let settings = Settings { tolerance: 1e-5, max_iterations: 1000 };
+//! let mut state = State::default(); // cold
+//! match pair.local(&mut state, &settings) {
+//!     Ok(Answer::Hit(hit)) => assert!((hit.depth - 0.5).abs() < 1e-4),
+//!     other => panic!("the balls overlap by 0.5: {other:?}"),
+//! }
+//! ```
+//!
+//! The C interface is in `ffi`; everything else is safe Rust that never allocates and
+//! never sees C. The modules that are not shown here are the solvers: `src/README.md`
+//! says in which order to read them. They are public for this package's own tests and
+//! may change in any version.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
@@ -14,31 +41,56 @@
     reason = "a negated comparison is how NaN ends a loop"
 )]
 #![allow(clippy::large_enum_variant, reason = "no heap")]
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "solvers are explained to who reads their source"
+)]
 
+#[doc(hidden)]
 pub mod barycentric;
+#[doc(hidden)]
 pub mod bundle;
 pub mod contact;
+#[doc(hidden)]
 pub mod contact_manifold;
+#[doc(hidden)]
 pub mod distance;
+#[doc(hidden)]
 pub mod expansion;
+#[doc(hidden)]
 pub mod ffi;
+#[doc(hidden)]
 pub mod gjk;
+#[doc(hidden)]
 pub mod global;
+#[doc(hidden)]
 pub mod intersect;
+#[doc(hidden)]
 pub mod local;
 pub mod math;
+#[doc(hidden)]
 pub mod patch;
+#[doc(hidden)]
 pub mod planar;
+#[doc(hidden)]
 pub mod plane;
+#[doc(hidden)]
 pub mod polygon;
+#[doc(hidden)]
 pub mod polytope;
+#[doc(hidden)]
 pub mod portal;
+#[doc(hidden)]
 pub mod precision;
 #[cfg(test)]
 mod shapes;
+#[doc(hidden)]
 pub mod signed_distance;
+#[doc(hidden)]
 pub mod simplex;
+#[doc(hidden)]
 pub mod start;
 pub mod support;
+#[doc(hidden)]
 pub mod support_set;
 pub mod warm;

@@ -39,10 +39,12 @@ mod command {
     enum Command {
         /// Supports, times and errors of every pair set, as Markdown.
         Tables(tables::Options),
-        /// Writes the support counts and errors that a test holds.
-        Hold,
+        /// Writes the support counts and errors that a test holds changes to.
+        Record,
         /// Every chart as CSV and SVG.
         Charts(charts::Options),
+        /// The pictures and their page again, from the CSV that is there.
+        Redraw(charts::Options),
         /// Instructions of a query by phase, as Markdown; runs this program under valgrind.
         Phases(charts::phases::Options),
         /// One method over one set, for a profiler to watch.
@@ -53,8 +55,9 @@ mod command {
     pub fn run() {
         match Arguments::parse().command {
             Command::Tables(options) => tables::run(&options),
-            Command::Hold => tables::hold(),
+            Command::Record => tables::record(),
             Command::Charts(options) => charts::run(&options),
+            Command::Redraw(options) => charts::redraw(&options),
             Command::Phases(options) => charts::phases::run(&options),
             Command::Once(options) => charts::split::once(&options),
         }

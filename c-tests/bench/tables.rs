@@ -94,17 +94,12 @@ pub struct Published {
 
 /// Figures of the paper's own implementation and of MuJoCo, measured elsewhere.
 pub fn published() -> Vec<Published> {
-    let path = harness::root().join("c-tests/bench/published.csv");
-    csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .from_path(&path)
-        .and_then(|mut r| r.deserialize().collect())
-        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    progress::read_csv(&harness::root().join("c-tests/bench/published.csv"))
 }
 
 /// What a later change may not lose: one of ours on one set.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Held {
+pub struct Recorded {
     pub set: String,
     pub method: String,
     pub start: String,
@@ -114,12 +109,12 @@ pub struct Held {
     pub nonminimal: f64,
 }
 
-pub fn held_file() -> PathBuf {
-    harness::root().join("c-tests/bench/held.csv")
+pub fn recorded_file() -> PathBuf {
+    harness::root().join("c-tests/bench/support_counts.csv")
 }
 
 /// Every method of ours over the random and the shallow sets and the small motions.
-pub fn measure_held(libraries: &Libraries) -> Vec<Row> {
+pub fn measure_recorded(libraries: &Libraries) -> Vec<Row> {
     let motions = MOTIONS.iter().filter(|s| s.ends_with("_trajS"));
     let sets = RANDOM.iter().chain(&SHALLOW).chain(motions);
     let of = |set: &&str| {
@@ -133,12 +128,12 @@ pub fn measure_held(libraries: &Libraries) -> Vec<Row> {
     sets.flat_map(of).collect()
 }
 
-/// Writes what is held anew, from what is measured now.
-pub fn hold() {
+/// Writes what is recorded anew, from what is measured now.
+pub fn record() {
     let libraries = Libraries::open();
-    let rows: Vec<Held> = measure_held(&libraries)
+    let rows: Vec<Recorded> = measure_recorded(&libraries)
         .into_iter()
-        .map(|row| Held {
+        .map(|row| Recorded {
             set: row.set,
             method: row.method,
             start: row.start,
@@ -148,7 +143,7 @@ pub fn hold() {
             nonminimal: row.nonminimal,
         })
         .collect();
-    progress::write_csv(&held_file(), &libraries, &rows);
+    progress::write_csv(&recorded_file(), &progress::machine(&libraries), &rows);
 }
 
 /// This library's queries on a scene, from every start it has.
@@ -417,7 +412,7 @@ pub fn run(options: &Options) {
          measured on another machine and day. Their supports compare, their times only roughly."
     );
     if let Some(path) = &options.csv {
-        progress::write_csv(path, &libraries, &rows);
+        progress::write_csv(path, &progress::machine(&libraries), &rows);
     }
     std::io::stdout().flush().expect("standard output");
 }

@@ -6,7 +6,7 @@
 use plotters::style::RGBColor;
 
 use super::figure::{self, Curve, Look, Mark, Panel, Unit};
-use super::{Bench, look, name};
+use super::{Bench, Page, look, name};
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::peers;
@@ -76,19 +76,38 @@ pub fn curves(rows: &[&Row], cost: &dyn Fn(&Row) -> Option<f64>) -> Vec<Curve> {
     curves
 }
 
+const SUPPORTS: (&str, Unit) = ("support points per query", Unit::Count);
+const TIME: (&str, Unit) = ("time per query", Unit::Seconds);
+
+/// The four kinds of pairs, and the methods, of the picture in front.
+const FRONT: [&str; 4] = ["box_box", "p642_p642", "cyl_box", "cap_cap"];
+const IN_FRONT: [&str; 6] = [
+    "libccd MPR",
+    "libccd EPA",
+    "Algorithm 4/5",
+    "MPR",
+    "local",
+    "minimum",
+];
+
+fn seconds(row: &Row) -> Option<f64> {
+    row.ns.map(|n| n * 1e-9)
+}
+
+/// A panel a set, a curve a method: what it costs against its error.
 fn picture(
-    bench: &Bench,
+    page: &Page,
     file: &str,
     title: &str,
-    rows: &[Row],
-    sets: &[&str],
+    rows: &[&Row],
+    (sets, columns): (&[&str], usize),
     y: (&'static str, Unit),
     cost: &dyn Fn(&Row) -> Option<f64>,
 ) {
     let panels: Vec<Panel> = sets
         .iter()
         .map(|set| {
-            let of: Vec<&Row> = rows.iter().filter(|r| r.set == *set).collect();
+            let of: Vec<&Row> = rows.iter().copied().filter(|r| r.set == *set).collect();
             Panel {
                 title: super::kind(set),
                 x: ("mean |depth error|", Unit::Metres),
@@ -98,9 +117,11 @@ fn picture(
             }
         })
         .collect();
-    let dashes = "dashes: left of them the truth is not known".to_owned();
-    let notes = [vec![dashes], bench.notes()].concat();
-    figure::grid(&bench.file(file), title, 4, &panels, &notes);
+    let notes = [
+        "left of the dashes the truth is not known".to_owned(),
+        page.footer(),
+    ];
+    figure::grid(&page.file(file), title, columns, &panels, &notes);
 }
 
 /// What of an error can be seen: not less than the truth's own uncertainty, nor
@@ -153,7 +174,7 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
 }
 
 /// What a finer tolerance costs: a curve for each kind of pair.
-fn tolerance(bench: &Bench, rows: &[Row]) {
+fn tolerance(page: &Page, rows: &[Row]) {
     let palette = [
         (220, 38, 38),
         (234, 88, 12),
@@ -181,16 +202,14 @@ fn tolerance(bench: &Bench, rows: &[Row]) {
                 colour: RGBColor(r, g, b),
                 mark: Mark::Dot,
                 bold: false,
+                dashed: false,
             },
             points: of(set),
         };
         RANDOM.iter().zip(palette).map(curve).collect::<Vec<_>>()
     };
     let x = ("tolerance", Unit::Metres);
-    let supports = ("support points per query", Unit::Count);
-    let time = ("time per query", Unit::Seconds);
-    let error = ("mean |depth error|, answers within 1 mm", Unit::Metres);
-    let seconds = |r: &Row| r.ns.map(|n| n * 1e-9);
+    let error = ("mean |depth error| within 1 mm", Unit::Metres);
     let exact = |r: &Row| Some(r.mean_error_1mm.max(1e-16));
     let panel = |title: &str, y, curves| Panel {
         title: title.to_owned(),
@@ -202,12 +221,12 @@ fn tolerance(bench: &Bench, rows: &[Row]) {
     let panels = [
         panel(
             "local, guess 5° off: supports",
-            supports,
+            SUPPORTS,
             curves("local", "5", &|r| r.supports),
         ),
         panel(
             "local, guess 5° off: time",
-            time,
+            TIME,
             curves("local", "5", &seconds),
         ),
         panel(
@@ -217,26 +236,34 @@ fn tolerance(bench: &Bench, rows: &[Row]) {
         ),
         panel(
             "minimum: supports",
-            supports,
+            SUPPORTS,
             curves("minimum", "", &|r| r.supports),
         ),
-        panel("minimum: time", time, curves("minimum", "", &seconds)),
+        panel("minimum: time", TIME, curves("minimum", "", &seconds)),
         panel("minimum: error", error, curves("minimum", "", &exact)),
     ];
     figure::grid(
-        &bench.file("tolerance.svg"),
+        &page.file("tolerance.svg"),
         "What a tolerance costs",
         3,
         &panels,
-        &bench.notes(),
+        &[page.footer()],
     );
 }
 
-pub fn run(bench: &Bench) -> Vec<Row> {
-    let rows = measure(bench);
-    bench.write_csv("accuracy.csv", &rows);
-    tolerance(bench, &rows);
-    let time = |r: &Row| r.ns.map(|n| n * 1e-9);
+pub fn draw(page: &Page, rows: &[Row]) {
+    tolerance(page, rows);
+    let all: Vec<&Row> = rows.iter().collect();
+    let some = rows.iter().filter(|r| IN_FRONT.contains(&&*r.method));
+    picture(
+        page,
+        "front.svg",
+        "Time of a query against its error",
+        &some.collect::<Vec<_>>(),
+        (&FRONT, 2),
+        TIME,
+        &seconds,
+    );
     for (sets, file, what) in [
         (&RANDOM[..], "accuracy", "independent poses, guesses 5° off"),
         (
@@ -246,23 +273,22 @@ pub fn run(bench: &Bench) -> Vec<Row> {
         ),
     ] {
         picture(
-            bench,
+            page,
             &format!("{file}_time.svg"),
-            &format!("Time of a query against its error: {what}"),
-            &rows,
-            sets,
-            ("time per query", Unit::Seconds),
-            &time,
+            &format!("Time against error: {what}"),
+            &all,
+            (sets, 3),
+            TIME,
+            &seconds,
         );
         picture(
-            bench,
+            page,
             &format!("{file}_supports.svg"),
-            &format!("Support points of a query against its error: {what}"),
-            &rows,
-            sets,
-            ("support points per query", Unit::Count),
+            &format!("Support points against error: {what}"),
+            &all,
+            (sets, 3),
+            SUPPORTS,
             &|r| r.supports,
         );
     }
-    rows
 }

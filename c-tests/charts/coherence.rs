@@ -8,9 +8,9 @@ use nalgebra::{Unit, UnitQuaternion, Vector3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use super::Bench;
-use super::figure::{self, Panel, Unit as AxisUnit};
+use super::figure::{self, Curve, Panel, Unit as AxisUnit};
 use super::paper::{over_x, rows, seconds};
+use super::{Bench, Page};
 use crate::lab::libraries::Truth;
 use crate::lab::measure::Row;
 use crate::lab::methods::{self, Ask, Start};
@@ -97,7 +97,7 @@ fn motion(bench: &Bench, name: &str, forms: [&Form; 2], step: f64, motions: usiz
     Scene::placed(bench.libraries, name, forms, &poses, FRAMES)
 }
 
-fn measure(bench: &Bench) -> Vec<Row> {
+pub fn measure(bench: &Bench) -> Vec<Row> {
     let kinds = kinds(bench);
     let steps: &[f64] = if bench.quick {
         &[0.1, 1.0, 10.0]
@@ -153,11 +153,17 @@ pub fn stops_paying(rows: &[Row], set: &str, method: &str) -> Option<f64> {
     })
 }
 
-pub fn run(bench: &Bench) -> (Vec<Row>, Vec<Row>) {
-    let all = measure(bench);
-    bench.write_csv("coherence.csv", &all);
+/// Ours without a state as dashes, beside the same query with one.
+fn cold_dashed(mut curves: Vec<Curve>) -> Vec<Curve> {
+    for curve in &mut curves {
+        curve.look.dashed = curve.look.bold && !curve.label.ends_with("warm");
+    }
+    curves
+}
+
+pub fn draw(page: &Page, all: &[Row]) {
     let mut sets: Vec<&str> = Vec::new();
-    for row in &all {
+    for row in all {
         if !sets.contains(&row.set.as_str()) {
             sets.push(&row.set);
         }
@@ -180,25 +186,22 @@ pub fn run(bench: &Bench) -> (Vec<Row>, Vec<Row>) {
                 title: super::kind(set),
                 x: ("motion per frame", AxisUnit::Degrees),
                 y,
-                curves: over_x(all.iter().filter(|r| r.set == *set), &cost),
+                curves: cold_dashed(over_x(all.iter().filter(|r| r.set == *set), &cost)),
                 limit: None,
             })
             .collect();
         figure::grid(
-            &bench.file(file),
+            &page.file(file),
             "Cost of a query of a contact that moves, 1 cm deep",
-            4,
+            3,
             &panels,
-            &bench.notes(),
+            &[page.footer()],
         );
     }
-    let recorded = recorded(bench);
-    bench.write_csv("recorded.csv", &recorded);
-    (all, recorded)
 }
 
 /// The recorded contact sequence: queries in the order of their pair's frames.
-fn recorded(bench: &Bench) -> Vec<Row> {
+pub fn recorded(bench: &Bench) -> Vec<Row> {
     let scene = Scene::recorded(bench.libraries, if bench.quick { 40 } else { usize::MAX });
     let bar = progress::bar(1, "recorded contacts");
     let all = rows(bench, &scene, roster(bench), None);

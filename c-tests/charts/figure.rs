@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Pictures of the charts: panels of curves over logarithmic axes, a legend in a
-//! panel of its own, and stacked bars, drawn by plotters as SVG.
+//! Pictures of the charts: panels of curves over logarithmic axes, with a legend in the
+//! free cell or below, and stacked bars, drawn by plotters as SVG; 900 units wide, as
+//! wide as a page shows them.
 //!
 //! Ink and paper are two colours that nothing else uses; a style sheet in the file
 //! turns them round where the reader's system is dark.
@@ -10,8 +11,8 @@
 use std::path::Path;
 
 use plotters::coord::combinators::LogCoord;
-use plotters::coord::ranged1d::{IntoSegmentedCoord, SegmentValue};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 type Error = Box<dyn std::error::Error>;
 
@@ -38,6 +39,7 @@ pub struct Look {
     pub mark: Mark,
     /// Ours are drawn bolder.
     pub bold: bool,
+    pub dashed: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -176,7 +178,9 @@ where
     TriangleMarker<C, i32>: IntoDynElement<'static, SVGBackend<'b>, C>,
     Cross<C, i32>: IntoDynElement<'static, SVGBackend<'b>, C>,
 {
-    let Look { colour, mark, bold } = look;
+    let Look {
+        colour, mark, bold, ..
+    } = look;
     let size = if bold { 4 } else { 3 };
     match mark {
         Mark::Dot => Circle::new(at, size, colour.filled()).into_dyn(),
@@ -191,12 +195,13 @@ fn panel(area: &Cell, panel: &Panel) -> Result<(), Error> {
     let all = || panel.curves.iter().flat_map(|c| c.points.iter().copied());
     let (xs, ys) = (range(all().map(|p| p.0)), range(all().map(|p| p.1)));
     let mut chart = ChartBuilder::on(area)
-        .caption(&panel.title, ink(17))
-        .margin(8)
-        .x_label_area_size(40)
-        .y_label_area_size(62)
+        .caption(&panel.title, ink(16))
+        .margin(6)
+        .margin_right(14)
+        .x_label_area_size(38)
+        .y_label_area_size(60)
         .build_cartesian_2d(
-            LogCoord::from(xs.clone().log_scale()).with_key_points(ticks(&xs, 7)),
+            LogCoord::from(xs.clone().log_scale()).with_key_points(ticks(&xs, 6)),
             LogCoord::from(ys.clone().log_scale()).with_key_points(ticks(&ys, 8)),
         )?;
     let (x, y) = (panel.x, panel.y);
@@ -217,64 +222,99 @@ fn panel(area: &Cell, panel: &Panel) -> Result<(), Error> {
         chart.draw_series(DashedLineSeries::new(line, 4, 4, INK.stroke_width(1)))?;
     }
     for curve in &panel.curves {
-        let Look { colour, bold, .. } = curve.look;
+        let Look {
+            colour,
+            bold,
+            dashed,
+            ..
+        } = curve.look;
         let line = colour.stroke_width(if bold { 3 } else { 1 });
-        chart.draw_series(LineSeries::new(curve.points.iter().copied(), line))?;
+        let points = curve.points.iter().copied();
+        if dashed {
+            chart.draw_series(DashedLineSeries::new(points, 6, 4, line))?;
+        } else {
+            chart.draw_series(LineSeries::new(points, line))?;
+        }
         chart.draw_series(curve.points.iter().map(|&p| mark(curve.look, p)))?;
     }
     Ok(())
 }
 
-/// A cell with the names of the curves, each once.
-fn legend(area: &Cell, panels: &[Panel], notes: &[String]) -> Result<(), Error> {
-    let mut chart = ChartBuilder::on(area)
-        .margin(8)
-        .build_cartesian_2d(0.0..1.0, 0.0..1.0)?;
-    let mut seen: Vec<&str> = Vec::new();
-    for curve in panels.iter().flat_map(|p| &p.curves) {
-        if seen.contains(&curve.label.as_str()) {
-            continue;
-        }
-        seen.push(&curve.label);
-        let look = curve.look;
-        chart
-            .draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?
-            .label(curve.label.clone())
-            .legend(move |(x, y)| mark(look, (x + 8, y)));
-    }
-    for note in notes {
-        chart
-            .draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?
-            .label(note.clone())
-            .legend(|at| PathElement::new(vec![at], PAPER));
-    }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .label_font(ink(14))
-        .legend_area_size(22)
-        .draw()?;
+/// Height of a line of a legend or of the notes.
+const LINE: u32 = 20;
+
+fn text(area: &Cell, at: (i32, i32), what: &str, size: u32) -> Result<(), Error> {
+    let style = ink(size).pos(Pos::new(HPos::Left, VPos::Center));
+    area.draw(&Text::new(what.to_owned(), at, &style))?;
     Ok(())
 }
 
-/// Panels in rows of `columns`, the legend in the cell after the last.
+/// The names of the curves, in columns as wide as an area holds.
+fn legend(area: &Cell, entries: &[(&str, Look)], columns: usize) -> Result<(), Error> {
+    let width = area.dim_in_pixel().0 as i32 / columns as i32;
+    for (k, (label, look)) in entries.iter().enumerate() {
+        let x = 16 + width * (k % columns) as i32;
+        let y = (LINE / 2 + LINE * (k / columns) as u32) as i32;
+        let line = look.colour.stroke_width(if look.bold { 3 } else { 1 });
+        let ends: &[(i32, i32)] = if look.dashed {
+            &[(0, 8), (20, 28)]
+        } else {
+            &[(0, 28)]
+        };
+        for (from, to) in ends {
+            area.draw(&PathElement::new(vec![(x + from, y), (x + to, y)], line))?;
+        }
+        area.draw(&mark(*look, (x + 14, y)))?;
+        text(area, (x + 36, y), label, 14)?;
+    }
+    Ok(())
+}
+
+/// The lines under a picture.
+fn notes_below(area: &Cell, notes: &[String]) -> Result<(), Error> {
+    for (k, note) in notes.iter().enumerate() {
+        let y = (LINE / 2 + LINE * k as u32) as i32;
+        text(area, (16, y), note, 12)?;
+    }
+    Ok(())
+}
+
+/// Panels in rows of `columns`, the legend in the cell after the last or, where there is
+/// none, below; then the notes.
 pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &[String]) {
     let panels: Vec<Panel> = panels
         .iter()
         .filter(|p| p.curves.iter().any(|c| !c.points.is_empty()))
         .cloned()
         .collect();
-    let rows = (panels.len() + 1).div_ceil(columns);
-    let size = (360 * columns as u32, 300 * rows as u32 + 40);
-    write(path, size, |root| {
-        let root = root.titled(title, ink(21))?;
-        let cells = root.split_evenly((rows, columns));
+    let mut entries: Vec<(&str, Look)> = Vec::new();
+    for curve in panels.iter().flat_map(|p| &p.curves) {
+        if !entries.iter().any(|(label, _)| *label == curve.label) {
+            entries.push((&curve.label, curve.look));
+        }
+    }
+    let rows = panels.len().div_ceil(columns) as u32;
+    let cell = if columns == 2 { 320 } else { 270 };
+    let free = panels.len() % columns != 0;
+    let strip = if free {
+        0
+    } else {
+        LINE * entries.len().div_ceil(3) as u32
+    };
+    let below = strip + LINE * notes.len() as u32 + 14;
+    let top = cell * rows;
+    write(path, (900, 40 + top + below), |root| {
+        let (head, foot) = root.titled(title, ink(20))?.split_vertically(top);
+        let cells = head.split_evenly((rows as usize, columns));
         for (cell, p) in cells.iter().zip(&panels) {
             panel(cell, p)?;
         }
-        cells
-            .get(panels.len())
-            .map_or(Ok(()), |cell| legend(cell, &panels, notes))
+        let (names, foot) = foot.split_vertically(strip + 4);
+        match cells.get(panels.len()) {
+            Some(cell) => legend(cell, &entries, 1)?,
+            None => legend(&names, &entries, 3)?,
+        }
+        notes_below(&foot, notes)
     });
 }
 
@@ -285,81 +325,69 @@ pub struct Bar {
     pub parts: Vec<f64>,
 }
 
-/// Bars side by side, their parts end to end, all to one scale.
+/// Height of a bar with the space around it.
+const BAR: i32 = 24;
+
+/// Groups of bars, each group to a scale of its own: the parts of a bar end to end, then
+/// their sum in figures.
 pub fn bars(
     path: &Path,
     title: &str,
-    x: &str,
     parts: &[(&str, RGBColor)],
-    bars: &[Bar],
+    groups: &[(String, Vec<Bar>)],
     notes: &[String],
 ) {
-    if bars.is_empty() {
+    if groups.is_empty() {
         return;
     }
-    let longest = bars
-        .iter()
-        .map(|b| b.parts.iter().sum())
-        .fold(0.0, f64::max);
-    let head = 20 * (parts.len() + notes.len()) as u32 + 10;
-    write(path, (1080, 100 + head + 28 * bars.len() as u32), |root| {
-        let (top, below) = root.titled(title, ink(21))?.split_vertically(head);
-        let mut chart = ChartBuilder::on(&below)
-            .margin(10)
-            .x_label_area_size(44)
-            .y_label_area_size(390)
-            .build_cartesian_2d(0.0..longest * 1.02, (0..bars.len() - 1).into_segmented())?;
-        // The first bar on top.
-        let name = |k: usize| bars[bars.len() - 1 - k].label.clone();
-        chart
-            .configure_mesh()
-            .axis_style(INK)
-            .bold_line_style(FAINT)
-            .light_line_style(TRANSPARENT)
-            .disable_y_mesh()
-            .label_style(ink(13))
-            .axis_desc_style(ink(14))
-            .x_desc(x)
-            .y_labels(bars.len())
-            .x_label_formatter(&|v| short(*v))
-            .y_label_formatter(&|v| match v {
-                SegmentValue::CenterOf(k) if *k < bars.len() => name(*k),
-                _ => String::new(),
-            })
-            .draw()?;
-        for (part, (_, colour)) in parts.iter().enumerate() {
-            let blocks = bars.iter().rev().enumerate().map(|(k, bar)| {
-                let from: f64 = bar.parts[..part].iter().sum();
-                let ends = [
-                    (from, SegmentValue::Exact(k)),
-                    (from + bar.parts[part], SegmentValue::Exact(k + 1)),
-                ];
-                let mut block = Rectangle::new(ends, colour.filled());
-                block.set_margin(5, 5, 0, 0);
-                block
-            });
-            chart.draw_series(blocks)?;
+    let (left, room) = (250, 560);
+    let lines: i32 = groups.iter().map(|(_, bars)| bars.len() as i32 + 1).sum();
+    let height = 40 + lines * BAR + (LINE * (1 + notes.len()) as u32) as i32 + 30;
+    write(path, (900, height as u32), |root| {
+        let area = root.titled(title, ink(20))?;
+        let block = |(x, y): (i32, i32), wide: f64, colour: RGBColor| {
+            let to = (x + wide.round() as i32, y + BAR - 6);
+            Rectangle::new([(x, y), to], colour.filled())
+        };
+        let mut y = 6;
+        for (group, bars) in groups {
+            let sum = |bar: &Bar| bar.parts.iter().sum::<f64>();
+            let longest = bars.iter().map(sum).fold(0.0, f64::max);
+            text(&area, (16, y + BAR / 2), group, 15)?;
+            y += BAR;
+            for bar in bars {
+                text(&area, (28, y + BAR / 2 - 3), &bar.label, 13)?;
+                let mut x = left;
+                for (value, (_, colour)) in bar.parts.iter().zip(parts) {
+                    let wide = value / longest * f64::from(room);
+                    area.draw(&block((x, y), wide, *colour))?;
+                    x += wide.round() as i32;
+                }
+                let figure = thousands(sum(bar));
+                text(&area, (x + 8, y + BAR / 2 - 3), &figure, 13)?;
+                y += BAR;
+            }
         }
-        let mut names = ChartBuilder::on(&top).build_cartesian_2d(0.0..1.0, 0.0..1.0)?;
-        let nothing = std::iter::empty::<Circle<(f64, f64), i32>>;
-        for (label, colour) in parts {
-            let fill = colour.filled();
-            let block = move |(x, y)| Rectangle::new([(x + 4, y - 6), (x + 16, y + 6)], fill);
-            names.draw_series(nothing())?.label(*label).legend(block);
+        y += 8;
+        for (k, (label, colour)) in parts.iter().enumerate() {
+            let x = 16 + 240 * k as i32;
+            area.draw(&block((x, y), 14.0, *colour))?;
+            text(&area, (x + 22, y + BAR / 2 - 3), label, 14)?;
         }
-        for note in notes {
-            let blank = |at| PathElement::new(vec![at], PAPER);
-            names
-                .draw_series(nothing())?
-                .label(note.clone())
-                .legend(blank);
-        }
-        names
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
-            .label_font(ink(14))
-            .legend_area_size(22)
-            .draw()?;
-        Ok(())
+        let (_, foot) = area.split_vertically(y + BAR);
+        notes_below(&foot, notes)
     });
+}
+
+/// A whole number with a comma between its thousands.
+fn thousands(v: f64) -> String {
+    let digits = format!("{v:.0}");
+    let mut out = String::new();
+    for (k, c) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k) % 3 == 0 {
+            out.push(',');
+        }
+        out.push(c);
+    }
+    out
 }

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use plotters::style::RGBColor;
+use serde::{Serialize, de::DeserializeOwned};
 
 use crate::lab::libraries::Libraries;
 use crate::lab::measure::Row;
@@ -38,12 +39,39 @@ pub struct Options {
     pub out: PathBuf,
 }
 
-/// What every chart needs.
+/// What every measurement needs.
 pub struct Bench<'a> {
     pub libraries: &'a Libraries,
     pub compiled: &'a Compiled,
     pub quick: bool,
+}
+
+/// Where figures, pictures and the text about them go, and what was measured where and when.
+pub struct Page {
     pub out: PathBuf,
+    pub machine: String,
+}
+
+impl Page {
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.out.join(name)
+    }
+
+    /// The line under a picture: date, machine, versions.
+    pub fn footer(&self) -> String {
+        let (place, rest) = self.machine.split_once("; ").unwrap_or((&self.machine, ""));
+        let version = rest.split(" (").next().unwrap_or("");
+        format!("{place}; {version}; all in one process, rustc and gcc -O3")
+    }
+
+    fn write<T: Serialize>(&self, name: &str, rows: &[T]) {
+        progress::write_csv(&self.file(name), &self.machine, rows);
+    }
+
+    /// None where the file is missing, as instructions.csv without valgrind.
+    fn read<T: DeserializeOwned>(&self, name: &str) -> Vec<T> {
+        progress::read_csv(&self.file(name))
+    }
 }
 
 impl Bench<'_> {
@@ -55,48 +83,33 @@ impl Bench<'_> {
     pub fn repetitions(&self) -> usize {
         if self.quick { 3 } else { 9 }
     }
-
-    pub fn file(&self, name: &str) -> PathBuf {
-        self.out.join(name)
-    }
-
-    pub fn write_csv(&self, name: &str, rows: &[Row]) {
-        progress::write_csv(&self.file(name), self.libraries, rows);
-    }
-
-    /// The last line of a legend: what, where, when.
-    pub fn notes(&self) -> Vec<String> {
-        progress::short(self.libraries)
-    }
 }
 
-/// A method's colour and mark, the same in every picture: ours blue and green,
-/// libccd red, the paper's purple, the rest in earth.
+/// A method's look, the same in every picture. Ours are bold, a colour a query: MPR blue,
+/// local amber, minimum green; libccd's are red, the paper's purple, the rest grey. What
+/// starts cold is dashed where the same query starts warm beside it.
 pub fn look(row: &Row) -> Look {
     let (r, g, b, mark, bold) = match (row.method.as_str(), row.start.as_str()) {
-        ("local", "warm") => (14, 124, 134, Mark::Dot, true),
-        ("local", "centres" | "45") => (96, 165, 250, Mark::Ring, true),
-        ("local", _) => (37, 99, 235, Mark::Dot, true),
-        ("minimum", "warm") => (74, 180, 100, Mark::Ring, true),
+        ("local", "45") => (244, 170, 40, Mark::Ring, true),
+        ("local", _) => (217, 119, 6, Mark::Dot, true),
         ("minimum", _) => (22, 145, 70, Mark::Dot, true),
-        ("MPR", _) => (70, 130, 180, Mark::Triangle, true),
-        ("MPR warm", _) => (100, 149, 180, Mark::Cross, true),
-        ("libccd MPR", _) => (240, 110, 60, Mark::Triangle, false),
-        ("libccd EPA", _) => (220, 38, 38, Mark::Dot, false),
+        ("MPR" | "MPR warm", _) => (37, 99, 235, Mark::Triangle, true),
+        ("libccd MPR", _) => (239, 68, 68, Mark::Triangle, false),
+        ("libccd EPA", _) => (153, 27, 27, Mark::Dot, false),
         ("Algorithm 4/5", "45") => (190, 130, 240, Mark::Ring, false),
         ("Algorithm 4/5", _) => (147, 51, 234, Mark::Dot, false),
         ("Algorithm 3", _) => (147, 51, 234, Mark::Cross, false),
         ("DEEP", _) => (219, 39, 119, Mark::Triangle, false),
-        ("Bullet EPA", _) => (161, 98, 7, Mark::Dot, false),
-        ("FCL EPA", _) => (202, 138, 4, Mark::Ring, false),
-        ("Coal EPA", _) => (13, 180, 180, Mark::Cross, false),
-        ("parry EPA", _) => (120, 113, 108, Mark::Triangle, false),
-        _ => (120, 113, 108, Mark::Cross, false),
+        ("Bullet EPA", _) => (107, 114, 128, Mark::Dot, false),
+        ("FCL EPA", _) => (107, 114, 128, Mark::Ring, false),
+        ("Coal EPA", _) => (107, 114, 128, Mark::Cross, false),
+        _ => (107, 114, 128, Mark::Triangle, false),
     };
     Look {
         colour: RGBColor(r, g, b),
         mark,
         bold,
+        dashed: false,
     }
 }
 
@@ -143,6 +156,35 @@ pub fn kind(set: &str) -> String {
     format!("{a} – {b}")
 }
 
+/// Every picture, and the page about them.
+fn draw(page: &Page, results: &results::Results) {
+    accuracy::draw(page, &results.accuracy);
+    paper::draw(page, &results.vertices);
+    coherence::draw(page, &results.coherence);
+    models::draw(page, &results.models);
+    split::draw(page, &results.split);
+    results::write(page, results);
+}
+
+/// The pictures and the page from the figures that are there.
+pub fn redraw(options: &Options) {
+    let mut page = Page {
+        out: options.out.clone(),
+        machine: String::new(),
+    };
+    page.machine = progress::origin(&page.file("accuracy.csv"));
+    let results = results::Results {
+        accuracy: page.read("accuracy.csv"),
+        paper: page.read("paper.csv"),
+        vertices: page.read("vertices.csv"),
+        coherence: page.read("coherence.csv"),
+        recorded: page.read("recorded.csv"),
+        models: page.read("models.csv"),
+        split: page.read("instructions.csv"),
+    };
+    draw(&page, &results);
+}
+
 pub fn run(options: &Options) {
     let libraries = Libraries::open();
     let compiled = Compiled::build(&libraries);
@@ -151,24 +193,38 @@ pub fn run(options: &Options) {
         libraries: &libraries,
         compiled: &compiled,
         quick: options.quick,
-        out: options.out.clone(),
     };
-    println!("{}", progress::machine(&libraries));
+    let page = Page {
+        out: options.out.clone(),
+        machine: progress::machine(&libraries),
+    };
+    println!("{}", page.machine);
     for (name, why) in &compiled.missing {
         println!(
             "not measured here: {name}: {}",
             why.lines().next().unwrap_or("")
         );
     }
-    let accuracy = accuracy::run(&bench);
-    let (paper, vertices) = paper::run(&bench);
-    let (coherence, recorded) = coherence::run(&bench);
-    let models = models::run(&bench);
+    let accuracy = accuracy::measure(&bench);
+    page.write("accuracy.csv", &accuracy);
+    let paper = paper::tables(&bench);
+    page.write("paper.csv", &paper);
+    let vertices = paper::vertices(&bench);
+    page.write("vertices.csv", &vertices);
+    let coherence = coherence::measure(&bench);
+    page.write("coherence.csv", &coherence);
+    let recorded = coherence::recorded(&bench);
+    page.write("recorded.csv", &recorded);
+    let models = models::measure_all(&bench);
+    page.write("models.csv", &models);
     let split = if options.no_instructions {
         Vec::new()
     } else {
-        split::run(&bench)
+        split::measure(&bench)
     };
+    if !split.is_empty() {
+        page.write("instructions.csv", &split);
+    }
     let results = results::Results {
         accuracy,
         paper,
@@ -178,5 +234,5 @@ pub fn run(options: &Options) {
         models,
         split,
     };
-    results::write(&bench, &results);
+    draw(&page, &results);
 }

@@ -14,9 +14,9 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 use statrs::statistics::Statistics;
 
-use super::Bench;
 use super::figure::{self, Curve, Look, Mark, Panel, Unit};
 use super::paper::VERTICES;
+use super::{Bench, Page};
 use crate::lab::libraries::Truth;
 use crate::lab::measure;
 use crate::lab::methods::{self, Ask, Start};
@@ -147,9 +147,9 @@ fn panel(title: &str, models: &[&Model]) -> Panel {
             m.method.contains("minimum"),
         );
         let colour = match (ours, minimum) {
-            (true, false) => RGBColor(37, 99, 235),
+            (true, false) => RGBColor(217, 119, 6),
             (true, true) => RGBColor(22, 145, 70),
-            _ => RGBColor(220, 38, 38),
+            _ => RGBColor(153, 27, 27),
         };
         let (kind, mark) = match m.model.as_str() {
             "polytope, scan" => ("polytopes, scan", Mark::Dot),
@@ -168,6 +168,7 @@ fn panel(title: &str, models: &[&Model]) -> Panel {
                     colour,
                     mark,
                     bold: ours,
+                    dashed: false,
                 },
                 points: vec![point],
             }),
@@ -182,7 +183,7 @@ fn panel(title: &str, models: &[&Model]) -> Panel {
     }
 }
 
-pub fn run(bench: &Bench) -> Vec<Model> {
+pub fn measure_all(bench: &Bench) -> Vec<Model> {
     let capsule = Form::capsule(0.5, 0.5);
     let bar = progress::bar(2 * (1 + 2 * VERTICES.len()) as u64, "models");
     let mut all = Vec::new();
@@ -208,7 +209,10 @@ pub fn run(bench: &Bench) -> Vec<Model> {
         }
     }
     bar.finish_and_clear();
-    progress::write_csv(&bench.file("models.csv"), bench.libraries, &all);
+    all
+}
+
+pub fn draw(page: &Page, all: &[Model]) {
     let panels: Vec<Panel> = [("sphere", "a sphere"), ("capsule", "a capsule")]
         .map(|(body, what)| {
             let of: Vec<&Model> = all.iter().filter(|m| m.body == body).collect();
@@ -216,15 +220,13 @@ pub fn run(bench: &Bench) -> Vec<Model> {
         })
         .into();
     figure::grid(
-        &bench.file("models.svg"),
+        &page.file("models.svg"),
         "No more model than the scene needs",
-        3,
+        2,
         &panels,
         &[
-            vec!["polytopes: 12 to 2,562 vertices, right to left".to_owned()],
-            bench.notes(),
-        ]
-        .concat(),
+            "polytopes: 12 to 2,562 vertices, right to left".to_owned(),
+            page.footer(),
+        ],
     );
-    all
 }

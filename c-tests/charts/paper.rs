@@ -5,7 +5,7 @@
 //! counts, the comparison with DEEP, the ablation of the shortcut.
 
 use super::figure::{self, Curve, Panel, Unit};
-use super::{Bench, look, name};
+use super::{Bench, Page, look, name};
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::progress;
@@ -162,7 +162,7 @@ pub fn seconds(row: &Row) -> Option<f64> {
     row.ns.map(|n| n * 1e-9)
 }
 
-fn pictures(bench: &Bench, all: &[Row]) {
+pub fn draw(page: &Page, all: &[Row]) {
     let x = ("vertices", Unit::Count);
     let time = ("time per query", Unit::Seconds);
     let supports = ("support points per query", Unit::Count);
@@ -213,19 +213,10 @@ fn pictures(bench: &Bench, all: &[Row]) {
         ),
     ];
     figure::grid(
-        &bench.file("vertices.svg"),
+        &page.file("vertices.svg"),
         "The paper's figures over vertex counts",
         3,
         &panels,
-        &bench.notes(),
+        &[page.footer()],
     );
-}
-
-pub fn run(bench: &Bench) -> (Vec<Row>, Vec<Row>) {
-    let tables = tables(bench);
-    bench.write_csv("paper.csv", &tables);
-    let vertices = vertices(bench);
-    bench.write_csv("vertices.csv", &vertices);
-    pictures(bench, &vertices);
-    (tables, vertices)
 }

@@ -6,13 +6,12 @@
 
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 
-use super::Bench;
+use super::Page;
 use super::coherence;
 use super::models::Model;
 use super::paper::{AS_PUBLISHED, PAPER};
 use super::split::Split;
 use crate::lab::measure::Row;
-use crate::lab::progress;
 
 /// Everything a run has measured.
 pub struct Results {
@@ -354,10 +353,10 @@ fn front(rows: &[Row]) -> String {
     markdown(["pair", "on the front of supports against error"], lines)
 }
 
-pub fn write(bench: &Bench, results: &Results) {
+pub fn write(page: &Page, results: &Results) {
     let text = include_str!("results.md");
     let tables = [
-        ("MACHINE", progress::machine(bench.libraries)),
+        ("MACHINE", page.machine.clone()),
         ("FRONT", front(&results.accuracy)),
         (
             "TABLE_1",
@@ -381,9 +380,9 @@ pub fn write(bench: &Bench, results: &Results) {
         ("MODELS", models(&results.models)),
         ("INSTRUCTIONS", instructions(&results.split)),
     ];
-    let page = tables.iter().fold(text.to_owned(), |page, (mark, table)| {
+    let filled = tables.iter().fold(text.to_owned(), |page, (mark, table)| {
         page.replace(&format!("{{{{{mark}}}}}"), table)
     });
-    let path = bench.file("README.md");
-    std::fs::write(&path, page).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let path = page.file("README.md");
+    std::fs::write(&path, filled).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
 }

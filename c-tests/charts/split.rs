@@ -10,8 +10,8 @@ use clap::Args;
 use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 
-use super::Bench;
 use super::figure::{self, Bar};
+use super::{Bench, Page};
 use crate::lab::libraries::Libraries;
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::progress;
@@ -123,7 +123,7 @@ fn count(set: &str, number: usize, function: &str, queries: usize) -> Result<(f6
     ))
 }
 
-pub fn run(bench: &Bench) -> Vec<Split> {
+pub fn measure(bench: &Bench) -> Vec<Split> {
     let sets: &[&str] = if bench.quick { &SETS[..1] } else { &SETS };
     let bar = progress::bar(4 * sets.len() as u64, "where the time goes");
     let mut all = Vec::new();
@@ -156,29 +156,35 @@ pub fn run(bench: &Bench) -> Vec<Split> {
         }
     }
     bar.finish_and_clear();
-    progress::write_csv(&bench.file("instructions.csv"), bench.libraries, &all);
-    let bars: Vec<Bar> = all
-        .iter()
-        .map(|s| {
-            let total = s.callbacks + s.solver;
-            Bar {
-                label: format!("{}, {}: {total:.0}", super::kind(&s.set), s.method),
-                parts: vec![100.0 * s.callbacks / total, 100.0 * s.solver / total],
-            }
-        })
-        .collect();
-    figure::bars(
-        &bench.file("instructions.svg"),
-        "Instructions of a query: in the support functions, and in the solver",
-        "percent of the instructions whose number stands beside the method",
-        &[
-            ("support functions", RGBColor(148, 163, 184)),
-            ("solver", RGBColor(37, 99, 235)),
-        ],
-        &bars,
-        &bench.notes(),
-    );
     all
+}
+
+pub fn draw(page: &Page, all: &[Split]) {
+    let mut groups: Vec<(String, Vec<Bar>)> = Vec::new();
+    for s in all {
+        let kind = super::kind(&s.set);
+        let still = !s.method.ends_with("warm");
+        let title = format!("{kind}{}", if still { "" } else { ", moving" });
+        if groups.last().is_none_or(|(last, _)| *last != title) {
+            groups.push((title, Vec::new()));
+        }
+        if let Some((_, bars)) = groups.last_mut() {
+            bars.push(Bar {
+                label: s.method.clone(),
+                parts: vec![s.callbacks, s.solver],
+            });
+        }
+    }
+    figure::bars(
+        &page.file("instructions.svg"),
+        "Instructions of a query",
+        &[
+            ("in the support functions", RGBColor(148, 163, 184)),
+            ("in the solver", RGBColor(37, 99, 235)),
+        ],
+        &groups,
+        &[page.footer()],
+    );
 }
 
 #[cfg(test)]

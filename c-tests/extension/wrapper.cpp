@@ -43,6 +43,14 @@ struct NoCentre {
     }
 };
 
+/* The same with its centre in the other spelling. */
+struct American {
+    Wrapped of;
+
+    ccd_vec3_t support(const ccd::Vec3 &dir) const { return of.support(dir); }
+    ccd_vec3_t center() const { return of.centre(); }
+};
+
 struct TooFar : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -172,6 +180,13 @@ static void same_as_c()
         ccd_penetration_t out;
         const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, &out);
         check_same("without centres", ccd::penetration_local(NoCentre{a}, NoCentre{b}, settings), without, out);
+        c.center1 = c.center2 = shape_center;
+        const int spelt = ccdPenetrationLocal(o1, o2, &c, nullptr, &out);
+        check_same("center", ccd::penetration_local(American{a}, American{b}, settings), spelt, out);
+        check_same("center and centre", ccd::penetration_local(a, American{b}, settings), spelt, out);
+        CHECK(ccd::intersect(American{a}, b, settings) == ccd::intersect(a, b, settings), "center");
+        c.center1 = c.center2 = nullptr;
+        ccdPenetrationLocal(o1, o2, &c, nullptr, &out);
         check_same("one centre", ccd::penetration_local(NoCentre{a}, b, settings), without, out);
         CHECK(ccd::intersect_gjk(NoCentre{a}, NoCentre{b}) == ccd::intersect_gjk(a, b), "a foreign vector");
     }

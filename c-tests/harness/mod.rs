@@ -297,12 +297,20 @@ pub fn must_succeed(command: &mut Command, what: &str) -> Written {
     };
     assert!(
         output.status.success(),
-        "{what} failed ({}): {command:?}\n{}{}",
+        "{what} failed ({}): {}\n{}{}",
         output.status,
+        words_of(command),
         written.stdout,
         written.stderr
     );
     written
+}
+
+/// A command as one types it, without the environment it runs in.
+fn words_of(command: &Command) -> String {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    let shown: Vec<_> = words.map(OsStr::to_string_lossy).collect();
+    shown.join(" ")
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -169,7 +169,7 @@ fn generators() {
     }
 }
 
-/// By FetchContent from a repository with a tag, as the README says it.
+/// By FetchContent from a repository with a tag, as cmake/README.md says it.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn git_tag() {
@@ -182,7 +182,7 @@ fn git_tag() {
         git.arg("-C").arg(dir).args(args);
         must_succeed(&mut git, "git").stdout.trim().to_owned()
     };
-    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
+    let readme = fs::read_to_string(root().join("cmake/README.md")).expect("cmake/README.md");
     let tag = readme
         .split_once("GIT_TAG ")
         .and_then(|(_, rest)| rest.split([' ', ')']).next())
@@ -591,29 +591,59 @@ fn oldest_rust() {
     must_succeed(&mut build, "cargo");
 }
 
-/// The README's C program compiles without a warning and answers rightly.
-#[test]
-fn readme_program() {
+/// The README's program in a language, in a file of its own.
+fn readme_program(language: &str) -> PathBuf {
     let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
     let program = readme
-        .split_once("```c\n")
+        .split_once(&format!("```{language}\n"))
         .and_then(|(_, rest)| rest.split_once("```"))
-        .expect("a C program")
+        .expect("a program")
         .0;
-    let source = fresh("readme").join("readme.c");
+    let source = fresh(&format!("readme-{language}")).join(format!("readme.{language}"));
     fs::write(&source, program).expect("a file can be written");
+    source
+}
+
+/// Unit spheres, (0.3, 0.2, 0.1) apart: the sum of the radii less the distance.
+fn assert_depth_of_the_readme_s_spheres(depth: &str, within: f64) {
+    let truth = 2.0 - 0.14_f64.sqrt();
+    let depth: f64 = depth.parse().expect("a number");
+    assert!((depth - truth).abs() < within, "{depth}");
+}
+
+/// The README's C program compiles without a warning and answers rightly.
+#[test]
+fn readme_c_program() {
     let written = Program::c("readme")
-        .source(&source)
+        .source(readme_program("c"))
         .flag("-pedantic")
         .flag("-Werror")
         .link_ours_shared()
         .build()
         .run([""; 0]);
     let depth = written.stdout.split(' ').nth(3).expect("move b by DEPTH");
-    // Unit spheres: the sum of the radii less the distance of the centres.
-    let truth = 2.0 - 0.14_f64.sqrt();
-    let depth: f64 = depth.parse().expect("a number");
-    assert!((depth - truth).abs() < 1e-5, "{depth}");
+    assert_depth_of_the_readme_s_spheres(depth, 1e-5);
+}
+
+/// The same of its C++ program; in single precision its double radius is narrowed.
+#[test]
+#[cfg(not(feature = "single"))]
+fn readme_cpp_program() {
+    let written = Program::cpp("readme")
+        .source(readme_program("cpp"))
+        .flag("-pedantic")
+        .flag("-Werror")
+        .link_ours_shared()
+        .build()
+        .run([""; 0]);
+    let said = written.stdout.trim();
+    let (depth, lower) = said
+        .strip_prefix("depth ")
+        .and_then(|rest| rest.split_once(", proven to be at least "))
+        .expect("two depths");
+    for depth in [depth, lower] {
+        assert_depth_of_the_readme_s_spheres(depth, 1e-4 + 1e-5);
+    }
 }
 
 /// The one file of this name below a directory.

@@ -7,7 +7,7 @@
  * This program knows libccd alone: one binary, built against libccd's interface,
  * runs on whichever libccd.so.2 the dynamic linker finds.
  *
- * usage: replay RECORDING */
+ * usage: replay RECORDING [PASSES] */
 
 #define _POSIX_C_SOURCE 199309L
 #include "record/replay.h"
@@ -24,15 +24,12 @@ static int gjk_epa(const recording_query_t *q, recording_answer_t *out)
 
 int main(int argc, char **argv)
 {
+    static tally_t tally[] = { { .name = "MPR", .method = mpr }, { .name = "GJK + EPA", .method = gjk_epa } };
     recording_t r;
-    int bad;
-    if (argc != 2 || recording_read(argv[1], &r) != 0 || !r.truth_at) {
-        fprintf(stderr, "usage: replay RECORDING (a whole one, with its truth)\n");
+    int passes, failed;
+    if (replay_arguments(argc, argv, &r, &passes) != 0)
         return 2;
-    }
-    printf("%u frames, %u bodies, %u pairs\n\n", (unsigned)r.frames, (unsigned)r.bodies, (unsigned)r.pairs);
-    tally_head();
-    bad = recording_replay(&r, "MPR", mpr) != 0 || recording_replay(&r, "GJK + EPA", gjk_epa) != 0;
+    failed = recording_replay(&r, tally, sizeof tally / sizeof tally[0], passes, NULL);
     recording_free(&r);
-    return bad;
+    return failed;
 }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Puts every pair of a recording to a penetration method and judges the answers
- * by the recording's truth. Settings are those of the simulators: tolerance
+/* Puts every pair of a recording to penetration methods and judges the answers
+ * by the recording's truth; prints one line of text a method, 80 columns. Settings are those of the simulators: tolerance
  * 1e-6 m, at most 500 iterations. */
 
 #ifndef RECORD_REPLAY_H
@@ -28,25 +28,16 @@ typedef int (*recording_method_fn)(const recording_query_t *, recording_answer_t
 
 typedef struct {
     const char *name;
-    unsigned long queries, hits, missed, spurious, deep, shallow, broken, supports;
-    double error_sum, error_max;
-    double *error; /* of each hit that is one, for the percentile */
-    size_t errors;
-    double nanoseconds;
+    recording_method_fn method;
+    unsigned long queries, missed, spurious, deep, shallow, broken, supports, judged;
+    double error_sum, error_max; /* metres, of those judged: hits that are hits */
+    double nanoseconds;          /* of the fastest pass */
 } tally_t;
 
 static const double REPLAY_TOLERANCE = 1e-6; /* metres */
 
 /* Depths within this are neither hit nor miss: the bodies measure decimetres. */
 static const double REPLAY_TOUCH = 1e-9;
-
-static inline int tally_make(tally_t *t, const char *name, size_t pairs)
-{
-    memset(t, 0, sizeof *t);
-    t->name = name;
-    t->error = (double *)malloc((pairs + 1) * sizeof *t->error);
-    return t->error ? 0 : -1;
-}
 
 /* One answer: hit or not, and where hit its depth and direction, against the truth. */
 static inline void tally_add(tally_t *t, const recording_answer_t *answer, double lower, double upper)
@@ -57,7 +48,6 @@ static inline void tally_add(tally_t *t, const recording_answer_t *answer, doubl
         t->missed += lower > REPLAY_TOUCH;
         return;
     }
-    t->hits++;
     if (upper < -REPLAY_TOUCH) {
         t->spurious++;
         return;
@@ -74,33 +64,30 @@ static inline void tally_add(tally_t *t, const recording_answer_t *answer, doubl
         t->shallow += depth < lower - slack;
         t->error_sum += error;
         t->error_max = error > t->error_max ? error : t->error_max;
-        t->error[t->errors++] = error;
+        t->judged++;
     }
 }
 
-static inline int tally_order(const void *a, const void *b)
+static inline void tally_head(const recording_t *r)
 {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    unsigned long overlaps = 0;
+    size_t k;
+    for (k = 0; k < r->pairs; k++) {
+        double lower, upper;
+        recording_truth(r, k, &lower, &upper);
+        overlaps += lower > 0;
+    }
+    printf("%u bodies, %u frames, %u pairs, %lu of them overlap\n\n", (unsigned)r->bodies, (unsigned)r->frames, (unsigned)r->pairs,
+           overlaps);
+    printf("%-13s %6s %5s %6s %6s %7s %7s %7s %8s %5s\n", "method", "missed", "false", "broken", "deep", "unsound", "mean um", "max um",
+           "supports", "ns");
 }
 
-static inline void tally_head(void)
+static inline void tally_print(const tally_t *t)
 {
-    printf("| method | queries | hits | misses | missed overlaps | spurious hits | NaN or zero dir | depth error mean, um | p99, um | max, um "
-           "| > 1 %% too deep | unsound | supports a query | ns a query |\n"
-           "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-}
-
-/* Prints the table's row; the tally is finished with. */
-static inline void tally_print(tally_t *t)
-{
-    const double hits = t->errors ? (double)t->errors : 1, queries = t->queries ? (double)t->queries : 1;
-    qsort(t->error, t->errors, sizeof *t->error, tally_order);
-    printf("| %s | %lu | %lu | %lu | %lu | %lu | %lu | %.3g | %.3g | %.3g | %.2f %% | %.2f %% | %.2f | %.0f |\n", t->name, t->queries,
-           t->hits, t->queries - t->hits, t->missed, t->spurious, t->broken, 1e6 * t->error_sum / hits,
-           t->errors ? 1e6 * t->error[(size_t)(0.99 * (double)(t->errors - 1))] : 0, 1e6 * t->error_max,
-           100 * (double)t->deep / hits, 100 * (double)t->shallow / hits, (double)t->supports / queries, t->nanoseconds / queries);
-    free(t->error);
+    const double judged = t->judged ? (double)t->judged : 1, queries = t->queries ? (double)t->queries : 1;
+    printf("%-13s %6lu %5lu %6lu %6lu %7lu %7.3g %7.0f %8.2f %5.0f\n", t->name, t->missed, t->spurious, t->broken, t->deep, t->shallow,
+           1e6 * t->error_sum / judged, 1e6 * t->error_max, (double)t->supports / queries, t->nanoseconds / queries);
 }
 
 static inline double replay_clock(void)
@@ -110,13 +97,15 @@ static inline double replay_clock(void)
     return 1e9 * (double)now.tv_sec + (double)now.tv_nsec;
 }
 
-/* One row of the table. Returns 0, or -1 without memory. */
-static inline int recording_replay(const recording_t *r, const char *name, recording_method_fn method)
+/* Asks every pair, in their order. The first pass is judged, the fastest one's time
+ * is kept. Returns 0, or -1 without memory. */
+static inline int recording_pass(const recording_t *r, tally_t *tally)
 {
+    const int first = tally->queries == 0;
     ccd_t ccd;
-    tally_t tally;
     uint32_t f, i, most = 0;
     size_t k = 0;
+    double nanoseconds = 0;
     shape_t *body = (shape_t *)malloc(r->bodies * sizeof *body);
     recording_answer_t *answer;
     for (f = 0; f < r->frames; f++)
@@ -125,7 +114,7 @@ static inline int recording_replay(const recording_t *r, const char *name, recor
     shape_query(&ccd);
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)REPLAY_TOLERANCE;
     ccd.max_iterations = 500;
-    if (!body || !answer || tally_make(&tally, name, r->pairs) != 0) {
+    if (!body || !answer) {
         free(body);
         free(answer);
         return -1;
@@ -142,22 +131,77 @@ static inline int recording_replay(const recording_t *r, const char *name, recor
             q.obj2 = &body[b];
             q.ccd = &ccd;
             q.pair = a * r->bodies + b;
-            answer[i].code = method(&q, &answer[i]);
+            answer[i].code = tally->method(&q, &answer[i]);
         }
-        tally.nanoseconds += replay_clock() - start;
-        for (i = 0; i < r->frame_pairs[f]; i++) {
+        nanoseconds += replay_clock() - start;
+        for (i = 0; first && i < r->frame_pairs[f]; i++) {
             double lower, upper;
             recording_truth(r, k++, &lower, &upper);
-            tally_add(&tally, &answer[i], lower, upper);
+            tally_add(tally, &answer[i], lower, upper);
         }
-        for (i = 0; i < r->bodies; i++)
-            tally.supports += body[i].calls;
+        for (i = 0; first && i < r->bodies; i++)
+            tally->supports += body[i].calls;
     }
-    tally.supports /= 2; /* a support of the difference asks both shapes */
-    tally_print(&tally);
+    if (first)
+        tally->supports /= 2; /* a support of the difference asks both shapes */
+    if (first || nanoseconds < tally->nanoseconds)
+        tally->nanoseconds = nanoseconds;
     free(body);
     free(answer);
     return 0;
+}
+
+enum { REPLAY_SUPPORTS = 8 };
+
+/* What a query costs that only asks support points, one direction after another. */
+static inline int replay_supports(const recording_query_t *q, recording_answer_t *out)
+{
+    int i;
+    for (i = 0; i < REPLAY_SUPPORTS; i++) {
+        ccd_vec3_t dir, back, point;
+        ccdVec3Set(&dir, (ccd_real_t)(i & 1 ? .6 : -.6), (ccd_real_t)(i & 2 ? .48 : -.48), (ccd_real_t)(i & 4 ? .64 : -.64));
+        ccdVec3Set(&back, -dir.v[0], -dir.v[1], -dir.v[2]);
+        q->ccd->support1(q->obj1, &dir, &point);
+        q->ccd->support2(q->obj2, &back, &point);
+    }
+    (void)out;
+    return -1;
+}
+
+/* Every method in turn, so that all of them meet the same moments of the machine;
+ * forget, where not NULL, is called before each. Prints the table. Returns an exit
+ * code: 0, or 1 without memory. */
+static inline int recording_replay(const recording_t *r, tally_t *tally, size_t methods, int passes, void (*forget)(void))
+{
+    tally_t alone = { .name = "support points", .method = replay_supports };
+    size_t m;
+    int pass;
+    for (pass = 0; pass < passes; pass++) {
+        if (recording_pass(r, &alone) != 0)
+            return 1;
+        for (m = 0; m < methods; m++) {
+            if (forget)
+                forget();
+            if (recording_pass(r, &tally[m]) != 0)
+                return 1;
+        }
+    }
+    tally_head(r);
+    for (m = 0; m < methods; m++)
+        tally_print(&tally[m]);
+    printf("\na support point alone: %.1f ns\n", alone.nanoseconds / (double)alone.queries / REPLAY_SUPPORTS);
+    return 0;
+}
+
+/* The command line of a replaying program: reads the recording, with its truth, and
+ * how many passes (default 1). Returns 0, or -1 after saying the usage. */
+static inline int replay_arguments(int argc, char **argv, recording_t *r, int *passes)
+{
+    *passes = argc == 3 ? atoi(argv[2]) : 1;
+    if ((argc == 2 || argc == 3) && *passes > 0 && recording_read(argv[1], r) == 0 && r->truth_at)
+        return 0;
+    fprintf(stderr, "usage: %s RECORDING [PASSES] (a whole recording, with its truth)\n", argv[0]);
+    return -1;
 }
 
 #endif

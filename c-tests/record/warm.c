@@ -4,13 +4,20 @@
 /* Replays the recorded contact sequence through this library's extension, with
  * one warm state for each pair of bodies, and cold for comparison.
  *
- * usage: warm RECORDING */
+ * usage: warm RECORDING [PASSES] */
 
 #define _POSIX_C_SOURCE 199309L
 #include "record/replay.h"
 #include "ours.h"
 
 static ccd_warm_t *state;
+static size_t states;
+
+/* all zeros: cold */
+static void forget(void)
+{
+    memset(state, 0, states * sizeof *state);
+}
 
 static int mpr(const recording_query_t *q, recording_answer_t *out)
 {
@@ -59,29 +66,20 @@ static int minimum_warm(const recording_query_t *q, recording_answer_t *out)
 
 int main(int argc, char **argv)
 {
-    static const struct {
-        const char *name;
-        recording_method_fn method;
-    } row[] = {
-        { "MPR, cold", mpr },         { "MPR, warm", mpr_warm },         { "local, cold", local },
-        { "local, warm", local_warm }, { "minimum, cold", minimum }, { "minimum, warm", minimum_warm },
+    static tally_t tally[] = {
+        { .name = "MPR, cold", .method = mpr },         { .name = "MPR, warm", .method = mpr_warm },
+        { .name = "local, cold", .method = local },     { .name = "local, warm", .method = local_warm },
+        { .name = "minimum, cold", .method = minimum }, { .name = "minimum, warm", .method = minimum_warm },
     };
     recording_t r;
-    size_t i;
-    int bad = 0;
-    if (argc != 2 || recording_read(argv[1], &r) != 0 || !r.truth_at) {
-        fprintf(stderr, "usage: warm RECORDING (a whole one, with its truth)\n");
+    int passes, failed = 1;
+    if (replay_arguments(argc, argv, &r, &passes) != 0)
         return 2;
-    }
-    printf("%s: %u frames, %u bodies, %u pairs\n\n", OURS(ccdImplementation)(), (unsigned)r.frames, (unsigned)r.bodies,
-           (unsigned)r.pairs);
-    tally_head();
-    for (i = 0; i < sizeof row / sizeof row[0] && !bad; i++) {
-        /* all zeros: cold */
-        state = (ccd_warm_t *)calloc((size_t)r.bodies * r.bodies, sizeof *state);
-        bad = !state || recording_replay(&r, row[i].name, row[i].method) != 0;
-        free(state);
-    }
+    states = (size_t)r.bodies * r.bodies;
+    state = (ccd_warm_t *)malloc(states * sizeof *state);
+    if (state)
+        failed = recording_replay(&r, tally, sizeof tally / sizeof tally[0], passes, forget);
+    free(state);
     recording_free(&r);
-    return bad;
+    return failed;
 }

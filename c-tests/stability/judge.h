@@ -557,7 +557,7 @@ static inline void print_answer(FILE *file, const answer_t *x)
 static inline void print_shape(FILE *file, const char *name, const shape_t *s)
 {
     int i;
-    fprintf(file, "%s: type %d p %.17g %.17g %.17g tie %d pos %.17g %.17g %.17g rot", name, s->type, (double)s->p[0],
+    fprintf(file, "%s: type %d p %.17g %.17g %.17g tie %d pos %.17g %.17g %.17g rot", name, (int)s->type, (double)s->p[0],
             (double)s->p[1], (double)s->p[2], s->tie, (double)s->pos[0], (double)s->pos[1], (double)s->pos[2]);
     for (i = 0; i < 9; i++)
         fprintf(file, " %.17g", (double)s->rot[i]);

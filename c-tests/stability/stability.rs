@@ -70,7 +70,7 @@ fn configurations_of_the_extension() {
     program("configurations").run(["extension"]);
 }
 
-/// Wrong answers that were found, as promises. A known failure that is mended fails this
+/// Wrong answers that were found, as promises. A known failure that is repaired fails this
 /// too: take its mark out of the table at the program's end.
 #[test]
 #[cfg(not(feature = "single"))]
@@ -147,8 +147,8 @@ fn categories_of_the_extension() {
 /// Both libraries in one process, against each other and the truth.
 #[test]
 #[cfg(not(feature = "single"))]
-fn together_with_libccd() {
-    program("together").run(["60"]);
+fn no_answer_worse_than_libccd() {
+    program("beside_libccd").run(["60"]);
 }
 
 /// Swapped, rotated, translated, scaled.
@@ -238,7 +238,7 @@ fn long() {
     }
     #[cfg(not(feature = "single"))]
     {
-        program("together").run(["1000"]);
+        program("beside_libccd").run(["1000"]);
         let mut args = vec!["100000".to_owned(), "1".to_owned()];
         args.extend(pair_sets());
         alone("truth").run(args);

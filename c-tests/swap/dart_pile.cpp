@@ -12,7 +12,7 @@
  * usage: dart_pile SEED STEPS BODIES fcl|triangles|ode */
 
 #include "swap/uniform.h"
-#include "swap/watch.h"
+#include "swap/interpose.h"
 
 #include <dart/collision/fcl/FCLCollisionDetector.hpp>
 #include <dart/constraint/ConstraintSolver.hpp>

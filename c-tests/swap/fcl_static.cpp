@@ -17,7 +17,7 @@
  * usage: fcl_static SEED POSES   (POSES placed pairs of each two kinds) */
 
 #include "swap/poses.h"
-#include "swap/watch.h"
+#include "swap/interpose.h"
 
 #include <fcl/fcl.h>
 #include <setjmp.h>

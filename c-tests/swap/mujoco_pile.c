@@ -11,7 +11,7 @@
  *   save: the state in the middle of the run; load: run the second half from there */
 
 #include "swap/uniform.h"
-#include "swap/watch.h"
+#include "swap/interpose.h"
 
 #include <mujoco/mujoco.h>
 #include <stdarg.h>

@@ -13,11 +13,11 @@
  * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll */
 
 #include "swap/ode_shape.h"
-#include "swap/right.h"
+#include "swap/callback_errors.h"
 
 static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v);
 #define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
-#include "swap/watch.h"
+#include "swap/interpose.h"
 
 /* Contacts of one step against the truth; only of pairs that ODE put to libccd. */
 typedef struct {

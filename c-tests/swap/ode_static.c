@@ -8,16 +8,16 @@
  *
  * wrong 1: ODE's own callback gave a point that is not a support point.
  *
- * usage: ode_static SEED POSES asis|mended   (POSES placed pairs of each two kinds)
- *   mended: such points are replaced by the right ones, and wrong is 0 */
+ * usage: ode_static SEED POSES asis|corrected   (POSES placed pairs of each two kinds)
+ *   corrected: such points are replaced by the right ones, and wrong is 0 */
 
 #include "swap/poses.h"
 
-static int mended, callback_wrong;
+static int corrected, callback_wrong;
 static void audit(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v);
 #define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
-#include "swap/watch.h"
-#include "swap/right.h"
+#include "swap/interpose.h"
+#include "swap/callback_errors.h"
 
 #include <ode/ode.h>
 
@@ -44,7 +44,7 @@ static void audit(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
     p = from(&a.body.shape, &centre) < 1e-12 ? &a : &b;
     if (right_point(&p->body.shape, dir, v, point) < 1e-10 * pair_size(&a.body.shape, &b.body.shape))
         return;
-    if (mended)
+    if (corrected)
         ccdVec3Set(v, point[0], point[1], point[2]);
     else
         callback_wrong = 1;
@@ -127,11 +127,11 @@ int main(int argc, char **argv)
     long number = 0, k, poses;
     int i, j, d;
     if (argc != 4) {
-        fprintf(stderr, "usage: ode_static SEED POSES asis|mended\n");
+        fprintf(stderr, "usage: ode_static SEED POSES asis|corrected\n");
         return 2;
     }
     poses = atol(argv[2]);
-    mended = !strcmp(argv[3], "mended");
+    corrected = !strcmp(argv[3], "corrected");
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
     watch_library();

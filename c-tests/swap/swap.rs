@@ -59,9 +59,12 @@ fn ode_collide() {
     let ode = checks::ode_static();
     let as_is = checks::judge_collide("ODE", "collide", &ode.run(&ode_args("asis")));
     must_pass(&as_is);
-    let mended = checks::judge_collide("ODE", "mended", &ode.run(&ode_args("mended")));
-    must_pass(&mended);
-    assert!(as_is.wrong > 0 && mended.wrong == 0, "{as_is:?} {mended:?}");
+    let corrected = checks::judge_collide("ODE", "corrected", &ode.run(&ode_args("corrected")));
+    must_pass(&corrected);
+    assert!(
+        as_is.wrong > 0 && corrected.wrong == 0,
+        "{as_is:?} {corrected:?}"
+    );
 }
 
 #[test]
@@ -127,6 +130,6 @@ fn towers_stand() {
 /// What a simulation needs most: a contact where the bodies touch.
 #[test]
 fn contacts_are_where_the_bodies_are() {
-    let place = harness::Program::c("place").source("swap/place.c");
+    let place = harness::Program::c("contact_position").source("swap/contact_position.c");
     place.link_ours_shared().build().run(["20000"]);
 }

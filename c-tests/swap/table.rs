@@ -42,7 +42,7 @@ fn table() {
         checks::judge_collide("FCL", "collide", &fcl),
         checks::judge_distance("FCL", &fcl),
         checks::judge_collide("ODE", "collide", &ode("asis")),
-        checks::judge_collide("ODE", "collide, its cylinder mended", &ode("mended")),
+        checks::judge_collide("ODE", "collide, its cylinder corrected", &ode("corrected")),
     ];
     for row in &rows {
         for line in row.against.iter().take(20) {

@@ -6,7 +6,7 @@
  * A shape is any type with
  *
  *     V support(const ccd::Vec3 &dir) const;   a point of the shape farthest along dir (unit)
- *     V centre() const;                        a point inside it, the deeper the better
+ *     V center() const;                        a point inside it, the deeper the better; or centre()
  *
  * where V is ccd::Vec3, ccd_vec3_t or anything with v[0], v[1], v[2] (std::array, the vectors
  * of the usual libraries). centre() is needed by the MPR queries; penetration_local,
@@ -144,8 +144,13 @@ private:
 
 namespace detail {
 
+/* center() and centre() are one to the library; a shape that has both is asked the first. */
 template <class S, class = void>
-struct has_centre : std::false_type {};
+struct has_center : std::false_type {};
+template <class S>
+struct has_center<S, std::void_t<decltype(Vec3(std::declval<const S &>().center()))>> : std::true_type {};
+template <class S, class = void>
+struct has_centre : has_center<S> {};
 template <class S>
 struct has_centre<S, std::void_t<decltype(Vec3(std::declval<const S &>().centre()))>> : std::true_type {};
 
@@ -158,7 +163,10 @@ void support(const void *shape, const ccd_vec3_t *dir, ccd_vec3_t *out)
 template <class S>
 void centre(const void *shape, ccd_vec3_t *out)
 {
-    *out = Vec3(static_cast<const S *>(shape)->centre());
+    if constexpr (has_center<S>::value)
+        *out = Vec3(static_cast<const S *>(shape)->center());
+    else
+        *out = Vec3(static_cast<const S *>(shape)->centre());
 }
 
 template <class S>
@@ -187,7 +195,7 @@ ccd_t query(const Settings &settings)
 template <class A, class B>
 constexpr void needs_centres()
 {
-    static_assert(has_centre<A>::value && has_centre<B>::value, "MPR needs the centre() of both shapes");
+    static_assert(has_centre<A>::value && has_centre<B>::value, "MPR needs the center() of both shapes");
 }
 
 inline ccd_warm_t *state(Warm *warm) { return warm ? warm->get() : nullptr; }

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use serde::Serialize;
+use serde::{Serialize, de::DeserializeOwned};
 
 use super::libraries::Libraries;
 
@@ -21,16 +21,6 @@ pub fn bar(steps: u64, what: &str) -> ProgressBar {
     ProgressBar::new(steps)
         .with_style(style)
         .with_prefix(what.to_owned())
-}
-
-/// What, where and when, in short lines for a picture.
-pub fn short(libraries: &Libraries) -> Vec<String> {
-    machine(libraries)
-        .split(", ")
-        .take(2)
-        .map(str::to_owned)
-        .chain(["rustc -O3, callbacks gcc -O3".to_owned()])
-        .collect()
 }
 
 /// One line: libraries, processor, compiler and flags, date.
@@ -55,11 +45,11 @@ pub fn machine(libraries: &Libraries) -> String {
     )
 }
 
-/// The rows as CSV under one comment line that says where they come from.
-pub fn write_csv<T: Serialize>(path: &Path, libraries: &Libraries, rows: &[T]) {
+/// The rows as CSV under one comment line, `origin`, that says where they come from.
+pub fn write_csv<T: Serialize>(path: &Path, origin: &str, rows: &[T]) {
     let write = || -> Result<(), Box<dyn std::error::Error>> {
         let mut file = File::create(path)?;
-        writeln!(file, "# {}", machine(libraries))?;
+        writeln!(file, "# {origin}")?;
         let mut csv = csv::Writer::from_writer(file);
         for row in rows {
             csv.serialize(row)?;
@@ -68,4 +58,23 @@ pub fn write_csv<T: Serialize>(path: &Path, libraries: &Libraries, rows: &[T]) {
         Ok(())
     };
     write().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+}
+
+/// The comment line of such a file; empty where there is none.
+pub fn origin(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    let line = text.lines().next().and_then(|l| l.strip_prefix("# "));
+    line.unwrap_or_default().to_owned()
+}
+
+/// The rows of such a file; none where there is no file.
+pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Vec<T> {
+    if !path.exists() {
+        return Vec::new();
+    }
+    csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_path(path)
+        .and_then(|mut r| r.deserialize().collect())
+        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }

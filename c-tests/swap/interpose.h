@@ -13,8 +13,8 @@
  * With WATCH_MINIMUM in the environment, on this library: ccdMPRPenetration is answered
  * with the proven minimum, whatever that costs. */
 
-#ifndef SWAP_WATCH_H
-#define SWAP_WATCH_H
+#ifndef SWAP_INTERPOSE_H
+#define SWAP_INTERPOSE_H
 
 #include "harness/identity.h"
 #include <ccd/warm.h>

@@ -4,7 +4,7 @@
 /* Small hulls that lie on a floor: the contact position must be where the hull is.
  * A floor is the hard case, for its own support points are metres away.
  *
- * usage: place POSES */
+ * usage: contact_position POSES */
 
 #include "shapes.h"
 #include "swap/hull.h"

@@ -9,7 +9,7 @@
  *   thousandth of the depth);
  * - our GJK is never farther from the truth than libccd's, beyond the tolerance.
  *
- *   together [pairs a category] */
+ *   beside_libccd [pairs a category] */
 
 #include "categories.h"
 #include "harness/identity.h"

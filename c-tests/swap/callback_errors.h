@@ -6,8 +6,8 @@
  * a point up to a radius out of place. Such queries are about no convex shape; they
  * are found by holding every support point against the shape it is said to be of. */
 
-#ifndef SWAP_RIGHT_H
-#define SWAP_RIGHT_H
+#ifndef SWAP_CALLBACK_ERRORS_H
+#define SWAP_CALLBACK_ERRORS_H
 
 #include "truth.h"
 #include <ccd/ccd.h>
