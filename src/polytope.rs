@@ -550,7 +550,7 @@ impl<const F: usize> Polytope<F> {
         let something = n2 > NOTHING;
         // Of a vanished plane neither side nor sign is known: its parent's sign counts.
         let heir = if something { &old } else { parent };
-        let plane = match self.from_corners(f, heir, something, corner) {
+        let plane = match self.through_corners(f, heir, something, corner) {
             Some(plane) => plane,
             None if n2 >= COLLAPSED => {
                 self.wear();
@@ -574,7 +574,7 @@ impl<const F: usize> Polytope<F> {
     /// The plane through a face's corners, if the face has an area and the plane inherits
     /// from `old` what the bound needs: z below it, the origin if that was so, and the side if
     /// that is known.
-    fn from_corners(
+    fn through_corners(
         &self,
         f: usize,
         old: &Plane,
@@ -605,7 +605,7 @@ impl<const F: usize> Polytope<F> {
     pub fn refine(&mut self, f: usize, corner: &impl Fn(usize) -> Vec3) -> bool {
         let f = Self::at(f);
         let old = Plane::of(&self.planes[f]);
-        let Some(plane) = self.from_corners(f, &old, true, corner) else {
+        let Some(plane) = self.through_corners(f, &old, true, corner) else {
             return false;
         };
         let before = old.offset() / old.normal().norm();

@@ -457,7 +457,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
-        // For as long as the call takes.
+        #[allow(clippy::needless_match, reason = "it shortens the lifetime")]
         let arena: Option<&mut dyn Arena> = match arena {
             Some(arena) => Some(arena),
             None => None,
