@@ -35,95 +35,106 @@
 
 namespace ccd {
 
-/* double, or float where the library is built so. */
+/** double, or float where the library is built so. */
 using Real = ccd_real_t;
 
-/* A point or a direction, metres. */
+/** A point or a direction, metres. */
 struct Vec3 {
-    Real x = 0, y = 0, z = 0;
+    Real x = 0; /**< along the first axis */
+    Real y = 0; /**< along the second axis */
+    Real z = 0; /**< along the third axis */
 
+    /** Zero. */
     constexpr Vec3() = default;
+    /** From three coordinates. */
     constexpr Vec3(Real x_, Real y_, Real z_) : x(x_), y(y_), z(z_) {}
+    /** From the vector of the C interface. */
     constexpr Vec3(const ccd_vec3_t &v) : x(v.v[0]), y(v.v[1]), z(v.v[2]) {}
-    /* From any vector with v[0], v[1], v[2]. */
+    /** From any vector with v[0], v[1], v[2]. */
     template <class V, class = decltype(static_cast<Real>(std::declval<const V &>()[2]))>
     constexpr Vec3(const V &v)
         : x(static_cast<Real>(v[0])), y(static_cast<Real>(v[1])), z(static_cast<Real>(v[2]))
     {
     }
 
+    /** Coordinate i, 0 to 2. */
     constexpr Real operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
+    /** The vector of the C interface. */
     constexpr operator ccd_vec3_t() const { return ccd_vec3_t{{x, y, z}}; }
 };
 
-/* What came of a query. */
+/** What came of a query. */
 enum class Status : int {
-    hit = CCD_HIT,             /* overlap or touch: every field is valid */
-    miss = CCD_MISS,           /* apart */
-    no_memory = CCD_NO_MEMORY, /* memory was needed and not to be had */
-    bad_input = CCD_BAD_INPUT, /* a tolerance, a direction or a shape's answer is no number */
-    limit = CCD_LIMIT          /* max_iterations came first: the best sound answer is valid */
+    hit = CCD_HIT,             /**< overlap or touch: every field is valid */
+    miss = CCD_MISS,           /**< apart */
+    no_memory = CCD_NO_MEMORY, /**< memory was needed and not to be had */
+    bad_input = CCD_BAD_INPUT, /**< a tolerance, a direction or a shape's answer is no number */
+    limit = CCD_LIMIT          /**< max_iterations came first: the best sound answer is valid */
 };
 
-/* How exact, and with how much work. */
+/** How exact, and with how much work. */
 struct Settings {
-    Real tolerance = CCD_REAL(1e-4);                           /* largest error of the depth, metres */
-    unsigned long max_iterations = static_cast<unsigned long>(-1); /* cap on every loop */
+    Real tolerance = CCD_REAL(1e-4);                           /**< largest error of the depth, metres */
+    unsigned long max_iterations = static_cast<unsigned long>(-1); /**< cap on every loop */
 };
 
-/* An overlap. Zero but for the status unless the status is hit or limit. */
+/** An overlap. Zero but for the status unless the status is hit or limit. */
 struct Contact {
-    Status status = Status::miss;
-    Real depth = 0; /* metres, >= 0: moving the second shape by depth * dir separates them */
-    Vec3 dir;       /* unit; the way the second shape moves */
-    Vec3 pos;       /* contact position */
+    Status status = Status::miss; /**< hit and limit: there is an answer */
+    Real depth = 0; /**< metres, >= 0: moving the second shape by depth * dir separates them */
+    Vec3 dir;       /**< unit; the way the second shape moves */
+    Vec3 pos;       /**< contact position */
 
-    /* Is there an answer? */
+    /** Is there an answer? */
     explicit operator bool() const { return status == Status::hit || status == Status::limit; }
 };
 
-/* An overlap with its bounds and its witness points. */
+/** An overlap with its bounds and its witness points. */
 struct Penetration : Contact {
-    Real depth_lower = 0;         /* proven lower bound on the least depth, 0 where there is none */
-    Vec3 normal;                  /* unit; of the separating plane; dir but in penetration_along */
-    Vec3 point1, point2;          /* witness points; pos is their middle */
-    unsigned long supports = 0;   /* calls of each shape's support() */
-    unsigned long iterations = 0; /* of the solver */
+    Real depth_lower = 0;         /**< proven lower bound on the least depth, 0 where there is none */
+    Vec3 normal;                  /**< unit; of the separating plane; dir but in penetration_along */
+    Vec3 point1;                  /**< witness point of the first shape */
+    Vec3 point2;                  /**< witness point of the second shape; pos is their middle */
+    unsigned long supports = 0;   /**< calls of each shape's support() */
+    unsigned long iterations = 0; /**< of the solver */
 };
 
-/* One point of a contact manifold. */
+/** One point of a contact manifold. */
 struct ContactPoint {
-    Vec3 point1, point2; /* point2 = point1 - depth * normal */
-    Real depth = 0;      /* metres; negative where the shapes are apart */
+    Vec3 point1;    /**< of the first shape */
+    Vec3 point2;    /**< of the second shape: point1 - depth * normal */
+    Real depth = 0; /**< metres; negative where the shapes are apart */
 };
 
-/* How far apart, or how deep. Zero but for the status where that is bad_input or no_memory. */
+/** How far apart, or how deep. Zero but for the status where that is bad_input or no_memory. */
 struct Distance {
-    Status status = Status::bad_input;
-    Real distance = 0;            /* metres: the gap along normal, or minus the depth; never above the truth */
-    Real distance_upper = 0;      /* never below the truth */
-    Vec3 normal;                  /* unit; from the first shape to the second */
-    Vec3 point1, point2;          /* witness points, on the surfaces of the shapes with their margins */
-    unsigned long supports = 0;   /* calls of each shape's support() */
-    unsigned long iterations = 0; /* of the solver */
+    Status status = Status::bad_input; /**< hit, miss and limit: there is an answer */
+    Real distance = 0;            /**< metres: the gap along normal, or minus the depth; never above the truth */
+    Real distance_upper = 0;      /**< never below the truth */
+    Vec3 normal;                  /**< unit; from the first shape to the second */
+    Vec3 point1;                  /**< witness point of the first shape, on its surface with its margin */
+    Vec3 point2;                  /**< of the second shape */
+    unsigned long supports = 0;   /**< calls of each shape's support() */
+    unsigned long iterations = 0; /**< of the solver */
 
-    /* Is there an answer? */
+    /** Is there an answer? */
     explicit operator bool() const { return status != Status::bad_input && status != Status::no_memory; }
 };
 
-/* Balls added all around two shapes, and how far their distance matters, metres. */
+/** Balls added all around two shapes, and how far their distance matters, metres. */
 struct Margins {
-    Real margin1 = 0;
-    Real margin2 = 0;
-    Real beyond = std::numeric_limits<Real>::infinity();
+    Real margin1 = 0; /**< around the first shape */
+    Real margin2 = 0; /**< around the second shape */
+    Real beyond = std::numeric_limits<Real>::infinity(); /**< farther is not refined */
 };
 
-/* What one query of a pair leaves for the next: a value, cold at first, copied freely. */
+/** What one query of a pair leaves for the next: a value, cold at first, copied freely. */
 class Warm {
 public:
+    /** Cold. */
     Warm() = default;
 
-    /* A fresh state that starts from dir, a guess of the way the second shape leaves: of any
+    /** A fresh state that starts from dir, a guess of the way the second shape leaves: of any
      * length; zero or no number is cold. */
     static Warm guess(const Vec3 &dir)
     {
@@ -133,9 +144,10 @@ public:
         return warm;
     }
 
-    /* For the same two shapes in the other order. */
+    /** For the same two shapes in the other order. */
     void flip() { ccdWarmFlip(&state_); }
 
+    /** The state, for a call of the C interface. */
     ccd_warm_t *get() { return &state_; }
 
 private:
@@ -144,7 +156,7 @@ private:
 
 namespace detail {
 
-/* center() and centre() are one to the library; a shape that has both is asked the first. */
+/** center() and centre() are one to the library; a shape that has both is asked the first. */
 template <class S, class = void>
 struct has_center : std::false_type {};
 template <class S>
@@ -229,7 +241,7 @@ inline Penetration penetration(int code, const ccd_penetration_t &out)
 
 } // namespace detail
 
-/* Do the shapes overlap? (A touch is none.) ccdMPRIntersectWarm. A pair that stays apart costs one
+/** Do the shapes overlap? (A touch is none.) ccdMPRIntersectWarm. A pair that stays apart costs one
  * call of each support() while its last separating direction still separates. */
 template <class A, class B>
 bool intersect(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
@@ -239,7 +251,7 @@ bool intersect(const A &a, const B &b, const Settings &settings = {}, Warm *warm
     return ccdMPRIntersectWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
 }
 
-/* Do the shapes overlap? ccdGJKIntersect, without centres. */
+/** Do the shapes overlap? ccdGJKIntersect, without centres. */
 template <class A, class B>
 bool intersect_gjk(const A &a, const B &b, const Settings &settings = {})
 {
@@ -247,7 +259,7 @@ bool intersect_gjk(const A &a, const B &b, const Settings &settings = {})
     return ccdGJKIntersect(std::addressof(a), std::addressof(b), &c) == 1;
 }
 
-/* The depth at MPR's price: ccdMPRPenetrationWarm. */
+/** The depth at MPR's price: ccdMPRPenetrationWarm. */
 template <class A, class B>
 Contact penetration_mpr(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
@@ -260,7 +272,7 @@ Contact penetration_mpr(const A &a, const B &b, const Settings &settings = {}, W
     return detail::contact(code, depth, dir, pos);
 }
 
-/* The global minimum of the depth, without centres: ccdGJKPenetration. */
+/** The global minimum of the depth, without centres: ccdGJKPenetration. */
 template <class A, class B>
 Contact penetration_gjk(const A &a, const B &b, const Settings &settings = {})
 {
@@ -271,7 +283,7 @@ Contact penetration_gjk(const A &a, const B &b, const Settings &settings = {})
     return detail::contact(code, depth, dir, pos);
 }
 
-/* A local minimum of the depth, from the state, else from the centres, by the fastest search
+/** A local minimum of the depth, from the state, else from the centres, by the fastest search
  * there is: ccdPenetrationLocal. */
 template <class A, class B>
 Penetration penetration_local(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
@@ -282,7 +294,7 @@ Penetration penetration_local(const A &a, const B &b, const Settings &settings =
     return detail::penetration(code, out);
 }
 
-/* The same by the paper's method as published: ccdPenetrationIncremental. */
+/** The same by the paper's method as published: ccdPenetrationIncremental. */
 template <class A, class B>
 Penetration penetration_incremental(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
@@ -292,7 +304,7 @@ Penetration penetration_incremental(const A &a, const B &b, const Settings &sett
     return detail::penetration(code, out);
 }
 
-/* The global minimum of the depth with its proof, depth - depth_lower <= tolerance:
+/** The global minimum of the depth with its proof, depth - depth_lower <= tolerance:
  * ccdPenetrationMinimum. */
 template <class A, class B>
 Penetration penetration_minimum(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
@@ -303,7 +315,7 @@ Penetration penetration_minimum(const A &a, const B &b, const Settings &settings
     return detail::penetration(code, out);
 }
 
-/* Where the shapes touch: up to N points of the region in which the faces that look along normal
+/** Where the shapes touch: up to N points of the region in which the faces that look along normal
  * lie over each other, the deepest first; the number of them, or Status::bad_input's:
  * ccdContacts. */
 template <std::size_t N, class A, class B>
@@ -323,7 +335,7 @@ int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<C
     return count;
 }
 
-/* How far b must move along dir (of any length): ccdPenetrationAlong. */
+/** How far b must move along dir (of any length): ccdPenetrationAlong. */
 template <class A, class B>
 Penetration penetration_along(const A &a, const B &b, const Vec3 &dir, const Settings &settings = {},
                               Warm *warm = nullptr)
@@ -335,7 +347,7 @@ Penetration penetration_along(const A &a, const B &b, const Vec3 &dir, const Set
     return detail::penetration(code, out);
 }
 
-/* For shapes in a common plane with this normal (of any length), an answer in that plane:
+/** For shapes in a common plane with this normal (of any length), an answer in that plane:
  * ccdPenetrationPlanar. */
 template <class A, class B>
 Penetration penetration_planar(const A &a, const B &b, const Vec3 &plane_normal, const Settings &settings = {},
@@ -348,7 +360,7 @@ Penetration penetration_planar(const A &a, const B &b, const Vec3 &plane_normal,
     return detail::penetration(code, out);
 }
 
-/* How far apart, or how deep, one continuous function through the touch: ccdSignedDistance. The
+/** How far apart, or how deep, one continuous function through the touch: ccdSignedDistance. The
  * shapes are meant with a ball of their margin added all around. */
 template <class A, class B>
 Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, const Margins &margins = {},

@@ -10,7 +10,7 @@
 
 #define ccd_offsetof(type, member) offsetof(type, member)
 
-/* From a pointer to a member, the object of that type it is a member of. */
+/** From a pointer to a member, the object of that type it is a member of. */
 #define ccd_container_of(ptr, type, member) ((type *)((char *)(ptr) - ccd_offsetof(type, member)))
 
 /* _ccd_inline: a function that is inlined and may go unused.
@@ -26,7 +26,7 @@
 #endif
 
 #ifdef __ICC
-/* Unused parameters; operands in unspecified order. */
+/** Unused parameters; operands in unspecified order. */
 #pragma warning(disable : 869)
 #pragma warning(disable : 981)
 #endif

@@ -49,6 +49,10 @@
  * State of one pair between queries. Plain data, no pointers, nothing to free: all
  * bytes zero is cold, and it may be copied and stored freely.
  *
+ * One state is for one pair in one order: the state of (a, b) is a foreign one to a query of
+ * (b, a), until ccdWarmFlip turns it round. Every call takes what any other call has left in
+ * it. Two threads must not use one state at once.
+ *
  * A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to
  * another local minimum; every answer stays sound. The fields are the library's own.
  */
