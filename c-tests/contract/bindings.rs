@@ -89,6 +89,10 @@ fn generate(dir: &Path, include: Option<&Path>) -> String {
         .raw_line("")
         .raw_line("//! Made by bindgen from libccd's installed headers; see bindings.rs.")
         .formatter(bindgen::Formatter::None);
+    // float.h and the like, where libclang is there without clang's own.
+    let mut ask = harness::compile_with(&harness::compiler(false));
+    let found = harness::must_succeed(ask.arg("-print-file-name=include"), "the C compiler");
+    builder = builder.clang_args(["-idirafter", found.stdout.trim()]);
     if let Some(include) = include {
         builder = builder.clang_arg(format!("-I{}", include.display()));
     }
