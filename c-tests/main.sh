@@ -73,7 +73,7 @@ cat <<'END'
 missed    overlaps that are not seen        deep      more than 1 % too deep
 false     overlaps that are none            unsound   the move does not separate
 broken    NaN or a direction of no length   mean max  errors of the depth
-supports  support points a query            ns        a query, best of all passes
+supports  support points a query            ns        a query, best of passes
 
 END
 
