@@ -334,11 +334,11 @@ pub fn run(options: &Options) {
             assert!(count.callbacks > 0, "callgrind saw no {}", method.name);
             // SAFETY: shapes of the scene.
             let calls = |p: &crate::lab::scene::Pair| unsafe { (libraries.callbacks.calls)(p.a) };
-            let before: u64 = part.scene.pairs.iter().map(calls).sum();
+            let before: std::ffi::c_ulong = part.scene.pairs.iter().map(calls).sum();
             for pair in &part.scene.pairs {
                 method.query(&part.scene, pair);
             }
-            let after: u64 = part.scene.pairs.iter().map(calls).sum();
+            let after: std::ffi::c_ulong = part.scene.pairs.iter().map(calls).sum();
             let each = |n: u64| format!("{:.0}", n as f64 / queries);
             // Others' phases are not told apart.
             let phase = |n: u64| {

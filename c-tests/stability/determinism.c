@@ -6,7 +6,11 @@
  * has computed it several times: at once in threads, and once more alone. Who runs it
  * compares what runs and builds print.
  *
- *   determinism [pairs a category] */
+ *   determinism [pairs a category]
+ *   determinism PAIRS list   a line for each pair: a digest of the question, which is what
+ *                            the two objects tell the library, and one of the answers. The
+ *                            C library's sine is not the same everywhere, so other
+ *                            processors are compared where the question is the same. */
 
 #define _POSIX_C_SOURCE 200809L
 
@@ -18,12 +22,20 @@ enum { THREADS = 4 };
 
 static int pairs;
 
+#define FNV_START UINT64_C(0xcbf29ce484222325)
+
 static void digest_bytes(uint64_t *digest, const void *memory, size_t size)
 {
     const unsigned char *byte = (const unsigned char *)memory;
     size_t i;
     for (i = 0; i < size; i++) /* FNV-1a */
         *digest = (*digest ^ byte[i]) * UINT64_C(0x100000001b3);
+}
+
+/* As many bytes on every machine. */
+static void digest_count(uint64_t *digest, uint64_t count)
+{
+    digest_bytes(digest, &count, sizeof count);
 }
 
 /* Everything that a call writes, padding excepted. */
@@ -67,15 +79,57 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         digest_bytes(digest, &out.pos, sizeof out.pos);
         digest_bytes(digest, &out.point1, sizeof out.point1);
         digest_bytes(digest, &out.point2, sizeof out.point2);
-        digest_bytes(digest, &out.supports, sizeof out.supports);
-        digest_bytes(digest, &out.iterations, sizeof out.iterations);
+        digest_count(digest, out.supports);
+        digest_count(digest, out.iterations);
     }
-    digest_bytes(digest, &a.calls, sizeof a.calls);
+    digest_count(digest, (uint64_t)a.calls);
+}
+
+/* The centres of both objects, and their support points all around. */
+static void digest_question(uint64_t *digest, const pair_t *p)
+{
+    enum { DIRECTIONS = 200 };
+    shape_t shape[2] = {p->a, p->b};
+    ccd_t ccd;
+    ccd_vec3_t dir, answer;
+    int side, k;
+    shape_query(&ccd);
+    for (side = 0; side < 2; side++) {
+        ccd.center1(&shape[side], &answer);
+        digest_bytes(digest, &answer, sizeof answer);
+        for (k = 0; k < DIRECTIONS; k++) {
+            dir.v[0] = (ccd_real_t)(k % 7 - 3);
+            dir.v[1] = (ccd_real_t)(k % 11 - 5);
+            dir.v[2] = (ccd_real_t)(k % 13) - (ccd_real_t)6.5;
+            ccdVec3Normalize(&dir);
+            ccd.support1(&shape[side], &dir, &answer);
+            digest_bytes(digest, &answer, sizeof answer);
+        }
+    }
+}
+
+static void list_all(void)
+{
+    pair_t *p = (pair_t *)malloc(sizeof *p);
+    int category, i;
+    for (category = 0; p && category < CATEGORY_COUNT; category++) {
+        for (i = 0; i < pairs; i++) {
+            uint64_t question = FNV_START, answers = FNV_START;
+            ccd_warm_t warm;
+            memset(&warm, 0, sizeof warm);
+            category_pair(category, (uint64_t)i, SHAPE_TIE_SIGN, p);
+            digest_question(&question, p);
+            digest_answers(&answers, p, &warm);
+            printf("pair %d-%d-%016llx %016llx\n", category, i, (unsigned long long)question,
+                   (unsigned long long)answers);
+        }
+    }
+    free(p);
 }
 
 static void *digest_all(void *result)
 {
-    uint64_t digest = UINT64_C(0xcbf29ce484222325);
+    uint64_t digest = FNV_START;
     pair_t *p = (pair_t *)malloc(sizeof *p);
     int category, i;
     for (category = 0; p && category < CATEGORY_COUNT; category++) {
@@ -97,6 +151,10 @@ int main(int argc, char **argv)
     uint64_t digests[THREADS + 1];
     int i, differ = 0;
     pairs = argc > 1 ? atoi(argv[1]) : 20;
+    if (argc > 2) {
+        list_all();
+        return 0;
+    }
     for (i = 0; i < THREADS; i++)
         if (pthread_create(&threads[i], NULL, digest_all, &digests[i]) != 0)
             return 2;

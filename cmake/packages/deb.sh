@@ -27,7 +27,7 @@ maintainer="${DEBFULLNAME:-warmccd developers} <${DEBEMAIL:-warmccd@users.norepl
 date=$(date -R -u -r Cargo.toml)
 
 cp -r cmake/packages/debian debian
-sed -i "s/@MAINTAINER@/$maintainer/" debian/control
+sed -i "s|@MAINTAINER@|$maintainer|" debian/control
 cat >debian/changelog <<END
 warmccd ($version-1~deb$release) unstable; urgency=medium
 
