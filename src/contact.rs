@@ -41,7 +41,7 @@ pub struct Penetration {
 /// The outcome of a query whose input was good.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Answer {
-    /// The objects overlap or touch.
+    /// The objects overlap.
     Hit(Penetration),
     /// They overlap, and the iteration cap came before the tolerance: the best
     /// sound answer.

@@ -74,13 +74,17 @@ CCD_EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *c
 CCD_EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd,
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 
-/** 1 when the objects overlap, 0 when they are apart. By MPR: uses the centers, not
- * first_dir. */
+/** 1 when the objects overlap, 0 when they are apart or touch within rounding. By MPR: uses
+ * the centers, which are to lie in their objects, not first_dir. */
 CCD_EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
-/** Penetration by MPR: cheaper than ccdGJKPenetration, and the depth may be more than the
- * least there is. Returns 0 or -1 and stores as ccdGJKPenetration does. Uses the centers,
- * not first_dir, and no heap. */
+/** Penetration by MPR: the least depth, within mpr_tolerance or 0.1 % of the depth, the
+ * larger of the two. Where 160 support points or max_iterations iterations (one a support
+ * point after the first four) were used up first, as for nearly concentric round objects,
+ * the answer is the lowest that was met. Who must know asks ccdPenetrationMinimum.
+ * Relies on the centers lying in their objects: a center outside makes the answer wrong.
+ * Returns 0 or -1 and stores as ccdGJKPenetration does. A touch within rounding is -1.
+ * Uses the centers, not first_dir, and no heap. */
 CCD_EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd,
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 

@@ -65,7 +65,7 @@ struct Vec3 {
 
 /** What came of a query. */
 enum class Status : int {
-    hit = CCD_HIT,             /**< overlap or touch: every field is valid */
+    hit = CCD_HIT,             /**< overlap: every field is valid */
     miss = CCD_MISS,           /**< apart */
     no_memory = CCD_NO_MEMORY, /**< memory was needed and not to be had */
     bad_input = CCD_BAD_INPUT, /**< a tolerance, a direction or a shape's answer is no number */

@@ -16,12 +16,12 @@
 #include <ccd/ccd.h>
 
 /**
- * The objects overlap or touch.
+ * The objects overlap, by more than rounding.
  */
 #define CCD_HIT 0
 
 /**
- * The objects are apart.
+ * The objects are apart, or touch within rounding.
  */
 #define CCD_MISS -1
 

@@ -125,7 +125,7 @@ pub unsafe fn mpr_penetration(
 
 /// How deep do the objects overlap, which way out, where? Starts from the centres.
 ///
-/// Returns 0 and writes the outputs that are not NULL when they overlap or touch:
+/// Returns 0 and writes the outputs that are not NULL when they overlap:
 /// `depth` in metres, `dir` unit, the way obj2 moves, `pos` the middle of two
 /// witness points. Returns -1 and leaves the outputs alone when they do not, when a
 /// callback is NULL or a point not finite.
@@ -176,7 +176,7 @@ unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_i
 /// How deep do the objects overlap, which way out, where? The global minimum, within
 /// epa_tolerance. Starts from first_dir; the centres are not asked for.
 ///
-/// Returns 0 and writes the outputs that are not NULL when they overlap or touch, as
+/// Returns 0 and writes the outputs that are not NULL when they overlap, as
 /// [`ccdMPRPenetration`] does; -2 when memory cannot be had and -1 otherwise, and leaves
 /// the outputs alone.
 #[unsafe(no_mangle)]

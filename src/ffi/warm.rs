@@ -18,9 +18,9 @@ use crate::signed_distance::{Distance, Wanted, signed_distance};
 use crate::support::Fault;
 use crate::warm::{Pair, State};
 
-/// The objects overlap or touch.
+/// The objects overlap, by more than rounding.
 pub const CCD_HIT: c_int = 0;
-/// The objects are apart.
+/// The objects are apart, or touch within rounding.
 pub const CCD_MISS: c_int = -1;
 /// Memory was needed and not to be had.
 pub const CCD_NO_MEMORY: c_int = -2;
