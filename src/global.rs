@@ -380,18 +380,21 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         if self.request.placed {
             let error = state.tolerance + precision.rounding();
-            let count = set.len() - 1;
-            let witnesses = |i| set.witnesses(i + 1);
-            let rest = patch::rest(witnesses, count, &dir, error, precision.size());
             // Of ties along a normal a support mapping picks one: a point asked along the
             // normal of two faces shows one corner of each.
-            let along = |length: Real| (dir - set.direction(1)).norm() * length <= error;
-            let blind = |length| self.request.rested || self.request.cold() && along(length);
-            hit.width = match rest {
-                Rest::Along(length) => length,
-                Rest::Unsure(length) if blind(length) => length,
-                _ => 0.0,
-            };
+            let tied = (dir - set.direction(1)).norm() * precision.size() <= error;
+            let blind = self.request.rested || self.request.cold() && tied;
+            // Mostly one of the two touches with a corner.
+            let corner = a.v1 == b.v1 && b.v1 == c.v1 || a.v2 == b.v2 && b.v2 == c.v2;
+            if blind || !corner {
+                let witnesses = |i| set.witnesses(i + 1);
+                let count = set.len() - 1;
+                hit.width = match patch::rest(witnesses, count, &dir, error, precision.size()) {
+                    Rest::Along(length) => length,
+                    Rest::Unsure(length) if blind => length,
+                    _ => 0.0,
+                };
+            }
         }
         if let Some(basis) = &mut self.basis {
             basis.add(&dir);

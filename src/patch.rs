@@ -92,13 +92,15 @@ pub fn rest(
         let h = heights(i);
         top = [larger(h[0], top[0]), larger(h[1], top[1])];
     }
-    // The first touching point of each, and the way to the one farthest from it.
-    let (mut first, mut side) = ([None; 2], [Vec3::zeros(); 2]);
+    // The first touching point of each, the way to the one farthest from it, and how many
+    // touch.
+    let (mut first, mut side, mut touch) = ([None; 2], [Vec3::zeros(); 2], [0; 2]);
     for i in 0..count {
         let (h, v) = (heights(i), point(i));
         for k in 0..2 {
             if h[k] >= top[k] - tolerance {
                 let way = v[k] - *first[k].get_or_insert(v[k]);
+                touch[k] += 1;
                 if way.norm_squared() > side[k].norm_squared() {
                     side[k] = way;
                 }
@@ -121,7 +123,8 @@ pub fn rest(
             .filter(move |&i| heights(i)[k] >= top[k] - tolerance)
             .map(move |i| point(i)[k])
     };
-    if crossing && dimensions(touching(0), blur).0 < 2 && dimensions(touching(1), blur).0 < 2 {
+    let edge = |k: usize| touch[k] < 3 || dimensions(touching(k), blur).0 < 2;
+    if crossing && edge(0) && edge(1) {
         Rest::Unsure(length)
     } else {
         Rest::Along(length)
@@ -155,6 +158,7 @@ fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: Real) -> (u32, R
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
+#[inline(never)]
 pub fn settle<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     hit: &mut Penetration,

@@ -463,20 +463,28 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             None => None,
         };
         let mut answer = global::minimum(&self.md, &request, arena, kept)?;
-        if let Answer::Limit(hit) = &mut answer {
-            self.floor(hit, limits.tolerance)?;
+        match &mut answer {
+            Answer::Hit(hit) => {
+                let alone = hit.point1;
+                patch::settle(&self.md, hit, limits.tolerance)?;
+                self.keep(state, &basis, hit.point1 != alone);
+            }
+            Answer::Limit(hit) => {
+                self.floor(hit, limits.tolerance)?;
+                self.keep(state, &basis, false);
+            }
+            _ if self.lasting => self.remember(state, &answer)?,
+            _ => {}
         }
-        match &answer {
-            Answer::Hit(_) | Answer::Limit(_) => *state = State::proven(&basis),
-            other => self.remember(state, other)?,
+        Ok(answer)
+    }
+
+    /// Leaves the basis of a proof behind, where somebody keeps the state.
+    fn keep(&self, state: &mut State, basis: &Basis, rested: bool) {
+        if self.lasting {
+            *state = State::proven(basis);
+            state.padding = u32::from(rested) * RESTED;
         }
-        let settings = Settings {
-            tolerance: limits.tolerance,
-            max_iterations: limits.iterations,
-        };
-        let settled = self.settle(answer, &settings)?;
-        state.padding = u32::from(settled != answer) * RESTED;
-        Ok(settled)
     }
 
     /// Where minima form a curve or a surface no polytope proves them in the steps there
@@ -485,6 +493,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// since what falls so little over its first reach falls thirty times as much over the
     /// sphere.
     #[cold]
+    #[inline(never)]
     fn floor(&self, hit: &mut Penetration, tolerance: Real) -> Result<(), Fault> {
         let level = Settings {
             tolerance: tolerance * 0.01,
