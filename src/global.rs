@@ -123,6 +123,7 @@ pub fn minimum<'r, A: SupportMap, B: SupportMap>(
                 request,
                 arena,
                 basis,
+                again: false,
             };
             search.run(&first)
         }
@@ -150,6 +151,8 @@ struct Search<'q, 'r, A, B> {
     request: &'r Request<'r>,
     arena: Option<&'r mut dyn Arena>,
     basis: Option<&'r mut Basis>,
+    /// The points that surround the origin were a start once.
+    again: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
@@ -192,7 +195,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 end => return Ok(self.conclude(&set, &hull, &state, end)),
             }
         }
-        self.decided::<_, { FIRST.1 }>(&set, None)
+        self.decided::<{ FIRST.0 }, { FIRST.1 }>(&set, None)
     }
 
     fn tolerance(&self) -> Real {
@@ -324,8 +327,24 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     ) -> Result<Answer, Stop> {
         let mut few = SupportSet::<{ FIRST.0 }>::EMPTY;
         few.take(set);
+        few.truncate(START);
         let dir = self.inquiry.lowest.dir;
-        distance::overlap(&mut self.inquiry, &mut few, None, &dir)?;
+        let names = distance::overlap(&mut self.inquiry, &mut few, None, &dir)?;
+        let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
+        // Once more, from the points that surround the origin.
+        if !self.again && self.build(&few, &mut hull, names) {
+            self.again = true;
+            let mut state = Progress::new(&self.request.limits, few.len());
+            match expand(&mut self.inquiry, &mut few, &mut hull, &mut state)? {
+                End::NoRoom => {
+                    return self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
+                        &few, &hull, &mut state,
+                    );
+                }
+                End::Open => {}
+                end => return Ok(self.conclude(&few, &hull, &state, end)),
+            }
+        }
         Ok(match expanded {
             Some((hull, state)) => self.conclude(set, hull, state, End::Inside),
             None => Answer::Limit(self.bare(&set.point(1))),
@@ -408,7 +427,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         // Where rounding ended the search.
         let close = state.tolerance + 16.0 * precision.grain();
-        if end == End::Proven || depth - lower <= close {
+        let short = end == End::Proven && !(hull.error() > 0.5 * state.tolerance);
+        if short || depth - lower <= close {
             Answer::Hit(hit)
         } else {
             Answer::Limit(hit)

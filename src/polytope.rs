@@ -70,6 +70,9 @@ pub const MOST_FACES: usize = 4096;
 const COLLAPSED: Real = 0.01;
 /// |N|² below which nothing of an interpolated plane is left: two digits more.
 const NOTHING: Real = 1e-6;
+/// Ulps of the size that a plane's error may come to by being normalised. Free: far below the
+/// tolerances that interpolated planes serve, in either precision.
+const WORN: Real = if cfg!(feature = "single") { 64.0 } else { 1e5 };
 /// The bit of a face that has its parent's plane.
 const BORROWED: u64 = 1 << 63;
 
@@ -446,23 +449,9 @@ impl<const F: usize> Polytope<F> {
                     self.undo(first, tail, free);
                     return Fan::NoRoom;
                 }
-                let visible = self.plane(edge >> 2);
-                let above = visible.height(&lifted);
-                let below = if height < 0.0 { height } else { 0.0 };
-                let plane = visible.towards(&hidden, above / (above - below));
-                let names = self.corners[Self::at(edge >> 2)] >> (16 * (edge & 3)) & 0x7fff_ffff;
-                let f = Self::at(free);
-                self.corners[f] = names | (name as u64) << 32 | (names & 0xffff) << 48;
-                self.planes[f] = plane.array();
-                let (mut square, n2) = plane.signed_square();
-                if !(n2 >= self.collapsed) {
-                    square = self.renew(f, &visible, corner);
-                }
-                self.keys[f] = Self::key(f, square);
-                let new = 4 * f;
-                self.twins[f][0] = twin as u16;
+                self.cover(free, edge, [hidden, lifted], name, corner);
+                let (f, new) = (Self::at(free), 4 * free);
                 self.twins[f][2] = (previous | 1) as u16;
-                self.twins[f][3] = edge as u16;
                 self.set_twin(twin, new);
                 self.set_twin(previous | 1, new | 2);
                 previous = new;
@@ -489,6 +478,34 @@ impl<const F: usize> Polytope<F> {
             self.wear();
         }
         Fan::Done
+    }
+
+    /// Makes face `f` over a horizon edge, which it is beyond, and a new point: see the head of
+    /// this page.
+    #[inline(always)]
+    fn cover(
+        &mut self,
+        f: usize,
+        edge: usize,
+        [hidden, point]: [Plane; 2],
+        name: usize,
+        corner: &impl Fn(usize) -> Vec3,
+    ) {
+        let visible = self.plane(edge >> 2);
+        let above = visible.height(&point);
+        let below = lesser(hidden.height(&point), 0.0);
+        let plane = visible.towards(&hidden, above / (above - below));
+        let names = self.corners[Self::at(edge >> 2)] >> (16 * (edge & 3)) & 0x7fff_ffff;
+        let f = Self::at(f);
+        self.corners[f] = names | (name as u64) << 32 | (names & 0xffff) << 48;
+        self.planes[f] = plane.array();
+        let (mut square, n2) = plane.signed_square();
+        if !(n2 >= self.collapsed) {
+            square = self.renew(f, &visible, corner);
+        }
+        self.keys[f] = Self::key(f, square);
+        self.twins[f][0] = self.twin(edge) as u16;
+        self.twins[f][3] = edge as u16;
     }
 
     /// Do the edges of a fan follow each other, and close? From its first half-edge to its
@@ -556,7 +573,7 @@ impl<const F: usize> Polytope<F> {
                 self.wear();
                 return square;
             }
-            None if something => {
+            None if something && self.error <= WORN * self.ulp * n2.sqrt() => {
                 let k = 1.0 / n2.sqrt();
                 self.error *= k;
                 old.scaled(k)

@@ -167,7 +167,59 @@ struct View {
     y: Vec3,
 }
 
+/// On which side of a line through two points the origin is, as they are seen.
+struct Side {
+    /// The unit way there, from the line.
+    towards: [Real; 2],
+    /// How far the origin is from the line.
+    off: Real,
+    /// How far apart the points are.
+    span: Real,
+}
+
+impl Side {
+    #[inline(always)]
+    fn of(a: &[Real; 2], b: &[Real; 2]) -> Self {
+        let d = [b[0] - a[0], b[1] - a[1]];
+        let span = dot(&d, &d).sqrt();
+        let w = [-d[1] / span, d[0] / span];
+        let off = -dot(&w, a);
+        let (towards, off) = if off < 0.0 {
+            ([-w[0], -w[1]], -off)
+        } else {
+            (w, off)
+        };
+        Self { towards, off, span }
+    }
+}
+
 impl View {
+    /// Along a unit axis, with a point on the x axis; and how far from the middle that is, 0
+    /// within rounding, where any x axis will do.
+    #[inline(always)]
+    fn along(axis: Vec3, point: &Vec3, rounding: Real) -> (Self, Real) {
+        let side = point - axis * axis.dot(point);
+        let width = side.norm();
+        let (x, width) = if width > rounding {
+            (side / width, width)
+        } else {
+            (perpendicular(&axis), 0.0)
+        };
+        let y = axis.cross(&x);
+        (Self { axis, x, y }, width)
+    }
+
+    /// The axis tilted sideways: farther the more often it was in vain, and at last all the
+    /// way.
+    #[inline(always)]
+    fn tilted(&self, sideways: &Vec3, tilt: Real, vain: usize) -> Vec3 {
+        if !(vain < PATIENT && tilt > 0.0) {
+            return *sideways;
+        }
+        let tilt = tilt * [1.0, 2.0, 4.0, 16.0][vain.min(3)];
+        unit(&(self.axis + sideways * tilt)).unwrap_or(*sideways)
+    }
+
     #[inline(always)]
     fn see(&self, v: &Vec3) -> [Real; 2] {
         [self.x.dot(v), self.y.dot(v)]
@@ -203,39 +255,20 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
         inquiry.lowest.dir
     };
     let mut a = 1;
-    let mut side = set.v(1) - axis * axis.dot(&set.v(1));
-    let mut width = side.norm();
-    if !(width > rounding) {
-        // On the axis: any side will do.
-        side = perpendicular(&axis);
-        width = 0.0;
-    } else {
-        side /= width;
-    }
-    let view = View {
-        axis,
-        x: side,
-        y: axis.cross(&side),
-    };
+    let (view, width) = View::along(axis, &set.v(1), rounding);
     // The way from the apex to where the axis leaves D, about.
     let length = larger(axis.dot(&(set.v(1) - apex)), width);
     let mut seen_a = [width, 0.0];
     let mut b: Option<(usize, [Real; 2])> = None;
     let mut wider = 0;
     for _ in 0..TRIES {
-        let (towards, off, span) = match &b {
-            None => ([-1.0, 0.0], width, 0.0),
-            Some((_, seen)) => {
-                let d = [seen[0] - seen_a[0], seen[1] - seen_a[1]];
-                let span = dot(&d, &d).sqrt();
-                let w = [-d[1] / span, d[0] / span];
-                let off = -dot(&w, &seen_a);
-                if off < 0.0 {
-                    ([-w[0], -w[1]], -off, span)
-                } else {
-                    (w, off, span)
-                }
-            }
+        let Side { towards, off, span } = match &b {
+            None => Side {
+                towards: [-1.0, 0.0],
+                off: width,
+                span: 0.0,
+            },
+            Some((_, seen)) => Side::of(&seen_a, seen),
         };
         let sideways = view.x * towards[0] + view.y * towards[1];
         let known = beyond(set, skip, &sideways, rounding);
@@ -243,12 +276,7 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
             Some(i) => i,
             None => {
                 let extent = larger(2.0 * off, 0.6 * span);
-                let tilt = TILT * extent / length * [1.0, 2.0, 4.0, 16.0][wider.min(3)];
-                let n = if wider < PATIENT && tilt > 0.0 {
-                    unit(&(view.axis + sideways * tilt)).unwrap_or(sideways)
-                } else {
-                    sideways
-                };
+                let n = view.tilted(&sideways, TILT * extent / length, wider);
                 inquiry.ask(set, &n)?.0
             }
         };
@@ -306,8 +334,7 @@ fn beyond<const P: usize>(
 /// A tetrahedron of known support points, the largest in sight, and of new ones where
 /// these have no extent: for D that is thin, and for an apex that was no point of D.
 ///
-/// `Apart` where D is flat to rounding: a touch. `None` where the callbacks contradict
-/// that.
+/// `None` where D is flat to rounding and no direction that was asked has shown a touch.
 #[cold]
 #[inline(never)]
 pub fn solid<A: SupportMap, B: SupportMap, const P: usize>(
@@ -342,7 +369,7 @@ fn extent<A: SupportMap, B: SupportMap, const P: usize>(
     n: &Vec3,
     measure: impl Fn(&Vec3) -> Real,
 ) -> Result<usize, Stop> {
-    let rounding = 16.0 * (inquiry.precision.rounding() + inquiry.precision.grain());
+    let rounding = inquiry.precision.tie();
     let mut best = (from, rounding);
     for i in 1..set.len() {
         let m = measure(&set.v(i));
@@ -361,9 +388,6 @@ fn extent<A: SupportMap, B: SupportMap, const P: usize>(
             }
         }
     }
-    if best.0 == from {
-        // No wider than rounding: the depth is less.
-        return Err(Stop::Apart(inquiry.lowest.dir));
-    }
+    // Where D is no wider than rounding that is `from`, and no tetrahedron comes of it.
     Ok(best.0)
 }

@@ -41,34 +41,31 @@ enum Phase {
 /// module that is missing here fails this file's test.
 const MODULES: &[(&str, Option<Phase>)] = &[
     ("bundle", Some(Phase::Search)),
-    ("descent", Some(Phase::Search)),
+    ("distance", Some(Phase::Search)),
     ("gjk", Some(Phase::Search)),
+    ("intersect", Some(Phase::Search)),
     ("local", Some(Phase::Search)),
     ("planar", Some(Phase::Search)),
     ("portal", Some(Phase::Search)),
+    ("signed_distance", Some(Phase::Search)),
     ("simplex", Some(Phase::Search)),
     ("start", Some(Phase::Search)),
-    ("epa", Some(Phase::Proof)),
     ("expansion", Some(Phase::Proof)),
     ("plane", Some(Phase::Proof)),
     ("polytope", Some(Phase::Proof)),
-    ("contact_patch", Some(Phase::Patch)),
     ("patch", Some(Phase::Patch)),
     ("polygon", Some(Phase::Patch)),
     ("contact", Some(Phase::Rest)),
     ("contact_manifold", Some(Phase::Rest)),
     ("ffi", Some(Phase::Rest)),
     ("global", Some(Phase::Rest)),
-    ("query", Some(Phase::Rest)),
     ("shapes", Some(Phase::Rest)),
-    ("state", Some(Phase::Rest)),
     ("support", Some(Phase::Rest)),
     ("support_set", Some(Phase::Rest)),
     ("warm", Some(Phase::Rest)),
     ("barycentric", None),
     ("lib", None),
     ("math", None),
-    ("nearest", None),
     ("precision", None),
 ];
 
@@ -194,7 +191,7 @@ fn file_module<'a>(file: &'a str, src: &str) -> Option<&'a str> {
     inner.split('/').next()?.split('.').next()
 }
 
-/// The module that a function's path begins with: `ccd::epa::…`, `<ccd::epa::… as …>::…`.
+/// The module that a function's path begins with: `ccd::gjk::…`, `<ccd::gjk::… as …>::…`.
 fn function_module(function: &str) -> Option<&str> {
     let (_, path) = function.split_once("ccd::")?;
     path.split(|c: char| !c.is_alphanumeric() && c != '_')
@@ -367,9 +364,9 @@ pub fn run(options: &Options) {
 mod tests {
     #[test]
     fn callgrind_self_cost_by_phase() {
-        let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/src/epa.rs\n\
-            fn=ccd::epa::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/patch.rs\n3 100\n\
-            fi=/w/src/math.rs\n4 200\nfe=/w/src/epa.rs\n5 1\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
+        let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/src/expansion.rs\n\
+            fn=ccd::expansion::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/patch.rs\n3 100\n\
+            fi=/w/src/math.rs\n4 200\nfe=/w/src/expansion.rs\n5 1\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
             fl=/rustc/core/zip.rs\nfn=<core::Zip<ccd::descent::model::M> as X>::next\n7 1000\n\
             ob=/bin/charts\nfl=/w/c-tests/lab.rs\nfn=run\n1 77\nob=/l/libccd.so\n\
             fl=/w/src/ffi/collide.rs\nfn=ccdMPRPenetration\n8 10000\nfi=/w/src/portal.rs\n9 3\n";
