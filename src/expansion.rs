@@ -66,6 +66,9 @@ const PROMISE: Real = 0.3;
 const MISSED: Real = 0.2;
 /// Steps of distrust for each failure. Measured: 2 to 8 differ by less than 1 %.
 const PAUSE: i32 = 4;
+/// Steps without a change of the nearest distance. Free: more than the faces of a symmetric
+/// object that tie.
+const CIRCLES: u32 = 24;
 /// |n′ − n|² within which two samples tell of one ball: below it rounding speaks, above it
 /// other parts of D do.
 const NEIGHBOURS: core::ops::Range<Real> = if cfg!(feature = "single") {
@@ -105,6 +108,8 @@ pub struct Progress {
     limits: Limits,
     /// Support points after the tetrahedron.
     pub iterations: u64,
+    /// The last nearest distance, squared, and how often it was met one time after another.
+    same: (f64, u32),
     /// The upper bound that the target belongs to, and the planes' error then.
     known: Real,
     error: Real,
@@ -154,6 +159,7 @@ impl Progress {
         Self {
             limits: *limits,
             iterations: 0,
+            same: (0.0, 0),
             known: Real::INFINITY,
             error: 0.0,
             coarse: false,
@@ -226,6 +232,15 @@ impl Progress {
         good
     }
 
+    /// Has the nearest distance been the same for many steps? Of a thin D rounding can give
+    /// each new face the plane of the one it replaces.
+    #[inline(always)]
+    fn circles(&mut self, top: &Top) -> bool {
+        let moved = (top.key - self.same.0).abs() > 1e-11 * top.key.abs();
+        self.same = (top.key, if moved { 0 } else { self.same.1 + 1 });
+        self.same.1 > CIRCLES
+    }
+
     /// The search has left the first room: from here on the gap counts.
     pub fn coarsen(&mut self) {
         self.coarse = true;
@@ -261,10 +276,13 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         state.update(inquiry, hull);
         let inside = top.key >= 0.0;
         if top.key >= state.target && inside {
-            if state.proven(hull, inquiry.precision.grain()) {
-                return Ok(End::Proven);
+            if !state.proven(hull, inquiry.precision.grain()) {
+                continue;
             }
-            continue;
+            return Ok(End::Proven);
+        }
+        if state.circles(&top) {
+            return Ok(if inside { End::Inside } else { End::Open });
         }
         // While the origin is outside the room is the cap: an overlap is no miss because
         // the caller has no patience.

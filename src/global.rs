@@ -378,11 +378,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let Lowest { depth, dir, .. } = self.inquiry.lowest;
         let top = hull.nearest();
         let precision = &self.inquiry.precision;
-        let near = if top.key > 0.0 {
-            hull.distance(top.face)
-        } else {
-            0.0
-        };
+        let near = hull.distance(top.face);
         let lower = larger(near - precision.grain(), 0.0).min(depth);
         let (face, nearest) = leaves(set, hull, top.face, &dir, depth, state.tolerance);
         let [a, b, c] = hull.corners(face).map(|i| set.point(i));
