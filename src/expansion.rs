@@ -276,13 +276,14 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         state.update(inquiry, hull);
         let inside = top.key >= 0.0;
         if top.key >= state.target && inside {
-            if !state.proven(hull, inquiry.precision.grain()) {
-                continue;
+            if state.proven(hull, inquiry.precision.grain()) {
+                return Ok(End::Proven);
             }
-            return Ok(End::Proven);
+            continue;
         }
+        let stuck = if inside { End::Inside } else { End::Open };
         if state.circles(&top) {
-            return Ok(if inside { End::Inside } else { End::Open });
+            return Ok(stuck);
         }
         // While the origin is outside the room is the cap: an overlap is no miss because
         // the caller has no patience.
@@ -293,7 +294,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         }
         let (dir, aim) = state.aim(set, hull, &top);
         let Some(n) = normalised(&dir).or_else(|| unit(&hull.normal(top.face))) else {
-            return Ok(if inside { End::Inside } else { End::Open });
+            return Ok(stuck);
         };
         let before = inquiry.lowest.depth;
         let count = set.len();
@@ -327,7 +328,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             // What lowered the upper bound has moved the target.
             Aim::Normal if inquiry.lowest.depth < before => {}
             Aim::Normal if hull.refine(top.face, &|i| set.v(i)) => set.truncate(count),
-            Aim::Normal => return Ok(if inside { End::Inside } else { End::Open }),
+            Aim::Normal => return Ok(stuck),
         }
     }
 }

@@ -304,7 +304,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         state: &mut Progress,
     ) -> Result<Answer, Stop> {
         let Some(arena) = self.arena.take() else {
-            return Ok(self.conclude(small, polytope, state, End::Inside));
+            if polytope.nearest().key >= 0.0 {
+                return Ok(self.conclude(small, polytope, state, End::Inside));
+            }
+            return self.decided(small, Some((polytope, state)));
         };
         let Room { set, hull } = arena.room()?;
         set.take(small);
@@ -413,10 +416,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         if let Some(basis) = &mut self.basis {
             basis.add(&dir);
-            // Asked along dir, the first point is found again by itself.
-            let lowest = set.v(self.inquiry.lowest.index);
+            // Asked along dir, the point farthest that way is found again by itself.
+            let found = set.farther(&dir, Real::NEG_INFINITY).map(|i| set.v(i));
             for i in hull.corners(top.face) {
-                if set.v(i) != lowest {
+                if Some(set.v(i)) != found {
                     basis.add(&set.direction(i));
                 }
             }

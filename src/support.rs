@@ -41,15 +41,6 @@ impl SupportPoint {
         larger(largest(&self.v1), largest(&self.v2))
     }
 
-    /// The point of objects magnified so.
-    pub fn magnified(&self, scale: Real) -> Self {
-        Self {
-            v: self.v * scale,
-            v1: self.v1 * scale,
-            v2: self.v2 * scale,
-        }
-    }
-
     /// The point half-way to another.
     #[inline]
     pub fn middle(&self, other: &Self) -> Self {
@@ -132,8 +123,6 @@ pub struct MinkowskiDifference<A, B> {
     obj1: A,
     obj2: B,
     supports: Cell<u64>,
-    /// What the objects are magnified by.
-    scale: Cell<Real>,
 }
 
 impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
@@ -143,13 +132,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
             obj1,
             obj2,
             supports: Cell::new(0),
-            scale: Cell::new(1.0),
         }
-    }
-
-    /// Magnifies the objects by a power of two from the next support point on.
-    pub fn magnify(&self, scale: Real) {
-        self.scale.set(scale);
     }
 
     /// The support point of D along `dir` (unit, finite): obj1 is asked first,
@@ -157,9 +140,8 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
     #[inline]
     pub fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault> {
         self.supports.set(self.supports.get() + 1);
-        let scale = self.scale.get();
-        let v1 = self.obj1.support(dir) * scale;
-        let v2 = self.obj2.support(&-dir) * scale;
+        let v1 = self.obj1.support(dir);
+        let v2 = self.obj2.support(&-dir);
         let v = v1 - v2;
         // Solvers multiply four lengths; a point beyond that is as good as infinite.
         // NaN and infinity, in v1 or in v2, end here too.

@@ -149,8 +149,6 @@ pub struct Lowest {
     pub depth: Real,
     /// Unit.
     pub dir: Vec3,
-    /// The support point, in the set that was asked into.
-    pub index: usize,
 }
 
 /// A point of D that lies beyond the origin along the direction asked.
@@ -203,12 +201,11 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
             lowest: Lowest {
                 depth: Real::INFINITY,
                 dir: Vec3::x(),
-                index: 0,
             },
         }
     }
 
-    /// Asks for the first support point, which needs no set: its name is to be 1.
+    /// Asks for the first support point, which needs no set.
     #[inline(always)]
     pub fn first(&mut self, dir: &Vec3) -> Result<SupportPoint, Stop> {
         let point = self.md.support(dir)?;
@@ -217,11 +214,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         if !(depth > self.precision.touch()) {
             return Err(Stop::Apart(*dir));
         }
-        self.lowest = Lowest {
-            depth,
-            dir: *dir,
-            index: 1,
-        };
+        self.lowest = Lowest { depth, dir: *dir };
         Ok(point)
     }
 
@@ -244,20 +237,6 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
             return self.lower(set, dir, &point, h);
         }
         Ok((set.push(dir, &point), h))
-    }
-
-    /// The support point along unit `dir`, where no other is known, if the origin is not
-    /// beyond it.
-    #[inline(always)]
-    pub fn ask_first(&mut self, dir: &Vec3) -> Result<SupportPoint, Stop> {
-        let point = self.md.support(dir)?;
-        self.precision.note(&point);
-        // NaN is no depth.
-        if dir.dot(&point.v) > self.precision.touch() {
-            Ok(point)
-        } else {
-            Err(Stop::Apart(*dir))
-        }
     }
 
     /// As [`Inquiry::ask`], for a query that wants yes or no: the point goes to this place
@@ -306,7 +285,6 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
             self.lowest = Lowest {
                 depth: h,
                 dir: *dir,
-                index,
             };
         }
         Ok((index, h))
@@ -327,7 +305,7 @@ mod tests {
         let (a, h) = inquiry.ask(&mut set, &Vec3::y()).unwrap();
         assert_eq!((a, h), (0, 2.0));
         let (b, h) = inquiry.ask(&mut set, &Vec3::x()).unwrap();
-        assert_eq!((b, h, inquiry.lowest.index), (1, 0.5, 1));
+        assert_eq!((b, h, inquiry.lowest.depth), (1, 0.5, 0.5));
         assert_eq!(set.point(b).v1, Vec3::x());
         assert_eq!(set.v(b), Vec3::x() * 0.5);
         assert_eq!(set.direction(b), Vec3::x());
