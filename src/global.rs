@@ -11,10 +11,10 @@
 
 use crate::barycentric;
 use crate::contact::{Answer, Penetration};
+use crate::contact_patch::{self, Rest};
 use crate::distance;
 use crate::expansion::{self, End, Limits, Progress, expand};
 use crate::math::{Real, Vec3, larger, unit};
-use crate::patch::{self, Rest};
 use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope};
 use crate::start;
@@ -423,12 +423,18 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 let witnesses = |i| set.witnesses(i + 1);
                 let count = set.len() - 1;
                 let above = set.witnesses(lowest);
-                hit.width =
-                    match patch::rest(witnesses, count, &dir, above, error, precision.size()) {
-                        Rest::Along(length) => length,
-                        Rest::Unsure(length) if blind => length,
-                        _ => 0.0,
-                    };
+                hit.width = match contact_patch::rest(
+                    witnesses,
+                    count,
+                    &dir,
+                    above,
+                    error,
+                    precision.size(),
+                ) {
+                    Rest::Along(length) => length,
+                    Rest::Unsure(length) if blind => length,
+                    _ => 0.0,
+                };
             }
         }
         if let Some(basis) = &mut self.basis {

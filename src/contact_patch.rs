@@ -327,7 +327,7 @@ mod tests {
     use super::*;
     use crate::contact::{Answer, Settings};
     use crate::shapes::{Rotation, ball, corners, hull, placed};
-    use crate::warm::{Pair, State};
+    use crate::{query::Pair, state::State};
 
     const TOLERANCE: Real = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
 
