@@ -52,8 +52,10 @@ pub trait Arena {
 pub struct Request<'a> {
     /// A point that the caller says is in D, the difference of the centres; trusted.
     pub centre: Option<SupportPoint>,
-    /// Unit directions to ask first, of which there is at least one.
-    pub directions: &'a [Vec3],
+    /// The unit direction to ask first.
+    pub first: Vec3,
+    /// Directions that the last proof stood on, besides; zero for none.
+    pub others: &'a [Vec3],
     /// How far to go.
     pub limits: Limits,
     /// Does anybody read the witness points? Else the width of the contact is 0.
@@ -65,7 +67,7 @@ pub struct Request<'a> {
 impl Request<'_> {
     /// Is nothing known but where to begin?
     fn cold(&self) -> bool {
-        self.directions.len() == 1
+        self.others.is_empty()
     }
 }
 
@@ -112,11 +114,8 @@ pub fn minimum<'r, A: SupportMap, B: SupportMap>(
     basis: Option<&'r mut Basis>,
 ) -> Result<Answer, Fault> {
     let mut inquiry = Inquiry::new(md);
-    let Some(dir) = request.directions.first() else {
-        return Ok(Answer::Miss(Vec3::x()));
-    };
     // A pair that is told apart by one support point costs no room.
-    let ended = match inquiry.first(dir) {
+    let ended = match inquiry.first(&request.first) {
         Ok(first) => {
             let mut search = Search {
                 inquiry,
@@ -213,16 +212,19 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         first: &SupportPoint,
     ) -> Result<Option<(Vec3, SupportPoint)>, Stop> {
         let Request {
-            centre, directions, ..
+            centre,
+            first: dir,
+            others,
+            ..
         } = self.request;
         let apex = centre.as_ref().unwrap_or(first);
         set.push(&Vec3::zeros(), apex);
-        set.push(&directions[0], first);
+        set.push(dir, first);
         let mut opposite = None;
         if centre.is_some() {
             self.inquiry.precision.note(apex);
         } else {
-            let n = -directions[0];
+            let n = -dir;
             let (i, _) = self.inquiry.ask(set, &n)?;
             let point = set.point(i);
             set.truncate(2);
@@ -231,15 +233,16 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             // A first direction that has nothing to do with where the objects are is only
             // good for an apex: the way from there through the origin takes its place.
             if let Some(n) =
-                unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, &directions[0]))
+                unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, dir))
             {
                 let (i, _) = self.inquiry.ask(set, &n)?;
                 set.swap(1, i);
             }
         }
-        for n in &directions[1..] {
+        // Whatever a state holds: unit, and no more than there is room for.
+        for n in others.iter().filter_map(unit) {
             if set.len() + START <= P {
-                self.inquiry.ask(set, n)?;
+                self.inquiry.ask(set, &n)?;
             }
         }
         Ok(opposite)
@@ -530,7 +533,8 @@ mod tests {
             let n = c.normalize();
             let request = Request {
                 centre: None,
-                directions: &[n],
+                first: n,
+                others: &[],
                 limits,
                 placed: true,
                 rested: false,
@@ -586,7 +590,8 @@ mod tests {
             };
             let request = Request {
                 centre: None,
-                directions: &[n],
+                first: n,
+                others: &[],
                 limits,
                 placed: true,
                 rested: false,

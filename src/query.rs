@@ -260,10 +260,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Miss(n));
         }
         let first = state.leaving().unwrap_or_else(|| self.cold_start());
-        let known = state.basis(first);
         let request = Request {
             centre: apex,
-            directions: known.directions(),
+            first,
+            others: state.others(),
             limits,
             placed,
             rested: state.rested(),

@@ -172,18 +172,12 @@ impl State {
         self.memory.slopes = directions;
     }
 
-    /// The directions that a proof starts from: `first`, and those of the last one.
-    pub fn basis(&self, first: Vec3) -> Basis {
-        let mut basis = Basis::default();
-        basis.add(&first);
-        if self.kind == PROVEN {
-            for slope in &self.memory.slopes {
-                if let Some(n) = unit(slope) {
-                    basis.add(&n);
-                }
-            }
+    /// The directions that the last proof stood on, besides the minimum's own; zero for none.
+    pub fn others(&self) -> &[Vec3] {
+        match self.kind {
+            PROVEN => &self.memory.slopes,
+            _ => &[],
         }
-        basis
     }
 
     /// The pair overlaps: its minimum is proven by support points along these directions;
