@@ -26,7 +26,7 @@ use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
 /// 2V − 4 faces, and a fan is there before what it replaces is gone.
 const FIRST: (usize, usize) = (16, 32);
 const SECOND: (usize, usize) = (24, 48);
-const THIRD: (usize, usize) = (164, 328);
+const THIRD: (usize, usize) = (162, 328);
 /// Of the one that is lent.
 const LENT: (usize, usize) = (1536, crate::polytope::MOST_FACES);
 /// Places that the start needs for its own points.

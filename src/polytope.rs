@@ -55,7 +55,7 @@
 use crate::math::{EPSILON, Real, Vec3, larger, wide};
 use crate::plane::Plane;
 
-/// No half-edge: the bottom of the walk's stack.
+/// No half-edge: the bottom of the walk's stack of half-edges.
 const BOTTOM: u16 = u16::MAX;
 /// To the next and the previous half-edge of a face, by the edge.
 const NEXT: [i8; 4] = [1, 1, -2, 0];
@@ -83,13 +83,12 @@ pub struct Polytope<const F: usize> {
     /// whose mantissa has no bits to spare.)
     keys: [f64; F],
     /// The half-edge on the other side of each edge; last, while a fan is made, the one
-    /// that was there before.
+    /// that was there before, and of a visible face the half-edge to go on from after its own.
     twins: [[u16; 4]; F],
     /// Four names of 16 bits: corners 0, 1, 2, and 0 again with [`BORROWED`].
     corners: [u64; F],
     /// The next face outside use, or the next visible one.
     next: [u16; F],
-    stack: [u16; F],
     free: usize,
     used: usize,
     inner: Vec3,
@@ -126,7 +125,6 @@ impl<const F: usize> Polytope<F> {
         twins: [[0; 4]; F],
         corners: [0; F],
         next: [0; F],
-        stack: [0; F],
         free: 0,
         used: 0,
         inner: Vec3::new(0.0, 0.0, 0.0),
@@ -420,10 +418,9 @@ impl<const F: usize> Polytope<F> {
         let mut tail = first;
         self.keys[Self::at(first)] = f64::INFINITY;
         let mut edge = 4 * first;
-        self.stack[0] = BOTTOM;
-        self.stack[1] = edge as u16 + 2;
-        self.stack[2] = edge as u16 + 1;
-        let mut depth = 2usize;
+        // The half-edge to go on from; its face names the one after it.
+        let mut back = edge + 1;
+        self.twins[Self::at(first)][3] = edge as u16 + 2;
         let mut free = self.free;
         let begin = 4 * free;
         let mut previous = begin;
@@ -438,8 +435,8 @@ impl<const F: usize> Polytope<F> {
                     self.keys[beyond] = f64::INFINITY;
                     self.next[Self::at(tail)] = beyond as u16;
                     tail = beyond;
-                    depth += 1;
-                    self.stack[Self::at(depth)] = Self::turn(twin, &PREVIOUS) as u16;
+                    self.twins[beyond][3] = back as u16;
+                    back = Self::turn(twin, &PREVIOUS);
                     edge = Self::turn(twin, &NEXT);
                     continue;
                 }
@@ -457,12 +454,12 @@ impl<const F: usize> Polytope<F> {
                 previous = new;
                 free = usize::from(self.next[f]);
             }
-            let back = self.stack[Self::at(depth)];
-            if back == BOTTOM {
+            if back == usize::from(BOTTOM) {
                 break;
             }
-            depth = depth.wrapping_sub(1);
-            edge = usize::from(back);
+            edge = back;
+            let after = &mut self.twins[Self::at(edge >> 2)][3];
+            back = usize::from(core::mem::replace(after, BOTTOM));
         }
         // Also where no face was hidden.
         if begin == 4 * free || met_again && !self.is_loop(begin, previous) {
