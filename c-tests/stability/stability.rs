@@ -106,10 +106,6 @@ fn wrong_starts() {
 /// A sample of every category of pairs, both tie rules, on libccd's entry points, cold
 /// and warm.
 #[test]
-#[cfg_attr(
-    feature = "single",
-    ignore = "GJK is not the minimum in 3 to 5 % of the thin boxes and capsules"
-)]
 fn categories() {
     let campaign = program("campaign");
     campaign.run(["100", "0", "-1", "compatible"]);
