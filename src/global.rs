@@ -261,7 +261,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let rounding = expansion::rounding(precision);
         let fine = expansion::exact(tolerance, precision);
         let points = names.map(|i| set.v(i));
-        if !hull.tetrahedron(names, points, precision.size(), 2.0 * rounding, fine) {
+        if !hull.tetrahedron(names, points, precision.size(), fine) {
             return false;
         }
         let level = rounding + expansion::LEVEL * tolerance;

@@ -80,6 +80,10 @@ const NOTHING: f64 = 1e-6;
 /// Ulps of the size that a plane's error may come to by being normalised. Free: far below the
 /// tolerances that interpolated planes serve.
 const WORN: f64 = 1e5;
+/// Ulps of the size within which a triangle or a tetrahedron has no extent. Derived: a
+/// quarter of it, by which z is below the planes of a tetrahedron, is more than the three
+/// products of a plane's height round by.
+const FLAT: f64 = 16.0;
 /// The bit of a face that has its parent's plane.
 const BORROWED: u64 = 1 << 63;
 
@@ -245,7 +249,7 @@ impl<const F: usize> Polytope<F> {
     }
 
     /// Begins with the tetrahedron of four points. `false`: it is flat within
-    /// `rounding`, metres. `size`: of all points that are to come, about.
+    /// [`FLAT`]. `size`: of all points that are to come, about, metres.
     /// `exact`: planes are computed from their corners throughout, for tolerances that
     /// interpolation has no digits for.
     #[inline(always)]
@@ -254,18 +258,18 @@ impl<const F: usize> Polytope<F> {
         names: [usize; 4],
         points: [Vec3; 4],
         size: Real,
-        rounding: Real,
         exact: bool,
     ) -> bool {
         let [o, mut a, mut b, c] = points.map(|p| wide3(&p));
-        let rounding = wide(rounding);
+        self.ulp = f64::EPSILON * wide(size);
+        let flat2 = FLAT * FLAT * self.ulp * self.ulp;
         let (e, f, g) = (a - o, b - o, c - o);
         let n = e.cross(&f);
         let volume = n.dot(&g);
         let long = larger(larger(e.norm_squared(), f.norm_squared()), g.norm_squared());
         let area2 = n.norm_squared();
         // Flat in itself, or all in one plane. Also for NaN.
-        if !(area2 > rounding * rounding * long && volume * volume > rounding * rounding * area2) {
+        if !(area2 > flat2 * long && volume * volume > flat2 * area2) {
             return false;
         }
         let [io, mut ia, mut ib, ic] = names.map(|i| i as u64);
@@ -287,7 +291,7 @@ impl<const F: usize> Polytope<F> {
         self.clear();
         for (i, (n, corners, names, twins)) in faces.into_iter().enumerate() {
             let n2 = n.norm_squared();
-            if !(n2 > rounding * rounding * long) {
+            if !(n2 > flat2 * long) {
                 return false;
             }
             let n = n / n2.sqrt();
@@ -300,7 +304,6 @@ impl<const F: usize> Polytope<F> {
         }
         (self.used, self.free) = (4, 4);
         self.inner = (o + a + b + c) * 0.25;
-        self.ulp = f64::EPSILON * wide(size);
         // Three products and their sums, and the normal's own.
         self.error = 8.0 * self.ulp;
         self.collapsed = if exact { f64::INFINITY } else { COLLAPSED };
@@ -609,8 +612,8 @@ impl<const F: usize> Polytope<F> {
         let n = crate::math::normal(&p, &a, &b);
         let long = larger((a - p).norm_squared(), (b - p).norm_squared());
         let n2 = n.norm_squared();
-        let least = 16.0 * self.ulp;
-        if !(n2 > least * least * long) {
+        let flat = FLAT * self.ulp;
+        if !(n2 > flat * flat * long) {
             return None;
         }
         let n = n / n2.sqrt();
@@ -723,7 +726,7 @@ mod tests {
         let size = points.iter().fold(0.0, |m: Real, p| m.max(p.norm()));
         let rounding = LEVEL * size;
         let first = [0, 1, 2, 3].map(|i| points[i]);
-        if !hull.tetrahedron([0, 1, 2, 3], first, size, rounding, exact) {
+        if !hull.tetrahedron([0, 1, 2, 3], first, size, exact) {
             return None;
         }
         for (i, p) in points.iter().enumerate().skip(4) {
@@ -842,7 +845,7 @@ mod tests {
         let points = r.points(60, 1.0);
         let mut small = Polytope::<32>::BLANK;
         let first = [0, 1, 2, 3].map(|i| points[i]);
-        assert!(small.tetrahedron([0, 1, 2, 3], first, 1.0, LEVEL, false));
+        assert!(small.tetrahedron([0, 1, 2, 3], first, 1.0, false));
         let mut large = Polytope::<256>::BLANK;
         let mut full = false;
         for (i, p) in points.iter().enumerate().skip(4) {
@@ -881,8 +884,8 @@ mod tests {
             Vec3::z() * EPSILON as Real,
             Vec3::repeat(Real::NAN),
         ] {
-            assert!(!hull.tetrahedron([0, 1, 2, 3], [o, x, y, d], 1.0, LEVEL, false));
+            assert!(!hull.tetrahedron([0, 1, 2, 3], [o, x, y, d], 1.0, false));
         }
-        assert!(hull.tetrahedron([0, 1, 2, 3], [o, x, y, Vec3::z()], 1.0, LEVEL, false));
+        assert!(hull.tetrahedron([0, 1, 2, 3], [o, x, y, Vec3::z()], 1.0, false));
     }
 }
