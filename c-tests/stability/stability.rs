@@ -114,10 +114,6 @@ fn categories() {
 
 /// The proven minimum against the exact one, on a sample of every kind of pair.
 #[test]
-#[cfg_attr(
-    feature = "single",
-    ignore = "concentric spheres end at the cap, and are told as such"
-)]
 fn exact_minima() {
     alone("exact").run(["300"]);
 }
@@ -169,10 +165,6 @@ fn continuity() {
 
 /// The same: contact positions, and the bare local method.
 #[test]
-#[cfg_attr(
-    feature = "single",
-    ignore = "a normal that is off within a float's tolerance tilts the faces by more than it"
-)]
 fn continuity_of_positions() {
     let continuity = program("continuity");
     continuity.run(["position"]);
