@@ -65,9 +65,15 @@ fn configurations() {
 
 /// The same on the extension's own.
 #[test]
-#[cfg_attr(feature = "single", ignore = "witness points of the local query")]
 fn configurations_of_the_extension() {
-    program("configurations").run(["extension"]);
+    program("configurations").run(["proven"]);
+}
+
+/// The same on the local query.
+#[test]
+#[cfg_attr(feature = "single", ignore = "witness points of the local query")]
+fn configurations_of_the_local_query() {
+    program("configurations").run(["local"]);
 }
 
 /// Wrong answers that were found, as promises. A known failure that is repaired fails this
@@ -137,11 +143,19 @@ fn exact_campaign() {
 
 /// The same on the extension's own.
 #[test]
-#[cfg_attr(feature = "single", ignore = "witness points of touching pairs")]
 fn categories_of_the_extension() {
     let campaign = program("campaign");
-    campaign.run(["100", "0", "-1", "extension"]);
-    campaign.run(["100", "1", "-1", "extension"]);
+    campaign.run(["100", "0", "-1", "proven"]);
+    campaign.run(["100", "1", "-1", "proven"]);
+}
+
+/// The same on the local query.
+#[test]
+#[cfg_attr(feature = "single", ignore = "witness points of touching pairs")]
+fn categories_of_the_local_query() {
+    let campaign = program("campaign");
+    campaign.run(["100", "0", "-1", "local"]);
+    campaign.run(["100", "1", "-1", "local"]);
 }
 
 /// Both libraries in one process, against each other and the truth.
