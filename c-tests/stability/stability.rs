@@ -151,7 +151,6 @@ fn categories_of_the_extension() {
 
 /// The same on the local query.
 #[test]
-#[cfg_attr(feature = "single", ignore = "witness points of touching pairs")]
 fn categories_of_the_local_query() {
     let campaign = program("campaign");
     campaign.run(["100", "0", "-1", "local"]);
