@@ -9,7 +9,7 @@
 //! edges, an edge whose length vanishes to its ends.
 
 use crate::barycentric;
-use crate::math::{EPSILON, Real, Vec3, larger, largest, normal, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, largest, narrow3, normal, unit, wide3};
 use crate::support::SupportPoint;
 
 /// Up to four support points of D.
@@ -272,14 +272,16 @@ fn nearest_on_segment(a: &Vec3, b: &Vec3) -> (Vec3, Face) {
 /// As all of [`Simplex::reduce`], for a triangle whose newest vertex is `c`.
 #[inline]
 fn nearest_on_triangle(a: &Vec3, b: &Vec3, c: &Vec3) -> (Vec3, Face) {
-    let n = (b - a).cross(&(c - a));
+    // In double throughout: of a sliver that looks at the origin these are rounding else.
+    let [x, y, z] = [a, b, c].map(wide3);
+    let n = (y - x).cross(&(z - x));
     let nn = n.norm_squared();
     // Twice the signed areas of the triangles that the projected origin makes
     // with the edges bc and ca, as multiples of n: positive on the inner side.
-    let u = n.dot(&b.cross(c));
-    let v = n.dot(&c.cross(a));
+    let u = n.dot(&y.cross(&z));
+    let v = n.dot(&z.cross(&x));
     if u > 0.0 && v > 0.0 && nn > 0.0 {
-        return (n * (a.dot(&n) / nn), Face::All);
+        return (narrow3(&(n * (x.dot(&n) / nn))), Face::All);
     }
     // Outside an edge, or without area.
     let (p, on_ac) = nearest_on_segment(a, c);
