@@ -309,7 +309,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let rounding = expansion::rounding(precision);
         let fine = expansion::exact(tolerance, precision);
         let points = names.map(|i| set.v(i));
-        if !hull.tetrahedron(names, points, precision.size(), 2.0 * rounding, fine) {
+        if !hull.tetrahedron(names, points, precision.size(), fine) {
             return false;
         }
         let level = rounding + expansion::LEVEL * tolerance;
@@ -468,8 +468,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
             }
         }
-        // Where rounding ended the search.
-        let close = state.tolerance + 16.0 * precision.grain();
+        // Where rounding or a cap ended the search: a tolerance that was asked for coarser
+        // than the one in force is met all the same. (In this order NaN is none.)
+        let asked = larger(self.request.limits.tolerance, state.tolerance);
+        let close = asked + 16.0 * precision.grain();
         let short = end == End::Proven && !(hull.error() > 0.5 * state.tolerance);
         if short || depth - lower <= close {
             Answer::Hit(hit)

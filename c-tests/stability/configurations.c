@@ -4,10 +4,10 @@
 /* Every configuration on every entry point, judged by the exact truth; libccd's
  * answer is printed beside ours.
  *
- *   configurations [compatible | extension]   one line a configuration; exit code 1 if
- *                                             any fails on these entry points
- *   configurations --ledger                   a Markdown table of those where libccd is
- *                                             wrong */
+ *   configurations [compatible | proven | local]   one line a configuration; exit code 1
+ *                                                  if any fails on these entry points
+ *   configurations --ledger                        a Markdown table of those where
+ *                                                  libccd is wrong */
 
 #include "configurations.h"
 
