@@ -190,16 +190,8 @@ static inline shape_t random_shape(void)
 {
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, -1, -1, 0, 0, -1, -1, 0.5, 0.5, 0.5, -0.5, 0.5, -0.5};
     double p = random_in(0.3, 1), q = random_in(0.3, 1), r = random_in(0.3, 1), rot[9];
-    shape_t s;
-    switch (random_below(7)) {
-    case 0: s = shape_sphere(p); break;
-    case 1: s = shape_capsule(p, q); break;
-    case 2: s = shape_box(p, q, r); break;
-    case 3: s = shape_cylinder(p, q); break;
-    case 4: s = shape_cone(p, q); break;
-    case 5: s = shape_ellipsoid(p, q, r); break;
-    default: s = shape_polytope(corners, 7); break;
-    }
+    int type = random_below(SHAPE_TYPES);
+    shape_t s = type == SHAPE_POLYTOPE ? shape_polytope(corners, 7) : shape_make(type, p, q, r);
     rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
     shape_turn(&s, rot);
     return s;
