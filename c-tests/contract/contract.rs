@@ -385,7 +385,7 @@ fn nearest_points_of_segments_and_triangles() {
     } else {
         alone("nearest")
     };
-    nearest.build().run(NO_ARGS);
+    nearest.build().run([harness::rounds(20_000)]);
 }
 
 #[test]
@@ -395,7 +395,10 @@ fn polytopes() {
     } else {
         alone("polytope")
     };
-    polytope.standard("gnu99").build().run(NO_ARGS);
+    polytope
+        .standard("gnu99")
+        .build()
+        .run([harness::rounds(200)]);
 }
 
 /// FCL's EPA runs on the polytope functions: instructions are exact, time is not.

@@ -66,10 +66,8 @@ impl Cargo {
             Cargo::Release => "cargo",
             Cargo::Quick(name) => name,
         };
-        let dir = output_dir()
-            .join("packaging")
-            .join(Precision::CURRENT.name())
-            .join(name);
+        // Crates are compiled once for both precisions.
+        let dir = output_dir().join("packaging").join(name);
         [precision_option(), define("CCD_CARGO_TARGET_DIR", dir)]
     }
 
@@ -338,10 +336,10 @@ fn rust_is_looked_at() {
 }
 
 /// The source archive builds without a network, and gives the same bytes wherever it
-/// is unpacked.
+/// is unpacked. (By its name the first to start: it takes longest.)
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn source_archive_offline_and_reproducible() {
+fn a_build_of_the_source_archive_is_offline_and_reproducible() {
     if !root().join(".git").exists() {
         println!("skipped: not a git repository");
         return;
