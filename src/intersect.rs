@@ -12,9 +12,9 @@
 
 use crate::distance::{overlap, separate};
 use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::state::State;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, Stop, SupportSet};
-use crate::warm::State;
 
 /// Directions tried before a pair that was apart is asked about anew.
 const TRIES: u32 = 2;
