@@ -84,31 +84,30 @@ static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
     return code;
 }
 
-static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+/* Cold, then from the state that this left. */
+static inline int run_twice(int (*query)(const void *, const void *, const ccd_t *, ccd_warm_t *, ccd_penetration_t *),
+                            const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     ccd_warm_t warm;
     ccd_penetration_t p;
     memset(&warm, 0, sizeof warm);
-    ccdPenetrationLocal(a, b, ccd, &warm, &p);
-    return stored(ccdPenetrationLocal(a, b, ccd, &warm, &p), &p, out);
+    query(a, b, ccd, &warm, &p);
+    return stored(query(a, b, ccd, &warm, &p), &p, out);
+}
+
+static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    return run_twice(ccdPenetrationLocal, a, b, ccd, out);
 }
 
 static inline int run_PenetrationIncremental(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
-    ccd_warm_t warm;
-    ccd_penetration_t p;
-    memset(&warm, 0, sizeof warm);
-    ccdPenetrationIncremental(a, b, ccd, &warm, &p);
-    return stored(ccdPenetrationIncremental(a, b, ccd, &warm, &p), &p, out);
+    return run_twice(ccdPenetrationIncremental, a, b, ccd, out);
 }
 
 static inline int run_PenetrationMinimum(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
-    ccd_warm_t warm;
-    ccd_penetration_t p;
-    memset(&warm, 0, sizeof warm);
-    ccdPenetrationMinimum(a, b, ccd, &warm, &p);
-    return stored(ccdPenetrationMinimum(a, b, ccd, &warm, &p), &p, out);
+    return run_twice(ccdPenetrationMinimum, a, b, ccd, out);
 }
 
 static inline int run_PenetrationAlong(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)

@@ -260,7 +260,7 @@ fn a_part_of_another_project_installs_nothing() {
 
 /// BUILD_SHARED_LIBS=OFF: `ccd` is the archive, in a build tree and installed.
 #[test]
-fn static_alone() {
+fn the_archive_alone_without_shared_libraries() {
     let dir = fresh("static-alone");
     let (build, prefix) = (dir.join("build"), dir.join("prefix"));
     let cargo = Cargo::Quick("cargo-static");
@@ -287,7 +287,7 @@ fn static_alone() {
 /// A Rust that is missing or too old is named when CMake configures.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn rust_is_looked_at() {
+fn a_missing_or_old_rust_is_named() {
     let dir = fresh("rust");
     let says = |name: &str, line: &str| {
         let script = dir.join(name);
@@ -381,7 +381,7 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
 /// The notices that are installed name each crate that is compiled in.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn notices_are_whole() {
+fn notices_name_every_crate() {
     let prefix = installed_and_moved();
     let installed = |name| {
         fs::read_to_string(prefix.join("share/doc/ccd").join(name)).expect("an installed text")
