@@ -86,6 +86,8 @@ pub mod portal;
 #[doc(hidden)]
 pub mod precision;
 pub mod query;
+#[doc(hidden)]
+pub mod separation;
 #[cfg(test)]
 mod shapes;
 #[doc(hidden)]

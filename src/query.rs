@@ -28,8 +28,10 @@ use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
 use crate::math::{ITERATION_CAP, Real, Vec3, perpendicular, unit};
 use crate::planar;
+use crate::separation;
 use crate::state::State;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support_set::{Inquiry, SupportSet};
 
 /// A touch, within the tolerance, whose witness points do not meet? There the points that
 /// meet at the origin of D, which a proof of the overlap knows, are witnesses.
@@ -37,13 +39,6 @@ fn unmet(hit: &Penetration, settings: &Settings) -> bool {
     let apart = (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
     hit.depth <= settings.tolerance && apart > settings.tolerance
 }
-
-/// Directions tried before a pair that was apart is asked about anew.
-const TRIES: u32 = 2;
-/// What a margin that was reached once is still worth at the next query.
-const KEEP: Real = 0.95;
-/// A share of the aim below which the separating direction is turned.
-const ENOUGH: Real = 0.7;
 
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
@@ -59,45 +54,24 @@ pub struct Pair<A, B> {
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// Step 1: the separating direction that still separates.
-    ///
-    /// The support point that shows it also tells how to turn the direction for the next
-    /// time: h is to fall to -aim, its gradient is the tangential part g of s, and the
-    /// step -g (h + aim) / g² is Polyak's. A pair whose contact turns is followed so, at
-    /// one support point a query.
+    /// Step 1: the separating direction that still separates, see [`crate::separation`].
     fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
-        let Some(mut n) = state.separating() else {
-            return Ok(None);
-        };
-        let mut aim = state.memory.dir.norm();
-        for _ in 0..TRIES {
-            let s = self.md.support(&n)?.v;
-            let margin = -n.dot(&s);
-            aim = margin.max(KEEP * aim);
-            let mut next = n;
-            if margin < ENOUGH * aim {
-                let g = s + n * margin;
-                next = unit(&(n - g * ((aim - margin) / g.norm_squared()))).unwrap_or(n);
-            }
-            if margin > 0.0 {
-                state.memory.dir = next * aim;
-                return Ok(Some(n));
-            }
-            n = next;
-        }
-        Ok(None)
+        let mut failed = SupportSet::<2>::EMPTY;
+        separation::still_apart(&mut Inquiry::new(&self.md), &mut failed, state)
     }
 
     /// Leaves the answer behind for the next query.
     fn remember(&self, state: &mut State, answer: &Answer) -> Result<(), Fault> {
         match answer {
             Answer::Miss(n) if self.lasting => {
-                let (n, margin) = gjk::widen(&self.md, *n)?;
-                *state = State::apart(n * margin);
+                let was_apart = state.separating().is_some();
+                separation::leave(&mut Inquiry::new(&self.md), state, was_apart, *n)
             }
-            other => state.remember(other),
+            other => {
+                state.remember(other);
+                Ok(())
+            }
         }
-        Ok(())
     }
 
     /// The way from the centre of D through the origin, or the caller's first

@@ -48,6 +48,7 @@ const MODULES: &[(&str, Option<Phase>)] = &[
     ("local", Some(Phase::Search)),
     ("planar", Some(Phase::Search)),
     ("portal", Some(Phase::Search)),
+    ("separation", Some(Phase::Search)),
     ("signed_distance", Some(Phase::Search)),
     ("simplex", Some(Phase::Search)),
     ("start", Some(Phase::Search)),
