@@ -385,7 +385,7 @@ fn from<A: SupportMap, B: SupportMap>(
 ) -> Result<(), Stop> {
     let mut inquiry = Inquiry::new(md);
     // Most misses are told here, and pay for nothing more.
-    let first = inquiry.first(dir)?;
+    let first = inquiry.first(dir, None)?;
     beyond_first(&mut inquiry, centre, dir, &first)
 }
 

@@ -54,6 +54,8 @@ pub struct Request<'a> {
     pub centre: Option<SupportPoint>,
     /// The unit direction to ask first.
     pub first: Vec3,
+    /// Its support point, where that has been asked for.
+    pub asked: Option<SupportPoint>,
     /// Directions that the last proof stood on, besides; zero for none.
     pub others: &'a [Vec3],
     /// How far to go.
@@ -115,7 +117,7 @@ pub fn minimum<'r, A: SupportMap, B: SupportMap>(
 ) -> Result<Answer, Fault> {
     let mut inquiry = Inquiry::new(md);
     // A pair that is told apart by one support point costs no room.
-    let ended = match inquiry.first(&request.first) {
+    let ended = match inquiry.first(&request.first, request.asked) {
         Ok(first) => {
             let mut search = Search {
                 inquiry,
@@ -554,6 +556,7 @@ mod tests {
             let request = Request {
                 centre: None,
                 first: n,
+                asked: None,
                 others: &[],
                 limits,
                 placed: true,
@@ -611,6 +614,7 @@ mod tests {
             let request = Request {
                 centre: None,
                 first: n,
+                asked: None,
                 others: &[],
                 limits,
                 placed: true,

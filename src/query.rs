@@ -56,10 +56,19 @@ pub struct Pair<A, B> {
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Step 1: the separating direction that still separates, see [`crate::separation`].
-    #[inline(never)]
     fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
-        let mut failed = SupportSet::<2>::EMPTY;
-        separation::still_apart(&mut Inquiry::new(&self.md), &mut failed, state)
+        let mut failed = SupportSet::<{ separation::TRIES }>::EMPTY;
+        self.separated(state, &mut failed)
+    }
+
+    /// The same; the support points of directions that fail go into the set.
+    #[inline(never)]
+    fn separated(
+        &self,
+        state: &mut State,
+        failed: &mut SupportSet<{ separation::TRIES }>,
+    ) -> Result<Option<Vec3>, Fault> {
+        separation::still_apart(&mut Inquiry::new(&self.md), failed, state)
     }
 
     /// Leaves the answer behind for the next query.
@@ -232,13 +241,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
         placed: bool,
     ) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
+        let mut failed = SupportSet::EMPTY;
+        if let Some(n) = self.separated(state, &mut failed)? {
             return Ok(Answer::Miss(n));
         }
-        let first = state.leaving().unwrap_or_else(|| self.cold_start());
+        let asked = failed.lowest();
+        let first = match asked {
+            Some(i) => failed.direction(i),
+            None => state.leaving().unwrap_or_else(|| self.cold_start()),
+        };
         let request = Request {
             centre: apex,
             first,
+            asked: asked.map(|i| failed.point(i)),
             others: state.others(),
             limits,
             placed,

@@ -11,12 +11,15 @@ use crate::support::{Fault, SupportMap};
 use crate::support_set::{Inquiry, SupportSet};
 
 /// Directions tried before a pair that was apart is asked about anew.
-const TRIES: u32 = 2;
+pub const TRIES: usize = 2;
 /// What a margin that was reached once is still worth at the next query. Free: a pair that
 /// comes closer loses its margin in any case.
 const KEEP: Real = 0.95;
 /// A share of the aim below which the separating direction is turned. Free.
 const ENOUGH: Real = 0.7;
+
+/// The length of a direction with no margin to aim at.
+const UNSURE: Real = EPSILON;
 
 /// The state's direction, or what it is turned to, where that still separates. The points of
 /// directions that do not go into the set.
@@ -75,8 +78,7 @@ pub fn leave<A: SupportMap, B: SupportMap>(
         let (n, margin) = separate(inquiry, n)?;
         State::apart(n * margin)
     } else {
-        // No margin to aim at.
-        State::apart(n * EPSILON)
+        State::apart(n * UNSURE)
     };
     Ok(())
 }

@@ -137,6 +137,18 @@ impl<const N: usize> SupportSet<N> {
         self.len = len;
     }
 
+    /// The point whose direction it lies least far along, if there is one.
+    pub fn lowest(&self) -> Option<usize> {
+        let reach = |i: usize| self.directions[i].dot(&self.v(i));
+        let mut best = (None, Real::INFINITY);
+        for i in 0..self.len.min(N) {
+            if reach(i) < best.1 {
+                best = (Some(i), reach(i));
+            }
+        }
+        best.0
+    }
+
     /// The point farthest along `n` of those that were asked for, if it reaches beyond
     /// `reach`.
     #[inline(always)]
@@ -216,10 +228,13 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         }
     }
 
-    /// Asks for the first support point, which needs no set.
+    /// Asks for the first support point, unless it has been asked for. It needs no set.
     #[inline(always)]
-    pub fn first(&mut self, dir: &Vec3) -> Result<SupportPoint, Stop> {
-        let point = self.md.support(dir)?;
+    pub fn first(&mut self, dir: &Vec3, asked: Option<SupportPoint>) -> Result<SupportPoint, Stop> {
+        let point = match asked {
+            Some(point) => point,
+            None => self.md.support(dir)?,
+        };
         self.precision.note(&point);
         let depth = dir.dot(&point.v);
         if !(depth > self.precision.touch()) {
