@@ -79,6 +79,22 @@ fn signed_distance_beside_fcl() {
         .run(sets);
 }
 
+/// `<ccd/fcl.hpp>` in the oldest and the newest C++ it is meant for.
+#[test]
+fn fcl_header() {
+    for standard in ["c++11", "c++17"] {
+        Program::cpp("fcl")
+            .source("extension/fcl.cpp")
+            .standard(standard)
+            .flag("-D_GNU_SOURCE")
+            .flag("-isystem/usr/include/eigen3")
+            .library("fcl")
+            .link_ours_shared()
+            .build()
+            .run(["2"]);
+    }
+}
+
 #[test]
 fn pairs_that_stay_apart_cost_one_support() {
     program("apart").build().run(NO_ARGS);
