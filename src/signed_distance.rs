@@ -19,11 +19,11 @@
 
 use crate::barycentric;
 use crate::contact::{Answer, Penetration, Settings};
-use crate::distance::{Simplex, direction};
+use crate::distance::{Simplex, direction, witnesses};
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::precision::Precision;
 use crate::support::{Fault, SupportMap, SupportPoint};
-use crate::support_set::SupportSet;
+use crate::support_set::{Inquiry, SupportSet};
 use crate::warm::{Pair, State};
 
 /// What is asked for besides the objects.
@@ -113,25 +113,36 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
     match minimum(pair, state, &wanted.settings)? {
         Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
         Answer::Limit(hit) | Answer::Undecided(hit) => Ok(deep(&hit, wanted, true)),
-        // The proof's word: a touch.
-        Answer::Miss(normal) => {
-            let point = pair.md.support(&normal)?;
-            let mut precision = Precision::default();
-            precision.note(&point);
-            Ok(apart(
-                &Gap {
-                    lower: -normal.dot(&point.v),
-                    normal,
-                    point1: point.v1,
-                    point2: point.v1 - normal * normal.dot(&point.v),
-                    iterations: 0,
-                    limit: false,
-                    touch: precision.touch(),
-                },
-                wanted,
-            ))
-        }
+        Answer::Miss(normal) => Ok(apart(&touching(pair, &normal)?, wanted)),
     }
+}
+
+/// Where the cores touch: the proof's word, whatever one support value says of it.
+fn touching<A: SupportMap, B: SupportMap>(pair: &Pair<A, B>, normal: &Vec3) -> Result<Gap, Fault> {
+    let mut inquiry = Inquiry::new(&pair.md);
+    let mut set = SupportSet::<TOUCHED>::EMPTY;
+    let point = pair.md.support(normal)?;
+    inquiry.precision.note(&point);
+    set.push(normal, &point);
+    let h = normal.dot(&point.v);
+    let touch = larger(inquiry.precision.touch(), h.abs());
+    let (point1, point2, _) = witnesses(
+        &mut inquiry,
+        &mut set,
+        &(normal * h),
+        normal,
+        touch,
+        TOUCHED,
+    )?;
+    Ok(Gap {
+        lower: -h,
+        normal: *normal,
+        point1,
+        point2,
+        iterations: 0,
+        limit: false,
+        touch,
+    })
 }
 
 /// The answer for cores that overlap by this much.
@@ -185,6 +196,10 @@ fn apart(gap: &Gap, wanted: &Wanted) -> Distance {
         limit: gap.limit,
     }
 }
+
+/// Support points to find where a touch is. (Three of a face, and as many again for each of two
+/// round parts: free.)
+const TOUCHED: usize = 16;
 
 /// Steps that bring the simplex no nearer before rounding is all that is left.
 const STALLS: u32 = 3;

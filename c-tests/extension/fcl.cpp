@@ -135,7 +135,7 @@ static void one_pose(const body_t &a, const body_t &b, const object &oa, const o
 
 static void certified(int poses)
 {
-    static const double depths[] = {1e-1, 1e-2, 1e-4, 1e-6, -1e-6, -1e-3, -1e-1};
+    static const double depths[] = {1e-1, 1e-2, 1e-4, 1e-6, 1e-14, 0, -1e-6, -1e-3, -1e-1};
     ccd_fcl::PairCache cache;
     uniform_seed(7);
     for (int i = 0; i < KINDS; i++)
