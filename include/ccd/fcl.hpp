@@ -359,36 +359,61 @@ ccd_real_t slop_of(const Placed<S> &a, const Placed<S> &b, const Settings &setti
     return static_cast<ccd_real_t>(std::isfinite(radius) && radius > 0 ? radius / 1000 : S(0));
 }
 
-/* The points where the faces lie over each other, the deepest first; without those at which
- * the objects are apart. */
+/* Adds contacts of one pair. */
 template <typename S>
-void add_contacts(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, const Overlap &hit, std::size_t room,
-                  const Settings &settings, fcl::CollisionResult<S> &result)
-{
-    const int MOST = 16; /* twice the corners of the largest face that is not inscribed */
-    const fcl::Vector3<S> normal = to_fcl<S>(hit.normal);
-    const std::size_t asked = std::min(room, settings.contacts_per_pair);
-    ccd_contact_t found[MOST];
-    int count = 0;
-    if (asked > 1) {
-        count = ccdContacts(&a, &b, &ccd, &hit.normal, slop_of(a, b, settings), found,
-                            static_cast<int>(std::min<std::size_t>(asked, MOST)));
+class Contacts {
+public:
+    Contacts(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, const Overlap &hit, fcl::CollisionResult<S> &result)
+        : a_(a), b_(b), ccd_(ccd), hit_(hit), normal_(to_fcl<S>(hit.normal)), result_(result)
+    {
+    }
+
+    /* The points where the faces lie over each other, the deepest first; without those at
+     * which the objects are apart. The first has the depth of the objects: where none of the
+     * points is as deep to a thousandth, it is the middle of the overlap. */
+    void add(std::size_t room, const Settings &settings)
+    {
+        const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
+        const std::size_t asked = std::min(std::min(room, settings.contacts_per_pair), MOST);
+        ccd_contact_t found[MOST];
+        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.normal, slop_of(a_, b_, settings), found,
+                                                  static_cast<int>(asked))
+                                    : 0;
         must_be_answered(count);
+        const S depth = static_cast<S>(hit_.depth), least = depth - std::max(static_cast<S>(ccd_.mpr_tolerance), depth / 1000);
+        std::size_t added = 0;
+        if (count == 0 || !(depth_of(found[0]) >= least)) {
+            put(to_fcl<S>(hit_.pos), depth);
+            added++;
+        }
+        for (int i = 0; i < count && added < asked; i++) {
+            if (!(depth_of(found[i]) >= 0))
+                continue;
+            const fcl::Vector3<S> middle = (to_fcl<S>(found[i].point1) + to_fcl<S>(found[i].point2)) / S(2);
+            put(middle + normal_ * ((a_.margin - b_.margin) / 2), added == 0 ? depth : depth_of(found[i]));
+            added++;
+        }
     }
-    int added = 0;
-    for (int i = 0; i < count; i++) {
-        const S depth = static_cast<S>(found[i].depth) + a.margin + b.margin;
-        if (!(depth >= 0))
-            continue;
-        const fcl::Vector3<S> middle = (to_fcl<S>(found[i].point1) + to_fcl<S>(found[i].point2)) / S(2);
-        result.addContact(fcl::Contact<S>(a.geometry, b.geometry, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE,
-                                          middle + normal * ((a.margin - b.margin) / 2), normal, depth));
-        added++;
+
+private:
+    /* Corners may lie off their surfaces by the slop; nothing is deeper than the objects are. */
+    S depth_of(const ccd_contact_t &c) const
+    {
+        return std::min(static_cast<S>(c.depth) + a_.margin + b_.margin, static_cast<S>(hit_.depth));
     }
-    if (added == 0)
-        result.addContact(fcl::Contact<S>(a.geometry, b.geometry, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE,
-                                          to_fcl<S>(hit.pos), normal, static_cast<S>(hit.depth)));
-}
+
+    void put(const fcl::Vector3<S> &pos, S depth)
+    {
+        result_.addContact(fcl::Contact<S>(a_.geometry, b_.geometry, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE, pos,
+                                           normal_, depth));
+    }
+
+    const Placed<S> &a_, &b_;
+    const ccd_t &ccd_;
+    const Overlap &hit_;
+    const fcl::Vector3<S> normal_;
+    fcl::CollisionResult<S> &result_;
+};
 
 } // namespace detail
 
@@ -418,7 +443,7 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
     if (!detail::overlap(a, b, ccd, request.enable_contact, warm, &hit) || request.num_max_contacts <= result.numContacts())
         return result.numContacts();
     if (request.enable_contact)
-        detail::add_contacts(a, b, ccd, hit, request.num_max_contacts - result.numContacts(), settings, result);
+        detail::Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings);
     else
         result.addContact(fcl::Contact<S>(g1, g2, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
     return result.numContacts();
