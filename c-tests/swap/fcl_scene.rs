@@ -4,6 +4,9 @@
 //! A moving scene through FCL's broad phase, by FCL's narrow phase on either library and by
 //! `<ccd/fcl.hpp>`: time, support points, and what is wrong with the answers.
 
+// Each driver uses a part.
+#![allow(dead_code)]
+
 use crate::checks::{cpp, fields};
 use crate::harness::{Executable, Program};
 use std::collections::BTreeMap;
