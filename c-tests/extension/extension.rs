@@ -125,7 +125,8 @@ fn example() {
 }
 
 /// What the two small worlds print: everything comes to rest on the table, the box on four
-/// points, the capsule on two, the hull, a square pyramid, on four.
+/// points, the capsule on two, the hull, a square pyramid, on four; the hull and the capsule
+/// fall side by side, the nearest of what is apart, and the box comes no nearer to either.
 #[test]
 fn small_worlds() {
     let c = program("world").build().run(NO_ARGS).stdout;
@@ -140,6 +141,12 @@ fn small_worlds() {
         .stdout;
     assert_eq!(c, cpp);
     let lines: Vec<&str> = c.lines().collect();
-    assert_eq!(lines[0], "frame 9: 0 pairs touch in 0 points");
-    assert_eq!(lines[5], "frame 59: 3 pairs touch in 10 points");
+    assert_eq!(
+        lines[0],
+        "frame 9: 0 contacts, other pairs are 0.87 m apart"
+    );
+    assert_eq!(
+        lines[5],
+        "frame 59: 10 contacts, other pairs are 0.31 m apart"
+    );
 }
