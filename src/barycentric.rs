@@ -52,8 +52,8 @@ impl<const N: usize> Nearest<N> {
 #[inline]
 pub fn mix<const N: usize>(weights: &[Real; N], points: [&Vec3; N]) -> Vec3 {
     let mut mixed = *points[0];
-    for (weight, point) in weights.iter().zip(points).skip(1) {
-        mixed += (point - points[0]) * *weight;
+    for i in 1..N {
+        mixed += (points[i] - points[0]) * weights[i];
     }
     mixed
 }

@@ -124,9 +124,9 @@
 use core::ops::{Add, Div, Mul, Sub};
 
 use crate::contact::{Answer, Penetration, Settings};
+use crate::contact_patch;
 use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
-use crate::patch;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Samples kept: three active cuts and the newest.
@@ -1405,7 +1405,7 @@ fn conclude(
         normal: *b,
         point1,
         point2,
-        width: patch::width(&seen, b, tolerance, search.curvature.size),
+        width: contact_patch::width(&seen, b, tolerance, search.curvature.size),
         iterations,
     };
     (answer, across, own)

@@ -120,9 +120,10 @@ pub struct Progress {
     /// The tolerance in force, and the gap that is allowed, metres.
     pub tolerance: Real,
     allowed: Real,
-    /// A point is above a face by more than this, metres: while the origin is outside, and
-    /// after.
+    /// A point is above a face by more than this, metres: while the origin is outside (and its
+    /// square), and after.
     rounding: Real,
+    rounding2: f64,
     level: Real,
     size2: Real,
     /// Steps for which plain normals are asked; how many means were asked in vain.
@@ -167,6 +168,7 @@ impl Progress {
             tolerance: 0.0,
             allowed: 0.0,
             rounding: 0.0,
+            rounding2: 0.0,
             level: 0.0,
             size2: -1.0,
             plain: FEW as i32 - points as i32,
@@ -196,6 +198,7 @@ impl Progress {
             self.size2 = precision.size2();
             self.tolerance = precision.tolerance(self.limits.tolerance);
             self.rounding = rounding(precision);
+            self.rounding2 = wide(self.rounding * self.rounding);
             self.level = self.rounding + LEVEL * self.tolerance;
             hull.grow(precision.size());
             self.known = Real::INFINITY;
@@ -236,7 +239,7 @@ impl Progress {
     /// each new face the plane of the one it replaces.
     #[inline(always)]
     fn circles(&mut self, top: &Top) -> bool {
-        let moved = (top.key - self.same.0).abs() > 1e-11 * top.key.abs();
+        let moved = (top.key - self.same.0).abs() > 1e-11 * top.key.abs() + self.rounding2;
         self.same = (top.key, if moved { 0 } else { self.same.1 + 1 });
         self.same.1 > CIRCLES
     }
@@ -281,7 +284,9 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             }
             continue;
         }
-        let stuck = if inside { End::Inside } else { End::Open };
+        // A face through the origin shows neither.
+        let shown = top.key > state.rounding2;
+        let stuck = if shown { End::Inside } else { End::Open };
         if state.circles(&top) {
             return Ok(stuck);
         }
@@ -307,7 +312,10 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         let height = hull.height(top.face, &Plane::point(&v));
         let level = if inside { state.level } else { state.rounding };
         if height > level && !(hull.borrowed(top.face) && is_corner(set, hull, top.face, &v)) {
-            state.core.measure(set, &hull.corners(top.face), i, level);
+            // The start's own points are far apart.
+            if state.iterations > 1 {
+                state.core.measure(set, &hull.corners(top.face), i, level);
+            }
             match hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
                 Inserted::Yes => continue,
                 Inserted::NoRoom => {
@@ -437,25 +445,17 @@ impl Core {
 
     /// The radius that two samples tell, if they are of one ball.
     #[inline(always)]
-    pub fn pair<const P: usize>(&mut self, set: &SupportSet<P>, i: usize, j: usize, least: Real) {
+    fn pair<const P: usize>(&mut self, set: &SupportSet<P>, i: usize, j: usize, least: Real) {
         let (n, n_) = (set.direction(i), set.direction(j));
+        let turn2 = 2.0 - 2.0 * n.dot(&n_);
+        if !NEIGHBOURS.contains(&turn2) {
+            return;
+        }
         let between = set.v(j) - set.v(i);
         let (e, e_) = (n_.dot(&between), -n.dot(&between));
-        let turn2 = 2.0 - 2.0 * n.dot(&n_);
         let sum = e + e_;
-        if NEIGHBOURS.contains(&turn2) && (e - e_).abs() <= ALIKE * sum && sum > least {
+        if (e - e_).abs() <= ALIKE * sum && sum > least {
             self.radius = sum / turn2;
-        }
-    }
-}
-
-impl Progress {
-    /// Takes what the points of the start tell of a ball.
-    pub fn look_back<const P: usize>(&mut self, set: &SupportSet<P>, least: Real) {
-        for j in 2..set.len() {
-            for i in 1..j {
-                self.core.pair(set, i, j, least);
-            }
         }
     }
 }

@@ -191,51 +191,6 @@ pub fn search<A: SupportMap, B: SupportMap>(
     Ok(Overlap::Undecided)
 }
 
-/// From a unit direction that separates to one that separates by a good part of the
-/// distance, and so for longer while the objects move: the steps of the distance
-/// algorithm, each at a support point, until the margin −n·s(n) is [`WIDE`] enough.
-/// Returns n and its margin.
-pub fn widen<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    separating: Vec3,
-) -> Result<(Vec3, Real), Fault> {
-    let mut n = separating;
-    let mut best = (n, 0.0);
-    let mut simplex: Option<Simplex> = None;
-    for _ in 0..WIDENING {
-        let w = md.support(&n)?;
-        let margin = -n.dot(&w.v);
-        if margin > best.1 {
-            best = (n, margin);
-        }
-        let nearest = match &mut simplex {
-            None => {
-                simplex = Some(Simplex::new(w));
-                w.v
-            }
-            Some(simplex) => {
-                simplex.push(w);
-                match simplex.reduce() {
-                    Nearest::Inside => break,
-                    Nearest::Outside(v) => v,
-                }
-            }
-        };
-        // |v| is more than the distance, the margin is less. Ends on NaN too.
-        let distance = nearest.norm();
-        if !(best.1 < WIDE * distance && distance < Real::INFINITY) {
-            break;
-        }
-        n = -nearest / distance;
-    }
-    Ok(best)
-}
-
-/// The share of the distance that is wide enough.
-const WIDE: Real = 0.8;
-/// Support points that [`widen`] may ask for.
-const WIDENING: u32 = 8;
-
 /// The last word where the objects nearly touch. There v is mostly rounding error, and
 /// on a curved object its direction with it; the normals of a portal's triangles are
 /// not. The ray leaves from a point inside D through the origin: if the origin is in D, the

@@ -11,10 +11,10 @@
 
 use crate::barycentric;
 use crate::contact::{Answer, Penetration};
+use crate::contact_patch::{self, Rest};
 use crate::distance;
 use crate::expansion::{self, End, Limits, Progress, expand};
-use crate::math::{Real, Vec3, larger};
-use crate::patch::{self, Rest};
+use crate::math::{Real, Vec3, larger, unit};
 use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope};
 use crate::start;
@@ -52,8 +52,10 @@ pub trait Arena {
 pub struct Request<'a> {
     /// A point that the caller says is in D, the difference of the centres; trusted.
     pub centre: Option<SupportPoint>,
-    /// Unit directions to ask first, of which there is at least one.
-    pub directions: &'a [Vec3],
+    /// The unit direction to ask first.
+    pub first: Vec3,
+    /// Directions that the last proof stood on, besides; zero for none.
+    pub others: &'a [Vec3],
     /// How far to go.
     pub limits: Limits,
     /// Does anybody read the witness points? Else the width of the contact is 0.
@@ -65,7 +67,7 @@ pub struct Request<'a> {
 impl Request<'_> {
     /// Is nothing known but where to begin?
     fn cold(&self) -> bool {
-        self.directions.len() == 1
+        self.others.is_empty()
     }
 }
 
@@ -112,11 +114,8 @@ pub fn minimum<'r, A: SupportMap, B: SupportMap>(
     basis: Option<&'r mut Basis>,
 ) -> Result<Answer, Fault> {
     let mut inquiry = Inquiry::new(md);
-    let Some(dir) = request.directions.first() else {
-        return Ok(Answer::Miss(Vec3::x()));
-    };
     // A pair that is told apart by one support point costs no room.
-    let ended = match inquiry.first(dir) {
+    let ended = match inquiry.first(&request.first) {
         Ok(first) => {
             let mut search = Search {
                 inquiry,
@@ -183,7 +182,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 continue;
             }
             let mut state = Progress::new(&self.request.limits, set.len());
-            state.look_back(&set, self.inquiry.precision.rounding());
             match expand(&mut self.inquiry, &mut set, &mut hull, &mut state)? {
                 End::NoRoom => {
                     return self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
@@ -214,25 +212,37 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         first: &SupportPoint,
     ) -> Result<Option<(Vec3, SupportPoint)>, Stop> {
         let Request {
-            centre, directions, ..
+            centre,
+            first: dir,
+            others,
+            ..
         } = self.request;
         let apex = centre.as_ref().unwrap_or(first);
         set.push(&Vec3::zeros(), apex);
-        set.push(&directions[0], first);
+        set.push(dir, first);
         let mut opposite = None;
         if centre.is_some() {
             self.inquiry.precision.note(apex);
         } else {
-            let n = -directions[0];
+            let n = -dir;
             let (i, _) = self.inquiry.ask(set, &n)?;
             let point = set.point(i);
             set.truncate(2);
             set.put(0, &Vec3::zeros(), &first.middle(&point));
             opposite = Some((n, point));
+            // A first direction that has nothing to do with where the objects are is only
+            // good for an apex: the way from there through the origin takes its place.
+            if let Some(n) =
+                unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, dir))
+            {
+                let (i, _) = self.inquiry.ask(set, &n)?;
+                set.swap(1, i);
+            }
         }
-        for n in &directions[1..] {
+        // Whatever a state holds: unit, and no more than there is room for.
+        for n in others.iter().filter_map(unit) {
             if set.len() + START <= P {
-                self.inquiry.ask(set, n)?;
+                self.inquiry.ask(set, &n)?;
             }
         }
         Ok(opposite)
@@ -378,14 +388,22 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         state: &Progress,
         end: End,
     ) -> Answer {
-        let Lowest { depth, dir, .. } = self.inquiry.lowest;
+        let Lowest { mut depth, dir } = self.inquiry.lowest;
         let top = hull.nearest();
         let precision = &self.inquiry.precision;
+        // The point that was asked for along dir; or a farther one, where a callback
+        // contradicts itself: D reaches as far as all its known points.
+        let lowest = set.farther(&dir, Real::NEG_INFINITY).unwrap_or(1);
+        let reach = dir.dot(&set.v(lowest));
+        if reach > depth + precision.tie() {
+            depth = reach;
+        }
         let near = hull.distance(top.face);
         let lower = larger(near - precision.grain(), 0.0).min(depth);
         let (face, nearest) = leaves(set, hull, top.face, &dir, depth, state.tolerance);
-        let [a, b, c] = hull.corners(face).map(|i| set.point(i));
-        let (point1, point2) = barycentric::witnesses(&nearest.weights, [&a, &b, &c]);
+        let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
+        let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
+        let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
         let mut hit = Penetration {
             depth,
             depth_lower: lower,
@@ -403,11 +421,19 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             let tied = (dir - set.direction(1)).norm() * precision.size() <= error;
             let blind = self.request.rested || self.request.cold() && tied;
             // Mostly one of the two touches with a corner.
-            let corner = a.v1 == b.v1 && b.v1 == c.v1 || a.v2 == b.v2 && b.v2 == c.v2;
+            let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
             if blind || !corner {
                 let witnesses = |i| set.witnesses(i + 1);
                 let count = set.len() - 1;
-                hit.width = match patch::rest(witnesses, count, &dir, error, precision.size()) {
+                let above = set.witnesses(lowest);
+                hit.width = match contact_patch::rest(
+                    witnesses,
+                    count,
+                    &dir,
+                    above,
+                    error,
+                    precision.size(),
+                ) {
                     Rest::Along(length) => length,
                     Rest::Unsure(length) if blind => length,
                     _ => 0.0,
@@ -417,9 +443,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let Some(basis) = &mut self.basis {
             basis.add(&dir);
             // Asked along dir, the point farthest that way is found again by itself.
-            let found = set.farther(&dir, Real::NEG_INFINITY).map(|i| set.v(i));
+            let found = set.v(lowest);
             for i in hull.corners(top.face) {
-                if Some(set.v(i)) != found {
+                if set.v(i) != found {
                     basis.add(&set.direction(i));
                 }
             }
@@ -507,7 +533,8 @@ mod tests {
             let n = c.normalize();
             let request = Request {
                 centre: None,
-                directions: &[n],
+                first: n,
+                others: &[],
                 limits,
                 placed: true,
                 rested: false,
@@ -563,7 +590,8 @@ mod tests {
             };
             let request = Request {
                 centre: None,
-                directions: &[n],
+                first: n,
+                others: &[],
                 limits,
                 placed: true,
                 rested: false,

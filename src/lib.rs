@@ -5,14 +5,15 @@
 //! overlap, depth, direction, position; started warm from the last answer.
 //!
 //! An object is any function that answers a direction with the object's point farthest
-//! along it. A [`warm::Pair`] of them is asked, and leaves what it learnt in a
-//! [`warm::State`] for the next query of the same pair:
+//! along it. A [`query::Pair`] of them is asked, and leaves what it learnt in a
+//! [`state::State`] for the next query of the same pair:
 //!
 //! ```
 //! use ccd::contact::{Answer, Settings};
 //! use ccd::math::Vec3;
+//! use ccd::query::Pair;
+//! use ccd::state::State;
 //! use ccd::support::MinkowskiDifference;
-//! use ccd::warm::{Pair, State};
 //!
 //! let ball = |at: Vec3| move |dir: &Vec3| at + dir; // of radius 1
 //! let pair = Pair {
@@ -47,12 +48,16 @@
 )]
 
 #[doc(hidden)]
+pub mod along;
+#[doc(hidden)]
 pub mod barycentric;
 #[doc(hidden)]
 pub mod bundle;
 pub mod contact;
 #[doc(hidden)]
 pub mod contact_manifold;
+#[doc(hidden)]
+pub mod contact_patch;
 #[doc(hidden)]
 pub mod distance;
 #[doc(hidden)]
@@ -69,8 +74,6 @@ pub mod intersect;
 pub mod local;
 pub mod math;
 #[doc(hidden)]
-pub mod patch;
-#[doc(hidden)]
 pub mod planar;
 #[doc(hidden)]
 pub mod plane;
@@ -82,6 +85,9 @@ pub mod polytope;
 pub mod portal;
 #[doc(hidden)]
 pub mod precision;
+pub mod query;
+#[doc(hidden)]
+pub mod separation;
 #[cfg(test)]
 mod shapes;
 #[doc(hidden)]
@@ -90,7 +96,7 @@ pub mod signed_distance;
 pub mod simplex;
 #[doc(hidden)]
 pub mod start;
+pub mod state;
 pub mod support;
 #[doc(hidden)]
 pub mod support_set;
-pub mod warm;

@@ -23,8 +23,8 @@
 //! one, met on the way in another valley, are searched as well.
 
 use crate::contact::{Answer, Penetration, Settings};
+use crate::contact_patch;
 use crate::math::{Real, Vec3, larger, perpendicular};
-use crate::patch;
 use crate::portal::{self, Exit, Plane, Portal, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
 
@@ -107,7 +107,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                         _ => answer(plane, Some(last), used(budget)),
                     };
                     return Ok(Answer::Hit(Penetration {
-                        width: patch::width(&face, &hit.normal, floor, size),
+                        width: contact_patch::width(&face, &hit.normal, floor, size),
                         ..hit
                     }));
                 }

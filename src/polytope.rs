@@ -328,8 +328,8 @@ impl<const F: usize> Polytope<F> {
     #[inline(always)]
     pub fn nearest(&self) -> Top {
         let mut least = [f64::INFINITY; 8];
-        let rows = self.used.div_ceil(8).clamp(1, F / 8);
-        for row in self.keys[..8 * rows].chunks_exact(8) {
+        let last = Self::at(self.used.wrapping_sub(1)) | 7;
+        for row in self.keys[..=last].chunks_exact(8) {
             for (a, b) in least.iter_mut().zip(row) {
                 *a = if *b < *a { *b } else { *a };
             }

@@ -24,7 +24,7 @@ use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::precision::Precision;
 use crate::support::{Fault, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, SupportSet};
-use crate::warm::{Pair, State};
+use crate::{query::Pair, state::State};
 
 /// What is asked for besides the objects.
 #[derive(Clone, Copy, Debug)]

@@ -29,7 +29,8 @@ use crate::support_set::{Inquiry, Stop, SupportSet};
 
 /// Steps on the ball. Measured: the third is rare, and no pair set takes a sixth.
 const STEPS: usize = 6;
-/// |n′ − n|² above which the first step is no neighbour: 31 degrees.
+/// |n′ − n|² above which the first step is no neighbour: 31 degrees. Measured, for directions
+/// that have nothing to do with the objects: 14 and 53 degrees cost up to 3 % more supports.
 const FAR: Real = 0.3;
 /// Relative difference of e and e′ up to which two samples are of one ball.
 const ALIKE: Real = 0.1;
@@ -40,6 +41,12 @@ const LITTLE: Real = 0.05;
 /// Tilts tried; from the fifth on the direction lies in the plane.
 const TRIES: usize = 12;
 const PATIENT: usize = 4;
+
+/// Is a direction so far from another that samples along the two are no neighbours?
+#[inline(always)]
+pub fn is_far(n: &Vec3, other: &Vec3) -> bool {
+    (n - other).norm_squared() > FAR
+}
 
 /// The apex and three different points that were known, if there are so many: in a warm
 /// query the corners of the last proof's nearest face.
@@ -135,11 +142,12 @@ fn ring<A: SupportMap, B: SupportMap, const P: usize>(
             (aside, farthest, old) = (across, far2, i);
         }
     }
-    let rounding = inquiry.precision.rounding();
-    if !(farthest > rounding * rounding) {
+    let tie = inquiry.precision.tie();
+    if !(farthest > tie * tie) {
         old = 0;
     }
-    let a = match unit(&aside) {
+    // A short way aside is only across to rounding: once more.
+    let a = match unit(&(aside - ball.n * ball.n.dot(&aside))) {
         Some(a) if old > 0 => a,
         _ => perpendicular(&ball.n),
     };

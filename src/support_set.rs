@@ -17,9 +17,8 @@ use crate::precision::Precision;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Room for `N` support points with the directions they were asked along.
-///
-/// A point of D is not stored: it is the difference of its two witnesses, to the bit.
 pub struct SupportSet<const N: usize> {
+    points: [Vec3; N],
     witnesses: [[Vec3; 2]; N],
     directions: [Vec3; N],
     len: usize,
@@ -28,6 +27,7 @@ pub struct SupportSet<const N: usize> {
 impl<const N: usize> SupportSet<N> {
     /// No point.
     pub const EMPTY: Self = Self {
+        points: [Vec3::new(0.0, 0.0, 0.0); N],
         witnesses: [[Vec3::new(0.0, 0.0, 0.0); 2]; N],
         directions: [Vec3::new(0.0, 0.0, 0.0); N],
         len: 0,
@@ -63,21 +63,25 @@ impl<const N: usize> SupportSet<N> {
     /// The point of D with this index.
     #[inline(always)]
     pub fn v(&self, i: usize) -> Vec3 {
-        let [v1, v2] = &self.witnesses[Self::at(i)];
-        v1 - v2
+        self.points[Self::at(i)]
     }
 
     /// The point with its witnesses.
     #[inline(always)]
     pub fn point(&self, i: usize) -> SupportPoint {
-        let [v1, v2] = self.witnesses[Self::at(i)];
-        SupportPoint { v: v1 - v2, v1, v2 }
+        let i = Self::at(i);
+        let [v1, v2] = self.witnesses[i];
+        SupportPoint {
+            v: self.points[i],
+            v1,
+            v2,
+        }
     }
 
     /// The points of obj1 and obj2 that it is the difference of.
     #[inline(always)]
-    pub fn witnesses(&self, i: usize) -> [Vec3; 2] {
-        self.witnesses[Self::at(i)]
+    pub fn witnesses(&self, i: usize) -> &[Vec3; 2] {
+        &self.witnesses[Self::at(i)]
     }
 
     /// The unit direction that the point was asked along; zero for one that was not.
@@ -108,8 +112,19 @@ impl<const N: usize> SupportSet<N> {
     /// Puts a point in the place of another.
     #[inline(always)]
     pub fn put(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
-        self.witnesses[Self::at(i)] = [point.v1, point.v2];
-        self.directions[Self::at(i)] = *direction;
+        let i = Self::at(i);
+        self.points[i] = point.v;
+        self.witnesses[i] = [point.v1, point.v2];
+        self.directions[i] = *direction;
+    }
+
+    /// Lets two points change places.
+    #[inline(always)]
+    pub fn swap(&mut self, i: usize, j: usize) {
+        let (i, j) = (Self::at(i), Self::at(j));
+        self.points.swap(i, j);
+        self.witnesses.swap(i, j);
+        self.directions.swap(i, j);
     }
 
     /// Forgets all points from this index on.
@@ -121,6 +136,7 @@ impl<const N: usize> SupportSet<N> {
     /// Takes the points of a smaller set, with their indices.
     pub fn take<const M: usize>(&mut self, other: &SupportSet<M>) {
         let len = other.len.min(M).min(N);
+        self.points[..len].copy_from_slice(&other.points[..len]);
         self.witnesses[..len].copy_from_slice(&other.witnesses[..len]);
         self.directions[..len].copy_from_slice(&other.directions[..len]);
         self.len = len;
@@ -233,8 +249,15 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         let point = self.md.support(dir)?;
         self.precision.note(&point);
         let h = dir.dot(&point.v);
+        // NaN is no depth.
+        if !(h > self.precision.touch()) {
+            return self.apart(set, dir, h);
+        }
         if h < self.lowest.depth {
-            return self.lower(set, dir, &point, h);
+            self.lowest = Lowest {
+                depth: h,
+                dir: *dir,
+            };
         }
         Ok((set.push(dir, &point), h))
     }
@@ -261,33 +284,28 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         known.map(Beyond::Known).ok_or(Stop::Apart(*dir))
     }
 
-    #[inline(always)]
-    fn lower<const N: usize>(
+    /// The point that a touch is told by is no farther along `dir` than the origin. A known
+    /// one that is, is the answer.
+    #[cold]
+    #[inline(never)]
+    fn apart<const N: usize>(
         &mut self,
-        set: &mut SupportSet<N>,
+        set: &SupportSet<N>,
         dir: &Vec3,
-        point: &SupportPoint,
         h: Real,
     ) -> Result<(usize, Real), Stop> {
-        let (index, h) = match set.farther(dir, h + self.precision.tie()) {
-            Some(i) => (i, dir.dot(&set.v(i))),
-            None => (usize::MAX, h),
-        };
-        // NaN is no depth.
-        if !(h > self.precision.touch()) {
+        let touch = self.precision.touch();
+        let Some(i) = set.farther(dir, larger(h + self.precision.grain(), touch)) else {
             return Err(Stop::Apart(*dir));
-        }
-        let index = match index {
-            usize::MAX => set.push(dir, point),
-            known => known,
         };
+        let h = dir.dot(&set.v(i));
         if h < self.lowest.depth {
             self.lowest = Lowest {
                 depth: h,
                 dir: *dir,
             };
         }
-        Ok((index, h))
+        Ok((i, h))
     }
 }
 

@@ -40,6 +40,7 @@ enum Phase {
 /// The modules of `src`; `None` is used by every phase and counts as its user's. A
 /// module that is missing here fails this file's test.
 const MODULES: &[(&str, Option<Phase>)] = &[
+    ("along", Some(Phase::Search)),
     ("bundle", Some(Phase::Search)),
     ("distance", Some(Phase::Search)),
     ("gjk", Some(Phase::Search)),
@@ -47,13 +48,14 @@ const MODULES: &[(&str, Option<Phase>)] = &[
     ("local", Some(Phase::Search)),
     ("planar", Some(Phase::Search)),
     ("portal", Some(Phase::Search)),
+    ("separation", Some(Phase::Search)),
     ("signed_distance", Some(Phase::Search)),
     ("simplex", Some(Phase::Search)),
     ("start", Some(Phase::Search)),
     ("expansion", Some(Phase::Proof)),
     ("plane", Some(Phase::Proof)),
     ("polytope", Some(Phase::Proof)),
-    ("patch", Some(Phase::Patch)),
+    ("contact_patch", Some(Phase::Patch)),
     ("polygon", Some(Phase::Patch)),
     ("contact", Some(Phase::Rest)),
     ("contact_manifold", Some(Phase::Rest)),
@@ -62,7 +64,8 @@ const MODULES: &[(&str, Option<Phase>)] = &[
     ("shapes", Some(Phase::Rest)),
     ("support", Some(Phase::Rest)),
     ("support_set", Some(Phase::Rest)),
-    ("warm", Some(Phase::Rest)),
+    ("query", Some(Phase::Rest)),
+    ("state", Some(Phase::Rest)),
     ("barycentric", None),
     ("lib", None),
     ("math", None),

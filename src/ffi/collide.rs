@@ -14,7 +14,7 @@ use crate::distance;
 use crate::math::{Real, Vec3, unit};
 use crate::support::Fault;
 use crate::support_set::Stop;
-use crate::warm::{Pair, State};
+use crate::{query::Pair, state::State};
 
 /// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
 pub const DEFAULT_TOLERANCE: Real = 1e-4;

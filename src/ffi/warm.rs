@@ -16,7 +16,7 @@ use crate::intersect;
 use crate::math::{Real, Vec3, unit};
 use crate::signed_distance::{Distance, Wanted, signed_distance};
 use crate::support::Fault;
-use crate::warm::{Pair, State};
+use crate::{query::Pair, state::State};
 
 /// The objects overlap, by more than rounding.
 pub const CCD_HIT: c_int = 0;

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Queries with memory: what one query of a pair leaves behind for the next
-//! (paper, Sec. III-D), and the order of steps that all of them share.
+//! The queries of a pair, and the order of steps that all of them share.
 //!
 //! 1. A pair that was apart is asked about the direction that separated it: while
 //!    that still separates, one support point is the whole answer, and turns the
@@ -13,210 +12,26 @@
 //!    though the objects are apart (a plate that an object has passed through, seen
 //!    from the old side), so the origin must be shown to lie among points of D:
 //!    [`gjk::intersect`] on the points the solver saw, the centres' difference among
-//!    them, asks for more only where these leave a side open.
-//!
+//!    them, asks for more only where these leave a side open. The global machine proves
+//!    its overlaps itself.
 //! 4. Witness points of a face that rests on another, or on an edge, are moved to the
-//!    middle of where they touch ([`patch`]).
-//!
-//! Nothing in a state is trusted: it chooses where to look first, never what is true.
+//!    middle of where they touch ([`contact_patch`]).
+//! 5. What was learned stays behind in the [`State`].
 
+use crate::along;
 use crate::bundle::{self, Memory};
 use crate::contact::{Answer, Penetration, Settings};
+use crate::contact_patch;
 use crate::expansion::Limits;
 use crate::gjk::{self, Overlap};
 use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
 use crate::math::{ITERATION_CAP, Real, Vec3, perpendicular, unit};
-use crate::patch;
 use crate::planar;
-use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
+use crate::separation;
+use crate::state::State;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
-
-/// [`State::padding`] of a pair that rested face on face.
-const RESTED: u32 = 1;
-
-/// What a query leaves behind. All zero is cold; any other bits are harmless.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
-pub struct State {
-    /// What the solvers remember. In a pair that was apart `dir` separated it, and its
-    /// length, metres, is the margin to aim at; after a query along a direction `slopes` are the directions of the last portal.
-    pub memory: Memory,
-    /// One of the constants below; anything else is cold.
-    pub kind: u32,
-    /// Fills the last word, always 0.
-    pub padding: u32,
-}
-
-/// The pair was apart.
-const APART: u32 = 1;
-/// The pair overlapped.
-const OVERLAP: u32 = 2;
-/// The pair overlapped, and was asked about along a direction.
-const ALONG: u32 = 3;
-/// The pair overlapped, and its minimum was proven: `slopes` are the directions of the
-/// points that the proof stands on, besides the minimum's own.
-const PROVEN: u32 = 4;
-/// The pair overlapped, and was asked yes or no.
-const SURROUNDED: u32 = 5;
-
-impl State {
-    /// A fresh state that starts from `dir`; cold when it is zero or not finite.
-    pub fn guess(dir: &Vec3) -> Self {
-        match unit(dir) {
-            Some(n) => Self::of(OVERLAP, n),
-            None => Self::default(),
-        }
-    }
-
-    /// The state of a pair becomes that of the same objects in the other order, whose D is
-    /// this one's mirror image in the origin: points, directions and slopes change sign,
-    /// lengths and curvatures stay.
-    pub fn flip(&mut self) {
-        for v in self.memory.slopes.iter_mut().chain([&mut self.memory.dir]) {
-            // Not -v: a cold state is one of plain zeros.
-            *v = Vec3::zeros() - *v;
-        }
-    }
-
-    fn overlap(memory: Memory) -> Self {
-        Self {
-            memory,
-            kind: OVERLAP,
-            padding: 0,
-        }
-    }
-
-    fn of(kind: u32, dir: Vec3) -> Self {
-        Self {
-            memory: Memory {
-                dir,
-                ..Memory::default()
-            },
-            kind,
-            padding: 0,
-        }
-    }
-
-    /// The pair is apart: the length of `dir`, metres, is the margin to aim at.
-    pub fn apart(dir: Vec3) -> Self {
-        Self::of(APART, dir)
-    }
-
-    /// [`State::apart`], with the directions of up to three support points around the nearest
-    /// one (zero for none), and the radius of a ball that rounds D there, metres.
-    pub fn near(dir: Vec3, directions: [Vec3; 3], ball: Real) -> Self {
-        let mut state = Self::apart(dir);
-        state.memory.slopes = directions;
-        state.memory.curvature[0] = ball;
-        state
-    }
-
-    /// What [`State::near`] left.
-    pub fn nearest(&self) -> ([Vec3; 3], Real) {
-        match self.kind {
-            APART => (self.memory.slopes, self.memory.curvature[0]),
-            _ => ([Vec3::zeros(); 3], 0.0),
-        }
-    }
-
-    /// The margin to aim at, metres, where the pair was apart.
-    pub fn aim(&self) -> Real {
-        self.memory.dir.norm()
-    }
-
-    /// Did the pair overlap when its depth was asked?
-    pub fn overlapped(&self) -> bool {
-        matches!(self.kind, OVERLAP | ALONG)
-    }
-
-    /// The pair overlaps: support points along these directions surround the origin. Zero
-    /// for none.
-    pub fn surrounded([a, b, c, d]: [Vec3; 4]) -> Self {
-        let mut state = Self::of(SURROUNDED, a);
-        state.memory.slopes = [b, c, d];
-        state
-    }
-
-    /// The directions of [`State::surrounded`], where the pair was.
-    pub fn surrounding(&self) -> [Vec3; 4] {
-        let [b, c, d] = self.memory.slopes;
-        match self.kind {
-            SURROUNDED => [self.memory.dir, b, c, d],
-            _ => [Vec3::zeros(); 4],
-        }
-    }
-
-    /// The direction that separated the pair.
-    pub fn separating(&self) -> Option<Vec3> {
-        match self.kind {
-            APART => unit(&self.memory.dir),
-            _ => None,
-        }
-    }
-
-    /// The direction in which obj2 left last time, or is guessed to leave. A pair that
-    /// was apart and is no longer has just met there.
-    fn leaving(&self) -> Option<Vec3> {
-        match self.kind {
-            APART | OVERLAP | ALONG | PROVEN => unit(&self.memory.dir),
-            _ => None,
-        }
-    }
-
-    /// What the local solver starts from.
-    fn solver(&self) -> Memory {
-        match self.kind {
-            OVERLAP => self.memory,
-            APART | ALONG | PROVEN => Self::of(OVERLAP, self.memory.dir).memory,
-            _ => Memory::default(),
-        }
-    }
-
-    /// The directions of the last portal.
-    fn portal(&self) -> Option<[Vec3; 3]> {
-        let [a, b, c] = &self.memory.slopes;
-        match self.kind {
-            ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
-            _ => None,
-        }
-    }
-
-    /// The directions that a proof starts from: `first`, and those of the last one.
-    fn basis(&self, first: Vec3) -> Basis {
-        let mut basis = Basis::default();
-        basis.add(&first);
-        if self.kind == PROVEN {
-            for slope in &self.memory.slopes {
-                if let Some(n) = unit(slope) {
-                    basis.add(&n);
-                }
-            }
-        }
-        basis
-    }
-
-    fn proven(basis: &Basis) -> Self {
-        let mut state = Self::default();
-        if let Some((first, others)) = basis.directions().split_first() {
-            state = Self::of(PROVEN, *first);
-            for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
-                *slope = *n;
-            }
-        }
-        state
-    }
-
-    /// The kind of the answer and its direction; a query without an answer leaves
-    /// the state alone.
-    fn remember(&mut self, answer: &Answer) {
-        match answer {
-            Answer::Miss(n) => *self = Self::of(APART, *n),
-            Answer::Hit(hit) | Answer::Limit(hit) => *self = Self::of(OVERLAP, hit.normal),
-            Answer::Undecided(_) => {}
-        }
-    }
-}
+use crate::support_set::{Inquiry, SupportSet};
 
 /// A touch, within the tolerance, whose witness points do not meet? There the points that
 /// meet at the origin of D, which a proof of the overlap knows, are witnesses.
@@ -224,13 +39,6 @@ fn unmet(hit: &Penetration, settings: &Settings) -> bool {
     let apart = (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
     hit.depth <= settings.tolerance && apart > settings.tolerance
 }
-
-/// Directions tried before a pair that was apart is asked about anew.
-const TRIES: u32 = 2;
-/// What a margin that was reached once is still worth at the next query.
-const KEEP: Real = 0.95;
-/// A share of the aim below which the separating direction is turned.
-const ENOUGH: Real = 0.7;
 
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
@@ -246,45 +54,24 @@ pub struct Pair<A, B> {
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// Step 1: the separating direction that still separates.
-    ///
-    /// The support point that shows it also tells how to turn the direction for the next
-    /// time: h is to fall to -aim, its gradient is the tangential part g of s, and the
-    /// step -g (h + aim) / g² is Polyak's. A pair whose contact turns is followed so, at
-    /// one support point a query.
+    /// Step 1: the separating direction that still separates, see [`crate::separation`].
     fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
-        let Some(mut n) = state.separating() else {
-            return Ok(None);
-        };
-        let mut aim = state.memory.dir.norm();
-        for _ in 0..TRIES {
-            let s = self.md.support(&n)?.v;
-            let margin = -n.dot(&s);
-            aim = margin.max(KEEP * aim);
-            let mut next = n;
-            if margin < ENOUGH * aim {
-                let g = s + n * margin;
-                next = unit(&(n - g * ((aim - margin) / g.norm_squared()))).unwrap_or(n);
-            }
-            if margin > 0.0 {
-                state.memory.dir = next * aim;
-                return Ok(Some(n));
-            }
-            n = next;
-        }
-        Ok(None)
+        let mut failed = SupportSet::<2>::EMPTY;
+        separation::still_apart(&mut Inquiry::new(&self.md), &mut failed, state)
     }
 
     /// Leaves the answer behind for the next query.
     fn remember(&self, state: &mut State, answer: &Answer) -> Result<(), Fault> {
         match answer {
             Answer::Miss(n) if self.lasting => {
-                let (n, margin) = gjk::widen(&self.md, *n)?;
-                *state = State::of(APART, n * margin);
+                let was_apart = state.separating().is_some();
+                separation::leave(&mut Inquiry::new(&self.md), state, was_apart, *n)
             }
-            other => state.remember(other),
+            other => {
+                state.remember(other);
+                Ok(())
+            }
         }
-        Ok(())
     }
 
     /// The way from the centre of D through the origin, or the caller's first
@@ -346,7 +133,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     pub fn settle(&self, answer: Answer, settings: &Settings) -> Result<Answer, Fault> {
         match answer {
             Answer::Hit(mut hit) => {
-                patch::settle(&self.md, &mut hit, settings.tolerance)?;
+                contact_patch::settle(&self.md, &mut hit, settings.tolerance)?;
                 Ok(Answer::Hit(hit))
             }
             other => Ok(other),
@@ -447,13 +234,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Miss(n));
         }
         let first = state.leaving().unwrap_or_else(|| self.cold_start());
-        let known = state.basis(first);
         let request = Request {
             centre: apex,
-            directions: known.directions(),
+            first,
+            others: state.others(),
             limits,
             placed,
-            rested: state.kind == PROVEN && state.padding == RESTED,
+            rested: state.rested(),
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
@@ -466,7 +253,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         match &mut answer {
             Answer::Hit(hit) => {
                 let alone = hit.point1;
-                patch::settle(&self.md, hit, limits.tolerance)?;
+                contact_patch::settle(&self.md, hit, limits.tolerance)?;
                 self.keep(state, &basis, hit.point1 != alone);
             }
             Answer::Limit(hit) => {
@@ -482,8 +269,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Leaves the basis of a proof behind, where somebody keeps the state.
     fn keep(&self, state: &mut State, basis: &Basis, rested: bool) {
         if self.lasting {
-            *state = State::proven(basis);
-            state.padding = u32::from(rested) * RESTED;
+            *state = State::proven(basis, rested);
         }
     }
 
@@ -499,7 +285,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             tolerance: tolerance * 0.01,
             max_iterations: ITERATION_CAP,
         };
-        let mut memory = State::of(OVERLAP, hit.normal).memory;
+        let mut memory = State::guess(&hit.normal).memory;
         if let Answer::Hit(floor) | Answer::Limit(floor) =
             self.stroll(&mut memory, PATIENCE, &level, &mut Known::default())?
         {
@@ -571,7 +357,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // D reaches beyond that plane: a callback that errs must not separate.
             Answer::Miss(n) if gjk::farthest(known.points(), n, 0.0).is_some() => return Ok(found),
             Answer::Hit(hit) | Answer::Limit(hit) => {
-                *memory = State::of(OVERLAP, hit.normal).memory;
+                *memory = State::guess(&hit.normal).memory;
             }
             _ => {}
         }
@@ -600,7 +386,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         )
     }
 
-    /// How far obj2 must move along the unit direction `dir` (Algorithm 1).
+    /// How far obj2 must move along the unit direction `dir`.
     pub fn along(
         &self,
         dir: Vec3,
@@ -610,126 +396,32 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let mut budget = settings.max_iterations;
-        let (exit, first) = self.along_ray(dir, state, settings, &mut budget)?;
-        let itself = |plane: &Plane| (plane.normal, plane.depth, plane.point.v1, plane.point.v2);
-        let (limit, portal, (normal, h, point1, point2)) = match &exit {
-            Exit::Miss(n) => {
-                let answer = Answer::Miss(*n);
+        let way = match along::penetration(&self.md, &dir, state.portal(), settings)? {
+            Ok(way) => way,
+            Err(n) => {
+                let answer = Answer::Miss(n);
                 self.remember(state, &answer)?;
                 return Ok(answer);
             }
-            Exit::Converged(portal, plane) => {
-                let (p1, p2) = portal.witnesses();
-                (false, Some(portal), (plane.normal, plane.depth, p1, p2))
-            }
-            // The cap, or a portal without area: every support plane is sound, the one
-            // that the ray meets first is the best of them.
-            Exit::Limit(portal) => {
-                let reach = |p: &Plane| p.depth / dir.dot(&p.normal);
-                let mut best = first;
-                for p in portal.iter().flat_map(|p| &p.planes) {
-                    if dir.dot(&p.normal) > 0.0 && reach(p) < reach(&best) {
-                        best = *p;
-                    }
-                }
-                (true, portal.as_ref(), itself(&best))
-            }
-            Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => (false, None, itself(&first)),
-        };
-        let depth = h / dir.dot(&normal);
-        let hit = Penetration {
-            depth,
-            depth_lower: 0.0,
-            dir,
-            normal,
-            point1,
-            point2,
-            width: 0.0,
-            iterations: settings.max_iterations - budget,
         };
         let mut known = Known::default();
-        for plane in portal.iter().flat_map(|p| &p.planes) {
+        for plane in way.portal.iter().flat_map(|p| &p.planes) {
             known.add(&plane.point);
         }
-        let mut answer = self.proven(hit, limit, &mut known, settings)?;
+        let mut answer = self.proven(way.hit, way.limit, &mut known, settings)?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
-            // The bound along dir: the portal is inscribed and the origin in D.
-            let (lower, error) = match portal {
-                Some(p) => {
-                    let size = p
-                        .planes
-                        .iter()
-                        .fold(0.0, |m: Real, plane| m.max(plane.point.magnitude()));
-                    p.normal().map_or((0.0, 0.0), |n| {
-                        let error = rounding(size) / n.dot(&dir);
-                        (p.reach() - error, error)
-                    })
-                }
-                None if matches!(exit, Exit::Vertex) => (depth, 0.0),
-                None => (0.0, 0.0),
-            };
-            // max also drops NaN
-            hit.depth_lower = lower.max(0.0).min(depth);
+            // The bound along dir in place of the one all around.
+            hit.depth_lower = way.hit.depth_lower;
             // Where rounding ended the search the answer may yet be as good as asked for.
-            if depth - hit.depth_lower <= settings.tolerance.max(2.0 * error) {
+            if hit.depth - hit.depth_lower <= settings.tolerance.max(2.0 * way.error) {
                 answer = Answer::Hit(*hit);
             }
         }
         self.remember(state, &answer)?;
-        if let (Some(p), Answer::Hit(_) | Answer::Limit(_)) = (portal, &answer) {
-            state.kind = ALONG;
-            state.memory.slopes = p.planes.map(|plane| plane.normal);
+        if let (Some(portal), Answer::Hit(_) | Answer::Limit(_)) = (way.portal, &answer) {
+            state.keep_portal(portal.planes.map(|plane| plane.normal));
         }
         Ok(answer)
-    }
-
-    fn along_ray(
-        &self,
-        dir: Vec3,
-        state: &State,
-        settings: &Settings,
-        budget: &mut u64,
-    ) -> Result<(Exit, Plane), Fault> {
-        let finish = |portal: Portal, best: &mut Plane, budget: &mut u64| {
-            portal::refine(
-                &self.md,
-                portal,
-                settings.tolerance,
-                Measure::Ray,
-                false,
-                best,
-                budget,
-            )
-        };
-        // The last portal, found again by its three directions.
-        if let Some([a, b, c]) = state.portal() {
-            let planes = [
-                Plane::of(&self.md, a)?,
-                Plane::of(&self.md, b)?,
-                Plane::of(&self.md, c)?,
-            ];
-            if let Some(out) = planes.iter().find(|p| p.depth < 0.0) {
-                return Ok((Exit::Miss(out.normal), *out));
-            }
-            if let Some(portal) = Portal::of(dir, planes) {
-                let mut best = planes[0];
-                let exit = finish(portal, &mut best, budget)?;
-                if matches!(exit, Exit::Converged(..) | Exit::Miss(_)) {
-                    return Ok((exit, best));
-                }
-            }
-        }
-        let first = Plane::of(&self.md, dir)?;
-        let mut best = first;
-        let exit = match portal::find_portal(&self.md, &first, None, &mut best, budget)? {
-            Found::Portal(portal) => finish(portal, &mut best, budget)?,
-            Found::Vertex => Exit::Vertex,
-            Found::Touch => Exit::Touch,
-            Found::Miss(n) => Exit::Miss(n),
-            Found::Limit => Exit::Limit(None),
-        };
-        Ok((exit, first))
     }
 
     /// A local minimum among the directions perpendicular to the unit vector `m`.
@@ -829,18 +521,5 @@ mod tests {
             assert_eq!(supports, swapped_supports);
             assert!((depth - swapped_depth).abs() < 16.0 * EPSILON);
         }
-    }
-
-    #[test]
-    fn flipped_twice_is_as_it_was() {
-        let mut cold = State::default();
-        cold.flip();
-        assert!(cold.memory.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
-        let mut state = State::guess(&Vec3::new(1.0, -2.0, 3.0));
-        let dir = state.memory.dir;
-        state.flip();
-        assert_eq!(state.memory.dir, -dir);
-        state.flip();
-        assert_eq!(state.memory.dir, dir);
     }
 }

@@ -73,58 +73,82 @@ pub enum Rest {
     Along(Real),
 }
 
-/// How the objects touch where the support plane along `n` is, as far as `count` points
-/// tell: points of either object within `tolerance` of its own support plane, whether
-/// the point of D is on its face or not.
-pub fn rest(
-    point: impl Fn(usize) -> [Vec3; 2] + Copy,
-    count: usize,
-    n: &Vec3,
-    tolerance: Real,
-    size: Real,
-) -> Rest {
-    let heights = |i: usize| {
-        let [v1, v2] = point(i);
-        [n.dot(&v1), -n.dot(&v2)]
-    };
-    let mut top = [Real::NEG_INFINITY; 2];
-    for i in 0..count {
-        let h = heights(i);
-        top = [larger(h[0], top[0]), larger(h[1], top[1])];
+/// The points of one object that lie on its support plane.
+struct Touch {
+    /// One of them.
+    first: Vec3,
+    /// Heights above this are on the plane, metres.
+    least: Real,
+    /// The way from the first to the one farthest from it, and its square.
+    side: Vec3,
+    side2: Real,
+    /// How many there are.
+    count: u32,
+}
+
+impl Touch {
+    #[inline(always)]
+    fn of(first: Vec3, n: &Vec3, tolerance: Real) -> Self {
+        Self {
+            first,
+            least: n.dot(&first) - tolerance,
+            side: Vec3::zeros(),
+            side2: 0.0,
+            count: 0,
+        }
     }
-    // The first touching point of each, the way to the one farthest from it, and how many
-    // touch.
-    let (mut first, mut side, mut touch) = ([None; 2], [Vec3::zeros(); 2], [0; 2]);
-    for i in 0..count {
-        let (h, v) = (heights(i), point(i));
-        for k in 0..2 {
-            if h[k] >= top[k] - tolerance {
-                let way = v[k] - *first[k].get_or_insert(v[k]);
-                touch[k] += 1;
-                if way.norm_squared() > side[k].norm_squared() {
-                    side[k] = way;
-                }
+
+    #[inline(always)]
+    fn add(&mut self, v: &Vec3, n: &Vec3) {
+        if n.dot(v) >= self.least {
+            self.count += 1;
+            let side = v - self.first;
+            let side2 = side.norm_squared();
+            if side2 > self.side2 {
+                (self.side, self.side2) = (side, side2);
             }
         }
     }
+}
+
+/// How the objects touch where the support plane along `n` is, as far as `count` points
+/// tell: points of either object within `tolerance` of its own support plane, whether
+/// the point of D is on its face or not. `top` are the witnesses of the support point along
+/// `n`.
+#[inline(always)]
+pub fn rest<'p>(
+    point: impl Fn(usize) -> &'p [Vec3; 2] + Copy,
+    count: usize,
+    n: &Vec3,
+    top: &[Vec3; 2],
+    tolerance: Real,
+    size: Real,
+) -> Rest {
+    let opposite = -n;
+    let mut one = Touch::of(top[0], n, tolerance);
+    let mut two = Touch::of(top[1], &opposite, tolerance);
+    for i in 0..count {
+        let [v1, v2] = point(i);
+        one.add(v1, n);
+        two.add(v2, &opposite);
+    }
     let blur = 8.0 * tolerance * size;
-    let [one, two] = side.map(|s| s.norm_squared());
-    if !(one > blur) && !(two > blur) {
+    if !(one.side2 > blur) && !(two.side2 > blur) {
         return Rest::Point;
     }
-    let length = larger(one, two).sqrt();
-    if !(one > blur && two > blur) {
+    let length = larger(one.side2, two.side2).sqrt();
+    if !(one.side2 > blur && two.side2 > blur) {
         return Rest::Unsure(length);
     }
+    let on_1 = (0..count).map(|i| point(i)[0]);
+    let on_2 = (0..count).map(|i| point(i)[1]);
+    let on_1 = on_1.filter(|v| n.dot(v) >= one.least);
+    let on_2 = on_2.filter(|v| opposite.dot(v) >= two.least);
     // Two edges that cross touch in a point.
-    let crossing = side[0].cross(&side[1]).norm_squared() > blur * larger(one, two);
-    let touching = |k: usize| {
-        (0..count)
-            .filter(move |&i| heights(i)[k] >= top[k] - tolerance)
-            .map(move |i| point(i)[k])
-    };
-    let edge = |k: usize| touch[k] < 3 || dimensions(touching(k), blur).0 < 2;
-    if crossing && edge(0) && edge(1) {
+    let crossing = one.side.cross(&two.side).norm_squared() > blur * length * length;
+    let edge_1 = || one.count < 3 || dimensions(on_1.clone(), blur).0 < 2;
+    let edge_2 = || two.count < 3 || dimensions(on_2.clone(), blur).0 < 2;
+    if crossing && edge_1() && edge_2() {
         Rest::Unsure(length)
     } else {
         Rest::Along(length)
@@ -303,7 +327,7 @@ mod tests {
     use super::*;
     use crate::contact::{Answer, Settings};
     use crate::shapes::{Rotation, ball, corners, hull, placed};
-    use crate::warm::{Pair, State};
+    use crate::{query::Pair, state::State};
 
     const TOLERANCE: Real = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
 

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! What one query of a pair leaves behind for the next (paper, Sec. III-D).
+//!
+//! Nothing in a state is trusted: it chooses where to look first, never what is true.
+
+use crate::bundle::Memory;
+use crate::contact::Answer;
+use crate::global::Basis;
+use crate::math::{Real, Vec3, unit};
+
+/// [`State::padding`] of a pair that rested face on face.
+const RESTED: u32 = 1;
+
+/// What a query leaves behind. All zero is cold; any other bits are harmless.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
+pub struct State {
+    /// What the solvers remember. In a pair that was apart `dir` separated it, and its
+    /// length, metres, is the margin to aim at; after a query along a direction `slopes` are the directions of the last portal.
+    pub memory: Memory,
+    /// One of the constants below; anything else is cold.
+    pub kind: u32,
+    /// Did the pair rest face on face? Otherwise 0.
+    pub padding: u32,
+}
+
+/// The pair was apart.
+const APART: u32 = 1;
+/// The pair overlapped.
+const OVERLAP: u32 = 2;
+/// The pair overlapped, and was asked about along a direction.
+const ALONG: u32 = 3;
+/// The pair overlapped, and its minimum was proven: `slopes` are the directions of the
+/// points that the proof stands on, besides the minimum's own.
+const PROVEN: u32 = 4;
+/// The pair overlapped, and was asked yes or no.
+const SURROUNDED: u32 = 5;
+
+impl State {
+    /// A fresh state that starts from `dir`; cold when it is zero or not finite.
+    pub fn guess(dir: &Vec3) -> Self {
+        match unit(dir) {
+            Some(n) => Self::of(OVERLAP, n),
+            None => Self::default(),
+        }
+    }
+
+    /// The state of a pair becomes that of the same objects in the other order, whose D is
+    /// this one's mirror image in the origin: points, directions and slopes change sign,
+    /// lengths and curvatures stay.
+    pub fn flip(&mut self) {
+        for v in self.memory.slopes.iter_mut().chain([&mut self.memory.dir]) {
+            // Not -v: a cold state is one of plain zeros.
+            *v = Vec3::zeros() - *v;
+        }
+    }
+
+    /// The pair overlaps, as the local search left it.
+    pub fn overlap(memory: Memory) -> Self {
+        Self {
+            memory,
+            kind: OVERLAP,
+            padding: 0,
+        }
+    }
+
+    fn of(kind: u32, dir: Vec3) -> Self {
+        Self {
+            memory: Memory {
+                dir,
+                ..Memory::default()
+            },
+            kind,
+            padding: 0,
+        }
+    }
+
+    /// The pair is apart: the length of `dir`, metres, is the margin to aim at.
+    pub fn apart(dir: Vec3) -> Self {
+        Self::of(APART, dir)
+    }
+
+    /// [`State::apart`], with the directions of up to three support points around the nearest
+    /// one (zero for none), and the radius of a ball that rounds D there, metres.
+    pub fn near(dir: Vec3, directions: [Vec3; 3], ball: Real) -> Self {
+        let mut state = Self::apart(dir);
+        state.memory.slopes = directions;
+        state.memory.curvature[0] = ball;
+        state
+    }
+
+    /// What [`State::near`] left.
+    pub fn nearest(&self) -> ([Vec3; 3], Real) {
+        match self.kind {
+            APART => (self.memory.slopes, self.memory.curvature[0]),
+            _ => ([Vec3::zeros(); 3], 0.0),
+        }
+    }
+
+    /// The margin to aim at, metres, where the pair was apart.
+    pub fn aim(&self) -> Real {
+        self.memory.dir.norm()
+    }
+
+    /// Did the pair overlap when its depth was asked?
+    pub fn overlapped(&self) -> bool {
+        matches!(self.kind, OVERLAP | ALONG)
+    }
+
+    /// The pair overlaps: support points along these directions surround the origin. Zero
+    /// for none.
+    pub fn surrounded([a, b, c, d]: [Vec3; 4]) -> Self {
+        let mut state = Self::of(SURROUNDED, a);
+        state.memory.slopes = [b, c, d];
+        state
+    }
+
+    /// The directions of [`State::surrounded`], where the pair was.
+    pub fn surrounding(&self) -> [Vec3; 4] {
+        let [b, c, d] = self.memory.slopes;
+        match self.kind {
+            SURROUNDED => [self.memory.dir, b, c, d],
+            _ => [Vec3::zeros(); 4],
+        }
+    }
+
+    /// The direction that separated the pair.
+    pub fn separating(&self) -> Option<Vec3> {
+        match self.kind {
+            APART => unit(&self.memory.dir),
+            _ => None,
+        }
+    }
+
+    /// The direction in which obj2 left last time, or is guessed to leave. A pair that
+    /// was apart and is no longer has just met there.
+    pub fn leaving(&self) -> Option<Vec3> {
+        match self.kind {
+            APART | OVERLAP | ALONG | PROVEN => unit(&self.memory.dir),
+            _ => None,
+        }
+    }
+
+    /// What the local solver starts from.
+    pub fn solver(&self) -> Memory {
+        match self.kind {
+            OVERLAP => self.memory,
+            APART | ALONG | PROVEN => Self::of(OVERLAP, self.memory.dir).memory,
+            _ => Memory::default(),
+        }
+    }
+
+    /// The directions of the last portal.
+    pub fn portal(&self) -> Option<[Vec3; 3]> {
+        let [a, b, c] = &self.memory.slopes;
+        match self.kind {
+            ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
+            _ => None,
+        }
+    }
+
+    /// Did the pair rest face on face when its minimum was proven?
+    pub fn rested(&self) -> bool {
+        self.kind == PROVEN && self.padding == RESTED
+    }
+
+    /// Keeps the directions of a portal besides.
+    pub fn keep_portal(&mut self, directions: [Vec3; 3]) {
+        self.kind = ALONG;
+        self.memory.slopes = directions;
+    }
+
+    /// The directions that the last proof stood on, besides the minimum's own; zero for none.
+    pub fn others(&self) -> &[Vec3] {
+        match self.kind {
+            PROVEN => &self.memory.slopes,
+            _ => &[],
+        }
+    }
+
+    /// The pair overlaps: its minimum is proven by support points along these directions;
+    /// `rested`: face on face.
+    pub fn proven(basis: &Basis, rested: bool) -> Self {
+        let mut state = Self::default();
+        if let Some((first, others)) = basis.directions().split_first() {
+            state = Self::of(PROVEN, *first);
+            for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
+                *slope = *n;
+            }
+            state.padding = u32::from(rested) * RESTED;
+        }
+        state
+    }
+
+    /// The kind of the answer and its direction; a query without an answer leaves
+    /// the state alone.
+    pub fn remember(&mut self, answer: &Answer) {
+        match answer {
+            Answer::Miss(n) => *self = Self::of(APART, *n),
+            Answer::Hit(hit) | Answer::Limit(hit) => *self = Self::of(OVERLAP, hit.normal),
+            Answer::Undecided(_) => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flipped_twice_is_as_it_was() {
+        let mut cold = State::default();
+        cold.flip();
+        assert!(cold.memory.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
+        let mut state = State::guess(&Vec3::new(1.0, -2.0, 3.0));
+        let dir = state.memory.dir;
+        state.flip();
+        assert_eq!(state.memory.dir, -dir);
+        state.flip();
+        assert_eq!(state.memory.dir, dir);
+    }
+}
