@@ -21,12 +21,12 @@ use crate::start;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
 
-/// Points and faces of the rooms on the stack, 3, 6 and 33 KB: for shallow contacts; for
+/// Points and faces of the rooms on the stack, 3, 5 and 31 KB: for shallow contacts; for
 /// polytopes; for the 160 support points of an MPR query. A closed surface of V points has
 /// 2V − 4 faces, and a fan is there before what it replaces is gone.
 const FIRST: (usize, usize) = (16, 32);
-const SECOND: (usize, usize) = (32, 64);
-const THIRD: (usize, usize) = (168, 344);
+const SECOND: (usize, usize) = (24, 48);
+const THIRD: (usize, usize) = (164, 328);
 /// Of the one that is lent.
 const LENT: (usize, usize) = (1536, crate::polytope::MOST_FACES);
 /// Places that the start needs for its own points.
@@ -122,7 +122,7 @@ pub fn minimum<'r, A: SupportMap, B: SupportMap>(
                 request,
                 arena,
                 basis,
-                again: false,
+                open: None,
             };
             search.run(&first)
         }
@@ -142,6 +142,8 @@ enum Way {
     Ring,
     Portal,
     Solid,
+    /// The corners around the origin that the distance algorithm finds.
+    Surround,
 }
 
 /// A query on its way.
@@ -150,8 +152,8 @@ struct Search<'q, 'r, A, B> {
     request: &'r Request<'r>,
     arena: Option<&'r mut dyn Arena>,
     basis: Option<&'r mut Basis>,
-    /// The points that surround the origin were a start once.
-    again: bool,
+    /// What a search came to that has not shown the origin inside.
+    open: Option<Answer>,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
@@ -165,12 +167,24 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let within = |depth: Real| larger(gap * depth, tolerance);
         let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
         let mut skip = usize::MAX;
-        for way in [Way::Known, Way::Ring, Way::Portal, Way::Solid] {
+        let mut large = false;
+        for way in [
+            Way::Known,
+            Way::Ring,
+            Way::Portal,
+            Way::Solid,
+            Way::Surround,
+        ] {
+            // What a large room has not shown no other tetrahedron of the same points will.
+            if large && !matches!(way, Way::Surround) {
+                continue;
+            }
             let names = match way {
                 Way::Known => start::known(&set),
                 Way::Ring => start::ring_of_ball(&mut self.inquiry, &mut set, within)?,
                 Way::Portal => start::portal(&mut self.inquiry, &mut set, skip)?,
                 Way::Solid => start::solid(&mut self.inquiry, &mut set)?,
+                Way::Surround => Some(self.surround(&mut set)?),
             };
             if let (Way::Known, true, Some((n, point))) = (way, names.is_some(), &opposite) {
                 skip = set.push(n, point);
@@ -182,18 +196,52 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 continue;
             }
             let mut state = Progress::new(&self.request.limits, set.len());
-            match expand(&mut self.inquiry, &mut set, &mut hull, &mut state)? {
-                End::NoRoom => {
-                    return self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
-                        &set, &hull, &mut state,
-                    );
+            let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut state)?;
+            // From another apex, or none, rounding may not have the last word.
+            if end != End::NoRoom {
+                if let Some(answer) = self.answer(&set, &hull, &state, end) {
+                    return Ok(answer);
                 }
-                // From another apex, or none, rounding may not have the last word.
-                End::Open => {}
-                end => return Ok(self.conclude(&set, &hull, &state, end)),
+                continue;
             }
+            let answer = self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
+                &set, &hull, &mut state,
+            )?;
+            if let Some(answer) = answer {
+                return Ok(answer);
+            }
+            large = true;
         }
-        self.decided::<{ FIRST.0 }, { FIRST.1 }>(&set, None)
+        let open = self.open.take();
+        Ok(open.unwrap_or_else(|| Answer::Limit(self.bare(&set.point(1)))))
+    }
+
+    /// The polytope has not come to hold the origin, by rounding or by contradictions: yes
+    /// or no is left to the distance algorithm, and its tetrahedron is the last start.
+    #[cold]
+    #[inline(never)]
+    fn surround<const P: usize>(&mut self, set: &mut SupportSet<P>) -> Result<[usize; 4], Stop> {
+        set.truncate(START);
+        let dir = self.inquiry.lowest.dir;
+        distance::overlap(&mut self.inquiry, set, None, &dir)
+    }
+
+    /// What a search came to; `None`, and kept for the end, where it has not shown the origin
+    /// inside.
+    #[inline(always)]
+    fn answer<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &Polytope<F>,
+        state: &Progress,
+        end: End,
+    ) -> Option<Answer> {
+        let answer = self.conclude(set, hull, state, end);
+        if end == End::Open {
+            self.open = Some(answer);
+            return None;
+        }
+        Some(answer)
     }
 
     fn tolerance(&self) -> Real {
@@ -288,7 +336,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
         state: &mut Progress,
-    ) -> Result<Answer, Stop> {
+    ) -> Result<Option<Answer>, Stop> {
         let mut set = SupportSet::<Q>::EMPTY;
         let mut hull = Polytope::<G>::BLANK;
         set.take(small);
@@ -299,8 +347,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, state)
             }
             End::NoRoom => self.lent(&set, &hull, state),
-            End::Open => self.decided(&set, Some((&hull, state))),
-            end => Ok(self.conclude(&set, &hull, state, end)),
+            end => Ok(self.answer(&set, &hull, state, end)),
         }
     }
 
@@ -312,56 +359,27 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
         state: &mut Progress,
-    ) -> Result<Answer, Stop> {
-        let Some(arena) = self.arena.take() else {
-            if polytope.nearest().key >= 0.0 {
-                return Ok(self.conclude(small, polytope, state, End::Inside));
+    ) -> Result<Option<Answer>, Stop> {
+        let full = |hull_key: f64| {
+            if hull_key >= 0.0 {
+                End::Inside
+            } else {
+                End::Open
             }
-            return self.decided(small, Some((polytope, state)));
+        };
+        // Once only: what is open after that stays so.
+        let Some(arena) = self.arena.take() else {
+            let end = full(polytope.nearest().key);
+            return Ok(self.answer(small, polytope, state, end));
         };
         let Room { set, hull } = arena.room()?;
         set.take(small);
         polytope.moved_to(hull);
-        let end = expand(&mut self.inquiry, set, hull, state)?;
-        if end == End::Open || end == End::NoRoom && !(hull.nearest().key >= 0.0) {
-            return self.decided(set, Some((hull, state)));
+        let mut end = expand(&mut self.inquiry, set, hull, state)?;
+        if end == End::NoRoom {
+            end = full(hull.nearest().key);
         }
-        Ok(self.conclude(set, hull, state, end))
-    }
-
-    /// The polytope has not come to hold the origin, by rounding or by contradictions: yes
-    /// or no is left to the distance algorithm.
-    #[cold]
-    #[inline(never)]
-    fn decided<const P: usize, const F: usize>(
-        &mut self,
-        set: &SupportSet<P>,
-        expanded: Option<(&Polytope<F>, &Progress)>,
-    ) -> Result<Answer, Stop> {
-        let mut few = SupportSet::<{ FIRST.0 }>::EMPTY;
-        few.take(set);
-        few.truncate(START);
-        let dir = self.inquiry.lowest.dir;
-        let names = distance::overlap(&mut self.inquiry, &mut few, None, &dir)?;
-        let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
-        // Once more, from the points that surround the origin.
-        if !self.again && self.build(&few, &mut hull, names) {
-            self.again = true;
-            let mut state = Progress::new(&self.request.limits, few.len());
-            match expand(&mut self.inquiry, &mut few, &mut hull, &mut state)? {
-                End::NoRoom => {
-                    return self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
-                        &few, &hull, &mut state,
-                    );
-                }
-                End::Open => {}
-                end => return Ok(self.conclude(&few, &hull, &state, end)),
-            }
-        }
-        Ok(match expanded {
-            Some((hull, state)) => self.conclude(set, hull, state, End::Inside),
-            None => Answer::Limit(self.bare(&set.point(1))),
-        })
+        Ok(self.answer(set, hull, state, end))
     }
 
     /// The upper bound alone.

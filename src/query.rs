@@ -55,6 +55,7 @@ pub struct Pair<A, B> {
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Step 1: the separating direction that still separates, see [`crate::separation`].
+    #[inline(never)]
     fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
         let mut failed = SupportSet::<2>::EMPTY;
         separation::still_apart(&mut Inquiry::new(&self.md), &mut failed, state)

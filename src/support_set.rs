@@ -17,8 +17,10 @@ use crate::precision::Precision;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Room for `N` support points with the directions they were asked along.
+///
+/// A point of D is not stored: it is the difference of its two witnesses, to the bit, and
+/// rooms are small.
 pub struct SupportSet<const N: usize> {
-    points: [Vec3; N],
     witnesses: [[Vec3; 2]; N],
     directions: [Vec3; N],
     len: usize,
@@ -27,7 +29,6 @@ pub struct SupportSet<const N: usize> {
 impl<const N: usize> SupportSet<N> {
     /// No point.
     pub const EMPTY: Self = Self {
-        points: [Vec3::new(0.0, 0.0, 0.0); N],
         witnesses: [[Vec3::new(0.0, 0.0, 0.0); 2]; N],
         directions: [Vec3::new(0.0, 0.0, 0.0); N],
         len: 0,
@@ -63,7 +64,8 @@ impl<const N: usize> SupportSet<N> {
     /// The point of D with this index.
     #[inline(always)]
     pub fn v(&self, i: usize) -> Vec3 {
-        self.points[Self::at(i)]
+        let [v1, v2] = &self.witnesses[Self::at(i)];
+        v1 - v2
     }
 
     /// The point with its witnesses.
@@ -71,11 +73,7 @@ impl<const N: usize> SupportSet<N> {
     pub fn point(&self, i: usize) -> SupportPoint {
         let i = Self::at(i);
         let [v1, v2] = self.witnesses[i];
-        SupportPoint {
-            v: self.points[i],
-            v1,
-            v2,
-        }
+        SupportPoint { v: v1 - v2, v1, v2 }
     }
 
     /// The points of obj1 and obj2 that it is the difference of.
@@ -113,7 +111,6 @@ impl<const N: usize> SupportSet<N> {
     #[inline(always)]
     pub fn put(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
         let i = Self::at(i);
-        self.points[i] = point.v;
         self.witnesses[i] = [point.v1, point.v2];
         self.directions[i] = *direction;
     }
@@ -122,7 +119,6 @@ impl<const N: usize> SupportSet<N> {
     #[inline(always)]
     pub fn swap(&mut self, i: usize, j: usize) {
         let (i, j) = (Self::at(i), Self::at(j));
-        self.points.swap(i, j);
         self.witnesses.swap(i, j);
         self.directions.swap(i, j);
     }
@@ -136,7 +132,6 @@ impl<const N: usize> SupportSet<N> {
     /// Takes the points of a smaller set, with their indices.
     pub fn take<const M: usize>(&mut self, other: &SupportSet<M>) {
         let len = other.len.min(M).min(N);
-        self.points[..len].copy_from_slice(&other.points[..len]);
         self.witnesses[..len].copy_from_slice(&other.witnesses[..len]);
         self.directions[..len].copy_from_slice(&other.directions[..len]);
         self.len = len;
