@@ -16,7 +16,8 @@
  * Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder, Convex and TriangleP are put to this
  * library; spheres and capsules as a point and a segment with a margin, which is exact and the
  * cheapest. Every other geometry (meshes, octrees, planes, half spaces), costs, and geometries
- * that are not marked as occupied go to fcl::collide and fcl::distance, as ever.
+ * that are not marked as occupied go to fcl::collide and fcl::distance, as ever. Of a request
+ * its solver and its cached guess are not read: a state takes their place.
  *
  * Signs and order are FCL's: a contact's normal points from the first object to the second,
  * penetration_depth is positive, pos lies midway between the two surfaces; nearest_points are
@@ -146,6 +147,7 @@ struct DistanceData : fcl::DefaultDistanceData<S> {
     PairCache *cache; /**< where the states are */
 };
 
+/** @cond the header's own */
 namespace detail {
 
 /* Up to this many vertices are looked through here; FCL climbs over the edges of more, but
@@ -416,6 +418,7 @@ private:
 };
 
 } // namespace detail
+/** @endcond */
 
 /** Does this library answer for the pair, rather than FCL? */
 template <typename S>
@@ -440,7 +443,7 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
     detail::must_be_finite(a, b);
     const ccd_t ccd = detail::query<S>(request.gjk_tolerance);
     detail::Overlap hit = detail::Overlap();
-    if (!detail::overlap(a, b, ccd, request.enable_contact, warm, &hit) || request.num_max_contacts <= result.numContacts())
+    if (!detail::overlap(a, b, ccd, request.enable_contact, warm, &hit))
         return result.numContacts();
     if (request.enable_contact)
         detail::Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings);
