@@ -19,10 +19,11 @@
 #include <string.h>
 
 /* The shapes of every C test, and of the benchmark in Rust through bench/lab/callbacks.c.
- * A new one has a row here and no `default:` anywhere to hide behind: the compiler names
- * what is missing, its support point (shape_local_support) and in truth.h the same in full
+ * A new one has a row here and no `default:` anywhere to hide behind: what is missing does
+ * not compile, its support point (shape_local_support) and in truth.h the same in full
  * precision (truth_point), its size (shape_reach) and, where there is one, its exact depth
  * (truth_core). Placing (shape_move, shape_turn) is the same for all. */
+#pragma GCC diagnostic error "-Wswitch"
 typedef enum {
     SHAPE_SPHERE,    /* p = radius */
     SHAPE_CAPSULE,   /* p = radius, half length of the core segment along z */
@@ -32,6 +33,8 @@ typedef enum {
     SHAPE_ELLIPSOID, /* p = half axes */
     SHAPE_POLYTOPE   /* the hull of verts: also a polygon, a segment or a point */
 } shape_type_t;
+
+enum { SHAPE_TYPES = SHAPE_POLYTOPE + 1 };
 
 /* Which point a face or an edge answers with when the direction is exactly
  * perpendicular to it. */
@@ -58,6 +61,7 @@ typedef struct {
 
 /* --- making and placing ---------------------------------------------------- */
 
+/* Of any type but SHAPE_POLYTOPE; a type that has fewer sizes does not look at the others. */
 static inline shape_t shape_make(int type, double p0, double p1, double p2)
 {
     shape_t s;

@@ -1395,7 +1395,7 @@ fn conclude(
             }
             (point1, point2, across)
         }
-        None => guessed(search, model, step, tolerance),
+        None => guessed(search, model, step),
     };
     let seen: [SupportPoint; CUTS] = core::array::from_fn(|i| *search.point(i));
     let answer = Penetration {
@@ -1414,7 +1414,7 @@ fn conclude(
 /// The witness points that the model foretells: the support points of the active cuts,
 /// moved to where R takes them when their directions become b; and how far across the
 /// normal these are from meeting.
-fn guessed(search: &Search, model: &Model, step: &Step, tolerance: Real) -> (Vec3, Vec3, Real) {
+fn guessed(search: &Search, model: &Model, step: &Step) -> (Vec3, Vec3, Real) {
     let best = search.point(search.best);
     let b = &model.b;
     let share = search.curvature.share;
@@ -1438,10 +1438,8 @@ fn guessed(search: &Search, model: &Model, step: &Step, tolerance: Real) -> (Vec
     let across = point1 - point2;
     let across = across - b * across.dot(b);
     let apart = across.norm();
-    if search.h.0[search.best] <= search.noise
-        && apart * apart > 4.0 * tolerance * search.curvature.size
-    {
-        // A touch elsewhere: the proof of the overlap knows points that meet.
+    if search.h.0[search.best] <= search.noise {
+        // A touch: where these do not meet, the proof of the overlap knows points that do.
         return (best.v1, best.v2, apart);
     }
     point1 -= across * share;

@@ -793,9 +793,7 @@ fn mean<const N: usize>(set: &SupportSet<N>, count: usize) -> SupportPoint {
 mod tests {
     use super::*;
     use crate::precision::Precision;
-    use crate::shapes::{Random, ball, capsule, corners, ellipsoid, hull, placed};
-
-    type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
+    use crate::shapes::{self, KINDS, Random, Shape, ball, corners, hull, pair, placed, scaled};
 
     /// Do they overlap? Also: a miss must come with a direction that separates, and
     /// swapped objects must give the same answer.
@@ -834,71 +832,6 @@ mod tests {
         answer
     }
 
-    /// A pair of unit size whose distance is `gap` (less than zero: the depth).
-    fn pair(kind: usize, gap: Real, r: &mut Random) -> (Shape, Shape) {
-        let rot = r.rotation();
-        let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
-        let cube = placed(&corners(half), &rot, Vec3::zeros());
-        let [x, y, up] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
-        // A point of the cube's upper face.
-        let top = x * r.within(-0.9, 0.9) * half.x + y * r.within(-0.9, 0.9) * half.y + up * half.z;
-        let lifted = |points: &[Vec3], by: Vec3| points.iter().map(|p| p + by).collect::<Vec<_>>();
-        match kind {
-            // A vertex over a face.
-            0 => {
-                let points = r.points(12, 1.0);
-                let low = hull(&points)(&-up);
-                let points = lifted(&points, top + up * gap - low);
-                (Box::new(hull(&cube)), Box::new(hull(&points)))
-            }
-            // A face on the same face, on a part of it; along an edge, at a corner:
-            // touches, whatever the gap.
-            1..=4 => {
-                let shift = match kind {
-                    1 => Vec3::zeros(),
-                    2 => x * (0.8 * half.x) + y * (0.3 * half.y),
-                    3 => x * (2.0 * half.x),
-                    _ => x * (2.0 * half.x) + y * (2.0 * half.y),
-                };
-                let other = lifted(&cube, shift + up * (2.0 * half.z + gap));
-                (Box::new(hull(&cube)), Box::new(hull(&other)))
-            }
-            // An edge across an edge.
-            5 => {
-                let n = unit(&(x + y)).unwrap();
-                let edge = n.cross(&up) + up * 0.5;
-                let at = x * half.x + y * half.y + n * gap + up * r.within(-0.2, 0.2);
-                let other = [at - edge, at + edge, at + n + up, at + n - up];
-                (Box::new(hull(&cube)), Box::new(hull(&other)))
-            }
-            6 => (
-                Box::new(hull(&cube)),
-                Box::new(ball(top + up * (gap + 0.5), 0.5)),
-            ),
-            7 => (
-                Box::new(ball(Vec3::zeros(), 1.0)),
-                Box::new(ball(up * (1.5 + gap), 0.5)),
-            ),
-            8 => {
-                let at = up * (1.0 + gap) + x * r.within(-0.5, 0.5) + y * r.within(-0.5, 0.5);
-                (
-                    Box::new(capsule(-x, x, 0.5)),
-                    Box::new(capsule(at - y, at + y, 0.5)),
-                )
-            }
-            // Two ellipsoids with a common normal.
-            _ => {
-                let mut side = |n: Vec3, at: Vec3| {
-                    let radii = Vec3::from_fn(|_, _| r.within(0.2, 1.0));
-                    let turn = r.rotation();
-                    let extreme = ellipsoid(radii, turn, Vec3::zeros())(&n);
-                    Box::new(ellipsoid(radii, turn, at - extreme))
-                };
-                (side(up, Vec3::zeros()), side(-up, up * gap))
-            }
-        }
-    }
-
     /// Is the pair of that kind an overlap? Nothing is known of a touch within rounding.
     fn truth(kind: usize, gap: Real) -> Option<bool> {
         let touch = gap < 0.0 && (matches!(kind, 3 | 4) || gap > -50.0 * EPSILON);
@@ -912,7 +845,7 @@ mod tests {
         for ulps in [20.0, 100.0, 4500.0, 1e6, 1e10] {
             let gap = (ulps * EPSILON).min(0.1);
             for round in 0..200 {
-                for kind in 0..10 {
+                for kind in 0..KINDS {
                     for gap in [gap, -gap] {
                         let (a, b) = pair(kind, gap, &mut r);
                         let truth = truth(kind, gap);
@@ -931,18 +864,15 @@ mod tests {
     fn free_of_scale() {
         let mut r = Random::new(2);
         for _ in 0..100 {
-            for kind in 0..10 {
+            for kind in 0..KINDS {
                 let gap = r.within(-0.1, 0.1);
                 let (a, b) = pair(kind, gap, &mut r);
                 let dir = r.direction();
                 for exponent in [-20, 20] {
                     let scale = (2.0 as Real).powi(exponent);
-                    let scaled = |s: &Shape, d: &Vec3| s(d) * scale;
-                    let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
-                    let other = MinkowskiDifference::new(
-                        |d: &Vec3| scaled(&a, d),
-                        |d: &Vec3| scaled(&b, d),
-                    );
+                    let md = MinkowskiDifference::new(&a, &b);
+                    let larger = [scaled(&a, scale), scaled(&b, scale)];
+                    let other = MinkowskiDifference::new(&larger[0], &larger[1]);
                     let one = from_direction(&md, &dir);
                     if let Some(hit) = truth(kind, gap) {
                         assert_eq!(one.is_ok(), hit);
@@ -954,110 +884,33 @@ mod tests {
         }
     }
 
-    /// Boxes a million times longer than thick (single: a thousand), one across the other.
     #[test]
     fn needles_and_plates() {
-        let mut r = Random::new(3);
-        // In single precision 1e-6 would be a few ulps of the length.
-        let thin: Real = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
-        for round in 0..300 {
-            let rot = r.rotation();
-            let mut half = || Vec3::new(r.within(0.1, 1.0), r.within(1e2, 1e3) * thin, thin);
-            let (one, other) = (half(), half());
-            // Turned about the thin axis.
-            let turned = rot * nalgebra::Rotation3::new(Vec3::z() * r.within(-3.0, 3.0));
-            let long = placed(&corners(one), &rot, Vec3::zeros());
-            for gap in [0.1 * thin, -0.1 * thin] {
-                let at = rot * Vec3::z() * (2.0 * thin + gap);
-                let across = placed(&corners(other), &turned, at);
-                let (a, b): (Shape, Shape) = (Box::new(hull(&long)), Box::new(hull(&across)));
-                let hit = overlap(&a, &b, &r.direction());
-                assert_eq!(hit, gap < 0.0, "{round}");
-            }
-        }
+        shapes::needles_and_plates(overlap);
     }
 
-    /// Polygons, segments and points, alone and against each other, in a common plane
-    /// and across it: apart by a tenth, or overlapping by that much.
     #[test]
     fn flat_shapes() {
-        let mut r = Random::new(4);
-        for round in 0..500 {
-            let rot = r.rotation();
-            let at = r.vector(3.0);
-            let [x, y, z] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
-            let triangle = [at, at + x, at + x * 0.3 + y];
-            let inner = at + x * 0.45 + y * 0.3;
-            let flat = |points: &[Vec3]| -> Shape { Box::new(hull(points)) };
-            let shifted = |by: Vec3| triangle.map(|p| p + by);
-            // In one plane: overlap is exact in the plane only, within rounding across
-            // it; so only what is apart can be told for certain.
-            for by in [y * 1.1, y * -1.1, x * 1.1, x * -1.1] {
-                let (a, b) = (flat(&triangle), flat(&shifted(by)));
-                assert!(!overlap(&a, &b, &r.direction()), "side by side, {round}");
-            }
-            // Across the plane.
-            let segment = flat(&[inner - z * 0.5, inner + z * 0.4]);
-            assert!(
-                overlap(&flat(&triangle), &segment, &r.direction()),
-                "{round}"
-            );
-            let short = flat(&[inner + z * 0.1, inner + z * 0.4]);
-            assert!(
-                !overlap(&flat(&triangle), &short, &r.direction()),
-                "{round}"
-            );
-            let outside = at + x * 0.45 - y * 0.1;
-            let beside = flat(&[outside - z, outside + z]);
-            assert!(
-                !overlap(&flat(&triangle), &beside, &r.direction()),
-                "{round}"
-            );
-            // Points in and out of a solid.
-            let cube = flat(&placed(&corners(Vec3::new(0.5, 0.6, 0.7)), &rot, at));
-            let point = |p: Vec3| flat(&[p]);
-            assert!(
-                overlap(&cube, &point(at + x * 0.4), &r.direction()),
-                "{round}"
-            );
-            assert!(
-                !overlap(&cube, &point(at + x * 0.6), &r.direction()),
-                "{round}"
-            );
-            // Segments that miss each other by a tenth, and parallel ones.
-            let a = flat(&[at - x, at + x]);
-            let lifted = at + z * 0.1;
-            for b in [[lifted - y, lifted + y], [lifted - x, lifted + x * 0.5]] {
-                assert!(!overlap(&a, &flat(&b), &r.direction()), "{round}");
-            }
-            // A point on itself is a touch, and two points are apart.
-            assert!(!overlap(&point(at), &point(at), &r.direction()), "{round}");
-            assert!(!overlap(&point(at), &point(at + x * 1e-3), &r.direction()));
-            // So is what is flat, whatever it shares.
-            let other = flat(&shifted(x * 0.2));
-            assert!(
-                !overlap(&flat(&triangle), &other, &r.direction()),
-                "{round}"
-            );
+        shapes::flat_shapes(overlap);
+        let mut r = Random::new(5);
+        for _ in 0..500 {
+            let (rot, at) = (r.rotation(), r.vector(3.0));
+            // A point on itself is a touch; so is what is flat, whatever it shares.
+            assert!(!overlap(&hull(&[at]), &hull(&[at]), &r.direction()));
+            let triangle = [
+                at,
+                at + rot * Vec3::x(),
+                at + rot * Vec3::new(0.3, 1.0, 0.0),
+            ];
+            let other = triangle.map(|p| p + rot * Vec3::x() * 0.2);
+            assert!(!overlap(&hull(&triangle), &hull(&other), &r.direction()));
         }
     }
 
-    /// Shapes that touch exactly, on a grid where nothing is rounded, are apart.
     #[test]
     fn exact_touch_is_a_miss() {
-        let cube = corners(Vec3::new(0.5, 0.25, 0.5));
-        let mut r = Random::new(5);
-        for by in [
-            Vec3::new(1.0, 0.0, 0.0),
-            Vec3::new(1.0, 0.125, -0.25),
-            Vec3::new(1.0, 0.5, 0.0),
-            Vec3::new(1.0, 0.5, 1.0),
-        ] {
-            let other: Vec<_> = cube.iter().map(|p| p + by).collect();
-            let (a, b): (Shape, Shape) = (Box::new(hull(&cube)), Box::new(hull(&other)));
-            for _ in 0..50 {
-                assert!(!overlap(&a, &b, &r.direction()), "{by}");
-            }
+        for (a, b, dir) in shapes::touching() {
+            assert!(!overlap(&a, &b, &dir));
         }
     }
 
@@ -1068,10 +921,10 @@ mod tests {
         let mut r = Random::new(6);
         let mut without = 0;
         for _ in 0..300 {
-            for kind in 0..10 {
+            for kind in 0..KINDS {
                 let gap = r.within(-0.1, 0.1);
                 let (a, b) = pair(kind, gap, &mut r);
-                let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
+                let md = MinkowskiDifference::new(&a, &b);
                 let mut inquiry = Inquiry::new(&md);
                 let mut set = SupportSet::<64>::EMPTY;
                 for _ in 0..3 {
@@ -1098,10 +951,10 @@ mod tests {
         let mut r = Random::new(8);
         let mut count = 0;
         for _ in 0..300 {
-            for kind in 0..10 {
+            for kind in 0..KINDS {
                 let depth = r.within(1e-6, 0.1);
                 let (a, b) = pair(kind, -depth, &mut r);
-                let md = MinkowskiDifference::new(|d: &Vec3| a(d), |d: &Vec3| b(d));
+                let md = MinkowskiDifference::new(&a, &b);
                 // Any point of D's surface has a foot: in the middle of three of its points.
                 let n = r.direction();
                 let mut set = SupportSet::<16>::EMPTY;

@@ -53,8 +53,8 @@ use crate::support_set::{Inquiry, Stop, SupportSet};
 /// from 0.005 to 0.05 the supports are the same to 1 %; the planes' error stays below it.
 pub const LEVEL: Real = 0.02;
 /// Tolerances below this share of the size are finer than interpolated planes: derived from
-/// their error, 20 ulps a point, at 160 points (single precision likewise).
-const EXACT: Real = 2e4 * crate::math::EPSILON;
+/// their error, 20 ulps a point, at 160 points; planes are double whatever points are.
+const EXACT: Real = 2e4 * f64::EPSILON as Real;
 /// Points before means of normals are asked: fewer make no neighbourhood. Measured.
 const FEW: usize = 10;
 /// Relative difference of e and e′ up to which a pair is of one ball. Measured: 0.03 costs

@@ -26,7 +26,7 @@ use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
 /// 2V − 4 faces, and a fan is there before what it replaces is gone.
 const FIRST: (usize, usize) = (16, 32);
 const SECOND: (usize, usize) = (24, 48);
-const THIRD: (usize, usize) = (164, 328);
+const THIRD: (usize, usize) = (162, 328);
 /// Of the one that is lent.
 const LENT: (usize, usize) = (1536, crate::polytope::MOST_FACES);
 /// Places that the start needs for its own points.
@@ -309,7 +309,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let rounding = expansion::rounding(precision);
         let fine = expansion::exact(tolerance, precision);
         let points = names.map(|i| set.v(i));
-        if !hull.tetrahedron(names, points, precision.size(), 2.0 * rounding, fine) {
+        if !hull.tetrahedron(names, points, precision.size(), fine) {
             return false;
         }
         let level = rounding + expansion::LEVEL * tolerance;
@@ -468,8 +468,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
             }
         }
-        // Where rounding ended the search.
-        let close = state.tolerance + 16.0 * precision.grain();
+        // Where rounding or a cap ended the search: a tolerance that was asked for coarser
+        // than the one in force is met all the same. (In this order NaN is none.)
+        let asked = larger(self.request.limits.tolerance, state.tolerance);
+        let close = asked + 16.0 * precision.grain();
         let short = end == End::Proven && !(hull.error() > 0.5 * state.tolerance);
         if short || depth - lower <= close {
             Answer::Hit(hit)

@@ -4,6 +4,8 @@
 //! Scalars and vectors, and the policies that every solver shares: how small a
 //! tolerance may be, how many iterations are allowed, what counts as a unit vector.
 
+use nalgebra::{RealField, Vector3};
+
 /// The scalar of the whole library: `f64`, or `f32` with feature `single`.
 #[cfg(not(feature = "single"))]
 pub type Real = f64;
@@ -13,6 +15,9 @@ pub type Real = f32;
 
 /// A point or direction in three dimensions, metres.
 pub type Vec3 = nalgebra::Vector3<Real>;
+
+/// The same in double precision whatever [`Real`] is.
+pub type Wide3 = nalgebra::Vector3<f64>;
 
 /// Distance from 1 to the next larger [`Real`].
 pub const EPSILON: Real = Real::EPSILON;
@@ -39,7 +44,7 @@ pub fn unit(v: &Vec3) -> Option<Vec3> {
 
 /// The larger of two numbers: one instruction, where `max` also orders NaN.
 #[inline(always)]
-pub fn larger(a: Real, b: Real) -> Real {
+pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
@@ -48,6 +53,18 @@ pub fn larger(a: Real, b: Real) -> Real {
 #[allow(clippy::useless_conversion, reason = "it is one in single precision")]
 pub fn wide(a: Real) -> f64 {
     f64::from(a)
+}
+
+/// The same vector in double precision.
+#[inline(always)]
+pub fn wide3(v: &Vec3) -> Wide3 {
+    Wide3::new(wide(v.x), wide(v.y), wide(v.z))
+}
+
+/// The nearest vector of [`Real`]s.
+#[inline(always)]
+pub fn narrow3(v: &Wide3) -> Vec3 {
+    Vec3::new(v.x as Real, v.y as Real, v.z as Real)
 }
 
 /// The largest absolute coordinate.
@@ -60,10 +77,11 @@ pub fn largest(v: &Vec3) -> Real {
 /// triangles are slivers, and the cross product of two long edges that are almost parallel
 /// is mostly rounding error: there the short edge is one of the two.
 #[inline]
-pub fn normal(a: &Vec3, b: &Vec3, c: &Vec3) -> Vec3 {
+pub fn normal<T: RealField + Copy>(a: &Vector3<T>, b: &Vector3<T>, c: &Vector3<T>) -> Vector3<T> {
     let [ab, ac, bc] = [b - a, c - a, c - b];
-    let [x, y, z] = [&ab, &ac, &bc].map(Vec3::norm_squared);
-    if z < 0.25 * x && z < 0.25 * y {
+    let [x, y, z] = [&ab, &ac, &bc].map(Vector3::norm_squared);
+    let four: T = nalgebra::convert(4.0);
+    if four * z < x && four * z < y {
         if x < y { ab.cross(&bc) } else { ac.cross(&bc) }
     } else {
         ab.cross(&ac)

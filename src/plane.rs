@@ -7,11 +7,11 @@
 //! lanes are taken apart last: plain expressions make the compiler pair other lanes and
 //! write planes in small pieces (10 to 17 % more instructions for a whole query).
 
-use crate::math::{Real, Vec3};
+use crate::math::{Vec3, Wide3, wide3};
 
 /// Two numbers side by side.
 #[derive(Clone, Copy, Debug)]
-struct Lanes([Real; 2]);
+struct Lanes([f64; 2]);
 
 impl Lanes {
     #[inline(always)]
@@ -42,7 +42,7 @@ pub struct Plane(Lanes, Lanes);
 impl Plane {
     /// The plane with this normal, N·x = d.
     #[inline(always)]
-    pub fn new(n: &Vec3, d: Real) -> Self {
+    pub fn new(n: &Wide3, d: f64) -> Self {
         Self(Lanes([n.x, n.y]), Lanes([n.z, d]))
     }
 
@@ -50,43 +50,43 @@ impl Plane {
     #[inline(always)]
     pub fn point(p: &Vec3) -> Self {
         // Were the −1 known, its product would leave the lanes.
-        Self::new(p, core::hint::black_box(-1.0))
+        Self::new(&wide3(p), core::hint::black_box(-1.0))
     }
 
     /// From the four numbers N, d.
     #[inline(always)]
-    pub fn of(a: &[Real; 4]) -> Self {
+    pub fn of(a: &[f64; 4]) -> Self {
         Self(Lanes([a[0], a[1]]), Lanes([a[2], a[3]]))
     }
 
     /// The four numbers N, d.
     #[inline(always)]
-    pub fn array(&self) -> [Real; 4] {
+    pub fn array(&self) -> [f64; 4] {
         [self.0.0[0], self.0.0[1], self.1.0[0], self.1.0[1]]
     }
 
     /// N.
     #[inline(always)]
-    pub fn normal(&self) -> Vec3 {
-        Vec3::new(self.0.0[0], self.0.0[1], self.1.0[0])
+    pub fn normal(&self) -> Wide3 {
+        Wide3::new(self.0.0[0], self.0.0[1], self.1.0[0])
     }
 
     /// d.
     #[inline(always)]
-    pub fn offset(&self) -> Real {
+    pub fn offset(&self) -> f64 {
         self.1.0[1]
     }
 
     /// N·p − d for a [`Plane::point`]: how far it lies outside, times |N|.
     #[inline(always)]
-    pub fn height(&self, point: &Self) -> Real {
+    pub fn height(&self, point: &Self) -> f64 {
         let x = self.0.times(point.0).plus(self.1.times(point.1));
         x.0[0] + x.0[1]
     }
 
     /// The plane a share `w` of the way to another: it holds their common line.
     #[inline(always)]
-    pub fn towards(&self, other: &Self, w: Real) -> Self {
+    pub fn towards(&self, other: &Self, w: f64) -> Self {
         let w = Lanes([w, w]);
         Self(
             self.0.plus(w.times(other.0.minus(self.0))),
@@ -96,7 +96,7 @@ impl Plane {
 
     /// The square of the distance from the origin with the sign of d, m², and |N|².
     #[inline(always)]
-    pub fn signed_square(&self) -> (Real, Real) {
+    pub fn signed_square(&self) -> (f64, f64) {
         let a = self.0.times(self.0);
         let b = self.1.times(self.1.abs());
         let n2 = (a.0[0] + a.0[1]) + b.0[0].abs();
@@ -105,7 +105,7 @@ impl Plane {
 
     /// The product of the two normals.
     #[inline(always)]
-    pub fn along(&self, other: &Self) -> Real {
+    pub fn along(&self, other: &Self) -> f64 {
         let q = self.0.times(other.0);
         (q.0[0] + self.1.0[0] * other.1.0[0]) + q.0[1]
     }
@@ -118,7 +118,7 @@ impl Plane {
 
     /// The same plane with N and d times `k`.
     #[inline(always)]
-    pub fn scaled(&self, k: Real) -> Self {
+    pub fn scaled(&self, k: f64) -> Self {
         let k = Lanes([k, k]);
         Self(self.0.times(k), self.1.times(k))
     }
@@ -130,8 +130,8 @@ mod tests {
 
     #[test]
     fn heights_distances_and_mixtures() {
-        let x = Plane::new(&(Vec3::x() * 2.0), 6.0);
-        let y = Plane::new(&Vec3::y(), -1.0);
+        let x = Plane::new(&(Wide3::x() * 2.0), 6.0);
+        let y = Plane::new(&Wide3::y(), -1.0);
         assert_eq!(x.height(&Plane::point(&Vec3::new(4.0, 9.0, 9.0))), 2.0);
         assert_eq!(x.signed_square(), (9.0, 4.0));
         assert_eq!(y.signed_square(), (-1.0, 1.0));

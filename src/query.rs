@@ -26,8 +26,9 @@ use crate::expansion::Limits;
 use crate::gjk::{self, Overlap};
 use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
-use crate::math::{ITERATION_CAP, Real, Vec3, perpendicular, unit};
+use crate::math::{ITERATION_CAP, Real, Vec3, larger, perpendicular, unit};
 use crate::planar;
+use crate::portal::rounding;
 use crate::separation;
 use crate::state::State;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -314,6 +315,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &mut Known,
     ) -> Result<Answer, Fault> {
         let mut found = self.stroll(memory, PATIENCE, settings, known)?;
+        // Depths that differ by less are the same.
+        let level = |hit: &Penetration| {
+            let reach = larger(hit.point1.norm(), hit.point2.norm());
+            larger(settings.tolerance, rounding(reach))
+        };
         let mut left = settings.max_iterations;
         let mut lowest: Option<Penetration> = None;
         let mut asides = 0;
@@ -325,11 +331,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 other => return Ok(other),
             };
             let before = lowest.map_or(Real::INFINITY, |low| low.depth);
-            if ended && hit.depth <= before + settings.tolerance {
+            if ended && hit.depth <= before + level(&hit) {
                 return Ok(found);
             }
             let start = match lowest {
-                Some(low) if ended || !(hit.depth <= before - settings.tolerance) => {
+                Some(low) if ended || !(hit.depth <= before - level(&hit)) => {
                     let Some(way) = WAYS.get(asides) else {
                         break low;
                     };

@@ -8,7 +8,8 @@
 //! vectors, so it is free of scale; a face whose area vanishes falls back to its
 //! edges, an edge whose length vanishes to its ends.
 
-use crate::math::{EPSILON, Real, Vec3, larger, largest, normal, unit};
+use crate::barycentric;
+use crate::math::{EPSILON, Real, Vec3, larger, largest, narrow3, normal, unit, wide3};
 use crate::support::SupportPoint;
 
 /// Up to four support points of D.
@@ -121,53 +122,21 @@ impl Simplex {
     /// The point of obj1 and obj2 where they meet, for a simplex that holds the origin:
     /// within rounding a convex combination of either's own points.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
-        let weights = self.weights();
-        let (mut p1, mut p2) = (Vec3::zeros(), Vec3::zeros());
-        for (p, w) in self.points().iter().zip(weights) {
-            p1 += p.v1 * w;
-            p2 += p.v2 * w;
+        let origin = Vec3::zeros();
+        let all = self.points.each_ref();
+        let [a, b, c, d] = all.map(|p| &p.v);
+        // The places outside use take a weight of 0.
+        let mut weights = [1.0, 0.0, 0.0, 0.0];
+        match self.len {
+            0 | 1 => {}
+            2 => weights[..2].copy_from_slice(&barycentric::segment(&origin, a, b).weights),
+            3 => weights[..3].copy_from_slice(&barycentric::triangle(&origin, a, b, c).weights),
+            _ => weights = barycentric::tetrahedron(&origin, [a, b, c, d]).weights,
         }
+        let (p1, p2) = barycentric::witnesses(&weights, all);
         // What the rounding of the shares leaves between them.
         let rest = (p1 - p2) * 0.5;
         (p1 - rest, p2 + rest)
-    }
-
-    /// The shares of the points in the point nearest to the origin, for a simplex that
-    /// holds it or has been reduced.
-    fn weights(&self) -> [Real; 4] {
-        let [a, b, c, d] = self.points.each_ref().map(|p| &p.v);
-        let shares = match self.len {
-            1 => [1.0, 0.0, 0.0, 0.0],
-            2 => {
-                let ab = b - a;
-                [b.dot(&ab), -a.dot(&ab), 0.0, 0.0]
-            }
-            3 => {
-                let n = normal(a, b, c);
-                let area = |p: &Vec3, q: &Vec3| n.dot(&p.cross(q));
-                [area(b, c), area(c, a), area(a, b), 0.0]
-            }
-            _ => {
-                // Six times the volumes of the tetrahedra between the origin and a face.
-                let volume = |p: &Vec3, q: &Vec3, r: &Vec3| p.dot(&q.cross(r));
-                let whole = (b - a).dot(&(c - a).cross(&(d - a)));
-                [
-                    volume(b, d, c),
-                    volume(a, c, d),
-                    volume(a, d, b),
-                    volume(a, b, c),
-                ]
-                .map(|v| if whole > 0.0 { -v } else { v })
-            }
-        };
-        // max drops NaN.
-        let shares = shares.map(|s| s.max(0.0));
-        let sum: Real = shares.iter().sum();
-        if sum > 0.0 && sum < Real::INFINITY {
-            shares.map(|s| s / sum)
-        } else {
-            [1.0, 0.0, 0.0, 0.0]
-        }
     }
 
     /// The unit normal of the face opposite to the newest vertex of a tetrahedron, away
@@ -303,14 +272,16 @@ fn nearest_on_segment(a: &Vec3, b: &Vec3) -> (Vec3, Face) {
 /// As all of [`Simplex::reduce`], for a triangle whose newest vertex is `c`.
 #[inline]
 fn nearest_on_triangle(a: &Vec3, b: &Vec3, c: &Vec3) -> (Vec3, Face) {
-    let n = (b - a).cross(&(c - a));
+    // In double throughout: of a sliver that looks at the origin these are rounding else.
+    let [x, y, z] = [a, b, c].map(wide3);
+    let n = (y - x).cross(&(z - x));
     let nn = n.norm_squared();
     // Twice the signed areas of the triangles that the projected origin makes
     // with the edges bc and ca, as multiples of n: positive on the inner side.
-    let u = n.dot(&b.cross(c));
-    let v = n.dot(&c.cross(a));
+    let u = n.dot(&y.cross(&z));
+    let v = n.dot(&z.cross(&x));
     if u > 0.0 && v > 0.0 && nn > 0.0 {
-        return (n * (a.dot(&n) / nn), Face::All);
+        return (narrow3(&(n * (x.dot(&n) / nn))), Face::All);
     }
     // Outside an edge, or without area.
     let (p, on_ac) = nearest_on_segment(a, c);

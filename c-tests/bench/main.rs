@@ -39,7 +39,7 @@ mod command {
     enum Command {
         /// Supports, times and errors of every pair set, as Markdown.
         Tables(tables::Options),
-        /// Writes the support counts and errors that a test holds changes to.
+        /// Writes the support counts and errors with which a test compares changes.
         Record,
         /// Every chart as CSV and SVG.
         Charts(charts::Options),

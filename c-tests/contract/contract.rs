@@ -241,6 +241,7 @@ fn names(text: &str) -> BTreeSet<&str> {
 }
 
 #[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn headers_have_every_name_of_libccd_s_and_every_name_is_compared() {
     let theirs = preprocessed(None);
     let ours = preprocessed(Some(&harness::root().join("include")));
@@ -278,6 +279,7 @@ fn run_quietly(program: Program) -> String {
 }
 
 #[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn headers_compute_what_libccd_s_do() {
     let headers = |standard: &str| {
         Program::c("headers")
@@ -322,6 +324,7 @@ fn headers_compute_what_libccd_s_do() {
 
 /// Ours give no warning at all, so none that libccd's do not give.
 #[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn headers_and_layouts_compile_without_warnings() {
     let compilers = [
         (None, "c", &["c99", "c11", "gnu17"][..]),
@@ -382,7 +385,7 @@ fn nearest_points_of_segments_and_triangles() {
     } else {
         alone("nearest")
     };
-    nearest.build().run(NO_ARGS);
+    nearest.build().run([harness::rounds(20_000)]);
 }
 
 #[test]
@@ -392,7 +395,10 @@ fn polytopes() {
     } else {
         alone("polytope")
     };
-    polytope.standard("gnu99").build().run(NO_ARGS);
+    polytope
+        .standard("gnu99")
+        .build()
+        .run([harness::rounds(200)]);
 }
 
 /// FCL's EPA runs on the polytope functions: instructions are exact, time is not.

@@ -84,31 +84,30 @@ static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
     return code;
 }
 
-static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+/* Cold, then from the state that this left. */
+static inline int run_twice(int (*query)(const void *, const void *, const ccd_t *, ccd_warm_t *, ccd_penetration_t *),
+                            const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     ccd_warm_t warm;
     ccd_penetration_t p;
     memset(&warm, 0, sizeof warm);
-    ccdPenetrationLocal(a, b, ccd, &warm, &p);
-    return stored(ccdPenetrationLocal(a, b, ccd, &warm, &p), &p, out);
+    query(a, b, ccd, &warm, &p);
+    return stored(query(a, b, ccd, &warm, &p), &p, out);
+}
+
+static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    return run_twice(ccdPenetrationLocal, a, b, ccd, out);
 }
 
 static inline int run_PenetrationIncremental(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
-    ccd_warm_t warm;
-    ccd_penetration_t p;
-    memset(&warm, 0, sizeof warm);
-    ccdPenetrationIncremental(a, b, ccd, &warm, &p);
-    return stored(ccdPenetrationIncremental(a, b, ccd, &warm, &p), &p, out);
+    return run_twice(ccdPenetrationIncremental, a, b, ccd, out);
 }
 
 static inline int run_PenetrationMinimum(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
-    ccd_warm_t warm;
-    ccd_penetration_t p;
-    memset(&warm, 0, sizeof warm);
-    ccdPenetrationMinimum(a, b, ccd, &warm, &p);
-    return stored(ccdPenetrationMinimum(a, b, ccd, &warm, &p), &p, out);
+    return run_twice(ccdPenetrationMinimum, a, b, ccd, out);
 }
 
 static inline int run_PenetrationAlong(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
@@ -190,16 +189,8 @@ static inline shape_t random_shape(void)
 {
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, -1, -1, 0, 0, -1, -1, 0.5, 0.5, 0.5, -0.5, 0.5, -0.5};
     double p = random_in(0.3, 1), q = random_in(0.3, 1), r = random_in(0.3, 1), rot[9];
-    shape_t s;
-    switch (random_below(7)) {
-    case 0: s = shape_sphere(p); break;
-    case 1: s = shape_capsule(p, q); break;
-    case 2: s = shape_box(p, q, r); break;
-    case 3: s = shape_cylinder(p, q); break;
-    case 4: s = shape_cone(p, q); break;
-    case 5: s = shape_ellipsoid(p, q, r); break;
-    default: s = shape_polytope(corners, 7); break;
-    }
+    int type = random_below(SHAPE_TYPES);
+    shape_t s = type == SHAPE_POLYTOPE ? shape_polytope(corners, 7) : shape_make(type, p, q, r);
     rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
     shape_turn(&s, rot);
     return s;

@@ -192,21 +192,13 @@ static shape_t random_shape(void)
     static ccd_real_t points[10 * 36];
     static int next;
     double p = random_in(0.3, 1), q = random_in(0.3, 1), r = random_in(0.3, 1), rot[9];
-    shape_t s;
-    int i;
-    switch (random_below(7)) {
-    case 0: s = shape_sphere(p); break;
-    case 1: s = shape_capsule(p, q); break;
-    case 2: s = shape_box(p, q, r); break;
-    case 3: s = shape_cylinder(p, q); break;
-    case 4: s = shape_cone(p, q); break;
-    case 5: s = shape_ellipsoid(p, q, r); break;
-    default:
+    int i, type = random_below(SHAPE_TYPES);
+    shape_t s = shape_make(type, p, q, r);
+    if (type == SHAPE_POLYTOPE) {
         next = (next + 1) % 10;
         for (i = 0; i < 36; i++)
             points[36 * next + i] = (ccd_real_t)random_in(-1, 1);
         s = shape_polytope(points + 36 * next, 12);
-        break;
     }
     rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
     shape_turn(&s, rot);

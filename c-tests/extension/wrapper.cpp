@@ -91,13 +91,8 @@ static Wrapped random_shape(double spread)
 {
     Wrapped w{};
     const double p = random_in(0.2, 1), q = random_in(0.2, 1), r = random_in(0.2, 1);
-    switch (random_below(5)) {
-    case 0: w.shape = shape_sphere(p); break;
-    case 1: w.shape = shape_capsule(p, q); break;
-    case 2: w.shape = shape_box(p, q, r); break;
-    case 3: w.shape = shape_cylinder(p, q); break;
-    default: w.shape = shape_ellipsoid(p, q, r); break;
-    }
+    static const shape_type_t types[5] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_ELLIPSOID};
+    w.shape = shape_make(types[random_below(5)], p, q, r);
     double rot[9];
     rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
     shape_turn(&w.shape, rot);

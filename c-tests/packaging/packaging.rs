@@ -49,17 +49,41 @@ fn precision_option() -> OsString {
     define("ENABLE_DOUBLE_PRECISION", double)
 }
 
-/// What configures a build of the library; cargo builds for all tests of this file at
-/// one place.
-fn library_options() -> [OsString; 2] {
-    let cargo = output_dir()
-        .join("packaging")
-        .join(Precision::CURRENT.name())
-        .join("cargo");
-    [precision_option(), define("CCD_CARGO_TARGET_DIR", cargo)]
+/// How cargo builds the library.
+#[derive(Clone, Copy)]
+enum Cargo {
+    /// As it is installed, at one place for all tests of this file.
+    Release,
+    /// Not optimised, at a place of this name: for one more way to find and link the
+    /// library, where what it computes is not looked at.
+    Quick(&'static str),
 }
 
-fn build_library(build: &Path, prefix: &Path, options: &[OsString]) {
+impl Cargo {
+    /// What configures a build of the library.
+    fn options(self) -> [OsString; 2] {
+        let name = match self {
+            Cargo::Release => "cargo",
+            Cargo::Quick(name) => name,
+        };
+        // Crates are compiled once for both precisions.
+        let dir = output_dir().join("packaging").join(name);
+        [precision_option(), define("CCD_CARGO_TARGET_DIR", dir)]
+    }
+
+    /// Builds what is configured.
+    fn build(self, tree: &Path) {
+        let mut make = Command::new("cmake");
+        make.arg("--build").arg(tree);
+        if let Cargo::Quick(_) = self {
+            make.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0");
+            make.env("CARGO_PROFILE_RELEASE_DEBUG", "false");
+        }
+        must_succeed(&mut make, "cmake");
+    }
+}
+
+fn build_library(build: &Path, prefix: &Path, cargo: Cargo, options: &[OsString]) {
     let mut configure = Command::new("cmake");
     configure
         .arg("-S")
@@ -67,10 +91,10 @@ fn build_library(build: &Path, prefix: &Path, options: &[OsString]) {
         .arg("-B")
         .arg(build)
         .arg(define("CMAKE_INSTALL_PREFIX", prefix))
-        .args(library_options())
+        .args(cargo.options())
         .args(options);
     must_succeed(&mut configure, "cmake");
-    cmake(["--build".as_ref(), build.as_os_str()]);
+    cargo.build(build);
 }
 
 /// The library installed under a prefix, then moved: nothing in it may
@@ -80,7 +104,7 @@ fn installed_and_moved() -> &'static Path {
     PREFIX.get_or_init(|| {
         let dir = fresh("installed");
         let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
-        build_library(&build, &first, &[]);
+        build_library(&build, &first, Cargo::Release, &[]);
         cmake(["--install".as_ref(), build.as_os_str()]);
         fs::remove_dir_all(&build).expect("the build tree can be removed");
         fs::rename(&first, &prefix).expect("the prefix can be moved");
@@ -90,6 +114,11 @@ fn installed_and_moved() -> &'static Path {
 
 /// Configures and builds the consumer, with what is needed to find libccd.
 fn consumer(name: &str, options: &[OsString]) -> PathBuf {
+    consumer_with(name, Cargo::Release, options)
+}
+
+/// The same where the library is built as a part of it.
+fn consumer_with(name: &str, cargo: Cargo, options: &[OsString]) -> PathBuf {
     let build = fresh(name);
     let mut configure = Command::new("cmake");
     configure
@@ -99,7 +128,7 @@ fn consumer(name: &str, options: &[OsString]) -> PathBuf {
         .arg(&build)
         .args(options);
     must_succeed(&mut configure, "cmake");
-    cmake(["--build".as_ref(), build.as_os_str()]);
+    cargo.build(&build);
     build
 }
 
@@ -146,7 +175,7 @@ fn find_package() {
 fn add_subdirectory_and_fetch_content() {
     for way in ["add_subdirectory", "FetchContent"] {
         let mut options = vec![define("WAY", way), define("REPOSITORY", root())];
-        options.extend(library_options());
+        options.extend(Cargo::Release.options());
         let build = consumer(way, &options);
         all_run_on_ours(&build, &build, &["plain", "namespaced"]);
     }
@@ -162,7 +191,7 @@ fn generators() {
     ] {
         let mut options = vec![define("WAY", "add_subdirectory")];
         options.extend([define("REPOSITORY", root()), "-G".into(), generator.into()]);
-        options.extend(library_options());
+        options.extend(Cargo::Release.options());
         let build = consumer(name, &options);
         runs_on_ours(&build.join(programs).join("plain"), Some(&build));
         runs_on_ours(&build.join(programs).join("static"), None);
@@ -203,8 +232,9 @@ fn git_tag() {
 
     let mut options = vec![define("WAY", "git"), define("TAG", tag)];
     options.push(define("REPOSITORY", upstream));
-    options.extend(library_options());
-    let build = consumer("git", &options);
+    let cargo = Cargo::Quick("cargo-git");
+    options.extend(cargo.options());
+    let build = consumer_with("git", cargo, &options);
     all_run_on_ours(&build, &build, &["plain", "namespaced"]);
 }
 
@@ -218,7 +248,7 @@ fn a_part_of_another_project_installs_nothing() {
         options.push(define("REPOSITORY", root()));
         options.push(define("CMAKE_INSTALL_PREFIX", &prefix));
         options.extend(asked.then(|| define("CCD_INSTALL", "ON")));
-        options.extend(library_options());
+        options.extend(Cargo::Release.options());
         let build = consumer(name, &options);
         cmake(["--install".as_ref(), build.as_os_str()]);
         assert!(prefix.join("bin/plain").is_file());
@@ -230,13 +260,12 @@ fn a_part_of_another_project_installs_nothing() {
 
 /// BUILD_SHARED_LIBS=OFF: `ccd` is the archive, in a build tree and installed.
 #[test]
-fn static_alone() {
+fn the_archive_alone_without_shared_libraries() {
     let dir = fresh("static-alone");
     let (build, prefix) = (dir.join("build"), dir.join("prefix"));
-    // Cargo builds elsewhere than for the tests that want both libraries.
-    let cargo = define("CCD_CARGO_TARGET_DIR", dir.join("cargo"));
-    let own = [define("BUILD_SHARED_LIBS", "OFF"), cargo];
-    build_library(&build, &prefix, &own);
+    let cargo = Cargo::Quick("cargo-static");
+    let off = define("BUILD_SHARED_LIBS", "OFF");
+    build_library(&build, &prefix, cargo, std::slice::from_ref(&off));
     cmake(["--install".as_ref(), build.as_os_str()]);
     find(&prefix, "libccd.a");
     assert!(!prefix.join("lib/libccd.so").exists());
@@ -244,11 +273,11 @@ fn static_alone() {
         define("WAY", "find_package"),
         define("CMAKE_PREFIX_PATH", &prefix),
     ];
-    let mut part = vec![define("WAY", "add_subdirectory"), precision_option()];
+    let mut part = vec![define("WAY", "add_subdirectory"), off];
     part.push(define("REPOSITORY", root()));
-    part.extend(own);
+    part.extend(cargo.options());
     for (name, options) in [("static-installed", &installed[..]), ("static-part", &part)] {
-        let build = consumer(name, options);
+        let build = consumer_with(name, cargo, options);
         for program in ["plain", "namespaced", "static"] {
             runs_on_ours(&build.join(program), None);
         }
@@ -258,7 +287,7 @@ fn static_alone() {
 /// A Rust that is missing or too old is named when CMake configures.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn rust_is_looked_at() {
+fn a_missing_or_old_rust_is_named() {
     let dir = fresh("rust");
     let says = |name: &str, line: &str| {
         let script = dir.join(name);
@@ -307,10 +336,10 @@ fn rust_is_looked_at() {
 }
 
 /// The source archive builds without a network, and gives the same bytes wherever it
-/// is unpacked.
+/// is unpacked. (By its name the first to start: it takes longest.)
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn source_archive_offline_and_reproducible() {
+fn a_build_of_the_source_archive_is_offline_and_reproducible() {
     if !root().join(".git").exists() {
         println!("skipped: not a git repository");
         return;
@@ -352,7 +381,7 @@ fn source_archive_offline_and_reproducible() {
 /// The notices that are installed name each crate that is compiled in.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn notices_are_whole() {
+fn notices_name_every_crate() {
     let prefix = installed_and_moved();
     let installed = |name| {
         fs::read_to_string(prefix.join("share/doc/ccd").join(name)).expect("an installed text")
@@ -484,7 +513,7 @@ fn pkg_config() {
 fn destdir_and_multiarch() {
     let dir = fresh("destdir");
     let (build, stage) = (dir.join("build"), dir.join("stage"));
-    build_library(&build, Path::new("/usr"), &[]);
+    build_library(&build, Path::new("/usr"), Cargo::Release, &[]);
     must_succeed(
         Command::new("cmake")
             .env("DESTDIR", &stage)
@@ -524,7 +553,7 @@ fn destdir_and_multiarch() {
 
 /// A program that asks for the other precision does not compile.
 #[test]
-fn precision_is_held() {
+fn the_other_precision_does_not_compile() {
     let other = match Precision::CURRENT {
         Precision::Double => "-DCCD_SINGLE",
         Precision::Single => "-DCCD_DOUBLE",
@@ -568,7 +597,10 @@ fn oldest_rust() {
     let mut build = Command::new(cargo[0]);
     build
         .args(&cargo[1..])
-        .args(["build", "--release", "--lib", "--locked"])
+        .args(["build", "--lib", "--locked"])
+        // Warnings do not depend on how much is optimised.
+        .args(["--config", "profile.dev.opt-level=0"])
+        .args(["--config", "profile.dev.debug=false"])
         .args([
             "--manifest-path".as_ref(),
             root().join("Cargo.toml").as_os_str(),

@@ -159,7 +159,7 @@ int main(int argc, char **argv)
                     memset(o, 0, sizeof *o);
                     o->kind = kinds[i] < 0 ? ADVERSARIES : kinds[i]; /* -1: an honest shape */
                     o->size = 1;
-                    o->shape = pair_shape(&d, o->verts, dice_below(&d, PAIR_ROUND + 1), .1, 1);
+                    o->shape = pair_shape(&d, o->verts, dice_below(&d, SHAPE_TYPES), .1, 1);
                     pair_turn(&d, &o->shape);
                     dice_unit(&d, u);
                     shape_move(&o->shape, .5 * u[0], .5 * u[1], .5 * u[2]);

@@ -323,7 +323,7 @@ proptest! {
     /// answers and its bound below every support value; verdicts agree unless the objects
     /// touch.
     #[test]
-    fn answers_about_convex_objects_hold(
+    fn answers_about_convex_objects_are_sound(
         a in convex(),
         b in convex(),
         tolerance in tolerance(),

@@ -4,7 +4,7 @@
 /* How often each library fails, by category of pair.
  *
  *   campaign [pairs a category [tie rule: 0 sign of zero, 1 centre [category, -1 all
- *             [compatible | extension]]]]
+ *             [compatible | proven | local]]]]
  *
  * Prints one table for libccd and one for this library, at the default tolerance of
  * 1e-4 m, and exits with 1 when this library breaks a promise at that tolerance or

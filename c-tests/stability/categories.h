@@ -122,20 +122,10 @@ static inline shape_t pair_polygon(dice_t *d, ccd_real_t *verts, double size)
     return shape_polytope(verts, n);
 }
 
-enum { PAIR_ROUND = 6 }; /* kinds 0 to 5 are the shape types in their order, 6 is a hull */
-
-static inline shape_t pair_shape(dice_t *d, ccd_real_t *verts, int kind, double low, double high)
+static inline shape_t pair_shape(dice_t *d, ccd_real_t *verts, shape_type_t type, double low, double high)
 {
     double x = dice_in(d, low, high), y = dice_in(d, low, high), z = dice_in(d, low, high);
-    switch (kind) {
-    case SHAPE_SPHERE: return shape_sphere(x);
-    case SHAPE_CAPSULE: return shape_capsule(x, y);
-    case SHAPE_BOX: return shape_box(x, y, z);
-    case SHAPE_CYLINDER: return shape_cylinder(x, y);
-    case SHAPE_CONE: return shape_cone(x, y);
-    case SHAPE_ELLIPSOID: return shape_ellipsoid(x, y, z);
-    default: return pair_hull(d, verts, x);
-    }
+    return type == SHAPE_POLYTOPE ? pair_hull(d, verts, x) : shape_make(type, x, y, z);
 }
 
 /* Two shapes of any kind in random poses that overlap, or (apart) do not. */
@@ -143,8 +133,8 @@ static inline void pair_generic(dice_t *d, pair_t *p, double scale, int apart)
 {
     double u[3];
     int tries;
-    p->a = pair_shape(d, p->verts[0], dice_below(d, PAIR_ROUND + 1), .1 * scale, scale);
-    p->b = pair_shape(d, p->verts[1], dice_below(d, PAIR_ROUND + 1), .1 * scale, scale);
+    p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
+    p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
     pair_turn(d, &p->a);
     pair_turn(d, &p->b);
     for (tries = 0; tries < 60; tries++) {
@@ -281,7 +271,7 @@ static inline const char *category_text(int category)
 
 static inline void pair_solid(dice_t *d, pair_t *p)
 {
-    p->b = pair_shape(d, p->verts[1], dice_below(d, PAIR_ROUND + 1), .1, 1);
+    p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .1, 1);
     pair_turn(d, &p->b);
 }
 
@@ -320,7 +310,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_COINCIDENT:
     case CATEGORY_NEAR_COINCIDENT:
-        p->a = pair_shape(d, p->verts[0], dice_below(d, PAIR_ROUND + 1), .1, 1);
+        p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .1, 1);
         pair_turn(d, &p->a);
         pair_solid(d, p);
         if (category == CATEGORY_NEAR_COINCIDENT) {
@@ -350,9 +340,9 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     }
     case CATEGORY_AXIS: {
-        int kind = dice_below(d, PAIR_ROUND);
+        int kind = dice_below(d, SHAPE_POLYTOPE); /* all types before it: no hull */
         p->a = pair_shape(d, p->verts[0], kind, .1, 1);
-        p->b = pair_shape(d, p->verts[1], dice_below(d, 2) ? kind : dice_below(d, PAIR_ROUND), .1, 1);
+        p->b = pair_shape(d, p->verts[1], dice_below(d, 2) ? kind : dice_below(d, SHAPE_POLYTOPE), .1, 1);
         x = dice_in(d, 0, .9) * .3;
         k = dice_below(d, 3);
         shape_move(&p->b, k == 0 ? x : 0, k == 1 ? x : 0, k == 2 ? x : 0);
@@ -371,9 +361,9 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         }
         break;
     case CATEGORY_INSIDE:
-        p->a = pair_shape(d, p->verts[0], dice_below(d, PAIR_ROUND + 1), .5, 1);
+        p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .5, 1);
         pair_turn(d, &p->a);
-        p->b = pair_shape(d, p->verts[1], dice_below(d, PAIR_ROUND + 1), .01, .1);
+        p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .01, .1);
         pair_turn(d, &p->b);
         pair_scatter(d, p, .3, 2 * shape_reach(&p->b));
         break;

@@ -73,8 +73,8 @@ static void overlapping(dice_t *d, pair_t *p, const int *kinds, int n, double pa
     pair_pull_out(p, part * pair_size(&p->a, &p->b));
 }
 
-static const int any_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, PAIR_ROUND};
-static const int flat_kind[] = {SHAPE_BOX, PAIR_ROUND};
+static const int any_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
+static const int flat_kind[] = {SHAPE_BOX, SHAPE_POLYTOPE};
 static const int round_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_ELLIPSOID};
 
 static void move_along(shape_t *s, const double n[3], double by)

@@ -35,15 +35,15 @@ static const struct {
     {"box, box", SHAPE_BOX, SHAPE_BOX},
     {"box, sphere", SHAPE_BOX, SHAPE_SPHERE},
     {"box, capsule", SHAPE_BOX, SHAPE_CAPSULE},
-    {"hull, hull", PAIR_ROUND, PAIR_ROUND},
-    {"hull, box", PAIR_ROUND, SHAPE_BOX},
-    {"hull, capsule", PAIR_ROUND, SHAPE_CAPSULE},
+    {"hull, hull", SHAPE_POLYTOPE, SHAPE_POLYTOPE},
+    {"hull, box", SHAPE_POLYTOPE, SHAPE_BOX},
+    {"hull, capsule", SHAPE_POLYTOPE, SHAPE_CAPSULE},
     {"cylinder, box", SHAPE_CYLINDER, SHAPE_BOX},
     {"cylinder, capsule", SHAPE_CYLINDER, SHAPE_CAPSULE},
     {"cone, cylinder", SHAPE_CONE, SHAPE_CYLINDER},
-    {"cone, hull", SHAPE_CONE, PAIR_ROUND},
+    {"cone, hull", SHAPE_CONE, SHAPE_POLYTOPE},
     {"ellipsoid, ellipsoid", SHAPE_ELLIPSOID, SHAPE_ELLIPSOID},
-    {"ellipsoid, hull", SHAPE_ELLIPSOID, PAIR_ROUND},
+    {"ellipsoid, hull", SHAPE_ELLIPSOID, SHAPE_POLYTOPE},
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 

@@ -112,7 +112,7 @@ static void corner_pair(dice_t *d, pair_t *p, int kind_a, int kind_b, double par
 static int shallow_family(int which)
 {
     static const int kinds[4][2] = {
-        {SHAPE_BOX, SHAPE_CYLINDER}, {SHAPE_BOX, SHAPE_CONE}, {PAIR_ROUND, SHAPE_CONE}, {PAIR_ROUND, SHAPE_CYLINDER}};
+        {SHAPE_BOX, SHAPE_CYLINDER}, {SHAPE_BOX, SHAPE_CONE}, {SHAPE_POLYTOPE, SHAPE_CONE}, {SHAPE_POLYTOPE, SHAPE_CYLINDER}};
     mpr_tally_t tally = {0, 0, 0, 1};
     int i;
     for (i = 0; i < 40; i++) {
@@ -142,7 +142,7 @@ static int sphere_in_cylinder(int which)
 /* A sphere with its centre well inside of a cylinder, a hull or a box. */
 static int sphere_family(int which)
 {
-    static const int kinds[3] = {SHAPE_CYLINDER, PAIR_ROUND, SHAPE_BOX};
+    static const int kinds[3] = {SHAPE_CYLINDER, SHAPE_POLYTOPE, SHAPE_BOX};
     mpr_tally_t tally = {0, 0, 0, 1};
     int i;
     for (i = 0; i < 400; i++) {
@@ -202,8 +202,8 @@ static void overlapping_pair(dice_t *d, pair_t *p)
 {
     double inner[2][3];
     int k, i;
-    p->a = pair_shape(d, p->verts[0], dice_below(d, PAIR_ROUND + 1), .1, 1);
-    p->b = pair_shape(d, p->verts[1], dice_below(d, PAIR_ROUND + 1), .1, 1);
+    p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .1, 1);
+    p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .1, 1);
     for (k = 0; k < 2; k++) {
         shape_t *s = k ? &p->b : &p->a;
         double w, sum = 0, o[3] = {0, 0, 0};
@@ -373,7 +373,7 @@ static int swapped_state(int which)
 static int state_of_others(int which)
 {
     static const entry_t warm_mpr = {"MPR, warm", 0, ASK_MPR_WARM, STATE_NONE};
-    static const int kinds[4] = {SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, PAIR_ROUND};
+    static const int kinds[4] = {SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_POLYTOPE};
     ccd_warm_t warm;
     ccd_t ccd;
     double worst = 1;

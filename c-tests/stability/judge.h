@@ -86,12 +86,12 @@ static const entry_t entries[] = {
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
-/* Is the entry point one of libccd's (or the same with a state), or one of the
- * extension's own? group NULL: either. */
+/* Is the entry point of this group: "compatible", libccd's or the same with a state; of
+ * the extension's own "local", or "proven", which have a lower bound that closes? NULL: any. */
 static inline int entry_in(const entry_t *e, const char *group)
 {
-    int own = e->ask == ASK_LOCAL || e->ask == ASK_MINIMUM || e->ask == ASK_ALONG;
-    return !group || (strcmp(group, "extension") == 0) == own;
+    int local = e->ask == ASK_LOCAL, proven = e->ask == ASK_MINIMUM || e->ask == ASK_ALONG;
+    return !group || strcmp(group, local ? "local" : proven ? "proven" : "compatible") == 0;
 }
 
 /* Does the answer claim to be the global minimum within the tolerance? */

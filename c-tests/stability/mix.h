@@ -33,10 +33,10 @@ static inline double mix_length(dice_t *d, int grid) { return grid ? (1 + dice_b
 
 static inline shape_t mix_shape(dice_t *d, ccd_real_t *verts, int grid)
 {
-    const int kind = dice_below(d, PAIR_ROUND + 1);
+    const int kind = dice_below(d, SHAPE_TYPES);
     const double x = mix_length(d, grid), y = mix_length(d, grid), z = mix_length(d, grid), axis[3] = {x, y, z};
     int i, k, n;
-    if (kind != PAIR_ROUND) {
+    if (kind != SHAPE_POLYTOPE) {
         shape_t s = shape_make(kind, x, y, z);
         return s;
     }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Configurations that made other libraries fail in their users' hands: numbers
- * from the public bug reports and tests named beside each. */
+/* Points of the hulls in configurations.h. Those of other projects made their libraries
+ * fail in users' hands: numbers from the public bug reports and tests. */
 
 #ifndef STABILITY_PORTS_H
 #define STABILITY_PORTS_H
@@ -10,7 +10,7 @@
 #include <ccd/ccd.h>
 
 /* Convex meshes of FCL's signed-distance tests (reports drake#21673, drake#21234).
- * pose: rows of [R | p]; none where the vertices are given in the world. */
+ * The second of each pair is given in the world. */
 static const ccd_real_t fcl_convex1_a[][3] = {
     {0.5, 0.707107, -0.707107},
     {0.5, 0, -1},
@@ -37,12 +37,6 @@ static const ccd_real_t fcl_convex1_b[][3] = {
     {11.452373, 8.227672, 0.5},
     {11.618371, 9.456563, 0.5},
 };
-static const double fcl_convex1_pose[12] = {
-    -2.0399676677885373e-09, 0.7712974481797398, -0.6364748592296648, 11.477445682202463,
-    2.472087991721794e-09, 0.6364748592296648, 0.7712974481797398, 9.778505692075694,
-    1, 0, -3.2051032938795743e-09, 0,
-};
-
 static const ccd_real_t fcl_convex2_a[][3] = {
     {0.5, 0.5, -0.866025},
     {0.5, -0.5, -0.866025},
@@ -65,12 +59,6 @@ static const ccd_real_t fcl_convex2_b[][3] = {
     {3.931647, 7.374503, 0.5},
     {5.188451, 7.476263, 0.5},
 };
-static const double fcl_convex2_pose[12] = {
-    -3.01404872427901e-09, 0.3400965845998409, -0.9403905109812217, 4.286483694131304,
-    1.0900446835381433e-09, 0.9403905109812217, 0.3400965845998409, 7.386957687225368,
-    1, 0, -3.2051032938795743e-09, 0,
-};
-
 static const ccd_real_t fcl_convex3_a[][3] = {
     {0.5, 1, 0},
     {0.5, 0.62349, -0.781831},
@@ -95,12 +83,6 @@ static const ccd_real_t fcl_convex3_b[][3] = {
     {14.767995, 13.150248, 0.5},
     {13.785037, 12.890524, 0.5},
 };
-static const double fcl_convex3_pose[12] = {
-    -2.0479437360480805e-09, -0.7692371274798412, -0.6389634118684439, 13.670417904867957,
-    -2.465484451060101e-09, 0.6389634118684439, -0.7692371274798412, 13.169816779836705,
-    1, 0, -3.2051032938795743e-09, 0,
-};
-
 static const ccd_real_t fcl_convex4_a[][3] = {
     {0.5, -0.92388, 0.382683},
     {-0.5, 0.92388, -0.382683},
@@ -119,26 +101,6 @@ static const ccd_real_t fcl_convex4_b[][3] = {
     {16.22432, 8.915849, 0.5},
     {16.236605, 9.233231, 0.5},
 };
-static const double fcl_convex4_pose[12] = {
-    -2.6487935924268805e-09, -0.5630394437818858, -0.8264300241071744, 15.712812998638135,
-    -1.8045995758494454e-09, 0.8264300241071744, -0.5630394437818858, 10.219809745800642,
-    1, 0, -3.2051032938795743e-09, 0,
-};
-
-static const ccd_real_t fcl_convex5_a[][3] = {
-    {0.5, 0.5, -0.866025},
-    {0.5, -0.5, -0.866025},
-    {0.5, 1, 0},
-    {-0.5, -0.5, 0.866025},
-    {-0.5, 0.5, 0.866025},
-    {-0.5, -1, 0},
-    {0.5, -0.5, 0.866025},
-    {-0.5, 0.5, -0.866025},
-    {-0.5, -0.5, -0.866025},
-    {-0.5, 1, 0},
-    {0.5, -1, 0},
-    {0.5, 0.5, 0.866025},
-};
 static const ccd_real_t fcl_convex5_b[][3] = {
     {5.242363, 9.122811, -0.5},
     {6.359664, 8.28526, -0.5},
@@ -147,12 +109,6 @@ static const ccd_real_t fcl_convex5_b[][3] = {
     {5.670377, 7.598539, 0.5},
     {6.359664, 8.28526, 0.5},
 };
-static const double fcl_convex5_pose[12] = {
-    -2.241179617442763e-09, 0.7148738189791494, -0.6992534754566232, 6.333574727814116,
-    2.291244431918342e-09, 0.6992534754566232, 0.7148738189791494, 8.463157630327672,
-    1, 0, -3.2051032938795743e-09, 0,
-};
-
 static const ccd_real_t fcl_convex6_a[][3] = {
     {0.5, 0.309017, -0.951057},
     {0.5, 1, 0},
@@ -173,12 +129,6 @@ static const ccd_real_t fcl_convex6_b[][3] = {
     {11.452507, 5.520981, 0.5},
     {10.839257, 4.83299, 0.5},
 };
-static const double fcl_convex6_pose[12] = {
-    -3.193413061359499e-09, -0.08533146197201667, -0.9963526191051632, 11.261494468063983,
-    -2.734961498380703e-10, 0.9963526191051632, -0.08533146197201667, 5.7102314848013025,
-    1, 0, -3.2051032938795743e-09, 0,
-};
-
 static const ccd_real_t fcl_convex7_a[][3] = {
     {-0.5, -0.5, -0.866025},
     {-0.5, -0.5, 0.866025},
@@ -195,12 +145,6 @@ static const ccd_real_t fcl_convex7_b[][3] = {
     {8.674382, 3.710847, 0.5},
     {7.91275, 2.73346, 0.5},
 };
-static const double fcl_convex7_pose[12] = {
-    -3.1553676991561266e-09, -0.17548349096519453, -0.98448237383849, 9.427754495942917,
-    -5.624427149140315e-10, 0.98448237383849, -0.17548349096519453, 4.354973098260487,
-    1, 0, -3.2051032938795743e-09, 0,
-};
-
 static const ccd_real_t fcl_convex8_a[][3] = {
     {7.70479041, 5.37839115, 2.58445293},
     {7.70236491, 5.37839115, 2.58307685},
@@ -286,4 +230,20 @@ static const ccd_real_t fcl_convex8_b[][3] = {
     {7.6898934, 5.36576403, 2.51419048},
     {7.68919202, 5.36882596, 2.51419048},
 };
+
+static const ccd_real_t huge_triangle[][3] = {{0, 0, 0}, {100, 320, 0}, {0, 320, 0}};
+static const ccd_real_t origin_point[][3] = {{0, 0, 0}};
+
+/* parry #253 */
+static const ccd_real_t parry_upper[][3] = {
+    {(ccd_real_t)-13.174434, 1, (ccd_real_t)8.736801},
+    {(ccd_real_t)3.5251038, 1, (ccd_real_t)12.1},
+    {(ccd_real_t)3.2048466, 1, (ccd_real_t)12.218325},
+};
+static const ccd_real_t parry_lower[][3] = {
+    {(ccd_real_t)-1.63, 0, (ccd_real_t)11.19},
+    {(ccd_real_t)-2.349647, 0, (ccd_real_t)11.037681},
+    {(ccd_real_t)-2.349647, 1, (ccd_real_t)11.037681},
+};
+
 #endif

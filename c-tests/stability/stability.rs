@@ -65,9 +65,15 @@ fn configurations() {
 
 /// The same on the extension's own.
 #[test]
-#[cfg_attr(feature = "single", ignore = "witness points of the local query")]
 fn configurations_of_the_extension() {
-    program("configurations").run(["extension"]);
+    program("configurations").run(["proven"]);
+}
+
+/// The same on the local query.
+#[test]
+#[cfg_attr(feature = "single", ignore = "witness points of the local query")]
+fn configurations_of_the_local_query() {
+    program("configurations").run(["local"]);
 }
 
 /// Wrong answers that were found, as promises. A known failure that is repaired fails this
@@ -106,10 +112,6 @@ fn wrong_starts() {
 /// A sample of every category of pairs, both tie rules, on libccd's entry points, cold
 /// and warm.
 #[test]
-#[cfg_attr(
-    feature = "single",
-    ignore = "GJK is not the minimum in 3 to 5 % of the thin boxes and capsules"
-)]
 fn categories() {
     let campaign = program("campaign");
     campaign.run(["100", "0", "-1", "compatible"]);
@@ -118,10 +120,6 @@ fn categories() {
 
 /// The proven minimum against the exact one, on a sample of every kind of pair.
 #[test]
-#[cfg_attr(
-    feature = "single",
-    ignore = "concentric spheres end at the cap, and are told as such"
-)]
 fn exact_minima() {
     alone("exact").run(["300"]);
 }
@@ -145,11 +143,18 @@ fn exact_campaign() {
 
 /// The same on the extension's own.
 #[test]
-#[cfg_attr(feature = "single", ignore = "witness points of touching pairs")]
 fn categories_of_the_extension() {
     let campaign = program("campaign");
-    campaign.run(["100", "0", "-1", "extension"]);
-    campaign.run(["100", "1", "-1", "extension"]);
+    campaign.run(["100", "0", "-1", "proven"]);
+    campaign.run(["100", "1", "-1", "proven"]);
+}
+
+/// The same on the local query.
+#[test]
+fn categories_of_the_local_query() {
+    let campaign = program("campaign");
+    campaign.run(["100", "0", "-1", "local"]);
+    campaign.run(["100", "1", "-1", "local"]);
 }
 
 /// Both libraries in one process, against each other and the truth.
@@ -173,10 +178,6 @@ fn continuity() {
 
 /// The same: contact positions, and the bare local method.
 #[test]
-#[cfg_attr(
-    feature = "single",
-    ignore = "a normal that is off within a float's tolerance tilts the faces by more than it"
-)]
 fn continuity_of_positions() {
     let continuity = program("continuity");
     continuity.run(["position"]);

@@ -27,14 +27,14 @@ static void methods_agree(int pairs)
 {
     int i, k, compared = 0;
     for (i = 0; i < pairs; i++) {
-        static const int kinds[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, PAIR_ROUND, PAIR_ROUND + 1};
+        static const int kinds[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_TYPES};
         static pair_t p;
         dice_t d = dice(1000, (uint64_t)i);
         double u[3], at, eps;
         truth_t t, s;
         for (k = 0; k < 2; k++) {
             int kind = kinds[dice_below(&d, 5)];
-            *(k ? &p.b : &p.a) = kind > PAIR_ROUND ? pair_polygon(&d, p.verts[k], 1) : pair_shape(&d, p.verts[k], kind, .1, 1);
+            *(k ? &p.b : &p.a) = kind == SHAPE_TYPES ? pair_polygon(&d, p.verts[k], 1) : pair_shape(&d, p.verts[k], kind, .1, 1);
             pair_turn(&d, k ? &p.b : &p.a);
         }
         dice_unit(&d, u);

@@ -146,6 +146,14 @@ struct Query {
     callback_wrong: bool,
 }
 
+impl Query {
+    /// The kinds of the two shapes.
+    fn kinds(&self) -> Vec<String> {
+        let words = self.line.split(' ').skip(1).take(2);
+        words.map(String::from).collect()
+    }
+}
+
 const HIT: u8 = 1;
 const THREW: u8 = 2;
 
@@ -254,14 +262,7 @@ pub fn judge_collide(
             size, lower, upper, ..
         } = *ours;
         let mut against = |why: &str| s.against.push(format!("{why}: {}", ours.line));
-        kinds.insert(
-            ours.line
-                .split(' ')
-                .skip(1)
-                .take(2)
-                .collect::<Vec<_>>()
-                .join("-"),
-        );
+        kinds.insert(ours.kinds());
         s.queries += 1;
         for (i, q) in [system, ours].into_iter().enumerate() {
             s.threw[i] += usize::from(q.outcome >= THREW);
@@ -342,14 +343,7 @@ pub fn judge_distance(consumer: &'static str, lines: &Both<Vec<String>>) -> Stat
     let mut kinds = std::collections::BTreeSet::new();
     for (system, ours) in runs[0].values().zip(runs[1].values()) {
         let exact = -0.5 * (ours.lower + ours.upper);
-        kinds.insert(
-            ours.line
-                .split(' ')
-                .skip(1)
-                .take(2)
-                .collect::<Vec<_>>()
-                .join("-"),
-        );
+        kinds.insert(ours.kinds());
         s.queries += 1;
         for (i, q) in [system, ours].into_iter().enumerate() {
             s.threw[i] += usize::from(q.outcome >= THREW);

@@ -12,6 +12,7 @@
  *
  * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll */
 
+#include "swap/ode_run.h"
 #include "swap/ode_shape.h"
 #include "swap/callback_errors.h"
 
@@ -92,9 +93,8 @@ static void judge(void *user, int a, int b, const dContact *contact, int contact
 
 int main(int argc, char **argv)
 {
-    double kinetic = 0, depth = 0, deepest = 0, least = HUGE_VAL, gained = 0;
-    long step, contacts = 0;
-    int escaped = 0;
+    run_t run = { 0, 0, 0, 0, 0, 0, 0 };
+    long step;
     if (argc != 5) {
         fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll\n");
         return 2;
@@ -102,44 +102,19 @@ int main(int argc, char **argv)
     const unsigned long seed = strtoul(argv[1], NULL, 10);
     const long steps = atol(argv[2]);
     const int bodies = atoi(argv[3]);
-    const char *name = argv[4];
     dInitODE2(0);
     watch_library();
-    scene_world(&scene, 11);
-    if (!strcmp(name, "stack")) {
-        scene_stack(&scene, (bodies + 4) / 5, 0.8);
-    } else if (!strcmp(name, "roll")) {
-        scene_roll(&scene, bodies, 1.5);
-    } else {
-        int i;
-        for (i = 0; i < 4 && !strcmp(name, "hulls"); i++)
-            scene.kinds[i] = SCENE_HULL;
-        scene_pile(&scene, bodies, 0.55, 0.33);
-    }
-    scene_nudge(&scene, seed, !strcmp(name, "pile") || !strcmp(name, "hulls") ? 1e-3 : 1e-5);
+    run_scene(&scene, argv[4], bodies, seed);
     scene.user = &found;
     for (step = 0; step < steps; step++) {
-        double height, energy, moving;
         scene.on_pair = step % 20 ? NULL : judge;
         found.queries = watched.queries;
-        scene_step(&scene, 0.005);
-        escaped |= scene_escaped(&scene);
-        deepest = fmax(deepest, scene.depth_max);
-        moving = scene_energy(&scene, &height);
-        energy = moving + height;
-        least = fmin(least, energy);
-        gained = fmax(gained, energy - least);
-        if (2 * step >= steps) {
-            kinetic += moving / (double)(steps - steps / 2);
-            depth += scene.depth_sum;
-            contacts += scene.contact_count;
-        }
+        run_step(&run, &scene, step, steps);
     }
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g judged %ld lost %ld spurious %ld off %ld error %.9g "
-           "wrong %ld wrong_lost %ld wrong_spurious %ld wrong_error %.9g\n",
-           kinetic, contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, scene.bad_contacts, gained, found.right.judged,
-           found.right.lost, found.right.spurious, found.right.off, found.right.error, found.wrong.judged, found.wrong.lost, found.wrong.spurious,
-           found.wrong.error);
+    run_report(&run, &scene);
+    printf(" judged %ld lost %ld spurious %ld off %ld error %.9g wrong %ld wrong_lost %ld wrong_spurious %ld wrong_error %.9g\n",
+           found.right.judged, found.right.lost, found.right.spurious, found.right.off, found.right.error, found.wrong.judged,
+           found.wrong.lost, found.wrong.spurious, found.wrong.error);
     watch_report();
     scene_free(&scene);
     dCloseODE();

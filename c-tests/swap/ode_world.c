@@ -7,6 +7,7 @@
  *
  * usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many */
 
+#include "swap/ode_run.h"
 #include "swap/ode_shape.h"
 
 #include <ccd/warm.h>
@@ -91,9 +92,8 @@ static dGeomID make(const scene_shape_t *s)
 int main(int argc, char **argv)
 {
     dGeomClass class = { sizeof(const scene_shape_t *), collider, aabb, NULL, NULL };
-    double deepest = 0, depth = 0, kinetic = 0, least = HUGE_VAL, gained = 0;
-    long step, contacts = 0;
-    int escaped = 0, i;
+    run_t run = { 0, 0, 0, 0, 0, 0, 0 };
+    long step;
     if (argc != 6) {
         fprintf(stderr, "usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many\n");
         return 2;
@@ -101,39 +101,15 @@ int main(int argc, char **argv)
     const unsigned long seed = strtoul(argv[1], NULL, 10);
     const long steps = atol(argv[2]);
     const int bodies = atoi(argv[3]);
-    const char *name = argv[4];
     most = strcmp(argv[5], "many") ? 1 : 8;
     dInitODE2(0);
     convex = dCreateGeomClass(&class);
     scene_make_geom = make;
-    scene_world(&scene, 11);
-    if (!strcmp(name, "stack"))
-        scene_stack(&scene, (bodies + 4) / 5, 0.8);
-    else if (!strcmp(name, "roll"))
-        scene_roll(&scene, bodies, 1.5);
-    else {
-        for (i = 0; i < 4 && !strcmp(name, "hulls"); i++)
-            scene.kinds[i] = SCENE_HULL;
-        scene_pile(&scene, bodies, 0.55, 0.33);
-    }
-    scene_nudge(&scene, seed, !strcmp(name, "pile") || !strcmp(name, "hulls") ? 1e-3 : 1e-5);
-    for (step = 0; step < steps; step++) {
-        double height, energy, moving;
-        scene_step(&scene, 0.005);
-        escaped |= scene_escaped(&scene);
-        deepest = fmax(deepest, scene.depth_max);
-        moving = scene_energy(&scene, &height);
-        energy = moving + height;
-        least = fmin(least, energy);
-        gained = fmax(gained, energy - least);
-        if (2 * step >= steps) {
-            kinetic += moving / (double)(steps - steps / 2);
-            depth += scene.depth_sum;
-            contacts += scene.contact_count;
-        }
-    }
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g limits %lu\n", kinetic,
-           contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, scene.bad_contacts, gained, limits);
+    run_scene(&scene, argv[4], bodies, seed);
+    for (step = 0; step < steps; step++)
+        run_step(&run, &scene, step, steps);
+    run_report(&run, &scene);
+    printf(" limits %lu\n", limits);
     printf("watched queries %lu supports %lu\n", queries, supports);
     scene_free(&scene);
     dCloseODE();
