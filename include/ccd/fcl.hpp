@@ -99,7 +99,8 @@ private:
     struct Hash {
         std::size_t operator()(const Key &key) const
         {
-            /* An odd number whose bits are even: addresses differ in a few of theirs. */
+            /* Addresses differ in few of their bits, and never in the last four: an odd
+             * multiplier spreads them. (The golden ratio's; free.) */
             const std::hash<const void *> hash = std::hash<const void *>();
             return (hash(key.first) * static_cast<std::size_t>(0x9E3779B1u)) ^ (hash(key.second) >> 4);
         }
