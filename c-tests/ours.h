@@ -52,6 +52,8 @@ int OURS(ccdPenetrationAlong)(const void *obj1, const void *obj2, const ccd_t *c
                               ccd_warm_t *warm, ccd_penetration_t *out);
 int OURS(ccdPenetrationPlanar)(const void *obj1, const void *obj2, const ccd_t *ccd,
                                const ccd_vec3_t *plane_normal, ccd_warm_t *warm, ccd_penetration_t *out);
+int OURS(ccdSignedDistance)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t margin1,
+                            ccd_real_t margin2, ccd_real_t beyond, ccd_warm_t *warm, ccd_distance_t *out);
 int OURS(ccdContacts)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
                       ccd_contact_t *contacts, int max);
 const char *OURS(ccdImplementation)(void);

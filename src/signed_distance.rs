@@ -19,11 +19,11 @@
 
 use crate::barycentric;
 use crate::contact::{Answer, Penetration, Settings};
-use crate::distance::{Simplex, direction};
+use crate::distance::{Simplex, direction, witnesses};
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::precision::Precision;
 use crate::support::{Fault, SupportMap, SupportPoint};
-use crate::support_set::SupportSet;
+use crate::support_set::{Inquiry, SupportSet};
 use crate::{query::Pair, state::State};
 
 /// What is asked for besides the objects.
@@ -113,25 +113,36 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
     match minimum(pair, state, &wanted.settings)? {
         Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
         Answer::Limit(hit) | Answer::Undecided(hit) => Ok(deep(&hit, wanted, true)),
-        // The proof's word: a touch.
-        Answer::Miss(normal) => {
-            let point = pair.md.support(&normal)?;
-            let mut precision = Precision::default();
-            precision.note(&point);
-            Ok(apart(
-                &Gap {
-                    lower: -normal.dot(&point.v),
-                    normal,
-                    point1: point.v1,
-                    point2: point.v1 - normal * normal.dot(&point.v),
-                    iterations: 0,
-                    limit: false,
-                    touch: precision.touch(),
-                },
-                wanted,
-            ))
-        }
+        Answer::Miss(normal) => Ok(apart(&touching(pair, &normal)?, wanted)),
     }
+}
+
+/// Where the cores touch: the proof's word, whatever one support value says of it.
+fn touching<A: SupportMap, B: SupportMap>(pair: &Pair<A, B>, normal: &Vec3) -> Result<Gap, Fault> {
+    let mut inquiry = Inquiry::new(&pair.md);
+    let mut set = SupportSet::<TOUCHED>::EMPTY;
+    let point = pair.md.support(normal)?;
+    inquiry.precision.note(&point);
+    set.push(normal, &point);
+    let h = normal.dot(&point.v);
+    let touch = larger(inquiry.precision.touch(), h.abs());
+    let (point1, point2, _) = witnesses(
+        &mut inquiry,
+        &mut set,
+        &(normal * h),
+        normal,
+        touch,
+        TOUCHED,
+    )?;
+    Ok(Gap {
+        lower: -h,
+        normal: *normal,
+        point1,
+        point2,
+        iterations: 0,
+        limit: false,
+        touch,
+    })
 }
 
 /// The answer for cores that overlap by this much.
@@ -185,6 +196,10 @@ fn apart(gap: &Gap, wanted: &Wanted) -> Distance {
         limit: gap.limit,
     }
 }
+
+/// Support points to find where a touch is. (Three of a face, and as many again for each of two
+/// round parts: free.)
+const TOUCHED: usize = 16;
 
 /// Steps that bring the simplex no nearer before rounding is all that is left.
 const STALLS: u32 = 3;
@@ -265,6 +280,16 @@ fn cores<A: SupportMap, B: SupportMap>(
 /// nearest to the origin of the corners u tells the way to ask, which for balls rolled over
 /// a polytope is the right one at once, where the simplex itself would take many halvings.
 /// It promises a distance; one that was not kept is not asked for a while.
+///
+/// **Warm**, the directions that found the corners are asked again. Where a face is nearest,
+/// three find its corners and a fourth proves its plane: fewer cannot do, for after any turn a
+/// support point says nothing of another direction's. (Measured on the six `_trajS` sets moved
+/// apart, tolerance 1e-6: boxes and hulls 4.0 to 4.2 support points, 6.3 in the mean of all.)
+/// *Tried and left out*: each corner asked in the best direction tilted towards it by 0.01
+/// (cylinders 10.6 to 8.9 but capsules 7.9 to 9.2 and ellipsoids 4.0 to 6.3; larger tilts are
+/// worse); one direction for corners closer to each other than a 50th of the size, round or
+/// not (6.6 in the mean), a 200th (6.3); the best direction and one beside it in place of
+/// corners so close (6.5).
 struct Search<'p, A, B> {
     pair: &'p Pair<A, B>,
     set: SupportSet<4>,

@@ -69,6 +69,7 @@ fn no_set_needs_more_supports_or_errs_more() {
 fn quick_charts_are_whole_and_ours_on_the_front() {
     let out = tempfile::tempdir().expect("a temporary directory");
     charts::run(&charts::Options {
+        models: false,
         quick: true,
         no_instructions: true,
         out: out.path().to_owned(),

@@ -34,6 +34,9 @@ pub struct Options {
     /// Leave out the instruction counts (which run this program under valgrind).
     #[arg(long)]
     pub no_instructions: bool,
+    /// The models alone; the other figures stay as they are.
+    #[arg(long)]
+    pub models: bool,
     /// Where CSV and pictures go.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/c-tests/charts"))]
     pub out: PathBuf,
@@ -134,7 +137,7 @@ fn named(method: &str, start: &str) -> String {
         "MPR" => "warmccd MPR (cold)".to_owned(),
         "MPR warm" => format!("warmccd MPR{start}"),
         "GJK" | "MPR intersect" => format!("warmccd {method}{start}"),
-        "local" | "minimum" => format!("warmccd {method}{start}"),
+        "local" | "minimum" | "distance" => format!("warmccd {method}{start}"),
         method => format!("{method}{start}"),
     }
 }
@@ -161,7 +164,12 @@ fn draw(page: &Page, results: &results::Results) {
     accuracy::draw(page, &results.accuracy);
     paper::draw(page, &results.vertices);
     coherence::draw(page, &results.coherence);
-    models::draw(page, &results.models);
+    // Measured at another time, perhaps.
+    let page_of_models = Page {
+        out: page.out.clone(),
+        machine: progress::origin(&page.file("models.csv")),
+    };
+    models::draw(&page_of_models, &results.models);
     split::draw(page, &results.split);
     results::write(page, results);
 }
@@ -204,6 +212,10 @@ pub fn run(options: &Options) {
             "not measured here: {name}: {}",
             why.lines().next().unwrap_or("")
         );
+    }
+    if options.models {
+        page.write("models.csv", &models::measure_all(&bench));
+        return redraw(options);
     }
     let accuracy = accuracy::measure(&bench);
     page.write("accuracy.csv", &accuracy);

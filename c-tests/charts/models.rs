@@ -19,7 +19,7 @@ use super::paper::VERTICES;
 use super::{Bench, Page};
 use crate::lab::libraries::Truth;
 use crate::lab::measure;
-use crate::lab::methods::{self, Ask, Start};
+use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::progress;
 use crate::lab::scene::{self, Form, Mesh, Oracle, Pose, Scene};
 
@@ -118,12 +118,13 @@ fn measure(
     let mut methods = vec![
         methods::extension(bench.libraries, Ask::Local, Start::Five, 1e-6),
         methods::extension(bench.libraries, Ask::Minimum, Start::None, 1e-6),
+        methods::distance(bench.libraries, [0.0; 2], 1e-6),
         methods::libccd_epa(bench.libraries, 1e-6),
     ];
     let ns = measure::times(&scene, &mut methods, bench.repetitions(), || ());
     let modelling_error = modelling.iter().mean();
-    let rows = methods.iter_mut().zip(ns).map(|(method, ns)| {
-        let row = measure::judge(bench.libraries, &scene, method);
+    let row_of = |model: &str, scene: &Scene, method: &mut Method, ns| {
+        let row = measure::judge(bench.libraries, scene, method);
         Model {
             body: body.to_owned(),
             model: model.to_owned(),
@@ -134,26 +135,39 @@ fn measure(
             supports: row.supports.unwrap_or_default(),
             ns,
         }
-    });
-    rows.collect()
+    };
+    let mut rows: Vec<Model> = (methods.iter_mut().zip(ns))
+        .map(|(method, ns)| row_of(model, &scene, method, ns))
+        .collect();
+    // The bodies themselves once more, as a point or a segment with a margin.
+    if forms[0].mesh.vertices.is_empty() {
+        let [(a, one), (b, two)] = forms.map(Form::core);
+        let cores = Scene::placed(bench.libraries, body, [&a, &b], &placed, 0);
+        let mut methods = [methods::distance(bench.libraries, [one, two], 1e-6)];
+        let ns = measure::times(&cores, &mut methods, bench.repetitions(), || ())[0];
+        rows.push(row_of(CORES, &cores, &mut methods[0], ns));
+    }
+    rows
 }
+
+/// What spheres and capsules are modelled as by a point or a segment with a margin.
+const CORES: &str = "core and margin";
 
 /// Modelling error against time, from the coarsest model to the finest.
 fn panel(title: &str, models: &[&Model]) -> Panel {
     let mut curves: Vec<Curve> = Vec::new();
     for m in models {
-        let (ours, minimum) = (
-            m.method.starts_with("warmccd"),
-            m.method.contains("minimum"),
-        );
-        let colour = match (ours, minimum) {
-            (true, false) => RGBColor(217, 119, 6),
-            (true, true) => RGBColor(22, 145, 70),
+        let ours = m.method.starts_with("warmccd");
+        let colour = match m.method.as_str() {
+            "warmccd minimum" => RGBColor(22, 145, 70),
+            "warmccd distance" => RGBColor(37, 99, 235),
+            _ if ours => RGBColor(217, 119, 6),
             _ => RGBColor(153, 27, 27),
         };
         let (kind, mark) = match m.model.as_str() {
-            "polytope, scan" => ("polytopes, scan", Mark::Dot),
-            "polytope, climbing" => ("polytopes, climbing", Mark::Ring),
+            "polytope, scan" => ("polytopes", Mark::Dot),
+            "polytope, climbing" => ("climbing", Mark::Ring),
+            CORES => ("core and margin", Mark::Cross),
             _ => ("the shape itself", Mark::Triangle),
         };
         // A primitive's modelling error is 0: what is left is its query's.
@@ -225,7 +239,8 @@ pub fn draw(page: &Page, all: &[Model]) {
         2,
         &panels,
         &[
-            "polytopes: 12 to 2,562 vertices, right to left".to_owned(),
+            "polytopes: 12 to 2,562 vertices, right to left; their vertices scanned, or climbed along the edges"
+                .to_owned(),
             page.footer(),
         ],
     );

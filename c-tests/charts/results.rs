@@ -276,14 +276,20 @@ fn recorded(rows: &[Row]) -> String {
 }
 
 fn models(models: &[Model]) -> String {
-    let of = |m: &&Model, method: &str| m.method.contains(method);
-    let lines = models.iter().filter(|m| of(m, "local")).map(|m| {
-        let same = |method: &str| {
-            models.iter().find(|x| {
-                x.body == m.body && x.model == m.model && x.vertices == m.vertices && of(x, method)
-            })
-        };
+    // One line a model, in the order measured.
+    let mut seen: Vec<&Model> = Vec::new();
+    let same =
+        |a: &Model, b: &Model| a.body == b.body && a.model == b.model && a.vertices == b.vertices;
+    for m in models {
+        if !seen.iter().any(|x| same(x, m)) {
+            seen.push(m);
+        }
+    }
+    let lines = seen.iter().map(|m| {
+        let of = |method: &str| (models.iter()).find(|x| same(x, m) && x.method.contains(method));
         let us = |x: Option<&Model>| x.map_or("-".to_owned(), |x| format!("{:.2}", x.ns * 1e-3));
+        let supports =
+            |x: Option<&Model>| x.map_or("-".to_owned(), |x| format!("{:.1}", x.supports));
         [
             m.body.clone(),
             if m.vertices == 0 {
@@ -293,9 +299,11 @@ fn models(models: &[Model]) -> String {
             },
             format!("{:.1e}", m.modelling_error),
             format!("{:.1e}", m.query_error),
-            us(Some(m)),
-            us(same("minimum")),
-            us(same("EPA")),
+            us(of("local")),
+            us(of("minimum")),
+            us(of("distance")),
+            supports(of("distance")),
+            us(of("EPA")),
         ]
     });
     markdown(
@@ -303,9 +311,11 @@ fn models(models: &[Model]) -> String {
             "body",
             "model",
             "modelling error, m",
-            "query error (local), m",
+            "query error (local; core: distance), m",
             "local, µs",
             "minimum, µs",
+            "signed distance (cold), µs",
+            "its supports",
             "libccd EPA, µs",
         ],
         lines,

@@ -358,11 +358,49 @@ static void along_by_formula(void)
     }
 }
 
+/* A tilted plate sinks through a slab, a millimetre a frame. The least depth changes sides half
+ * through; the local search keeps the side of its state, and a depth along a way that way,
+ * until the two are apart. */
+static void sides(void)
+{
+    shape_t slab = shape_box(2, 2, 0.05), plate = shape_box(0.25, 0.25, 0.01);
+    const ccd_vec3_t up = {{0, 0, 1}};
+    double rot[9];
+    int kept = 0, least = 0, frame;
+    ccd_warm_t warm[5];
+    ccd_t ccd;
+    memset(warm, 0, sizeof warm);
+    shape_query(&ccd);
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = CCD_REAL(1e-5);
+    rotation_about(1, 2, 0.3, 0.02, rot);
+    shape_turn(&plate, rot);
+    for (frame = 0; frame < 120; frame++) {
+        const double depth = 0.001 * frame + 0.0061; /* the plate's corners are 5.6 mm lower than its middle */
+        ccd_penetration_t local, along, minimum;
+        ccd_distance_t distance;
+        ccd_real_t mpr;
+        ccd_vec3_t dir, pos;
+        shape_move(&plate, 0.013, 0.027, 0.0605 - 0.001 * frame);
+        CHECK(OURS(ccdPenetrationLocal)(&slab, &plate, &ccd, &warm[0], &local) == CCD_HIT, "frame %d", frame);
+        CHECK(OURS(ccdPenetrationAlong)(&slab, &plate, &ccd, &up, &warm[1], &along) == CCD_HIT, "frame %d", frame);
+        CHECK(OURS(ccdPenetrationMinimum)(&slab, &plate, &ccd, &warm[2], &minimum) == CCD_HIT, "frame %d", frame);
+        CHECK(OURS(ccdMPRPenetrationWarm)(&slab, &plate, &ccd, &warm[3], &mpr, &dir, &pos) == 0, "frame %d", frame);
+        CHECK(OURS(ccdSignedDistance)(&slab, &plate, &ccd, 0, 0, 0, &warm[4], &distance) == CCD_HIT, "frame %d", frame);
+        CHECK(local.dir.v[2] > CCD_REAL(0.99) && fabs((double)local.depth - depth) < 1e-3, "local: %g at %g", (double)local.depth, depth);
+        CHECK(along.dir.v[2] > CCD_REAL(0.99) && fabs((double)along.depth - depth) < 1e-3, "along: %g at %g", (double)along.depth, depth);
+        CHECK((dir.v[2] > 0) == (minimum.dir.v[2] > 0) && (distance.normal.v[2] > 0) == (minimum.dir.v[2] > 0), "frame %d: sides", frame);
+        kept += minimum.dir.v[2] > 0;
+        least += minimum.dir.v[2] < 0;
+    }
+    CHECK(kept == 60 || kept == 61, "%d frames up, %d down", kept, least);
+}
+
 int main(void)
 {
     static case_t c;
     int query, i;
     along_by_formula();
+    sides();
     for (query = 0; query < QUERIES; query++) {
         ccd_warm_t foreign;
         memset(&foreign, 0, sizeof foreign);

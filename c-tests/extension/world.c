@@ -4,11 +4,11 @@
 /* A small world: a box, a capsule and a hull fall on a table. One warm state for each pair. */
 
 #include <ccd/warm.h>
+#include <math.h>
 #include <stdio.h>
-
 enum { BODIES = 4, FRAMES = 60 };
 
-typedef struct { /* points, swept along x, y, z by half, with a ball all around */
+typedef struct { /* points, swept along x, y, z by half: the core; and a ball all around it */
     ccd_vec3_t pos, point[5];
     ccd_real_t half[3], radius, speed;
     int points;
@@ -22,10 +22,8 @@ static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
         if (ccdVec3Dot(&b->point[i], dir) > ccdVec3Dot(&b->point[best], dir))
             best = i;
     for (i = 0; i < 3; i++)
-        out->v[i] = b->pos.v[i] + b->point[best].v[i] + (dir->v[i] < 0 ? -b->half[i] : b->half[i]) + b->radius * dir->v[i];
+        out->v[i] = b->pos.v[i] + b->point[best].v[i] + (dir->v[i] < 0 ? -b->half[i] : b->half[i]);
 }
-
-static void center(const void *obj, ccd_vec3_t *out) { *out = ((const body_t *)obj)->pos; }
 
 int main(void)
 {
@@ -35,26 +33,28 @@ int main(void)
         { .pos = {{1, 2, 3}}, .points = 5, .point = {{{1, 0, 0}}, {{0, 1, 0}}, {{-1, 0, 0}}, {{0, -1, 0}}, {{0, 0, 1}}} }};
     static ccd_warm_t warm[BODIES][BODIES]; /* all zeros: cold */
     ccd_contact_t contact[4];
-    ccd_penetration_t hit;
+    ccd_distance_t d;
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = support;
-    ccd.center1 = ccd.center2 = center;
     for (int frame = 0; frame < FRAMES; frame++) {
-        int touching = 0, contacts = 0;
+        int contacts = 0;
+        double nearest = INFINITY;
         for (int i = 1; i < BODIES; i++) /* they fall */
             body[i].pos.v[2] += (body[i].speed -= CCD_REAL(9.81) / 60) / 60;
         for (int i = 0; i < BODIES; i++)
             for (int j = i + 1; j < BODIES; j++) {
-                if (ccdPenetrationLocal(&body[i], &body[j], &ccd, &warm[i][j], &hit) != CCD_HIT)
-                    continue; /* apart: one support while the last separating direction still separates */
-                touching++;
-                contacts += ccdContacts(&body[i], &body[j], &ccd, &hit.dir, CCD_REAL(1e-3), contact, 4);
+                body_t *a = &body[i], *b = &body[j];
+                if (ccdSignedDistance(a, b, &ccd, a->radius, b->radius, INFINITY, &warm[i][j], &d) != CCD_HIT) {
+                    nearest = fmin(nearest, (double)d.distance); /* between d.point1 and d.point2 */
+                    continue;
+                }
+                contacts += ccdContacts(a, b, &ccd, &d.normal, CCD_REAL(1e-3), contact, 4); /* of the cores */
                 for (int k = 0; k < 3; k++) /* what a solver would do with the contacts */
-                    body[j].pos.v[k] += hit.depth * hit.dir.v[k];
-                body[j].speed = 0;
+                    b->pos.v[k] -= d.distance * d.normal.v[k];
+                b->speed = 0;
             }
         if (frame % 10 == 9)
-            printf("frame %d: %d pairs touch in %d points\n", frame, touching, contacts);
+            printf("frame %d: %d contacts, other pairs are %.2f m apart\n", frame, contacts, nearest);
     }
 }

@@ -4,15 +4,13 @@
 /* A small world: boxes, capsules and hulls fall on a table. One warm state for each pair. */
 
 #include <ccd/ccd.hpp>
-
+#include <algorithm>
 #include <array>
 #include <cstdio>
-#include <map>
 #include <vector>
 
 using ccd::Real, ccd::Vec3;
-
-struct Body { /* points, swept along x, y, z by half, with a ball all around */
+struct Body { /* points, swept along x, y, z by half: the core; and a ball all around it */
     Vec3 pos, half;
     Real radius = 0, speed = 0;
     std::vector<Vec3> points{{0, 0, 0}};
@@ -24,10 +22,9 @@ struct Body { /* points, swept along x, y, z by half, with a ball all around */
         for (const Vec3 &p : points)
             if (along(p) > along(best))
                 best = p;
-        const auto at = [&](int i) { return pos[i] + best[i] + (d[i] < 0 ? -half[i] : half[i]) + radius * d[i]; };
+        const auto at = [&](int i) { return pos[i] + best[i] + (d[i] < 0 ? -half[i] : half[i]); };
         return {at(0), at(1), at(2)};
     }
-    Vec3 centre() const { return pos; }
 };
 
 int main()
@@ -37,24 +34,27 @@ int main()
                            {{-1, 0, 2}, {h, h, q}},
                            {{1, 0, 2}, {0, h, 0}, q},
                            {{1, 2, 3}, {}, 0, 0, {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}};
-    std::map<std::array<std::size_t, 2>, ccd::Warm> warm;
+    std::vector<ccd::Warm> warm(body.size() * body.size());
     for (int frame = 0; frame < 60; frame++) {
-        int touching = 0, contacts = 0;
+        int contacts = 0;
+        Real nearest = std::numeric_limits<Real>::infinity();
         for (std::size_t i = 1; i < body.size(); i++) /* they fall */
             body[i].pos.z += (body[i].speed -= CCD_REAL(9.81) / 60) / 60;
         for (std::size_t i = 0; i < body.size(); i++)
             for (std::size_t j = i + 1; j < body.size(); j++) {
-                const auto hit = ccd::penetration_local(body[i], body[j], {CCD_REAL(1e-5)}, &warm[{i, j}]);
-                if (!hit)
-                    continue; /* apart: one support while the last separating direction still separates */
-                std::array<ccd::ContactPoint, 4> contact;
-                touching++;
-                contacts += ccd::contacts(body[i], body[j], hit.dir, CCD_REAL(1e-3), contact);
-                const Vec3 p = body[j].pos, d = hit.dir; /* what a solver would do with the contacts */
-                body[j].pos = {p.x + hit.depth * d.x, p.y + hit.depth * d.y, p.z + hit.depth * d.z};
-                body[j].speed = 0;
+                Body &a = body[i], &b = body[j];
+                const auto d = ccd::signed_distance(a, b, {CCD_REAL(1e-5)}, {a.radius, b.radius}, &warm[i * body.size() + j]);
+                if (d.status != ccd::Status::hit) {
+                    nearest = std::min(nearest, d.distance); /* between d.point1 and d.point2 */
+                    continue;
+                }
+                std::array<ccd::ContactPoint, 4> contact; /* of the cores */
+                contacts += ccd::contacts(a, b, d.normal, CCD_REAL(1e-3), contact);
+                const Vec3 p = b.pos, n = d.normal; /* what a solver would do with the contacts */
+                b.pos = {p.x - d.distance * n.x, p.y - d.distance * n.y, p.z - d.distance * n.z};
+                b.speed = 0;
             }
         if (frame % 10 == 9)
-            std::printf("frame %d: %d pairs touch in %d points\n", frame, touching, contacts);
+            std::printf("frame %d: %d contacts, other pairs are %.2f m apart\n", frame, contacts, double(nearest));
     }
 }

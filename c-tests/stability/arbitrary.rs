@@ -101,7 +101,7 @@ fn settings(tolerance: Real) -> ccd_t {
         max_iterations: std::ffi::c_ulong::MAX,
         epa_tolerance: tolerance,
         mpr_tolerance: tolerance,
-        dist_tolerance: 1e-6,
+        dist_tolerance: tolerance,
     }
 }
 
@@ -137,7 +137,13 @@ impl Start {
     }
 }
 
-/// Code, depth and direction of one of the queries that answer with them.
+/// The queries that answer with a depth and a direction.
+const MINIMUM: usize = 4;
+const INCREMENTAL: usize = 5;
+const DISTANCE: usize = 6;
+const QUERIES: usize = 7;
+
+/// Code, depth, direction and what is proven of the depth.
 fn ask(
     query: usize,
     a: &Object,
@@ -151,6 +157,10 @@ fn ask(
     let mut warm = start.state();
     let mut out = MaybeUninit::<ccd_penetration_t>::zeroed();
     let (a, b) = (pointer(a), pointer(b));
+    if query == DISTANCE {
+        let (code, d) = distance(a, b, &ccd, &mut warm);
+        return (code, -d.distance, d.normal.v, -d.distance_upper);
+    }
     // SAFETY: every pointer is to a live object of its type; ccd_penetration_t is plain
     // numbers, for which zero is a value.
     unsafe {
@@ -159,7 +169,8 @@ fn ask(
             1 => ccdMPRPenetrationWarm(a, b, &ccd, &mut warm, &mut depth, &mut dir, &mut pos),
             2 => ccdGJKPenetration(a, b, &ccd, &mut depth, &mut dir, &mut pos),
             3 => ccdPenetrationLocal(a, b, &ccd, &mut warm, out.as_mut_ptr()),
-            _ => ccdPenetrationMinimum(a, b, &ccd, &mut warm, out.as_mut_ptr()),
+            MINIMUM => ccdPenetrationMinimum(a, b, &ccd, &mut warm, out.as_mut_ptr()),
+            _ => ccdPenetrationIncremental(a, b, &ccd, &mut warm, out.as_mut_ptr()),
         };
         let out = out.assume_init();
         if query >= 3 {
@@ -167,6 +178,61 @@ fn ask(
         } else {
             (code, depth, dir.v, 0.0)
         }
+    }
+}
+
+fn distance(
+    a: *const c_void,
+    b: *const c_void,
+    ccd: &ccd_t,
+    warm: &mut ccd_warm_t,
+) -> (c_int, ccd_distance_t) {
+    let mut out = MaybeUninit::<ccd_distance_t>::zeroed();
+    // SAFETY: every pointer is to a live object of its type; ccd_distance_t is plain
+    // numbers, for which zero is a value.
+    unsafe {
+        let code = ccdSignedDistance(a, b, ccd, 0.0, 0.0, Real::INFINITY, warm, out.as_mut_ptr());
+        (code, out.assume_init())
+    }
+}
+
+const MOST_CONTACTS: usize = 6;
+
+#[derive(Debug)]
+struct Contact {
+    point1: [Real; 3],
+    point2: [Real; 3],
+    depth: Real,
+}
+
+impl From<ccd_contact_t> for Contact {
+    fn from(c: ccd_contact_t) -> Self {
+        Self {
+            point1: c.point1.v,
+            point2: c.point2.v,
+            depth: c.depth,
+        }
+    }
+}
+
+/// Code, and the contacts along `normal`.
+fn contacts(a: &Object, b: &Object, normal: &[Real; 3], slop: Real) -> (c_int, Vec<Contact>) {
+    let ccd = settings(0.0);
+    let normal = ccd_vec3_t { v: *normal };
+    let mut out = [const { MaybeUninit::<ccd_contact_t>::zeroed() }; MOST_CONTACTS];
+    // SAFETY: every pointer is to a live object of its type; ccd_contact_t is plain
+    // numbers, for which zero is a value.
+    unsafe {
+        let (a, b, room) = (pointer(a), pointer(b), out.as_mut_ptr().cast());
+        let code = ccdContacts(a, b, &ccd, &normal, slop, room, MOST_CONTACTS as c_int);
+        let count = usize::try_from(code).unwrap_or(0).min(MOST_CONTACTS);
+        (
+            code,
+            out[..count]
+                .iter()
+                .map(|c| c.assume_init().into())
+                .collect(),
+        )
     }
 }
 
@@ -265,24 +331,33 @@ proptest! {
         dirs in proptest::collection::vec(proptest::array::uniform3(-1.0..(1.0 as Real)), 8),
     ) {
         let noise = 64.0 * EPSILON * (a.size() + b.size());
-        let answers: Vec<_> = (0..5)
+        let answers: Vec<_> = (0..QUERIES)
             .map(|query| {
                 a.calls.set(0);
                 b.calls.set(0);
                 ask(query, &a, &b, tolerance, &start)
             })
             .collect();
-        let (minimum, proven) = (answers[4].1, answers[4].3);
+        let (minimum, proven) = (answers[MINIMUM].1, answers[MINIMUM].3);
         let is_hit = |code: c_int| code == CCD_HIT || code == CCD_LIMIT;
         a.calls.set(0);
         b.calls.set(0);
         for (query, &(code, depth, dir, _)) in answers.iter().enumerate() {
             prop_assert!(is_hit(code) || code == CCD_MISS, "query {query}: code {code}");
+            if query == DISTANCE {
+                // The same answer with a sign, and a limit says nothing of overlap.
+                let h = support_value(&a, &b, &dir);
+                prop_assert!((depth - h).abs() <= noise, "distance {}, h {h}", -depth);
+                prop_assert!(
+                    code == CCD_LIMIT || depth - answers[DISTANCE].3 <= tolerance + noise,
+                    "distance {} to {}", -depth, -answers[DISTANCE].3
+                );
+            }
             if !is_hit(code) {
                 // Whoever says hit is at most touching then.
                 for (other, &(code, depth, ..)) in answers.iter().enumerate() {
                     prop_assert!(
-                        !is_hit(code) || depth <= noise || other == 3 || minimum <= noise,
+                        !is_hit(code) || depth <= noise || other == 3 || other == INCREMENTAL || minimum <= noise,
                         "query {query} misses, query {other} hits {depth} deep"
                     );
                 }
@@ -295,7 +370,7 @@ proptest! {
                 (depth - value.max(0.0)).abs() <= noise,
                 "query {query}: depth {depth}, support value {value}"
             );
-            if is_hit(answers[4].0) {
+            if is_hit(answers[MINIMUM].0) {
                 prop_assert!(
                     minimum <= depth + tolerance + noise,
                     "the minimum {minimum} is deeper than query {query}'s {depth}"
@@ -306,7 +381,15 @@ proptest! {
                 );
             }
         }
-        if is_hit(answers[4].0) {
+        for dir in &dirs {
+            let length = dot(dir, dir).sqrt();
+            if length > 0.1 {
+                let value = support_value(&a, &b, &dir.map(|x| x / length));
+                let most = answers[DISTANCE].3;
+                prop_assert!(most <= value + noise, "depth at least {most}, h({dir:?}) = {value}");
+            }
+        }
+        if is_hit(answers[MINIMUM].0) {
             for dir in &dirs {
                 let length = dot(dir, dir).sqrt();
                 if length > 0.1 {
@@ -315,6 +398,34 @@ proptest! {
                 }
             }
             prop_assert!(proven >= 0.0 && proven <= minimum + noise);
+        }
+    }
+
+    /// Contacts along any direction, overlapping or not: between the support planes and no
+    /// more than the slop below them, the deepest first, and as many as were asked for.
+    #[test]
+    fn contacts_lie_between_the_support_planes(
+        a in convex(),
+        b in convex(),
+        slop in tolerance(),
+        dir in proptest::array::uniform3(-1.0..(1.0 as Real)),
+    ) {
+        let length = dot(&dir, &dir).sqrt();
+        prop_assume!(length > 0.1);
+        let n = dir.map(|x| x / length);
+        let (high, low) = (dot(&n, &a.support(&n)), dot(&n, &b.support(&n.map(|x| -x))));
+        let noise = 256.0 * EPSILON * (a.size() + b.size());
+        a.calls.set(0);
+        b.calls.set(0);
+        let (count, contacts) = contacts(&a, &b, &dir, slop);
+        prop_assert!((1..=MOST_CONTACTS as c_int).contains(&count), "{count}");
+        prop_assert!(a.calls.get() <= 24 && b.calls.get() <= 24);
+        for c in &contacts {
+            let (one, two) = (dot(&n, &c.point1), dot(&n, &c.point2));
+            prop_assert!((one - two - c.depth).abs() <= noise, "{c:?}");
+            prop_assert!(one <= high + slop + noise && one >= high - slop - noise, "{c:?}: {high}");
+            prop_assert!(two >= low - slop - noise && two <= low + slop + noise, "{c:?}: {low}");
+            prop_assert!(c.depth <= contacts[0].depth + noise, "{contacts:?}");
         }
     }
 
@@ -327,12 +438,18 @@ proptest! {
         tolerance in tolerance(),
         start in start(),
     ) {
-        for query in 0..5 {
+        for query in 0..QUERIES {
             a.calls.set(0);
             b.calls.set(0);
             let (code, depth, dir, proven) = ask(query, &a, &b, tolerance, &start);
             let least = if query >= 3 { CCD_LIMIT } else { CCD_NO_MEMORY };
             prop_assert!((least..=CCD_HIT).contains(&code), "query {query}: code {code}");
+            if query == DISTANCE {
+                let told = code == CCD_HIT || code == CCD_LIMIT || code == CCD_MISS;
+                prop_assert!(!told || depth.is_finite() && proven.is_finite() && proven <= depth);
+                prop_assert!(code != CCD_HIT || depth > 0.0, "a hit {depth} deep");
+                continue;
+            }
             if code == CCD_HIT || code == CCD_LIMIT {
                 prop_assert!(depth >= 0.0 && depth.is_finite(), "query {query}: depth {depth}");
                 prop_assert!(proven >= 0.0 && proven.is_finite(), "query {query}: {proven}");
@@ -340,5 +457,11 @@ proptest! {
                 prop_assert!((length - 1.0).abs() <= 4.0 * EPSILON, "query {query}: {dir:?}");
             }
         }
+        a.calls.set(0);
+        b.calls.set(0);
+        let (count, contacts) = contacts(&a, &b, &[1.0, -2.0, 0.5], 1e-3);
+        let most = MOST_CONTACTS as c_int;
+        prop_assert!(count == CCD_BAD_INPUT || (1..=most).contains(&count), "{count}");
+        prop_assert!(contacts.iter().all(|c| c.depth.is_finite()), "{contacts:?}");
     }
 }

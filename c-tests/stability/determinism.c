@@ -46,11 +46,15 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
     ccd_vec3_t dir, pos;
     ccd_real_t depth;
     ccd_penetration_t out;
+    ccd_distance_t distance;
+    ccd_contact_t contact[4];
     int code, k;
     shape_query(&ccd);
-    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)1e-6;
-    for (k = 0; k < 8; k++) {
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
+    for (k = 0; k < 11; k++) {
         ccd_vec3_t along;
+        memset(&distance, 0, sizeof distance);
+        memset(contact, 0, sizeof contact);
         memset(&out, 0, sizeof out);
         memset(&dir, 0, sizeof dir);
         memset(&pos, 0, sizeof pos);
@@ -66,6 +70,9 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         case 4: code = OURS(ccdMPRIntersectWarm)(&a, &b, &ccd, warm) + 10 * OURS(ccdGJKIntersect)(&a, &b, &ccd); break;
         case 5: code = OURS(ccdGJKPenetration)(&a, &b, &ccd, &depth, &dir, &pos); break;
         case 6: code = OURS(ccdPenetrationMinimum)(&a, &b, &ccd, warm, &out); break;
+        case 7: code = OURS(ccdPenetrationIncremental)(&a, &b, &ccd, warm, &out); break;
+        case 8: code = OURS(ccdSignedDistance)(&a, &b, &ccd, (ccd_real_t).01, 0, (ccd_real_t)INFINITY, warm, &distance); break;
+        case 9: code = OURS(ccdContacts)(&a, &b, &ccd, &along, (ccd_real_t)1e-3, contact, 4); break;
         default: code = OURS(ccdMPRIntersect)(&a, &b, &ccd); break;
         }
         digest_bytes(digest, &code, sizeof code);
@@ -79,6 +86,14 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         digest_bytes(digest, &out.pos, sizeof out.pos);
         digest_bytes(digest, &out.point1, sizeof out.point1);
         digest_bytes(digest, &out.point2, sizeof out.point2);
+        digest_bytes(digest, &distance.distance, sizeof distance.distance);
+        digest_bytes(digest, &distance.distance_upper, sizeof distance.distance_upper);
+        digest_bytes(digest, &distance.normal, sizeof distance.normal);
+        digest_bytes(digest, &distance.point1, sizeof distance.point1);
+        digest_bytes(digest, &distance.point2, sizeof distance.point2);
+        digest_bytes(digest, contact, sizeof contact); /* no padding: all of it is ccd_real_t */
+        digest_count(digest, distance.supports);
+        digest_count(digest, distance.iterations);
         digest_count(digest, out.supports);
         digest_count(digest, out.iterations);
     }

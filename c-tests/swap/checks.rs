@@ -104,7 +104,7 @@ fn c(source: &str) -> Program {
         .source(format!("swap/{source}.c"))
 }
 
-fn cpp(source: &str) -> Program {
+pub fn cpp(source: &str) -> Program {
     Program::cpp(source)
         .source(format!("swap/{source}.cpp"))
         .flag("-D_GNU_SOURCE")
@@ -463,7 +463,7 @@ pub fn static_table(rows: &[Static]) -> String {
 // --- simulations ----------------------------------------------------------------
 
 /// `key value key value …`
-fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
+pub fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
     let line = lines
         .iter()
         .find(|line| line.split(' ').next() == Some(first))

@@ -7,9 +7,10 @@
  *   fcl        FCL's detector: boxes, spheres, ellipsoids
  *   triangles  the same with cylinders and cones, of which DART makes triangles
  *              that FCL puts to libccd one by one against the other shape
+ *   cones      as triangles, cones alone
  *   ode        ODE's detector: cylinders, capsules, boxes
  *
- * usage: dart_pile SEED STEPS BODIES fcl|triangles|ode */
+ * usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode */
 
 #include "swap/uniform.h"
 #include "swap/interpose.h"
@@ -36,7 +37,7 @@ static dynamics::ShapePtr shape_of(int i, const std::string &scene)
     static const int ode[] = { CYLINDER, CAPSULE, BOX }, fcl[] = { ELLIPSOID, BOX, SPHERE };
     static const int triangles[] = { CYLINDER, SPHERE, BOX, ELLIPSOID, CONE };
     const double r = uniform(0.05, 0.12), h = uniform(0.1, 0.24), z = uniform(0.05, 0.12);
-    switch (scene == "ode" ? ode[i % 3] : scene == "fcl" ? fcl[i % 3] : triangles[i % 5]) {
+    switch (scene == "cones" ? CONE : scene == "ode" ? ode[i % 3] : scene == "fcl" ? fcl[i % 3] : triangles[i % 5]) {
     case BOX: return std::make_shared<dynamics::BoxShape>(Eigen::Vector3d(2 * r, h, 2 * z));
     case SPHERE: return std::make_shared<dynamics::SphereShape>(r);
     case ELLIPSOID: return std::make_shared<dynamics::EllipsoidShape>(Eigen::Vector3d(2 * r, h, 2 * z));
@@ -55,7 +56,7 @@ static void add_wall(dynamics::BodyNode *pen, const Eigen::Vector3d &size, const
 int main(int argc, char **argv)
 {
     if (argc != 5) {
-        fprintf(stderr, "usage: dart_pile SEED STEPS BODIES fcl|triangles|ode\n");
+        fprintf(stderr, "usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode\n");
         return 2;
     }
     const long steps = atol(argv[2]);

@@ -16,10 +16,9 @@
  *
  * usage: fcl_static SEED POSES   (POSES placed pairs of each two kinds) */
 
-#include "swap/poses.h"
+#include "swap/fcl_shapes.h"
 #include "swap/interpose.h"
 
-#include <fcl/fcl.h>
 #include <setjmp.h>
 #include <signal.h>
 #include <time.h>
@@ -44,46 +43,6 @@ template <typename Query> static int outcome_of(Query query)
         return THREW;
     }
     return ANSWERED;
-}
-
-typedef fcl::Vector3d vec;
-typedef std::shared_ptr<fcl::CollisionGeometryd> geometry;
-
-static geometry fcl_geometry(const body_t &b)
-{
-    const double *p = b.shape.p;
-    switch (b.kind) {
-    case SHAPE_SPHERE: return std::make_shared<fcl::Sphered>(p[0]);
-    case SHAPE_CAPSULE: return std::make_shared<fcl::Capsuled>(p[0], 2 * p[1]);
-    case KIND_PLATE:
-    case SHAPE_BOX: return std::make_shared<fcl::Boxd>(2 * p[0], 2 * p[1], 2 * p[2]);
-    case SHAPE_CYLINDER: return std::make_shared<fcl::Cylinderd>(p[0], 2 * p[1]);
-    case SHAPE_CONE: return std::make_shared<fcl::Coned>(p[0], 2 * p[1]);
-    case SHAPE_ELLIPSOID: return std::make_shared<fcl::Ellipsoidd>(p[0], p[1], p[2]);
-    default: break;
-    }
-    auto vertices = std::make_shared<std::vector<vec>>();
-    for (int i = 0; i < b.hull.vertices; i++)
-        vertices->emplace_back(b.hull.vertex[3 * i], b.hull.vertex[3 * i + 1], b.hull.vertex[3 * i + 2]);
-    if (b.kind == KIND_TRIANGLE) {
-        auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-        mesh->beginModel();
-        mesh->addTriangle((*vertices)[0], (*vertices)[1], (*vertices)[2]);
-        mesh->endModel();
-        return mesh;
-    }
-    auto faces = std::make_shared<std::vector<int>>();
-    for (int i = 0; i < 4 * b.hull.faces; i++)
-        faces->push_back((int)b.hull.polygon[i]);
-    return std::make_shared<fcl::Convexd>(vertices, b.hull.faces, faces, true);
-}
-
-static fcl::Transform3d fcl_pose(const shape_t &s)
-{
-    fcl::Transform3d t = fcl::Transform3d::Identity();
-    t.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(s.rot);
-    t.translation() = vec(s.pos[0], s.pos[1], s.pos[2]);
-    return t;
 }
 
 static void put_known(const char *what, const body_t &a, const body_t &b, long number, const known_t &known)

@@ -8,6 +8,7 @@
 
 #include "swap/uniform.h"
 
+#include <ccd/vec3.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -15,7 +16,7 @@ enum { HULL_VERTICES = 16, HULL_FACES = 2 * HULL_VERTICES - 4 };
 
 typedef struct {
     int vertices, faces;
-    double vertex[3 * HULL_VERTICES];
+    ccd_real_t vertex[3 * HULL_VERTICES];
     double plane[4 * HULL_FACES];     /* outward unit normal, offset */
     unsigned polygon[4 * HULL_FACES]; /* face by face: how many vertices, then they, counterclockwise from outside */
 } hull_t;
@@ -30,7 +31,7 @@ static inline void hull_make_faces(hull_t *s)
     for (i = 0; i < n; i++)
         for (j = i + 1; j < n; j++)
             for (k = j + 1; k < n; k++) {
-                const double *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
+                const ccd_real_t *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
                 double u[3], v[3], m[3], d, length, sign, *plane;
                 unsigned *polygon;
                 int above = 0, below = 0;
@@ -46,7 +47,7 @@ static inline void hull_make_faces(hull_t *s)
                     m[l] /= length;
                 d = m[0] * a[0] + m[1] * a[1] + m[2] * a[2];
                 for (l = 0; l < n; l++) {
-                    const double *x = s->vertex + 3 * l;
+                    const ccd_real_t *x = s->vertex + 3 * l;
                     if (l == i || l == j || l == k)
                         continue;
                     if (m[0] * x[0] + m[1] * x[1] + m[2] * x[2] > d)
@@ -96,7 +97,7 @@ static inline void hull_make_vertices(hull_t *s, const double r[3])
                 v[j] = uniform(-1, 1);
             length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
             for (j = 0, nearest = 4; j < i && length > 0; j++) {
-                const double *w = s->vertex + 3 * j;
+                const ccd_real_t *w = s->vertex + 3 * j;
                 double x = v[0] / length - w[0] / r[0], y = v[1] / length - w[1] / r[1], z = v[2] / length - w[2] / r[2];
                 nearest = fmin(nearest, x * x + y * y + z * z);
             }

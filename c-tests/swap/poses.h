@@ -49,7 +49,7 @@ static inline void body_random(body_t *b, int kind)
             for (i = 0; i < 9; i++)
                 b->hull.vertex[i] = (float)uniform(-0.5, 0.5); /* ODE keeps floats */
             {
-                const double *v = b->hull.vertex;
+                const ccd_real_t *v = b->hull.vertex;
                 const double p[3] = { v[3] - v[0], v[4] - v[1], v[5] - v[2] }, q[3] = { v[6] - v[0], v[7] - v[1], v[8] - v[2] };
                 const double c[3] = { p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0] };
                 area = 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);

@@ -14,6 +14,9 @@ mod harness;
 #[path = "checks.rs"]
 mod checks;
 
+#[path = "fcl_scene.rs"]
+mod fcl_scene;
+
 use checks::{Piles, Static};
 
 fn args(seed: u64, poses: usize) -> Vec<String> {
@@ -132,4 +135,23 @@ fn towers_stand() {
 fn contacts_are_where_the_bodies_are() {
     let place = harness::Program::c("contact_position").source("swap/contact_position.c");
     place.link_ours_shared().build().run(["20000"]);
+}
+
+/// A short run of the scene: this library misses nothing, and no depth is beyond its promise,
+/// behind FCL's narrow phase and behind `<ccd/fcl.hpp>`.
+#[test]
+fn fcl_scene_with_a_state_a_pair() {
+    let scenes = fcl_scene::scenes(12, 200, 20, 0);
+    for scene in &scenes[1..] {
+        assert!(scene.against().is_empty(), "{:?}", scene.against());
+    }
+    // It is the same scene for all, and one with something in it.
+    for key in ["pairs", "hits", "exact"] {
+        let [first, rest @ ..] = &scenes[..] else {
+            unreachable!()
+        };
+        assert!(first.judged(key) > 100.0, "{key}: {}", first.judged(key));
+        let same = |s: &fcl_scene::Scene| key == "hits" || s.judged(key) == first.judged(key);
+        assert!(rest.iter().all(same), "{key}");
+    }
 }

@@ -6,6 +6,7 @@
 //!
 //! `cargo run --example swap` the checks of the test run, on more poses (2 minutes)
 //! `cargo run --example swap -- world` ODE worlds collided by this library alone (3 minutes)
+//! `cargo run --example swap -- scene` a scene through FCL's broad phase (half a minute)
 //! `cargo run --example swap -- long` whole simulations, longer and nastier (3 minutes)
 
 #[path = "../harness/mod.rs"]
@@ -13,6 +14,9 @@ mod harness;
 
 #[path = "checks.rs"]
 mod checks;
+
+#[path = "fcl_scene.rs"]
+mod fcl_scene;
 
 use checks::Swapped;
 
@@ -130,13 +134,22 @@ fn world() {
     println!("{}", checks::world_table(&rows));
 }
 
+fn scene() {
+    let scenes = fcl_scene::scenes(300, 200, 100, 7);
+    for line in scenes.iter().flat_map(fcl_scene::Scene::against) {
+        eprintln!("{line}");
+    }
+    println!("{}", fcl_scene::table(&scenes));
+}
+
 fn main() {
     match std::env::args().nth(1).as_deref() {
         None => table(),
         Some("long") => long(),
+        Some("scene") => scene(),
         Some("world") => world(),
         Some(other) => {
-            eprintln!("unknown: {other}; nothing, `world` or `long`");
+            eprintln!("unknown: {other}; nothing, `scene`, `world` or `long`");
             std::process::exit(2);
         }
     }

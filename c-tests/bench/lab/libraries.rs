@@ -57,6 +57,29 @@ pub struct CPenetration {
     pub iterations: c_ulong,
 }
 
+/// `ccd_distance_t` of `<ccd/warm.h>`.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct CDistance {
+    pub distance: f64,
+    pub distance_upper: f64,
+    pub normal: ccd_vec3_t,
+    pub point1: ccd_vec3_t,
+    pub point2: ccd_vec3_t,
+    pub supports: c_ulong,
+    pub iterations: c_ulong,
+}
+
+type WarmDistance = unsafe extern "C-unwind" fn(
+    *const c_void,
+    *const c_void,
+    *const ccd_t,
+    f64,
+    f64,
+    f64,
+    *mut Warm,
+    *mut CDistance,
+) -> c_int;
 type WarmQuery = unsafe extern "C-unwind" fn(
     *const c_void,
     *const c_void,
@@ -94,6 +117,7 @@ pub struct Extension {
     pub mpr_intersect: WarmYes,
     pub local: WarmQuery,
     pub minimum: WarmQuery,
+    pub distance: WarmDistance,
 }
 
 /// `pair_truth_t` of `c-tests/pairs.h`.
@@ -217,7 +241,7 @@ impl Classic {
             max_iterations: c_ulong::MAX,
             epa_tolerance: tolerance,
             mpr_tolerance: tolerance,
-            dist_tolerance: 1e-6,
+            dist_tolerance: tolerance,
         }
     }
 }
@@ -291,6 +315,7 @@ impl Libraries {
                     mpr_intersect: function(ours, "ccdMPRIntersectWarm"),
                     local: function(ours, "ccdPenetrationLocal"),
                     minimum: function(ours, "ccdPenetrationMinimum"),
+                    distance: function(ours, "ccdSignedDistance"),
                 },
                 implementation,
                 system_file: file_of(function(system, "ccdMPRPenetration")),

@@ -12,7 +12,7 @@ use ccd::math::Vec3;
 use ccd::support::MinkowskiDifference;
 
 use super::deep::{Deep, Polytope};
-use super::libraries::{CPenetration, Classic, Libraries, Truth, Warm};
+use super::libraries::{CDistance, CPenetration, Classic, Libraries, Truth, Warm};
 use super::measure::Answer;
 use super::scene::{Pair, Scene};
 
@@ -263,6 +263,31 @@ pub fn extension<'a>(
         })
     })
     .from(start)
+    .within(tolerance)
+    .of_ours()
+}
+
+/// The signed distance, cold, of objects with these margins around them.
+pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64) -> Method<'a> {
+    let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
+    let [one, two] = margins;
+    Method::new("distance", move |_, pair| {
+        let mut state = Warm::COLD;
+        let mut out = CDistance::default();
+        // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
+        let code = unsafe {
+            let far = f64::INFINITY;
+            let query = libraries.extension.distance;
+            query(
+                pair.a, pair.b, &settings, one, two, far, &mut state, &mut out,
+            )
+        };
+        (code == 0 || code == -4).then_some(Answer {
+            depth: -out.distance,
+            dir: out.normal.v,
+            lower: -out.distance_upper,
+        })
+    })
     .within(tolerance)
     .of_ours()
 }

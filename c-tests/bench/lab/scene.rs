@@ -167,6 +167,19 @@ impl Form {
         }
     }
 
+    /// The point or segment inside, and the radius around it: all of the shape, where it is
+    /// a sphere or a capsule, and nothing around it else.
+    pub fn core(&self) -> (Self, f64) {
+        match self.kind {
+            0 | 1 => {
+                let mut core = self.clone();
+                core.p[0] = 0.0;
+                (core, self.p[0])
+            }
+            _ => (self.clone(), 0.0),
+        }
+    }
+
     /// Half length of the core segment, and the radius around it.
     fn rounded(&self) -> (f64, f64) {
         match self.kind {

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! A moving scene through FCL's broad phase, by FCL's narrow phase on either library and by
+//! `<ccd/fcl.hpp>`: time, support points, and what is wrong with the answers.
+
+// Each driver uses a part.
+#![allow(dead_code)]
+
+use crate::checks::{cpp, fields};
+use crate::harness::{Executable, Program};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// One way to collide the scene.
+pub struct Way {
+    name: &'static str,
+    library: &'static str,
+    contacts: &'static str,
+    timed: Executable,
+    judged: Executable,
+}
+
+/// What one way answered.
+pub struct Scene {
+    name: &'static str,
+    frames: usize,
+    /// Milliseconds a frame, the least of several runs.
+    milliseconds: f64,
+    judged: BTreeMap<String, f64>,
+    watched: BTreeMap<String, f64>,
+}
+
+fn program() -> Program {
+    cpp("fcl_scene").library("fcl").without_tools()
+}
+
+/// FCL on libccd, FCL on this library, the header with one contact a pair and with several.
+pub fn ways() -> [Way; 4] {
+    let bound = |e: Executable| e.env("LD_BIND_NOW", "1").quiet();
+    let timed = bound(program().flag("-DTIMED").link_system().build());
+    let judged = bound(program().link_ours_renamed_and_system().build());
+    let header = || program().flag("-DBY_HEADER").flag("-DOURS_ALONE");
+    let header_timed = bound(header().flag("-DTIMED").link_ours_shared().build());
+    let header_judged = bound(header().link_ours_shared().build());
+    let swapped = (timed.swapped(), judged.swapped());
+    let way = |name, library, contacts, (timed, judged): (Executable, Executable)| Way {
+        name,
+        library,
+        contacts,
+        timed,
+        judged,
+    };
+    let by_header = (header_timed, header_judged);
+    let ours = "library warmccd ";
+    [
+        way(
+            "`fcl::collide` on libccd",
+            "library libccd",
+            "0",
+            (timed, judged),
+        ),
+        way("`fcl::collide` on this library", ours, "0", swapped),
+        way(
+            "`ccd/fcl.hpp`, one contact a pair",
+            ours,
+            "1",
+            by_header.clone(),
+        ),
+        way("`ccd/fcl.hpp`, up to 8 contacts", ours, "8", by_header),
+    ]
+}
+
+impl Way {
+    /// The lines after the first, which names the library that the process runs on.
+    fn lines(&self, program: &Executable, args: &[&str]) -> Vec<String> {
+        let said = program.run(args).stdout;
+        let mut lines = said.lines().map(String::from);
+        let name = lines.next().unwrap_or_default();
+        assert!(
+            name.starts_with(self.library),
+            "{}: runs on `{name}`, not on `{}`",
+            self.name,
+            self.library
+        );
+        lines.collect()
+    }
+}
+
+/// Every way over the same frames; one pair in `exact` is judged by exact truth too. Timed
+/// `times` times, in turn.
+pub fn scenes(frames: usize, bodies: usize, exact: usize, times: usize) -> Vec<Scene> {
+    let ways = ways();
+    let numbers = [frames, bodies, exact].map(|n| n.to_string());
+    let mut scenes: Vec<Scene> = ways
+        .iter()
+        .map(|way| {
+            let args = [&*numbers[0], &numbers[1], way.contacts, &numbers[2]];
+            let lines = way.lines(&way.judged, &args);
+            Scene {
+                name: way.name,
+                frames,
+                milliseconds: f64::INFINITY,
+                judged: fields(&lines, "judged"),
+                watched: fields(&lines, "watched"),
+            }
+        })
+        .collect();
+    for _ in 0..times {
+        for (way, scene) in ways.iter().zip(&mut scenes) {
+            let args = [&*numbers[0], &numbers[1], way.contacts, "0"];
+            let timed = fields(&way.lines(&way.timed, &args), "timed");
+            let a_frame = 1e-6 * timed["nanoseconds"] / frames as f64;
+            scene.milliseconds = scene.milliseconds.min(a_frame);
+        }
+    }
+    scenes
+}
+
+impl Scene {
+    /// What this library answered otherwise than promised; FCL's own closed forms are not
+    /// its answers.
+    pub fn against(&self) -> Vec<String> {
+        let wrong = ["missed", "spurious", "off"].map(|key| (key, self.judged[key]));
+        let wrong = wrong.into_iter().filter(|(_, n)| *n != 0.0);
+        wrong
+            .map(|(key, n)| format!("{}: {n} {key}", self.name))
+            .collect()
+    }
+
+    pub fn judged(&self, key: &str) -> f64 {
+        self.judged[key]
+    }
+}
+
+/// Markdown; the times are told beside the first row's.
+pub fn table(scenes: &[Scene]) -> String {
+    let mut out = String::from(
+        "| narrow phase | pairs a frame | hits | contacts | time a frame, ms (ratio) | put to the library | supports a pair put \
+         | missed | spurious | depths beyond the promise | largest error of a depth, mm | by FCL's closed forms: missed, beyond, largest error, mm |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for s in scenes {
+        let j = |key: &str| s.judged[key];
+        let own = if j("pairs") > s.watched["queries"] {
+            format!(
+                "{}, {}, {:.3}",
+                j("own_missed"),
+                j("own_off"),
+                1e3 * j("own_error")
+            )
+        } else {
+            "–".to_owned()
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {:.0} | {} | {} | {:.3} ({:.2}) | {} | {:.2} | {} | {} | {} | {:.3} | {own} |",
+            s.name,
+            j("pairs") / s.frames as f64,
+            j("hits"),
+            j("contacts"),
+            s.milliseconds,
+            s.milliseconds / scenes[0].milliseconds,
+            s.watched["queries"],
+            s.watched["supports"] / s.watched["queries"],
+            j("missed"),
+            j("spurious"),
+            j("off"),
+            1e3 * j("error"),
+        );
+    }
+    out
+}

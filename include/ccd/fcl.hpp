@@ -1,0 +1,531 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The queries of warm.h for programs on FCL 0.7, with a state for each pair of objects: header
+ * only, C++11, with FCL of double or float over this library of double or float (the answers
+ * are as exact as the coarser of the two).
+ *
+ *     ccd_fcl::PairCache cache;                      // kept between frames, one for each thread
+ *     ...
+ *     ccd_fcl::CollisionData<double> data(cache);    // as fcl::DefaultCollisionData
+ *     data.request.enable_contact = true;
+ *     data.request.num_max_contacts = 1000;
+ *     manager.collide(&data, ccd_fcl::CollisionFunction<double>);
+ *     cache.next_frame();                            // lets go of pairs no longer met
+ *
+ * Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder, Convex and TriangleP are put to this
+ * library; spheres and capsules as a point and a segment with a margin, which is exact and the
+ * cheapest. Every other geometry (meshes, octrees, planes, half spaces), costs, and geometries
+ * that are not marked as occupied go to fcl::collide and fcl::distance, as ever. Of a request
+ * its solver and its cached guess are not read: a state takes their place.
+ *
+ * Signs and order are FCL's: a contact's normal points from the first object to the second,
+ * penetration_depth is positive, pos lies midway between the two surfaces; nearest_points are
+ * the first's and the second's. */
+
+#ifndef __CCD_FCL_HPP__
+#define __CCD_FCL_HPP__
+
+#include <ccd/ccd.h>
+#include <ccd/warm.h>
+
+#include <fcl/broadphase/default_broadphase_callbacks.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/geometry/shape/triangle_p.h>
+#include <fcl/narrowphase/collision_object.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+namespace ccd_fcl {
+
+/** What each pair of objects leaves for its next query, found in either order. Not for two
+ * threads at once. A state is never wrong, only useless: objects may be moved, changed and
+ * destroyed, and others made in their place. */
+class PairCache {
+public:
+    /** The state of (first, second), cold at first; good until the next call of this object. */
+    ccd_warm_t *state(const void *first, const void *second)
+    {
+        const bool ordered = std::less<const void *>()(first, second);
+        Entry &entry = pairs_[ordered ? Key(first, second) : Key(second, first)];
+        if (entry.ordered != ordered)
+            ccdWarmFlip(&entry.warm);
+        entry.ordered = ordered;
+        entry.frame = frame_;
+        return &entry.warm;
+    }
+
+    /** Drops the pairs that were not asked for since the last call: once a frame, and what
+     * belongs to objects that are gone goes by itself. */
+    void next_frame()
+    {
+        drop([this](const Key &, const Entry &entry) { return entry.frame != frame_; });
+        frame_++;
+    }
+
+    /** Drops the pairs of an object at once. Looks at every pair. */
+    void forget(const void *object)
+    {
+        drop([object](const Key &key, const Entry &) { return key.first == object || key.second == object; });
+    }
+
+    /** Drops everything. */
+    void clear() { pairs_.clear(); }
+
+    /** How many pairs there are. */
+    std::size_t size() const { return pairs_.size(); }
+
+private:
+    using Key = std::pair<const void *, const void *>;
+    struct Entry {
+        ccd_warm_t warm = ccd_warm_t();
+        bool ordered = true; /* the state's obj1 is the key's first */
+        unsigned long frame = 0;
+    };
+    struct Hash {
+        std::size_t operator()(const Key &key) const
+        {
+            /* Addresses differ in few of their bits, and never in the last four: an odd
+             * multiplier spreads them. (The golden ratio's; free.) */
+            const std::hash<const void *> hash = std::hash<const void *>();
+            return (hash(key.first) * static_cast<std::size_t>(0x9E3779B1u)) ^ (hash(key.second) >> 4);
+        }
+    };
+
+    template <typename Which>
+    void drop(Which which)
+    {
+        for (auto it = pairs_.begin(); it != pairs_.end();) {
+            if (which(it->first, it->second))
+                it = pairs_.erase(it);
+            else
+                ++it;
+        }
+    }
+
+    std::unordered_map<Key, Entry, Hash> pairs_;
+    unsigned long frame_ = 0;
+};
+
+/** How many contacts, and of what. */
+struct Settings {
+    /** Most contacts of one pair where the request has room for more than one; 1: the middle
+     * of the overlap alone. */
+    std::size_t contacts_per_pair = 8;
+    /** Metres: how far below its face a corner may lie and still carry (ccdContacts);
+     * negative: a thousandth of the smaller object's radius. */
+    double slop = -1;
+};
+
+/** fcl::DefaultCollisionData with a cache of states. */
+template <typename S>
+struct CollisionData : fcl::DefaultCollisionData<S> {
+    /** The cache must outlive this. */
+    explicit CollisionData(PairCache &pairs) : cache(&pairs) {}
+    PairCache *cache;  /**< where the states are */
+    Settings settings; /**< how many contacts */
+};
+
+/** fcl::DefaultDistanceData with a cache of states. */
+template <typename S>
+struct DistanceData : fcl::DefaultDistanceData<S> {
+    /** The cache must outlive this. */
+    explicit DistanceData(PairCache &pairs) : cache(&pairs) {}
+    PairCache *cache; /**< where the states are */
+};
+
+/** @cond the header's own */
+namespace detail {
+
+/* Up to this many vertices are looked through here; FCL climbs over the edges of more, but
+ * takes memory for each support point. */
+const std::size_t SCANNED = 128;
+
+/* A convex geometry in its pose: a core, and the ball of radius margin around it. */
+template <typename S>
+struct Placed {
+    using V = fcl::Vector3<S>;
+
+    Placed(const fcl::CollisionGeometry<S> *shape, const fcl::Transform3<S> &at)
+        : geometry(shape), pose(&at), type(shape->getNodeType())
+    {
+        if (type == fcl::GEOM_SPHERE)
+            margin = as<fcl::Sphere<S>>().radius;
+        else if (type == fcl::GEOM_CAPSULE)
+            margin = as<fcl::Capsule<S>>().radius;
+    }
+
+    template <typename Shape>
+    const Shape &as() const
+    {
+        return *static_cast<const Shape *>(geometry);
+    }
+
+    V corner(const V &half, const V &d) const
+    {
+        return V(std::copysign(half[0], d[0]), std::copysign(half[1], d[1]), std::copysign(half[2], d[2]));
+    }
+
+    /* Rim point of a disc about z, any one where d is along z. */
+    V rim(S radius, S z, const V &d) const
+    {
+        const S across = std::sqrt(d[0] * d[0] + d[1] * d[1]);
+        return across > 0 ? V(radius * (d[0] / across), radius * (d[1] / across), z) : V(radius, 0, z);
+    }
+
+    V farthest(const V *points, std::size_t n, const V &d) const
+    {
+        std::size_t best = 0;
+        S most = points[0].dot(d);
+        for (std::size_t i = 1; i < n; i++) {
+            const S value = points[i].dot(d);
+            if (value > most) {
+                most = value;
+                best = i;
+            }
+        }
+        return points[best];
+    }
+
+    /* The core's support point in the geometry's frame. */
+    V local_support(const V &d) const
+    {
+        switch (type) {
+        case fcl::GEOM_BOX: return corner(as<fcl::Box<S>>().side * S(0.5), d);
+        case fcl::GEOM_CAPSULE: return V(0, 0, std::copysign(as<fcl::Capsule<S>>().lz / 2, d[2]));
+        case fcl::GEOM_ELLIPSOID: {
+            const V &radii = as<fcl::Ellipsoid<S>>().radii;
+            const V e = radii.cwiseProduct(d);
+            const S length = e.norm();
+            return length > 0 ? V(radii.cwiseProduct(e / length)) : V(radii[0], 0, 0);
+        }
+        case fcl::GEOM_CYLINDER: {
+            const fcl::Cylinder<S> &c = as<fcl::Cylinder<S>>();
+            return rim(c.radius, std::copysign(c.lz / 2, d[2]), d);
+        }
+        case fcl::GEOM_CONE: {
+            const fcl::Cone<S> &c = as<fcl::Cone<S>>();
+            const V apex(0, 0, c.lz / 2), base = rim(c.radius, -c.lz / 2, d);
+            return apex.dot(d) > base.dot(d) ? apex : base;
+        }
+        case fcl::GEOM_CONVEX: {
+            const auto &vertices = as<fcl::Convex<S>>().getVertices();
+            return vertices.size() <= SCANNED ? farthest(vertices.data(), vertices.size(), d)
+                                              : as<fcl::Convex<S>>().findExtremeVertex(d);
+        }
+        case fcl::GEOM_TRIANGLE: {
+            const fcl::TriangleP<S> &t = as<fcl::TriangleP<S>>();
+            const V points[3] = {t.a, t.b, t.c};
+            return farthest(points, 3, d);
+        }
+        default: return V::Zero(); /* a sphere's */
+        }
+    }
+
+    V local_center() const
+    {
+        if (type == fcl::GEOM_CONVEX)
+            return as<fcl::Convex<S>>().getInteriorPoint();
+        if (type == fcl::GEOM_TRIANGLE) {
+            const fcl::TriangleP<S> &t = as<fcl::TriangleP<S>>();
+            return (t.a + t.b + t.c) / S(3);
+        }
+        return V::Zero();
+    }
+
+    const fcl::CollisionGeometry<S> *geometry;
+    const fcl::Transform3<S> *pose;
+    fcl::NODE_TYPE type;
+    S margin = 0;
+};
+
+template <typename S>
+fcl::Vector3<S> to_fcl(const ccd_vec3_t &v)
+{
+    return fcl::Vector3<S>(static_cast<S>(v.v[0]), static_cast<S>(v.v[1]), static_cast<S>(v.v[2]));
+}
+
+template <typename S>
+void from_fcl(const fcl::Vector3<S> &v, ccd_vec3_t *out)
+{
+    for (int i = 0; i < 3; i++)
+        out->v[i] = static_cast<ccd_real_t>(v[i]);
+}
+
+template <typename S>
+void support(const void *object, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    const Placed<S> &placed = *static_cast<const Placed<S> *>(object);
+    const fcl::Vector3<S> d = placed.pose->linear().transpose() * to_fcl<S>(*dir);
+    from_fcl<S>(*placed.pose * placed.local_support(d), out);
+}
+
+template <typename S>
+void center(const void *object, ccd_vec3_t *out)
+{
+    const Placed<S> &placed = *static_cast<const Placed<S> *>(object);
+    from_fcl<S>(*placed.pose * placed.local_center(), out);
+}
+
+template <typename S>
+ccd_t query(S tolerance)
+{
+    ccd_t c;
+    CCD_INIT(&c);
+    c.support1 = c.support2 = support<S>;
+    c.center1 = c.center2 = center<S>;
+    c.mpr_tolerance = c.dist_tolerance = static_cast<ccd_real_t>(tolerance);
+    return c;
+}
+
+/* Does this library answer for the geometry? */
+template <typename S>
+bool is_ours(const fcl::CollisionGeometry<S> *geometry)
+{
+    switch (geometry->getNodeType()) {
+    case fcl::GEOM_BOX:
+    case fcl::GEOM_SPHERE:
+    case fcl::GEOM_ELLIPSOID:
+    case fcl::GEOM_CAPSULE:
+    case fcl::GEOM_CONE:
+    case fcl::GEOM_CYLINDER:
+    case fcl::GEOM_TRIANGLE: return geometry->isOccupied();
+    case fcl::GEOM_CONVEX:
+        return geometry->isOccupied() && !static_cast<const fcl::Convex<S> *>(geometry)->getVertices().empty();
+    default: return false;
+    }
+}
+
+inline void must_be_answered(int code)
+{
+    if (code == CCD_NO_MEMORY)
+        throw std::bad_alloc();
+    if (code == CCD_BAD_INPUT)
+        throw std::invalid_argument("ccd/fcl.hpp: a pose, a shape or a tolerance is no number");
+}
+
+template <typename S>
+void must_be_finite(const Placed<S> &a, const Placed<S> &b)
+{
+    if (!a.pose->matrix().allFinite() || !b.pose->matrix().allFinite())
+        must_be_answered(CCD_BAD_INPUT);
+}
+
+/* An overlap, the margins counted in. */
+struct Overlap {
+    ccd_real_t depth;
+    ccd_vec3_t normal, pos;
+};
+
+/* Where there is a margin the signed distance takes it exactly; else MPR's penetration, the
+ * global minimum within the larger of the tolerance and a thousandth of the depth. */
+template <typename S>
+bool overlap(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, bool contact, ccd_warm_t *warm, Overlap *out)
+{
+    if (!(a.margin > 0 || b.margin > 0)) {
+        return contact ? ccdMPRPenetrationWarm(&a, &b, &ccd, warm, &out->depth, &out->normal, &out->pos) == 0
+                       : ccdMPRIntersectWarm(&a, &b, &ccd, warm) == 1;
+    }
+    ccd_distance_t d;
+    const int code = ccdSignedDistance(&a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
+                                       0, warm, &d);
+    must_be_answered(code);
+    if (code == CCD_MISS || !(d.distance < 0))
+        return false;
+    out->depth = -d.distance;
+    out->normal = d.normal;
+    for (int i = 0; i < 3; i++)
+        out->pos.v[i] = (d.point1.v[i] + d.point2.v[i]) / 2;
+    return true;
+}
+
+template <typename S>
+ccd_real_t slop_of(const Placed<S> &a, const Placed<S> &b, const Settings &settings)
+{
+    if (settings.slop >= 0)
+        return static_cast<ccd_real_t>(settings.slop);
+    const S radius = std::min(a.geometry->aabb_radius, b.geometry->aabb_radius);
+    return static_cast<ccd_real_t>(std::isfinite(radius) && radius > 0 ? radius / 1000 : S(0));
+}
+
+/* Adds contacts of one pair. */
+template <typename S>
+class Contacts {
+public:
+    Contacts(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, const Overlap &hit, fcl::CollisionResult<S> &result)
+        : a_(a), b_(b), ccd_(ccd), hit_(hit), normal_(to_fcl<S>(hit.normal)), result_(result)
+    {
+    }
+
+    /* The points where the faces lie over each other, the deepest first; without those at
+     * which the objects are apart. The first has the depth of the objects: where none of the
+     * points is as deep to a thousandth, it is the middle of the overlap. */
+    void add(std::size_t room, const Settings &settings)
+    {
+        const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
+        const std::size_t asked = std::min(std::min(room, settings.contacts_per_pair), MOST);
+        ccd_contact_t found[MOST];
+        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.normal, slop_of(a_, b_, settings), found,
+                                                  static_cast<int>(asked))
+                                    : 0;
+        must_be_answered(count);
+        const S depth = static_cast<S>(hit_.depth), least = depth - std::max(static_cast<S>(ccd_.mpr_tolerance), depth / 1000);
+        std::size_t added = 0;
+        if (count == 0 || !(depth_of(found[0]) >= least)) {
+            put(to_fcl<S>(hit_.pos), depth);
+            added++;
+        }
+        for (int i = 0; i < count && added < asked; i++) {
+            if (!(depth_of(found[i]) >= 0))
+                continue;
+            const fcl::Vector3<S> middle = (to_fcl<S>(found[i].point1) + to_fcl<S>(found[i].point2)) / S(2);
+            put(middle + normal_ * ((a_.margin - b_.margin) / 2), added == 0 ? depth : depth_of(found[i]));
+            added++;
+        }
+    }
+
+private:
+    /* Corners may lie off their surfaces by the slop; nothing is deeper than the objects are. */
+    S depth_of(const ccd_contact_t &c) const
+    {
+        return std::min(static_cast<S>(c.depth) + a_.margin + b_.margin, static_cast<S>(hit_.depth));
+    }
+
+    void put(const fcl::Vector3<S> &pos, S depth)
+    {
+        result_.addContact(fcl::Contact<S>(a_.geometry, b_.geometry, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE, pos,
+                                           normal_, depth));
+    }
+
+    const Placed<S> &a_, &b_;
+    const ccd_t &ccd_;
+    const Overlap &hit_;
+    const fcl::Vector3<S> normal_;
+    fcl::CollisionResult<S> &result_;
+};
+
+} // namespace detail
+/** @endcond */
+
+/** Does this library answer for the pair, rather than FCL? */
+template <typename S>
+bool is_ours(const fcl::CollisionGeometry<S> *a, const fcl::CollisionGeometry<S> *b)
+{
+    return detail::is_ours(a) && detail::is_ours(b);
+}
+
+/** fcl::collide of two geometries in their poses, with a state (NULL: cold). Depths within the
+ * larger of request.gjk_tolerance (metres) and a thousandth of the depth. Returns the number
+ * of contacts in result. Throws std::invalid_argument where a pose is not finite. */
+template <typename S>
+std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, const fcl::CollisionGeometry<S> *g2,
+                    const fcl::Transform3<S> &tf2, const fcl::CollisionRequest<S> &request,
+                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings = Settings())
+{
+    if (request.enable_cost || request.num_max_contacts == 0 || !is_ours(g1, g2))
+        return fcl::collide(g1, tf1, g2, tf2, request, result);
+    if (request.isSatisfied(result))
+        return result.numContacts();
+    const detail::Placed<S> a(g1, tf1), b(g2, tf2);
+    detail::must_be_finite(a, b);
+    const ccd_t ccd = detail::query<S>(request.gjk_tolerance);
+    detail::Overlap hit = detail::Overlap();
+    if (!detail::overlap(a, b, ccd, request.enable_contact, warm, &hit))
+        return result.numContacts();
+    if (request.enable_contact)
+        detail::Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings);
+    else
+        result.addContact(fcl::Contact<S>(g1, g2, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
+    return result.numContacts();
+}
+
+/** fcl::collide of two objects, with their state. */
+template <typename S>
+std::size_t collide(const fcl::CollisionObject<S> *o1, const fcl::CollisionObject<S> *o2,
+                    const fcl::CollisionRequest<S> &request, fcl::CollisionResult<S> &result, PairCache &cache,
+                    const Settings &settings = Settings())
+{
+    const fcl::CollisionGeometry<S> *g1 = o1->collisionGeometry().get(), *g2 = o2->collisionGeometry().get();
+    ccd_warm_t *warm = is_ours(g1, g2) ? cache.state(o1, o2) : nullptr;
+    return collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result, warm, settings);
+}
+
+/** fcl::distance of two geometries in their poses, with a state (NULL: cold): min_distance is
+ * the signed distance, overlapping or not, never above the truth and within
+ * request.distance_tolerance (metres) of it. Nothing beyond the result's min_distance is
+ * refined. Returns the result's min_distance. Throws std::invalid_argument where a pose is not
+ * finite. */
+template <typename S>
+S distance(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, const fcl::CollisionGeometry<S> *g2,
+           const fcl::Transform3<S> &tf2, const fcl::DistanceRequest<S> &request, fcl::DistanceResult<S> &result,
+           ccd_warm_t *warm)
+{
+    if (!is_ours(g1, g2))
+        return fcl::distance(g1, tf1, g2, tf2, request, result);
+    if (request.isSatisfied(result))
+        return result.min_distance;
+    const detail::Placed<S> a(g1, tf1), b(g2, tf2);
+    const ccd_t ccd = detail::query<S>(request.distance_tolerance);
+    const bool first = !(result.min_distance < std::numeric_limits<S>::max());
+    ccd_distance_t d;
+    detail::must_be_finite(a, b);
+    detail::must_be_answered(ccdSignedDistance(
+        &a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
+        first ? std::numeric_limits<ccd_real_t>::infinity() : static_cast<ccd_real_t>(result.min_distance), warm, &d));
+    result.update(static_cast<S>(d.distance), g1, g2, fcl::DistanceResult<S>::NONE, fcl::DistanceResult<S>::NONE,
+                  detail::to_fcl<S>(d.point1), detail::to_fcl<S>(d.point2));
+    return result.min_distance;
+}
+
+/** fcl::distance of two objects, with their state. */
+template <typename S>
+S distance(const fcl::CollisionObject<S> *o1, const fcl::CollisionObject<S> *o2, const fcl::DistanceRequest<S> &request,
+           fcl::DistanceResult<S> &result, PairCache &cache)
+{
+    const fcl::CollisionGeometry<S> *g1 = o1->collisionGeometry().get(), *g2 = o2->collisionGeometry().get();
+    ccd_warm_t *warm = is_ours(g1, g2) ? cache.state(o1, o2) : nullptr;
+    return distance(g1, o1->getTransform(), g2, o2->getTransform(), request, result, warm);
+}
+
+/** For the collide() of a broad phase manager; data is a CollisionData<S>. As
+ * fcl::DefaultCollisionFunction: true, and no more pairs are asked, once the request is full. */
+template <typename S>
+bool CollisionFunction(fcl::CollisionObject<S> *o1, fcl::CollisionObject<S> *o2, void *data)
+{
+    CollisionData<S> &d = *static_cast<CollisionData<S> *>(data);
+    if (!d.done) {
+        collide(o1, o2, d.request, d.result, *d.cache, d.settings);
+        d.done = d.request.isSatisfied(d.result);
+    }
+    return d.done;
+}
+
+/** For the distance() of a broad phase manager; data is a DistanceData<S>. As
+ * fcl::DefaultDistanceFunction: the least distance so far, and true once it is not positive. */
+template <typename S>
+bool DistanceFunction(fcl::CollisionObject<S> *o1, fcl::CollisionObject<S> *o2, void *data, S &dist)
+{
+    DistanceData<S> &d = *static_cast<DistanceData<S> *>(data);
+    if (!d.done)
+        distance(o1, o2, d.request, d.result, *d.cache);
+    dist = d.result.min_distance;
+    return d.done || dist <= 0;
+}
+
+} // namespace ccd_fcl
+
+#endif
