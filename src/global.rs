@@ -239,7 +239,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         end: End,
     ) -> Option<Answer> {
         let answer = self.conclude(set, hull, state, end);
-        if end == End::Open {
+        let outside = !(hull.nearest().key >= 0.0);
+        if end == End::Open || end == End::NoRoom && outside {
             self.open = Some(answer);
             return None;
         }
@@ -344,43 +345,30 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         set.take(small);
         polytope.moved_to(&mut hull);
         state.coarsen();
-        match expand(&mut self.inquiry, &mut set, &mut hull, state)? {
-            End::NoRoom if Q < THIRD.0 => {
-                self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, state)
-            }
-            End::NoRoom => self.lent(&set, &hull, state),
-            end => Ok(self.answer(&set, &hull, state, end)),
+        let end = expand(&mut self.inquiry, &mut set, &mut hull, state)?;
+        if end == End::NoRoom && Q < THIRD.0 {
+            return self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, state);
         }
+        // Lent once only: what is open after that stays so.
+        if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
+            return self.lent(arena.room()?, &set, &hull, state);
+        }
+        Ok(self.answer(&set, &hull, state, end))
     }
 
-    /// And in the room that is lent; without one it ends here.
+    /// And in the room that is lent.
     #[cold]
     #[inline(never)]
     fn lent<const P: usize, const F: usize>(
         &mut self,
+        Room { set, hull }: &mut Room,
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
         state: &mut Progress,
     ) -> Result<Option<Answer>, Stop> {
-        let full = |hull_key: f64| {
-            if hull_key >= 0.0 {
-                End::Inside
-            } else {
-                End::Open
-            }
-        };
-        // Once only: what is open after that stays so.
-        let Some(arena) = self.arena.take() else {
-            let end = full(polytope.nearest().key);
-            return Ok(self.answer(small, polytope, state, end));
-        };
-        let Room { set, hull } = arena.room()?;
         set.take(small);
         polytope.moved_to(hull);
-        let mut end = expand(&mut self.inquiry, set, hull, state)?;
-        if end == End::NoRoom {
-            end = full(hull.nearest().key);
-        }
+        let end = expand(&mut self.inquiry, set, hull, state)?;
         Ok(self.answer(set, hull, state, end))
     }
 
