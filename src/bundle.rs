@@ -712,9 +712,7 @@ impl Search<'_> {
     /// How far across the normal the witness points may be apart: as far as keeps their
     /// distance within the tolerance of the depth.
     fn reach_across(&self, tolerance: Real) -> Real {
-        (2.0 * self.h[self.best] * tolerance)
-            .sqrt()
-            .max(self.noise)
+        (2.0 * self.h[self.best] * tolerance).sqrt().max(self.noise)
     }
 
     /// The way across the normal from what is known of the touched face of D to the point
