@@ -12,15 +12,15 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::math::{Real, Vec3, unit};
-use crate::portal::{Plane, rounding};
+use crate::portal::{SupportPlane, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::support_set::Stop;
 
 /// Two support planes whose segment the ray crosses.
 #[derive(Clone, Copy)]
 struct Segment {
-    left: Plane,
-    right: Plane,
+    left: SupportPlane,
+    right: SupportPlane,
 }
 
 impl Segment {
@@ -48,7 +48,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     start: Vec3,
     settings: &Settings,
 ) -> Result<Answer, Fault> {
-    let ray = Plane::of(md, start)?;
+    let ray = SupportPlane::of(md, start)?;
     if ray.depth < 0.0 {
         return Ok(Answer::Miss(start));
     }
@@ -75,20 +75,20 @@ struct Search<'q, A, B> {
     /// Iterations that are left.
     budget: u64,
     /// The lowest support plane met.
-    best: Plane,
+    best: SupportPlane,
     /// The ray that was stepped aside from: stationary, its depth and witnesses exact.
-    aside: Option<Plane>,
+    aside: Option<SupportPlane>,
 }
 
 /// What comes after a ray.
 enum Next {
-    Ray(Plane),
+    Ray(SupportPlane),
     End(Answer),
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, A, B> {
     /// From ray to ray.
-    fn run(&mut self, mut ray: Plane) -> Result<Answer, Stop> {
+    fn run(&mut self, mut ray: SupportPlane) -> Result<Answer, Stop> {
         while self.spend() {
             let side = self.m.cross(&ray.normal);
             let off = side.dot(&ray.point.v);
@@ -153,7 +153,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, A, B> {
     /// The ray `d` leaves D between the segment and the support plane: that is the answer
     /// where d is the plane's normal, within the tolerance, and no lower plane was met; else
     /// the lower of the two is the next ray.
-    fn ended(&self, d: &Vec3, segment: &Segment, plane: Plane) -> Next {
+    fn ended(&self, d: &Vec3, segment: &Segment, plane: SupportPlane) -> Next {
         let within = (self.settings.tolerance).max(rounding(plane.point.magnitude()));
         let stationary = plane.depth / plane.normal.dot(d) - plane.depth <= within;
         if self.best.depth < plane.depth - within {
@@ -182,8 +182,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, A, B> {
 
     /// The support plane of unit `n`; the lowest is kept, and one that separates ends the
     /// search.
-    fn plane(&mut self, n: Vec3) -> Result<Plane, Stop> {
-        let plane = Plane::of(self.md, n)?;
+    fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
+        let plane = SupportPlane::of(self.md, n)?;
         if plane.depth < 0.0 {
             return Err(Stop::Apart(n));
         }
@@ -194,7 +194,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, A, B> {
     }
 
     /// The answer of a support plane, with the points of its support point for witnesses.
-    fn answer(&self, plane: &Plane) -> Penetration {
+    fn answer(&self, plane: &SupportPlane) -> Penetration {
         Penetration {
             depth: plane.depth,
             depth_lower: 0.0,
