@@ -107,19 +107,6 @@
 //! *Memory.* A face that is still there is found again by three directions aside of
 //! the last answer, each towards one active cut and farther than the pair moved, and
 //! proven by a fourth; a smooth contact by the last direction and one step with R.
-//!
-//! *Tried and left out*, on the pair sets of the benchmark: five or six samples (two
-//! percent fewer supports, a third more instructions on cylinders); refuting R by all
-//! pairs instead of the best one (the same); an active-set walk from the cut of b instead
-//! of the lowest candidate (the same instructions; in the one version tried, worse
-//! valleys); all candidates side by side in vector instructions (more of them than the
-//! walk that leaves off early); only candidates with the newest cut (5 % fewer
-//! instructions on boxes, a tenth more supports on ellipsoids and cones); lifting cuts by
-//! an R that no second pair has told (a tenth more supports on polytopes); a reach that
-//! triples, or begins at 0.15 (4 % fewer supports, other valleys twice as often from 5°);
-//! a doubt about what R raises a cut by at the minimum, instead of at b (4 % more
-//! supports on cones); parting R between the objects by a matrix of its own for the
-//! witness points (these leave the objects more often).
 
 use core::ops::{Add, Div, Mul, Sub};
 

@@ -32,8 +32,9 @@ use crate::local::{self, Shortcut};
 use crate::math::{ITERATION_CAP, Real, Vec3, larger, perpendicular, unit};
 use crate::planar;
 use crate::portal::rounding;
+use crate::precision::Precision;
 use crate::separation;
-use crate::state::State;
+use crate::state::{Rest, State};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, SupportSet};
 
@@ -106,6 +107,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &mut Known,
         settings: &Settings,
     ) -> Result<Answer, Fault> {
+        let mut precision = Precision::default();
+        precision.note(&SupportPoint {
+            v: hit.point1 - hit.point2,
+            v1: hit.point1,
+            v2: hit.point2,
+        });
+        // A touch within rounding is a miss, in every query.
+        if !(hit.depth * hit.dir.dot(&hit.normal) > precision.touch()) {
+            return Ok(Answer::Miss(hit.normal));
+        }
         let start = match (self.centre, known.points().first()) {
             (Some(c), _) => c,
             (None, Some(k)) => *k,
@@ -160,6 +171,24 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.settle(answer, settings)
     }
 
+    /// What a search starts from, unless that looks away from where the centres look and D
+    /// reaches farther there: the state of the swapped pair leads to the far side.
+    fn not_behind(&self, memory: Memory) -> Result<Memory, Fault> {
+        let (Some(_), Some(n)) = (self.centre, unit(&memory.dir)) else {
+            return Ok(memory);
+        };
+        let cold = self.cold_start();
+        if n.dot(&cold) >= 0.0 {
+            return Ok(memory);
+        }
+        let reach = |n: &Vec3| Ok(n.dot(&self.md.support(n)?.v));
+        Ok(if reach(&cold)? < reach(&n)? {
+            Memory::default()
+        } else {
+            memory
+        })
+    }
+
     /// [`Pair::local`], and the points it came to know.
     fn local_known(
         &self,
@@ -170,7 +199,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let mut memory = state.solver();
+        let mut memory = self.not_behind(state.solver())?;
         let answer = match self.descend(&mut memory, settings, known)? {
             Answer::Hit(hit) => self.proven(hit, false, known, settings)?,
             Answer::Limit(hit) => self.proven(hit, true, known, settings)?,
@@ -260,7 +289,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             others: state.others(),
             limits,
             placed,
-            rested: state.rested(),
+            rested: state.rest().is_some(),
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
@@ -272,13 +301,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut answer = global::minimum(&self.md, &request, arena, kept)?;
         match &mut answer {
             Answer::Hit(hit) => {
-                let alone = hit.point1;
-                contact_patch::settle(&self.md, hit, limits.tolerance)?;
-                self.keep(state, &basis, hit.point1 != alone);
+                let rest = self.placed(hit, state, limits.tolerance)?;
+                self.keep(state, &basis, rest);
             }
             Answer::Limit(hit) => {
                 self.floor(hit, limits.tolerance)?;
-                self.keep(state, &basis, false);
+                self.keep(state, &basis, None);
             }
             _ if self.lasting => self.remember(state, &answer)?,
             _ => {}
@@ -286,10 +314,35 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 
+    /// Step 4 with memory: while a proof ends with the same witness points as the last one, to
+    /// the bit, nothing has moved, and they go to where they went.
+    #[inline(always)]
+    fn placed(
+        &self,
+        hit: &mut Penetration,
+        state: &State,
+        tolerance: Real,
+    ) -> Result<Option<Rest>, Fault> {
+        if !(hit.width > 0.0) {
+            return Ok(None);
+        }
+        let alone = hit.point1;
+        let seen = Rest::seen(&hit.point1, &hit.point2);
+        match state.rest() {
+            Some(rest) if rest.seen == seen => {
+                hit.point1 += rest.way;
+                hit.point2 = hit.point1 - hit.dir * hit.depth;
+            }
+            _ => contact_patch::settle(&self.md, hit, tolerance)?,
+        }
+        let way = hit.point1 - alone;
+        Ok((way != Vec3::zeros()).then_some(Rest { seen, way }))
+    }
+
     /// Leaves the basis of a proof behind, where somebody keeps the state.
-    fn keep(&self, state: &mut State, basis: &Basis, rested: bool) {
+    fn keep(&self, state: &mut State, basis: &Basis, rest: Option<Rest>) {
         if self.lasting {
-            *state = State::proven(basis, rested);
+            *state = State::proven(basis, rest);
         }
     }
 

@@ -285,11 +285,6 @@ fn cores<A: SupportMap, B: SupportMap>(
 /// three find its corners and a fourth proves its plane: fewer cannot do, for after any turn a
 /// support point says nothing of another direction's. (Measured on the six `_trajS` sets moved
 /// apart, tolerance 1e-6: boxes and hulls 4.0 to 4.2 support points, 6.3 in the mean of all.)
-/// *Tried and left out*: each corner asked in the best direction tilted towards it by 0.01
-/// (cylinders 10.6 to 8.9 but capsules 7.9 to 9.2 and ellipsoids 4.0 to 6.3; larger tilts are
-/// worse); one direction for corners closer to each other than a 50th of the size, round or
-/// not (6.6 in the mean), a 200th (6.3); the best direction and one beside it in place of
-/// corners so close (6.5).
 struct Search<'p, A, B> {
     pair: &'p Pair<A, B>,
     set: SupportSet<4>,

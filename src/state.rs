@@ -51,6 +51,23 @@ const PROVEN: u32 = 4;
 /// The pair overlapped, and was asked yes or no.
 const SURROUNDED: u32 = 5;
 
+/// Two faces that rest on each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// Of both witness points of the proof, one vector that changes when either does.
+    pub seen: Vec3,
+    /// From them to the middle of where the faces touch, metres.
+    pub way: Vec3,
+}
+
+impl Rest {
+    /// [`Rest::seen`] of two witness points. The factor is no ratio of lengths that bodies have:
+    /// what moves one point by a way and the other by the opposite one is seen.
+    pub fn seen(point1: &Vec3, point2: &Vec3) -> Vec3 {
+        point1 + point2 * 0.618
+    }
+}
+
 impl State {
     /// A fresh state that starts from `dir`; cold when it is zero or not finite.
     pub fn guess(dir: &Vec3) -> Self {
@@ -174,9 +191,15 @@ impl State {
         }
     }
 
-    /// Did the pair rest face on face when its minimum was proven?
-    pub fn rested(&self) -> bool {
-        self.kind == PROVEN && self.padding == RESTED
+    /// Where the witness points went, if the pair rested face on face when its minimum was
+    /// proven.
+    pub fn rest(&self) -> Option<Rest> {
+        let [a, b, c, x, y, z] = self.memory.curvature;
+        let rested = self.kind == PROVEN && self.padding == RESTED;
+        rested.then(|| Rest {
+            seen: Vec3::new(a, b, c),
+            way: Vec3::new(x, y, z),
+        })
     }
 
     /// Keeps the directions of a portal besides.
@@ -193,16 +216,18 @@ impl State {
         }
     }
 
-    /// The pair overlaps: its minimum is proven by support points along these directions;
-    /// `rested`: face on face.
-    pub fn proven(basis: &Basis, rested: bool) -> Self {
+    /// The pair overlaps: its minimum is proven by support points along these directions.
+    pub fn proven(basis: &Basis, rest: Option<Rest>) -> Self {
         let mut state = Self::default();
         if let Some((first, others)) = basis.directions().split_first() {
             state = Self::of(PROVEN, *first);
             for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
                 *slope = *n;
             }
-            state.padding = u32::from(rested) * RESTED;
+            if let Some(Rest { seen, way }) = rest {
+                state.padding = RESTED;
+                state.memory.curvature = [seen.x, seen.y, seen.z, way.x, way.y, way.z];
+            }
         }
         state
     }

@@ -368,7 +368,7 @@ mod tests {
     #[test]
     fn callgrind_self_cost_by_phase() {
         let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/src/expansion.rs\n\
-            fn=ccd::expansion::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/patch.rs\n3 100\n\
+            fn=ccd::expansion::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/contact_patch.rs\n3 100\n\
             fi=/w/src/math.rs\n4 200\nfe=/w/src/expansion.rs\n5 1\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
             fl=/rustc/core/zip.rs\nfn=<core::Zip<ccd::local::M> as X>::next\n7 1000\n\
             ob=/bin/charts\nfl=/w/c-tests/lab.rs\nfn=run\n1 77\nob=/l/libccd.so\n\
