@@ -182,10 +182,17 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
     const FACES: [[usize; 4]; 4] = [[1, 2, 3, 0], [0, 2, 3, 1], [0, 1, 3, 2], [0, 1, 2, 3]];
     // What a share grows by on the way from the face to the corner opposite.
     let rise = FACES.map(|[i, j, k, opposite]| {
-        let n = normal(corners[i], corners[j], corners[k]);
-        n / n.dot(&(corners[opposite] - corners[i]))
+        let [a, b, c, d] = [i, j, k, opposite].map(|i| corners[i % 4]);
+        let n = normal(a, b, c);
+        n / n.dot(&(d - a))
     });
-    let mut shares = [0, 1, 2, 3].map(|i: usize| rise[i].dot(&(p - corners[FACES[i][0]])));
+    let [at_b, at_a] = [p - corners[1], p - corners[0]];
+    let mut shares = [
+        rise[0].dot(&at_b),
+        rise[1].dot(&at_a),
+        rise[2].dot(&at_a),
+        rise[3].dot(&at_a),
+    ];
     // A flat one's may be NaN or infinite.
     let inner = |s: &Real| *s >= 0.0 && *s < Real::INFINITY;
     // No candidate yet.

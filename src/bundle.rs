@@ -108,7 +108,7 @@
 //! the last answer, each towards one active cut and farther than the pair moved, and
 //! proven by a fourth; a smooth contact by the last direction and one step with R.
 
-use core::ops::{Add, Div, Mul, Sub};
+use core::ops::{Add, Div, Index, IndexMut, Mul, Sub};
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contact_patch;
@@ -188,6 +188,27 @@ pub struct Memory {
 #[derive(Clone, Copy, Default)]
 struct Lanes([Real; CUTS]);
 
+/// The sample that is meant: in range whatever `i` is, and the compiler sees it.
+#[inline(always)]
+fn lane(i: usize) -> usize {
+    i % CUTS
+}
+
+impl Index<usize> for Lanes {
+    type Output = Real;
+    #[inline(always)]
+    fn index(&self, i: usize) -> &Real {
+        &self.0[lane(i)]
+    }
+}
+
+impl IndexMut<usize> for Lanes {
+    #[inline(always)]
+    fn index_mut(&mut self, i: usize) -> &mut Real {
+        &mut self.0[lane(i)]
+    }
+}
+
 impl Lanes {
     #[inline(always)]
     fn all(a: Real) -> Self {
@@ -201,7 +222,7 @@ impl Lanes {
 
     #[inline(always)]
     fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
-        Self(core::array::from_fn(|i| f(self.0[i], o.0[i])))
+        Self(core::array::from_fn(|i| f(self[i], o[i])))
     }
 }
 
@@ -256,14 +277,14 @@ struct Vectors {
 impl Vectors {
     #[inline(always)]
     fn get(&self, i: usize) -> Vec3 {
-        Vec3::new(self.x.0[i], self.y.0[i], self.z.0[i])
+        Vec3::new(self.x[i], self.y[i], self.z[i])
     }
 
     #[inline(always)]
     fn set(&mut self, i: usize, v: &Vec3) {
-        self.x.0[i] = v.x;
-        self.y.0[i] = v.y;
-        self.z.0[i] = v.z;
+        self.x[i] = v.x;
+        self.y[i] = v.y;
+        self.z[i] = v.z;
     }
 
     #[inline(always)]
@@ -399,7 +420,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// The support point of sample `i`.
     fn point(&self, i: usize) -> &SupportPoint {
-        self.met.get(self.at[i])
+        self.met.get(self.at[lane(i)])
     }
 
     /// Drops sample `i`; the last one takes its place. Returns where sample `j` is now.
@@ -409,9 +430,9 @@ impl Search<'_> {
         let (n, v) = (self.n.get(last), self.v.get(last));
         self.n.set(i, &n);
         self.v.set(i, &v);
-        self.h.0[i] = self.h.0[last];
-        self.at[i] = self.at[last];
-        self.told.0[i] = self.told.0[last];
+        self.h[i] = self.h[last];
+        self.at[lane(i)] = self.at[lane(last)];
+        self.told[i] = self.told[last];
         let moved = |k: usize| if k == last { i } else { k };
         self.best = moved(self.best);
         self.len = last;
@@ -421,17 +442,17 @@ impl Search<'_> {
     /// Makes (n, p, h) sample `i`.
     #[inline(always)]
     fn set(&mut self, i: usize, n: &Vec3, p: &SupportPoint, h: Real, told: Real) {
-        self.at[i] = self.met.put(p, &self.at);
+        self.at[lane(i)] = self.met.put(p, &self.at);
         self.n.set(i, n);
         self.v.set(i, &p.v);
-        self.h.0[i] = h;
-        self.told.0[i] = told;
+        self.h[i] = h;
+        self.told[i] = told;
         for j in self.len..CUTS {
             self.n.set(j, n);
             self.v.set(j, &p.v);
-            self.h.0[j] = h;
-            self.told.0[j] = told;
-            self.at[j] = self.at[i];
+            self.h[j] = h;
+            self.told[j] = told;
+            self.at[j] = self.at[lane(i)];
         }
     }
 
@@ -444,7 +465,7 @@ impl Search<'_> {
         if curvature.round {
             error
         } else {
-            error.max(self.told.0[i])
+            error.max(self.told[i])
         }
     }
 
@@ -470,7 +491,7 @@ impl Search<'_> {
         let aheads = Lanes::all(h) - self.v.dot(n);
         let behinds = self.h - self.n.dot(&p.v);
         for i in 0..self.len.min(CUTS) {
-            let (dn2, ds2, ahead, behind) = (dn2s.0[i], ds2s.0[i], aheads.0[i], behinds.0[i]);
+            let (dn2, ds2, ahead, behind) = (dn2s[i], ds2s[i], aheads[i], behinds[i]);
             // Also NaN.
             if !(dn2 > CLOSE) {
                 continue;
@@ -517,7 +538,7 @@ impl Search<'_> {
             return Some(twin);
         }
         let (dn, dn2) = (n - self.n.get(twin), twin_dn2);
-        let other = self.met.get(self.at[twin]);
+        let other = self.met.get(self.at[lane(twin)]);
         let ds = p.v - other.v;
         let ds2 = ds.norm_squared();
         // The first pair that confirms a remembered R confirms all of it.
@@ -625,14 +646,14 @@ impl Search<'_> {
     fn unsure(&self, model: &Model, step: &Step, reach: Real) -> Real {
         let [i, j, _] = step.set;
         let (x, y) = if step.count == 2 {
-            (model.y.0[j] - model.y.0[i], model.x.0[i] - model.x.0[j])
+            (model.y[j] - model.y[i], model.x[i] - model.x[j])
         } else {
             (step.x, step.y)
         };
         let length2 = x * x + y * y;
         let way = step.x * x + step.y * y;
         let r = model.rho * length2 + model.axx * (x * x - y * y) + 2.0 * model.axy * x * y;
-        let bend = r - self.h.0[self.best] * length2;
+        let bend = r - self.h[self.best] * length2;
         let weights = Model::weights(step, &model.x, &model.y);
         let error: Real = step
             .set
@@ -673,10 +694,10 @@ impl Search<'_> {
         let weights = Model::weights(step, &model.x, &model.y);
         let mut next = Next::Minimum;
         let mut least = 1.0;
-        for (&i, w) in step.set[..step.count].iter().zip(weights) {
+        for (&i, w) in step.set.iter().take(step.count).zip(weights) {
             let (x, y) = model.moved(i, &self.v.get(i), step.x, step.y);
             let share = (0.5 * across / (larger(w, 0.0) * (x * x + y * y).sqrt()))
-                .min((0.5 * tolerance / model.lift.0[i]).sqrt());
+                .min((0.5 * tolerance / model.lift[i]).sqrt());
             if i == self.best && share < 1.0 {
                 return Next::Minimum;
             }
@@ -691,21 +712,19 @@ impl Search<'_> {
     /// How far across the normal the witness points may be apart: as far as keeps their
     /// distance within the tolerance of the depth.
     fn reach_across(&self, tolerance: Real) -> Real {
-        (2.0 * self.h.0[self.best] * tolerance)
-            .sqrt()
-            .max(self.noise)
+        (2.0 * self.h[self.best] * tolerance).sqrt().max(self.noise)
     }
 
     /// The way across the normal from what is known of the touched face of D to the point
     /// below the origin.
     fn towards_foot(&self, model: &Model, tolerance: Real) -> Vec3 {
-        let least = self.h.0[self.best] - tolerance;
+        let least = self.h[self.best] - tolerance;
         let across = |i: usize| {
             let v = self.v.get(i);
             let height = v.dot(&model.b);
             (height >= least).then(|| model.b * height - v)
         };
-        let mut nearest = model.b * self.h.0[self.best] - self.v.get(self.best);
+        let mut nearest = model.b * self.h[self.best] - self.v.get(self.best);
         for p in (0..self.len).filter_map(across) {
             for q in (0..self.len).filter_map(across) {
                 let side = q - p;
@@ -797,7 +816,7 @@ impl Model {
     fn new(search: &Search) -> Self {
         let best = search.best;
         let b = search.n.get(best);
-        let h = search.h.0[best];
+        let h = search.h[best];
         // Orthonormal basis without a branch (Duff et al., JCGT 6(1), 2017).
         let sign = (1.0 as Real).copysign(b.z);
         let c = -1.0 / (sign + b.z);
@@ -850,15 +869,15 @@ impl Model {
                 // A smooth pair is one piece, which b itself represents; a lift above
                 // h(b) is refuted; far away R means nothing. All stay exact cuts.
                 if i != best
-                    && z.0[i] > NEAR
-                    && lift.0[i] >= 0.0
-                    && lift.0[i] <= behind.0[i]
-                    && unlike.0[i] > 0.0
+                    && z[i] > NEAR
+                    && lift[i] >= 0.0
+                    && lift[i] <= behind[i]
+                    && unlike[i] > 0.0
                 {
-                    model.a.0[i] += lift.0[i];
-                    model.x.0[i] -= rho * tx.0[i] + ax.0[i];
-                    model.y.0[i] -= rho * ty.0[i] + ay.0[i];
-                    model.lift.0[i] = lift.0[i];
+                    model.a[i] += lift[i];
+                    model.x[i] -= rho * tx[i] + ax[i];
+                    model.y[i] -= rho * ty[i] + ay[i];
+                    model.lift[i] = lift[i];
                 }
             }
         }
@@ -885,7 +904,7 @@ impl Model {
         // The model's own value of the depth there, exact for P and for balls.
         let (x, y) = (step.x, step.y);
         let i = step.set[0];
-        let v = self.a.0[i] + self.x.0[i] * x + self.y.0[i] * y;
+        let v = self.a[i] + self.x[i] * x + self.y[i] * y;
         let bent = 0.5 * self.axx * (x * x - y * y) + self.axy * x * y;
         step.value = (v + bent) / (1.0 + x * x + y * y).sqrt() + self.rho;
         step
@@ -894,9 +913,9 @@ impl Model {
     #[inline(always)]
     fn cut(&self, i: usize) -> Cut {
         Cut {
-            a: self.a.0[i],
-            x: self.x.0[i],
-            y: self.y.0[i],
+            a: self.a[i],
+            x: self.x[i],
+            y: self.y[i],
         }
     }
 
@@ -907,7 +926,7 @@ impl Model {
         let (kxx, kxy, kyy) = (self.axx - self.core, self.axy, -self.axx - self.core);
         let reach2 = reach * reach;
         // How far c lies above each other cut.
-        let others = &OTHERS[p];
+        let others = &OTHERS[lane(p)];
         let len = self.len - 1;
         let above = [
             c.minus(&self.cut(others[0])),
@@ -985,16 +1004,16 @@ impl Model {
     /// How far R raises cut `i`, of the support point v, at (x, y).
     #[inline]
     fn raise(&self, i: usize, v: &Vec3, x: Real, y: Real) -> Real {
-        let turned = (self.x.0[i] - v.dot(&self.e1)) * x + (self.y.0[i] - v.dot(&self.e2)) * y;
+        let turned = (self.x[i] - v.dot(&self.e1)) * x + (self.y[i] - v.dot(&self.e2)) * y;
         let bent = 0.5 * (self.rho + self.axx) * x * x + 0.5 * (self.rho - self.axx) * y * y;
-        self.lift.0[i] + turned + bent + self.axy * x * y
+        self.lift[i] + turned + bent + self.axy * x * y
     }
 
     /// How far across b R moves the support point v of cut `i` on the way to (x, y).
     fn moved(&self, i: usize, v: &Vec3, x: Real, y: Real) -> (Real, Real) {
         (
-            self.x.0[i] - v.dot(&self.e1) + (self.rho + self.axx) * x + self.axy * y,
-            self.y.0[i] - v.dot(&self.e2) + self.axy * x + (self.rho - self.axx) * y,
+            self.x[i] - v.dot(&self.e1) + (self.rho + self.axx) * x + self.axy * y,
+            self.y[i] - v.dot(&self.e2) + self.axy * x + (self.rho - self.axx) * y,
         )
     }
 
@@ -1005,7 +1024,7 @@ impl Model {
 
     /// Weights of the active cuts whose gradients (x, y) balance, or come nearest to it.
     fn weights(step: &Step, x: &Lanes, y: &Lanes) -> [Real; 3] {
-        let [g, h, k] = step.set.map(|i| (x.0[i], y.0[i]));
+        let [g, h, k] = step.set.map(|i| (x[i], y[i]));
         let cross = |a: (Real, Real), b: (Real, Real)| a.0 * b.1 - a.1 * b.0;
         match step.count {
             3 => {
@@ -1085,7 +1104,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         queued = recall(memory, &dir, &mut queue, &mut search.curvature, &mut reach);
         if queued > 0 {
             queued -= 1;
-            n = queue[queued];
+            n = queue[queued.min(2)];
         }
     }
     let mut predicted = Real::NAN;
@@ -1138,13 +1157,13 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             beside = false;
             if twin < CUTS {
                 told = search.curvature.error;
-                search.told.0[twin] = told;
+                search.told[twin] = told;
             }
             if iterations >= TRUST_CURVATURE {
                 search.curvature.give_up = true;
                 search.curvature.known = false;
             }
-            let before = search.h.0[search.best];
+            let before = search.h[search.best];
             let came = before - h;
             // False for NaN: no forecast.
             if came > 0.25 * (before - predicted) {
@@ -1176,7 +1195,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         probing = CUTS;
         if queued > 0 && iterations < settings.max_iterations {
             queued -= 1;
-            n = queue[queued];
+            n = queue[queued.min(2)];
             continue;
         }
         if search.len == 1
@@ -1210,21 +1229,21 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         let (model, step, next) = loop {
             let model = Model::new(&search);
             let step = model.minimise(newest, reach, search.noise);
-            let gain = search.h.0[search.best] - step.value;
+            let gain = search.h[search.best] - step.value;
             let curved = model.rho != 0.0;
             let mut far = search.best;
             let mut doubt = 0.0;
             // What the same error of R leaves open where the model has its minimum.
             let mut open: Real = 0.0;
             if curved && step.count > 1 {
-                for &i in &step.set[..step.count] {
+                for &i in step.set.iter().take(step.count) {
                     let error = search.error(i, &model.b);
                     if i != search.best {
                         let raise = model.raise(i, &search.v.get(i), step.x, step.y);
                         open = open.max(raise * error);
                     }
-                    if model.lift.0[i] * error > doubt {
-                        doubt = model.lift.0[i] * error;
+                    if model.lift[i] * error > doubt {
+                        doubt = model.lift[i] * error;
                         far = i;
                     }
                 }
@@ -1239,7 +1258,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             let close = gain.abs() <= tolerance && (step.inside || level);
             let blind = close && curved && step.count < 3 && !search.curvature.spread;
             // Depth zero within rounding cannot be lower.
-            let touch = search.h.0[search.best] <= search.noise;
+            let touch = search.h[search.best] <= search.noise;
             let done =
                 touch || close && !blind && doubt <= tolerance && gain.abs() + open <= tolerance;
             // A reach that small means that the search is stuck.
@@ -1277,7 +1296,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             }
             if met || last || !search.curvature.known {
                 remember(memory, &search.curvature, &model, &step);
-                search.met.lead(search.at[search.best]);
+                search.met.lead(search.at[lane(search.best)]);
                 return Ok(if met {
                     Answer::Hit(answer)
                 } else {
@@ -1320,8 +1339,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             let levels = model.a + model.x * step.x + model.y * step.y;
             for i in 0..CUTS {
                 let kept = i == search.best || i == newest || step.set.contains(&i);
-                if !kept && levels.0[i] < least {
-                    least = levels.0[i];
+                if !kept && levels[i] < least {
+                    least = levels[i];
                     victim = i;
                 }
             }
@@ -1329,8 +1348,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 // The best and three others: the lowest at the best goes, and for what
                 // the model forgets the reach must pay.
                 for i in (0..CUTS).filter(|&i| i != search.best) {
-                    if model.a.0[i] < least {
-                        least = model.a.0[i];
+                    if model.a[i] < least {
+                        least = model.a[i];
                         victim = i;
                     }
                 }
@@ -1354,7 +1373,7 @@ fn conclude(
     iterations: u64,
 ) -> (Penetration, Real, bool) {
     let b = &model.b;
-    let depth = search.h.0[search.best];
+    let depth = search.h[search.best];
     // Points of the objects themselves: a mean of support points that lie below the
     // origin, or as near to that as a depth within the tolerance allows, and no deeper
     // than the tolerance. First of the active cuts; but a direction that ties several
@@ -1364,7 +1383,7 @@ fn conclude(
     let height = search.v.dot(b);
     let near = search.reach_across(tolerance).powi(2);
     let inside = |set: [usize; 3], w: [Real; 3]| {
-        let mean = |l: &Lanes| l.0[set[0]] * w[0] + l.0[set[1]] * w[1] + l.0[set[2]] * w[2];
+        let mean = |l: &Lanes| l[set[0]] * w[0] + l[set[1]] * w[1] + l[set[2]] * w[2];
         let (x, y) = (mean(&x), mean(&y));
         let across2 = x * x + y * y;
         (across2 <= near && mean(&height) >= depth - tolerance).then_some((set, w, across2.sqrt()))
@@ -1407,14 +1426,14 @@ fn guessed(search: &Search, model: &Model, step: &Step) -> (Vec3, Vec3, Real) {
     let share = search.curvature.share;
     let (mut point1, mut point2) = (Vec3::zeros(), Vec3::zeros());
     let weights = Model::weights(step, &model.x, &model.y);
-    for (&i, w) in step.set[..step.count].iter().zip(weights) {
+    for (&i, w) in step.set.iter().take(step.count).zip(weights) {
         let p = search.point(i);
         point1 += p.v1 * w;
         point2 += p.v2 * w;
-        if model.lift.0[i] > 0.0 {
+        if model.lift[i] > 0.0 {
             let (x, y) = (
-                model.x.0[i] - p.v.dot(&model.e1),
-                model.y.0[i] - p.v.dot(&model.e2),
+                model.x[i] - p.v.dot(&model.e1),
+                model.y[i] - p.v.dot(&model.e2),
             );
             let moved = (model.e1 * x + model.e2 * y) * w;
             point1 += moved * share;
@@ -1425,7 +1444,7 @@ fn guessed(search: &Search, model: &Model, step: &Step) -> (Vec3, Vec3, Real) {
     let across = point1 - point2;
     let across = across - b * across.dot(b);
     let apart = across.norm();
-    if search.h.0[search.best] <= search.noise {
+    if search.h[search.best] <= search.noise {
         // A touch: where these do not meet, the proof of the overlap knows points that do.
         return (best.v1, best.v2, apart);
     }
@@ -1440,7 +1459,7 @@ fn guessed(search: &Search, model: &Model, step: &Step) -> (Vec3, Vec3, Real) {
 /// Each three samples whose triangle the ray along b meets, and the weights of where it
 /// does; x, y: the samples across b.
 fn enclosing(x: &Lanes, y: &Lanes) -> impl Iterator<Item = ([usize; 3], [Real; 3])> {
-    let area = |i: usize, j: usize| x.0[i] * y.0[j] - y.0[i] * x.0[j];
+    let area = |i: usize, j: usize| x[i] * y[j] - y[i] * x[j];
     OTHERS.into_iter().filter_map(move |[i, j, k, _]| {
         let w = [area(j, k), area(k, i), area(i, j)];
         let sum = w[0] + w[1] + w[2];
@@ -1457,7 +1476,7 @@ fn remember(memory: &mut Memory, curvature: &Curvature, model: &Model, step: &St
     } else {
         0.0
     };
-    let gradient = |i: usize| model.e1 * model.x.0[i] + model.e2 * model.y.0[i];
+    let gradient = |i: usize| model.e1 * model.x[i] + model.e2 * model.y[i];
     let (slopes, count) = match step.count {
         1 => ([Vec3::zeros(); 3], 0),
         count => (step.set.map(gradient), count as u32),
@@ -1499,8 +1518,9 @@ fn recall(
     let slopes = &memory.slopes;
     let count = (memory.count as usize).min(slopes.len());
     let mut queued = 0;
+    let at = |i: usize| slopes[(i % count).min(2)];
     for i in 0..count {
-        let (g, h, k) = (slopes[i], slopes[(i + 1) % count], slopes[(i + 2) % count]);
+        let (g, h, k) = (at(i), at(i + 1), at(i + 2));
         // Where one cut is above the other two by as much as it can: across the line on
         // which they are equal, and, since a face may have a fourth vertex there, towards
         // the vertex itself.
@@ -1518,8 +1538,10 @@ fn recall(
             .and_then(|a| unit(&a))
             .and_then(|s| unit(&(dir + s * angle)))
         {
-            queue[queued] = n;
-            queued += 1;
+            if let Some(place) = queue.get_mut(queued) {
+                *place = n;
+                queued += 1;
+            }
         }
     }
     if queued > 0 {

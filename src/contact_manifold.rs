@@ -41,6 +41,7 @@
 use crate::math::{EPSILON, Real, Vec3, larger, largest, perpendicular};
 use crate::polygon::{Corner, Flat, Polygon, between, cross, dot, length, nearest_to, side};
 use crate::support::{Fault, SupportMap};
+use core::mem::swap;
 
 /// One point of a contact manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -272,10 +273,7 @@ impl<S: SupportMap> Search<'_, S> {
                     self.corner(way.map(|x| self.tilt * x))?
                 };
                 match found {
-                    Some(new) if !self.known(&new) => {
-                        self.ring[self.len] = new;
-                        self.len += 1;
-                    }
+                    Some(new) if !self.known(&new) => self.put(self.len, new),
                     _ => {}
                 }
             }
@@ -291,9 +289,16 @@ impl<S: SupportMap> Search<'_, S> {
         Ok(())
     }
 
+    /// Puts a sample into the ring; those from there on move up.
+    fn put(&mut self, i: usize, mut sample: Sample) {
+        let places = self.ring.iter_mut().take(self.len + 1);
+        places.skip(i).for_each(|p| swap(p, &mut sample));
+        self.len = (self.len + 1).min(CORNERS);
+    }
+
     /// Is the point one of those known? From another direction that tells it to be sharp.
     fn known(&mut self, new: &Sample) -> bool {
-        for i in 0..self.len {
+        for i in 0..self.len.min(CORNERS) {
             if self.same(&self.ring[i], new) {
                 let turned = length(&side(&self.ring[i].aside, &new.aside));
                 self.ring[i].settled |= turned >= 0.25 * self.tilt;
@@ -309,14 +314,13 @@ impl<S: SupportMap> Search<'_, S> {
             let before = self.len;
             let mut i = 0;
             while i < self.len {
-                if !self.ring[i].closed {
-                    if let Some(new) = self.beyond(i, (i + 1) % self.len)? {
-                        self.ring.copy_within(i + 1..self.len, i + 2);
-                        self.ring[i + 1] = new;
-                        self.len += 1;
+                if self.ring.get(i).is_some_and(|s| !s.closed) {
+                    let next = if i + 1 < self.len { i + 1 } else { 0 };
+                    if let Some(new) = self.beyond(i, next)? {
+                        self.put(i + 1, new);
                         i += 1;
-                    } else {
-                        self.ring[i].closed = true;
+                    } else if let Some(sample) = self.ring.get_mut(i) {
+                        sample.closed = true;
                     }
                 }
                 i += 1;
@@ -329,6 +333,7 @@ impl<S: SupportMap> Search<'_, S> {
 
     /// The corner beyond the side from sample `i` to sample `j`, if there is one.
     fn beyond(&mut self, i: usize, j: usize) -> Result<Option<Sample>, Fault> {
+        let (i, j) = (place(i), place(j));
         let apart = |s: &Self| length(&side(&s.ring[i].corner.at, &s.ring[j].corner.at));
         if apart(self) <= NEAR * self.tilt * self.size {
             self.settle(i)?;
@@ -347,8 +352,9 @@ impl<S: SupportMap> Search<'_, S> {
         let whole = length(&along);
         let along = along.map(|x| x / whole);
         let out = [along[1], -along[0]];
-        let level = ((b.low - a.low) / whole).clamp(-self.tilt, self.tilt);
-        let lean = level + (2.0 * self.rounding / whole).clamp(BIAS * self.tilt, self.tilt / 64.0);
+        let level = ((b.low - a.low) / whole).max(-self.tilt).min(self.tilt);
+        let bias = 2.0 * self.rounding / whole;
+        let lean = level + bias.max(BIAS * self.tilt).min(self.tilt / 64.0);
         let aside = [0, 1].map(|k| out[k] * self.tilt + along[k] * lean);
         let Some(new) = self.corner(aside)? else {
             return Ok(None);
@@ -387,6 +393,7 @@ impl<S: SupportMap> Search<'_, S> {
 
     /// Takes off what moves in proportion to the tilt.
     fn settle(&mut self, i: usize) -> Result<(), Fault> {
+        let i = place(i);
         let mut full = self.ring[i];
         if full.settled {
             return Ok(());
@@ -481,20 +488,22 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     }
     // Rounding alone makes no corner the deepest.
     let tie = one.rounding + two.rounding;
-    let mut deepest = 0;
+    let first = region.corners().first();
+    let (mut deepest, mut least) = (0, first.map_or(0.0, |corner| corner.low));
     for (i, corner) in region.corners().iter().enumerate() {
-        if corner.low < region.corners()[deepest].low - tie {
-            deepest = i;
+        if corner.low < least - tie {
+            (deepest, least) = (i, corner.low);
         }
     }
     let mut manifold = Manifold {
         contacts: [Contact::default(); ROOM],
         len: 0,
     };
-    for corner in region.reduced(deepest, max).corners() {
+    let reduced = region.reduced(deepest, max);
+    for (contact, corner) in manifold.contacts.iter_mut().zip(reduced.corners()) {
         let point1 = plane.point(&corner.at, one.top - one.corners.low(&corner.at));
         let depth = one.top + two.top - corner.low;
-        manifold.contacts[manifold.len] = Contact {
+        *contact = Contact {
             point1,
             point2: point1 - plane.n * depth,
             depth,
@@ -502,6 +511,11 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
         manifold.len += 1;
     }
     Ok(manifold)
+}
+
+/// A place in the ring that is in range whatever `i` is.
+fn place(i: usize) -> usize {
+    i.min(CORNERS - 1)
 }
 
 fn search<'a, S>(object: &'a S, plane: &'a Plane, sign: Real) -> Search<'a, S> {

@@ -5,6 +5,7 @@
 //! are polygons of two corners and of one.
 
 use crate::math::Real;
+use core::mem::swap;
 
 /// A point of the plane.
 pub type Flat = [Real; 2];
@@ -76,6 +77,7 @@ impl<const ROOM: usize> Default for Polygon<ROOM> {
 
 impl<const ROOM: usize> Polygon<ROOM> {
     /// The corners.
+    #[inline]
     pub fn corners(&self) -> &[Corner] {
         self.corners.get(..self.len).unwrap_or(&[])
     }
@@ -118,18 +120,24 @@ impl<const ROOM: usize> Polygon<ROOM> {
     /// The convex hull of the points (Andrew's monotone chain). Of points nearer than
     /// `merged` to each other the first stays; what sticks out by `flat` or less is no corner.
     pub fn hull(points: &[Corner], merged: Real, flat: Real) -> Self {
-        let mut sorted = Self::default();
-        for p in points {
-            let near = |k: &Corner| length(&side(&k.at, &p.at)) <= merged;
-            if !sorted.corners().iter().any(near) {
-                sorted.push(*p);
-            }
-        }
         let order = |a: &Corner, b: &Corner| {
             let x = a.at[0].total_cmp(&b.at[0]);
             x.then(a.at[1].total_cmp(&b.at[1]))
         };
-        sorted.corners_mut().sort_unstable_by(order);
+        let mut sorted = Self::default();
+        for p in points {
+            let near = |k: &Corner| length(&side(&k.at, &p.at)) <= merged;
+            if !sorted.corners().iter().any(near) {
+                // The last of those up to there is left in hand.
+                let mut last = *p;
+                for k in sorted.corners_mut() {
+                    if order(&last, k).is_lt() {
+                        swap(k, &mut last);
+                    }
+                }
+                sorted.push(last);
+            }
+        }
         if sorted.len < 3 {
             return sorted;
         }
@@ -151,13 +159,9 @@ impl<const ROOM: usize> Polygon<ROOM> {
     /// The half of the hull to the right of the way from the first point to the last.
     fn chain<'a>(&mut self, points: impl Iterator<Item = &'a Corner>, flat: Real) {
         for p in points {
-            while self.len >= 2 {
-                let (a, b) = (
-                    &self.corners[self.len - 2].at,
-                    &self.corners[self.len - 1].at,
-                );
-                let whole = side(a, &p.at);
-                if cross(&side(a, b), &whole) > flat * length(&whole) {
+            while let [.., a, b] = self.corners() {
+                let whole = side(&a.at, &p.at);
+                if cross(&side(&a.at, &b.at), &whole) > flat * length(&whole) {
                     break;
                 }
                 self.len -= 1;
@@ -276,12 +280,14 @@ impl<const ROOM: usize> Polygon<ROOM> {
     /// corner is the best that ends at the one before, and a triangle.
     pub fn reduced(&self, first: usize, most: usize) -> Self {
         let mut turned = *self;
-        if first < turned.len {
-            turned.corners_mut().rotate_left(first);
+        let corners = turned.corners_mut();
+        if first < corners.len() {
+            corners.rotate_left(first);
         }
         if turned.len <= most || most == 0 {
             return turned;
         }
+        let len = turned.len.min(ROOM);
         let root = turned.corners[0].at;
         let spoke = turned.corners.map(|c| side(&root, &c.at));
         // The best area of a fan that ends at a corner, and the corner before: after one
@@ -290,7 +296,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
         let mut before = [[0; ROOM]; ROOM];
         for chosen in before.iter_mut().take(most).skip(2) {
             let shorter = best;
-            for j in 1..turned.len {
+            for j in 1..len {
                 best[j] = Real::NEG_INFINITY;
                 for i in 1..j {
                     let area = shorter[i] + cross(&spoke[i], &spoke[j]);
@@ -307,20 +313,21 @@ impl<const ROOM: usize> Polygon<ROOM> {
                 best[j]
             }
         };
-        let mut at = 1;
-        for j in 2..turned.len {
-            if score(j) > score(at) {
-                at = j;
+        let (mut at, mut largest) = (1, score(1));
+        for j in 2..len {
+            if score(j) > largest {
+                (at, largest) = (j, score(j));
             }
         }
         let mut taken = [0; ROOM];
-        for (count, place) in taken.iter_mut().enumerate().take(most).skip(1).rev() {
+        let fans = taken.iter_mut().zip(&before).take(most).skip(1);
+        for (place, before) in fans.rev() {
             *place = at;
-            at = before[count][at];
+            at = before.get(at).copied().unwrap_or_default();
         }
         let mut rest = Self::default();
         for place in taken.iter().take(most) {
-            rest.push(turned.corners[*place]);
+            rest.extend(turned.corners.get(*place..=*place).unwrap_or(&[]));
         }
         rest
     }

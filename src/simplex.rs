@@ -147,13 +147,14 @@ impl Simplex {
         Some(if n.dot(newest) > n.dot(a) { -n } else { n })
     }
 
+    /// Keeps so many of the points, these. (`% 4`: in range, and the compiler sees it.)
     #[inline]
-    fn keep(&mut self, which: &[usize]) {
+    fn keep(&mut self, Indices(which, len): &Indices) {
         let old = self.points;
-        for (to, &from) in which.iter().enumerate() {
-            self.points[to] = old[from];
+        for (to, from) in self.points.iter_mut().zip(which).take(*len) {
+            *to = old[from % 4];
         }
-        self.len = which.len();
+        self.len = *len;
     }
 
     /// Reduces the simplex to the face that holds its point nearest to the origin.
@@ -164,17 +165,17 @@ impl Simplex {
     /// them, that is what makes every new point count.
     #[inline]
     pub fn reduce(&mut self) -> Nearest {
-        let p = |i: usize| self.points[i].v;
+        let [a, b, c, _] = self.points.each_ref().map(|p| p.v);
         match self.len {
-            1 => Nearest::Outside(p(0)),
+            1 => Nearest::Outside(a),
             2 => {
-                let (v, face) = nearest_on_segment(&p(0), &p(1));
-                self.keep(face.indices(&[0, 1, 0]).as_slice());
+                let (v, face) = nearest_on_segment(&a, &b);
+                self.keep(&face.indices(&[0, 1, 0]));
                 Nearest::Outside(v)
             }
             3 => {
-                let (v, face) = nearest_on_triangle(&p(0), &p(1), &p(2));
-                self.keep(face.indices(&[0, 1, 2]).as_slice());
+                let (v, face) = nearest_on_triangle(&a, &b, &c);
+                self.keep(&face.indices(&[0, 1, 2]));
                 Nearest::Outside(v)
             }
             _ => self.reduce_tetrahedron(),
@@ -186,10 +187,10 @@ impl Simplex {
         let rounding = 4.0 * EPSILON * self.magnitude();
         // The last face lacks the newest vertex.
         for (f, opposite) in FACES[..3].iter().zip([2, 0, 1]) {
-            let [a, b, c] = f.map(|i| self.points[i].v);
+            let [a, b, c] = f.map(|i| self.points[i % 4].v);
             let n = (b - a).cross(&(c - a));
             let origin = -n.dot(&a);
-            let inner = n.dot(&(self.points[opposite].v - a));
+            let inner = n.dot(&(self.points[opposite % 4].v - a));
             // The origin is on the inner side of this face only if both products
             // have one sign; a flat tetrahedron (0) or NaN examines the face. So does
             // an origin so near its plane that the rounding of the corners, which a
@@ -209,7 +210,7 @@ impl Simplex {
         match best {
             None => Nearest::Inside,
             Some((_, v, face, f)) => {
-                self.keep(face.indices(&f).as_slice());
+                self.keep(&face.indices(&f));
                 Nearest::Outside(v)
             }
         }
@@ -233,19 +234,13 @@ enum Face {
 /// One to three indices, without a heap.
 struct Indices([usize; 3], usize);
 
-impl Indices {
-    #[inline]
-    fn as_slice(&self) -> &[usize] {
-        &self.0[..self.1]
-    }
-}
-
 impl Face {
     #[inline]
     fn indices(self, of: &[usize; 3]) -> Indices {
+        let at = |i: usize| of[i.min(2)];
         match self {
-            Face::Vertex(i) => Indices([of[i], 0, 0], 1),
-            Face::Edge(i, j) => Indices([of[i], of[j], 0], 2),
+            Face::Vertex(i) => Indices([at(i), 0, 0], 1),
+            Face::Edge(i, j) => Indices([at(i), at(j), 0], 2),
             Face::All => Indices(*of, 3),
         }
     }
