@@ -10,14 +10,14 @@
 
 use crate::contact::{Penetration, Settings};
 use crate::math::{Real, Vec3};
-use crate::portal::{self, Exit, Found, Measure, Plane, Portal, rounding};
+use crate::portal::{self, Exit, Found, Measure, Portal, SupportPlane, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
 
 /// Where the ray leaves D, as long as the origin is in D.
 pub struct Way {
     /// The answer with its lower bound.
     pub hit: Penetration,
-    /// The bounds are no closer than that by rounding, metres.
+    /// What rounding keeps the bounds apart by, metres.
     pub error: Real,
     /// Did a cap come first?
     pub limit: bool,
@@ -57,7 +57,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     };
     let hit = Penetration {
         depth,
-        // max also drops NaN
+        // `max` passes over NaN.
         depth_lower: lower.max(0.0).min(depth),
         dir: *dir,
         normal: plane.normal,
@@ -76,8 +76,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 
 /// After the cap, or a portal without area: every support plane is sound, and the one that
 /// the ray meets first is the best of them.
-fn nearest(dir: &Vec3, first: Plane, portal: Option<&Portal>) -> Plane {
-    let reach = |p: &Plane| p.depth / dir.dot(&p.normal);
+fn nearest(dir: &Vec3, first: SupportPlane, portal: Option<&Portal>) -> SupportPlane {
+    let reach = |p: &SupportPlane| p.depth / dir.dot(&p.normal);
     let mut best = first;
     for p in portal.iter().flat_map(|p| &p.planes) {
         if dir.dot(&p.normal) > 0.0 && reach(p) < reach(&best) {
@@ -89,7 +89,7 @@ fn nearest(dir: &Vec3, first: Plane, portal: Option<&Portal>) -> Plane {
 
 /// Where the ray crosses the portal less its error, and that error, metres.
 fn inscribed(dir: &Vec3, portal: &Portal) -> (Real, Real) {
-    let largest = |m: Real, plane: &Plane| m.max(plane.point.magnitude());
+    let largest = |m: Real, plane: &SupportPlane| m.max(plane.point.magnitude());
     let size = portal.planes.iter().fold(0.0, largest);
     portal.normal().map_or((0.0, 0.0), |n| {
         let error = rounding(size) / n.dot(dir);
@@ -104,13 +104,17 @@ fn follow<A: SupportMap, B: SupportMap>(
     last: Option<[Vec3; 3]>,
     tolerance: Real,
     budget: &mut u64,
-) -> Result<(Exit, Plane), Fault> {
-    let finish = |portal: Portal, best: &mut Plane, budget: &mut u64| {
+) -> Result<(Exit, SupportPlane), Fault> {
+    let finish = |portal: Portal, best: &mut SupportPlane, budget: &mut u64| {
         portal::refine(md, portal, tolerance, Measure::Ray, false, best, budget)
     };
     // The last portal, found again by its three directions.
     if let Some([a, b, c]) = last {
-        let planes = [Plane::of(md, a)?, Plane::of(md, b)?, Plane::of(md, c)?];
+        let planes = [
+            SupportPlane::of(md, a)?,
+            SupportPlane::of(md, b)?,
+            SupportPlane::of(md, c)?,
+        ];
         if let Some(out) = planes.iter().find(|p| p.depth < 0.0) {
             return Ok((Exit::Miss(out.normal), *out));
         }
@@ -122,7 +126,7 @@ fn follow<A: SupportMap, B: SupportMap>(
             }
         }
     }
-    let first = Plane::of(md, *dir)?;
+    let first = SupportPlane::of(md, *dir)?;
     let mut best = first;
     let exit = match portal::find_portal(md, &first, None, &mut best, budget)? {
         Found::Portal(portal) => finish(portal, &mut best, budget)?,

@@ -31,8 +31,8 @@ pub struct Penetration {
     pub point1: Vec3,
     /// Witness point on obj2.
     pub point2: Vec3,
-    /// How far apart points were seen of a face of D that more than one pair of points
-    /// touches in; 0 where the witness points are the only ones, or none was looked for.
+    /// The length seen, metres, of the region in which the objects touch; 0 where that is one
+    /// pair of points, or nobody looked.
     pub width: Real,
     /// Iterations of the solver.
     pub iterations: u64,
@@ -49,7 +49,7 @@ pub enum Answer {
     /// The iteration cap came before the objects were shown to overlap or not; moving
     /// obj2 by this answer would separate them.
     Undecided(Penetration),
-    /// They are apart: the support plane of this unit direction has the origin
-    /// strictly outside, n·s(n) < 0.
+    /// They are apart, or touch within rounding: the support value of this unit direction,
+    /// n·s(n), is negative or no more than rounding.
     Miss(Vec3),
 }

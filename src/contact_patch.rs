@@ -34,13 +34,15 @@ const CIRCLE: [[Real; 2]; AROUND] = [
 /// Corners of an intersection, at most: each halfplane adds one.
 const ROOM: usize = 2 * AROUND;
 
-/// How far apart the points of a touched face of D are, if more than one pair of points of
-/// the two objects touches there; else 0. The face is what lies within the tolerance below
-/// the highest of the points along the normal n, within which curved faces of objects of
-/// this `size` seem to be flat, over the square root of the product of the two.
+/// The length, metres, of the face of D that has the normal n, if more than one pair of points
+/// of the two objects touches there; else 0.
 ///
-/// The pairs that touch fill as many dimensions as the two faces have more than the face
-/// of D, their difference.
+/// The face is known by those of the points that lie no more than the tolerance below the
+/// highest along n. So much of a curved object of this `size` seems to be flat too, over about
+/// sqrt(tolerance · size): what is no longer than that is a point.
+///
+/// The face of D is the difference of two faces, one of each object. Where its dimensions are
+/// fewer than theirs together, the objects touch in more than one pair of points.
 pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> Real {
     let top = points
         .iter()
@@ -73,11 +75,11 @@ pub enum Rest {
     Along(Real),
 }
 
-/// The points of one object that lie on its support plane.
+/// The points of one object that lie on its support plane along a normal.
 struct Touch {
     /// One of them.
     first: Vec3,
-    /// Heights above this are on the plane, metres.
+    /// Points as high as this along the normal, or higher, are on the plane, metres.
     least: Real,
     /// The way from the first to the one farthest from it, and its square.
     side: Vec3,
@@ -111,10 +113,10 @@ impl Touch {
     }
 }
 
-/// How the objects touch where the support plane along `n` is, as far as `count` points
-/// tell: points of either object within `tolerance` of its own support plane, whether
-/// the point of D is on its face or not. `top` are the witnesses of the support point along
-/// `n`.
+/// How the objects touch along the normal `n`, as far as `count` support points of D tell,
+/// whose witnesses `point` gives. A witness within `tolerance` of its own object's support
+/// plane is on that object's face, whether the other one is on its own or not. `top` are the
+/// witnesses of the support point along `n`.
 #[inline(always)]
 pub fn rest<'p>(
     point: impl Fn(usize) -> &'p [Vec3; 2] + Copy,
@@ -155,8 +157,8 @@ pub fn rest<'p>(
     }
 }
 
-/// The dimensions of a set of points in a plane, and its length; what is shorter or
-/// narrower than the square root of `blur` is nothing.
+/// How many dimensions a set of points in a plane has, and its length, metres; what is shorter
+/// or narrower than the square root of `blur`, m², is nothing.
 fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: Real) -> (u32, Real) {
     let Some(first) = points.clone().next() else {
         return (0, 0.0);
@@ -194,7 +196,8 @@ pub fn settle<A: SupportMap, B: SupportMap>(
     let n = hit.normal;
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);
-    // Farther aside than a normal within the tolerance may be turned.
+    // The face's own normal is within tolerance / width of n, about: twice that finds its
+    // corners.
     let tolerance = math::tolerance(tolerance, hit.width, 0.0);
     let tilt = larger(2.0 * tolerance / hit.width, 64.0 * EPSILON);
     let mut corners = [SupportPoint::default(); AROUND];

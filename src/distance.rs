@@ -111,8 +111,8 @@ impl Simplex {
     ///
     /// Returns the way from there to the target, of any length, and the square of the
     /// distance, m². The way is zero where a triangle without area holds the target. `None`:
-    /// the target is inside the tetrahedron, off its faces by more than the noise; but from
-    /// its base, on which the last point was put, it may be less far.
+    /// the target is inside the tetrahedron, off its three new faces by more than the noise;
+    /// its distance from the old one, the base, is not looked at.
     #[inline(always)]
     pub fn add(&mut self, id: usize, at: Vec3, noise: Real, size2: Real) -> Option<(Vec3, Real)> {
         let w = self.place();
@@ -161,8 +161,8 @@ impl Simplex {
         self.len = (self.len + 1).min(3);
     }
 
-    /// As [`Simplex::add`] without a new point, and without trust in that the last one is
-    /// nearer than the others: every face of the simplex counts.
+    /// As [`Simplex::add`] without a new point; and every face of the simplex counts, not
+    /// only those with the newest point.
     pub fn settle(&mut self, noise: Real) -> (Vec3, Real) {
         let [i, j, k] = self.order;
         let at = self.order.map(|p| self.at[p & 3]);
@@ -248,8 +248,9 @@ impl Simplex {
         face
     }
 
-    /// The nearest point of the triangle of `i`, `j` and the newest point `w`, with the normal
-    /// `n` outwards, j × w and w × i, among those that can hold it.
+    /// The part of a triangle that holds its nearest point: the triangle of `order` = i, j and
+    /// the newest point w, or of its edges those with w, which alone can. Given are its outward
+    /// normal `n`, and with the corners as vectors j × w and w × i.
     #[inline(always)]
     fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, noise: Real) -> Face {
         let [i, j, w] = order;
@@ -342,8 +343,9 @@ impl Simplex {
     }
 }
 
-/// Is the target off the face of p, q and w by more than twice the slack, where the cheaper
-/// bound does not tell? `height` is the distance times twice the face's area.
+/// Is the target off the face of p, q and w by more than twice the slack? For heights that
+/// [`Simplex::tetrahedron`]'s cheaper bound leaves open; `height` is the distance times twice
+/// the face's area.
 #[cold]
 fn off(height: Real, p: &Vec3, q: &Vec3, w: &Vec3, slack: Real) -> bool {
     height > 2.0 * slack * normal(p, q, w).norm()
@@ -758,9 +760,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if !(n.dot(&v) - inside > noise) {
                 break;
             }
-            // w takes the place of the corner that is not one of the pair on either side of
-            // the plane through the ray and w. That of a corner on it is rounding: the pair
-            // that is most so counts.
+            // As in [`crate::portal::Portal::update`].
             let across = ray.cross(&v);
             let [t1, t2, t3] = [p, q, r].map(|x| across.dot(&x));
             let split = [t2.min(-t3), t3.min(-t1), t1.min(-t2)];

@@ -42,7 +42,7 @@
 //! then, yes or no is left to the caller.
 
 use crate::barycentric;
-use crate::math::{Real, Vec3, larger, unit, wide};
+use crate::math::{Real, Vec3, larger, lesser, unit, wide};
 use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope, Top};
 use crate::precision::Precision;
@@ -88,11 +88,12 @@ const NEIGHBOURS: core::ops::Range<Real> = if cfg!(feature = "single") {
 pub struct Limits {
     /// Largest gap between the bounds, metres, as asked for.
     pub tolerance: Real,
-    /// The same as a share of the depth; the larger one counts.
+    /// The same as a share of the depth, for a search that has left the first room
+    /// ([`Progress::coarsen`]): there the larger of the two counts.
     pub gap: Real,
-    /// Cap on the support points of the query.
+    /// Cap on the support points of the query, once the origin is inside the polytope.
     pub supports: u64,
-    /// Cap on those after the first tetrahedron.
+    /// Cap on those after the first tetrahedron, likewise.
     pub iterations: u64,
 }
 
@@ -109,54 +110,67 @@ pub enum End {
     NoRoom,
 }
 
-/// What a search knows besides the points and the polytope.
+/// What a search knows besides the points and the polytope. A face's *key* is the signed
+/// square of its distance from the origin, m².
 pub struct Progress {
     limits: Limits,
     /// Support points after the tetrahedron.
     pub iterations: u64,
-    /// The last nearest distance, squared, and how often it was met one time after another.
+    /// The key of the nearest face, and for how many steps on end it has not changed.
     same: (f64, u32),
-    /// The upper bound that the target belongs to, and the planes' error then.
-    known: Real,
+    /// The least depth met, metres, as far as the target knows.
+    upper: Real,
+    /// What planes were off by when the target was set, metres; at most half of `allowed`.
     error: Real,
-    /// The gap counts.
+    /// Has the search left the first room? From then on [`Limits::gap`] counts too.
     coarse: bool,
-    /// Signed square of the distance that proves a face, m².
+    /// A nearest face with this key or a greater one proves the upper bound.
     target: f64,
-    /// The tolerance in force, and the gap that is allowed, metres.
+    /// The tolerance in force, metres: [`Limits::tolerance`] within what the sizes allow.
     pub tolerance: Real,
+    /// The gap between the bounds that is allowed, metres: `tolerance`, or more if `coarse`.
     allowed: Real,
-    /// A point is above a face by more than this, metres: while the origin is outside (and its
-    /// square), and after.
+    /// While the origin is outside, a point is above a face by more than this, metres.
     rounding: Real,
+    /// Its square: a face with a key beyond has the origin inside for certain.
     rounding2: f64,
+    /// Once the origin is inside, a point is above a face by more than this, metres.
     level: Real,
+    /// The square of the size that tolerance, rounding and level belong to; -1: of none.
     size2: Real,
-    /// Steps for which plain normals are asked; how many means were asked in vain.
+    /// No mean of normals is asked in so many steps.
     plain: i32,
+    /// How many means were asked in vain.
     vain: i32,
-    /// The key of the face whose mean was.
+    /// The key of the face whose mean was in vain last: it is not asked twice.
     lone: f64,
     core: Core,
 }
 
-/// The ball that the samples tell of.
+/// The ball that the samples tell of, see the head of this file.
 struct Core {
+    /// Its radius, metres; 0 while none is known.
     radius: Real,
+    /// It is not asked in so many steps.
     pause: i32,
+    /// How many promises were not kept.
     failures: i32,
-    /// The face it was last asked for.
+    /// The key of the face it was asked for last: it is not asked twice.
     key: f64,
-    /// The value foretold, and the upper bound then.
+    /// The support value promised then, metres.
     foretold: Real,
+    /// The upper bound then, metres.
     before: Real,
 }
 
 /// What a direction was chosen by.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Aim {
+    /// The nearest face's normal.
     Normal,
+    /// The mean of normals around that face.
     Mean,
+    /// The ball.
     Core,
 }
 
@@ -167,7 +181,7 @@ impl Progress {
             limits: *limits,
             iterations: 0,
             same: (0.0, 0),
-            known: Real::INFINITY,
+            upper: Real::INFINITY,
             error: 0.0,
             coarse: false,
             target: 0.0,
@@ -207,10 +221,10 @@ impl Progress {
             self.rounding2 = wide(self.rounding * self.rounding);
             self.level = self.rounding + LEVEL * self.tolerance;
             hull.grow(precision.size());
-            self.known = Real::INFINITY;
+            self.upper = Real::INFINITY;
         }
-        if depth < self.known {
-            self.known = depth;
+        if depth < self.upper {
+            self.upper = depth;
             self.aim_at(hull.error() + precision.grain());
         }
     }
@@ -220,17 +234,17 @@ impl Progress {
         // A share of the least depth, not of this one.
         let gap = self.limits.gap / (1.0 + self.limits.gap);
         self.allowed = if self.coarse {
-            larger(gap * self.known, self.tolerance)
+            larger(gap * self.upper, self.tolerance)
         } else {
             self.tolerance
         };
         self.error = lesser(error, 0.5 * self.allowed);
-        let target = wide(self.known - self.allowed + self.error);
+        let target = wide(self.upper - self.allowed + self.error);
         self.target = target * target.abs();
     }
 
-    /// Is the bound of the nearest face good enough with the error that planes have by now?
-    /// Else the target is farther from here on.
+    /// The nearest face has come to the target: is that still so with the error that planes
+    /// have by now? Else the target is moved outwards.
     #[inline(always)]
     fn proven<const F: usize>(&mut self, hull: &Polytope<F>, grain: Real) -> bool {
         let error = hull.error() + grain;
@@ -250,10 +264,33 @@ impl Progress {
         self.same.1 > CIRCLES
     }
 
-    /// The search has left the first room: from here on the gap counts.
+    /// Has one of the caller's caps come?
+    #[inline(always)]
+    fn is_spent(&self, supports: u64) -> bool {
+        self.iterations >= self.limits.iterations || supports >= self.limits.supports
+    }
+
+    /// A direction that was chosen so has this support value.
+    #[inline(always)]
+    fn step(&mut self, aim: Aim, h: Real) {
+        self.iterations += 1;
+        self.plain -= 1;
+        self.core.pause -= 1;
+        self.core.learn(aim, h);
+    }
+
+    /// Plain normals for a while, longer each time.
+    #[inline(always)]
+    fn mean_was_in_vain(&mut self, top: &Top) {
+        self.lone = top.key;
+        self.vain += 1;
+        self.plain = 1 + 2 * self.vain;
+    }
+
+    /// The search has left the first room: from here on [`Limits::gap`] counts too.
     pub fn coarsen(&mut self) {
         self.coarse = true;
-        self.known = Real::INFINITY;
+        self.upper = Real::INFINITY;
     }
 }
 
@@ -268,64 +305,72 @@ pub fn exact(tolerance: Real, precision: &Precision) -> bool {
     !(tolerance > EXACT * precision.size() && tolerance > 64.0 * precision.grain())
 }
 
-/// Expands the polytope until the bounds meet or means end.
+/// Expands the polytope at its nearest face until the bounds meet, or [`End`] says why not.
+///
+/// Each turn asks along one direction. A point above the nearest face becomes a corner. Else
+/// what was asked along decides: a promise of the ball, or a mean, that found nothing is
+/// forgotten; a normal that found nothing shows that no point lies above the face, so either
+/// the upper bound has fallen, or the face's plane can be sharpened, or rounding ends the
+/// search.
 #[inline(always)]
 pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<P>,
     hull: &mut Polytope<F>,
-    state: &mut Progress,
+    progress: &mut Progress,
 ) -> Result<End, Stop> {
-    // Each turn asks once or moves the target, and there are caps on both.
+    // Ends: a turn asks, up to the caps (outside, to the room or [`Progress::circles`]), or
+    // moves the target, by a tenth of the error until that is half of what is allowed.
     loop {
         if set.is_full() {
             return Ok(End::NoRoom);
         }
         let top = hull.nearest();
-        state.update(inquiry, hull);
+        progress.update(inquiry, hull);
         let inside = top.key >= 0.0;
-        if top.key >= state.target && inside {
-            if state.proven(hull, inquiry.precision.grain()) {
+        if top.key >= progress.target && inside {
+            if progress.proven(hull, inquiry.precision.grain()) {
                 return Ok(End::Proven);
             }
             continue;
         }
-        // A face through the origin shows neither.
-        let shown = top.key > state.rounding2;
+        // A face through the origin, to rounding, shows neither inside nor outside.
+        let shown = top.key > progress.rounding2;
         let stuck = if shown { End::Inside } else { End::Open };
-        if state.circles(&top) {
+        if progress.circles(&top) {
             return Ok(stuck);
         }
-        // While the origin is outside the room is the cap: an overlap is no miss because
-        // the caller has no patience.
-        let spent = state.iterations >= state.limits.iterations
-            || inquiry.md.supports() >= state.limits.supports;
-        if spent && inside {
+        // While the origin is outside, the room is the only cap: the caller's caps are not
+        // to make a miss of an overlap.
+        if inside && progress.is_spent(inquiry.md.supports()) {
             return Ok(End::Inside);
         }
-        let (dir, aim) = state.aim(set, hull, &top);
+        let (dir, aim) = progress.aim(set, hull, &top);
         let Some(n) = normalised(&dir).or_else(|| unit(&hull.normal(top.face))) else {
             return Ok(stuck);
         };
         let before = inquiry.lowest.depth;
         let count = set.len();
         let (i, h) = inquiry.ask(set, &n)?;
-        state.iterations += 1;
-        state.plain -= 1;
-        state.core.pause -= 1;
-        state.core.learn(aim, h);
+        progress.step(aim, h);
         let v = set.v(i);
         let height = hull.height(top.face, &Plane::point(&v));
-        let level = if inside { state.level } else { state.rounding };
+        let level = if inside {
+            progress.level
+        } else {
+            progress.rounding
+        };
         if height > level && !(hull.borrowed(top.face) && is_corner(set, hull, top.face, &v)) {
             // The start's own points are far apart.
-            if state.iterations > 1 {
-                state.core.measure(set, &hull.corners(top.face), i, level);
+            if progress.iterations > 1 {
+                progress
+                    .core
+                    .measure(set, &hull.corners(top.face), i, level);
             }
             match hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
                 Inserted::Yes => continue,
                 Inserted::NoRoom => {
-                    // It is asked again in the larger room.
+                    // Its direction is asked again in the larger room.
                     set.truncate(count);
                     return Ok(End::NoRoom);
                 }
@@ -335,11 +380,9 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             Aim::Core => set.truncate(count),
             Aim::Mean => {
                 set.truncate(count);
-                state.lone = top.key;
-                state.vain += 1;
-                state.plain = 1 + 2 * state.vain;
+                progress.mean_was_in_vain(&top);
             }
-            // What lowered the upper bound has moved the target.
+            // A lower upper bound moves the target nearer in the next turn.
             Aim::Normal if inquiry.lowest.depth < before => {}
             Aim::Normal if hull.refine(top.face, &|i| set.v(i)) => set.truncate(count),
             Aim::Normal => return Ok(stuck),
@@ -365,7 +408,7 @@ fn is_corner<const P: usize, const F: usize>(
 }
 
 impl Progress {
-    /// The direction to ask for the nearest face; not unit.
+    /// The direction to ask for the nearest face, not unit, and what chose it.
     #[inline(always)]
     fn aim<const P: usize, const F: usize>(
         &mut self,
@@ -375,7 +418,7 @@ impl Progress {
     ) -> (Vec3, Aim) {
         if top.key > 0.0 {
             if self.core.radius > 0.0 && self.core.pause <= 0 && self.core.key != top.key {
-                if let Some(n) = self.core.aim(set, hull, top, self.known, self.allowed) {
+                if let Some(n) = self.core.aim(set, hull, top, self.upper, self.allowed) {
                     return (n, Aim::Core);
                 }
             }
@@ -388,7 +431,8 @@ impl Progress {
 }
 
 impl Core {
-    /// What the ball promises of a face, where that is worth a support point.
+    /// The direction in which the ball promises a lower depth near the nearest face, where that
+    /// is worth a support point.
     #[inline(always)]
     fn aim<const P: usize, const F: usize>(
         &mut self,
@@ -416,8 +460,8 @@ impl Core {
         };
         let along = n.dot(&normal);
         // Within 45 degrees of the face's normal, and no touch.
-        let sees = along > 0.0 && along * along > 0.5 * normal.norm_squared();
-        if !(sees && foretold > 0.0 && foretold < upper - PROMISE * allowed) {
+        let ahead = along > 0.0 && along * along > 0.5 * normal.norm_squared();
+        if !(ahead && foretold > 0.0 && foretold < upper - PROMISE * allowed) {
             return None;
         }
         (self.key, self.foretold, self.before) = (top.key, foretold, upper);
@@ -464,9 +508,4 @@ impl Core {
             self.radius = sum / turn2;
         }
     }
-}
-
-#[inline(always)]
-fn lesser(a: Real, b: Real) -> Real {
-    if a < b { a } else { b }
 }

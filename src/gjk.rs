@@ -12,7 +12,7 @@
 //! within rounding (a few ulps of their coordinates) count as overlapping.
 
 use crate::math::{EPSILON, Real, Vec3, unit};
-use crate::portal::{self, Exit, Found, Measure, Plane};
+use crate::portal::{self, Exit, Found, Measure, SupportPlane};
 use crate::simplex::{Nearest, Simplex};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -208,7 +208,7 @@ fn near_touch<A: SupportMap, B: SupportMap>(
     let Some(d) = unit(&-inner.v) else {
         return Ok(Overlap::Yes(simplex, 0.0));
     };
-    let first = Plane::of(md, d)?;
+    let first = SupportPlane::of(md, d)?;
     let mut best = first;
     let mut budget = max_iterations;
     let found = portal::find_portal(md, &first, Some(&inner.v), &mut best, &mut budget)?;

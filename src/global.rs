@@ -1,13 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The global minimum of the depth from start to end: the first direction, the apex, the
-//! first tetrahedron ([`crate::start`]), the expansion ([`crate::expansion`]) in rooms
-//! that grow, and the answer.
+//! The global minimum of the depth from start to end.
 //!
-//! The points live in a small room on the stack that most queries never leave, in larger
-//! ones that are frames of their own, entered only then, and in a block that the caller
-//! lends ([`Arena`]), where it does.
+//! 1. The first direction. Where its support point separates, that is the answer.
+//! 2. The apex, and the points that the last query's proof stood on ([`Search::begin`]).
+//! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::start`], and the polytope of
+//!    it and all other points so far ([`Search::build`]).
+//! 4. The expansion ([`crate::expansion`]), in rooms that grow. Where it does not show the
+//!    origin inside, 3 and 4 are tried again in the next way.
+//! 5. The answer ([`Search::conclude`]).
+//!
+//! *Rooms.* Points and faces live in a small room on the stack that most queries never leave;
+//! where it is full they move to larger ones, each in a stack frame of its own that is entered
+//! only then, and at last to a block that the caller lends ([`Arena`]), if it does.
 
 use crate::barycentric;
 use crate::contact::{Answer, Penetration};
@@ -21,15 +27,18 @@ use crate::start;
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
 
-/// Points and faces of the rooms on the stack, 3, 5 and 31 KB: for shallow contacts; for
-/// polytopes; for the 160 support points of an MPR query. A closed surface of V points has
-/// 2V − 4 faces, and a fan is there before what it replaces is gone.
+/// Points and faces of the first room, 3 KB: enough for shallow contacts.
+///
+/// In each room, a closed surface of V points has 2V − 4 faces, and some are left over for a
+/// fan, which is made before the faces that it replaces are freed.
 const FIRST: (usize, usize) = (16, 32);
+/// Of the second, 5 KB (double): enough for most polytopes.
 const SECOND: (usize, usize) = (24, 48);
+/// Of the third, 31 KB: enough for the 160 support points of an MPR query.
 const THIRD: (usize, usize) = (162, 328);
-/// Of the one that is lent.
+/// Of the one that is lent, 348 KB.
 const LENT: (usize, usize) = (1536, crate::polytope::MOST_FACES);
-/// Places that the start needs for its own points.
+/// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
 /// Memory for the largest polytopes. All bytes zero is a valid one.
@@ -56,11 +65,11 @@ pub struct Request<'a> {
     pub first: Vec3,
     /// Its support point, where that has been asked for.
     pub asked: Option<SupportPoint>,
-    /// Directions that the last proof stood on, besides; zero for none.
+    /// Directions besides `first` that the last proof stood on; zero for none. Empty: cold.
     pub others: &'a [Vec3],
     /// How far to go.
     pub limits: Limits,
-    /// Does anybody read the witness points? Else the width of the contact is 0.
+    /// Does anybody read the witness points? Else the width of the contact is not looked for.
     pub placed: bool,
     /// Did the pair rest face on face when it was asked last?
     pub rested: bool,
@@ -73,7 +82,8 @@ impl Request<'_> {
     }
 }
 
-/// Directions that a proof stands on, unit, the minimum's first.
+/// The directions that a proof stands on, for the next query of the pair: unit, the minimum's
+/// first, then those that found the corners of the polytope's nearest face.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Basis {
     directions: [Vec3; Basis::ROOM],
@@ -81,7 +91,7 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// How many there is room for: the minimum's and a face's.
+    /// How many there is room for: the minimum's and three corners'.
     pub const ROOM: usize = 4;
 
     /// The directions.
@@ -103,8 +113,8 @@ impl Basis {
 /// all there is.
 ///
 /// `Hit`: proven to within the limits' gap; `depth_lower` is what the polytope proves.
-/// `Limit`: a cap or rounding came first; the depth is sound, the lower bound proven all
-/// the same. `Miss`: apart, or touching within rounding.
+/// `Limit`: a cap or rounding came first; the depth is sound, and the lower bound proven,
+/// but they are farther apart. `Miss`: apart, or touching within rounding.
 ///
 /// # Errors
 /// A callback's answer that is not finite, or an arena without memory.
@@ -116,7 +126,7 @@ pub fn minimum<'r, A: SupportMap, B: SupportMap>(
     basis: Option<&'r mut Basis>,
 ) -> Result<Answer, Fault> {
     let mut inquiry = Inquiry::new(md);
-    // A pair that is told apart by one support point costs no room.
+    // Before the rooms' frames: most misses are told by the first support point.
     let ended = match inquiry.first(&request.first, request.asked) {
         Ok(first) => {
             let mut search = Search {
@@ -137,16 +147,29 @@ pub fn minimum<'r, A: SupportMap, B: SupportMap>(
     }
 }
 
-/// The ways to a first tetrahedron, see [`crate::start`].
-#[derive(Clone, Copy)]
+/// A way to a first tetrahedron.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
+    /// [`start::known`].
     Known,
+    /// [`start::ring_of_ball`].
     Ring,
+    /// [`start::portal`].
     Portal,
+    /// [`start::solid`].
     Solid,
     /// The corners around the origin that the distance algorithm finds.
     Surround,
 }
+
+/// In the order in which they are tried: what costs least comes first.
+const WAYS: [Way; 5] = [
+    Way::Known,
+    Way::Ring,
+    Way::Portal,
+    Way::Solid,
+    Way::Surround,
+];
 
 /// A query on its way.
 struct Search<'q, 'r, A, B> {
@@ -154,31 +177,27 @@ struct Search<'q, 'r, A, B> {
     request: &'r Request<'r>,
     arena: Option<&'r mut dyn Arena>,
     basis: Option<&'r mut Basis>,
-    /// What a search came to that has not shown the origin inside.
+    /// The answer of the last expansion that has not shown the origin inside: given where no
+    /// other does.
     open: Option<Answer>,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
-    /// After the first support point.
+    /// All that comes after the first support point.
     #[inline(never)]
     fn run(&mut self, first: &SupportPoint) -> Result<Answer, Stop> {
         let mut set = SupportSet::<{ FIRST.0 }>::EMPTY;
-        let opposite = self.begin(&mut set, first)?;
+        let mut opposite = self.begin(&mut set, first)?;
         let tolerance = self.tolerance();
         let gap = self.request.limits.gap;
         let within = |depth: Real| larger(gap * depth, tolerance);
         let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
+        // The index of `opposite`, once it is in the set.
         let mut skip = usize::MAX;
         let mut large = false;
-        for way in [
-            Way::Known,
-            Way::Ring,
-            Way::Portal,
-            Way::Solid,
-            Way::Surround,
-        ] {
-            // What a large room has not shown no other tetrahedron of the same points will.
-            if large && !matches!(way, Way::Surround) {
+        for way in WAYS {
+            // What a larger room has not shown no other tetrahedron of the same points will.
+            if large && way != Way::Surround {
                 continue;
             }
             let names = match way {
@@ -188,26 +207,29 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 Way::Solid => start::solid(&mut self.inquiry, &mut set)?,
                 Way::Surround => Some(self.surround(&mut set)?),
             };
-            if let (Way::Known, true, Some((n, point))) = (way, names.is_some(), &opposite) {
-                skip = set.push(n, point);
-            }
-            if let (Way::Ring, true, Some((n, point))) = (way, skip == usize::MAX, &opposite) {
-                skip = set.push(n, point);
+            // A point of the polytope like others from here on, but no corner of a portal.
+            if names.is_some() || way == Way::Ring {
+                if let Some((n, point)) = opposite.take() {
+                    skip = set.push(&n, &point);
+                }
             }
             if !names.is_some_and(|names| self.build(&set, &mut hull, names)) {
                 continue;
             }
-            let mut state = Progress::new(&self.request.limits, set.len());
-            let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut state)?;
-            // From another apex, or none, rounding may not have the last word.
+            let mut progress = Progress::new(&self.request.limits, set.len());
+            let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
+            // Where an expansion stays open, rounding had the last word: from another
+            // tetrahedron it may not.
             if end != End::NoRoom {
-                if let Some(answer) = self.answer(&set, &hull, &state, end) {
+                if let Some(answer) = self.answer(&set, &hull, &progress, end) {
                     return Ok(answer);
                 }
                 continue;
             }
             let answer = self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
-                &set, &hull, &mut state,
+                &set,
+                &hull,
+                &mut progress,
             )?;
             if let Some(answer) = answer {
                 return Ok(answer);
@@ -218,8 +240,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Ok(open.unwrap_or_else(|| Answer::Limit(self.bare(&set.point(1)))))
     }
 
-    /// The polytope has not come to hold the origin, by rounding or by contradictions: yes
-    /// or no is left to the distance algorithm, and its tetrahedron is the last start.
+    /// No polytope has come to hold the origin, by rounding or by callbacks that contradict
+    /// themselves: the distance algorithm decides whether the objects overlap, and its
+    /// tetrahedron is the last start.
     #[cold]
     #[inline(never)]
     fn surround<const P: usize>(&mut self, set: &mut SupportSet<P>) -> Result<[usize; 4], Stop> {
@@ -228,17 +251,17 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         distance::overlap(&mut self.inquiry, set, None, &dir)
     }
 
-    /// What a search came to; `None`, and kept for the end, where it has not shown the origin
-    /// inside.
+    /// The answer of an expansion; `None` where it has not shown the origin inside: then the
+    /// answer is kept in `open`.
     #[inline(always)]
     fn answer<const P: usize, const F: usize>(
         &mut self,
         set: &SupportSet<P>,
         hull: &Polytope<F>,
-        state: &Progress,
+        progress: &Progress,
         end: End,
     ) -> Option<Answer> {
-        let answer = self.conclude(set, hull, state, end);
+        let answer = self.conclude(set, hull, progress, end);
         let outside = !(hull.nearest().key >= 0.0);
         if end == End::Open || end == End::NoRoom && outside {
             self.open = Some(answer);
@@ -253,9 +276,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             .tolerance(self.request.limits.tolerance)
     }
 
-    /// The apex, as point 0, and the first points. Where the apex is the middle of two
-    /// points, the other of them is returned: on a line with the apex and the first it is
-    /// no corner of a tetrahedron.
+    /// Puts the apex into the set as point 0, `first` as point 1, and the points that the last
+    /// proof stood on. Where no centre is given the apex is the middle of `first` and the
+    /// support point opposite, which is returned with its direction. It is not in the set yet:
+    /// on a line with the apex and `first`, it makes no tetrahedron with them.
     #[inline(always)]
     fn begin<const P: usize>(
         &mut self,
@@ -281,8 +305,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             set.truncate(2);
             set.put(0, &Vec3::zeros(), &first.middle(&point));
             opposite = Some((n, point));
-            // A first direction that has nothing to do with where the objects are is only
-            // good for an apex: the way from there through the origin takes its place.
+            // A cold query's first direction may have nothing to do with where the objects
+            // are. Then it is only good for an apex, and the support point along the way from
+            // there through the origin takes its place as point 1.
             if let Some(n) =
                 unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, dir))
             {
@@ -290,7 +315,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 set.swap(1, i);
             }
         }
-        // Whatever a state holds: unit, and no more than there is room for.
+        // A state may hold anything: made unit, and no more than there is room for.
         for n in others.iter().filter_map(unit) {
             if set.len() + START <= P {
                 self.inquiry.ask(set, &n)?;
@@ -299,7 +324,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Ok(opposite)
     }
 
-    /// The polytope of a tetrahedron and all other points. `false`: it is flat.
+    /// The polytope of a tetrahedron and all other points. `false`: the tetrahedron is flat.
     #[inline(always)]
     fn build<const P: usize, const F: usize>(
         &self,
@@ -331,32 +356,33 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         true
     }
 
-    /// The expansion goes on in a larger room of `Q` points and `G` faces.
+    /// The expansion goes on in a larger room of `Q` points and `G` faces, and in those after
+    /// it.
     #[cold]
     #[inline(never)]
     fn widened<const P: usize, const F: usize, const Q: usize, const G: usize>(
         &mut self,
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
-        state: &mut Progress,
+        progress: &mut Progress,
     ) -> Result<Option<Answer>, Stop> {
         let mut set = SupportSet::<Q>::EMPTY;
         let mut hull = Polytope::<G>::BLANK;
         set.take(small);
         polytope.moved_to(&mut hull);
-        state.coarsen();
-        let end = expand(&mut self.inquiry, &mut set, &mut hull, state)?;
+        progress.coarsen();
+        let end = expand(&mut self.inquiry, &mut set, &mut hull, progress)?;
         if end == End::NoRoom && Q < THIRD.0 {
-            return self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, state);
+            return self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, progress);
         }
-        // Lent once only: what is open after that stays so.
+        // It is lent once: an expansion that fills it stays open.
         if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
-            return self.lent(arena.room()?, &set, &hull, state);
+            return self.lent(arena.room()?, &set, &hull, progress);
         }
-        Ok(self.answer(&set, &hull, state, end))
+        Ok(self.answer(&set, &hull, progress, end))
     }
 
-    /// And in the room that is lent.
+    /// The expansion goes on in the room that is lent.
     #[cold]
     #[inline(never)]
     fn lent<const P: usize, const F: usize>(
@@ -364,15 +390,15 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Room { set, hull }: &mut Room,
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
-        state: &mut Progress,
+        progress: &mut Progress,
     ) -> Result<Option<Answer>, Stop> {
         set.take(small);
         polytope.moved_to(hull);
-        let end = expand(&mut self.inquiry, set, hull, state)?;
-        Ok(self.answer(set, hull, state, end))
+        let end = expand(&mut self.inquiry, set, hull, progress)?;
+        Ok(self.answer(set, hull, progress, end))
     }
 
-    /// The upper bound alone.
+    /// The answer where nothing is known but the upper bound.
     fn bare(&self, witness: &SupportPoint) -> Penetration {
         let Lowest { depth, dir, .. } = self.inquiry.lowest;
         Penetration {
@@ -387,13 +413,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
     }
 
-    /// The answer of the upper bound, with the polytope's.
+    /// The answer of an expansion: depth and direction are the upper bound's, lower bound and
+    /// witness points the polytope's.
     #[inline(never)]
     fn conclude<const P: usize, const F: usize>(
         &mut self,
         set: &SupportSet<P>,
         hull: &Polytope<F>,
-        state: &Progress,
+        progress: &Progress,
         end: End,
     ) -> Answer {
         let Lowest { mut depth, dir } = self.inquiry.lowest;
@@ -408,7 +435,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         let near = hull.distance(top.face);
         let lower = larger(near - precision.grain(), 0.0).min(depth);
-        let (face, nearest) = leaves(set, hull, top.face, &dir, depth, state.tolerance);
+        let (face, nearest) = exit_face(set, hull, top.face, &dir, depth, progress.tolerance);
         let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
@@ -420,15 +447,15 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             point1,
             point2,
             width: 0.0,
-            iterations: state.iterations,
+            iterations: progress.iterations,
         };
         if self.request.placed {
-            let error = state.tolerance + precision.rounding();
-            // Of ties along a normal a support mapping picks one: a point asked along the
-            // normal of two faces shows one corner of each.
+            let error = progress.tolerance + precision.rounding();
+            // Asked along the normal of two resting faces, a support mapping picks one corner
+            // of each: where little else was asked, the points do not show that they rest.
             let tied = (dir - set.direction(1)).norm() * precision.size() <= error;
             let blind = self.request.rested || self.request.cold() && tied;
-            // Mostly one of the two touches with a corner.
+            // Mostly one of the two touches with a corner, which needs no look.
             let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
             if blind || !corner {
                 let witnesses = |i| set.witnesses(i + 1);
@@ -450,7 +477,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         if let Some(basis) = &mut self.basis {
             basis.add(&dir);
-            // Asked along dir, the point farthest that way is found again by itself.
+            // The point farthest along dir is found again by asking along dir.
             let found = set.v(lowest);
             for i in hull.corners(top.face) {
                 if set.v(i) != found {
@@ -460,10 +487,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         // Where rounding or a cap ended the search: a tolerance that was asked for coarser
         // than the one in force is met all the same. (In this order NaN is none.)
-        let asked = larger(self.request.limits.tolerance, state.tolerance);
+        let asked = larger(self.request.limits.tolerance, progress.tolerance);
         let close = asked + 16.0 * precision.grain();
-        let short = end == End::Proven && !(hull.error() > 0.5 * state.tolerance);
-        if short || depth - lower <= close {
+        let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
+        if proven || depth - lower <= close {
             Answer::Hit(hit)
         } else {
             Answer::Limit(hit)
@@ -471,12 +498,13 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     }
 }
 
-/// The face where the ray along `dir` leaves, and its point nearest to depth · dir.
+/// The face through which the ray along `dir` leaves the polytope, about, and its point
+/// nearest to the foot depth · dir.
 ///
-/// That is a face no farther than the depth along the ray: mostly the nearest one, `top`;
-/// of faces in one plane the one that has the spot.
+/// Mostly that is the nearest face, `top`. Where several lie in one plane it is the one nearest
+/// to the foot, of all that the ray crosses no later than at the depth.
 #[inline(always)]
-fn leaves<const P: usize, const F: usize>(
+fn exit_face<const P: usize, const F: usize>(
     set: &SupportSet<P>,
     hull: &Polytope<F>,
     top: usize,
@@ -484,10 +512,10 @@ fn leaves<const P: usize, const F: usize>(
     depth: Real,
     tolerance: Real,
 ) -> (usize, barycentric::Nearest<3>) {
-    let spot = dir * depth;
+    let foot = dir * depth;
     let nearest = |f: usize| {
         let [a, b, c] = hull.corners(f).map(|i| set.v(i));
-        barycentric::triangle(&spot, &a, &b, &c)
+        barycentric::triangle(&foot, &a, &b, &c)
     };
     let mut best = (top, nearest(top));
     if best.1.distance2 <= tolerance * tolerance {

@@ -4,9 +4,8 @@
 //! Do two objects overlap, with memory: the yes or no of [`crate::distance`], and what one
 //! query of a pair leaves behind for the next.
 //!
-//! A pair that was apart is asked about its separating direction first. While that still
-//! separates, one support point is the whole answer, and turns the direction for the next
-//! time. A pair that overlapped is asked along the directions of the tetrahedron that proved
+//! A pair that was apart is asked about its separating direction first
+//! ([`crate::separation`]). A pair that overlapped is asked along the directions of the tetrahedron that proved
 //! it: where those points still surround the origin, they are the whole answer. Whatever
 //! fails is not lost: the points go into the search.
 
@@ -21,6 +20,9 @@ use crate::support_set::{Inquiry, Stop, SupportSet};
 const ROOM: usize = 8;
 
 /// Do the objects overlap? `centre`, an interior point of D, is trusted.
+///
+/// # Errors
+/// A callback's answer that is not finite.
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     centre: &SupportPoint,

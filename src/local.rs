@@ -25,7 +25,7 @@
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contact_patch;
 use crate::math::{Real, Vec3, larger, perpendicular};
-use crate::portal::{self, Exit, Plane, Portal, rounding};
+use crate::portal::{self, Exit, Portal, SupportPlane, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
 
 /// When a ray may be left before its end.
@@ -52,11 +52,11 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     mut switched: impl FnMut(Real),
 ) -> Result<Answer, Fault> {
     let mut budget = settings.max_iterations;
-    let mut ray = Plane::of(md, start)?;
+    let mut ray = SupportPlane::of(md, start)?;
     let mut best = ray;
     let may_leave = shortcut == Shortcut::Always;
     // The ray that was stepped aside from: stationary, its depth and witnesses exact.
-    let mut aside: Option<Plane> = None;
+    let mut aside: Option<SupportPlane> = None;
     let used = |budget: u64| settings.max_iterations - budget;
     loop {
         let exit = portal::mpr(
@@ -78,7 +78,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                     let e1 = perpendicular(&ray.normal);
                     let e2 = ray.normal.cross(&e1);
                     let n = ray.normal + e1 * ASIDE.0 + e2 * ASIDE.1;
-                    ray = Plane::of(md, n / n.norm())?;
+                    ray = SupportPlane::of(md, n / n.norm())?;
                     // No switch: the depth may rise.
                     continue;
                 }
@@ -125,7 +125,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 
 /// The answer of a support plane. The witness points are where its portal's ray crosses
 /// the portal; without one, the two of its support point.
-fn answer(plane: Plane, portal: Option<Portal>, iterations: u64) -> Penetration {
+fn answer(plane: SupportPlane, portal: Option<Portal>, iterations: u64) -> Penetration {
     let (point1, point2) = match portal {
         Some(p) => p.witnesses(),
         None => (plane.point.v1, plane.point.v2),
@@ -236,7 +236,7 @@ mod tests {
 
             let support = ellipsoid(e.radii, crate::shapes::Rotation::identity(), e.centre);
             let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
-            let mut ray = Plane::of(&md, r.direction()).unwrap();
+            let mut ray = SupportPlane::of(&md, r.direction()).unwrap();
             for _ in 0..20 {
                 let normal = e.normal(&e.exit(&ray.normal));
                 let mut best = ray;
@@ -263,7 +263,7 @@ mod tests {
     ) -> bool {
         (0..50).all(|_| {
             let n = unit(&(hit.dir + r.vector(0.03))).unwrap();
-            Plane::of(md, n).unwrap().depth >= hit.depth - 10.0 * SETTINGS.tolerance
+            SupportPlane::of(md, n).unwrap().depth >= hit.depth - 10.0 * SETTINGS.tolerance
         })
     }
 
@@ -282,7 +282,7 @@ mod tests {
             let start = r.direction();
             for (i, shortcut) in [Shortcut::Never, Shortcut::Always].into_iter().enumerate() {
                 let before = md.supports();
-                let mut last = Plane::of(&md, start).unwrap().depth;
+                let mut last = SupportPlane::of(&md, start).unwrap().depth;
                 let hit = solve(&md, start, shortcut, |z| {
                     assert!(z < last, "{z} after {last}");
                     last = z;

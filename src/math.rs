@@ -42,10 +42,17 @@ pub fn unit(v: &Vec3) -> Option<Vec3> {
     }
 }
 
-/// The larger of two numbers: one instruction, where `max` also orders NaN.
+/// The larger of two numbers, the second where one is NaN: one instruction, where `max`
+/// takes several to pass over a NaN on either side.
 #[inline(always)]
 pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, the second where one is NaN, as in [`larger`].
+#[inline(always)]
+pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b { a } else { b }
 }
 
 /// The same number as an `f64`.
@@ -110,8 +117,8 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
 pub const ITERATION_CAP: u64 = 2_000;
 
 /// The tolerance in force where `asked` is wanted, metres: no finer than coordinates up
-/// to `reach` resolve, and no coarser than a four-thousandth of an object of this `size`,
-/// beside which a coarser answer would say nothing.
+/// to `reach` resolve, and no coarser than a four-thousandth of the `size` of the object,
+/// of which a coarser answer would say nothing. NaN counts as infinite.
 #[inline]
 pub fn tolerance(asked: Real, size: Real, reach: Real) -> Real {
     asked.min(2.5e-4 * size).max(8.0 * EPSILON * reach)

@@ -12,14 +12,15 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::math::{Real, Vec3, unit};
-use crate::portal::{Plane, rounding};
+use crate::portal::{SupportPlane, rounding};
 use crate::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::support_set::Stop;
 
 /// Two support planes whose segment the ray crosses.
 #[derive(Clone, Copy)]
 struct Segment {
-    left: Plane,
-    right: Plane,
+    left: SupportPlane,
+    right: SupportPlane,
 }
 
 impl Segment {
@@ -38,94 +39,107 @@ impl Segment {
 
 /// A local minimum of the depth over the directions perpendicular to the unit vector
 /// `m`, searched from the unit direction `start`, itself perpendicular to `m`.
+///
+/// # Errors
+/// A callback's answer that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     m: &Vec3,
     start: Vec3,
     settings: &Settings,
 ) -> Result<Answer, Fault> {
-    let mut budget = settings.max_iterations;
-    let mut ray = Plane::of(md, start)?;
-    let mut best = ray;
-    // The ray that was stepped aside from: stationary, its depth and witnesses exact.
-    let mut aside: Option<Plane> = None;
-    let used = |budget: u64| settings.max_iterations - budget;
-    'rays: while budget > 0 {
-        budget -= 1;
-        if ray.depth < 0.0 {
-            return Ok(Answer::Miss(ray.normal));
-        }
-        let d = ray.normal;
-        let side = m.cross(&d);
-        let off = side.dot(&ray.point.v);
-        if !(off.abs() > rounding(ray.point.magnitude())) {
-            // The ray passes through its own support point: stationary, perhaps a
-            // maximum. Step aside once, then take it.
-            if let Some(first) = aside {
-                let lower = if first.depth < ray.depth { first } else { ray };
-                return Ok(Answer::Hit(answer(lower, used(budget))));
-            }
-            aside = Some(ray);
-            let n = d + side * ASIDE;
-            ray = Plane::of(md, n / n.norm())?;
-            keep(&mut best, &ray);
-            continue;
-        }
-        // The end on the other side of the ray.
-        let other = Plane::of(md, side * -off.signum())?;
-        if other.depth < 0.0 {
-            return Ok(Answer::Miss(other.normal));
-        }
-        keep(&mut best, &other);
-        // T(d, v) = side · v: the left end has a negative one, the right end a positive.
-        let mut segment = if off < 0.0 {
-            Segment {
-                left: ray,
-                right: other,
-            }
-        } else {
-            Segment {
-                left: other,
-                right: ray,
-            }
-        };
-        while budget > 0 {
-            budget -= 1;
-            let (a, b) = (segment.left.point.v, segment.right.point.v);
-            let Some(n) = unit(&(b - a).cross(m)) else {
-                // Overflow: the two ends are on either side of the ray.
-                return Ok(Answer::Limit(answer(best, used(budget))));
-            };
-            let plane = Plane::of(md, n)?;
-            if plane.depth < 0.0 {
-                return Ok(Answer::Miss(n));
-            }
-            keep(&mut best, &plane);
-            let along = n.dot(&d);
-            let inner = n.dot(&a);
-            let floor = rounding(plane.point.magnitude());
-            let gap = plane.depth - inner;
-            if !(gap > floor) || (gap <= settings.tolerance && inner >= 0.0) {
-                let within = settings.tolerance.max(floor);
-                let stationary = plane.depth / along - plane.depth <= within;
-                let lower_elsewhere = best.depth < plane.depth - within;
-                if stationary && !lower_elsewhere {
-                    let (point1, point2) = segment.witnesses(m, &d);
-                    return Ok(Answer::Hit(match aside {
-                        Some(first) if first.depth <= plane.depth => answer(first, used(budget)),
-                        _ => Penetration {
-                            point1,
-                            point2,
-                            ..answer(plane, used(budget))
-                        },
-                    }));
+    let ray = SupportPlane::of(md, start)?;
+    if ray.depth < 0.0 {
+        return Ok(Answer::Miss(start));
+    }
+    let mut search = Search {
+        md,
+        m,
+        settings,
+        budget: settings.max_iterations,
+        best: ray,
+        aside: None,
+    };
+    match search.run(ray) {
+        Ok(answer) => Ok(answer),
+        Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
+        Err(Stop::Fault(fault)) => Err(fault),
+    }
+}
+
+/// A query on its way.
+struct Search<'q, A, B> {
+    md: &'q MinkowskiDifference<A, B>,
+    m: &'q Vec3,
+    settings: &'q Settings,
+    /// Iterations that are left.
+    budget: u64,
+    /// The lowest support plane met.
+    best: SupportPlane,
+    /// The ray that was stepped aside from: stationary, its depth and witnesses exact.
+    aside: Option<SupportPlane>,
+}
+
+/// What comes after a ray.
+enum Next {
+    Ray(SupportPlane),
+    End(Answer),
+}
+
+impl<A: SupportMap, B: SupportMap> Search<'_, A, B> {
+    /// From ray to ray.
+    fn run(&mut self, mut ray: SupportPlane) -> Result<Answer, Stop> {
+        while self.spend() {
+            let side = self.m.cross(&ray.normal);
+            let off = side.dot(&ray.point.v);
+            if !(off.abs() > rounding(ray.point.magnitude())) {
+                // The ray passes through its own support point: stationary, perhaps a
+                // maximum. Step aside once, then take it.
+                if let Some(first) = self.aside {
+                    let lower = if first.depth < ray.depth { first } else { ray };
+                    return Ok(Answer::Hit(self.answer(&lower)));
                 }
-                ray = if lower_elsewhere { best } else { plane };
-                continue 'rays;
+                self.aside = Some(ray);
+                let n = ray.normal + side * ASIDE;
+                ray = self.plane(n / n.norm())?;
+                continue;
             }
-            if plane.depth * along <= inner {
-                ray = plane;
-                continue 'rays;
+            // The end on the other side of the ray.
+            let other = self.plane(side * -off.signum())?;
+            // T(d, v) = side · v: the left end has a negative one, the right end a positive.
+            let (left, right) = if off < 0.0 {
+                (ray, other)
+            } else {
+                (other, ray)
+            };
+            match self.refine(&ray.normal, &side, Segment { left, right })? {
+                Next::Ray(next) => ray = next,
+                Next::End(answer) => return Ok(answer),
+            }
+        }
+        Ok(Answer::Limit(self.answer(&self.best)))
+    }
+
+    /// Moves the segment outwards along the ray `d`, to its end or to a better ray. `side` is
+    /// m × d.
+    fn refine(&mut self, d: &Vec3, side: &Vec3, mut segment: Segment) -> Result<Next, Stop> {
+        while self.spend() {
+            let (a, b) = (segment.left.point.v, segment.right.point.v);
+            let Some(n) = unit(&(b - a).cross(self.m)) else {
+                // The two ends are on either side of the ray, so only an overflow comes here.
+                break;
+            };
+            let plane = self.plane(n)?;
+            let inner = n.dot(&a);
+            let gap = plane.depth - inner;
+            // Negated for NaN.
+            if !(gap > rounding(plane.point.magnitude()))
+                || (gap <= self.settings.tolerance && inner >= 0.0)
+            {
+                return Ok(self.ended(d, &segment, plane));
+            }
+            if plane.depth * n.dot(d) <= inner {
+                return Ok(Next::Ray(plane));
             }
             if side.dot(&plane.point.v) < 0.0 {
                 segment.left = plane;
@@ -133,37 +147,69 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 segment.right = plane;
             }
         }
+        Ok(Next::End(Answer::Limit(self.answer(&self.best))))
     }
-    // The cap may come before the newest plane is looked at.
-    if best.depth < 0.0 {
-        return Ok(Answer::Miss(best.normal));
-    }
-    Ok(Answer::Limit(answer(best, settings.max_iterations)))
-}
 
-/// The answer of a support plane, with the points of its support point for witnesses.
-fn answer(plane: Plane, iterations: u64) -> Penetration {
-    Penetration {
-        depth: plane.depth,
-        depth_lower: 0.0,
-        dir: plane.normal,
-        normal: plane.normal,
-        point1: plane.point.v1,
-        point2: plane.point.v2,
-        width: 0.0,
-        iterations,
+    /// The ray `d` leaves D between the segment and the support plane: that is the answer
+    /// where d is the plane's normal, within the tolerance, and no lower plane was met; else
+    /// the lower of the two is the next ray.
+    fn ended(&self, d: &Vec3, segment: &Segment, plane: SupportPlane) -> Next {
+        let within = (self.settings.tolerance).max(rounding(plane.point.magnitude()));
+        let stationary = plane.depth / plane.normal.dot(d) - plane.depth <= within;
+        if self.best.depth < plane.depth - within {
+            return Next::Ray(self.best);
+        }
+        if !stationary {
+            return Next::Ray(plane);
+        }
+        let (point1, point2) = segment.witnesses(self.m, d);
+        Next::End(Answer::Hit(match self.aside {
+            Some(first) if first.depth <= plane.depth => self.answer(&first),
+            _ => Penetration {
+                point1,
+                point2,
+                ..self.answer(&plane)
+            },
+        }))
+    }
+
+    /// Counts an iteration, if one is left.
+    fn spend(&mut self) -> bool {
+        let left = self.budget > 0;
+        self.budget = self.budget.saturating_sub(1);
+        left
+    }
+
+    /// The support plane of unit `n`; the lowest is kept, and one that separates ends the
+    /// search.
+    fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
+        let plane = SupportPlane::of(self.md, n)?;
+        if plane.depth < 0.0 {
+            return Err(Stop::Apart(n));
+        }
+        if plane.depth < self.best.depth {
+            self.best = plane;
+        }
+        Ok(plane)
+    }
+
+    /// The answer of a support plane, with the points of its support point for witnesses.
+    fn answer(&self, plane: &SupportPlane) -> Penetration {
+        Penetration {
+            depth: plane.depth,
+            depth_lower: 0.0,
+            dir: plane.normal,
+            normal: plane.normal,
+            point1: plane.point.v1,
+            point2: plane.point.v2,
+            width: 0.0,
+            iterations: self.settings.max_iterations - self.budget,
+        }
     }
 }
 
 /// Tan of the angle of a step aside from a stationary direction.
 const ASIDE: Real = 0.1;
-
-#[inline]
-fn keep(best: &mut Plane, plane: &Plane) {
-    if plane.depth < best.depth {
-        *best = *plane;
-    }
-}
 
 #[cfg(test)]
 mod tests {

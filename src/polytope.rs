@@ -59,10 +59,10 @@
 //! half-edge is 4 · face + edge; edge i leads from corner i to corner i + 1,
 //! counter-clockwise seen from outside. Faces outside use have the key +∞ and are chained.
 
-use crate::math::{Real, Vec3, Wide3, larger, narrow3, wide, wide3};
+use crate::math::{Real, Vec3, Wide3, larger, lesser, narrow3, wide, wide3};
 use crate::plane::Plane;
 
-/// No half-edge: the bottom of the walk's stack of half-edges.
+/// No half-edge: the bottom of the stack of half-edges in [`Polytope::fan`]'s walk.
 const BOTTOM: u16 = u16::MAX;
 /// To the next and the previous half-edge of a face, by the edge.
 const NEXT: [i8; 4] = [1, 1, -2, 0];
@@ -92,8 +92,10 @@ pub struct Polytope<const F: usize> {
     planes: [[f64; 4]; F],
     /// d|d| / |N|² with the face's number in its low bits.
     keys: [f64; F],
-    /// The half-edge on the other side of each edge; last, while a fan is made, the one
-    /// that was there before, and of a visible face the half-edge to go on from after its own.
+    /// The half-edge on the other side of each of the three edges. The fourth is used while a
+    /// fan is made: a new face keeps the half-edge there that its edge 0 takes the place of
+    /// (for [`Polytope::undo`]), and a visible face what lies under its half-edge on the
+    /// stack of the walk.
     twins: [[u16; 4]; F],
     /// Four names of 16 bits: corners 0, 1, 2, and 0 again with [`BORROWED`].
     corners: [u64; F],
@@ -123,7 +125,7 @@ pub struct Top {
 pub enum Inserted {
     /// The point is a corner.
     Yes,
-    /// There are too few faces; nothing changed.
+    /// There is no room for its faces; nothing changed.
     NoRoom,
 }
 
@@ -331,7 +333,7 @@ impl<const F: usize> Polytope<F> {
         to.collapsed = self.collapsed;
     }
 
-    /// The nearest face: one sweep, in which value and index come together.
+    /// The nearest face: one sweep over the keys, whose low bits name their faces.
     #[inline(always)]
     pub fn nearest(&self) -> Top {
         let mut least = [f64::INFINITY; 8];
@@ -351,7 +353,7 @@ impl<const F: usize> Polytope<F> {
         }
     }
 
-    /// The face that a point is farthest above, if by more than `rounding`.
+    /// The face that a point is farthest above, if by more than `rounding`, metres.
     pub fn farthest_below(&self, p: &Plane, rounding: Real) -> Option<usize> {
         let mut best = (None, wide(rounding));
         for f in self.faces() {
@@ -427,7 +429,7 @@ impl<const F: usize> Polytope<F> {
         let mut tail = first;
         self.keys[Self::at(first)] = f64::INFINITY;
         let mut edge = 4 * first;
-        // The half-edge to go on from; its face names the one after it.
+        // The top of the stack of half-edges to go on from: its face names the one below.
         let mut back = edge + 1;
         self.twins[Self::at(first)][3] = edge as u16 + 2;
         let mut free = self.free;
@@ -487,7 +489,7 @@ impl<const F: usize> Polytope<F> {
     }
 
     /// Makes face `f` over a horizon edge, which it is beyond, and a new point: see the head of
-    /// this page.
+    /// this file.
     #[inline(always)]
     fn cover(
         &mut self,
@@ -641,10 +643,10 @@ impl<const F: usize> Polytope<F> {
     /// neighbours' and half of their neighbours', as far as they look the same way and are
     /// nearer than `target` (a signed square, m²). Not unit.
     ///
-    /// Each face nearer than the target has to go, so a point that several of them see
+    /// Each face nearer than the target has to go, so a point above several of them
     /// saves support points: near a smooth minimum the corners are a Delaunay triangulation
-    /// of the tangent plane, faces see a point inside their circumcircles, and a normal
-    /// leads to the centre of one of them; a mean of normals leads to where they overlap
+    /// of the tangent plane, a point is above the faces whose circumcircles hold it, and a
+    /// normal leads to the centre of one of them; a mean of normals leads to where they overlap
     /// (measured, the minimum to 1e-6: spheres 48.5 support points to 31.6, ellipsoids 38.6 to
     /// 29.3, 162-vertex polytopes 17.1 to 16.3; boxes pay 9.2 to 9.6).
     #[inline(always)]
@@ -674,11 +676,6 @@ enum Fan {
     Done,
     NoRoom,
     NoDisc,
-}
-
-#[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }
 
 #[cfg(test)]

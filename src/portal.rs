@@ -24,7 +24,7 @@ use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// A support plane of D: unit normal, support point, support value.
 #[derive(Clone, Copy, Debug)]
-pub struct Plane {
+pub struct SupportPlane {
     /// Unit normal n.
     pub normal: Vec3,
     /// The support point s(n).
@@ -33,7 +33,7 @@ pub struct Plane {
     pub depth: Real,
 }
 
-impl Plane {
+impl SupportPlane {
     /// Evaluates the support plane of the unit direction `normal`.
     #[inline]
     pub fn of<A: SupportMap, B: SupportMap>(
@@ -57,7 +57,7 @@ pub struct Portal {
     pub ray: Vec3,
     /// The support planes of v1, v2, v3, ordered so that the triangle's normal looks
     /// along the ray.
-    pub planes: [Plane; 3],
+    pub planes: [SupportPlane; 3],
 }
 
 impl Portal {
@@ -70,7 +70,7 @@ impl Portal {
 
     /// The portal of three support planes, if the ray crosses their triangle from
     /// the origin's side, in either order of the vertices.
-    pub fn of(ray: Vec3, planes: [Plane; 3]) -> Option<Self> {
+    pub fn of(ray: Vec3, planes: [SupportPlane; 3]) -> Option<Self> {
         let [a, b, c] = planes.map(|p| p.point.v);
         let t = [
             triple(&ray, &a, &b),
@@ -93,11 +93,12 @@ impl Portal {
     /// Replaces one vertex by the point of `w`, beyond the triangle, so that the ray
     /// still crosses (paper, Algorithm 1, update_portal).
     #[inline]
-    pub fn update(&mut self, w: Plane) {
+    pub fn update(&mut self, w: SupportPlane) {
         let c = self.ray.cross(&w.point.v);
-        // Which side of the plane through the ray and w each vertex is on: between two that
-        // are on either side, w takes the place of the third. That of a vertex on the ray
-        // is rounding, so the pair that is most so counts.
+        // On which side of the plane through the ray and w each vertex is. With w the ray
+        // crosses the triangle of two vertices on opposite sides, so w takes the place of the
+        // third. The side of a vertex on that plane is rounding: the pair that is farthest on
+        // its two sides counts.
         let [t1, t2, t3] = self.planes.each_ref().map(|p| c.dot(&p.point.v));
         let split = [t2.min(-t3), t3.min(-t1), t1.min(-t2)];
         let mut replaced = 2;
@@ -181,9 +182,9 @@ pub enum Found {
 /// `budget` counts iterations down; `best` keeps the lowest plane seen.
 pub fn find_portal<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
-    first: &Plane,
+    first: &SupportPlane,
     behind: Option<&Vec3>,
-    best: &mut Plane,
+    best: &mut SupportPlane,
     budget: &mut u64,
 ) -> Result<Found, Fault> {
     let d = first.normal;
@@ -240,7 +241,7 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
 }
 
 enum Probe {
-    Plane(Plane),
+    Plane(SupportPlane),
     Miss(Vec3),
 }
 
@@ -248,9 +249,9 @@ enum Probe {
 fn probe<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     n: Vec3,
-    best: &mut Plane,
+    best: &mut SupportPlane,
 ) -> Result<Probe, Fault> {
-    let plane = Plane::of(md, n)?;
+    let plane = SupportPlane::of(md, n)?;
     if plane.depth < 0.0 {
         return Ok(Probe::Miss(n));
     }
@@ -264,10 +265,10 @@ fn probe<A: SupportMap, B: SupportMap>(
 pub enum Exit {
     /// The ray leaves D between the portal and this support plane, which are no
     /// farther apart than the tolerance.
-    Converged(Portal, Plane),
+    Converged(Portal, SupportPlane),
     /// Algorithm 5's shortcut: the support value of this plane is no greater than
     /// the distance |p| to the portal along the ray.
-    Shortcut(Plane),
+    Shortcut(SupportPlane),
     /// See [`Found`].
     Vertex,
     /// See [`Found`].
@@ -291,10 +292,10 @@ pub enum Measure {
 /// and with `shortcut` Algorithm 5 of the paper.
 pub fn mpr<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
-    first: &Plane,
+    first: &SupportPlane,
     tolerance: Real,
     shortcut: bool,
-    best: &mut Plane,
+    best: &mut SupportPlane,
     budget: &mut u64,
 ) -> Result<Exit, Fault> {
     match find_portal(md, first, None, best, budget)? {
@@ -313,7 +314,7 @@ pub fn refine<A: SupportMap, B: SupportMap>(
     tolerance: Real,
     measure: Measure,
     shortcut: bool,
-    best: &mut Plane,
+    best: &mut SupportPlane,
     budget: &mut u64,
 ) -> Result<Exit, Fault> {
     while *budget > 0 {
@@ -331,7 +332,7 @@ pub fn refine<A: SupportMap, B: SupportMap>(
             Probe::Plane(p) => p,
             // D holds the portal: a callback that answers less than it is wrong.
             Probe::Miss(_) if inner > floor => {
-                let plane = Plane {
+                let plane = SupportPlane {
                     normal: n,
                     point: portal.planes[0].point,
                     depth: inner,
@@ -381,7 +382,7 @@ mod tests {
     }
 
     /// Where the ray crosses the plane of the portal, and where the support plane.
-    fn reaches(p: &Portal, plane: &Plane) -> (Real, Real) {
+    fn reaches(p: &Portal, plane: &SupportPlane) -> (Real, Real) {
         let along = plane.normal.dot(&p.ray);
         (
             plane.normal.dot(&p.planes[0].point.v) / along,
@@ -393,7 +394,7 @@ mod tests {
     /// distance `exact` at which the ray leaves D.
     fn check<A: SupportMap>(support: A, d: Vec3, exact: Real, tolerance: Real) {
         let md = alone(support);
-        let first = Plane::of(&md, d).unwrap();
+        let first = SupportPlane::of(&md, d).unwrap();
         let mut best = first;
         let mut budget = 1000;
         match find_portal(&md, &first, None, &mut best, &mut budget).unwrap() {
@@ -409,7 +410,7 @@ mod tests {
                 let mut before = Real::NEG_INFINITY;
                 for _ in 0..8 {
                     let Some(n) = portal.normal() else { break };
-                    let plane = Plane::of(&md, n).unwrap();
+                    let plane = SupportPlane::of(&md, n).unwrap();
                     let (p, q) = reaches(&portal, &plane);
                     assert!(p <= exact + ULPS && q >= exact - ULPS, "{p} {exact} {q}");
                     assert!(p >= before - ULPS);
@@ -487,7 +488,7 @@ mod tests {
             let points = placed(&corners(half), &r.rotation(), way * 3.0);
             let md = alone(hull(&points));
             // From the centre through the origin, as from the centres of two objects.
-            let first = Plane::of(&md, -way).unwrap();
+            let first = SupportPlane::of(&md, -way).unwrap();
             let mut best = first;
             let mut budget = 1000;
             match mpr(&md, &first, 1e-6, false, &mut best, &mut budget).unwrap() {
@@ -504,7 +505,7 @@ mod tests {
         for given in 0..20 {
             let radii = Vec3::new(1.0, 0.7, 0.5);
             let md = alone(ellipsoid(radii, r.rotation(), Vec3::zeros()));
-            let first = Plane::of(&md, r.direction()).unwrap();
+            let first = SupportPlane::of(&md, r.direction()).unwrap();
             let mut best = first;
             let mut budget = given;
             let exit = mpr(&md, &first, 0.0, false, &mut best, &mut budget).unwrap();

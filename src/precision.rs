@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! How large the objects are, as far as their support points tell, and what rounding
-//! that means. The only place where sizes become tolerances.
+//! that means. What is asked through an [`Inquiry`](crate::support_set::Inquiry) takes its
+//! tolerances from here; the paper's solvers, which keep no sizes, from the point at hand
+//! ([`crate::portal::rounding`]).
 //!
 //! Two lengths count. The *reach* is the largest distance of a witness from the world's
 //! origin: a callback computes its points to about an ulp of it, and so does the
@@ -10,7 +12,7 @@
 //! arithmetic on points of D rounds to ulps of it. Far from the world's origin the reach is
 //! the larger one, and it is never less than half the size (|v| <= |v1| + |v2|).
 
-use crate::math::{EPSILON, Real, larger};
+use crate::math::{self, EPSILON, Real, larger};
 use crate::support::SupportPoint;
 
 /// Sizes seen so far, and the roundings that follow from them.
@@ -26,7 +28,7 @@ impl Precision {
     /// Takes a point into account.
     #[inline(always)]
     pub fn note(&mut self, point: &SupportPoint) {
-        // In this order NaN is passed over.
+        // `larger` is its second number where the first is NaN.
         self.size2 = larger(point.v.norm_squared(), self.size2);
         let reach2 = larger(point.v1.norm_squared(), point.v2.norm_squared());
         self.reach2 = larger(reach2, self.reach2);
@@ -79,13 +81,11 @@ impl Precision {
         2.0 * (self.rounding() + 2.0 * self.grain())
     }
 
-    /// The tolerance in force where `asked` is wanted, metres: no finer than coordinates
-    /// so large resolve, and no coarser than a four-thousandth of D, beside which a
-    /// coarser answer would say nothing.
+    /// The tolerance in force where `asked` is wanted, metres: [`math::tolerance`] of these
+    /// sizes, so never below [`Precision::touch`].
     #[inline(always)]
     pub fn tolerance(&self, asked: Real) -> Real {
-        // max also drops NaN
-        asked.min(2.5e-4 * self.size()).max(self.touch())
+        math::tolerance(asked, self.size(), self.reach())
     }
 }
 

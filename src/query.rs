@@ -1,22 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The queries of a pair, and the order of steps that all of them share.
+//! The penetration queries of a pair, and the order of steps that they share. (Yes or no
+//! with memory is [`crate::intersect`], the distance [`crate::signed_distance`].)
 //!
 //! 1. A pair that was apart is asked about the direction that separated it: while
 //!    that still separates, one support point is the whole answer, and turns the
-//!    direction for the next time.
+//!    direction for the next time ([`crate::separation`]).
 //! 2. The solver starts from what the state holds, else from the centres, else from
-//!    the caller's first direction.
+//!    the caller's first direction. (`along` starts from the last portal, `planar` from
+//!    the part of that direction in its plane.)
 //! 3. An overlap is proven. A local minimum of the support function can be positive
 //!    though the objects are apart (a plate that an object has passed through, seen
 //!    from the old side), so the origin must be shown to lie among points of D:
 //!    [`gjk::intersect`] on the points the solver saw, the centres' difference among
-//!    them, asks for more only where these leave a side open. The global machine proves
-//!    its overlaps itself.
+//!    them, asks for more only where these leave a side open. The global search (`mpr`,
+//!    `minimum`) proves its overlaps itself.
 //! 4. Witness points of a face that rests on another, or on an edge, are moved to the
-//!    middle of where they touch ([`contact_patch`]).
-//! 5. What was learned stays behind in the [`State`].
+//!    middle of where they touch ([`contact_patch`]); not in `along` and `planar`.
+//! 5. What was learned stays behind in the [`State`]; where the caller keeps none, nothing
+//!    is spent on it.
 
 use crate::along;
 use crate::bundle::{self, Memory};
@@ -50,8 +53,8 @@ pub struct Pair<A, B> {
     pub centre: Option<SupportPoint>,
     /// The caller's first direction, where it gives one.
     pub first_dir: Option<Vec3>,
-    /// Whether the caller keeps the state: then a separating direction is worth a few
-    /// support points more.
+    /// Whether the caller keeps the state: then what is left in it may cost a few support
+    /// points.
     pub lasting: bool,
 }
 
@@ -261,7 +264,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.global(None, state, limits, Some(arena), placed)
     }
 
-    /// The global machine, from the state and with an apex that may be trusted.
+    /// The global search, from the state; `apex` is a point that is trusted to be in D.
     fn global(
         &self,
         apex: Option<SupportPoint>,
@@ -343,11 +346,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
     }
 
-    /// Where minima form a curve or a surface no polytope proves them in the steps there
-    /// are, and the least value it met need not be theirs to the tolerance. It is in the
-    /// right valley, whose floor a local search finds: to a hundredth of the tolerance,
-    /// since what falls so little over its first reach falls thirty times as much over the
-    /// sphere.
+    /// Lowers a depth that the global search could not prove. Where minima form a curve or a
+    /// surface, no polytope proves them in the steps there are, and the least depth met need
+    /// not be theirs to the tolerance. But its direction is near them, and a local search from
+    /// there finds one: to a hundredth of the tolerance, since what falls so little over the
+    /// first trust radius falls thirty times as much over the sphere.
     #[cold]
     #[inline(never)]
     fn floor(&self, hit: &mut Penetration, tolerance: Real) -> Result<(), Fault> {

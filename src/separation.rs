@@ -10,24 +10,25 @@ use crate::state::State;
 use crate::support::{Fault, SupportMap};
 use crate::support_set::{Inquiry, SupportSet};
 
-/// Directions tried before a pair that was apart is asked about anew.
+/// Directions tried before a pair that was apart is asked about as if it were new.
 pub const TRIES: usize = 2;
-/// What a margin that was reached once is still worth at the next query. Free: a pair that
-/// comes closer loses its margin in any case.
+/// The share of the last aim that is aimed at next, where the margin is less. Free: a pair
+/// that comes closer loses its margin in any case.
 const KEEP: Real = 0.95;
-/// A share of the aim below which the separating direction is turned. Free.
+/// The share of the aim below which a margin has the direction turned. Free.
 const ENOUGH: Real = 0.7;
 
-/// The length of a direction with no margin to aim at.
+/// The length, metres, of a direction with no margin to aim at: next to none, and not zero,
+/// which is no direction.
 const UNSURE: Real = EPSILON;
 
-/// The state's direction, or what it is turned to, where that still separates. The points of
-/// directions that do not go into the set.
+/// The state's direction, or what it is turned to, if that still separates, or touches within
+/// rounding. The support points of directions that fail go into the set.
 ///
-/// The support point that shows it also tells how to turn the direction for the next
-/// time: h is to fall to −aim, its gradient is the tangential part g of s, and the
-/// step −g (h + aim) / g² is Polyak's. A pair whose contact turns is followed so, at
-/// one support point a query.
+/// A support point s = s(n) also tells how to turn the direction n: h(n) = −margin is to
+/// fall to −aim, its gradient is g, the part of s across n, and the step −g (h + aim) / g²
+/// is Polyak's. Where n fails the turned one is asked in the same query, else in the next:
+/// so a pair whose contact turns is followed at one support point a query.
 ///
 /// # Errors
 /// A callback's answer that is not finite.
@@ -61,10 +62,10 @@ pub fn still_apart<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(None)
 }
 
-/// Leaves a separating direction behind.
+/// Leaves the separating direction `n` behind.
 ///
-/// A pair that is asked about once pays nothing for the next time; one that `was_apart`
-/// and stays so while its direction fails is worth a better one.
+/// A pair that was not apart before pays nothing for the next time. One that `was_apart`,
+/// and is so along another direction, is worth a better one than that.
 ///
 /// # Errors
 /// A callback's answer that is not finite.

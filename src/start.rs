@@ -70,11 +70,13 @@ pub fn known<const P: usize>(set: &SupportSet<P>) -> Option<[usize; 4]> {
     (count == 4).then_some(names)
 }
 
-/// The ball's centre, as one sample shows it, for a radius.
+/// A ball that D looks like: its centre is s − radius · n.
 struct Ball {
+    /// The lowest sample: its direction, support point and support value.
     n: Vec3,
     s: Vec3,
     h: Real,
+    /// What the last two samples tell, metres.
     radius: Real,
 }
 
@@ -96,8 +98,9 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
     };
     let mut smooth = false;
     for step in 0..STEPS {
-        let away = ball.n * ball.radius - ball.s;
-        let Some(n) = unit(&away) else { break };
+        // From the ball's centre through the origin.
+        let way = ball.n * ball.radius - ball.s;
+        let Some(n) = unit(&way) else { break };
         let turn2 = (n - ball.n).norm_squared();
         let promise = 0.5 * turn2 * (ball.radius - ball.h);
         if !(promise > 0.25 * within(ball.h)) {
@@ -128,8 +131,8 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
     ring(inquiry, set, &ball, within(ball.h)).map(Some)
 }
 
-/// Three points around the ball's direction: of the known points the one farthest aside
-/// is one of them.
+/// The apex and three points around the ball's direction: the known point farthest aside,
+/// and two asked for; all three where none is known.
 #[inline(always)]
 fn ring<A: SupportMap, B: SupportMap, const P: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
@@ -175,7 +178,7 @@ fn ring<A: SupportMap, B: SupportMap, const P: usize>(
     Ok(names)
 }
 
-/// What is seen along the axis: the origin is the middle.
+/// D as it is seen along the axis, in a plane whose origin is the axis.
 struct View {
     axis: Vec3,
     x: Vec3,
@@ -209,8 +212,8 @@ impl Side {
 }
 
 impl View {
-    /// Along a unit axis, with a point on the x axis; and how far from the middle that is, 0
-    /// within rounding, where any x axis will do.
+    /// Along a unit axis, with a point on the x axis; and how far from the origin that is seen,
+    /// 0 within rounding, where any x axis will do.
     #[inline(always)]
     fn along(axis: Vec3, point: &Vec3, rounding: Real) -> (Self, Real) {
         let side = point - axis * axis.dot(point);
@@ -224,8 +227,8 @@ impl View {
         (Self { axis, x, y }, width)
     }
 
-    /// The axis tilted sideways: farther the more often it was in vain, and at last all the
-    /// way.
+    /// The direction to ask: the axis tilted sideways, farther the more often that was in vain,
+    /// and at last all the way.
     #[inline(always)]
     fn tilted(&self, sideways: &Vec3, tilt: Real, vain: usize) -> Vec3 {
         if !(vain < PATIENT && tilt > 0.0) {
@@ -235,6 +238,7 @@ impl View {
         unit(&(self.axis + sideways * tilt)).unwrap_or(*sideways)
     }
 
+    /// Where a point is seen.
     #[inline(always)]
     fn see(&self, v: &Vec3) -> [Real; 2] {
         [self.x.dot(v), self.y.dot(v)]
@@ -251,8 +255,10 @@ fn dot(a: &[Real; 2], b: &[Real; 2]) -> Real {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// The apex and three points whose triangle the axis goes through. Point `skip` is no
-/// corner.
+/// The apex and three points whose triangle the axis goes through. Point `skip` is no corner.
+///
+/// It begins with point 1. Of the triangle seen so far a and b are the ends of the edge that
+/// the axis lies beyond, and the next point is looked for there.
 ///
 /// `None` where none was found: the apex is on the boundary of D or outside, or D is flat.
 #[inline(always)]
@@ -275,7 +281,7 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
     let length = larger(axis.dot(&(set.v(1) - apex)), width);
     let mut seen_a = [width, 0.0];
     let mut b: Option<(usize, [Real; 2])> = None;
-    let mut wider = 0;
+    let mut vain = 0;
     for _ in 0..TRIES {
         let Side { towards, off, span } = match &b {
             None => Side {
@@ -291,22 +297,22 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
             Some(i) => i,
             None => {
                 let extent = larger(2.0 * off, 0.6 * span);
-                let n = view.tilted(&sideways, TILT * extent / length, wider);
+                let n = view.tilted(&sideways, TILT * extent / length, vain);
                 inquiry.ask(set, &n)?.0
             }
         };
         let seen = view.see(&set.v(i));
         let gain = dot(&towards, &seen);
-        if !(gain > rounding - off) || gain <= 0.0 && wider >= PATIENT {
+        if !(gain > rounding - off) || gain <= 0.0 && vain >= PATIENT {
             // No nearer to the origin than before. In the plane itself that is the end.
-            if wider >= PATIENT {
+            if vain >= PATIENT {
                 return Ok(None);
             }
-            wider += 1;
+            vain += 1;
             continue;
         }
         if gain <= 0.0 {
-            wider += 1;
+            vain += 1;
         }
         let Some((name_b, seen_b)) = b else {
             b = Some((i, seen));
@@ -403,6 +409,6 @@ fn extent<A: SupportMap, B: SupportMap, const P: usize>(
             }
         }
     }
-    // Where D is no wider than rounding that is `from`, and no tetrahedron comes of it.
+    // Where D is no vain than rounding that is `from`, and no tetrahedron comes of it.
     Ok(best.0)
 }

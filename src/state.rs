@@ -4,25 +4,39 @@
 //! What one query of a pair leaves behind for the next (paper, Sec. III-D).
 //!
 //! Nothing in a state is trusted: it chooses where to look first, never what is true.
+//!
+//! What it holds depends on the query that left it. Of the fields of [`Memory`] all but the
+//! local search use `dir` and the three vectors of `slopes` alone:
+//!
+//! | kind | left by | `dir` | the three vectors | besides |
+//! |---|---|---|---|---|
+//! | cold: 0, or no other | | | | |
+//! | `APART` | every query of a pair that is apart | the separating direction, as long as the margin to aim at | after [`State::near`] (the distance): the directions of the points around the nearest one | the radius of a ball, in `curvature[0]` |
+//! | `OVERLAP` | the local search | the minimum's | slopes of the active cuts | all of [`Memory`] |
+//! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
+//! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
+//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | rested face on face, in `padding` |
+//! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
+//!
+//! A direction that is zero stands for none.
 
 use crate::bundle::Memory;
 use crate::contact::Answer;
 use crate::global::Basis;
 use crate::math::{Real, Vec3, unit};
 
-/// [`State::padding`] of a pair that rested face on face.
+/// [`State::padding`] of a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1;
 
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct State {
-    /// What the solvers remember. In a pair that was apart `dir` separated it, and its
-    /// length, metres, is the margin to aim at; after a query along a direction `slopes` are the directions of the last portal.
+    /// What the solvers remember; see the table at the head of this file.
     pub memory: Memory,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
-    /// Did the pair rest face on face? Otherwise 0.
+    /// [`RESTED`] where the pair rested face on face, else 0.
     pub padding: u32,
 }
 
@@ -32,8 +46,7 @@ const APART: u32 = 1;
 const OVERLAP: u32 = 2;
 /// The pair overlapped, and was asked about along a direction.
 const ALONG: u32 = 3;
-/// The pair overlapped, and its minimum was proven: `slopes` are the directions of the
-/// points that the proof stands on, besides the minimum's own.
+/// The pair overlapped, and its minimum was proven.
 const PROVEN: u32 = 4;
 /// The pair overlapped, and was asked yes or no.
 const SURROUNDED: u32 = 5;
@@ -121,7 +134,7 @@ impl State {
         self.memory.dir.norm()
     }
 
-    /// Did the pair overlap when its depth was asked?
+    /// Did the pair overlap when a local depth was asked? (Not after a proven one.)
     pub fn overlapped(&self) -> bool {
         matches!(self.kind, OVERLAP | ALONG)
     }
@@ -160,7 +173,7 @@ impl State {
         }
     }
 
-    /// What the local solver starts from.
+    /// What the local search starts from.
     pub fn solver(&self) -> Memory {
         match self.kind {
             OVERLAP => self.memory,
@@ -219,8 +232,8 @@ impl State {
         state
     }
 
-    /// The kind of the answer and its direction; a query without an answer leaves
-    /// the state alone.
+    /// Keeps the kind of the answer and its direction alone; a query without an answer leaves
+    /// the state as it is.
     pub fn remember(&mut self, answer: &Answer) {
         match answer {
             Answer::Miss(n) => *self = Self::of(APART, *n),

@@ -52,7 +52,8 @@ impl SupportPoint {
     }
 }
 
-/// Points of D that a query has come to know, each once: what a proof starts from.
+/// Points of D that a local search has come to know, each once: what the proof of the overlap
+/// starts from.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Known {
     points: [SupportPoint; Known::ROOM],

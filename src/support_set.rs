@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The support points of a query, each kept once and named by its index, and the one
-//! place where a solver asks for them.
+//! The support points of a query, each kept once and named by its index, and where a
+//! solver that needs no more than h(n) > 0 asks for them.
 //!
-//! [`Inquiry::ask`] counts, notes the sizes, keeps the lowest support plane, and sees
-//! whether the objects are apart. The points live in a [`SupportSet`], whose room is the
-//! solver's to choose: an inquiry goes on when its points move to a larger one.
+//! [`Inquiry::ask`] notes the sizes, keeps the lowest support plane, and ends the query
+//! where the objects are apart. (What goes on after a direction separates, as the distance
+//! does, asks the [`MinkowskiDifference`] itself and notes the sizes.) The points live in a
+//! [`SupportSet`], whose room is the solver's to choose: an inquiry goes on when its points
+//! move to a larger one.
 //!
 //! A callback that is no support function can contradict itself: what it answers along n
 //! is less far along n than a point it gave before. D reaches as far as all its known
-//! points, so the farther point stands in, and nothing is lowered or separated by less.
+//! points. So where an answer would separate, the farther point stands in; and whoever
+//! gives the lowest plane for an answer looks through the points first.
 
 use crate::math::{Real, Vec3, larger};
 use crate::precision::Precision;
@@ -76,7 +79,7 @@ impl<const N: usize> SupportSet<N> {
         SupportPoint { v: v1 - v2, v1, v2 }
     }
 
-    /// The points of obj1 and obj2 that it is the difference of.
+    /// The points of obj1 and obj2 that the point with this index is the difference of.
     #[inline(always)]
     pub fn witnesses(&self, i: usize) -> &[Vec3; 2] {
         &self.witnesses[Self::at(i)]
@@ -98,7 +101,7 @@ impl<const N: usize> SupportSet<N> {
         i
     }
 
-    /// Adds a point behind the others, or puts it in the place of one of them.
+    /// [`SupportSet::put`], where `i` may also be the first free index: then it is added.
     #[inline(always)]
     pub fn place(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
         self.put(i, direction, point);
@@ -137,7 +140,8 @@ impl<const N: usize> SupportSet<N> {
         self.len = len;
     }
 
-    /// The point whose direction it lies least far along, if there is one.
+    /// The point with the least support value in the direction it was asked along, if there
+    /// is one.
     pub fn lowest(&self) -> Option<usize> {
         let reach = |i: usize| self.directions[i].dot(&self.v(i));
         let mut best = (None, Real::INFINITY);
@@ -192,7 +196,7 @@ pub enum Beyond {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
     /// The objects are apart, or touch within rounding: along this unit direction D
-    /// reaches no farther than the origin.
+    /// reaches no farther than the origin, but for rounding.
     Apart(Vec3),
     /// A callback's answer that no query can work with, or no memory.
     Fault(Fault),
@@ -247,9 +251,8 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
     /// Asks for the support point along unit `dir`, puts it into the set, and returns its
     /// index and support value, metres.
     ///
-    /// Where a known point lies farther along `dir` than the answer, the index is that
-    /// point's and nothing is put. It is looked for only where it matters: when the value
-    /// would lower the bound or separate.
+    /// Where the answer separates, but a known point lies farther along `dir`, index and value
+    /// are that point's and nothing is put.
     #[inline(always)]
     pub fn ask<const N: usize>(
         &mut self,
@@ -263,13 +266,19 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         if !(h > self.precision.touch()) {
             return self.apart(set, dir, h);
         }
+        self.lower(dir, h);
+        Ok((set.push(dir, &point), h))
+    }
+
+    /// Keeps a support plane if it is the lowest.
+    #[inline(always)]
+    fn lower(&mut self, dir: &Vec3, h: Real) {
         if h < self.lowest.depth {
             self.lowest = Lowest {
                 depth: h,
                 dir: *dir,
             };
         }
-        Ok((set.push(dir, &point), h))
     }
 
     /// As [`Inquiry::ask`], for a query that wants yes or no: the point goes to this place
@@ -294,8 +303,8 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         known.map(Beyond::Known).ok_or(Stop::Apart(*dir))
     }
 
-    /// The point that a touch is told by is no farther along `dir` than the origin. A known
-    /// one that is, is the answer.
+    /// The answer along `dir`, of value `h`, separates, or touches within rounding: unless the
+    /// callback contradicts itself, and a known point is farther along `dir`.
     #[cold]
     #[inline(never)]
     fn apart<const N: usize>(
@@ -309,12 +318,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
             return Err(Stop::Apart(*dir));
         };
         let h = dir.dot(&set.v(i));
-        if h < self.lowest.depth {
-            self.lowest = Lowest {
-                depth: h,
-                dir: *dir,
-            };
-        }
+        self.lower(dir, h);
         Ok((i, h))
     }
 }
