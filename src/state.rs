@@ -134,9 +134,9 @@ impl State {
         self.memory.dir.norm()
     }
 
-    /// Did the pair overlap when a local depth was asked? (Not after a proven one.)
+    /// Did the pair overlap when its depth was asked?
     pub fn overlapped(&self) -> bool {
-        matches!(self.kind, OVERLAP | ALONG)
+        matches!(self.kind, OVERLAP | ALONG | PROVEN)
     }
 
     /// The pair overlaps: support points along these directions surround the origin. Zero
