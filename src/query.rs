@@ -34,7 +34,7 @@ use crate::planar;
 use crate::portal::rounding;
 use crate::precision::Precision;
 use crate::separation;
-use crate::state::{Rest, State};
+use crate::state::State;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, SupportSet};
 
@@ -289,7 +289,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             others: state.others(),
             limits,
             placed,
-            rested: state.rest().is_some(),
+            rested: state.rested(),
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
@@ -301,12 +301,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut answer = global::minimum(&self.md, &request, arena, kept)?;
         match &mut answer {
             Answer::Hit(hit) => {
-                let rest = self.placed(hit, state, limits.tolerance)?;
-                self.keep(state, &basis, rest);
+                let alone = hit.point1;
+                contact_patch::settle(&self.md, hit, limits.tolerance)?;
+                self.keep(state, &basis, hit.point1 != alone);
             }
             Answer::Limit(hit) => {
                 self.floor(hit, limits.tolerance)?;
-                self.keep(state, &basis, None);
+                self.keep(state, &basis, false);
             }
             _ if self.lasting => self.remember(state, &answer)?,
             _ => {}
@@ -314,35 +315,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer)
     }
 
-    /// Step 4 with memory: while a proof ends with the same witness points as the last one, to
-    /// the bit, nothing has moved, and they go to where they went.
-    #[inline(always)]
-    fn placed(
-        &self,
-        hit: &mut Penetration,
-        state: &State,
-        tolerance: Real,
-    ) -> Result<Option<Rest>, Fault> {
-        if !(hit.width > 0.0) {
-            return Ok(None);
-        }
-        let alone = hit.point1;
-        let seen = Rest::seen(&hit.point1, &hit.point2);
-        match state.rest() {
-            Some(rest) if rest.seen == seen => {
-                hit.point1 += rest.way;
-                hit.point2 = hit.point1 - hit.dir * hit.depth;
-            }
-            _ => contact_patch::settle(&self.md, hit, tolerance)?,
-        }
-        let way = hit.point1 - alone;
-        Ok((way != Vec3::zeros()).then_some(Rest { seen, way }))
-    }
-
     /// Leaves the basis of a proof behind, where somebody keeps the state.
-    fn keep(&self, state: &mut State, basis: &Basis, rest: Option<Rest>) {
+    fn keep(&self, state: &mut State, basis: &Basis, rested: bool) {
         if self.lasting {
-            *state = State::proven(basis, rest);
+            *state = State::proven(basis, rested);
         }
     }
 

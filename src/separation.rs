@@ -5,7 +5,7 @@
 //! while it still separates, one support point is the whole answer.
 
 use crate::distance::separate;
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::state::State;
 use crate::support::{Fault, SupportMap};
 use crate::support_set::{Inquiry, SupportSet};
@@ -18,9 +18,9 @@ const KEEP: Real = 0.95;
 /// The share of the aim below which a margin has the direction turned. Free.
 const ENOUGH: Real = 0.7;
 
-/// The length, metres, of a direction with no margin to aim at: next to none, and not zero,
-/// which is no direction.
-const UNSURE: Real = EPSILON;
+/// The length, metres, of a direction with no margin to aim at: next to none beside objects of
+/// any size, and its coordinates keep their digits. Zero would be no direction.
+const UNSURE: Real = Real::MIN_POSITIVE / EPSILON;
 
 /// The state's direction, or what it is turned to, if that still separates, or touches within
 /// rounding. The support points of directions that fail go into the set.
@@ -46,7 +46,7 @@ pub fn still_apart<A: SupportMap, B: SupportMap, const N: usize>(
         let point = inquiry.md.support(&n)?;
         inquiry.precision.note(&point);
         let margin = -n.dot(&point.v);
-        aim = margin.max(KEEP * aim);
+        aim = margin.max(KEEP * aim).max(UNSURE);
         let mut next = n;
         if margin < ENOUGH * aim {
             let g = point.v + n * margin;
@@ -77,7 +77,7 @@ pub fn leave<A: SupportMap, B: SupportMap>(
 ) -> Result<(), Fault> {
     *state = if was_apart {
         let (n, margin) = separate(inquiry, n)?;
-        State::apart(n * margin)
+        State::apart(n * larger(margin, UNSURE))
     } else {
         State::apart(n * UNSURE)
     };

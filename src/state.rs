@@ -15,7 +15,7 @@
 //! | `OVERLAP` | the local search | the minimum's | slopes of the active cuts | all of [`Memory`] |
 //! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | rested face on face, in `padding` |
+//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | rested face on face, in `rested` |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none.
@@ -25,7 +25,7 @@ use crate::contact::Answer;
 use crate::global::Basis;
 use crate::math::{Real, Vec3, unit};
 
-/// [`State::padding`] of a pair that rested face on face when its minimum was proven.
+/// [`State::rested`] of a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1;
 
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
@@ -37,7 +37,7 @@ pub struct State {
     /// One of the constants below; anything else is cold.
     pub kind: u32,
     /// [`RESTED`] where the pair rested face on face, else 0.
-    pub padding: u32,
+    pub rested: u32,
 }
 
 /// The pair was apart.
@@ -50,23 +50,6 @@ const ALONG: u32 = 3;
 const PROVEN: u32 = 4;
 /// The pair overlapped, and was asked yes or no.
 const SURROUNDED: u32 = 5;
-
-/// Two faces that rest on each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest {
-    /// Of both witness points of the proof, one vector that changes when either does.
-    pub seen: Vec3,
-    /// From them to the middle of where the faces touch, metres.
-    pub way: Vec3,
-}
-
-impl Rest {
-    /// [`Rest::seen`] of two witness points. The factor is no ratio of lengths that bodies have:
-    /// what moves one point by a way and the other by the opposite one is seen.
-    pub fn seen(point1: &Vec3, point2: &Vec3) -> Vec3 {
-        point1 + point2 * 0.618
-    }
-}
 
 impl State {
     /// A fresh state that starts from `dir`; cold when it is zero or not finite.
@@ -92,7 +75,7 @@ impl State {
         Self {
             memory,
             kind: OVERLAP,
-            padding: 0,
+            rested: 0,
         }
     }
 
@@ -103,7 +86,7 @@ impl State {
                 ..Memory::default()
             },
             kind,
-            padding: 0,
+            rested: 0,
         }
     }
 
@@ -191,15 +174,9 @@ impl State {
         }
     }
 
-    /// Where the witness points went, if the pair rested face on face when its minimum was
-    /// proven.
-    pub fn rest(&self) -> Option<Rest> {
-        let [a, b, c, x, y, z] = self.memory.curvature;
-        let rested = self.kind == PROVEN && self.padding == RESTED;
-        rested.then(|| Rest {
-            seen: Vec3::new(a, b, c),
-            way: Vec3::new(x, y, z),
-        })
+    /// Did the pair rest face on face when its minimum was proven?
+    pub fn rested(&self) -> bool {
+        self.kind == PROVEN && self.rested == RESTED
     }
 
     /// Keeps the directions of a portal besides.
@@ -216,18 +193,16 @@ impl State {
         }
     }
 
-    /// The pair overlaps: its minimum is proven by support points along these directions.
-    pub fn proven(basis: &Basis, rest: Option<Rest>) -> Self {
+    /// The pair overlaps: its minimum is proven by support points along these directions;
+    /// `rested`: face on face.
+    pub fn proven(basis: &Basis, rested: bool) -> Self {
         let mut state = Self::default();
         if let Some((first, others)) = basis.directions().split_first() {
             state = Self::of(PROVEN, *first);
             for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
                 *slope = *n;
             }
-            if let Some(Rest { seen, way }) = rest {
-                state.padding = RESTED;
-                state.memory.curvature = [seen.x, seen.y, seen.z, way.x, way.y, way.z];
-            }
+            state.rested = u32::from(rested) * RESTED;
         }
         state
     }
