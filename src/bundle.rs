@@ -112,6 +112,7 @@ use core::ops::{Add, Div, Index, IndexMut, Mul, Sub};
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contact_patch;
+use crate::descent::flat::{Flat, Minimum, Outcome, Samples};
 use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -1069,6 +1070,72 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     settings: &Settings,
     met: &mut Known,
 ) -> Result<Answer, Fault> {
+    let mut samples = Samples::default();
+    if memory.curved != 1 {
+        let inner = centre.copied().unwrap_or_default();
+        let mut n = *start;
+        let mut queue = [n; 3];
+        let mut queued = 0;
+        let mut trust = REACH;
+        if let Some(dir) = unit(&memory.dir) {
+            n = dir;
+            queued = recall(memory, &dir, &mut queue, None, &mut trust);
+            if queued > 0 {
+                queued -= 1;
+                n = queue[queued.min(2)];
+            }
+        }
+        let rest = queue.get(..queued).unwrap_or(&[]);
+        match Flat::new(trust).run(md, &inner, n, rest, settings, met)? {
+            Outcome::Found(minimum) => {
+                leave(memory, &minimum);
+                return Ok(Answer::Hit(minimum.hit));
+            }
+            Outcome::Apart(n) => return Ok(Answer::Miss(n)),
+            Outcome::Open(open) => samples = open,
+        }
+    }
+    bent(md, centre, start, memory, settings, met, &samples)
+}
+
+/// Leaves behind what finds the same exact cuts again.
+fn leave(memory: &mut Memory, minimum: &Minimum) {
+    let dir = minimum.hit.dir;
+    let drift = if memory.count > 0 || memory.curved == 1 {
+        (dir - memory.dir).norm()
+    } else {
+        0.0
+    };
+    let rho = minimum.rho;
+    *memory = Memory {
+        dir,
+        slopes: if minimum.count > 1 {
+            minimum.slopes
+        } else {
+            [Vec3::zeros(); 3]
+        },
+        curvature: [rho, 0.0, 0.0, rho, 0.0, rho],
+        drift,
+        count: if minimum.count > 1 {
+            minimum.count as u32
+        } else {
+            0
+        },
+        curved: u32::from(rho > 0.0),
+    };
+}
+
+/// [`penetration`] with curvature, from samples of the search without.
+#[inline(never)]
+fn bent<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    centre: Option<&Vec3>,
+    start: &Vec3,
+    memory: &mut Memory,
+    settings: &Settings,
+    met: &mut Known,
+    samples: &Samples,
+) -> Result<Answer, Fault> {
     let inner = centre.copied().unwrap_or_default();
     let mut n = *start;
     let mut search = Search {
@@ -1099,9 +1166,16 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut queue = [n; 3];
     let mut queued = 0;
     let mut reach = REACH;
-    if let Some(dir) = unit(&memory.dir) {
+    let mut given = samples.list();
+    if let (Some(dir), []) = (unit(&memory.dir), given) {
         n = dir;
-        queued = recall(memory, &dir, &mut queue, &mut search.curvature, &mut reach);
+        queued = recall(
+            memory,
+            &dir,
+            &mut queue,
+            Some(&mut search.curvature),
+            &mut reach,
+        );
         if queued > 0 {
             queued -= 1;
             n = queue[queued.min(2)];
@@ -1116,7 +1190,14 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut beside = false;
     let mut sights = SIGHTS;
     loop {
-        let mut p = md.support(&n)?;
+        let mut p = match given.split_first() {
+            Some((first, rest)) => {
+                given = rest;
+                n = first.n;
+                first.point
+            }
+            None => md.support(&n)?,
+        };
         let mut h = n.dot(&p.v);
         if h < 0.0 {
             match gjk::farthest(search.met.points(), &n, 0.0) {
@@ -1193,6 +1274,13 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         search.len = search.len.max(newest + 1);
         search.set(newest, &n, &p, h, told);
         probing = CUTS;
+        if !given.is_empty() {
+            if search.len == CUTS {
+                let victim = usize::from(search.best == 0);
+                search.drop(victim, CUTS);
+            }
+            continue;
+        }
         if queued > 0 && iterations < settings.max_iterations {
             queued -= 1;
             n = queue[queued.min(2)];
@@ -1498,7 +1586,7 @@ fn recall(
     memory: &Memory,
     dir: &Vec3,
     queue: &mut [Vec3; 3],
-    curvature: &mut Curvature,
+    curvature: Option<&mut Curvature>,
     reach: &mut Real,
 ) -> usize {
     // Farther aside than the pair moved, and not as far where R is known, which serves
@@ -1548,7 +1636,10 @@ fn recall(
         *reach = reach.min(2.5 * angle);
     }
     let [xx, xy, xz, yy, yz, zz] = memory.curvature;
-    if memory.curved == 1 && (xx + xy + xz + yy + yz + zz).is_finite() {
+    if let (Some(curvature), true) = (
+        curvature,
+        memory.curved == 1 && (xx + xy + xz + yy + yz + zz).is_finite(),
+    ) {
         curvature.r = Symmetric {
             xx,
             xy,

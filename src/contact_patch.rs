@@ -18,7 +18,7 @@
 
 use crate::contact::Penetration;
 use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular};
-use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Directions around the normal.
 const AROUND: usize = 5;
@@ -37,29 +37,35 @@ const ROOM: usize = 2 * AROUND;
 /// The length, metres, of the face of D that has the normal n, if more than one pair of points
 /// of the two objects touches there; else 0.
 ///
-/// The face is known by those of the points that lie no more than the tolerance below the
+/// The face is known by those of the points ([`Known::ROOM`] at most) that lie no more than the tolerance below the
 /// highest along n. So much of a curved object of this `size` seems to be flat too, over about
 /// sqrt(tolerance · size): what is no longer than that is a point.
 ///
 /// The face of D is the difference of two faces, one of each object. Where its dimensions are
 /// fewer than theirs together, the objects touch in more than one pair of points.
 pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> Real {
-    let top = points
-        .iter()
-        .fold(Real::NEG_INFINITY, |m, p| larger(m, n.dot(&p.v)));
-    let face = || points.iter().filter(|p| n.dot(&p.v) >= top - tolerance);
+    let mut top = Real::NEG_INFINITY;
+    let mut heights = [top; Known::ROOM];
+    for (height, p) in heights.iter_mut().zip(points) {
+        *height = n.dot(&p.v);
+        top = larger(*height, top);
+    }
+    let low = top - tolerance;
+    let face = || points.iter().zip(heights).filter(|(_, h)| *h >= low);
     let blur = 8.0 * tolerance * size;
     // Mostly one of the two touches with a point: told without a root.
-    let first = face().next();
-    let extended = |of: fn(&SupportPoint) -> Vec3| {
-        first.is_some_and(|f| face().any(|p| (of(p) - of(f)).norm_squared() > blur))
-    };
-    if !(extended(|p| p.v1) && extended(|p| p.v2)) {
+    let mut extended = [false; 2];
+    let first = face().next().map(|(p, _)| *p).unwrap_or_default();
+    for (p, _) in face() {
+        extended[0] |= (p.v1 - first.v1).norm_squared() > blur;
+        extended[1] |= (p.v2 - first.v2).norm_squared() > blur;
+    }
+    if extended != [true; 2] {
         return 0.0;
     }
-    let (whole, width) = dimensions(face().map(|p| p.v), 0.0);
-    let (one, _) = dimensions(face().map(|p| p.v1), blur);
-    let (two, _) = dimensions(face().map(|p| p.v2), blur);
+    let (whole, width) = dimensions(face().map(|(p, _)| p.v), 0.0);
+    let (one, _) = dimensions(face().map(|(p, _)| p.v1), blur);
+    let (two, _) = dimensions(face().map(|(p, _)| p.v2), blur);
     if one + two > whole { width } else { 0.0 }
 }
 

@@ -59,6 +59,8 @@ pub mod contact_manifold;
 #[doc(hidden)]
 pub mod contact_patch;
 #[doc(hidden)]
+pub mod descent;
+#[doc(hidden)]
 pub mod distance;
 #[doc(hidden)]
 pub mod expansion;

@@ -29,7 +29,7 @@ use crate::expansion::Limits;
 use crate::gjk::{self, Overlap};
 use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
-use crate::math::{ITERATION_CAP, Real, Vec3, larger, perpendicular, unit};
+use crate::math::{EPSILON, ITERATION_CAP, Real, Vec3, larger, perpendicular, unit};
 use crate::planar;
 use crate::portal::rounding;
 use crate::precision::Precision;
@@ -43,6 +43,25 @@ use crate::support_set::{Inquiry, SupportSet};
 fn unmet(hit: &Penetration, settings: &Settings) -> bool {
     let apart = (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
     hit.depth <= settings.tolerance && apart > settings.tolerance
+}
+
+/// Does the tetrahedron of `c` and the first three points hold the origin, by more than
+/// rounding? The ray from the origin along the hit's direction meets the triangle of these.
+///
+/// With Cᵢ = vⱼ × vₖ that is c·Cᵢ < 0 for all i, where v₀·C₀ > 0.
+#[inline]
+fn around(c: &Vec3, points: &[SupportPoint], hit: &Penetration) -> bool {
+    let [p, q, r, ..] = points else {
+        return false;
+    };
+    let (u, v, w) = (p.v, q.v, r.v);
+    let sides = [v.cross(&w), w.cross(&u), u.cross(&v)];
+    let sign = (1.0 as Real).copysign(-u.dot(&sides[0]));
+    let size2 = larger(larger(u.norm_squared(), v.norm_squared()), w.norm_squared());
+    let reach2 = larger(hit.point1.norm_squared(), hit.point2.norm_squared());
+    let size2 = larger(larger(size2, c.norm_squared()), reach2);
+    let rounding = 64.0 * EPSILON * size2 * size2.sqrt();
+    sides.iter().all(|side| sign * c.dot(side) > rounding)
 }
 
 /// A pair and what the caller knows of it besides the state.
@@ -122,6 +141,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             (None, Some(k)) => *k,
             (None, None) => self.md.support(&hit.normal)?,
         };
+        if self
+            .centre
+            .is_some_and(|c| around(&c.v, known.points(), &hit))
+        {
+            return Ok(if limit {
+                Answer::Limit(hit)
+            } else {
+                Answer::Hit(hit)
+            });
+        }
         // The proof has a budget of its own: a search cut short must still know
         // whether it has an answer.
         let overlap = gjk::intersect(
@@ -137,7 +166,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                     known.add(p);
                 }
                 let mut hit = Penetration {
-                    depth_lower: inner.min(hit.depth),
+                    depth_lower: if self.centre.is_some() {
+                        0.0
+                    } else {
+                        inner.min(hit.depth)
+                    },
                     ..hit
                 };
                 if unmet(&hit, settings) {

@@ -1,0 +1,822 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The search as long as all cuts are exact: of polytopes, and of polytopes with a ball
+//! around them (spheres, capsules, rounded boxes), whose balls are taken off.
+//!
+//! With ρ = ρ₁ + ρ₂ the radii of the two objects' balls, u = v − ρ n is a vertex of what is
+//! left, and its cut is exact: the support value along d is at least u·d + ρ|d|. No
+//! curvature is needed, and the only doubt is whether a ball is round where it was not seen.
+//!
+//! *Found*: the model's least value within the trust region ([`Cuts::minimise`]) is where to
+//! ask next. If it is stationary and the support value there is as low as foretold, it is a
+//! local minimum, and the weights of the active cuts give the witness points: with
+//! W = Σ wᵢ uᵢ on the line of the direction n, obj1's point is the mean of its own.
+//!
+//! *Balls*: each object by itself, from two of its own points: p′ − p = r (n′ − n), exactly
+//! parallel. *A ball is part of a piece only*: the hull of a ball and a tip is a ball on one
+//! side. So an answer stands on vertices that were seen along two directions, which no other
+//! point than one of the ball can bring about; or so near to the minimum that the cut is
+//! right without the ball. Where one was not, the model's minimum is asked by a hair on that
+//! vertex's side.
+//!
+//! *The end*: a pair of samples that is smooth and no ball's, points that contradict each
+//! other, a trust region that has shrunk to nothing. Then the search with curvature goes on
+//! with the samples of this one.
+
+use super::cuts::{Cuts, Step};
+use super::lanes::{CUTS, Lanes, Vectors};
+use crate::contact::{Penetration, Settings};
+use crate::contact_patch;
+use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular, unit};
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+
+/// Is it the single-precision build?
+const SINGLE: bool = EPSILON > 1e-10;
+/// First trust radius, radians: the error of a good guess.
+pub const FIRST: Real = 0.1;
+/// Smallest first step, radians: enough to see curvature.
+const ASIDE: Real = 0.01;
+/// Tangent of the angle between a bold first step and the gradient.
+const OBLIQUE: Real = 0.1;
+/// The trust radius grows by this when a reduction predicted on the border came true …
+const GROW: Real = 2.5;
+/// … and shrinks by this when there was none.
+const SHRINK: Real = 0.6;
+/// A trust radius below which the search has lost its way, radians.
+const STUCK: Real = if SINGLE { 1e-4 } else { 1e-6 };
+/// Squared angle below which a pair tells nothing above the rounding errors, radians².
+const CLOSE: Real = if SINGLE { 1e-4 } else { 1e-10 };
+/// Squared sine of the angle within which two vectors are parallel: what rounding leaves of
+/// differences over a first step of a hundredth radian.
+const PARALLEL: Real = if SINGLE { 1e-6 } else { 1e-11 };
+/// Relative difference of the two excesses of a smooth pair …
+const ALIKE: Real = 0.03;
+/// … and how much more alike they are once a vertex was seen twice (a polytope, it seems).
+const FLAT: Real = 0.05;
+/// A pair whose slope is larger than this share of the object must be more alike.
+const STEEP: Real = 0.7;
+/// A slope larger than so many times the object is a kink's.
+const BLUNT: Real = 50.0;
+/// Support points after which balls are looked for in smooth pairs alone.
+const LOOK: usize = 3;
+/// Share of the tolerance by which two vertices that are the same may differ.
+const SAME: Real = 0.06;
+/// Support points asked only to see a vertex again, after which the balls do not fit.
+const DOUBTS: u32 = 6;
+
+/// A support point of D and its direction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sample {
+    /// Unit.
+    pub n: Vec3,
+    /// The support point along it.
+    pub point: SupportPoint,
+}
+
+/// How a search of exact cuts ends.
+pub enum Outcome {
+    /// At a local minimum.
+    Found(Minimum),
+    /// All of D is on the far side of this unit direction's support plane.
+    Apart(Vec3),
+    /// Not here: the samples to go on from.
+    Open(Samples),
+}
+
+/// A local minimum.
+pub struct Minimum {
+    /// The answer, its overlap not proven.
+    pub hit: Penetration,
+    /// The gradients of the active cuts, metres.
+    pub slopes: [Vec3; 3],
+    /// How many cuts are active.
+    pub count: usize,
+    /// The balls' radii together, metres.
+    pub rho: Real,
+}
+
+/// Up to [`CUTS`] kept samples and the last one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Samples {
+    list: [Sample; CUTS + 1],
+    len: usize,
+}
+
+impl Samples {
+    /// The samples.
+    pub fn list(&self) -> &[Sample] {
+        self.list.get(..self.len).unwrap_or(&[])
+    }
+}
+
+/// What comes after a support point.
+enum Next {
+    Ask(Vec3),
+    Found(Minimum),
+    Open,
+}
+
+/// What was foretold of the support point asked last.
+#[derive(Clone, Copy)]
+struct Forecast {
+    /// The support value, less ρ; NaN for a question that is no step down.
+    value: Real,
+    /// Squared length of the step, radians².
+    length2: Real,
+    /// Was the step to the border?
+    on_border: bool,
+    /// The step, if the minimum is there should the forecast come true.
+    step: Option<Step>,
+}
+
+/// A search of exact cuts.
+pub struct Flat {
+    n: Vectors,
+    u: Vectors,
+    /// The support values less ρ, metres.
+    h: Lanes,
+    samples: [Sample; CUTS],
+    /// The samples whose vertex of that object was seen along two directions, as bits.
+    seen: [u32; 2],
+    newest: usize,
+    /// The radii of the balls taken off, metres; 0 for none.
+    radius: [Real; 2],
+    cuts: Cuts,
+    /// The chart of the best direction.
+    b: Vec3,
+    e1: Vec3,
+    e2: Vec3,
+    /// The trust radius, radians.
+    trust: Real,
+    forecast: Forecast,
+    /// Squared extent of D from its centre, m².
+    extent2: Real,
+    tolerance: Real,
+    asked: usize,
+    doubts: u32,
+    levelled: bool,
+    /// Was a vertex seen twice: a polytope, it seems?
+    flat: bool,
+}
+
+impl Flat {
+    /// Nothing asked yet; `trust`: the first trust radius, radians.
+    #[inline(always)]
+    pub fn new(trust: Real) -> Self {
+        Self {
+            n: Vectors::default(),
+            u: Vectors::default(),
+            h: Lanes::default(),
+            samples: [Sample::default(); CUTS],
+            seen: [0; 2],
+            newest: 0,
+            radius: [0.0; 2],
+            cuts: Cuts::default(),
+            b: Vec3::zeros(),
+            e1: Vec3::zeros(),
+            e2: Vec3::zeros(),
+            trust,
+            forecast: Forecast {
+                value: Real::NAN,
+                length2: 0.0,
+                on_border: false,
+                step: None,
+            },
+            extent2: 0.0,
+            tolerance: 0.0,
+            asked: 0,
+            doubts: 0,
+            levelled: false,
+            flat: false,
+        }
+    }
+
+    /// Searches from `n`, after the queued directions (the last one first).
+    ///
+    /// `centre`: any inner point of D, its distance is the size of what was not seen.
+    /// `known` gains the points of a minimum, the active ones first.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`] from a support mapping.
+    pub fn run<A: SupportMap, B: SupportMap>(
+        &mut self,
+        md: &MinkowskiDifference<A, B>,
+        centre: &Vec3,
+        mut n: Vec3,
+        mut queue: &[Vec3],
+        settings: &Settings,
+        known: &mut Known,
+    ) -> Result<Outcome, Fault> {
+        loop {
+            let new = Sample {
+                n,
+                point: md.support(&n)?,
+            };
+            self.asked += 1;
+            let h = n.dot(&new.point.v);
+            if h < 0.0 {
+                // D holds what was seen: where that lies beyond, a callback errs.
+                let valid = (1 << self.cuts.len) - 1;
+                let beyond = self.u.dot(&n) + self.n.dot(&n) * self.rho();
+                return Ok(if beyond.mask(|a| a > 0.0) & valid == 0 {
+                    Outcome::Apart(n)
+                } else {
+                    self.open(None)
+                });
+            }
+            if !self.take(&new, h, centre, settings.tolerance) {
+                return Ok(self.open(Some(&new)));
+            }
+            if let Some(minimum) = self.came_true(&new, h, known) {
+                return Ok(Outcome::Found(minimum));
+            }
+            if self.asked as u64 >= settings.max_iterations {
+                return Ok(self.open(None));
+            }
+            if let Some((last, rest)) = queue.split_last() {
+                (n, queue) = (*last, rest);
+                continue;
+            }
+            match self.next(known) {
+                Next::Ask(next) => n = next,
+                Next::Found(minimum) => return Ok(Outcome::Found(minimum)),
+                Next::Open => return Ok(self.open(None)),
+            }
+        }
+    }
+
+    /// The end without a minimum; `last` was not taken.
+    #[cold]
+    fn open(&self, last: Option<&Sample>) -> Outcome {
+        let mut samples = Samples::default();
+        let kept = self.samples.iter().take(self.cuts.len);
+        for (place, sample) in samples.list.iter_mut().zip(kept.chain(last)) {
+            *place = *sample;
+            samples.len += 1;
+        }
+        Outcome::Open(samples)
+    }
+
+    #[inline(always)]
+    fn rho(&self) -> Real {
+        self.radius[0] + self.radius[1]
+    }
+
+    /// How far apart two vertices may be that are the same, metres: where a ball was taken
+    /// off its radius is uncertain.
+    #[inline(always)]
+    fn same(&self) -> Real {
+        if self.rho() > 0.0 {
+            larger(self.cuts.rounding, self.tolerance * SAME)
+        } else {
+            self.cuts.rounding
+        }
+    }
+
+    /// Takes a support point. Not, if it is of no exact cut.
+    #[inline(always)]
+    fn take(&mut self, new: &Sample, h: Real, centre: &Vec3, tolerance: Real) -> bool {
+        let p = &new.point;
+        let size = (p.v1.x.abs() + p.v1.y.abs() + p.v1.z.abs())
+            + (p.v2.x.abs() + p.v2.y.abs() + p.v2.z.abs());
+        let rounding = larger(8.0 * EPSILON * size, self.cuts.rounding);
+        self.cuts.rounding = rounding;
+        self.extent2 = larger((p.v - centre).norm_squared(), self.extent2);
+        if self.cuts.len == 0 {
+            self.tolerance = math::tolerance(tolerance, self.extent2.sqrt(), 0.0);
+            self.tolerance = larger(self.tolerance, rounding);
+            self.put(0, new, &p.v, h, 0);
+            return true;
+        }
+        self.tolerance = larger(self.tolerance, rounding);
+        let lopsided = (self.radius[0] > 0.0) != (self.radius[1] > 0.0);
+        if self.asked <= LOOK || lopsided {
+            self.look(self.cuts.best, new);
+        }
+        self.compare(new, h)
+    }
+
+    /// Compares a new sample with those that are kept, and keeps it.
+    #[inline(always)]
+    fn compare(&mut self, new: &Sample, h: Real) -> bool {
+        let (n, rho) = (&new.n, self.rho());
+        let (u, k) = (new.point.v - n * rho, h - rho);
+        let ahead = Lanes::all(k) - self.u.dot(n);
+        let behind = self.h - self.n.dot(&u);
+        let valid = (1 << self.cuts.len) - 1;
+        let rounding = self.cuts.rounding;
+        let least = -self.same();
+        // A cut above a support value.
+        if (ahead.mask(|e| e < least) | behind.mask(|e| e < least)) & valid != 0 {
+            return false;
+        }
+        let seen = if rho > 0.0 { self.see(new) } else { 0 };
+        let like = (ahead - behind).abs() - (ahead + behind) * ALIKE;
+        let mut like = like.mask(|g| g <= rounding) & valid;
+        let mut twin = None;
+        let mut nearest = Real::INFINITY;
+        let same2 = self.same() * self.same();
+        while like != 0 {
+            let i = like.trailing_zeros() as usize;
+            like &= like - 1;
+            let dn2 = (n - self.n.get(i)).norm_squared();
+            let ds2 = (u - self.u.get(i)).norm_squared();
+            if ds2 <= same2 {
+                self.flat |= dn2 > CLOSE;
+                if dn2 < nearest {
+                    (twin, nearest) = (Some(i), dn2);
+                }
+            } else if self.smooth(ahead.get(i), behind.get(i), ds2, dn2) {
+                // Of one ball more, or of none.
+                return self.look(i, new) && self.compare(new, h);
+            }
+        }
+        self.keep(new, &u, k, seen, twin);
+        true
+    }
+
+    /// Does a pair with these excesses, this far apart, look smooth? On a smooth piece the
+    /// trapezoidal rule makes both excesses equal; a kink between the two directions makes
+    /// their ratio whatever it likes.
+    #[inline(always)]
+    fn smooth(&self, ahead: Real, behind: Real, ds2: Real, dn2: Real) -> bool {
+        let (sum, gap) = (ahead + behind, (ahead - behind) * (ahead - behind));
+        let limit = if self.flat { ALIKE * FLAT } else { ALIKE } * sum;
+        let limit2 = limit * limit;
+        dn2 > CLOSE
+            && sum > self.cuts.rounding
+            && ds2 <= BLUNT * BLUNT * self.extent2 * dn2
+            && gap <= limit2
+            && gap * ds2 <= limit2 * STEEP * STEEP * self.extent2 * dn2
+    }
+
+    /// Takes the support value into account, and keeps the sample: in the place of its
+    /// `twin`, of the same vertex, if it is nearer to the best direction.
+    #[inline(always)]
+    fn keep(&mut self, new: &Sample, u: &Vec3, k: Real, seen: u32, twin: Option<usize>) {
+        let best = self.cuts.best;
+        let before = self.h.get(best);
+        self.update_trust(before, k);
+        let better = k < before;
+        let place = match twin {
+            Some(twin) => {
+                let b = self.n.get(best);
+                let nearer = twin != best && self.n.get(twin).dot(&b) <= new.n.dot(&b);
+                if !(better || nearer) {
+                    self.newest = best;
+                    self.see_again(twin, seen);
+                    return;
+                }
+                twin
+            }
+            None => self.cuts.len.min(CUTS - 1),
+        };
+        self.put(place, new, u, k, seen);
+        self.newest = place;
+        if better {
+            self.cuts.best = place;
+        }
+    }
+
+    /// The ratio of the actual to the predicted reduction steers the trust radius.
+    #[inline(always)]
+    fn update_trust(&mut self, before: Real, k: Real) {
+        let Forecast {
+            value,
+            length2,
+            on_border,
+            ..
+        } = self.forecast;
+        let (actual, predicted) = (before - k, before - value);
+        // False for NaN: no forecast.
+        if actual > 0.25 * predicted {
+            if on_border && actual > 0.7 * predicted {
+                self.trust = (self.trust * GROW).min(1.0);
+            }
+        } else if value.is_finite()
+            // Level ground within rounding is no failure.
+            && !(actual > -8.0 * EPSILON * (k + self.rho()))
+            && length2 > 0.25 * self.trust * self.trust
+        {
+            self.trust *= SHRINK;
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, new: &Sample, u: &Vec3, k: Real, seen: u32) {
+        self.n.set(i, &new.n);
+        self.u.set(i, u);
+        self.h.set(i, k);
+        self.samples[i % CUTS] = *new;
+        self.cuts.len = self.cuts.len.max(i + 1);
+        // Nothing is to be seen of what has no ball.
+        if self.rho() > 0.0 {
+            for (o, bits) in self.seen.iter_mut().enumerate() {
+                *bits = *bits & !(1 << i) | (seen >> o & 1) << i;
+            }
+        }
+    }
+
+    /// Notes that a vertex kept in another sample was seen.
+    #[inline(always)]
+    fn see_again(&mut self, i: usize, seen: u32) {
+        for (o, bits) in self.seen.iter_mut().enumerate() {
+            *bits |= (seen >> o & 1) << i;
+        }
+    }
+
+    /// Looks for balls: each object by itself, its point of sample `i` and the new one, and
+    /// takes them off all samples. Returns whether there was one.
+    #[inline]
+    fn look(&mut self, i: usize, new: &Sample) -> bool {
+        let old = &self.samples[i % CUTS];
+        let dn = new.n - old.n;
+        let turned = dn.norm_squared();
+        if !(turned > CLOSE) {
+            return false;
+        }
+        let moves = [new.point.v1 - old.point.v1, old.point.v2 - new.point.v2];
+        let least = self.cuts.rounding * self.cuts.rounding;
+        let mut found = false;
+        for (radius, d) in self.radius.iter_mut().zip(moves) {
+            let (along, moved) = (d.dot(&dn), d.norm_squared());
+            let parallel = along > 0.0
+                && moved > 4.0 * least
+                && moved * turned - along * along <= PARALLEL * moved * turned
+                // No larger than the object.
+                && along * along <= 1.02 * self.extent2 * turned * turned;
+            if parallel && *radius == 0.0 {
+                *radius = along / turned;
+                self.u.add(&self.n, -*radius);
+                self.h = self.h - Lanes::all(*radius);
+                self.forecast.value -= *radius;
+                found = true;
+            }
+        }
+        self.flat &= !found;
+        found
+    }
+
+    /// Notes which vertices a new sample shows again from another direction. Returns whose
+    /// were: a bit for each object.
+    #[inline(always)]
+    fn see(&mut self, new: &Sample) -> u32 {
+        let same = self.same();
+        let mut seen = 0;
+        for i in 0..self.cuts.len.min(CUTS) {
+            let old = &self.samples[i];
+            let dn = new.n - old.n;
+            let moves = [new.point.v1 - old.point.v1, old.point.v2 - new.point.v2];
+            for (o, d) in moves.into_iter().enumerate() {
+                let r = self.radius[o];
+                // The ball must have moved by more than a vertex without it would need to
+                // pass for one with it.
+                let moved2 = r * r * dn.norm_squared();
+                let least = larger(CLOSE * r * r, 16.0 * same * same);
+                if moved2 > least && (d - dn * r).norm_squared() <= same * same {
+                    self.seen[o] |= 1 << i;
+                    seen |= 1 << o;
+                }
+            }
+        }
+        seen
+    }
+
+    /// The samples of which a ball's vertex was not seen twice, as bits; but for those so near
+    /// to unit `n` that their cuts are right without the ball, within a quarter of the
+    /// tolerance.
+    #[inline(always)]
+    fn unseen(&self, n: &Vec3) -> u32 {
+        let mut unseen = 0;
+        for (radius, seen) in self.radius.iter().zip(self.seen) {
+            if *radius > 0.0 {
+                unseen |= !seen;
+            }
+        }
+        if unseen == 0 {
+            return 0;
+        }
+        let lift = (Lanes::all(1.0) - self.n.dot(n)) * self.rho();
+        unseen & lift.mask(|lift| lift > 0.25 * self.tolerance)
+    }
+
+    /// The answer, if the last step was to the minimum and came true there.
+    #[inline(always)]
+    fn came_true(&mut self, new: &Sample, h: Real, known: &mut Known) -> Option<Minimum> {
+        let step = self.forecast.step.take()?;
+        let k = h - self.rho();
+        if !(k - self.forecast.value <= self.tolerance) || self.unseen(&new.n) & step.bits() != 0 {
+            return None;
+        }
+        self.conclude(new, k, &step, known)
+    }
+
+    /// Where to ask next, or the answer.
+    #[inline(always)]
+    fn next(&mut self, known: &mut Known) -> Next {
+        let best = self.cuts.best;
+        let h = self.h.get(best);
+        let rho = self.rho();
+        // A touch cannot be lower, and is for others to tell.
+        if !(h + rho > self.cuts.rounding) || self.trust < STUCK {
+            return Next::Open;
+        }
+        self.chart();
+        if self.cuts.len == 1 && !(rho > 0.0) {
+            return Next::Ask(self.first_step());
+        }
+        let mut step = self.cuts.minimise(self.trust);
+        let (mut gain, mut length) = self.gain(&step);
+        if rho > 0.0
+            && gain.abs() <= self.tolerance
+            && !step.inside
+            && self.trust < FIRST
+            && !self.levelled
+        {
+            // Level so far: is it as far as the first radius?
+            self.levelled = true;
+            self.trust = FIRST;
+            step = self.cuts.minimise(self.trust);
+            (gain, length) = self.gain(&step);
+        }
+        // Also NaN.
+        if !(gain.abs() < Real::INFINITY) {
+            return Next::Open;
+        }
+        let close = gain.abs() <= self.tolerance;
+        let level = rho > 0.0 && self.trust >= FIRST;
+        let mut d = self.b + self.e1 * step.x + self.e2 * step.y;
+        self.forecast = Forecast {
+            value: h - gain,
+            length2: step.length2(),
+            on_border: !step.inside,
+            step: None,
+        };
+        if step.inside || close && level {
+            let doubtful = self.doubtful(&step, &(d / length));
+            if doubtful != 0 {
+                self.doubts += 1;
+                if self.doubts > DOUBTS {
+                    return Next::Open;
+                }
+                d += self.towards(&step, doubtful);
+                self.forecast.value = Real::NAN;
+            } else if close {
+                let sample = self.samples[best % CUTS];
+                return match self.conclude(&sample, h, &step, known) {
+                    Some(minimum) => Next::Found(minimum),
+                    None => Next::Open,
+                };
+            }
+        }
+        if self.cuts.len == CUTS {
+            self.evict(&mut step);
+        }
+        if step.inside && self.forecast.value.is_finite() {
+            self.forecast.step = Some(step);
+        }
+        Next::Ask(d * (1.0 / d.norm()))
+    }
+
+    /// How much lower the model is at a step, metres, and the length of its direction.
+    #[inline(always)]
+    fn gain(&self, step: &Step) -> (Real, Real) {
+        let (cuts, i) = (&self.cuts, step.set[0]);
+        let level = cuts.a.get(i) + cuts.x.get(i) * step.x + cuts.y.get(i) * step.y;
+        let length = (1.0 + step.length2()).sqrt();
+        (self.h.get(cuts.best) - level / length, length)
+    }
+
+    /// The chart of the best direction, and the cuts in it.
+    #[inline(always)]
+    fn chart(&mut self) {
+        let b = self.n.get(self.cuts.best);
+        // Orthonormal basis without a branch (Duff et al., JCGT 6(1), 2017).
+        let sign = (1.0 as Real).copysign(b.z);
+        let c = -1.0 / (sign + b.z);
+        let d = b.x * b.y * c;
+        self.e1 = Vec3::new(1.0 + sign * b.x * b.x * c, sign * d, -sign * b.x);
+        self.e2 = Vec3::new(d, sign + b.y * b.y * c, -b.y);
+        self.b = b;
+        self.cuts.a = self.u.dot(&b);
+        self.cuts.x = self.u.dot(&self.e1);
+        self.cuts.y = self.u.dot(&self.e2);
+    }
+
+    /// From the first sample: down the gradient as on a ball, with nothing but the size to go
+    /// by; at least far enough to see curvature.
+    #[inline(always)]
+    fn first_step(&mut self) -> Vec3 {
+        let (h, gx, gy) = (self.h.get(0), self.cuts.x.get(0), self.cuts.y.get(0));
+        let slope = (gx * gx + gy * gy).sqrt();
+        let core = h - self.extent2.sqrt();
+        let ball = -slope / core;
+        let trust = self.trust;
+        let length = if ball > 0.0 { ball.min(trust) } else { trust }.max(ASIDE);
+        self.forecast = Forecast {
+            value: (core - slope * length) / (1.0 + length * length).sqrt() + h - core,
+            length2: length * length,
+            on_border: length == trust,
+            step: None,
+        };
+        // No gradient: one way is as good as another.
+        let mut down = if slope > 0.0 {
+            (self.e1 * gx + self.e2 * gy) * (-1.0 / slope)
+        } else {
+            self.e1
+        };
+        if self.forecast.on_border {
+            // A bold step goes a little aside, so that no symmetry of the start hides what
+            // is across.
+            down += self.b.cross(&down) * OBLIQUE;
+        }
+        let d = self.b + down * length;
+        d * (1.0 / d.norm())
+    }
+
+    /// The active cuts whose balls must be seen, as bits. Of three cuts the best one's own
+    /// point is as good as any.
+    #[inline(always)]
+    fn doubtful(&self, step: &Step, n: &Vec3) -> u32 {
+        let unseen = self.unseen(n);
+        if unseen == 0 {
+            return 0;
+        }
+        let exempt = if step.count == 3 {
+            1 << self.cuts.best
+        } else {
+            0
+        };
+        unseen & step.bits() & !exempt
+    }
+
+    /// From the model's minimum to where these vertices show, by so little that the depth
+    /// there is the minimum's within the tolerance.
+    #[cold]
+    fn towards(&self, step: &Step, doubtful: u32) -> Vec3 {
+        let mut side = Vec3::zeros();
+        for &i in step.active() {
+            let sign = if doubtful & (1 << i) != 0 { 1.0 } else { -1.0 };
+            side += self.u.get(i) * sign;
+        }
+        if doubtful.count_ones() as usize == step.count {
+            side = self.n.get(step.set[0]) - self.b;
+        }
+        let side = side - self.b * self.b.dot(&side);
+        let side = unit(&side).unwrap_or_else(|| perpendicular(&self.b));
+        let radius = larger(self.radius[0], self.radius[1]);
+        let tilt = if step.count == 1 {
+            larger(10.0 * CLOSE.sqrt(), 8.0 * self.same() / radius)
+        } else {
+            0.25 * self.tolerance / self.extent2.sqrt()
+        };
+        side * tilt
+    }
+
+    /// Room for the next sample; the step's cuts keep their names.
+    #[inline(always)]
+    fn evict(&mut self, step: &mut Step) {
+        let kept = step.bits() | 1 << self.cuts.best | 1 << self.newest;
+        let (out, free) = self.cuts.least(kept, step);
+        if !free {
+            // For what the model forgets the trust radius must pay.
+            self.trust *= 0.5;
+        }
+        let last = CUTS - 1;
+        self.cuts.len = last;
+        if out == last {
+            return;
+        }
+        let seen = self.seen[0] >> last & 1 | (self.seen[1] >> last & 1) << 1;
+        let (sample, u, k) = (self.samples[last], self.u.get(last), self.h.get(last));
+        self.put(out, &sample, &u, k, seen);
+        for i in step.set.iter_mut().chain([&mut self.cuts.best]) {
+            if *i == last {
+                *i = out;
+            }
+        }
+    }
+
+    /// The answer at a sample, with witness points, if the objects' own points show them:
+    /// the points of the active cuts, or, where a direction ties several vertices, of any
+    /// three.
+    #[inline(always)]
+    fn conclude(&self, at: &Sample, k: Real, step: &Step, known: &mut Known) -> Option<Minimum> {
+        let n = &at.n;
+        let depth = k + self.rho();
+        let near2 = 2.0 * depth * self.tolerance;
+        let rounding = self.cuts.rounding;
+        let near2 = larger(near2, rounding * rounding);
+        let least = k - self.tolerance;
+        let own = |set: &[usize; 3], weights: &[Real; 3]| {
+            let mut foot = Vec3::zeros();
+            for (&i, &w) in set.iter().zip(weights) {
+                foot += self.u.get(i) * w;
+            }
+            let height = foot.dot(n);
+            let across2 = (foot - n * height).norm_squared();
+            (height >= least && across2 <= near2).then_some(foot)
+        };
+        let mut set = step.set;
+        let mut weights = self.weights(step, n);
+        let mut foot = own(&set, &weights);
+        if foot.is_none() {
+            for (others, shares) in self.enclosing(n) {
+                foot = own(&others, &shares);
+                if foot.is_some() {
+                    (set, weights) = (others, shares);
+                    break;
+                }
+            }
+        }
+        let foot = foot?;
+        let mut point1 = n * self.radius[0];
+        for (&i, &w) in set.iter().zip(&weights) {
+            point1 += (self.samples[i % CUTS].point.v1 - self.n.get(i) * self.radius[0]) * w;
+        }
+        let mut point2 = point1 - foot - n * self.rho();
+        // Onto the support planes of both objects.
+        point1 += n * n.dot(&(at.point.v1 - point1));
+        point2 += n * n.dot(&(at.point.v2 - point2));
+        let kept = self.cuts.len.min(CUTS);
+        for &i in step.active() {
+            known.put(&self.samples[i % CUTS].point, &[]);
+        }
+        known.put(&at.point, &[]);
+        for sample in &self.samples[..kept] {
+            known.put(&sample.point, &[]);
+        }
+        let slope = |i: usize| {
+            let u = self.u.get(i);
+            u - n * n.dot(&u)
+        };
+        Some(Minimum {
+            hit: Penetration {
+                depth,
+                depth_lower: 0.0,
+                dir: *n,
+                normal: *n,
+                point1,
+                point2,
+                width: contact_patch::width(known.points(), n, self.tolerance, self.extent2.sqrt()),
+                iterations: self.asked as u64,
+            },
+            slopes: set.map(slope),
+            count: step.count,
+            rho: self.rho(),
+        })
+    }
+
+    /// Weights of the active cuts whose vertices have a mean on the line of `n`, or come
+    /// nearest to it.
+    #[inline(always)]
+    fn weights(&self, step: &Step, n: &Vec3) -> [Real; 3] {
+        let [u, v, w] = step.set.map(|i| self.u.get(i));
+        match step.count {
+            3 => {
+                let shares = [
+                    n.dot(&v.cross(&w)),
+                    n.dot(&w.cross(&u)),
+                    n.dot(&u.cross(&v)),
+                ];
+                let sum = shares[0] + shares[1] + shares[2];
+                shares.map(|w| w / sum)
+            }
+            2 => {
+                let d = v - u;
+                let d = d - n * n.dot(&d);
+                // NaN becomes 0.
+                let t = -u.dot(&d) / d.norm_squared();
+                let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
+                [1.0 - t, t, 0.0]
+            }
+            _ => [1.0, 0.0, 0.0],
+        }
+    }
+
+    /// Each three samples whose triangle the line of `n` meets, and the weights of where it
+    /// does.
+    #[cold]
+    fn enclosing(&self, n: &Vec3) -> impl Iterator<Item = ([usize; 3], [Real; 3])> + use<'_> {
+        let n = *n;
+        let len = self.cuts.len.min(CUTS);
+        let triples = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
+        triples
+            .into_iter()
+            .filter(move |t| t[2] < len)
+            .filter_map(move |set| {
+                let step = Step {
+                    x: 0.0,
+                    y: 0.0,
+                    value: 0.0,
+                    set,
+                    count: 3,
+                    inside: true,
+                };
+                let w = self.weights(&step, &n);
+                // False for NaN: three points on a line.
+                w.iter().all(|&w| w >= 0.0).then_some((set, w))
+            })
+    }
+}
