@@ -1167,6 +1167,9 @@ fn bent<A: SupportMap, B: SupportMap>(
     let mut queued = 0;
     let mut reach = REACH;
     let mut given = samples.list();
+    if !given.is_empty() {
+        reach = samples.trust;
+    }
     if let (Some(dir), []) = (unit(&memory.dir), given) {
         n = dir;
         queued = recall(

@@ -105,11 +105,34 @@ impl Cuts {
         [self.x.get(i) - h * step.x, self.y.get(i) - h * step.y]
     }
 
-    /// Where m is least within the radius.
+    /// Where m is least within the radius, as far as the `starts` lead: cuts as bits. The best
+    /// is always one.
     #[inline]
-    pub fn minimise(&self, radius: Real) -> Step {
+    pub fn minimise(&self, radius: Real, starts: u32) -> Step {
         let radius2 = radius * radius;
-        let mut step = self.one(self.best, radius2);
+        let mut lowest = self.walk(self.one(self.best, radius2), radius2);
+        for i in (0..self.len).filter(|&i| i != self.best && starts & (1 << i) != 0) {
+            let first = self.one(i, radius2);
+            // No point of this cut is lower than where it is least.
+            if self.level(i, &first) < lowest.value {
+                let other = self.walk(first, radius2);
+                if other.value < lowest.value {
+                    lowest = other;
+                }
+            }
+        }
+        lowest
+    }
+
+    /// Cut `i` at a step, metres.
+    #[inline(always)]
+    fn level(&self, i: usize, step: &Step) -> Real {
+        let level = self.a.get(i) + self.x.get(i) * step.x + self.y.get(i) * step.y;
+        level - 0.5 * self.height() * step.length2()
+    }
+
+    /// The active-set method from where one cut is least.
+    fn walk(&self, mut step: Step, radius2: Real) -> Step {
         let mut lowest = step;
         lowest.value = Real::INFINITY;
         for _ in 0..TURNS {
@@ -388,7 +411,7 @@ mod tests {
             let h = random.within(-0.5, 0.5);
             let c = cuts(&mut random, 1 + round % 4, h);
             let radius = random.within(0.02, 0.5);
-            let step = c.minimise(radius);
+            let step = c.minimise(radius, !0);
             let there = value(&c, step.x, step.y);
             assert!(step.length2() <= radius * radius * 1.000_001);
             assert!((there - step.value).abs() < 1e-6, "{step:?}");
@@ -408,7 +431,7 @@ mod tests {
     fn the_lowest_cut_is_forgotten() {
         let mut random = Random::new(4);
         let c = cuts(&mut random, 4, 0.3);
-        let step = c.minimise(0.1);
+        let step = c.minimise(0.1, !0);
         let (out, free) = c.least(step.bits() | 1, &step);
         assert!(out != 0 && (!free || step.bits() & (1 << out) == 0));
         let (out, free) = c.least(0b1111, &step);

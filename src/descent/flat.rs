@@ -101,6 +101,8 @@ pub struct Minimum {
 pub struct Samples {
     list: [Sample; CUTS + 1],
     len: usize,
+    /// The trust radius, radians.
+    pub trust: Real,
 }
 
 impl Samples {
@@ -249,7 +251,10 @@ impl Flat {
     /// The end without a minimum; `last` was not taken.
     #[cold]
     fn open(&self, last: Option<&Sample>) -> Outcome {
-        let mut samples = Samples::default();
+        let mut samples = Samples {
+            trust: self.trust,
+            ..Samples::default()
+        };
         let kept = self.samples.iter().take(self.cuts.len);
         for (place, sample) in samples.list.iter_mut().zip(kept.chain(last)) {
             *place = *sample;
@@ -290,6 +295,7 @@ impl Flat {
             return true;
         }
         self.tolerance = larger(self.tolerance, rounding);
+        self.update_trust(h - self.rho());
         let lopsided = (self.radius[0] > 0.0) != (self.radius[1] > 0.0);
         if self.asked <= LOOK || lopsided {
             self.look(self.cuts.best, new);
@@ -351,14 +357,12 @@ impl Flat {
             && gap * ds2 <= limit2 * STEEP * STEEP * self.extent2 * dn2
     }
 
-    /// Takes the support value into account, and keeps the sample: in the place of its
-    /// `twin`, of the same vertex, if it is nearer to the best direction.
+    /// Keeps the sample: in the place of its `twin`, of the same vertex, if it is nearer to
+    /// the best direction.
     #[inline(always)]
     fn keep(&mut self, new: &Sample, u: &Vec3, k: Real, seen: u32, twin: Option<usize>) {
         let best = self.cuts.best;
-        let before = self.h.get(best);
-        self.update_trust(before, k);
-        let better = k < before;
+        let better = k < self.h.get(best);
         let place = match twin {
             Some(twin) => {
                 let b = self.n.get(best);
@@ -381,7 +385,8 @@ impl Flat {
 
     /// The ratio of the actual to the predicted reduction steers the trust radius.
     #[inline(always)]
-    fn update_trust(&mut self, before: Real, k: Real) {
+    fn update_trust(&mut self, k: Real) {
+        let before = self.h.get(self.cuts.best);
         let Forecast {
             value,
             length2,
@@ -501,15 +506,37 @@ impl Flat {
         unseen & lift.mask(|lift| lift > 0.25 * self.tolerance)
     }
 
-    /// The answer, if the last step was to the minimum and came true there.
+    /// The answer, if the last step was to the minimum, came true there, and no cut shows a
+    /// lower place.
     #[inline(always)]
     fn came_true(&mut self, new: &Sample, h: Real, known: &mut Known) -> Option<Minimum> {
         let step = self.forecast.step.take()?;
         let k = h - self.rho();
-        if !(k - self.forecast.value <= self.tolerance) || self.unseen(&new.n) & step.bits() != 0 {
+        let came = k - self.forecast.value <= self.tolerance;
+        if !came || self.unseen(&new.n) & step.bits() != 0 || !self.is_lowest(&new.n, k, &step) {
             return None;
         }
         self.conclude(new, k, &step, known)
+    }
+
+    /// Is it nowhere lower within the trust radius, as far as the active cuts tell?
+    ///
+    /// Around the minimum the model is k + max g·x − ½ k x² with the active gradients g. Of
+    /// three that surround the origin max g·x is least across the nearest side of their
+    /// triangle, where it is the side's distance times |x|: no lower, if that distance is at
+    /// least ½ k Δ. (Vertices of equal height are as far apart as their gradients.)
+    #[inline(always)]
+    fn is_lowest(&self, n: &Vec3, k: Real, step: &Step) -> bool {
+        if !(k > 0.0) {
+            return true;
+        }
+        let [u, v, w] = step.set.map(|i| self.u.get(i));
+        let least = 0.5 * k * self.trust;
+        let far = |a: &Vec3, b: &Vec3| {
+            let area = n.dot(&a.cross(b));
+            area * area >= least * least * (a - b).norm_squared()
+        };
+        step.count == 3 && far(&v, &w) && far(&w, &u) && far(&u, &v)
     }
 
     /// Where to ask next, or the answer.
@@ -526,7 +553,8 @@ impl Flat {
         if self.cuts.len == 1 && !(rho > 0.0) {
             return Next::Ask(self.first_step());
         }
-        let mut step = self.cuts.minimise(self.trust);
+        let starts = 1 << best;
+        let mut step = self.cuts.minimise(self.trust, starts);
         let (mut gain, mut length) = self.gain(&step);
         if rho > 0.0
             && gain.abs() <= self.tolerance
@@ -537,7 +565,12 @@ impl Flat {
             // Level so far: is it as far as the first radius?
             self.levelled = true;
             self.trust = FIRST;
-            step = self.cuts.minimise(self.trust);
+            step = self.cuts.minimise(self.trust, starts);
+            (gain, length) = self.gain(&step);
+        }
+        if gain.abs() <= self.tolerance && step.inside && !self.is_lowest(&self.b, h, &step) {
+            // The last look: is it lower anywhere?
+            step = self.cuts.minimise(self.trust, !0);
             (gain, length) = self.gain(&step);
         }
         // Also NaN.
