@@ -53,20 +53,27 @@ pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> 
     let low = top - tolerance;
     let face = || points.iter().zip(heights).filter(|(_, h)| *h >= low);
     let blur = 8.0 * tolerance * size;
-    // Mostly one of the two touches with a point: told without a root.
-    let mut extended = [false; 2];
     let first = face().next().map(|(p, _)| *p).unwrap_or_default();
+    let mut sides = [(Vec3::zeros(), 0.0); 2];
     for (p, _) in face() {
-        extended[0] |= (p.v1 - first.v1).norm_squared() > blur;
-        extended[1] |= (p.v2 - first.v2).norm_squared() > blur;
+        for ((side, side2), d) in sides.iter_mut().zip([p.v1 - first.v1, p.v2 - first.v2]) {
+            let d2 = d.norm_squared();
+            if d2 > *side2 {
+                (*side, *side2) = (d, d2);
+            }
+        }
     }
-    if extended != [true; 2] {
+    // Mostly one of the two touches with a point.
+    let [(one, one2), (two, two2)] = sides;
+    if !(one2 > blur && two2 > blur) {
         return 0.0;
     }
+    // Or two edges cross.
+    let wide = |d: Vec3, side: &Vec3, side2: Real| side.cross(&d).norm_squared() > blur * side2;
+    let edges = face()
+        .all(|(p, _)| !wide(p.v1 - first.v1, &one, one2) && !wide(p.v2 - first.v2, &two, two2));
     let (whole, width) = dimensions(face().map(|(p, _)| p.v), 0.0);
-    let (one, _) = dimensions(face().map(|(p, _)| p.v1), blur);
-    let (two, _) = dimensions(face().map(|(p, _)| p.v2), blur);
-    if one + two > whole { width } else { 0.0 }
+    if edges && whole == 2 { 0.0 } else { width }
 }
 
 /// What the points that a query knows say of a resting face.

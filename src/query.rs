@@ -204,22 +204,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.settle(answer, settings)
     }
 
-    /// What a search starts from, unless that looks away from where the centres look and D
-    /// reaches farther there: the state of the swapped pair leads to the far side.
-    fn not_behind(&self, memory: Memory) -> Result<Memory, Fault> {
-        let (Some(_), Some(n)) = (self.centre, unit(&memory.dir)) else {
-            return Ok(memory);
+    /// Does the direction look away from where the centres look, and D reach farther there? The
+    /// state of the swapped pair leads to the far side.
+    fn is_behind(&self, dir: &Vec3) -> Result<bool, Fault> {
+        let Some(centre) = self.centre else {
+            return Ok(false);
         };
-        let cold = self.cold_start();
-        if n.dot(&cold) >= 0.0 {
-            return Ok(memory);
+        if !(dir.dot(&centre.v) > 0.0) {
+            return Ok(false);
         }
+        let (Some(n), cold) = (unit(dir), self.cold_start()) else {
+            return Ok(false);
+        };
         let reach = |n: &Vec3| Ok(n.dot(&self.md.support(n)?.v));
-        Ok(if reach(&cold)? < reach(&n)? {
-            Memory::default()
-        } else {
-            memory
-        })
+        Ok(reach(&cold)? < reach(&n)?)
     }
 
     /// [`Pair::local`], and the points it came to know.
@@ -232,7 +230,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let mut memory = self.not_behind(state.solver())?;
+        let mut memory = state.solver();
+        if self.is_behind(&memory.dir)? {
+            memory = Memory::default();
+        }
         let answer = match self.descend(&mut memory, settings, known)? {
             Answer::Hit(hit) => self.proven(hit, false, known, settings)?,
             Answer::Limit(hit) => self.proven(hit, true, known, settings)?,

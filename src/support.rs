@@ -96,6 +96,15 @@ impl Known {
         place
     }
 
+    /// Adds a point that is not there, if there is room.
+    #[inline(always)]
+    pub fn push(&mut self, p: &SupportPoint) {
+        if let Some(place) = self.points.get_mut(self.len) {
+            *place = *p;
+            self.len += 1;
+        }
+    }
+
     /// Makes the point at that place the first.
     pub fn lead(&mut self, at: usize) {
         self.points.swap(0, at % Self::ROOM);

@@ -35,7 +35,7 @@ pub struct Cuts {
     pub x: Lanes,
     /// Their gradients, metres a radian.
     pub y: Lanes,
-    /// How many there are.
+    /// How many there are. Lanes beyond repeat one of them.
     pub len: usize,
     /// The cut of b.
     pub best: usize,
@@ -138,7 +138,8 @@ impl Cuts {
         for _ in 0..TURNS {
             let levels = self.a + self.x * step.x + self.y * step.y;
             let top = levels.get(step.set[0]);
-            let above = self.highest(&levels, top + self.rounding, !step.bits());
+            let above =
+                Self::highest(&levels, top + self.rounding).filter(|i| step.bits() & (1 << i) == 0);
             step.value =
                 above.map_or(top, |i| levels.get(i)) - 0.5 * self.height() * step.length2();
             if step.value < lowest.value {
@@ -156,22 +157,14 @@ impl Cuts {
         lowest
     }
 
-    /// The highest cut above `top`, of those whose bit is set.
+    /// The highest cut, if it is above `top`.
     #[inline(always)]
-    fn highest(&self, levels: &Lanes, top: Real, bits: u32) -> Option<usize> {
-        let valid = (1 << self.len) - 1;
-        let mut above = levels.mask(|a| a > top) & bits & valid;
-        let mut highest = None;
-        let mut most = Real::NEG_INFINITY;
-        while above != 0 {
-            let i = above.trailing_zeros() as usize;
-            above &= above - 1;
-            if levels.get(i) > most {
-                most = levels.get(i);
-                highest = Some(i);
-            }
-        }
-        highest
+    fn highest(levels: &Lanes, top: Real) -> Option<usize> {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| levels.get(i));
+        let (i, first) = if b > a { (1, b) } else { (0, a) };
+        let (k, last) = if d > c { (3, d) } else { (2, c) };
+        let (i, most) = if last > first { (k, last) } else { (i, first) };
+        (most > top).then_some(i)
     }
 
     /// The step to where cut `i` alone is least.

@@ -142,6 +142,8 @@ pub struct Flat {
     /// The samples whose vertex of that object was seen along two directions, as bits.
     seen: [u32; 2],
     newest: usize,
+    /// The place of the next sample.
+    spare: usize,
     /// The radii of the balls taken off, metres; 0 for none.
     radius: [Real; 2],
     cuts: Cuts,
@@ -173,6 +175,7 @@ impl Flat {
             samples: [Sample::default(); CUTS],
             seen: [0; 2],
             newest: 0,
+            spare: 0,
             radius: [0.0; 2],
             cuts: Cuts::default(),
             b: Vec3::zeros(),
@@ -219,9 +222,8 @@ impl Flat {
             let h = n.dot(&new.point.v);
             if h < 0.0 {
                 // D holds what was seen: where that lies beyond, a callback errs.
-                let valid = (1 << self.cuts.len) - 1;
                 let beyond = self.u.dot(&n) + self.n.dot(&n) * self.rho();
-                return Ok(if beyond.mask(|a| a > 0.0) & valid == 0 {
+                return Ok(if self.cuts.len == 0 || !(beyond.most() > 0.0) {
                     Outcome::Apart(n)
                 } else {
                     self.open(None)
@@ -291,7 +293,11 @@ impl Flat {
         if self.cuts.len == 0 {
             self.tolerance = math::tolerance(tolerance, self.extent2.sqrt(), 0.0);
             self.tolerance = larger(self.tolerance, rounding);
-            self.put(0, new, &p.v, h, 0);
+            // Of all lanes: those beyond the samples repeat the first one.
+            for i in (0..CUTS).rev() {
+                self.put(i, new, &p.v, h, 0);
+            }
+            (self.cuts.len, self.spare) = (1, 1);
             return true;
         }
         self.tolerance = larger(self.tolerance, rounding);
@@ -310,22 +316,24 @@ impl Flat {
         let (u, k) = (new.point.v - n * rho, h - rho);
         let ahead = Lanes::all(k) - self.u.dot(n);
         let behind = self.h - self.n.dot(&u);
-        let valid = (1 << self.cuts.len) - 1;
         let rounding = self.cuts.rounding;
-        let least = -self.same();
         // A cut above a support value.
-        if (ahead.mask(|e| e < least) | behind.mask(|e| e < least)) & valid != 0 {
+        if ahead.lesser(&behind).least() < -self.same() {
             return false;
         }
         let seen = if rho > 0.0 { self.see(new) } else { 0 };
-        let like = (ahead - behind).abs() - (ahead + behind) * ALIKE;
-        let mut like = like.mask(|g| g <= rounding) & valid;
+        let unlike = (ahead - behind).abs() - (ahead + behind) * ALIKE;
         let mut twin = None;
+        if unlike.least() > rounding {
+            self.keep(new, &u, k, seen, twin);
+            return true;
+        }
         let mut nearest = Real::INFINITY;
         let same2 = self.same() * self.same();
-        while like != 0 {
-            let i = like.trailing_zeros() as usize;
-            like &= like - 1;
+        for i in 0..self.cuts.len.min(CUTS) {
+            if unlike.get(i) > rounding {
+                continue;
+            }
             let dn2 = (n - self.n.get(i)).norm_squared();
             let ds2 = (u - self.u.get(i)).norm_squared();
             if ds2 <= same2 {
@@ -374,10 +382,18 @@ impl Flat {
                 }
                 twin
             }
-            None => self.cuts.len.min(CUTS - 1),
+            None => self.spare,
         };
         self.put(place, new, u, k, seen);
         self.newest = place;
+        if place == self.cuts.len {
+            self.cuts.len += 1;
+            self.spare += 1;
+        } else if twin.is_some() {
+            for i in self.cuts.len..CUTS {
+                self.put(i, new, u, k, seen);
+            }
+        }
         if better {
             self.cuts.best = place;
         }
@@ -414,7 +430,6 @@ impl Flat {
         self.u.set(i, u);
         self.h.set(i, k);
         self.samples[i % CUTS] = *new;
-        self.cuts.len = self.cuts.len.max(i + 1);
         // Nothing is to be seen of what has no ball.
         if self.rho() > 0.0 {
             for (o, bits) in self.seen.iter_mut().enumerate() {
@@ -604,7 +619,7 @@ impl Flat {
             }
         }
         if self.cuts.len == CUTS {
-            self.evict(&mut step);
+            self.evict(&step);
         }
         if step.inside && self.forecast.value.is_finite() {
             self.forecast.step = Some(step);
@@ -707,28 +722,24 @@ impl Flat {
         side * tilt
     }
 
-    /// Room for the next sample; the step's cuts keep their names.
+    /// The place of the next sample.
     #[inline(always)]
-    fn evict(&mut self, step: &mut Step) {
+    fn evict(&mut self, step: &Step) {
         let kept = step.bits() | 1 << self.cuts.best | 1 << self.newest;
         let (out, free) = self.cuts.least(kept, step);
         if !free {
             // For what the model forgets the trust radius must pay.
             self.trust *= 0.5;
         }
-        let last = CUTS - 1;
-        self.cuts.len = last;
-        if out == last {
-            return;
-        }
-        let seen = self.seen[0] >> last & 1 | (self.seen[1] >> last & 1) << 1;
-        let (sample, u, k) = (self.samples[last], self.u.get(last), self.h.get(last));
+        let best = self.cuts.best;
+        let (sample, u, k) = (
+            self.samples[best % CUTS],
+            self.u.get(best),
+            self.h.get(best),
+        );
+        let seen = self.seen[0] >> best & 1 | (self.seen[1] >> best & 1) << 1;
         self.put(out, &sample, &u, k, seen);
-        for i in step.set.iter_mut().chain([&mut self.cuts.best]) {
-            if *i == last {
-                *i = out;
-            }
-        }
+        self.spare = out;
     }
 
     /// The answer at a sample, with witness points, if the objects' own points show them:
@@ -772,13 +783,13 @@ impl Flat {
         // Onto the support planes of both objects.
         point1 += n * n.dot(&(at.point.v1 - point1));
         point2 += n * n.dot(&(at.point.v2 - point2));
-        let kept = self.cuts.len.min(CUTS);
         for &i in step.active() {
-            known.put(&self.samples[i % CUTS].point, &[]);
+            known.push(&self.samples[i % CUTS].point);
         }
+        // The one here, which may have been seen as another's twin.
         known.put(&at.point, &[]);
-        for sample in &self.samples[..kept] {
-            known.put(&sample.point, &[]);
+        for i in (0..self.cuts.len).filter(|&i| step.bits() & (1 << i) == 0) {
+            known.add(&self.samples[i % CUTS].point);
         }
         let slope = |i: usize| {
             let u = self.u.get(i);

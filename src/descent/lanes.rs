@@ -7,7 +7,7 @@
 use core::array::from_fn;
 use core::ops::{Add, Mul, Sub};
 
-use crate::math::{Real, Vec3};
+use crate::math::{self, Real, Vec3};
 
 /// How many samples there are.
 pub const CUTS: usize = 4;
@@ -59,6 +59,26 @@ impl Lanes {
     pub fn mask(&self, f: impl Fn(Real) -> bool) -> u32 {
         let [Two([a, b]), Two([c, d])] = self.0;
         u32::from(f(a)) | u32::from(f(b)) << 1 | u32::from(f(c)) << 2 | u32::from(f(d)) << 3
+    }
+
+    /// The lesser of each two.
+    #[inline(always)]
+    pub fn lesser(&self, o: &Self) -> Self {
+        Self(from_fn(|i| self.0[i].zip(o.0[i], math::lesser)))
+    }
+
+    /// The least.
+    #[inline(always)]
+    pub fn least(&self) -> Real {
+        let [a, b] = self.0[0].zip(self.0[1], math::lesser).0;
+        math::lesser(a, b)
+    }
+
+    /// The largest.
+    #[inline(always)]
+    pub fn most(&self) -> Real {
+        let [a, b] = self.0[0].zip(self.0[1], math::larger).0;
+        math::larger(a, b)
     }
 
     /// The absolute values.
