@@ -1127,7 +1127,7 @@ fn leave(memory: &mut Memory, minimum: &Minimum) {
 
 /// [`penetration`] with curvature, from samples of the search without.
 #[inline(never)]
-fn bent<A: SupportMap, B: SupportMap>(
+pub fn bent<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     centre: Option<&Vec3>,
     start: &Vec3,

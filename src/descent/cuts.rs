@@ -37,7 +37,9 @@ pub struct Cuts {
     pub y: Lanes,
     /// How many there are. Lanes beyond repeat one of them.
     pub len: usize,
-    /// The cut of b.
+    /// h, metres.
+    pub height: Real,
+    /// The highest cut at x = 0, where the search for the least value begins.
     pub best: usize,
     /// Cuts that differ by no more are equally high, metres.
     pub rounding: Real,
@@ -87,12 +89,6 @@ fn cross(a: [Real; 2], b: [Real; 2]) -> Real {
 }
 
 impl Cuts {
-    /// h.
-    #[inline(always)]
-    fn height(&self) -> Real {
-        self.a.get(self.best)
-    }
-
     #[inline(always)]
     fn gradient(&self, i: usize) -> [Real; 2] {
         [self.x.get(i), self.y.get(i)]
@@ -101,7 +97,7 @@ impl Cuts {
     /// The gradient of m on cut `i` at a step.
     #[inline(always)]
     fn slope(&self, i: usize, step: &Step) -> [Real; 2] {
-        let h = self.height();
+        let h = self.height;
         [self.x.get(i) - h * step.x, self.y.get(i) - h * step.y]
     }
 
@@ -128,7 +124,7 @@ impl Cuts {
     #[inline(always)]
     fn level(&self, i: usize, step: &Step) -> Real {
         let level = self.a.get(i) + self.x.get(i) * step.x + self.y.get(i) * step.y;
-        level - 0.5 * self.height() * step.length2()
+        level - 0.5 * self.height * step.length2()
     }
 
     /// The active-set method from where one cut is least.
@@ -140,8 +136,7 @@ impl Cuts {
             let top = levels.get(step.set[0]);
             let above =
                 Self::highest(&levels, top + self.rounding).filter(|i| step.bits() & (1 << i) == 0);
-            step.value =
-                above.map_or(top, |i| levels.get(i)) - 0.5 * self.height() * step.length2();
+            step.value = above.map_or(top, |i| levels.get(i)) - 0.5 * self.height * step.length2();
             if step.value < lowest.value {
                 lowest = step;
             }
@@ -171,7 +166,7 @@ impl Cuts {
     #[inline(always)]
     fn one(&self, i: usize, radius2: Real) -> Step {
         let [x, y] = self.gradient(i);
-        let h = self.height();
+        let h = self.height;
         let g2 = x * x + y * y;
         let mut step = Step {
             x: radius2.sqrt(),
@@ -208,7 +203,7 @@ impl Cuts {
         }
         // Along the line, from its point nearest to x = 0, in parts of |d|.
         let slope = cross(d, g);
-        let h = self.height();
+        let h = self.height;
         let inside = h < 0.0 && slope * slope * iq <= h * h * room;
         let t = if inside {
             slope * iq / h
@@ -325,7 +320,7 @@ impl Cuts {
     }
 
     /// The cut to forget: the lowest at the step, of those whose bit is not in `kept`; else,
-    /// and then it says false, the lowest at x = 0.
+    /// and then it says false, the lowest at x = 0 but the best.
     #[inline]
     pub fn least(&self, kept: u32, step: &Step) -> (usize, bool) {
         let lowest = |levels: &Lanes, kept: u32| {
@@ -357,20 +352,34 @@ mod tests {
     fn cuts(random: &mut Random, len: usize, h: Real) -> Cuts {
         let mut cuts = Cuts {
             len,
+            height: h,
             ..Cuts::default()
         };
-        for i in 0..len {
-            // The best is the highest at b.
-            cuts.a.set(
-                i,
-                if i == 0 {
-                    h
-                } else {
-                    h - random.within(0.0, 0.02)
-                },
-            );
-            cuts.x.set(i, random.within(-0.3, 0.3));
-            cuts.y.set(i, random.within(-0.3, 0.3));
+        for i in 0..4 {
+            // The best is the highest at b; lanes beyond repeat it.
+            if i == 0 || i >= len {
+                cuts.a.set(i, h);
+                cuts.x.set(
+                    i,
+                    if i == 0 {
+                        random.within(-0.3, 0.3)
+                    } else {
+                        cuts.x.get(0)
+                    },
+                );
+                cuts.y.set(
+                    i,
+                    if i == 0 {
+                        random.within(-0.3, 0.3)
+                    } else {
+                        cuts.y.get(0)
+                    },
+                );
+            } else {
+                cuts.a.set(i, h - random.within(0.0, 0.02));
+                cuts.x.set(i, random.within(-0.3, 0.3));
+                cuts.y.set(i, random.within(-0.3, 0.3));
+            }
         }
         cuts
     }
@@ -379,7 +388,7 @@ mod tests {
         let top = (0..cuts.len)
             .map(|i| cuts.a.get(i) + cuts.x.get(i) * x + cuts.y.get(i) * y)
             .fold(Real::NEG_INFINITY, Real::max);
-        top - 0.5 * cuts.a.get(0) * (x * x + y * y)
+        top - 0.5 * cuts.height * (x * x + y * y)
     }
 
     /// The least value on a fine grid of the disc.

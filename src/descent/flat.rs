@@ -142,6 +142,10 @@ pub struct Flat {
     /// The samples whose vertex of that object was seen along two directions, as bits.
     seen: [u32; 2],
     newest: usize,
+    /// The best sample, …
+    best: Sample,
+    /// … and its support value less ρ, metres.
+    best_h: Real,
     /// The place of the next sample.
     spare: usize,
     /// The radii of the balls taken off, metres; 0 for none.
@@ -175,6 +179,8 @@ impl Flat {
             samples: [Sample::default(); CUTS],
             seen: [0; 2],
             newest: 0,
+            best: Sample::default(),
+            best_h: 0.0,
             spare: 0,
             radius: [0.0; 2],
             cuts: Cuts::default(),
@@ -298,13 +304,15 @@ impl Flat {
                 self.put(i, new, &p.v, h, 0);
             }
             (self.cuts.len, self.spare) = (1, 1);
+            (self.best, self.best_h) = (*new, h);
             return true;
         }
         self.tolerance = larger(self.tolerance, rounding);
         self.update_trust(h - self.rho());
         let lopsided = (self.radius[0] > 0.0) != (self.radius[1] > 0.0);
         if self.asked <= LOOK || lopsided {
-            self.look(self.cuts.best, new);
+            let best = self.best;
+            self.look(&best, new);
         }
         self.compare(new, h)
     }
@@ -343,7 +351,8 @@ impl Flat {
                 }
             } else if self.smooth(ahead.get(i), behind.get(i), ds2, dn2) {
                 // Of one ball more, or of none.
-                return self.look(i, new) && self.compare(new, h);
+                let old = self.samples[i];
+                return self.look(&old, new) && self.compare(new, h);
             }
         }
         self.keep(new, &u, k, seen, twin);
@@ -369,12 +378,12 @@ impl Flat {
     /// the best direction.
     #[inline(always)]
     fn keep(&mut self, new: &Sample, u: &Vec3, k: Real, seen: u32, twin: Option<usize>) {
-        let best = self.cuts.best;
-        let better = k < self.h.get(best);
+        let better = k < self.best_h;
         let place = match twin {
             Some(twin) => {
-                let b = self.n.get(best);
-                let nearer = twin != best && self.n.get(twin).dot(&b) <= new.n.dot(&b);
+                let best = self.cuts.best;
+                let b = &self.best.n;
+                let nearer = twin != best && self.n.get(twin).dot(b) <= new.n.dot(b);
                 if !(better || nearer) {
                     self.newest = best;
                     self.see_again(twin, seen);
@@ -396,13 +405,14 @@ impl Flat {
         }
         if better {
             self.cuts.best = place;
+            (self.best, self.best_h) = (*new, k);
         }
     }
 
     /// The ratio of the actual to the predicted reduction steers the trust radius.
     #[inline(always)]
     fn update_trust(&mut self, k: Real) {
-        let before = self.h.get(self.cuts.best);
+        let before = self.best_h;
         let Forecast {
             value,
             length2,
@@ -446,11 +456,10 @@ impl Flat {
         }
     }
 
-    /// Looks for balls: each object by itself, its point of sample `i` and the new one, and
-    /// takes them off all samples. Returns whether there was one.
+    /// Looks for balls: each object by itself, its points of two samples, and takes them off
+    /// all samples. Returns whether there was one.
     #[inline]
-    fn look(&mut self, i: usize, new: &Sample) -> bool {
-        let old = &self.samples[i % CUTS];
+    fn look(&mut self, old: &Sample, new: &Sample) -> bool {
         let dn = new.n - old.n;
         let turned = dn.norm_squared();
         if !(turned > CLOSE) {
@@ -470,6 +479,7 @@ impl Flat {
                 *radius = along / turned;
                 self.u.add(&self.n, -*radius);
                 self.h = self.h - Lanes::all(*radius);
+                self.best_h -= *radius;
                 self.forecast.value -= *radius;
                 found = true;
             }
@@ -557,8 +567,7 @@ impl Flat {
     /// Where to ask next, or the answer.
     #[inline(always)]
     fn next(&mut self, known: &mut Known) -> Next {
-        let best = self.cuts.best;
-        let h = self.h.get(best);
+        let h = self.best_h;
         let rho = self.rho();
         // A touch cannot be lower, and is for others to tell.
         if !(h + rho > self.cuts.rounding) || self.trust < STUCK {
@@ -568,8 +577,7 @@ impl Flat {
         if self.cuts.len == 1 && !(rho > 0.0) {
             return Next::Ask(self.first_step());
         }
-        let starts = 1 << best;
-        let mut step = self.cuts.minimise(self.trust, starts);
+        let mut step = self.cuts.minimise(self.trust, 0);
         let (mut gain, mut length) = self.gain(&step);
         if rho > 0.0
             && gain.abs() <= self.tolerance
@@ -580,7 +588,7 @@ impl Flat {
             // Level so far: is it as far as the first radius?
             self.levelled = true;
             self.trust = FIRST;
-            step = self.cuts.minimise(self.trust, starts);
+            step = self.cuts.minimise(self.trust, 0);
             (gain, length) = self.gain(&step);
         }
         if gain.abs() <= self.tolerance && step.inside && !self.is_lowest(&self.b, h, &step) {
@@ -611,8 +619,7 @@ impl Flat {
                 d += self.towards(&step, doubtful);
                 self.forecast.value = Real::NAN;
             } else if close {
-                let sample = self.samples[best % CUTS];
-                return match self.conclude(&sample, h, &step, known) {
+                return match self.conclude(&self.best, h, &step, known) {
                     Some(minimum) => Next::Found(minimum),
                     None => Next::Open,
                 };
@@ -633,13 +640,13 @@ impl Flat {
         let (cuts, i) = (&self.cuts, step.set[0]);
         let level = cuts.a.get(i) + cuts.x.get(i) * step.x + cuts.y.get(i) * step.y;
         let length = (1.0 + step.length2()).sqrt();
-        (self.h.get(cuts.best) - level / length, length)
+        (self.best_h - level / length, length)
     }
 
     /// The chart of the best direction, and the cuts in it.
     #[inline(always)]
     fn chart(&mut self) {
-        let b = self.n.get(self.cuts.best);
+        let b = self.best.n;
         // Orthonormal basis without a branch (Duff et al., JCGT 6(1), 2017).
         let sign = (1.0 as Real).copysign(b.z);
         let c = -1.0 / (sign + b.z);
@@ -647,16 +654,25 @@ impl Flat {
         self.e1 = Vec3::new(1.0 + sign * b.x * b.x * c, sign * d, -sign * b.x);
         self.e2 = Vec3::new(d, sign + b.y * b.y * c, -b.y);
         self.b = b;
+        self.cuts.height = self.best_h;
         self.cuts.a = self.u.dot(&b);
         self.cuts.x = self.u.dot(&self.e1);
         self.cuts.y = self.u.dot(&self.e2);
+        // Where a direction ties the vertices of a face, one below the origin says nothing
+        // that the others do not.
+        let (cuts, best) = (&self.cuts, self.cuts.best);
+        let flat = larger(cuts.x.get(best).abs(), cuts.y.get(best).abs()) <= cuts.rounding;
+        let ties = |i: &usize| *i != best && cuts.a.get(*i) >= cuts.height - cuts.rounding;
+        if let (true, Some(other)) = (flat, (0..cuts.len.min(CUTS)).find(ties)) {
+            self.cuts.best = other;
+        }
     }
 
     /// From the first sample: down the gradient as on a ball, with nothing but the size to go
     /// by; at least far enough to see curvature.
     #[inline(always)]
     fn first_step(&mut self) -> Vec3 {
-        let (h, gx, gy) = (self.h.get(0), self.cuts.x.get(0), self.cuts.y.get(0));
+        let (h, gx, gy) = (self.best_h, self.cuts.x.get(0), self.cuts.y.get(0));
         let slope = (gx * gx + gy * gy).sqrt();
         let core = h - self.extent2.sqrt();
         let ball = -slope / core;
@@ -722,23 +738,15 @@ impl Flat {
         side * tilt
     }
 
-    /// The place of the next sample.
+    /// The place of the next sample: of the lowest cut that is not needed.
     #[inline(always)]
     fn evict(&mut self, step: &Step) {
-        let kept = step.bits() | 1 << self.cuts.best | 1 << self.newest;
+        let kept = step.bits() | 1 << self.newest | 1 << self.cuts.best;
         let (out, free) = self.cuts.least(kept, step);
         if !free {
             // For what the model forgets the trust radius must pay.
             self.trust *= 0.5;
         }
-        let best = self.cuts.best;
-        let (sample, u, k) = (
-            self.samples[best % CUTS],
-            self.u.get(best),
-            self.h.get(best),
-        );
-        let seen = self.seen[0] >> best & 1 | (self.seen[1] >> best & 1) << 1;
-        self.put(out, &sample, &u, k, seen);
         self.spare = out;
     }
 
@@ -862,5 +870,173 @@ impl Flat {
                 // False for NaN: three points on a line.
                 w.iter().all(|&w| w >= 0.0).then_some((set, w))
             })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{Random, capsule, corners, hull, placed};
+
+    const TOLERANCE: Real = if SINGLE { 1e-5 } else { 1e-8 };
+
+    fn run(a: impl Fn(&Vec3) -> Vec3, b: impl Fn(&Vec3) -> Vec3, start: &Vec3) -> (Outcome, u64) {
+        let md = MinkowskiDifference::new(a, b);
+        let settings = Settings {
+            tolerance: TOLERANCE,
+            max_iterations: 60,
+        };
+        let mut known = Known::default();
+        let n = start.normalize();
+        let outcome = Flat::new(FIRST).run(&md, centre, n, &[], &settings, &mut known);
+        (outcome.unwrap(), md.supports())
+    }
+
+    fn found(outcome: Outcome) -> Penetration {
+        match outcome {
+            Outcome::Found(minimum) => minimum.hit,
+            Outcome::Apart(n) => panic!("apart along {n}"),
+            Outcome::Open(samples) => panic!("open: {samples:?}"),
+        }
+    }
+
+    fn ball(c: Vec3, r: Real) -> impl Fn(&Vec3) -> Vec3 {
+        move |d| c + d * r
+    }
+
+    #[test]
+    fn boxes_are_exact() {
+        let mut random = Random::new(1);
+        let half = Vec3::new(0.5, 0.6, 0.7);
+        // Corners that look like points of one smooth surface.
+        let mut open = 0;
+        for _ in 0..200 {
+            let turn = random.rotation();
+            let place = |at: Vec3| placed(&corners(half), &turn, at);
+            let a = place(Vec3::zeros());
+            // Shallow along the first axis of the boxes.
+            let axis = turn * Vec3::x();
+            let b = place(axis * 0.98);
+            let start = axis + random.vector(0.05);
+            let (outcome, supports) = run(hull(&a), hull(&b), &(axis * -0.98), &start);
+            if let Outcome::Open(_) = outcome {
+                open += 1;
+                continue;
+            }
+            let hit = found(outcome);
+            assert!((hit.depth - 0.02).abs() < 64.0 * EPSILON, "{}", hit.depth);
+            assert!((hit.dir - axis).norm() < 64.0 * EPSILON);
+            assert!((hit.point1 - hit.point2 - hit.dir * hit.depth).norm() < 64.0 * EPSILON);
+            assert!(supports <= 12, "{supports}");
+        }
+        assert!(open <= 4, "{open}");
+    }
+
+    /// The core of a ball is a point: the second support point shows it, the third is the
+    /// minimum.
+    #[test]
+    fn balls_are_taken_off() {
+        let mut random = Random::new(2);
+        for _ in 0..200 {
+            let c = random.direction() * random.within(0.4, 1.2);
+            let (outcome, supports) = run(
+                ball(Vec3::zeros(), 1.0),
+                ball(c, 0.5),
+                &-c,
+                &(c.normalize() + random.vector(0.2)),
+            );
+            let hit = found(outcome);
+            assert!((hit.depth - (1.5 - c.norm())).abs() < TOLERANCE);
+            assert!((hit.dir.dot(&c) - c.norm()).abs() < TOLERANCE);
+            assert!((hit.point1 - hit.dir).norm() < TOLERANCE.sqrt());
+            assert!(supports <= 4, "{supports}");
+        }
+    }
+
+    /// Two crossed capsules: the nearest points of their segments.
+    #[test]
+    fn crossed_capsules() {
+        let (x, y) = (Vec3::x(), Vec3::y());
+        let up = Vec3::z() * 0.3;
+        let (outcome, supports) = run(
+            capsule(-x, x, 0.25),
+            capsule(up - y, up + y, 0.15),
+            &-up,
+            &Vec3::new(0.06, -0.05, 1.0),
+        );
+        let hit = found(outcome);
+        assert!((hit.depth - 0.1).abs() < TOLERANCE, "{}", hit.depth);
+        assert!((hit.dir - Vec3::z()).norm() < TOLERANCE.sqrt());
+        assert!(supports <= 10, "{supports}");
+    }
+
+    /// The hull of a unit ball and the point (3, 0, 0), and a point at (2.6, 0, 0): round
+    /// where the search starts, and a cone at its minimum, 0.4 / 3 deep.
+    #[test]
+    fn a_tip_is_no_ball() {
+        let mut random = Random::new(3);
+        let tip = |d: &Vec3| {
+            let top = Vec3::x() * 3.0;
+            if top.dot(d) > 1.0 { top } else { *d }
+        };
+        for _ in 0..200 {
+            let start = random.direction();
+            match run(tip, ball(Vec3::x() * 2.6, 0.0), &(Vec3::x() * -2.6), &start).0 {
+                Outcome::Found(minimum) => {
+                    let depth = minimum.hit.depth;
+                    assert!((depth - 0.4 / 3.0).abs() < 1e-3, "{depth} from {start}");
+                }
+                Outcome::Open(_) => {}
+                Outcome::Apart(n) => panic!("apart along {n}"),
+            }
+        }
+    }
+
+    /// What is smooth and no ball is left to the search with curvature, with all that is
+    /// known of it.
+    #[test]
+    fn an_ellipsoid_is_left_open() {
+        let r = Vec3::new(0.5, 0.35, 0.25);
+        let ellipsoid = |d: &Vec3| {
+            let w = r.component_mul(&r.component_mul(d));
+            w / w.dot(d).sqrt()
+        };
+        let (outcome, supports) = run(
+            ellipsoid,
+            ball(Vec3::new(0.3, 0.2, 0.1), 0.2),
+            &Vec3::new(-0.3, -0.2, -0.1),
+            &Vec3::new(1.0, 0.5, 0.3),
+        );
+        match outcome {
+            Outcome::Open(samples) => assert_eq!(samples.list().len() as u64, supports),
+            _ => panic!("exact cuts of an ellipsoid"),
+        }
+    }
+
+    #[test]
+    fn apart_is_told() {
+        let (outcome, supports) = run(
+            ball(Vec3::zeros(), 1.0),
+            ball(Vec3::x() * 3.0, 1.0),
+            &(Vec3::x() * -3.0),
+            &Vec3::new(1.0, 0.1, 0.0),
+        );
+        assert!(matches!(outcome, Outcome::Apart(_)) && supports == 1);
+    }
+
+    /// A callback that contradicts what it showed before separates nothing.
+    #[test]
+    fn contradictions_separate_nothing() {
+        let calls = core::cell::Cell::new(0);
+        let liar = |d: &Vec3| {
+            calls.set(calls.get() + 1);
+            if calls.get() == 1 {
+                Vec3::repeat(5.0)
+            } else {
+                -d
+            }
+        };
+        let (outcome, _) = run(liar, ball(Vec3::zeros(), 0.1), &Vec3::zeros(), &Vec3::x());
+        assert!(matches!(outcome, Outcome::Open(_)));
     }
 }
