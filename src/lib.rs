@@ -51,13 +51,13 @@
 pub mod along;
 #[doc(hidden)]
 pub mod barycentric;
-#[doc(hidden)]
-pub mod bundle;
 pub mod contact;
 #[doc(hidden)]
 pub mod contact_manifold;
 #[doc(hidden)]
 pub mod contact_patch;
+#[doc(hidden)]
+pub mod descent;
 #[doc(hidden)]
 pub mod distance;
 #[doc(hidden)]
