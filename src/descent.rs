@@ -1,8 +1,620 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! A local minimum of the penetration depth.
+//! A local minimum of the penetration depth in few support points: a bundle method with a
+//! trust region, whose curved cuts are a VU decomposition (Mifflin and Sagastizábal; Noll;
+//! Lukšan and Vlček): the vertices of D are V, where h has kinks, and the curvature that the
+//! support points themselves reveal is U.
+//!
+//! The question is the paper's (Sec. III): the unit n with the least support value
+//! h(n) = max over D of n·p, near a start. The paper walks there by rays and
+//! portals, whose update is the dual simplex step of a cutting-plane method and
+//! knows nothing of curvature; a sphere costs it fifty support points. Here every
+//! support point seen near the centre of the bundle, the best direction so far, stays in use.
+//!
+//! # Parts
+//!
+//! | file | part |
+//! |---|---|
+//! | `flat.rs` | the search as long as all cuts are exact: polytopes, and balls around them |
+//! | `cuts.rs` | those cuts, and where they are least within the trust radius |
+//! | `search.rs` | the search with curvature, the loop: ask, learn, serious or null step, model, verdict, eviction |
+//! | `lanes.rs` | a number or vector for each sample, side by side |
+//! | `samples.rs` | the samples kept |
+//! | `curvature.rs` | R, learned from pairs of samples, refuted by kinks |
+//! | `model.rs` | the chart, the cuts, where they are least within the trust radius |
+//! | `trust_region.rs` | the trust radius, by actual and predicted reduction |
+//! | `verdict.rs` | the errors of the model: an answer, or where to ask |
+//! | `witness.rs` | witness points, and the queries for them |
+//! | `memory.rs` | what one search leaves behind for the next |
+//!
+//! # Derivation
+//!
+//! *Model.* Near the centre b, take D = P ⊕ Q: P a polytope, Q smooth. Most
+//! pairs are of this form: a box has P alone, an ellipsoid Q alone, a capsule a
+//! segment and a ball, a cylinder a segment and a disc. A support point is then
+//! s(n) = p(n) + R n with a vertex p of P and the symmetric R, the second derivative
+//! of Q's support function: R n changes slowly while p jumps.
+//!
+//! *Chart.* Directions are b + E x, E = (e1 e2) tangent, not normalised. There
+//! H(x) = h·|b + E x| is convex, a support point s is its subgradient E's, and
+//!
+//!   H(x) ≥ s·b + (E's)·x                                          (exact cut)
+//!
+//! holds everywhere. With R in the chart split as ρ I + A, tr A = 0, the vertex
+//! p = s − R n of the sample (n, s) gives in place of it
+//!
+//!   H(x) = α + β·x + ½ x'Ax + ρ|b + E x|,   α = s·b − ρ n·b + ½ y'Ay,
+//!   β = E's − ρ E'n − A y,   y = E'n / n·b                       (curved cut)
+//!
+//! exact for P and for balls, to second order for the rest of Q. The depth is
+//! h(x) = max over cuts of (α + β·x + ½ x'Ax) / sqrt(1 + x²) + ρ; to second order
+//! that is max (α + β·x) + ½ x'Kx + ρ with K = A − (h(b) − ρ) I, the same K for all
+//! cuts. Its minimum within the trust radius |x| ≤ Δ is where to look next.
+//!
+//! *Subproblem.* One cut: x = −K⁻¹β. Two cuts meet in a line, along which the
+//! quadratic has its minimum; three meet in a point. Where K is not positive along
+//! what is free, the minimum is on the border of the trust region. [`Model::minimise`] takes
+//! the lowest of these points that no other cut lies above: K is not positive for
+//! polytopes, and of their several minima the lowest is wanted. With four cuts, of
+//! which the centre's or the newest must be active, that is eleven points at most; where
+//! R = 0 and the search goes on from a portal it is the portal update of the paper,
+//! the dual simplex step.
+//!
+//! *Curvature.* Two samples of the same vertex p satisfy s' − s = R (n' − n). For
+//! two samples let e = (s' − s)·n' and e' = (s − s')·n: what each one exceeds the
+//! other's exact cut by. On a smooth piece the trapezoidal rule makes them equal; a
+//! kink between the two directions makes e : e' whatever it likes. So a pair with
+//! e = e' within [`ALIKE`], whose slope |s' − s| / |n' − n| is no larger than the
+//! object, is taken as smooth and R updated from it: by the symmetric rank-one formula,
+//! and where that has no say, because what is missing lies across n' − n, by Powell's
+//! symmetric Broyden formula (both in Nocedal and Wright, Numerical Optimization, ch. 6).
+//! The first such pair sets R: its slope times I; a cylinder (R of rank one) corrects that
+//! with the next. Samples that have the same vertex within R are one cut: the one nearest to
+//! b is kept. A pair with a kink refutes an R that makes the one cut exceed the other's value,
+//! and R is reduced along n' − n.
+//!
+//! The residual of a pair before its update, |s' − s − R (n' − n)| / |s' − s|, is the
+//! relative error of R. Until a second pair has told it, R serves for K alone, and a
+//! kink or a vertex seen twice that refutes it ends it: polytopes show a pair that
+//! looks smooth now and then. Δs exactly parallel to Δn is a ball's, while every smooth
+//! pair is so.
+//!
+//! *Steps.* A sample with a lower support value is a serious step: it becomes the centre. Any
+//! other is a null step: it adds a cut. Where there is no room, the cut that is lowest at the
+//! model's minimum is evicted. The trust radius grows when a reduction predicted on its border
+//! came true to seven tenths, and shrinks when there was none or when an active cut had to be
+//! evicted.
+//!
+//! *Finish.* When the minimum of the model lies inside the trust region and no more than
+//! the tolerance below h(b), b is the answer if the model can be believed: with
+//! R = 0 always, because exact cuts are a proof that h has a local minimum within
+//! the tolerance. Otherwise (a) the error of R times the height that R has lifted any
+//! active cut by must be within the tolerance; else the next support point is taken
+//! on that cut's side of the minimum, near enough to settle it, and replaces it. What
+//! is known of R is known of one piece of D: a cylinder's rim bends and its edge line
+//! does not. So each sample keeps the error that a pair of its own has told, the whole
+//! height where none has, and by as much as a later pair corrects R it is in error
+//! again. A ball alone is part of every piece.
+//! (b) R must have been measured in two directions if the minimum rests on it (fewer
+//! than three active cuts); else the next support point is taken across the one
+//! direction known. And (c) along what one or two active cuts leave free, where a valley may
+//! go on, R may bend by its error less than is believed: what that would leave of the
+//! reduction must be within the tolerance, too; else the minimum itself is asked.
+//! A start where the gradient vanishes is treated like any other:
+//! the second sample, a step aside, tells minimum from maximum. Where minima form a
+//! curve or a surface, a model that is level over the whole first trust region ends the
+//! search.
+//!
+//! *Bounds.* After [`TRUST_CURVATURE`] support points R is given up (exact cuts
+//! only); after the caller's cap, or when the trust radius has shrunk to nothing, the best
+//! direction seen is returned as [`Answer::Limit`], for the portal method to go on
+//! from. The answer is always the best support plane seen: sound. A support plane with
+//! the origin outside ends the query with [`Answer::Miss`] at once; the overlap itself
+//! is not proven here.
+//!
+//! An answer whose witness points do not meet is none: stationary is where the support
+//! plane touches D below the origin, and points of the plane around that spot show it. R
+//! has led astray there, is forgotten, and the search goes on by exact cuts; where these
+//! do not meet either, it is a limit too.
+//!
+//! *Witness points* are means of the objects' own points, hence inside them, where the
+//! points seen have a mean that lies low enough and below the origin. Otherwise they are
+//! where R takes the points of the active cuts, which is believed of balls, and of one
+//! active cut whose curvature the objects share evenly; of anything else (a cylinder's rim
+//! moves along the rim alone) up to [`WITNESS_QUERIES`] more support points are asked, at the
+//! minimum, beside it or, of a face that ties, aside towards the point below the origin,
+//! until own points serve: a third of a support point on cylinders and cones, an eighth on
+//! ellipsoids.
+//!
+//! *Memory.* A face that is still there is found again by three directions aside of
+//! the last answer, each towards one active cut and farther than the pair moved, and
+//! proven by a fourth; a smooth contact by the last direction and one step with R.
+//!
+//! [`ALIKE`]: curvature::ALIKE
+//! [`Model::minimise`]: model::Model::minimise
+//! [`TRUST_CURVATURE`]: search::TRUST_CURVATURE
+//! [`WITNESS_QUERIES`]: search::WITNESS_QUERIES
 
-pub mod cuts;
-pub mod flat;
+mod curvature;
+mod cuts;
+mod flat;
 mod lanes;
+mod memory;
+mod model;
+mod samples;
+mod search;
+mod trust_region;
+mod verdict;
+mod witness;
+
+pub use memory::Memory;
+
+use crate::contact::{Answer, Settings};
+use crate::math::Vec3;
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
+use flat::{Asked, Flat, Outcome};
+use search::Search;
+
+/// A local minimum of the depth near the remembered direction, else near the unit
+/// vector `start`.
+///
+/// `inner`: any inner point of D, its distance is what curvature is first guessed
+/// from. `known`: gains the support points, the best one first, the samples kept last
+/// among them, for the caller's proof of the overlap, which a local minimum alone is not.
+///
+/// # Errors
+/// [`Fault::NonFinite`] from a support mapping.
+pub fn penetration<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    inner: Option<&Vec3>,
+    start: &Vec3,
+    memory: &mut Memory,
+    settings: &Settings,
+    known: &mut Known,
+) -> Result<Answer, Fault> {
+    let mut asked = Asked::default();
+    if !memory.is_curved() {
+        let mut flat = Flat::new();
+        let (first, mut queue) = flat.recall(memory, start);
+        let centre = inner.copied().unwrap_or_default();
+        match flat.run(md, &centre, first, &mut queue, settings, known)? {
+            Outcome::Found(minimum) => {
+                minimum.remember(memory);
+                return Ok(Answer::Hit(minimum.hit));
+            }
+            Outcome::Apart(n) => return Ok(Answer::Miss(n)),
+            Outcome::Open(open) => asked = open,
+        }
+    }
+    curved(md, inner, start, memory, settings, known, &asked)
+}
+
+/// The search with curvature, from where the one by exact cuts ended.
+#[inline(never)]
+fn curved<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    inner: Option<&Vec3>,
+    start: &Vec3,
+    memory: &mut Memory,
+    settings: &Settings,
+    known: &mut Known,
+    asked: &Asked,
+) -> Result<Answer, Fault> {
+    let mut search = Search::new(inner, settings, known);
+    let first = search.resume(asked.samples(), asked.trust);
+    let first = first.unwrap_or_else(|| search.recall(memory, start));
+    search.run(md, first, memory)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Penetration;
+    use crate::local::{self, Shortcut};
+    use crate::math::{EPSILON, Real, perpendicular};
+
+    /// A support function, placed.
+    type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
+
+    fn at(c: Vec3, f: impl Fn(&Vec3) -> Vec3 + 'static) -> Shape {
+        Box::new(move |d| c + f(d))
+    }
+
+    fn ball(c: Vec3, r: Real) -> Shape {
+        at(c, move |d| d * r)
+    }
+
+    fn block(c: Vec3, half: Vec3) -> Shape {
+        at(c, move |d| {
+            Vec3::new(
+                half.x.copysign(d.x),
+                half.y.copysign(d.y),
+                half.z.copysign(d.z),
+            )
+        })
+    }
+
+    fn capsule(c: Vec3, r: Real, half: Real) -> Shape {
+        at(c, move |d| d * r + Vec3::z() * half.copysign(d.z))
+    }
+
+    fn cylinder(c: Vec3, r: Real, half: Real) -> Shape {
+        at(c, move |d| {
+            let t = (d.x * d.x + d.y * d.y).sqrt();
+            let f = if t > 0.0 { r / t } else { 0.0 };
+            Vec3::new(d.x * f, d.y * f, half.copysign(d.z))
+        })
+    }
+
+    fn ellipsoid(c: Vec3, r: Vec3) -> Shape {
+        at(c, move |d| {
+            let w = r.component_mul(&r.component_mul(d));
+            w / w.dot(d).sqrt()
+        })
+    }
+
+    fn hull(points: Vec<Vec3>) -> Shape {
+        Box::new(move |d| {
+            points
+                .iter()
+                .copied()
+                .max_by(|a, b| a.dot(d).total_cmp(&b.dot(d)))
+                .unwrap_or_default()
+        })
+    }
+
+    fn icosahedron() -> Vec<Vec3> {
+        let g = 0.5 * (1.0 + (5.0 as Real).sqrt());
+        let mut points = Vec::new();
+        for (a, b) in [(1.0, g), (1.0, -g), (-1.0, g), (-1.0, -g)] {
+            points.push(Vec3::new(0.0, a, b).normalize());
+            points.push(Vec3::new(a, b, 0.0).normalize());
+            points.push(Vec3::new(b, 0.0, a).normalize());
+        }
+        points
+    }
+
+    const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
+
+    fn settings(tolerance: Real) -> Settings {
+        Settings {
+            tolerance,
+            max_iterations: 500,
+        }
+    }
+
+    fn solve(
+        a: &Shape,
+        b: &Shape,
+        start: Vec3,
+        memory: &mut Memory,
+        tolerance: Real,
+    ) -> (Answer, u64) {
+        let md = MinkowskiDifference::new(a, b);
+        let mut known = Known::default();
+        let answer = penetration(
+            &md,
+            None,
+            &start.normalize(),
+            memory,
+            &settings(tolerance),
+            &mut known,
+        );
+        match answer {
+            // What every caller does with a search that did not end in a minimum.
+            Ok(Answer::Limit(p)) => {
+                let shortcut = Shortcut::Always;
+                let rest = settings(tolerance);
+                match local::penetration(&md, p.normal, shortcut, &rest, |_| ()) {
+                    Ok(answer) => (answer, md.supports()),
+                    Err(fault) => panic!("{fault:?}"),
+                }
+            }
+            Ok(answer) => (answer, md.supports()),
+            Err(fault) => panic!("{fault:?}"),
+        }
+    }
+
+    fn hit(a: &Shape, b: &Shape, start: Vec3, tolerance: Real) -> Penetration {
+        match solve(a, b, start, &mut Memory::default(), tolerance) {
+            (Answer::Hit(p), supports) => {
+                assert!(supports < 100, "{supports} support points");
+                p
+            }
+            (other, supports) => panic!("{other:?} after {supports}"),
+        }
+    }
+
+    fn h(a: &Shape, b: &Shape, n: &Vec3) -> Real {
+        n.dot(&(a(n) - b(&-n)))
+    }
+
+    /// Sound, witnessed, and nothing lower nearby: an answer must hold all of this.
+    fn check(a: &Shape, b: &Shape, p: &Penetration, tolerance: Real, size: Real) {
+        let slack = 64.0 * EPSILON * size;
+        assert!((p.dir.norm() - 1.0).abs() < 8.0 * EPSILON);
+        assert!((h(a, b, &p.dir) - p.depth).abs() <= slack);
+        let difference = p.point1 - p.point2;
+        // Where a touch meets is for the proof of the overlap to say.
+        assert!(
+            p.depth <= slack
+                || (difference - p.dir * p.depth).norm()
+                    <= (2.0 * p.depth * tolerance).sqrt() + tolerance + slack
+        );
+        for (point, reach) in [
+            (p.point1, a(&p.dir).dot(&p.dir)),
+            (p.point2, b(&-p.dir).dot(&p.dir)),
+        ] {
+            assert!((point.dot(&p.dir) - reach).abs() <= tolerance + slack);
+        }
+        let e1 = perpendicular(&p.dir);
+        let e2 = p.dir.cross(&e1);
+        for k in 0..16 {
+            let (s, c) = (k as Real * 0.39).sin_cos();
+            for step in [1e-3, 1e-2] {
+                let n = (p.dir + (e1 * c + e2 * s) * step).normalize();
+                let there = h(a, b, &n);
+                assert!(
+                    there >= p.depth - 4.0 * tolerance - slack,
+                    "{} lower at {step} rad",
+                    p.depth - there
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_stationary_start_is_not_an_answer() {
+        // A ball on a capsule's axis: 1.3 along it is a maximum.
+        let a = capsule(Vec3::zeros(), 0.5, 0.5);
+        let b = ball(Vec3::z() * 0.2, 0.5);
+        let p = hit(&a, &b, Vec3::z(), TOLERANCE);
+        assert!((p.depth - 1.0).abs() < 2.0 * TOLERANCE, "{}", p.depth);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+        // Icosahedra along a vertex: a maximum of the distance.
+        let points = icosahedron();
+        let start = points[0];
+        let a = hull(points.clone());
+        let b = hull(points);
+        let p = hit(&a, &b, start, TOLERANCE);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+        assert!(p.depth < 1.9);
+    }
+
+    #[test]
+    fn balls_and_boxes_are_exact() {
+        let c = Vec3::new(0.3, 0.2, 0.1);
+        let (a, b) = (ball(Vec3::zeros(), 1.0), ball(c, 1.0));
+        let p = hit(&a, &b, Vec3::new(1.0, 0.4, -0.3), TOLERANCE);
+        assert!((p.depth - (2.0 - c.norm())).abs() < TOLERANCE);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+        let (a, b) = (
+            block(Vec3::zeros(), Vec3::repeat(1.0)),
+            block(Vec3::new(0.1, 0.2, 1.9), Vec3::repeat(1.0)),
+        );
+        let p = hit(&a, &b, Vec3::new(0.1, -0.2, 1.0), TOLERANCE);
+        assert!((p.depth - 0.1).abs() < 16.0 * EPSILON, "{}", p.depth);
+        assert!((p.dir - Vec3::z()).norm() < 16.0 * EPSILON);
+        check(&a, &b, &p, TOLERANCE, 3.0);
+    }
+
+    #[test]
+    fn coincident_centres_end() {
+        let unit_box = || block(Vec3::zeros(), Vec3::new(0.5, 0.4, 0.3));
+        let pairs: [(Shape, Shape); 5] = [
+            (ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.1)),
+            (unit_box(), unit_box()),
+            (
+                capsule(Vec3::zeros(), 0.5, 0.5),
+                capsule(Vec3::zeros(), 0.2, 0.7),
+            ),
+            (
+                cylinder(Vec3::zeros(), 0.5, 0.5),
+                cylinder(Vec3::zeros(), 0.5, 0.5),
+            ),
+            (
+                ellipsoid(Vec3::zeros(), Vec3::new(0.5, 0.35, 0.25)),
+                ellipsoid(Vec3::zeros(), Vec3::new(0.5, 0.35, 0.25)),
+            ),
+        ];
+        for (i, (a, b)) in pairs.iter().enumerate() {
+            for start in [
+                Vec3::x(),
+                Vec3::z(),
+                Vec3::new(0.3, -0.8, 0.5),
+                Vec3::new(1.0, 1.0, 1.0),
+            ] {
+                let p = hit(a, b, start, TOLERANCE);
+                assert!(p.depth > 0.0, "{i}");
+                check(a, b, &p, TOLERANCE, 2.0);
+            }
+        }
+    }
+
+    #[test]
+    fn flat_and_thin_shapes_end() {
+        // Beyond that the rounding errors of single precision are as large as the rest.
+        let long = if EPSILON > 1e-10 { 1e3 } else { 1e6 };
+        let flat: Vec<Shape> = vec![
+            block(Vec3::zeros(), Vec3::new(0.5, 0.5, 0.0)),
+            block(Vec3::zeros(), Vec3::new(0.5, 0.0, 0.0)),
+            block(Vec3::zeros(), Vec3::zeros()),
+            cylinder(Vec3::zeros(), 0.5, 0.0),
+            block(Vec3::zeros(), Vec3::new(1.0, 1e-6, 1.0)),
+            block(Vec3::zeros(), Vec3::new(long, 1.0, 1.0)),
+            ellipsoid(Vec3::zeros(), Vec3::new(1.0, 0.05, 0.05)),
+        ];
+        for (i, a) in flat.iter().enumerate() {
+            for (j, b) in flat.iter().enumerate() {
+                for start in [
+                    Vec3::z(),
+                    Vec3::new(0.1, 0.2, 0.9),
+                    Vec3::new(-0.7, 0.3, 0.5),
+                ] {
+                    let size = if i == 5 || j == 5 { 2.0 * long } else { 2.0 };
+                    match solve(a, b, start, &mut Memory::default(), TOLERANCE) {
+                        (Answer::Hit(p), _) => check(a, b, &p, TOLERANCE, size),
+                        // In single precision the curvature of a needle is rounding:
+                        // the search may stop at the minimum without knowing it.
+                        (Answer::Limit(p), _) if EPSILON > 1e-10 => {
+                            check(a, b, &p, TOLERANCE, size)
+                        }
+                        (Answer::Miss(n), _) => assert!(h(a, b, &n) < 0.0),
+                        (other, supports) => panic!("{i} {j} {start:?} {other:?} after {supports}"),
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn any_scale_place_and_tolerance() {
+        for scale in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
+            for far in [0.0, 1e3] {
+                for fine in [0.0, 1e-12, 1e-6] {
+                    let o = Vec3::new(1.0, -0.7, 0.4) * (far * scale);
+                    let c = |x, y, z| o + Vec3::new(x, y, z) * scale;
+                    let pairs: [(Shape, Shape); 5] = [
+                        (ball(o, scale), ball(c(0.9, 0.4, 0.2), 0.5 * scale)),
+                        (
+                            block(o, Vec3::new(0.5, 0.4, 0.3) * scale),
+                            block(c(0.4, 0.2, 0.3), Vec3::repeat(0.3 * scale)),
+                        ),
+                        (
+                            capsule(o, 0.5 * scale, 0.5 * scale),
+                            ellipsoid(c(0.5, 0.3, 0.4), Vec3::new(0.5, 0.35, 0.25) * scale),
+                        ),
+                        (
+                            cylinder(o, 0.5 * scale, 0.5 * scale),
+                            block(c(0.7, 0.3, 0.4), Vec3::new(0.5, 0.4, 0.3) * scale),
+                        ),
+                        (
+                            cylinder(o, 0.5 * scale, 0.5 * scale),
+                            capsule(c(0.6, 0.2, 0.4), 0.2 * scale, 0.3 * scale),
+                        ),
+                    ];
+                    for (i, (a, b)) in pairs.iter().enumerate() {
+                        let tolerance = fine * scale;
+                        let size = scale * (1.0 + far);
+                        match solve(
+                            a,
+                            b,
+                            Vec3::new(0.8, 0.4, 0.3),
+                            &mut Memory::default(),
+                            tolerance,
+                        ) {
+                            (Answer::Hit(p), supports) => {
+                                assert!(supports < 100, "{i} {scale} {far} {fine}: {supports}");
+                                check(a, b, &p, tolerance.max(64.0 * EPSILON * size), size);
+                            }
+                            other => panic!("{i} {scale} {far} {fine}: {other:?}"),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn apart_is_seen_and_touching_is_free() {
+        let a = ball(Vec3::zeros(), 1.0);
+        let b = block(Vec3::new(1.7, 0.1, 0.2), Vec3::repeat(0.5));
+        match solve(
+            &a,
+            &b,
+            Vec3::new(0.2, 1.0, 0.1),
+            &mut Memory::default(),
+            TOLERANCE,
+        ) {
+            (Answer::Miss(n), supports) => {
+                assert!(h(&a, &b, &n) < 0.0);
+                assert!(supports < 20);
+            }
+            other => panic!("{other:?}"),
+        }
+        for (a, b) in [
+            (ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 2.0, 1.0)),
+            (
+                block(Vec3::zeros(), Vec3::repeat(1.0)),
+                block(Vec3::x() * 2.0, Vec3::repeat(1.0)),
+            ),
+        ] {
+            match solve(
+                &a,
+                &b,
+                Vec3::new(1.0, 0.1, 0.1),
+                &mut Memory::default(),
+                TOLERANCE,
+            ) {
+                (Answer::Hit(p), _) => assert!(p.depth <= TOLERANCE, "{}", p.depth),
+                (Answer::Miss(n), _) => assert!(h(&a, &b, &n) < 0.0),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn any_memory_is_harmless() {
+        // Bits of a linear congruential generator, and of another pair.
+        let mut bits: u64 = 1;
+        let mut next = || {
+            bits = bits
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            bits
+        };
+        let a = cylinder(Vec3::zeros(), 0.5, 0.5);
+        let b = block(Vec3::new(0.6, 0.3, 0.4), Vec3::new(0.5, 0.4, 0.3));
+        for round in 0..2000 {
+            let mut real = || {
+                if round % 2 == 0 {
+                    Real::from_bits(next() as _)
+                } else {
+                    (next() >> 40) as Real / (1 << 23) as Real - 1.0
+                }
+            };
+            let mut v = || Vec3::new(real(), real(), real());
+            let mut memory = Memory {
+                dir: v(),
+                slopes: [v(), v(), v()],
+                ..Memory::default()
+            };
+            memory.curvature = [(); 6].map(|_| real());
+            memory.drift = real();
+            memory.count = (round % 5) as u32;
+            memory.curved = (round % 3) as u32;
+            match solve(&a, &b, Vec3::x(), &mut memory, TOLERANCE) {
+                (Answer::Hit(p), _) => check(&a, &b, &p, TOLERANCE, 2.0),
+                (other, supports) => panic!("{round}: {other:?} after {supports}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_contact_that_stays_is_found_again_cheaply() {
+        let still = |a: &Shape, b: &Shape, most: u64| {
+            let mut memory = Memory::default();
+            let mut last = 0;
+            for _ in 0..4 {
+                last = solve(a, b, Vec3::new(0.2, 0.1, 1.0), &mut memory, 1e-6).1;
+            }
+            assert!(last <= most, "{last} support points");
+        };
+        still(
+            &block(Vec3::zeros(), Vec3::new(0.5, 0.4, 0.3)),
+            &hull(
+                icosahedron()
+                    .iter()
+                    .map(|p| p * 0.5 + Vec3::new(0.03, 0.02, 0.7))
+                    .collect(),
+            ),
+            if EPSILON > 1e-10 { 6 } else { 4 },
+        );
+        still(
+            &ball(Vec3::zeros(), 0.5),
+            &ball(Vec3::new(0.1, 0.2, 0.8), 0.5),
+            2,
+        );
+    }
+}

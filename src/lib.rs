@@ -51,8 +51,6 @@
 pub mod along;
 #[doc(hidden)]
 pub mod barycentric;
-#[doc(hidden)]
-pub mod bundle;
 pub mod contact;
 #[doc(hidden)]
 pub mod contact_manifold;

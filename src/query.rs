@@ -22,9 +22,9 @@
 //!    is spent on it.
 
 use crate::along;
-use crate::bundle::{self, Memory};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contact_patch;
+use crate::descent::{self, Memory};
 use crate::expansion::Limits;
 use crate::gjk::{self, Overlap};
 use crate::global::{self, Arena, Basis, Request};
@@ -464,7 +464,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_iterations: settings.max_iterations.min(patience),
             ..*settings
         };
-        bundle::penetration(
+        descent::penetration(
             &self.md,
             self.centre.map(|c| c.v).as_ref(),
             &self.cold_start(),

@@ -20,8 +20,8 @@
 //!
 //! A direction that is zero stands for none.
 
-use crate::bundle::Memory;
 use crate::contact::Answer;
+use crate::descent::Memory;
 use crate::global::Basis;
 use crate::math::{Real, Vec3, unit};
 

@@ -41,7 +41,7 @@ enum Phase {
 /// module that is missing here fails this file's test.
 const MODULES: &[(&str, Option<Phase>)] = &[
     ("along", Some(Phase::Search)),
-    ("bundle", Some(Phase::Search)),
+    ("descent", Some(Phase::Search)),
     ("distance", Some(Phase::Search)),
     ("gjk", Some(Phase::Search)),
     ("intersect", Some(Phase::Search)),

@@ -91,14 +91,14 @@ fn cross(a: [Real; 2], b: [Real; 2]) -> Real {
 impl Cuts {
     #[inline(always)]
     fn gradient(&self, i: usize) -> [Real; 2] {
-        [self.x.get(i), self.y.get(i)]
+        [self.x[i], self.y[i]]
     }
 
     /// The gradient of m on cut `i` at a step.
     #[inline(always)]
     fn slope(&self, i: usize, step: &Step) -> [Real; 2] {
         let h = self.height;
-        [self.x.get(i) - h * step.x, self.y.get(i) - h * step.y]
+        [self.x[i] - h * step.x, self.y[i] - h * step.y]
     }
 
     /// Where m is least within the radius, as far as the `starts` lead: cuts as bits. The best
@@ -123,7 +123,7 @@ impl Cuts {
     /// Cut `i` at a step, metres.
     #[inline(always)]
     fn level(&self, i: usize, step: &Step) -> Real {
-        let level = self.a.get(i) + self.x.get(i) * step.x + self.y.get(i) * step.y;
+        let level = self.a[i] + self.x[i] * step.x + self.y[i] * step.y;
         level - 0.5 * self.height * step.length2()
     }
 
@@ -133,10 +133,10 @@ impl Cuts {
         lowest.value = Real::INFINITY;
         for _ in 0..TURNS {
             let levels = self.a + self.x * step.x + self.y * step.y;
-            let top = levels.get(step.set[0]);
+            let top = levels[step.set[0]];
             let above =
                 Self::highest(&levels, top + self.rounding).filter(|i| step.bits() & (1 << i) == 0);
-            step.value = above.map_or(top, |i| levels.get(i)) - 0.5 * self.height * step.length2();
+            step.value = above.map_or(top, |i| levels[i]) - 0.5 * self.height * step.length2();
             if step.value < lowest.value {
                 lowest = step;
             }
@@ -155,7 +155,7 @@ impl Cuts {
     /// The highest cut, if it is above `top`.
     #[inline(always)]
     fn highest(levels: &Lanes, top: Real) -> Option<usize> {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|i| levels.get(i));
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| levels[i]);
         let (i, first) = if b > a { (1, b) } else { (0, a) };
         let (k, last) = if d > c { (3, d) } else { (2, c) };
         let (i, most) = if last > first { (k, last) } else { (i, first) };
@@ -193,7 +193,7 @@ impl Cuts {
     fn two(&self, i: usize, j: usize, radius2: Real) -> Option<Step> {
         let (g, k) = (self.gradient(i), self.gradient(j));
         let d = [g[0] - k[0], g[1] - k[1]];
-        let da = self.a.get(i) - self.a.get(j);
+        let da = self.a[i] - self.a[j];
         let iq = 1.0 / (d[0] * d[0] + d[1] * d[1]);
         let f = -da * iq;
         // Squared half chord; NaN for equal cuts.
@@ -225,7 +225,7 @@ impl Cuts {
     fn three(&self, i: usize, j: usize, k: usize, radius2: Real) -> Option<Step> {
         let (g, o, p) = (self.gradient(i), self.gradient(j), self.gradient(k));
         let (d, e) = ([g[0] - o[0], g[1] - o[1]], [g[0] - p[0], g[1] - p[1]]);
-        let (da, ea) = (self.a.get(i) - self.a.get(j), self.a.get(i) - self.a.get(k));
+        let (da, ea) = (self.a[i] - self.a[j], self.a[i] - self.a[k]);
         let w = 1.0 / cross(d, e);
         let step = Step {
             x: (ea * d[1] - da * e[1]) * w,
@@ -323,22 +323,12 @@ impl Cuts {
     /// and then it says false, the lowest at x = 0 but the best.
     #[inline]
     pub fn least(&self, kept: u32, step: &Step) -> (usize, bool) {
-        let lowest = |levels: &Lanes, kept: u32| {
-            let mut out = None;
-            let mut least = Real::INFINITY;
-            for i in (0..CUTS).filter(|i| kept & (1 << i) == 0) {
-                if levels.get(i) < least {
-                    least = levels.get(i);
-                    out = Some(i);
-                }
-            }
-            out
-        };
-        match lowest(&(self.a + self.x * step.x + self.y * step.y), kept) {
+        let levels = self.a + self.x * step.x + self.y * step.y;
+        match levels.lowest(|i| kept & (1 << i) == 0) {
             Some(i) => (i, true),
             None => {
                 let any = (self.best + 1) % CUTS;
-                (lowest(&self.a, 1 << self.best).unwrap_or(any), false)
+                (self.a.lowest(|i| i != self.best).unwrap_or(any), false)
             }
         }
     }
@@ -357,36 +347,25 @@ mod tests {
         };
         for i in 0..4 {
             // The best is the highest at b; lanes beyond repeat it.
-            if i == 0 || i >= len {
-                cuts.a.set(i, h);
-                cuts.x.set(
-                    i,
-                    if i == 0 {
-                        random.within(-0.3, 0.3)
-                    } else {
-                        cuts.x.get(0)
-                    },
-                );
-                cuts.y.set(
-                    i,
-                    if i == 0 {
-                        random.within(-0.3, 0.3)
-                    } else {
-                        cuts.y.get(0)
-                    },
-                );
-            } else {
-                cuts.a.set(i, h - random.within(0.0, 0.02));
-                cuts.x.set(i, random.within(-0.3, 0.3));
-                cuts.y.set(i, random.within(-0.3, 0.3));
-            }
+            let (repeats, below) = (
+                i >= len,
+                if i == 0 {
+                    0.0
+                } else {
+                    random.within(0.0, 0.02)
+                },
+            );
+            let slope = |random: &mut Random| random.within(-0.3, 0.3);
+            cuts.a[i] = if repeats { h } else { h - below };
+            cuts.x[i] = if repeats { cuts.x[0] } else { slope(random) };
+            cuts.y[i] = if repeats { cuts.y[0] } else { slope(random) };
         }
         cuts
     }
 
     fn value(cuts: &Cuts, x: Real, y: Real) -> Real {
         let top = (0..cuts.len)
-            .map(|i| cuts.a.get(i) + cuts.x.get(i) * x + cuts.y.get(i) * y)
+            .map(|i| cuts.a[i] + cuts.x[i] * x + cuts.y[i] * y)
             .fold(Real::NEG_INFINITY, Real::max);
         top - 0.5 * cuts.height * (x * x + y * y)
     }

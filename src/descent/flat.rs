@@ -24,40 +24,20 @@
 //! other, a trust region that has shrunk to nothing. Then the search with curvature goes on
 //! with the samples of this one.
 
+use super::curvature::{ALIKE, CLOSE, smooth};
 use super::cuts::{Cuts, Step};
 use super::lanes::{CUTS, Lanes, Vectors};
+use super::memory::{Memory, Queue};
+use super::samples::Sample;
+use super::trust_region::{FIRST, TrustRegion};
 use crate::contact::{Penetration, Settings};
 use crate::contact_patch;
 use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular, unit};
-use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 
-/// Is it the single-precision build?
-const SINGLE: bool = EPSILON > 1e-10;
-/// First trust radius, radians: the error of a good guess.
-pub const FIRST: Real = 0.1;
-/// Smallest first step, radians: enough to see curvature.
-const ASIDE: Real = 0.01;
-/// Tangent of the angle between a bold first step and the gradient.
-const OBLIQUE: Real = 0.1;
-/// The trust radius grows by this when a reduction predicted on the border came true …
-const GROW: Real = 2.5;
-/// … and shrinks by this when there was none.
-const SHRINK: Real = 0.6;
-/// A trust radius below which the search has lost its way, radians.
-const STUCK: Real = if SINGLE { 1e-4 } else { 1e-6 };
-/// Squared angle below which a pair tells nothing above the rounding errors, radians².
-const CLOSE: Real = if SINGLE { 1e-4 } else { 1e-10 };
 /// Squared sine of the angle within which two vectors are parallel: what rounding leaves of
 /// differences over a first step of a hundredth radian.
-const PARALLEL: Real = if SINGLE { 1e-6 } else { 1e-11 };
-/// Relative difference of the two excesses of a smooth pair …
-const ALIKE: Real = 0.03;
-/// … and how much more alike they are once a vertex was seen twice (a polytope, it seems).
-const FLAT: Real = 0.05;
-/// A pair whose slope is larger than this share of the object must be more alike.
-const STEEP: Real = 0.7;
-/// A slope larger than so many times the object is a kink's.
-const BLUNT: Real = 50.0;
+const PARALLEL: Real = if EPSILON > 1e-10 { 1e-6 } else { 1e-11 };
 /// Support points after which balls are looked for in smooth pairs alone.
 const LOOK: usize = 3;
 /// Share of the tolerance by which two vertices that are the same may differ.
@@ -65,23 +45,14 @@ const SAME: Real = 0.06;
 /// Support points asked only to see a vertex again, after which the balls do not fit.
 const DOUBTS: u32 = 6;
 
-/// A support point of D and its direction.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sample {
-    /// Unit.
-    pub n: Vec3,
-    /// The support point along it.
-    pub point: SupportPoint,
-}
-
 /// How a search of exact cuts ends.
 pub enum Outcome {
     /// At a local minimum.
     Found(Minimum),
     /// All of D is on the far side of this unit direction's support plane.
     Apart(Vec3),
-    /// Not here: the samples to go on from.
-    Open(Samples),
+    /// Not here: what was asked, to go on from.
+    Open(Asked),
 }
 
 /// A local minimum.
@@ -96,19 +67,29 @@ pub struct Minimum {
     pub rho: Real,
 }
 
-/// Up to [`CUTS`] kept samples and the last one.
+impl Minimum {
+    /// Leaves behind what finds the same cuts again.
+    #[inline]
+    pub fn remember(&self, memory: &mut Memory) {
+        let (rho, n) = (self.rho, &self.hit.dir);
+        let r = (rho > 0.0).then_some([rho, 0.0, 0.0, rho, 0.0, rho]);
+        memory.keep(n, &self.slopes, self.count, r);
+    }
+}
+
+/// The samples kept, and the last one.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Samples {
-    list: [Sample; CUTS + 1],
+pub struct Asked {
+    samples: [Sample; CUTS + 1],
     len: usize,
     /// The trust radius, radians.
     pub trust: Real,
 }
 
-impl Samples {
-    /// The samples.
-    pub fn list(&self) -> &[Sample] {
-        self.list.get(..self.len).unwrap_or(&[])
+impl Asked {
+    /// The samples, the last one last.
+    pub fn samples(&self) -> &[Sample] {
+        self.samples.get(..self.len).unwrap_or(&[])
     }
 }
 
@@ -117,19 +98,6 @@ enum Next {
     Ask(Vec3),
     Found(Minimum),
     Open,
-}
-
-/// What was foretold of the support point asked last.
-#[derive(Clone, Copy)]
-struct Forecast {
-    /// The support value, less ρ; NaN for a question that is no step down.
-    value: Real,
-    /// Squared length of the step, radians².
-    length2: Real,
-    /// Was the step to the border?
-    on_border: bool,
-    /// The step, if the minimum is there should the forecast come true.
-    step: Option<Step>,
 }
 
 /// A search of exact cuts.
@@ -155,9 +123,10 @@ pub struct Flat {
     b: Vec3,
     e1: Vec3,
     e2: Vec3,
-    /// The trust radius, radians.
-    trust: Real,
-    forecast: Forecast,
+    trust: TrustRegion,
+    /// The step to the direction asked last, if the minimum is there should the depth foretold
+    /// come true.
+    step: Option<Step>,
     /// Squared extent of D from its centre, m².
     extent2: Real,
     tolerance: Real,
@@ -169,9 +138,9 @@ pub struct Flat {
 }
 
 impl Flat {
-    /// Nothing asked yet; `trust`: the first trust radius, radians.
+    /// Nothing asked yet.
     #[inline(always)]
-    pub fn new(trust: Real) -> Self {
+    pub fn new() -> Self {
         Self {
             n: Vectors::default(),
             u: Vectors::default(),
@@ -187,13 +156,8 @@ impl Flat {
             b: Vec3::zeros(),
             e1: Vec3::zeros(),
             e2: Vec3::zeros(),
-            trust,
-            forecast: Forecast {
-                value: Real::NAN,
-                length2: 0.0,
-                on_border: false,
-                step: None,
-            },
+            trust: TrustRegion::new(FIRST),
+            step: None,
             extent2: 0.0,
             tolerance: 0.0,
             asked: 0,
@@ -203,7 +167,23 @@ impl Flat {
         }
     }
 
-    /// Searches from `n`, after the queued directions (the last one first).
+    /// The directions to ask first: what the memory leads to, else `start`.
+    #[inline]
+    pub fn recall(&mut self, memory: &Memory, start: &Vec3) -> (Vec3, Queue) {
+        let Some(dir) = unit(&memory.dir) else {
+            return (*start, Queue::EMPTY);
+        };
+        let (mut queue, angle) = memory.recall(&dir);
+        match queue.pop() {
+            Some(n) => {
+                self.trust.recall(angle);
+                (n, queue)
+            }
+            None => (dir, queue),
+        }
+    }
+
+    /// Searches from `n`, after the queued directions.
     ///
     /// `centre`: any inner point of D, its distance is the size of what was not seen.
     /// `known` gains the points of a minimum, the active ones first.
@@ -215,18 +195,14 @@ impl Flat {
         md: &MinkowskiDifference<A, B>,
         centre: &Vec3,
         mut n: Vec3,
-        mut queue: &[Vec3],
+        queue: &mut Queue,
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Outcome, Fault> {
         loop {
-            let new = Sample {
-                n,
-                point: md.support(&n)?,
-            };
+            let new = Sample::new(&n, md.support(&n)?);
             self.asked += 1;
-            let h = n.dot(&new.point.v);
-            if h < 0.0 {
+            if new.h < 0.0 {
                 // D holds what was seen: where that lies beyond, a callback errs.
                 let beyond = self.u.dot(&n) + self.n.dot(&n) * self.rho();
                 return Ok(if self.cuts.len == 0 || !(beyond.most() > 0.0) {
@@ -235,17 +211,17 @@ impl Flat {
                     self.open(None)
                 });
             }
-            if !self.take(&new, h, centre, settings.tolerance) {
+            if !self.take(&new, centre, settings.tolerance) {
                 return Ok(self.open(Some(&new)));
             }
-            if let Some(minimum) = self.came_true(&new, h, known) {
+            if let Some(minimum) = self.came_true(&new, known) {
                 return Ok(Outcome::Found(minimum));
             }
             if self.asked as u64 >= settings.max_iterations {
                 return Ok(self.open(None));
             }
-            if let Some((last, rest)) = queue.split_last() {
-                (n, queue) = (*last, rest);
+            if let Some(queued) = queue.pop() {
+                n = queued;
                 continue;
             }
             match self.next(known) {
@@ -259,16 +235,16 @@ impl Flat {
     /// The end without a minimum; `last` was not taken.
     #[cold]
     fn open(&self, last: Option<&Sample>) -> Outcome {
-        let mut samples = Samples {
-            trust: self.trust,
-            ..Samples::default()
+        let mut asked = Asked {
+            trust: self.trust.radius,
+            ..Asked::default()
         };
         let kept = self.samples.iter().take(self.cuts.len);
-        for (place, sample) in samples.list.iter_mut().zip(kept.chain(last)) {
+        for (place, sample) in asked.samples.iter_mut().zip(kept.chain(last)) {
             *place = *sample;
-            samples.len += 1;
+            asked.len += 1;
         }
-        Outcome::Open(samples)
+        Outcome::Open(asked)
     }
 
     #[inline(always)]
@@ -289,11 +265,9 @@ impl Flat {
 
     /// Takes a support point. Not, if it is of no exact cut.
     #[inline(always)]
-    fn take(&mut self, new: &Sample, h: Real, centre: &Vec3, tolerance: Real) -> bool {
-        let p = &new.point;
-        let size = (p.v1.x.abs() + p.v1.y.abs() + p.v1.z.abs())
-            + (p.v2.x.abs() + p.v2.y.abs() + p.v2.z.abs());
-        let rounding = larger(8.0 * EPSILON * size, self.cuts.rounding);
+    fn take(&mut self, new: &Sample, centre: &Vec3, tolerance: Real) -> bool {
+        let p = &new.p;
+        let rounding = larger(new.rounding(), self.cuts.rounding);
         self.cuts.rounding = rounding;
         self.extent2 = larger((p.v - centre).norm_squared(), self.extent2);
         if self.cuts.len == 0 {
@@ -301,27 +275,27 @@ impl Flat {
             self.tolerance = larger(self.tolerance, rounding);
             // Of all lanes: those beyond the samples repeat the first one.
             for i in (0..CUTS).rev() {
-                self.put(i, new, &p.v, h, 0);
+                self.put(i, new, &p.v, new.h, 0);
             }
             (self.cuts.len, self.spare) = (1, 1);
-            (self.best, self.best_h) = (*new, h);
+            (self.best, self.best_h) = (*new, new.h);
             return true;
         }
         self.tolerance = larger(self.tolerance, rounding);
-        self.update_trust(h - self.rho());
+        self.trust.compare(&new.n, new.h, self.best.h);
         let lopsided = (self.radius[0] > 0.0) != (self.radius[1] > 0.0);
         if self.asked <= LOOK || lopsided {
             let best = self.best;
             self.look(&best, new);
         }
-        self.compare(new, h)
+        self.compare(new)
     }
 
     /// Compares a new sample with those that are kept, and keeps it.
     #[inline(always)]
-    fn compare(&mut self, new: &Sample, h: Real) -> bool {
+    fn compare(&mut self, new: &Sample) -> bool {
         let (n, rho) = (&new.n, self.rho());
-        let (u, k) = (new.point.v - n * rho, h - rho);
+        let (u, k) = (new.p.v - n * rho, new.h - rho);
         let ahead = Lanes::all(k) - self.u.dot(n);
         let behind = self.h - self.n.dot(&u);
         let rounding = self.cuts.rounding;
@@ -330,7 +304,7 @@ impl Flat {
             return false;
         }
         let seen = if rho > 0.0 { self.see(new) } else { 0 };
-        let unlike = (ahead - behind).abs() - (ahead + behind) * ALIKE;
+        let unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
         let mut twin = None;
         if unlike.least() > rounding {
             self.keep(new, &u, k, seen, twin);
@@ -339,7 +313,7 @@ impl Flat {
         let mut nearest = Real::INFINITY;
         let same2 = self.same() * self.same();
         for i in 0..self.cuts.len.min(CUTS) {
-            if unlike.get(i) > rounding {
+            if unlike[i] > rounding {
                 continue;
             }
             let dn2 = (n - self.n.get(i)).norm_squared();
@@ -349,29 +323,22 @@ impl Flat {
                 if dn2 < nearest {
                     (twin, nearest) = (Some(i), dn2);
                 }
-            } else if self.smooth(ahead.get(i), behind.get(i), ds2, dn2) {
+            } else if self.smooth(ahead[i], behind[i], ds2, dn2) {
                 // Of one ball more, or of none.
                 let old = self.samples[i];
-                return self.look(&old, new) && self.compare(new, h);
+                return self.look(&old, new) && self.compare(new);
             }
         }
         self.keep(new, &u, k, seen, twin);
         true
     }
 
-    /// Does a pair with these excesses, this far apart, look smooth? On a smooth piece the
-    /// trapezoidal rule makes both excesses equal; a kink between the two directions makes
-    /// their ratio whatever it likes.
+    /// Does a pair with these excesses, this far apart, look smooth?
     #[inline(always)]
     fn smooth(&self, ahead: Real, behind: Real, ds2: Real, dn2: Real) -> bool {
-        let (sum, gap) = (ahead + behind, (ahead - behind) * (ahead - behind));
-        let limit = if self.flat { ALIKE * FLAT } else { ALIKE } * sum;
-        let limit2 = limit * limit;
         dn2 > CLOSE
-            && sum > self.cuts.rounding
-            && ds2 <= BLUNT * BLUNT * self.extent2 * dn2
-            && gap <= limit2
-            && gap * ds2 <= limit2 * STEEP * STEEP * self.extent2 * dn2
+            && ahead + behind > self.cuts.rounding
+            && smooth(self.flat, ahead, behind, ds2, self.extent2 * dn2)
     }
 
     /// Keeps the sample: in the place of its `twin`, of the same vertex, if it is nearer to
@@ -409,36 +376,11 @@ impl Flat {
         }
     }
 
-    /// The ratio of the actual to the predicted reduction steers the trust radius.
-    #[inline(always)]
-    fn update_trust(&mut self, k: Real) {
-        let before = self.best_h;
-        let Forecast {
-            value,
-            length2,
-            on_border,
-            ..
-        } = self.forecast;
-        let (actual, predicted) = (before - k, before - value);
-        // False for NaN: no forecast.
-        if actual > 0.25 * predicted {
-            if on_border && actual > 0.7 * predicted {
-                self.trust = (self.trust * GROW).min(1.0);
-            }
-        } else if value.is_finite()
-            // Level ground within rounding is no failure.
-            && !(actual > -8.0 * EPSILON * (k + self.rho()))
-            && length2 > 0.25 * self.trust * self.trust
-        {
-            self.trust *= SHRINK;
-        }
-    }
-
     #[inline(always)]
     fn put(&mut self, i: usize, new: &Sample, u: &Vec3, k: Real, seen: u32) {
         self.n.set(i, &new.n);
         self.u.set(i, u);
-        self.h.set(i, k);
+        self.h[i] = k;
         self.samples[i % CUTS] = *new;
         // Nothing is to be seen of what has no ball.
         if self.rho() > 0.0 {
@@ -465,7 +407,7 @@ impl Flat {
         if !(turned > CLOSE) {
             return false;
         }
-        let moves = [new.point.v1 - old.point.v1, old.point.v2 - new.point.v2];
+        let moves = [new.p.v1 - old.p.v1, old.p.v2 - new.p.v2];
         let least = self.cuts.rounding * self.cuts.rounding;
         let mut found = false;
         for (radius, d) in self.radius.iter_mut().zip(moves) {
@@ -480,7 +422,6 @@ impl Flat {
                 self.u.add(&self.n, -*radius);
                 self.h = self.h - Lanes::all(*radius);
                 self.best_h -= *radius;
-                self.forecast.value -= *radius;
                 found = true;
             }
         }
@@ -497,7 +438,7 @@ impl Flat {
         for i in 0..self.cuts.len.min(CUTS) {
             let old = &self.samples[i];
             let dn = new.n - old.n;
-            let moves = [new.point.v1 - old.point.v1, old.point.v2 - new.point.v2];
+            let moves = [new.p.v1 - old.p.v1, old.p.v2 - new.p.v2];
             for (o, d) in moves.into_iter().enumerate() {
                 let r = self.radius[o];
                 // The ball must have moved by more than a vertex without it would need to
@@ -534,10 +475,10 @@ impl Flat {
     /// The answer, if the last step was to the minimum, came true there, and no cut shows a
     /// lower place.
     #[inline(always)]
-    fn came_true(&mut self, new: &Sample, h: Real, known: &mut Known) -> Option<Minimum> {
-        let step = self.forecast.step.take()?;
-        let k = h - self.rho();
-        let came = k - self.forecast.value <= self.tolerance;
+    fn came_true(&mut self, new: &Sample, known: &mut Known) -> Option<Minimum> {
+        let step = self.step.take()?;
+        let k = new.h - self.rho();
+        let came = self.trust.came_true(new.h, self.tolerance);
         if !came || self.unseen(&new.n) & step.bits() != 0 || !self.is_lowest(&new.n, k, &step) {
             return None;
         }
@@ -556,7 +497,7 @@ impl Flat {
             return true;
         }
         let [u, v, w] = step.set.map(|i| self.u.get(i));
-        let least = 0.5 * k * self.trust;
+        let least = 0.5 * k * self.trust.radius;
         let far = |a: &Vec3, b: &Vec3| {
             let area = n.dot(&a.cross(b));
             area * area >= least * least * (a - b).norm_squared()
@@ -570,30 +511,31 @@ impl Flat {
         let h = self.best_h;
         let rho = self.rho();
         // A touch cannot be lower, and is for others to tell.
-        if !(h + rho > self.cuts.rounding) || self.trust < STUCK {
+        if !(h + rho > self.cuts.rounding) || self.trust.is_stuck() {
             return Next::Open;
         }
-        self.chart();
         if self.cuts.len == 1 && !(rho > 0.0) {
-            return Next::Ask(self.first_step());
+            let size = self.extent2.sqrt();
+            return Next::Ask(self.trust.first_step(&self.best.n, &self.best.p.v, size));
         }
-        let mut step = self.cuts.minimise(self.trust, 0);
+        self.chart();
+        let mut step = self.cuts.minimise(self.trust.radius, 0);
         let (mut gain, mut length) = self.gain(&step);
         if rho > 0.0
             && gain.abs() <= self.tolerance
             && !step.inside
-            && self.trust < FIRST
+            && self.trust.radius < FIRST
             && !self.levelled
         {
             // Level so far: is it as far as the first radius?
             self.levelled = true;
-            self.trust = FIRST;
-            step = self.cuts.minimise(self.trust, 0);
+            self.trust.radius = FIRST;
+            step = self.cuts.minimise(self.trust.radius, 0);
             (gain, length) = self.gain(&step);
         }
         if gain.abs() <= self.tolerance && step.inside && !self.is_lowest(&self.b, h, &step) {
             // The last look: is it lower anywhere?
-            step = self.cuts.minimise(self.trust, !0);
+            step = self.cuts.minimise(self.trust.radius, !0);
             (gain, length) = self.gain(&step);
         }
         // Also NaN.
@@ -601,14 +543,10 @@ impl Flat {
             return Next::Open;
         }
         let close = gain.abs() <= self.tolerance;
-        let level = rho > 0.0 && self.trust >= FIRST;
+        let level = rho > 0.0 && self.trust.radius >= FIRST;
         let mut d = self.b + self.e1 * step.x + self.e2 * step.y;
-        self.forecast = Forecast {
-            value: h - gain,
-            length2: step.length2(),
-            on_border: !step.inside,
-            step: None,
-        };
+        self.trust.foretell(h - gain + rho, !step.inside, &self.b);
+        let mut probe = false;
         if step.inside || close && level {
             let doubtful = self.doubtful(&step, &(d / length));
             if doubtful != 0 {
@@ -617,7 +555,8 @@ impl Flat {
                     return Next::Open;
                 }
                 d += self.towards(&step, doubtful);
-                self.forecast.value = Real::NAN;
+                self.trust.no_forecast();
+                probe = true;
             } else if close {
                 return match self.conclude(&self.best, h, &step, known) {
                     Some(minimum) => Next::Found(minimum),
@@ -628,9 +567,7 @@ impl Flat {
         if self.cuts.len == CUTS {
             self.evict(&step);
         }
-        if step.inside && self.forecast.value.is_finite() {
-            self.forecast.step = Some(step);
-        }
+        self.step = (step.inside && !probe).then_some(step);
         Next::Ask(d * (1.0 / d.norm()))
     }
 
@@ -638,7 +575,7 @@ impl Flat {
     #[inline(always)]
     fn gain(&self, step: &Step) -> (Real, Real) {
         let (cuts, i) = (&self.cuts, step.set[0]);
-        let level = cuts.a.get(i) + cuts.x.get(i) * step.x + cuts.y.get(i) * step.y;
+        let level = cuts.a[i] + cuts.x[i] * step.x + cuts.y[i] * step.y;
         let length = (1.0 + step.length2()).sqrt();
         (self.best_h - level / length, length)
     }
@@ -661,42 +598,11 @@ impl Flat {
         // Where a direction ties the vertices of a face, one below the origin says nothing
         // that the others do not.
         let (cuts, best) = (&self.cuts, self.cuts.best);
-        let flat = larger(cuts.x.get(best).abs(), cuts.y.get(best).abs()) <= cuts.rounding;
-        let ties = |i: &usize| *i != best && cuts.a.get(*i) >= cuts.height - cuts.rounding;
+        let flat = larger(cuts.x[best].abs(), cuts.y[best].abs()) <= cuts.rounding;
+        let ties = |i: &usize| *i != best && cuts.a[*i] >= cuts.height - cuts.rounding;
         if let (true, Some(other)) = (flat, (0..cuts.len.min(CUTS)).find(ties)) {
             self.cuts.best = other;
         }
-    }
-
-    /// From the first sample: down the gradient as on a ball, with nothing but the size to go
-    /// by; at least far enough to see curvature.
-    #[inline(always)]
-    fn first_step(&mut self) -> Vec3 {
-        let (h, gx, gy) = (self.best_h, self.cuts.x.get(0), self.cuts.y.get(0));
-        let slope = (gx * gx + gy * gy).sqrt();
-        let core = h - self.extent2.sqrt();
-        let ball = -slope / core;
-        let trust = self.trust;
-        let length = if ball > 0.0 { ball.min(trust) } else { trust }.max(ASIDE);
-        self.forecast = Forecast {
-            value: (core - slope * length) / (1.0 + length * length).sqrt() + h - core,
-            length2: length * length,
-            on_border: length == trust,
-            step: None,
-        };
-        // No gradient: one way is as good as another.
-        let mut down = if slope > 0.0 {
-            (self.e1 * gx + self.e2 * gy) * (-1.0 / slope)
-        } else {
-            self.e1
-        };
-        if self.forecast.on_border {
-            // A bold step goes a little aside, so that no symmetry of the start hides what
-            // is across.
-            down += self.b.cross(&down) * OBLIQUE;
-        }
-        let d = self.b + down * length;
-        d * (1.0 / d.norm())
     }
 
     /// The active cuts whose balls must be seen, as bits. Of three cuts the best one's own
@@ -745,7 +651,7 @@ impl Flat {
         let (out, free) = self.cuts.least(kept, step);
         if !free {
             // For what the model forgets the trust radius must pay.
-            self.trust *= 0.5;
+            self.trust.forget_cut();
         }
         self.spare = out;
     }
@@ -785,19 +691,19 @@ impl Flat {
         let foot = foot?;
         let mut point1 = n * self.radius[0];
         for (&i, &w) in set.iter().zip(&weights) {
-            point1 += (self.samples[i % CUTS].point.v1 - self.n.get(i) * self.radius[0]) * w;
+            point1 += (self.samples[i % CUTS].p.v1 - self.n.get(i) * self.radius[0]) * w;
         }
         let mut point2 = point1 - foot - n * self.rho();
         // Onto the support planes of both objects.
-        point1 += n * n.dot(&(at.point.v1 - point1));
-        point2 += n * n.dot(&(at.point.v2 - point2));
+        point1 += n * n.dot(&(at.p.v1 - point1));
+        point2 += n * n.dot(&(at.p.v2 - point2));
         for &i in step.active() {
-            known.push(&self.samples[i % CUTS].point);
+            known.push(&self.samples[i % CUTS].p);
         }
         // The one here, which may have been seen as another's twin.
-        known.put(&at.point, &[]);
+        known.put(&at.p, &[]);
         for i in (0..self.cuts.len).filter(|&i| step.bits() & (1 << i) == 0) {
-            known.add(&self.samples[i % CUTS].point);
+            known.add(&self.samples[i % CUTS].p);
         }
         let slope = |i: usize| {
             let u = self.u.get(i);
@@ -878,7 +784,7 @@ mod tests {
     use super::*;
     use crate::shapes::{Random, capsule, corners, hull, placed};
 
-    const TOLERANCE: Real = if SINGLE { 1e-5 } else { 1e-8 };
+    const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
 
     fn run(a: impl Fn(&Vec3) -> Vec3, b: impl Fn(&Vec3) -> Vec3, start: &Vec3) -> (Outcome, u64) {
         let md = MinkowskiDifference::new(a, b);
@@ -888,7 +794,7 @@ mod tests {
         };
         let mut known = Known::default();
         let n = start.normalize();
-        let outcome = Flat::new(FIRST).run(&md, centre, n, &[], &settings, &mut known);
+        let outcome = Flat::new().run(&md, centre, n, &mut Queue::EMPTY, &settings, &mut known);
         (outcome.unwrap(), md.supports())
     }
 
@@ -896,7 +802,7 @@ mod tests {
         match outcome {
             Outcome::Found(minimum) => minimum.hit,
             Outcome::Apart(n) => panic!("apart along {n}"),
-            Outcome::Open(samples) => panic!("open: {samples:?}"),
+            Outcome::Open(asked) => panic!("open: {asked:?}"),
         }
     }
 
@@ -1008,7 +914,7 @@ mod tests {
             &Vec3::new(1.0, 0.5, 0.3),
         );
         match outcome {
-            Outcome::Open(samples) => assert_eq!(samples.list().len() as u64, supports),
+            Outcome::Open(asked) => assert_eq!(asked.samples().len() as u64, supports),
             _ => panic!("exact cuts of an ellipsoid"),
         }
     }

@@ -5,86 +5,98 @@
 //! what is computed for all samples needs no loop and compiles to vector instructions.
 
 use core::array::from_fn;
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Div, Index, IndexMut, Mul, Sub};
 
 use crate::math::{self, Real, Vec3};
 
-/// How many samples there are.
+/// Samples kept: three active cuts and the newest.
 pub const CUTS: usize = 4;
 
-/// Two numbers side by side.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
-pub struct Two([Real; 2]);
+/// The sample that is meant: in range whatever `i` is, and the compiler sees it.
+#[inline(always)]
+pub fn lane(i: usize) -> usize {
+    i % CUTS
+}
 
 /// One number for each sample.
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(16))]
-pub struct Lanes([Two; CUTS / 2]);
-
-impl Two {
-    #[inline(always)]
-    fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
-        Self([f(self.0[0], o.0[0]), f(self.0[1], o.0[1])])
-    }
-}
+pub struct Lanes([Real; CUTS]);
 
 impl Lanes {
     /// The same number in all lanes.
     #[inline(always)]
     pub fn all(a: Real) -> Self {
-        Self([Two([a; 2]); CUTS / 2])
-    }
-
-    /// The number of sample `i`, which is taken modulo [`CUTS`].
-    #[inline(always)]
-    pub fn get(&self, i: usize) -> Real {
-        self.0[(i / 2) % (CUTS / 2)].0[i % 2]
-    }
-
-    /// Sets the number of sample `i`, which is taken modulo [`CUTS`].
-    #[inline(always)]
-    pub fn set(&mut self, i: usize, a: Real) {
-        self.0[(i / 2) % (CUTS / 2)].0[i % 2] = a;
+        Self([a; CUTS])
     }
 
     /// A lane-by-lane function.
     #[inline(always)]
     pub fn map(self, f: impl Fn(Real) -> Real) -> Self {
-        Self(from_fn(|i| Two(self.0[i].0.map(&f))))
+        Self(self.0.map(f))
+    }
+
+    /// A function of two, lane by lane.
+    #[inline(always)]
+    fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
+        Self(from_fn(|i| f(self.0[i], o.0[i])))
     }
 
     /// The lanes in which `f` holds, as bits.
     #[inline(always)]
     pub fn mask(&self, f: impl Fn(Real) -> bool) -> u32 {
-        let [Two([a, b]), Two([c, d])] = self.0;
-        u32::from(f(a)) | u32::from(f(b)) << 1 | u32::from(f(c)) << 2 | u32::from(f(d)) << 3
+        let bit = |i: usize| u32::from(f(self[i])) << i;
+        bit(0) | bit(1) | bit(2) | bit(3)
     }
 
     /// The lesser of each two.
     #[inline(always)]
     pub fn lesser(&self, o: &Self) -> Self {
-        Self(from_fn(|i| self.0[i].zip(o.0[i], math::lesser)))
+        self.zip(*o, math::lesser)
     }
 
     /// The least.
     #[inline(always)]
     pub fn least(&self) -> Real {
-        let [a, b] = self.0[0].zip(self.0[1], math::lesser).0;
-        math::lesser(a, b)
+        let [a, b, c, d] = self.0;
+        math::lesser(math::lesser(a, b), math::lesser(c, d))
     }
 
     /// The largest.
     #[inline(always)]
     pub fn most(&self) -> Real {
-        let [a, b] = self.0[0].zip(self.0[1], math::larger).0;
-        math::larger(a, b)
+        let [a, b, c, d] = self.0;
+        math::larger(math::larger(a, b), math::larger(c, d))
     }
 
-    /// The absolute values.
+    /// The least of those lanes that are `free`; `None` where there is none, or none of them
+    /// is a number below infinity.
+    #[inline]
+    pub fn lowest(&self, free: impl Fn(usize) -> bool) -> Option<usize> {
+        let mut least = Real::INFINITY;
+        let mut lowest = None;
+        for i in (0..CUTS).filter(|&i| free(i)) {
+            if self[i] < least {
+                least = self[i];
+                lowest = Some(i);
+            }
+        }
+        lowest
+    }
+}
+
+impl Index<usize> for Lanes {
+    type Output = Real;
+    /// The number of sample `i`, which is taken modulo [`CUTS`].
     #[inline(always)]
-    pub fn abs(self) -> Self {
-        self.map(Real::abs)
+    fn index(&self, i: usize) -> &Real {
+        &self.0[lane(i)]
+    }
+}
+
+impl IndexMut<usize> for Lanes {
+    #[inline(always)]
+    fn index_mut(&mut self, i: usize) -> &mut Real {
+        &mut self.0[lane(i)]
     }
 }
 
@@ -92,7 +104,7 @@ impl Add for Lanes {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        Self(from_fn(|i| self.0[i].zip(o.0[i], |a, b| a + b)))
+        self.zip(o, |a, b| a + b)
     }
 }
 
@@ -100,7 +112,7 @@ impl Sub for Lanes {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        Self(from_fn(|i| self.0[i].zip(o.0[i], |a, b| a - b)))
+        self.zip(o, |a, b| a - b)
     }
 }
 
@@ -108,7 +120,15 @@ impl Mul for Lanes {
     type Output = Self;
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        Self(from_fn(|i| self.0[i].zip(o.0[i], |a, b| a * b)))
+        self.zip(o, |a, b| a * b)
+    }
+}
+
+impl Div for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        self.zip(o, |a, b| a / b)
     }
 }
 
@@ -132,31 +152,21 @@ impl Vectors {
     /// The vector of sample `i`, which is taken modulo [`CUTS`].
     #[inline(always)]
     pub fn get(&self, i: usize) -> Vec3 {
-        Vec3::new(self.x.get(i), self.y.get(i), self.z.get(i))
+        Vec3::new(self.x[i], self.y[i], self.z[i])
     }
 
     /// Sets the vector of sample `i`, which is taken modulo [`CUTS`].
     #[inline(always)]
     pub fn set(&mut self, i: usize, v: &Vec3) {
-        self.x.set(i, v.x);
-        self.y.set(i, v.y);
-        self.z.set(i, v.z);
+        self.x[i] = v.x;
+        self.y[i] = v.y;
+        self.z[i] = v.z;
     }
 
     /// The products with `v`.
     #[inline(always)]
     pub fn dot(&self, v: &Vec3) -> Lanes {
         self.x * v.x + self.y * v.y + self.z * v.z
-    }
-
-    /// The differences from other vectors.
-    #[inline(always)]
-    pub fn minus(&self, o: &Self) -> Self {
-        Self {
-            x: self.x - o.x,
-            y: self.y - o.y,
-            z: self.z - o.z,
-        }
     }
 
     /// Adds multiples of other vectors.
@@ -186,17 +196,18 @@ mod tests {
     #[test]
     fn lanes_are_numbers_side_by_side() {
         let mut a = Lanes::all(2.0);
-        a.set(1, -3.0);
-        a.set(3, 5.0);
+        (a[1], a[3]) = (-3.0, 5.0);
         let b = a * 2.0 - Lanes::all(1.0) + a * a;
-        assert_eq!(core::array::from_fn(|i| b.get(i)), [7.0, 2.0, 7.0, 34.0]);
-        assert_eq!(a.mask(|a| a < 3.0), 0b0111);
-        assert_eq!(a.abs().get(1), 3.0);
-        assert_eq!(a.map(|a| a + 1.0).get(3), 6.0);
+        assert_eq!(core::array::from_fn(|i| b[i]), [7.0, 2.0, 7.0, 34.0]);
+        assert_eq!(a.map(Real::abs)[1], 3.0);
+        assert_eq!((a.least(), a.most()), (-3.0, 5.0));
+        assert_eq!(a.lesser(&Lanes::all(1.0)).most(), 1.0);
+        assert_eq!(a.lowest(|i| i != 1), Some(0));
+        assert_eq!(a.lowest(|_| false), None);
         let mut v = Vectors::default();
         v.set(2, &Vec3::new(1.0, 2.0, 3.0));
         assert_eq!(v.get(2), Vec3::new(1.0, 2.0, 3.0));
-        assert_eq!(v.dot(&Vec3::new(3.0, 2.0, 1.0)).get(2), 10.0);
-        assert_eq!(v.distance2(&Vec3::new(1.0, 0.0, 3.0)).get(2), 4.0);
+        assert_eq!(v.dot(&Vec3::new(3.0, 2.0, 1.0))[2], 10.0);
+        assert_eq!(v.distance2(&Vec3::new(1.0, 0.0, 3.0))[2], 4.0);
     }
 }

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The trust region: how far around the bundle's centre the model is believed.
+
+use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
+
+/// First trust radius, radians: the error of a good guess.
+pub const FIRST: Real = 0.1;
+/// The radius grows by this when the model foretold a reduction on its border …
+const GROW: Real = 2.5;
+/// … and shrinks by this when there was none.
+const SHRINK: Real = 0.6;
+/// Least radius, radians; below it the search has lost its way.
+const STUCK: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
+
+/// Trust radius of a search that recalls a face, in parts of the angle to the directions
+/// asked first.
+const RECALLED: Real = 2.5;
+/// Smallest first step, radians: enough to see curvature.
+const ASIDE: Real = 0.01;
+/// Tangent of the angle between a bold first step and the gradient.
+const OBLIQUE: Real = 0.1;
+
+/// The trust radius, and what was foretold.
+pub struct TrustRegion {
+    /// Trust radius, radians.
+    pub radius: Real,
+    /// The depth foretold for the direction asked next, metres; NaN without a forecast.
+    foretold: Real,
+    /// Was that on the border, …
+    on_border: bool,
+    /// … as seen from here?
+    from: Vec3,
+}
+
+impl TrustRegion {
+    #[inline]
+    pub fn new(radius: Real) -> Self {
+        Self {
+            radius,
+            foretold: Real::NAN,
+            on_border: false,
+            from: Vec3::zeros(),
+        }
+    }
+
+    /// Directions this angle aside of the remembered one are asked first.
+    #[inline]
+    pub fn recall(&mut self, angle: Real) {
+        self.radius = self.radius.min(RECALLED * angle);
+    }
+
+    /// From the first sample (n, v), with nothing but the `size` of D to go by: down the
+    /// gradient as on a ball, at least far enough to see curvature. Unit.
+    #[inline]
+    pub fn first_step(&mut self, n: &Vec3, v: &Vec3, size: Real) -> Vec3 {
+        let h = n.dot(v);
+        let gradient = v - n * h;
+        let slope = gradient.norm();
+        let core = h - size;
+        let ball = -slope / core;
+        let radius = self.radius;
+        let length = if ball > 0.0 { ball.min(radius) } else { radius }.max(ASIDE);
+        let on_border = length == radius;
+        let depth = (core - slope * length) / (1.0 + length * length).sqrt() + h - core;
+        self.foretell(depth, on_border, n);
+        // No gradient: one way is as good as another.
+        let down = unit(&-gradient).unwrap_or_else(|| perpendicular(n));
+        // A bold step goes a little aside, so that no symmetry of the start hides what
+        // is across.
+        let down = if on_border {
+            down + n.cross(&down) * OBLIQUE
+        } else {
+            down
+        };
+        let d = n + down * length;
+        d * (1.0 / d.norm())
+    }
+
+    /// The next direction is asked for this depth.
+    #[inline]
+    pub fn foretell(&mut self, depth: Real, on_border: bool, from: &Vec3) {
+        self.foretold = depth;
+        self.on_border = on_border;
+        self.from = *from;
+    }
+
+    /// The next direction is asked for what it tells, not for its depth.
+    #[inline]
+    pub fn no_forecast(&mut self) {
+        self.foretold = Real::NAN;
+    }
+
+    /// Is the depth `h` as low as foretold, but for the tolerance? False without a forecast.
+    #[inline]
+    pub fn came_true(&self, h: Real, tolerance: Real) -> bool {
+        h - self.foretold <= tolerance
+    }
+
+    /// Compares the actual with the predicted reduction: n was asked, where the depth is `h`
+    /// and no longer `before`.
+    #[inline]
+    pub fn compare(&mut self, n: &Vec3, h: Real, before: Real) {
+        let (actual, predicted) = (before - h, before - self.foretold);
+        // False for NaN: no forecast.
+        if actual > 0.25 * predicted {
+            if self.on_border && actual > 0.7 * predicted {
+                self.radius = (self.radius * GROW).min(1.0);
+            }
+        } else if self.foretold.is_finite()
+            // Level ground within rounding is no failure.
+            && !(actual > -8.0 * EPSILON * h)
+            && (n - self.from).norm_squared() > 0.25 * self.radius * self.radius
+        {
+            self.radius *= SHRINK;
+        }
+    }
+
+    /// The model forgets an active cut: for that the radius must pay.
+    #[inline]
+    pub fn forget_cut(&mut self) {
+        self.radius *= 0.5;
+    }
+
+    /// Has the search lost its way?
+    #[inline]
+    pub fn is_stuck(&self) -> bool {
+        self.radius < STUCK
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The radius after a step of that share of it, on the border or not, that foretold a
+    /// reduction of 0.1 and brought so much of it.
+    fn radius_after(came: Real, on_border: bool, share: Real) -> Real {
+        let mut trust = TrustRegion::new(FIRST);
+        trust.foretell(0.9, on_border, &Vec3::z());
+        let n = Vec3::new(share * FIRST, 0.0, 1.0);
+        trust.compare(&n, 1.0 - 0.1 * came, 1.0);
+        trust.radius
+    }
+
+    #[test]
+    fn a_reduction_as_foretold_on_the_border_widens_it() {
+        assert_eq!(radius_after(1.0, true, 1.0), FIRST * GROW);
+        assert_eq!(radius_after(0.5, true, 1.0), FIRST);
+        assert_eq!(radius_after(1.0, false, 0.9), FIRST);
+    }
+
+    #[test]
+    fn no_reduction_narrows_it() {
+        for came in [-0.1, -1.0, -10.0] {
+            assert_eq!(radius_after(came, true, 1.0), FIRST * SHRINK);
+            assert_eq!(radius_after(came, false, 0.9), FIRST * SHRINK);
+        }
+        // Less than was foretold is no failure.
+        assert_eq!(radius_after(0.1, true, 1.0), FIRST);
+        // Of a step so short the radius is not to blame.
+        assert_eq!(radius_after(-1.0, false, 0.1), FIRST);
+    }
+
+    #[test]
+    fn without_a_forecast_it_stays() {
+        let mut trust = TrustRegion::new(FIRST);
+        trust.compare(&Vec3::x(), 2.0, 1.0);
+        trust.foretell(0.9, true, &Vec3::z());
+        trust.no_forecast();
+        trust.compare(&Vec3::x(), 0.0, 1.0);
+        assert_eq!(trust.radius, FIRST);
+    }
+
+    #[test]
+    fn it_has_an_end_both_ways() {
+        let mut trust = TrustRegion::new(FIRST);
+        for _ in 0..20 {
+            trust.foretell(0.9, true, &Vec3::z());
+            trust.compare(&Vec3::x(), 0.9, 1.0);
+        }
+        assert_eq!(trust.radius, 1.0);
+        for _ in 0..40 {
+            assert!(!trust.is_stuck() || trust.radius < FIRST);
+            trust.forget_cut();
+        }
+        assert!(trust.is_stuck());
+    }
+}

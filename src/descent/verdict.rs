@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Is the centre of the bundle the answer, and where to ask if it is not?
+
+use super::curvature::{CLOSE, Curvature};
+use super::model::{Model, Step};
+use super::samples::Samples;
+use super::trust_region::{self, TrustRegion};
+use crate::math::{Real, Vec3};
+
+/// Where to ask next.
+pub enum Next {
+    /// Where the model has its minimum.
+    Minimum,
+    /// On the way from there to that sample's direction, a share of it.
+    Beside(usize, Real),
+    /// Across the one direction in which R was measured.
+    Across,
+    /// So far aside of there.
+    Aside(Vec3),
+}
+
+/// What comes after a model.
+pub enum Verdict {
+    Ask(Next),
+    /// The search ends, and in a minimum if this is true.
+    End(bool),
+}
+
+/// By how much the model may be in error, metres.
+struct Errors {
+    /// At the centre, of the active cut for which it is the largest, …
+    cut: Real,
+    /// … this one.
+    worst: usize,
+    /// What the same error of R leaves open where the model has its minimum: of the active
+    /// cuts, and along what they leave free.
+    open: Real,
+}
+
+impl Errors {
+    #[inline]
+    fn of(
+        samples: &Samples,
+        curvature: &Curvature,
+        model: &Model,
+        step: &Step,
+        radius: Real,
+    ) -> Self {
+        let mut errors = Self {
+            cut: 0.0,
+            worst: samples.centre,
+            open: 0.0,
+        };
+        if model.rho == 0.0 {
+            return errors;
+        }
+        if step.count > 1 {
+            for i in step.active() {
+                let error = curvature.error_of(samples, i);
+                if i != samples.centre {
+                    let raise = model.raise(i, &samples.v.get(i), step.x, step.y);
+                    errors.open = errors.open.max(raise * error);
+                }
+                if model.lift[i] * error > errors.cut {
+                    errors.cut = model.lift[i] * error;
+                    errors.worst = i;
+                }
+            }
+        }
+        // So near to b another point would tell nothing.
+        if step.count < 3 && step.inside && step.length2() > CLOSE {
+            let free = free_direction_error(samples, curvature, model, step, radius);
+            errors.open = errors.open.max(free);
+        }
+        errors
+    }
+}
+
+/// How much deeper the minimum can be along what one or two active cuts leave free, if R
+/// bends as much less there as it may be in error.
+#[inline]
+fn free_direction_error(
+    samples: &Samples,
+    curvature: &Curvature,
+    model: &Model,
+    step: &Step,
+    radius: Real,
+) -> Real {
+    let [i, j, _] = step.set;
+    let (x, y) = if step.count == 2 {
+        (model.y[j] - model.y[i], model.x[i] - model.x[j])
+    } else {
+        (step.x, step.y)
+    };
+    let length2 = x * x + y * y;
+    let way = step.x * x + step.y * y;
+    let r = model.curvature_along(x, y);
+    let bend = r - samples.depth() * length2;
+    let weights = step.weights(&model.x, &model.y);
+    let error: Real = step
+        .set
+        .iter()
+        .zip(weights)
+        .map(|(&i, w)| w * curvature.error_of(samples, i))
+        .sum();
+    let less = error.min(1.0) * r;
+    // How far along, in parts of (x, y).
+    let way = way / length2;
+    let open = 0.5 * bend * way * way * less / (bend - less);
+    // Where no bend is left the slope goes on to the border.
+    let slope = bend * way.abs() * radius / length2.sqrt();
+    // Neither NaN, of no way.
+    if bend > less {
+        open.min(slope)
+    } else {
+        slope.max(0.0)
+    }
+}
+
+/// Judges what the model foretells, by this tolerance; `last`: nothing more may be asked.
+#[inline]
+pub fn judge(
+    samples: &Samples,
+    curvature: &Curvature,
+    model: &Model,
+    step: &Step,
+    trust: &TrustRegion,
+    tolerance: Real,
+    last: bool,
+) -> Verdict {
+    let errors = Errors::of(samples, curvature, model, step, trust.radius);
+    let gain = samples.depth() - step.value;
+    // Flat as far as the eye reaches: minima that form a curve or a surface.
+    let level = trust.radius >= trust_region::FIRST && curvature.spread;
+    let close = gain.abs() <= tolerance && (step.inside || level);
+    // The minimum rests on R, which was measured in one direction.
+    let blind = close && model.rho != 0.0 && step.count < 3 && !curvature.spread;
+    let minimum = samples.touch()
+        || close && !blind && errors.cut <= tolerance && gain.abs() + errors.open <= tolerance;
+    if minimum || last || !step.value.is_finite() || trust.is_stuck() {
+        Verdict::End(minimum)
+    } else if step.inside && errors.cut > tolerance && 2.0 * errors.cut >= gain {
+        // Near enough to the minimum to settle the error.
+        let share = (0.5 * tolerance.max(0.1 * gain) / errors.cut).sqrt();
+        Verdict::Ask(Next::Beside(errors.worst, share.min(0.5)))
+    } else if blind {
+        Verdict::Ask(Next::Across)
+    } else {
+        Verdict::Ask(Next::Minimum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples::tests::samples;
+    use super::*;
+    use crate::shapes::{ball, corners, hull, placed};
+    use crate::support::Known;
+
+    /// The verdict on the samples of a shape along these directions.
+    fn verdict(shape: &crate::shapes::Shape, dirs: &[Vec3], curvature: &Curvature) -> Verdict {
+        let dirs: Vec<_> = dirs.iter().map(|d| d.normalize()).collect();
+        let mut known = Known::default();
+        let samples = samples(&mut known, shape, &dirs);
+        let trust = TrustRegion::new(trust_region::FIRST);
+        let model = Model::new(&samples, curvature);
+        let step = model.minimise(dirs.len() - 1, trust.radius, samples.rounding);
+        judge(&samples, curvature, &model, &step, &trust, 1e-5, false)
+    }
+
+    #[test]
+    fn three_exact_cuts_around_the_foot_are_a_minimum() {
+        let identity = crate::shapes::Rotation::identity();
+        let centre = Vec3::new(0.05, 0.03, 0.1);
+        let cube = hull(&placed(&corners(Vec3::repeat(0.5)), &identity, centre));
+        let z = Vec3::z();
+        // Three corners of the face z = 0.6 around the origin's foot, and a fourth one.
+        let aside = [(1.0, 1.0), (-1.0, 1.0), (0.5, -1.0), (-0.5, -1.0)];
+        let dirs = aside.map(|(x, y)| z + Vec3::new(x, y, 0.0) * 0.01);
+        assert!(matches!(
+            verdict(&cube, &dirs[..3], &Curvature::new()),
+            Verdict::Ask(Next::Minimum)
+        ));
+        let dirs = [z + Vec3::new(1e-9, 1e-9, 0.0), dirs[1], dirs[2], dirs[3]];
+        assert!(matches!(
+            verdict(&cube, &dirs, &Curvature::new()),
+            Verdict::End(true)
+        ));
+    }
+
+    #[test]
+    fn curvature_known_in_one_direction_is_asked_across() {
+        let shape = ball(Vec3::new(0.0, 0.0, 0.2), 0.5);
+        // The foot of this ball is straight below: towards −z it leaves first.
+        let dirs = [-Vec3::z()];
+        let mut curvature = Curvature::new();
+        let r = [0.5, 0.0, 0.0, 0.5, 0.0, 0.5];
+        curvature.recall(super::super::curvature::Symmetric::of(r));
+        curvature.line = Vec3::x();
+        assert!(matches!(
+            verdict(&shape, &dirs, &curvature),
+            Verdict::Ask(Next::Across)
+        ));
+        curvature.spread = true;
+        assert!(matches!(
+            verdict(&shape, &dirs, &curvature),
+            Verdict::End(true)
+        ));
+    }
+}
