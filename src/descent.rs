@@ -154,6 +154,7 @@ use crate::contact::{Answer, Settings};
 use crate::math::Vec3;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use flat::{Asked, Flat, Outcome};
+use memory::Smooth;
 use search::Search;
 
 /// A local minimum of the depth near the remembered direction, else near the unit
@@ -174,7 +175,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     known: &mut Known,
 ) -> Result<Answer, Fault> {
     let mut asked = Asked::default();
-    if !memory.is_curved() {
+    if !matches!(memory.smooth(), Smooth::Curved(_)) {
         let mut flat = Flat::new();
         let (first, mut queue) = flat.recall(memory, start);
         let centre = inner.copied().unwrap_or_default();

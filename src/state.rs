@@ -64,10 +64,7 @@ impl State {
     /// this one's mirror image in the origin: points, directions and slopes change sign,
     /// lengths and curvatures stay.
     pub fn flip(&mut self) {
-        for v in self.memory.slopes.iter_mut().chain([&mut self.memory.dir]) {
-            // Not -v: a cold state is one of plain zeros.
-            *v = Vec3::zeros() - *v;
-        }
+        self.memory.flip();
     }
 
     /// The pair overlaps, as the local search left it.

@@ -37,7 +37,7 @@ pub fn smooth(flat: bool, ahead: Real, behind: Real, ds2: Real, turned2: Real) -
 }
 
 /// A symmetric matrix.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Symmetric {
     xx: Real,
     xy: Real,

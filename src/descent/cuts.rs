@@ -52,6 +52,8 @@ pub struct Step {
     pub x: Real,
     /// In the chart, radians.
     pub y: Real,
+    /// The highest cut there, metres.
+    pub level: Real,
     /// m there, metres.
     pub value: Real,
     /// The active cuts; the first one again beyond `count`.
@@ -101,30 +103,40 @@ impl Cuts {
         [self.x[i] - h * step.x, self.y[i] - h * step.y]
     }
 
-    /// Where m is least within the radius, as far as the `starts` lead: cuts as bits. The best
-    /// is always one.
+    /// Where m is least within the radius, in the end that the best cut leads to.
     #[inline]
-    pub fn minimise(&self, radius: Real, starts: u32) -> Step {
+    pub fn minimise(&self, radius: Real) -> Step {
         let radius2 = radius * radius;
-        let mut lowest = self.walk(self.one(self.best, radius2), radius2);
-        for i in (0..self.len).filter(|&i| i != self.best && starts & (1 << i) != 0) {
-            let first = self.one(i, radius2);
-            // No point of this cut is lower than where it is least.
-            if self.level(i, &first) < lowest.value {
-                let other = self.walk(first, radius2);
-                if other.value < lowest.value {
-                    lowest = other;
+        self.walk(self.one(self.best, radius2), radius2)
+    }
+
+    /// Where m is least within the radius: the lowest of all points where one cut is least,
+    /// two are, or three meet, and no other lies above.
+    #[cold]
+    pub fn lowest(&self, radius: Real) -> Step {
+        let radius2 = radius * radius;
+        let mut lowest = self.one(self.best, radius2);
+        lowest.value = Real::INFINITY;
+        let mut offer = |step: Option<Step>| {
+            let Some(mut step) = step else { return };
+            let levels = self.a + self.x * step.x + self.y * step.y;
+            step.level = levels[step.set[0]];
+            step.value = step.level - 0.5 * self.height * step.length2();
+            let above = Self::highest(&levels, levels[step.set[0]] + self.rounding);
+            if step.value < lowest.value && above.is_none_or(|i| step.bits() & (1 << i) != 0) {
+                lowest = step;
+            }
+        };
+        for i in 0..self.len {
+            offer(Some(self.one(i, radius2)));
+            for j in 0..i {
+                offer(self.two(i, j, radius2));
+                for k in 0..j {
+                    offer(self.three(i, j, k, radius2));
                 }
             }
         }
         lowest
-    }
-
-    /// Cut `i` at a step, metres.
-    #[inline(always)]
-    fn level(&self, i: usize, step: &Step) -> Real {
-        let level = self.a[i] + self.x[i] * step.x + self.y[i] * step.y;
-        level - 0.5 * self.height * step.length2()
     }
 
     /// The active-set method from where one cut is least.
@@ -136,7 +148,8 @@ impl Cuts {
             let top = levels[step.set[0]];
             let above =
                 Self::highest(&levels, top + self.rounding).filter(|i| step.bits() & (1 << i) == 0);
-            step.value = above.map_or(top, |i| levels[i]) - 0.5 * self.height * step.length2();
+            step.level = above.map_or(top, |i| levels[i]);
+            step.value = step.level - 0.5 * self.height * step.length2();
             if step.value < lowest.value {
                 lowest = step;
             }
@@ -171,6 +184,7 @@ impl Cuts {
         let mut step = Step {
             x: radius2.sqrt(),
             y: 0.0,
+            level: 0.0,
             value: 0.0,
             set: [i; 3],
             count: 1,
@@ -213,6 +227,7 @@ impl Cuts {
         Some(Step {
             x: f * d[0] - t * d[1],
             y: f * d[1] + t * d[0],
+            level: 0.0,
             value: 0.0,
             set: [i, j, i],
             count: 2,
@@ -230,6 +245,7 @@ impl Cuts {
         let step = Step {
             x: (ea * d[1] - da * e[1]) * w,
             y: (da * e[0] - ea * d[0]) * w,
+            level: 0.0,
             value: 0.0,
             set: [i, j, k],
             count: 3,
@@ -392,7 +408,9 @@ mod tests {
             let h = random.within(-0.5, 0.5);
             let c = cuts(&mut random, 1 + round % 4, h);
             let radius = random.within(0.02, 0.5);
-            let step = c.minimise(radius, !0);
+            let step = c.lowest(radius);
+            let walked = c.minimise(radius);
+            assert!(walked.value >= step.value - 1e-9);
             let there = value(&c, step.x, step.y);
             assert!(step.length2() <= radius * radius * 1.000_001);
             assert!((there - step.value).abs() < 1e-6, "{step:?}");
@@ -412,7 +430,7 @@ mod tests {
     fn the_lowest_cut_is_forgotten() {
         let mut random = Random::new(4);
         let c = cuts(&mut random, 4, 0.3);
-        let step = c.minimise(0.1, !0);
+        let step = c.minimise(0.1);
         let (out, free) = c.least(step.bits() | 1, &step);
         assert!(out != 0 && (!free || step.bits() & (1 << out) == 0));
         let (out, free) = c.least(0b1111, &step);

@@ -27,7 +27,7 @@
 use super::curvature::{ALIKE, CLOSE, smooth};
 use super::cuts::{Cuts, Step};
 use super::lanes::{CUTS, Lanes, Vectors};
-use super::memory::{Memory, Queue};
+use super::memory::{Memory, Queue, Smooth};
 use super::samples::Sample;
 use super::trust_region::{FIRST, TrustRegion};
 use crate::contact::{Penetration, Settings};
@@ -63,17 +63,20 @@ pub struct Minimum {
     pub slopes: [Vec3; 3],
     /// How many cuts are active.
     pub count: usize,
-    /// The balls' radii together, metres.
-    pub rho: Real,
+    /// The radii of the balls, metres; 0 for none.
+    pub radius: [Real; 2],
 }
 
 impl Minimum {
     /// Leaves behind what finds the same cuts again.
     #[inline]
     pub fn remember(&self, memory: &mut Memory) {
-        let (rho, n) = (self.rho, &self.hit.dir);
-        let r = (rho > 0.0).then_some([rho, 0.0, 0.0, rho, 0.0, rho]);
-        memory.keep(n, &self.slopes, self.count, r);
+        let smooth = if self.radius == [0.0; 2] {
+            Smooth::Unknown
+        } else {
+            Smooth::Round(self.radius)
+        };
+        memory.keep(&self.hit.dir, &self.slopes, self.count, smooth);
     }
 }
 
@@ -173,6 +176,9 @@ impl Flat {
         let Some(dir) = unit(&memory.dir) else {
             return (*start, Queue::EMPTY);
         };
+        if let Smooth::Round(radius) = memory.smooth() {
+            self.radius = radius;
+        }
         let (mut queue, angle) = memory.recall(&dir);
         match queue.pop() {
             Some(n) => {
@@ -273,12 +279,20 @@ impl Flat {
         if self.cuts.len == 0 {
             self.tolerance = math::tolerance(tolerance, self.extent2.sqrt(), 0.0);
             self.tolerance = larger(self.tolerance, rounding);
+            for radius in &mut self.radius {
+                // A remembered ball larger than the object was another's.
+                if *radius * *radius > 1.1 * self.extent2 {
+                    *radius = 0.0;
+                }
+            }
+            let rho = self.rho();
+            let (u, k) = (p.v - new.n * rho, new.h - rho);
             // Of all lanes: those beyond the samples repeat the first one.
             for i in (0..CUTS).rev() {
-                self.put(i, new, &p.v, new.h, 0);
+                self.put(i, new, &u, k, 0);
             }
             (self.cuts.len, self.spare) = (1, 1);
-            (self.best, self.best_h) = (*new, new.h);
+            (self.best, self.best_h) = (*new, k);
             return true;
         }
         self.tolerance = larger(self.tolerance, rounding);
@@ -519,7 +533,7 @@ impl Flat {
             return Next::Ask(self.trust.first_step(&self.best.n, &self.best.p.v, size));
         }
         self.chart();
-        let mut step = self.cuts.minimise(self.trust.radius, 0);
+        let mut step = self.cuts.minimise(self.trust.radius);
         let (mut gain, mut length) = self.gain(&step);
         if rho > 0.0
             && gain.abs() <= self.tolerance
@@ -530,16 +544,18 @@ impl Flat {
             // Level so far: is it as far as the first radius?
             self.levelled = true;
             self.trust.radius = FIRST;
-            step = self.cuts.minimise(self.trust.radius, 0);
+            step = self.cuts.minimise(self.trust.radius);
             (gain, length) = self.gain(&step);
         }
-        if gain.abs() <= self.tolerance && step.inside && !self.is_lowest(&self.b, h, &step) {
-            // The last look: is it lower anywhere?
-            step = self.cuts.minimise(self.trust.radius, !0);
+        let lost = gain < -self.tolerance;
+        let close = gain <= self.tolerance && step.inside;
+        if lost || close && !self.is_lowest(&self.b, h, &step) {
+            // The walk ended above b, or before the end: is it lower anywhere?
+            step = self.cuts.lowest(self.trust.radius);
             (gain, length) = self.gain(&step);
         }
         // Also NaN.
-        if !(gain.abs() < Real::INFINITY) {
+        if !(gain >= -self.tolerance && gain < Real::INFINITY) {
             return Next::Open;
         }
         let close = gain.abs() <= self.tolerance;
@@ -574,10 +590,8 @@ impl Flat {
     /// How much lower the model is at a step, metres, and the length of its direction.
     #[inline(always)]
     fn gain(&self, step: &Step) -> (Real, Real) {
-        let (cuts, i) = (&self.cuts, step.set[0]);
-        let level = cuts.a[i] + cuts.x[i] * step.x + cuts.y[i] * step.y;
         let length = (1.0 + step.length2()).sqrt();
-        (self.best_h - level / length, length)
+        (self.best_h - step.level / length, length)
     }
 
     /// The chart of the best direction, and the cuts in it.
@@ -609,6 +623,10 @@ impl Flat {
     /// point is as good as any.
     #[inline(always)]
     fn doubtful(&self, step: &Step, n: &Vec3) -> u32 {
+        if self.asked == 1 {
+            // A remembered ball is no more than a guess.
+            return step.bits();
+        }
         let unseen = self.unseen(n);
         if unseen == 0 {
             return 0;
@@ -722,7 +740,7 @@ impl Flat {
             },
             slopes: set.map(slope),
             count: step.count,
-            rho: self.rho(),
+            radius: self.radius,
         })
     }
 
@@ -767,6 +785,7 @@ impl Flat {
                 let step = Step {
                     x: 0.0,
                     y: 0.0,
+                    level: 0.0,
                     value: 0.0,
                     set,
                     count: 3,

@@ -3,8 +3,7 @@
 
 //! What a search leaves behind for the next one of the pair.
 
-use super::curvature::{Curvature, Symmetric};
-use super::model::{Model, Step};
+use super::curvature::Symmetric;
 use crate::math::{EPSILON, Real, Vec3, unit};
 
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
@@ -16,14 +15,30 @@ pub struct Memory {
     pub dir: Vec3,
     /// The gradients of the active cuts there, metres.
     pub slopes: [Vec3; 3],
-    /// R, metres: xx, xy, xz, yy, yz, zz.
+    /// R, metres: xx, xy, xz, yy, yz, zz. Or the radii of the two objects' balls, and zeros.
     pub curvature: [Real; 6],
     /// How far `dir` moved since the query before, radians.
     pub drift: Real,
     /// How many of `slopes` are in use.
     pub count: u32,
-    /// 1 if `curvature` was measured.
+    /// 1 if `curvature` is R, 2 if it is balls; else nothing is known of it.
     pub curved: u32,
+}
+
+/// [`Memory::curved`] where R was known.
+const CURVED: u32 = 1;
+/// Where balls were.
+const ROUND: u32 = 2;
+
+/// What is known of the smooth part of D.
+#[derive(Clone, Copy, Debug)]
+pub enum Smooth {
+    /// Nothing.
+    Unknown,
+    /// R, metres.
+    Curved(Symmetric),
+    /// The radii of the two objects' balls, metres; 0 for none.
+    Round([Real; 2]),
 }
 
 /// Directions to ask before the first model, last one first.
@@ -54,45 +69,55 @@ impl Queue {
 }
 
 impl Memory {
-    /// Leaves behind what finds the same active cuts again.
-    pub fn remember(&mut self, curvature: &Curvature, model: &Model, step: &Step) {
-        let gradient = |i: usize| model.e1 * model.x[i] + model.e2 * model.y[i];
-        let r = curvature.known.then(|| curvature.r.entries());
-        self.keep(&model.b, &step.set.map(gradient), step.count, r);
-    }
-
     /// Leaves behind the direction of the minimum, the gradients of the active cuts and how
-    /// many these are, and R, where it is known.
+    /// many these are, and what is known of the smooth part.
     #[inline]
-    pub fn keep(&mut self, dir: &Vec3, slopes: &[Vec3; 3], count: usize, r: Option<[Real; 6]>) {
-        let drift = if self.count > 0 || self.is_curved() {
+    pub fn keep(&mut self, dir: &Vec3, slopes: &[Vec3; 3], count: usize, smooth: Smooth) {
+        let drift = if self.count > 0 || self.curved != 0 {
             (dir - self.dir).norm()
         } else {
             0.0
+        };
+        let (curved, curvature) = match smooth {
+            Smooth::Unknown => (0, [0.0; 6]),
+            Smooth::Curved(r) => (CURVED, r.entries()),
+            Smooth::Round([r1, r2]) => (ROUND, [r1, r2, 0.0, 0.0, 0.0, 0.0]),
         };
         // One cut has no others to be found again.
         let several = count > 1;
         *self = Self {
             dir: *dir,
             slopes: if several { *slopes } else { [Vec3::zeros(); 3] },
-            curvature: r.unwrap_or_default(),
+            curvature,
             drift,
             count: if several { count as u32 } else { 0 },
-            curved: u32::from(r.is_some()),
+            curved,
         };
     }
 
-    /// Was R known?
+    /// What was known of the smooth part and still makes sense.
     #[inline]
-    pub fn is_curved(&self) -> bool {
-        self.curved == 1
+    pub fn smooth(&self) -> Smooth {
+        let [r1, r2, ..] = self.curvature;
+        match self.curved {
+            CURVED if self.curvature.iter().sum::<Real>().is_finite() => {
+                Smooth::Curved(Symmetric::of(self.curvature))
+            }
+            ROUND if r1 >= 0.0 && r2 >= 0.0 && r1 + r2 < Real::INFINITY => Smooth::Round([r1, r2]),
+            _ => Smooth::Unknown,
+        }
     }
 
-    /// R, where it was known and still makes sense.
-    #[inline]
-    pub fn recall_curvature(&self) -> Option<Symmetric> {
-        let finite = self.is_curved() && self.curvature.iter().sum::<Real>().is_finite();
-        finite.then(|| Symmetric::of(self.curvature))
+    /// The memory of the same objects in the other order, whose D is this one's mirror image
+    /// in the origin: directions and gradients change sign, lengths and R stay.
+    pub fn flip(&mut self) {
+        for v in self.slopes.iter_mut().chain([&mut self.dir]) {
+            // Not -v: a cold memory is one of plain zeros.
+            *v = Vec3::zeros() - *v;
+        }
+        if self.curved == ROUND {
+            self.curvature.swap(0, 1);
+        }
     }
 
     /// What still makes sense of the directions to ask first, around the remembered unit
@@ -102,7 +127,7 @@ impl Memory {
         // Farther aside than the pair moved, and not as far where R is known, which serves
         // the better the nearer the samples are (in double precision); NaN becomes the least
         // angle.
-        let (times, least) = if self.is_curved() && EPSILON < 1e-10 {
+        let (times, least) = if self.curved != 0 && EPSILON < 1e-10 {
             (2.0, 0.0005)
         } else {
             (5.0, 0.004)
@@ -149,6 +174,8 @@ impl Memory {
 
 #[cfg(test)]
 mod tests {
+    use super::super::curvature::Curvature;
+    use super::super::model::Model;
     use super::super::samples::tests::{around, samples};
     use super::*;
     use crate::shapes::{Random, corners, hull};
@@ -170,7 +197,9 @@ mod tests {
             };
             met += 1;
             let mut memory = Memory::default();
-            memory.remember(&curvature, &model, &step);
+            let gradient = |i: usize| model.e1 * model.x[i] + model.e2 * model.y[i];
+            let slopes = step.set.map(gradient);
+            memory.keep(&model.b, &slopes, step.count, Smooth::Unknown);
             let (mut queue, angle) = memory.recall(&model.b);
             // Last one first.
             for i in (0..3).rev() {
@@ -187,6 +216,17 @@ mod tests {
     }
 
     #[test]
+    fn balls_change_sides_with_the_objects() {
+        let mut memory = Memory::default();
+        memory.keep(&Vec3::z(), &[Vec3::x(); 3], 2, Smooth::Round([0.5, 0.25]));
+        memory.flip();
+        assert!(matches!(memory.smooth(), Smooth::Round([0.25, 0.5])));
+        assert_eq!((memory.dir, memory.slopes[1]), (-Vec3::z(), -Vec3::x()));
+        memory.curvature[0] = Real::NAN;
+        assert!(matches!(memory.smooth(), Smooth::Unknown));
+    }
+
+    #[test]
     fn what_makes_no_sense_is_not_recalled() {
         let memory = Memory {
             dir: Vec3::z(),
@@ -197,7 +237,7 @@ mod tests {
             curved: 1,
         };
         let (mut queue, angle) = memory.recall(&Vec3::z());
-        assert!(queue.pop().is_none() && memory.recall_curvature().is_none());
+        assert!(queue.pop().is_none() && matches!(memory.smooth(), Smooth::Unknown));
         assert!(angle > 0.0 && angle < 0.03);
     }
 }

@@ -7,7 +7,7 @@
 use core::ops::ControlFlow;
 
 use super::curvature::Curvature;
-use super::memory::{Memory, Queue};
+use super::memory::{Memory, Queue, Smooth};
 use super::model::{Model, Step};
 use super::samples::{CUTS, Sample, Samples};
 use super::trust_region::{self, TrustRegion};
@@ -72,7 +72,7 @@ impl<'a> Search<'a> {
         let Some(dir) = unit(&memory.dir) else {
             return *start;
         };
-        if let Some(r) = memory.recall_curvature() {
+        if let Smooth::Curved(r) = memory.smooth() {
             self.curvature.recall(r);
         }
         let (queue, angle) = memory.recall(&dir);
@@ -324,7 +324,12 @@ impl<'a> Search<'a> {
         if !met && !self.last() && curvature.known {
             return ControlFlow::Continue(None);
         }
-        memory.remember(curvature, model, step);
+        let gradient = |i: usize| model.e1 * model.x[i] + model.e2 * model.y[i];
+        let smooth = match curvature.known {
+            true => Smooth::Curved(curvature.r),
+            false => Smooth::Unknown,
+        };
+        memory.keep(&model.b, &step.set.map(gradient), step.count, smooth);
         let answer = witnesses.answer(samples, fine, self.iterations);
         self.samples.lead();
         ControlFlow::Break(if met {
