@@ -399,23 +399,23 @@ mod tests {
         least
     }
 
-    /// Convex: the least value. Else mostly: at least a stationary point, no higher than b.
+    /// Convex: the least value. Else mostly: at least a stationary point, no higher than b. The
+    /// walk from the best cut mostly leads there.
     #[test]
     fn the_least_value_of_the_model() {
         let mut random = Random::new(3);
-        let (mut least, mut all) = (0, 0);
+        let (mut least, mut walked, mut all) = (0, 0, 0);
         for round in 0..2000 {
             let h = random.within(-0.5, 0.5);
             let c = cuts(&mut random, 1 + round % 4, h);
             let radius = random.within(0.02, 0.5);
             let step = c.lowest(radius);
-            let walked = c.minimise(radius);
-            assert!(walked.value >= step.value - 1e-9);
             let there = value(&c, step.x, step.y);
             assert!(step.length2() <= radius * radius * 1.000_001);
             assert!((there - step.value).abs() < 1e-6, "{step:?}");
             assert!(there <= h + 1e-6);
             let best = grid(&c, radius);
+            walked += usize::from(c.minimise(radius).value <= best + 1e-5);
             if h < 0.0 {
                 assert!(there <= best + 1e-5, "{there} {best} {step:?}");
             } else {
@@ -424,6 +424,7 @@ mod tests {
             }
         }
         assert!(least * 10 > all * 9, "{least} of {all}");
+        assert!(walked > 1800, "{walked} of 2000");
     }
 
     #[test]

@@ -42,7 +42,8 @@ const PARALLEL: Real = if EPSILON > 1e-10 { 1e-6 } else { 1e-11 };
 const LOOK: usize = 3;
 /// Share of the tolerance by which two vertices that are the same may differ.
 const SAME: Real = 0.06;
-/// Support points asked only to see a vertex again, after which the balls do not fit.
+/// Support points that show a vertex again and nothing else, after which the search has lost
+/// its way, or the balls do not fit.
 const DOUBTS: u32 = 6;
 
 /// How a search of exact cuts ends.
@@ -321,8 +322,7 @@ impl Flat {
         let unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
         let mut twin = None;
         if unlike.least() > rounding {
-            self.keep(new, &u, k, seen, twin);
-            return true;
+            return self.keep(new, &u, k, seen, twin);
         }
         let mut nearest = Real::INFINITY;
         let same2 = self.same() * self.same();
@@ -343,8 +343,7 @@ impl Flat {
                 return self.look(&old, new) && self.compare(new);
             }
         }
-        self.keep(new, &u, k, seen, twin);
-        true
+        self.keep(new, &u, k, seen, twin)
     }
 
     /// Does a pair with these excesses, this far apart, look smooth?
@@ -356,19 +355,20 @@ impl Flat {
     }
 
     /// Keeps the sample: in the place of its `twin`, of the same vertex, if it is nearer to
-    /// the best direction.
+    /// the best direction. False, where too many have said nothing new.
     #[inline(always)]
-    fn keep(&mut self, new: &Sample, u: &Vec3, k: Real, seen: u32, twin: Option<usize>) {
+    fn keep(&mut self, new: &Sample, u: &Vec3, k: Real, seen: u32, twin: Option<usize>) -> bool {
         let better = k < self.best_h;
         let place = match twin {
             Some(twin) => {
                 let best = self.cuts.best;
                 let b = &self.best.n;
-                let nearer = twin != best && self.n.get(twin).dot(b) <= new.n.dot(b);
+                let nearer = twin != best && self.n.get(twin).dot(b) < new.n.dot(b);
                 if !(better || nearer) {
                     self.newest = best;
                     self.see_again(twin, seen);
-                    return;
+                    self.doubts += 1;
+                    return self.doubts <= DOUBTS;
                 }
                 twin
             }
@@ -388,6 +388,7 @@ impl Flat {
             self.cuts.best = place;
             (self.best, self.best_h) = (*new, k);
         }
+        true
     }
 
     #[inline(always)]
@@ -805,7 +806,12 @@ mod tests {
 
     const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
 
-    fn run(a: impl Fn(&Vec3) -> Vec3, b: impl Fn(&Vec3) -> Vec3, start: &Vec3) -> (Outcome, u64) {
+    fn run(
+        a: impl Fn(&Vec3) -> Vec3,
+        b: impl Fn(&Vec3) -> Vec3,
+        centre: &Vec3,
+        start: &Vec3,
+    ) -> (Outcome, u64) {
         let md = MinkowskiDifference::new(a, b);
         let settings = Settings {
             tolerance: TOLERANCE,
@@ -813,7 +819,8 @@ mod tests {
         };
         let mut known = Known::default();
         let n = start.normalize();
-        let outcome = Flat::new().run(&md, centre, n, &mut Queue::EMPTY, &settings, &mut known);
+        let mut queue = Queue::EMPTY;
+        let outcome = Flat::new().run(&md, centre, n, &mut queue, &settings, &mut known);
         (outcome.unwrap(), md.supports())
     }
 

@@ -31,7 +31,7 @@ impl Lanes {
 
     /// A lane-by-lane function.
     #[inline(always)]
-    pub fn map(self, f: impl Fn(Real) -> Real) -> Self {
+    pub fn map(self, f: impl FnMut(Real) -> Real) -> Self {
         Self(self.0.map(f))
     }
 

@@ -235,7 +235,7 @@ pub mod tests {
         let mut r = Random::new(2);
         for _ in 0..50 {
             let dirs = around(&mut r, CUTS, 0.5);
-            let levels = Lanes(core::array::from_fn(|_| r.within(-1.0, 1.0)));
+            let levels = Lanes::default().map(|_| r.within(-1.0, 1.0));
             let newest = 3;
             for active in [[0, 0, 0], [0, 1, 1], [0, 1, 2]] {
                 let mut known = Known::default();

@@ -3,7 +3,7 @@
 
 //! The trust region: how far around the bundle's centre the model is believed.
 
-use crate::math::{EPSILON, Real, Vec3, perpendicular, unit};
+use crate::math::{EPSILON, Real, Vec3, perpendicular};
 
 /// First trust radius, radians: the error of a good guess.
 pub const FIRST: Real = 0.1;
@@ -65,8 +65,12 @@ impl TrustRegion {
         let on_border = length == radius;
         let depth = (core - slope * length) / (1.0 + length * length).sqrt() + h - core;
         self.foretell(depth, on_border, n);
-        // No gradient: one way is as good as another.
-        let down = unit(&-gradient).unwrap_or_else(|| perpendicular(n));
+        // No gradient but rounding: one way is as good as another.
+        let down = if slope > 4.0 * EPSILON * h {
+            gradient * (-1.0 / slope)
+        } else {
+            perpendicular(n)
+        };
         // A bold step goes a little aside, so that no symmetry of the start hides what
         // is across.
         let down = if on_border {
