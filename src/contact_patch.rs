@@ -72,8 +72,10 @@ pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> 
     let wide = |d: Vec3, side: &Vec3, side2: Real| side.cross(&d).norm_squared() > blur * side2;
     let edges = face()
         .all(|(p, _)| !wide(p.v1 - first.v1, &one, one2) && !wide(p.v2 - first.v2, &two, two2));
-    let (whole, width) = dimensions(face().map(|(p, _)| p.v), 0.0);
-    if edges && whole == 2 { 0.0 } else { width }
+    if edges && one.cross(&two) != Vec3::zeros() {
+        return 0.0;
+    }
+    dimensions(face().map(|(p, _)| p.v), 0.0).1
 }
 
 /// What the points that a query knows say of a resting face.
