@@ -161,14 +161,24 @@ impl<const F: usize> Polytope<F> {
         Plane::of(&self.planes[Self::at(f)])
     }
 
+    /// The place of a half-edge among all of them.
+    #[inline(always)]
+    fn at_edge(h: usize) -> usize {
+        if F.is_power_of_two() {
+            h & (4 * F - 1)
+        } else {
+            h.min(4 * F - 1)
+        }
+    }
+
     #[inline(always)]
     fn twin(&self, h: usize) -> usize {
-        usize::from(self.twins[Self::at(h >> 2)][h & 3])
+        usize::from(self.twins.as_flattened()[Self::at_edge(h)])
     }
 
     #[inline(always)]
     fn set_twin(&mut self, h: usize, twin: usize) {
-        self.twins[Self::at(h >> 2)][h & 3] = twin as u16;
+        self.twins.as_flattened_mut()[Self::at_edge(h)] = twin as u16;
     }
 
     #[inline(always)]
@@ -509,7 +519,7 @@ impl<const F: usize> Polytope<F> {
         self.planes[f] = plane.array();
         let (mut square, n2) = plane.signed_square();
         if !(n2 >= self.collapsed) {
-            square = self.renew(f, &visible, corner);
+            square = self.renew(f, edge >> 2, corner);
         }
         self.keys[f] = Self::key(f, square);
         self.twins[f][0] = self.twin(edge) as u16;
@@ -565,16 +575,16 @@ impl<const F: usize> Polytope<F> {
 
     /// The plane of face `f` computed from its corners, unit normal, with d the least
     /// N·corner: taken where it inherits what the bound needs, see above. `parent` is the
-    /// plane it was interpolated from. Returns the signed square distance.
+    /// face it was interpolated from. Returns the signed square distance.
     #[cold]
     #[inline(never)]
-    fn renew(&mut self, f: usize, parent: &Plane, corner: &impl Fn(usize) -> Vec3) -> f64 {
+    fn renew(&mut self, f: usize, parent: usize, corner: &impl Fn(usize) -> Vec3) -> f64 {
         let f = Self::at(f);
-        let old = Plane::of(&self.planes[f]);
+        let (old, parent) = (self.plane(f), self.plane(parent));
         let (square, n2) = old.signed_square();
         let something = n2 > NOTHING;
         // Of a vanished plane neither side nor sign is known: its parent's sign counts.
-        let heir = if something { &old } else { parent };
+        let heir = if something { &old } else { &parent };
         let plane = match self.through_corners(f, heir, something, corner) {
             Some(plane) => plane,
             None if n2 >= COLLAPSED => {
@@ -589,7 +599,7 @@ impl<const F: usize> Polytope<F> {
             // Also for NaN.
             None => {
                 self.corners[f] |= BORROWED;
-                *parent
+                parent
             }
         };
         self.planes[f] = plane.array();
