@@ -365,7 +365,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             if progress.iterations > 1 {
                 progress
                     .core
-                    .measure(set, &hull.corners(top.face), i, level);
+                    .measure(set, &hull.corners(top.face), [&n, &v], level);
             }
             match hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
                 Inserted::Yes => continue,
@@ -477,31 +477,31 @@ impl Core {
         }
     }
 
-    /// The radius that a new point and the corners of the face it is above tell.
+    /// The radius that a new sample, its direction and point, and the corners of the face it is
+    /// above tell.
     #[inline(always)]
     fn measure<const P: usize>(
         &mut self,
         set: &SupportSet<P>,
         corners: &[usize; 3],
-        new: usize,
+        new: [&Vec3; 2],
         least: Real,
     ) {
         for &i in corners {
             if i > 0 {
-                self.pair(set, i, new, least);
+                self.pair([&set.direction(i), &set.v(i)], new, least);
             }
         }
     }
 
     /// The radius that two samples tell, if they are of one ball.
     #[inline(always)]
-    fn pair<const P: usize>(&mut self, set: &SupportSet<P>, i: usize, j: usize, least: Real) {
-        let (n, n_) = (set.direction(i), set.direction(j));
-        let turn2 = 2.0 - 2.0 * n.dot(&n_);
+    fn pair(&mut self, [n, s]: [&Vec3; 2], [n_, s_]: [&Vec3; 2], least: Real) {
+        let turn2 = 2.0 - 2.0 * n.dot(n_);
         if !NEIGHBOURS.contains(&turn2) {
             return;
         }
-        let between = set.v(j) - set.v(i);
+        let between = s_ - s;
         let (e, e_) = (n_.dot(&between), -n.dot(&between));
         let sum = e + e_;
         if (e - e_).abs() <= ALIKE * sum && sum > least {

@@ -241,7 +241,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         };
         self.precision.note(&point);
         let depth = dir.dot(&point.v);
-        if !(depth > self.precision.touch()) {
+        if !self.precision.is_depth(depth) {
             return Err(Stop::Apart(*dir));
         }
         self.lowest = Lowest { depth, dir: *dir };
@@ -263,7 +263,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         self.precision.note(&point);
         let h = dir.dot(&point.v);
         // NaN is no depth.
-        if !(h > self.precision.touch()) {
+        if !self.precision.is_depth(h) {
             return self.apart(set, dir, h);
         }
         self.lower(dir, h);
