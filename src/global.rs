@@ -16,7 +16,7 @@
 //! only then, and at last to a block that the caller lends ([`Arena`]), if it does.
 
 use crate::barycentric;
-use crate::contact::{Answer, Penetration};
+use crate::contact::Penetration;
 use crate::contact_patch::{self, Rest};
 use crate::distance;
 use crate::expansion::{self, End, Limits, Progress, expand};
@@ -24,7 +24,7 @@ use crate::math::{Real, Vec3, larger, unit};
 use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope};
 use crate::start;
-use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support::{Fault, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
 
 /// Points and faces of the first room, 3 KB: enough for shallow contacts.
@@ -60,15 +60,13 @@ pub trait Arena {
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
     /// A point that the caller says is in D, the difference of the centres; trusted.
-    pub centre: Option<SupportPoint>,
-    /// The unit direction to ask first.
+    pub centre: Option<&'a SupportPoint>,
+    /// The unit direction that was asked first.
     pub first: Vec3,
-    /// Its support point, where that has been asked for.
-    pub asked: Option<SupportPoint>,
     /// Directions besides `first` that the last proof stood on; zero for none. Empty: cold.
     pub others: &'a [Vec3],
     /// How far to go.
-    pub limits: Limits,
+    pub limits: &'a Limits,
     /// Does anybody read the witness points? Else the width of the contact is not looked for.
     pub placed: bool,
     /// Did the pair rest face on face when it was asked last?
@@ -108,43 +106,35 @@ impl Basis {
     }
 }
 
-/// The global minimum penetration of `md`. `basis` takes the directions that the proof
-/// stands on, where somebody remembers them; without an `arena` the rooms on the stack are
-/// all there is.
+/// The global minimum penetration. `first`: the support point of the first direction;
+/// `basis` takes the directions that the proof stands on, where somebody remembers them;
+/// without an `arena` the rooms on the stack are all there is.
 ///
-/// `Hit`: proven to within the limits' gap; `depth_lower` is what the polytope proves.
-/// `Limit`: a cap or rounding came first; the depth is sound, and the lower bound proven,
-/// but they are farther apart. `Miss`: apart, or touching within rounding.
+/// Writes the answer to `hit`, and returns whether it is proven to within the limits' gap;
+/// `depth_lower` is what the polytope proves. Where it is not, a cap or rounding came first:
+/// the depth is sound, and the lower bound proven, but they are farther apart.
 ///
 /// # Errors
-/// A callback's answer that is not finite, or an arena without memory.
+/// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not
+/// finite, or an arena without memory.
 #[inline(always)]
-pub fn minimum<'r, A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    request: &'r Request<'r>,
-    arena: Option<&'r mut dyn Arena>,
-    basis: Option<&'r mut Basis>,
-) -> Result<Answer, Fault> {
-    let mut inquiry = Inquiry::new(md);
-    // Before the rooms' frames: most misses are told by the first support point.
-    let ended = match inquiry.first(&request.first, request.asked) {
-        Ok(first) => {
-            let mut search = Search {
-                inquiry,
-                request,
-                arena,
-                basis,
-                open: None,
-            };
-            search.run(&first)
-        }
-        Err(stop) => Err(stop),
+pub fn minimum<'q, A: SupportMap, B: SupportMap>(
+    inquiry: Inquiry<'q, A, B>,
+    first: &SupportPoint,
+    request: &'q Request<'q>,
+    arena: Option<&'q mut dyn Arena>,
+    basis: Option<&'q mut Basis>,
+    hit: &'q mut Penetration,
+) -> Result<bool, Stop> {
+    let mut search = Search {
+        inquiry,
+        request,
+        arena,
+        basis,
+        hit,
+        open: None,
     };
-    match ended {
-        Ok(answer) => Ok(answer),
-        Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
-        Err(Stop::Fault(fault)) => Err(fault),
-    }
+    search.run(first)
 }
 
 /// A way to a first tetrahedron.
@@ -177,15 +167,17 @@ struct Search<'q, 'r, A, B> {
     request: &'r Request<'r>,
     arena: Option<&'r mut dyn Arena>,
     basis: Option<&'r mut Basis>,
-    /// The answer of the last expansion that has not shown the origin inside: given where no
-    /// other does.
-    open: Option<Answer>,
+    /// The answer of the last expansion.
+    hit: &'r mut Penetration,
+    /// Whether it is proven, where no expansion has shown the origin inside: the answer where
+    /// none does.
+    open: Option<bool>,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// All that comes after the first support point.
     #[inline(never)]
-    fn run(&mut self, first: &SupportPoint) -> Result<Answer, Stop> {
+    fn run(&mut self, first: &SupportPoint) -> Result<bool, Stop> {
         let mut set = SupportSet::<{ FIRST.0 }>::EMPTY;
         let mut opposite = self.begin(&mut set, first)?;
         let tolerance = self.tolerance();
@@ -216,13 +208,13 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if !names.is_some_and(|names| self.build(&set, &mut hull, names)) {
                 continue;
             }
-            let mut progress = Progress::new(&self.request.limits, set.len());
+            let mut progress = Progress::new(self.request.limits, set.len());
             let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
             // Where an expansion stays open, rounding had the last word: from another
             // tetrahedron it may not.
             if end != End::NoRoom {
-                if let Some(answer) = self.answer(&set, &hull, &progress, end) {
-                    return Ok(answer);
+                if let Some(proven) = self.answer(&set, &hull, &progress, end) {
+                    return Ok(proven);
                 }
                 continue;
             }
@@ -231,13 +223,15 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 &hull,
                 &mut progress,
             )?;
-            if let Some(answer) = answer {
-                return Ok(answer);
+            if let Some(proven) = answer {
+                return Ok(proven);
             }
             large = true;
         }
-        let open = self.open.take();
-        Ok(open.unwrap_or_else(|| Answer::Limit(self.bare(&set.point(1)))))
+        Ok(self.open.unwrap_or_else(|| {
+            *self.hit = self.bare(&set.point(1));
+            false
+        }))
     }
 
     /// No polytope has come to hold the origin, by rounding or by callbacks that contradict
@@ -251,8 +245,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         distance::overlap(&mut self.inquiry, set, None, &dir)
     }
 
-    /// The answer of an expansion; `None` where it has not shown the origin inside: then the
-    /// answer is kept in `open`.
+    /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
+    /// origin inside.
     #[inline(always)]
     fn answer<const P: usize, const F: usize>(
         &mut self,
@@ -260,14 +254,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
-    ) -> Option<Answer> {
-        let answer = self.conclude(set, hull, progress, end);
+    ) -> Option<bool> {
+        let proven = self.conclude(set, hull, progress, end);
         let outside = !(hull.nearest().key >= 0.0);
         if end == End::Open || end == End::NoRoom && outside {
-            self.open = Some(answer);
+            self.open = Some(proven);
             return None;
         }
-        Some(answer)
+        Some(proven)
     }
 
     fn tolerance(&self) -> Real {
@@ -292,7 +286,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             others,
             ..
         } = self.request;
-        let apex = centre.as_ref().unwrap_or(first);
+        let apex = centre.unwrap_or(first);
         set.push(&Vec3::zeros(), apex);
         set.push(dir, first);
         let mut opposite = None;
@@ -365,7 +359,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
         progress: &mut Progress,
-    ) -> Result<Option<Answer>, Stop> {
+    ) -> Result<Option<bool>, Stop> {
         let mut set = SupportSet::<Q>::EMPTY;
         let mut hull = Polytope::<G>::BLANK;
         set.take(small);
@@ -391,7 +385,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
         progress: &mut Progress,
-    ) -> Result<Option<Answer>, Stop> {
+    ) -> Result<Option<bool>, Stop> {
         set.take(small);
         polytope.moved_to(hull);
         let end = expand(&mut self.inquiry, set, hull, progress)?;
@@ -413,8 +407,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
     }
 
-    /// The answer of an expansion: depth and direction are the upper bound's, lower bound and
-    /// witness points the polytope's.
+    /// Writes the answer of an expansion, and tells whether it is proven: depth and direction
+    /// are the upper bound's, lower bound and witness points the polytope's.
     #[inline(never)]
     fn conclude<const P: usize, const F: usize>(
         &mut self,
@@ -422,7 +416,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
-    ) -> Answer {
+    ) -> bool {
         let Lowest { mut depth, dir } = self.inquiry.lowest;
         let top = hull.nearest();
         let precision = &self.inquiry.precision;
@@ -439,16 +433,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
-        let mut hit = Penetration {
-            depth,
-            depth_lower: lower,
-            dir,
-            normal: dir,
-            point1,
-            point2,
-            width: 0.0,
-            iterations: progress.iterations,
-        };
+        let mut width = 0.0;
         if self.request.placed {
             let error = progress.tolerance + precision.rounding();
             // Asked along the normal of two resting faces, a support mapping picks one corner
@@ -461,7 +446,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 let witnesses = |i| set.witnesses(i + 1);
                 let count = set.len() - 1;
                 let above = set.witnesses(lowest);
-                hit.width = match contact_patch::rest(
+                width = match contact_patch::rest(
                     witnesses,
                     count,
                     &dir,
@@ -475,6 +460,16 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 };
             }
         }
+        *self.hit = Penetration {
+            depth,
+            depth_lower: lower,
+            dir,
+            normal: dir,
+            point1,
+            point2,
+            width,
+            iterations: progress.iterations,
+        };
         if let Some(basis) = &mut self.basis {
             basis.add(&dir);
             // The point farthest along dir is found again by asking along dir.
@@ -490,11 +485,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let asked = larger(self.request.limits.tolerance, progress.tolerance);
         let close = asked + 16.0 * precision.grain();
         let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
-        if proven || depth - lower <= close {
-            Answer::Hit(hit)
-        } else {
-            Answer::Limit(hit)
-        }
+        proven || depth - lower <= close
     }
 }
 
@@ -537,6 +528,7 @@ fn exit_face<const P: usize, const F: usize>(
 mod tests {
     use super::*;
     use crate::shapes::{Random, capsule};
+    use crate::support::MinkowskiDifference;
 
     struct Heap(Option<Box<Room>>);
     impl Arena for Heap {
@@ -548,6 +540,33 @@ mod tests {
                 })
             }))
         }
+    }
+
+    /// The minimum of an overlap, and whether it is proven.
+    fn ask<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        first: Vec3,
+    ) -> Option<(bool, Penetration)> {
+        let mut inquiry = Inquiry::new(md);
+        let point = inquiry.first(&first, None).ok()?;
+        let limits = Limits {
+            tolerance: 1e-6,
+            gap: 0.0,
+            supports: 1500,
+            iterations: 1000,
+        };
+        let request = Request {
+            centre: None,
+            first,
+            others: &[],
+            limits: &limits,
+            placed: true,
+            rested: false,
+        };
+        let mut hit = Penetration::default();
+        let mut heap = Heap(None);
+        let proven = minimum(inquiry, &point, &request, Some(&mut heap), None, &mut hit);
+        Some((proven.ok()?, hit))
     }
 
     #[test]
@@ -562,24 +581,8 @@ mod tests {
             let n = a.cross(&b).normalize();
             let core = |n: &Vec3| n.dot(&-c) + n.dot(&a).abs() + n.dot(&b).abs();
             let exact = core(&n).min(core(&-n));
-            let limits = Limits {
-                tolerance: 1e-6,
-                gap: 0.0,
-                supports: 1500,
-                iterations: 1000,
-            };
             let n = c.normalize();
-            let request = Request {
-                centre: None,
-                first: n,
-                asked: None,
-                others: &[],
-                limits,
-                placed: true,
-                rested: false,
-            };
-            let Answer::Hit(hit) = minimum(&md, &request, Some(&mut Heap(None)), None).unwrap()
-            else {
+            let Some((true, hit)) = ask(&md, n) else {
                 continue;
             };
             let md_h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
@@ -616,28 +619,12 @@ mod tests {
                 rb * p + pb
             };
             let md = MinkowskiDifference::new(|_: &Vec3| Vec3::zeros(), b);
-            let limits = Limits {
-                tolerance: 1e-6,
-                gap: 0.0,
-                supports: 1500,
-                iterations: 1000,
-            };
             let n = if round % 2 == 0 {
                 r.direction()
             } else {
                 rb * Vec3::z()
             };
-            let request = Request {
-                centre: None,
-                first: n,
-                asked: None,
-                others: &[],
-                limits,
-                placed: true,
-                rested: false,
-            };
-            let a = minimum(&md, &request, Some(&mut Heap(None)), None);
-            if let Ok(Answer::Limit(hit)) = a {
+            if let Some((false, hit)) = ask(&md, n) {
                 if hit.depth_lower == 0.0 {
                     bad += 1;
                     println!("{round} {hit:?}");
