@@ -42,7 +42,7 @@
 //! then, yes or no is left to the caller.
 
 use crate::barycentric;
-use crate::math::{Real, Vec3, larger, lesser, unit, wide};
+use crate::math::{Real, Vec3, larger, lesser, normalised, unit, wide};
 use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope, Top};
 use crate::precision::Precision;
@@ -388,13 +388,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             Aim::Normal => return Ok(stuck),
         }
     }
-}
-
-/// v / |v| of a vector whose length can be squared.
-#[inline(always)]
-fn normalised(v: &Vec3) -> Option<Vec3> {
-    let n2 = v.norm_squared();
-    (n2 > Real::MIN_POSITIVE && n2 < Real::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
 #[cold]

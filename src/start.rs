@@ -22,7 +22,7 @@
 //! axis is tilted as far as the portal seen so far suggests, and farther, up to the plane
 //! itself, where that brings nothing.
 
-use crate::math::{Real, Vec3, larger, perpendicular, unit};
+use crate::math::{Real, Vec3, larger, normalised, perpendicular, unit};
 use crate::support::SupportMap;
 use crate::support_set::{Inquiry, Stop, SupportSet};
 
@@ -100,7 +100,7 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
     for step in 0..STEPS {
         // From the ball's centre through the origin.
         let way = ball.n * ball.radius - ball.s;
-        let Some(n) = unit(&way) else { break };
+        let Some(n) = normalised(&way) else { break };
         let turn2 = (n - ball.n).norm_squared();
         let promise = 0.5 * turn2 * (ball.radius - ball.h);
         if !(promise > 0.25 * within(ball.h)) {
@@ -235,7 +235,7 @@ impl View {
             return *sideways;
         }
         let tilt = tilt * [1.0, 2.0, 4.0, 16.0][vain.min(3)];
-        unit(&(self.axis + sideways * tilt)).unwrap_or(*sideways)
+        normalised(&(self.axis + sideways * tilt)).unwrap_or(*sideways)
     }
 
     /// Where a point is seen.
