@@ -447,6 +447,11 @@ impl Core {
             let m = if m.dot(&normal) < 0.0 { -m } else { m };
             (m, m.dot(&a) + self.radius)
         } else {
+            // The minimum is no farther from the origin than a corner.
+            let near = self.radius - (upper - PROMISE * allowed);
+            if [a, b, c].iter().any(|v| v.norm_squared() <= near * near) {
+                return None;
+            }
             let w = barycentric::triangle(&Vec3::zeros(), &a, &b, &c).point;
             let m = normalised(&-w)?;
             (m, self.radius - w.norm())
