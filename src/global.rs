@@ -334,18 +334,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if !hull.tetrahedron(names, points, precision.size(), fine) {
             return false;
         }
-        let level = rounding + expansion::LEVEL * tolerance;
-        for i in 1..set.len() {
-            if names.contains(&i) {
-                continue;
-            }
-            let v = set.v(i);
-            if let Some(f) = hull.farthest_below(&Plane::point(&v), level) {
-                // A point without room is left out: the polytope is none the worse.
-                if hull.insert(f, i, &v, level, &|i| set.v(i)) == Inserted::NoRoom {
-                    break;
-                }
-            }
+        if set.len() > 4 {
+            include(set, hull, names, rounding + expansion::LEVEL * tolerance);
         }
         true
     }
@@ -486,6 +476,28 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let close = asked + 16.0 * precision.grain();
         let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
         proven || depth - lower <= close
+    }
+}
+
+/// Makes all points but `names` corners that are above a face by more than `level`, metres.
+#[inline(never)]
+fn include<const P: usize, const F: usize>(
+    set: &SupportSet<P>,
+    hull: &mut Polytope<F>,
+    names: [usize; 4],
+    level: Real,
+) {
+    for i in 1..set.len() {
+        if names.contains(&i) {
+            continue;
+        }
+        let v = set.v(i);
+        if let Some(f) = hull.farthest_below(&Plane::point(&v), level) {
+            // A point without room is left out: the polytope is none the worse.
+            if hull.insert(f, i, &v, level, &|i| set.v(i)) == Inserted::NoRoom {
+                break;
+            }
+        }
     }
 }
 
