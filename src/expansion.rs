@@ -47,7 +47,7 @@ use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope, Top};
 use crate::precision::Precision;
 use crate::support::SupportMap;
-use crate::support_set::{Inquiry, Stop, SupportSet};
+use crate::support_set::{Asked, Inquiry, Stop, SupportSet};
 
 // Measured: support points of MPR and the minimum in the mean of sixteen pair sets and the
 // recorded contacts (`cargo bench --bench charts -- record`), when one number changes alone.
@@ -351,9 +351,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         };
         let before = inquiry.lowest.depth;
         let count = set.len();
-        let (i, h) = inquiry.ask(set, &n)?;
+        let Asked { i, h, v } = inquiry.ask(set, &n)?;
         progress.step(aim, h);
-        let v = set.v(i);
         let height = hull.height(top.face, &Plane::point(&v));
         let level = if inside {
             progress.level

@@ -294,7 +294,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             self.inquiry.precision.note(apex);
         } else {
             let n = -dir;
-            let (i, _) = self.inquiry.ask(set, &n)?;
+            let i = self.inquiry.ask(set, &n)?.i;
             let point = set.point(i);
             set.truncate(2);
             set.put(0, &Vec3::zeros(), &first.middle(&point));
@@ -305,7 +305,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if let Some(n) =
                 unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, dir))
             {
-                let (i, _) = self.inquiry.ask(set, &n)?;
+                let i = self.inquiry.ask(set, &n)?.i;
                 set.swap(1, i);
             }
         }

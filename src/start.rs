@@ -24,7 +24,7 @@
 
 use crate::math::{Real, Vec3, larger, normalised, perpendicular, unit};
 use crate::support::SupportMap;
-use crate::support_set::{Inquiry, Stop, SupportSet};
+use crate::support_set::{Asked, Inquiry, Stop, SupportSet};
 
 // Measured: support points of the MPR calls in the mean of sixteen pair sets and the recorded
 // contacts (`cargo bench --bench charts -- record`), when one number changes alone.
@@ -110,8 +110,7 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
         if step == 0 && turn2 > FAR {
             break;
         }
-        let (i, h) = inquiry.ask(set, &n)?;
-        let s = set.v(i);
+        let Asked { h, v: s, .. } = inquiry.ask(set, &n)?;
         let (e, e_) = (h - n.dot(&ball.s), ball.h - ball.n.dot(&s));
         let sum = e + e_;
         smooth = (e - e_).abs() <= ALIKE * sum && sum > inquiry.precision.rounding();
@@ -172,7 +171,7 @@ fn ring<A: SupportMap, B: SupportMap, const P: usize>(
     {
         if *name == 0 {
             let n = (ball.n + (a * x + b * y) * tilt) * by;
-            *name = inquiry.ask(set, &n)?.0;
+            *name = inquiry.ask(set, &n)?.i;
         }
     }
     Ok(names)
@@ -293,15 +292,16 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
         };
         let sideways = view.x * towards[0] + view.y * towards[1];
         let known = beyond(set, skip, &sideways, rounding);
-        let i = match known {
-            Some(i) => i,
+        let (i, v) = match known {
+            Some(i) => (i, set.v(i)),
             None => {
                 let extent = larger(2.0 * off, 0.6 * span);
                 let n = view.tilted(&sideways, TILT * extent / length, vain);
-                inquiry.ask(set, &n)?.0
+                let Asked { i, v, .. } = inquiry.ask(set, &n)?;
+                (i, v)
             }
         };
-        let seen = view.see(&set.v(i));
+        let seen = view.see(&v);
         let gain = dot(&towards, &seen);
         if !(gain > rounding - off) || gain <= 0.0 && vain >= PATIENT {
             // No nearer to the origin than before. In the plane itself that is the end.
@@ -402,8 +402,8 @@ fn extent<A: SupportMap, B: SupportMap, const P: usize>(
         // Towards the origin first.
         let inward = if set.v(from).dot(n) > 0.0 { -n } else { *n };
         for n in [inward, -inward] {
-            let (i, _) = inquiry.ask(set, &n)?;
-            let m = measure(&set.v(i));
+            let Asked { i, v, .. } = inquiry.ask(set, &n)?;
+            let m = measure(&v);
             if m > best.1 {
                 best = (i, m);
             }
