@@ -275,7 +275,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         // NaN is no depth.
         if !self.precision.is_depth(h) {
             // Taken apart: what is returned by way of memory would come from there always.
-            let Asked { i, h, v } = self.apart(set, dir, h)?;
+            let Asked { i, h, v } = self.apart(set, *dir, h)?;
             return Ok(Asked { i, h, v });
         }
         self.lower(dir, h);
@@ -323,16 +323,16 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
     fn apart<const N: usize>(
         &mut self,
         set: &SupportSet<N>,
-        dir: &Vec3,
+        dir: Vec3,
         h: Real,
     ) -> Result<Asked, Stop> {
         let touch = self.precision.touch();
-        let Some(i) = set.farther(dir, larger(h + self.precision.grain(), touch)) else {
-            return Err(Stop::Apart(*dir));
+        let Some(i) = set.farther(&dir, larger(h + self.precision.grain(), touch)) else {
+            return Err(Stop::Apart(dir));
         };
         let v = set.v(i);
         let h = dir.dot(&v);
-        self.lower(dir, h);
+        self.lower(&dir, h);
         Ok(Asked { i, h, v })
     }
 }
