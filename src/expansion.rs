@@ -54,7 +54,7 @@ use crate::support_set::{Asked, Inquiry, Stop, SupportSet};
 
 /// A point above a face by less than this share of the tolerance counts as on it. Measured:
 /// from 0.005 to 0.05 no set changes by 0.3 %; the planes' error stays below it.
-pub const LEVEL: Real = 0.02;
+const LEVEL: Real = 0.02;
 /// Tolerances below this share of the size are finer than interpolated planes: derived from
 /// their error, 20 ulps a point, at 160 points; planes are double whatever points are.
 const EXACT: Real = 2e4 * f64::EPSILON as Real;
@@ -135,7 +135,7 @@ pub struct Progress {
     /// Its square: a face with a key beyond has the origin inside for certain.
     rounding2: f64,
     /// Once the origin is inside, a point is above a face by more than this, metres.
-    level: Real,
+    pub level: Real,
     /// The square of the size that tolerance, rounding and level belong to; -1: of none.
     size2: Real,
     /// No mean of normals is asked in so many steps.
@@ -176,8 +176,9 @@ enum Aim {
 
 impl Progress {
     /// Before the first step. `points`: how many there are.
-    pub fn new(limits: &Limits, points: usize) -> Self {
-        Self {
+    #[inline(always)]
+    pub fn new(limits: &Limits, precision: &Precision, points: usize) -> Self {
+        let mut progress = Self {
             limits: *limits,
             iterations: 0,
             same: (0.0, 0),
@@ -202,7 +203,20 @@ impl Progress {
                 foretold: 0.0,
                 before: 0.0,
             },
-        }
+        };
+        progress.resize(precision);
+        progress
+    }
+
+    /// The sizes are these.
+    #[inline(always)]
+    fn resize(&mut self, precision: &Precision) {
+        self.size2 = precision.size2();
+        self.tolerance = precision.tolerance(self.limits.tolerance);
+        self.rounding = rounding(precision);
+        self.rounding2 = wide(self.rounding * self.rounding);
+        self.level = self.rounding + LEVEL * self.tolerance;
+        self.upper = Real::INFINITY;
     }
 
     /// Sizes and bounds as they are now.
@@ -215,13 +229,8 @@ impl Progress {
         let precision = &inquiry.precision;
         let depth = inquiry.lowest.depth;
         if precision.size2() > self.size2 {
-            self.size2 = precision.size2();
-            self.tolerance = precision.tolerance(self.limits.tolerance);
-            self.rounding = rounding(precision);
-            self.rounding2 = wide(self.rounding * self.rounding);
-            self.level = self.rounding + LEVEL * self.tolerance;
+            self.resize(precision);
             hull.grow(precision.size());
-            self.upper = Real::INFINITY;
         }
         if depth < self.upper {
             self.upper = depth;
@@ -296,7 +305,7 @@ impl Progress {
 
 /// A point above a face by no more than this, metres, is on it: products round, and the
 /// points of both are uncertain.
-pub fn rounding(precision: &Precision) -> Real {
+fn rounding(precision: &Precision) -> Real {
     precision.rounding() + 2.0 * precision.grain()
 }
 

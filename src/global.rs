@@ -23,6 +23,7 @@ use crate::expansion::{self, End, Limits, Progress, expand};
 use crate::math::{Real, Vec3, larger, unit};
 use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope};
+use crate::precision::Precision;
 use crate::start;
 use crate::support::{Fault, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
@@ -205,10 +206,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                     skip = set.push(&n, &point);
                 }
             }
-            if !names.is_some_and(|names| self.build(&set, &mut hull, names)) {
+            let Some(names) = names else {
+                continue;
+            };
+            let precision = &self.inquiry.precision;
+            let mut progress = Progress::new(self.request.limits, precision, set.len());
+            if !build(&set, &mut hull, names, precision, &progress) {
                 continue;
             }
-            let mut progress = Progress::new(self.request.limits, set.len());
             let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
             // Where an expansion stays open, rounding had the last word: from another
             // tetrahedron it may not.
@@ -316,28 +321,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             }
         }
         Ok(opposite)
-    }
-
-    /// The polytope of a tetrahedron and all other points. `false`: the tetrahedron is flat.
-    #[inline(always)]
-    fn build<const P: usize, const F: usize>(
-        &self,
-        set: &SupportSet<P>,
-        hull: &mut Polytope<F>,
-        names: [usize; 4],
-    ) -> bool {
-        let precision = &self.inquiry.precision;
-        let tolerance = self.tolerance();
-        let rounding = expansion::rounding(precision);
-        let fine = expansion::exact(tolerance, precision);
-        let points = names.map(|i| set.v(i));
-        if !hull.tetrahedron(names, points, precision.size(), fine) {
-            return false;
-        }
-        if set.len() > 4 {
-            include(set, hull, names, rounding + expansion::LEVEL * tolerance);
-        }
-        true
     }
 
     /// The expansion goes on in a larger room of `Q` points and `G` faces, and in those after
@@ -477,6 +460,26 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
         proven || depth - lower <= close
     }
+}
+
+/// The polytope of a tetrahedron and all other points. `false`: the tetrahedron is flat.
+#[inline(always)]
+fn build<const P: usize, const F: usize>(
+    set: &SupportSet<P>,
+    hull: &mut Polytope<F>,
+    names: [usize; 4],
+    precision: &Precision,
+    progress: &Progress,
+) -> bool {
+    let fine = expansion::exact(progress.tolerance, precision);
+    let points = names.map(|i| set.v(i));
+    if !hull.tetrahedron(names, points, precision.size(), fine) {
+        return false;
+    }
+    if set.len() > names.len() {
+        include(set, hull, names, progress.level);
+    }
+    true
 }
 
 /// Makes all points but `names` corners that are above a face by more than `level`, metres.
