@@ -291,7 +291,9 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
             Some((_, seen)) => Side::of(&seen_a, seen),
         };
         let sideways = view.x * towards[0] + view.y * towards[1];
-        let known = beyond(set, skip, &sideways, rounding);
+        // The ends of the edge are not beyond it.
+        let name_b = b.map_or(a, |(name, _)| name);
+        let known = beyond(set, [skip, a, name_b], &sideways, rounding);
         let (i, v) = match known {
             Some(i) => (i, set.v(i)),
             None => {
@@ -333,19 +335,19 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
     Ok(None)
 }
 
-/// The known point farthest along a direction across the axis, if it is past the origin
-/// by more than rounding.
+/// The known point farthest along a direction across the axis, but `others`, if it is past the
+/// origin by more than rounding.
 #[inline(always)]
 fn beyond<const P: usize>(
     set: &SupportSet<P>,
-    skip: usize,
+    others: [usize; 3],
     sideways: &Vec3,
     rounding: Real,
 ) -> Option<usize> {
     let (mut best, mut farthest) = (None, rounding);
-    for i in 1..set.len() {
+    for i in (1..set.len()).filter(|i| !others.contains(i)) {
         let d = sideways.dot(&set.v(i));
-        if d > farthest && i != skip {
+        if d > farthest {
             (best, farthest) = (Some(i), d);
         }
     }
