@@ -28,13 +28,9 @@ pub const EPSILON: Real = Real::EPSILON;
 /// vectors under- or overflow when squared.
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
-    let scale = largest(v);
-    if !(scale > 0.0 && scale < Real::INFINITY) {
-        return None;
-    }
-    let scaled = v / scale;
+    // 0/0 and ∞/∞ are NaN, and so is then the norm.
+    let scaled = v / largest(v);
     let norm = scaled.norm();
-    // The largest coordinate of a vector with a NaN may be a number; its norm is not.
     if norm > 0.0 {
         Some(scaled / norm)
     } else {

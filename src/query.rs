@@ -29,7 +29,7 @@ use crate::expansion::Limits;
 use crate::gjk::{self, Overlap};
 use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
-use crate::math::{ITERATION_CAP, Real, Vec3, larger, normalised, perpendicular, unit};
+use crate::math::{ITERATION_CAP, Real, Vec3, larger, perpendicular, unit};
 use crate::planar;
 use crate::portal::rounding;
 use crate::precision::Precision;
@@ -92,7 +92,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// The way from the centre of D through the origin, or the caller's first
     /// direction, or any.
     pub fn cold_start(&self) -> Vec3 {
-        let from_centre = self.centre.and_then(|c| normalised(&-c.v));
+        let from_centre = self.centre.and_then(|c| unit(&-c.v));
         from_centre
             .or_else(|| self.first_dir.and_then(|d| unit(&d)))
             .unwrap_or(Vec3::x())

@@ -234,7 +234,7 @@ impl View {
             return *sideways;
         }
         let tilt = tilt * [1.0, 2.0, 4.0, 16.0][vain.min(3)];
-        normalised(&(self.axis + sideways * tilt)).unwrap_or(*sideways)
+        unit(&(self.axis + sideways * tilt)).unwrap_or(*sideways)
     }
 
     /// Where a point is seen.
