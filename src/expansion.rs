@@ -135,7 +135,7 @@ pub struct Progress {
     /// Its square: a face with a key beyond has the origin inside for certain.
     rounding2: f64,
     /// Once the origin is inside, a point is above a face by more than this, metres.
-    pub level: Real,
+    level: Real,
     /// The square of the size that tolerance, rounding and level belong to; -1: of none.
     size2: Real,
     /// No mean of normals is asked in so many steps.
@@ -145,6 +145,9 @@ pub struct Progress {
     /// The key of the face whose mean was in vain last: it is not asked twice.
     lone: f64,
     core: Core,
+    /// The known points that are no corners, a bit each: while one of them is above the nearest
+    /// face none has to be asked for.
+    spare: u64,
 }
 
 /// The ball that the samples tell of, see the head of this file.
@@ -175,9 +178,11 @@ enum Aim {
 }
 
 impl Progress {
-    /// Before the first step. `points`: how many there are.
+    /// Before the first step. `points`: how many there are, of which `names` are corners.
     #[inline(always)]
-    pub fn new(limits: &Limits, precision: &Precision, points: usize) -> Self {
+    pub fn new(limits: &Limits, precision: &Precision, points: usize, names: [usize; 4]) -> Self {
+        // Of 64 at most, and not the apex.
+        let known = (1 << points) - 2_u64;
         let mut progress = Self {
             limits: *limits,
             iterations: 0,
@@ -203,6 +208,7 @@ impl Progress {
                 foretold: 0.0,
                 before: 0.0,
             },
+            spare: names.iter().fold(known, |spare, name| spare & !(1 << name)),
         };
         progress.resize(precision);
         progress
@@ -273,6 +279,32 @@ impl Progress {
         self.same.1 > CIRCLES
     }
 
+    /// Makes a known point a corner that is above a face by more than `level`, metres, if there
+    /// is one.
+    #[inline(never)]
+    fn spend<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &mut Polytope<F>,
+        face: usize,
+        level: Real,
+    ) -> Option<Inserted> {
+        let mut left = self.spare;
+        while left != 0 {
+            let i = left.trailing_zeros() as usize;
+            let v = set.v(i);
+            if hull.height(face, &Plane::point(&v)) > level {
+                let done = hull.insert(face, i, &v, level, &|i| set.v(i));
+                if done == Inserted::Yes {
+                    self.spare &= !(1 << i);
+                }
+                return Some(done);
+            }
+            left &= left - 1;
+        }
+        None
+    }
+
     /// Has one of the caller's caps come?
     #[inline(always)]
     fn is_spent(&self, supports: u64) -> bool {
@@ -316,8 +348,9 @@ pub fn exact(tolerance: Real, precision: &Precision) -> bool {
 
 /// Expands the polytope at its nearest face until the bounds meet, or [`End`] says why not.
 ///
-/// Each turn asks along one direction. A point above the nearest face becomes a corner. Else
-/// what was asked along decides: a promise of the ball, or a mean, that found nothing is
+/// Each turn asks along one direction, unless one of the start's points that are no corners yet
+/// is above the nearest face. A point above it becomes a corner. Else what was asked along
+/// decides: a promise of the ball, or a mean, that found nothing is
 /// forgotten; a normal that found nothing shows that no point lies above the face, so either
 /// the upper bound has fallen, or the face's plane can be sharpened, or rounding ends the
 /// search.
@@ -354,6 +387,18 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         if inside && progress.is_spent(inquiry.md.supports()) {
             return Ok(End::Inside);
         }
+        let level = if inside {
+            progress.level
+        } else {
+            progress.rounding
+        };
+        if progress.spare != 0 {
+            match progress.spend(set, hull, top.face, level) {
+                Some(Inserted::Yes) => continue,
+                Some(Inserted::NoRoom) => return Ok(End::NoRoom),
+                None => {}
+            }
+        }
         let (dir, aim) = progress.aim(set, hull, &top);
         let Some(n) = normalised(&dir).or_else(|| unit(&hull.normal(top.face))) else {
             return Ok(stuck);
@@ -363,11 +408,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         let Asked { i, h, v } = inquiry.ask(set, &n)?;
         progress.step(aim, h);
         let height = hull.height(top.face, &Plane::point(&v));
-        let level = if inside {
-            progress.level
-        } else {
-            progress.rounding
-        };
         if height > level && !(hull.borrowed(top.face) && is_corner(set, hull, top.face, &v)) {
             // The start's own points are far apart.
             if progress.iterations > 1 {

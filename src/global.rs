@@ -5,8 +5,7 @@
 //!
 //! 1. The first direction. Where its support point separates, that is the answer.
 //! 2. The apex, and the points that the last query's proof stood on ([`Search::begin`]).
-//! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::start`], and the polytope of
-//!    it and all other points so far ([`Search::build`]).
+//! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::start`].
 //! 4. The expansion ([`crate::expansion`]), in rooms that grow. Where it does not show the
 //!    origin inside, 3 and 4 are tried again in the next way.
 //! 5. The answer ([`Search::conclude`]).
@@ -21,9 +20,7 @@ use crate::contact_patch::{self, Rest};
 use crate::distance;
 use crate::expansion::{self, End, Limits, Progress, expand};
 use crate::math::{Real, Vec3, larger, unit};
-use crate::plane::Plane;
-use crate::polytope::{Inserted, Polytope};
-use crate::precision::Precision;
+use crate::polytope::Polytope;
 use crate::start;
 use crate::support::{Fault, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
@@ -210,8 +207,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 continue;
             };
             let precision = &self.inquiry.precision;
-            let mut progress = Progress::new(self.request.limits, precision, set.len());
-            if !build(&set, &mut hull, names, precision, &progress) {
+            let mut progress = Progress::new(self.request.limits, precision, set.len(), names);
+            let fine = expansion::exact(progress.tolerance, precision);
+            let points = names.map(|i| set.v(i));
+            // It may be flat.
+            if !hull.tetrahedron(names, points, precision.size(), fine) {
                 continue;
             }
             let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
@@ -459,48 +459,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let close = asked + 16.0 * precision.grain();
         let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
         proven || depth - lower <= close
-    }
-}
-
-/// The polytope of a tetrahedron and all other points. `false`: the tetrahedron is flat.
-#[inline(always)]
-fn build<const P: usize, const F: usize>(
-    set: &SupportSet<P>,
-    hull: &mut Polytope<F>,
-    names: [usize; 4],
-    precision: &Precision,
-    progress: &Progress,
-) -> bool {
-    let fine = expansion::exact(progress.tolerance, precision);
-    let points = names.map(|i| set.v(i));
-    if !hull.tetrahedron(names, points, precision.size(), fine) {
-        return false;
-    }
-    if set.len() > names.len() {
-        include(set, hull, names, progress.level);
-    }
-    true
-}
-
-/// Makes all points but `names` corners that are above a face by more than `level`, metres.
-#[inline(never)]
-fn include<const P: usize, const F: usize>(
-    set: &SupportSet<P>,
-    hull: &mut Polytope<F>,
-    names: [usize; 4],
-    level: Real,
-) {
-    for i in 1..set.len() {
-        if names.contains(&i) {
-            continue;
-        }
-        let v = set.v(i);
-        if let Some(f) = hull.farthest_below(&Plane::point(&v), level) {
-            // A point without room is left out: the polytope is none the worse.
-            if hull.insert(f, i, &v, level, &|i| set.v(i)) == Inserted::NoRoom {
-                break;
-            }
-        }
     }
 }
 

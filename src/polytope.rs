@@ -363,18 +363,6 @@ impl<const F: usize> Polytope<F> {
         }
     }
 
-    /// The face that a point is farthest above, if by more than `rounding`, metres.
-    pub fn farthest_below(&self, p: &Plane, rounding: Real) -> Option<usize> {
-        let mut best = (None, wide(rounding));
-        for f in self.faces() {
-            let height = self.plane(f).height(p);
-            if height > best.1 {
-                best = (Some(f), height);
-            }
-        }
-        best.0
-    }
-
     /// Makes a point a corner: `first` is a face that it is above by more than `rounding`,
     /// metres; `corner` tells the points by their names.
     ///
@@ -724,6 +712,22 @@ mod tests {
         assert_eq!(edges % 2, 0);
     }
 
+    /// The face that a point is farthest above, if by more than `rounding`, metres.
+    fn farthest_below<const F: usize>(
+        hull: &Polytope<F>,
+        p: &Plane,
+        rounding: Real,
+    ) -> Option<usize> {
+        let mut best = (None, wide(rounding));
+        for f in hull.faces() {
+            let height = hull.plane(f).height(p);
+            if height > best.1 {
+                best = (Some(f), height);
+            }
+        }
+        best.0
+    }
+
     /// The hull of the points in their order; the first four are the tetrahedron.
     fn grown(points: &[Vec3], exact: bool) -> Option<Box<Polytope<F>>> {
         let mut hull = Box::new(Polytope::<F>::BLANK);
@@ -734,7 +738,7 @@ mod tests {
             return None;
         }
         for (i, p) in points.iter().enumerate().skip(4) {
-            if let Some(f) = hull.farthest_below(&Plane::point(p), rounding) {
+            if let Some(f) = farthest_below(&hull, &Plane::point(p), rounding) {
                 let done = hull.insert(f, i, p, rounding, &|i| points[i]);
                 assert_eq!(done, Inserted::Yes);
             }
@@ -855,7 +859,7 @@ mod tests {
         for (i, p) in points.iter().enumerate().skip(4) {
             let seen = Plane::point(p);
             if !full {
-                if let Some(f) = small.farthest_below(&seen, LEVEL) {
+                if let Some(f) = farthest_below(&small, &seen, LEVEL) {
                     let before: Vec<_> = small.faces().map(|f| small.corners(f)).collect();
                     if small.insert(f, i, p, LEVEL, &|i| points[i]) == Inserted::NoRoom {
                         let after: Vec<_> = small.faces().map(|f| small.corners(f)).collect();
@@ -867,7 +871,7 @@ mod tests {
                 }
             }
             if full {
-                if let Some(f) = large.farthest_below(&seen, LEVEL) {
+                if let Some(f) = farthest_below(&large, &seen, LEVEL) {
                     assert_eq!(large.insert(f, i, p, LEVEL, &|i| points[i]), Inserted::Yes);
                 }
                 check(&large, &points);
