@@ -38,8 +38,8 @@
 //! # Where rounding has the last word
 //!
 //! A face that no support point is above is recomputed from its corners. If that takes it
-//! no farther the search ends with what it has; if the origin is outside of it, by rounding
-//! then, yes or no is left to the caller.
+//! no farther the search ends with what it has, and the caller begins again elsewhere; if the
+//! origin is outside of it, by rounding then, yes or no is left to the caller.
 
 use crate::barycentric;
 use crate::math::{Real, Vec3, larger, lesser, normalised, unit, wide};
@@ -102,9 +102,11 @@ pub struct Limits {
 pub enum End {
     /// The bounds meet.
     Proven,
-    /// A cap came first, or rounding; the origin is inside.
+    /// A cap came first; the origin is inside.
     Inside,
-    /// The same, and the origin is not shown to be inside.
+    /// Rounding came first; the origin is inside.
+    Stuck,
+    /// A cap or rounding came first, and the origin is not shown to be inside.
     Open,
     /// There is no room for another point.
     NoRoom,
@@ -378,7 +380,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         }
         // A face through the origin, to rounding, shows neither inside nor outside.
         let shown = top.key > progress.rounding2;
-        let stuck = if shown { End::Inside } else { End::Open };
+        let stuck = if shown { End::Stuck } else { End::Open };
         if progress.circles(&top) {
             return Ok(stuck);
         }

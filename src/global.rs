@@ -108,9 +108,9 @@ impl Basis {
 /// `basis` takes the directions that the proof stands on, where somebody remembers them;
 /// without an `arena` the rooms on the stack are all there is.
 ///
-/// Writes the answer to `hit`, and returns whether it is proven to within the limits' gap;
-/// `depth_lower` is what the polytope proves. Where it is not, a cap or rounding came first:
-/// the depth is sound, and the lower bound proven, but they are farther apart.
+/// Writes the answer to `hit`, all zero before, and returns whether it is proven to within the
+/// limits' gap; `depth_lower` is what the polytope proves. Where it is not, a cap or rounding
+/// came first: the depth is sound, and the lower bound proven, but they are farther apart.
 ///
 /// # Errors
 /// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not
@@ -167,8 +167,8 @@ struct Search<'q, 'r, A, B> {
     basis: Option<&'r mut Basis>,
     /// The answer of the last expansion.
     hit: &'r mut Penetration,
-    /// Whether it is proven, where no expansion has shown the origin inside: the answer where
-    /// none does.
+    /// Whether it is proven, where rounding has ended all expansions so far: the answer where it
+    /// ends the last one too.
     open: Option<bool>,
 }
 
@@ -215,11 +215,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 continue;
             }
             let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
-            // Where an expansion stays open, rounding had the last word: from another
+            // Where an expansion stays open or is stuck, rounding had the last word: from another
             // tetrahedron it may not.
             if end != End::NoRoom {
                 if let Some(proven) = self.answer(&set, &hull, &progress, end) {
-                    return Ok(proven);
+                    if proven || end != End::Stuck {
+                        return Ok(proven);
+                    }
+                    self.open = Some(proven);
                 }
                 continue;
             }
@@ -401,7 +404,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             depth = reach;
         }
         let near = hull.distance(top.face);
-        let lower = larger(near - precision.grain(), 0.0).min(depth);
+        // What an earlier expansion has proven holds too; 0 before the first.
+        let lower = larger(near - precision.grain(), self.hit.depth_lower).min(depth);
         let (face, nearest) = exit_face(set, hull, top.face, &dir, depth, progress.tolerance);
         let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
