@@ -307,6 +307,23 @@ impl Progress {
         None
     }
 
+    /// The end where rounding leaves nothing to do. A face through the origin, to rounding, shows
+    /// neither inside nor outside.
+    #[inline(always)]
+    fn stuck(&self, top: &Top) -> End {
+        if top.key > self.rounding2 {
+            End::Stuck
+        } else {
+            End::Open
+        }
+    }
+
+    /// A point is above a face by more than this, metres.
+    #[inline(always)]
+    fn level(&self, inside: bool) -> Real {
+        if inside { self.level } else { self.rounding }
+    }
+
     /// Has one of the caller's caps come?
     #[inline(always)]
     fn is_spent(&self, supports: u64) -> bool {
@@ -378,9 +395,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             }
             continue;
         }
-        // A face through the origin, to rounding, shows neither inside nor outside.
-        let shown = top.key > progress.rounding2;
-        let stuck = if shown { End::Stuck } else { End::Open };
+        let stuck = progress.stuck(&top);
         if progress.circles(&top) {
             return Ok(stuck);
         }
@@ -389,11 +404,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         if inside && progress.is_spent(inquiry.md.supports()) {
             return Ok(End::Inside);
         }
-        let level = if inside {
-            progress.level
-        } else {
-            progress.rounding
-        };
+        let level = progress.level(inside);
         if progress.spare != 0 {
             match progress.spend(set, hull, top.face, level) {
                 Some(Inserted::Yes) => continue,

@@ -218,11 +218,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             // Where an expansion stays open or is stuck, rounding had the last word: from another
             // tetrahedron it may not.
             if end != End::NoRoom {
-                if let Some(proven) = self.answer(&set, &hull, &progress, end) {
-                    if proven || end != End::Stuck {
-                        return Ok(proven);
-                    }
-                    self.open = Some(proven);
+                if let Some(proven) = self.answer(&set, &hull, &progress, end, true) {
+                    return Ok(proven);
                 }
                 continue;
             }
@@ -254,7 +251,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     }
 
     /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
-    /// origin inside.
+    /// origin inside, or is stuck and may be tried `again` from elsewhere.
     #[inline(always)]
     fn answer<const P: usize, const F: usize>(
         &mut self,
@@ -262,10 +259,16 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
+        again: bool,
     ) -> Option<bool> {
         let proven = self.conclude(set, hull, progress, end);
-        let outside = !(hull.nearest().key >= 0.0);
-        if end == End::Open || end == End::NoRoom && outside {
+        let open = match end {
+            End::Open => true,
+            End::NoRoom => !(hull.nearest().key >= 0.0),
+            End::Stuck => again && !proven,
+            End::Proven | End::Inside => false,
+        };
+        if open {
             self.open = Some(proven);
             return None;
         }
@@ -349,7 +352,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
             return self.lent(arena.room()?, &set, &hull, progress);
         }
-        Ok(self.answer(&set, &hull, progress, end))
+        Ok(self.answer(&set, &hull, progress, end, false))
     }
 
     /// The expansion goes on in the room that is lent.
@@ -365,7 +368,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         set.take(small);
         polytope.moved_to(hull);
         let end = expand(&mut self.inquiry, set, hull, progress)?;
-        Ok(self.answer(set, hull, progress, end))
+        Ok(self.answer(set, hull, progress, end, false))
     }
 
     /// The answer where nothing is known but the upper bound.

@@ -38,7 +38,7 @@ pub fn unit(v: &Vec3) -> Option<Vec3> {
     }
 }
 
-/// `v / |v|` of a vector whose length can be squared, else `None`: in half the time of [`unit`].
+/// `v / |v|` of a vector whose length can be squared, else `None`: in half the time of [`unit()`].
 #[inline(always)]
 pub fn normalised(v: &Vec3) -> Option<Vec3> {
     let n2 = v.norm_squared();
