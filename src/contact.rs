@@ -16,7 +16,7 @@ pub struct Settings {
 }
 
 /// An overlap: how far, which way, where.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Penetration {
     /// Metres, >= 0. Moving obj2 by `depth * dir` separates the objects.
     pub depth: Real,

@@ -38,23 +38,23 @@
 //! # Where rounding has the last word
 //!
 //! A face that no support point is above is recomputed from its corners. If that takes it
-//! no farther the search ends with what it has; if the origin is outside of it, by rounding
-//! then, yes or no is left to the caller.
+//! no farther the search ends with what it has, and the caller begins again elsewhere; if the
+//! origin is outside of it, by rounding then, yes or no is left to the caller.
 
 use crate::barycentric;
-use crate::math::{Real, Vec3, larger, lesser, unit, wide};
+use crate::math::{Real, Vec3, larger, lesser, normalised, unit, wide};
 use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope, Top};
 use crate::precision::Precision;
 use crate::support::SupportMap;
-use crate::support_set::{Inquiry, Stop, SupportSet};
+use crate::support_set::{Asked, Inquiry, Stop, SupportSet};
 
 // Measured: support points of MPR and the minimum in the mean of sixteen pair sets and the
 // recorded contacts (`cargo bench --bench charts -- record`), when one number changes alone.
 
 /// A point above a face by less than this share of the tolerance counts as on it. Measured:
 /// from 0.005 to 0.05 no set changes by 0.3 %; the planes' error stays below it.
-pub const LEVEL: Real = 0.02;
+const LEVEL: Real = 0.02;
 /// Tolerances below this share of the size are finer than interpolated planes: derived from
 /// their error, 20 ulps a point, at 160 points; planes are double whatever points are.
 const EXACT: Real = 2e4 * f64::EPSILON as Real;
@@ -102,9 +102,11 @@ pub struct Limits {
 pub enum End {
     /// The bounds meet.
     Proven,
-    /// A cap came first, or rounding; the origin is inside.
+    /// A cap came first; the origin is inside.
     Inside,
-    /// The same, and the origin is not shown to be inside.
+    /// Rounding came first; the origin is inside.
+    Stuck,
+    /// A cap or rounding came first, and the origin is not shown to be inside.
     Open,
     /// There is no room for another point.
     NoRoom,
@@ -145,6 +147,9 @@ pub struct Progress {
     /// The key of the face whose mean was in vain last: it is not asked twice.
     lone: f64,
     core: Core,
+    /// The known points that are no corners, a bit each: while one of them is above the nearest
+    /// face none has to be asked for.
+    spare: u64,
 }
 
 /// The ball that the samples tell of, see the head of this file.
@@ -175,9 +180,12 @@ enum Aim {
 }
 
 impl Progress {
-    /// Before the first step. `points`: how many there are.
-    pub fn new(limits: &Limits, points: usize) -> Self {
-        Self {
+    /// Before the first step. `points`: how many there are, of which `names` are corners.
+    #[inline(always)]
+    pub fn new(limits: &Limits, precision: &Precision, points: usize, names: [usize; 4]) -> Self {
+        // Of 64 at most, and not the apex.
+        let known = (1 << points) - 2_u64;
+        let mut progress = Self {
             limits: *limits,
             iterations: 0,
             same: (0.0, 0),
@@ -202,7 +210,21 @@ impl Progress {
                 foretold: 0.0,
                 before: 0.0,
             },
-        }
+            spare: names.iter().fold(known, |spare, name| spare & !(1 << name)),
+        };
+        progress.resize(precision);
+        progress
+    }
+
+    /// The sizes are these.
+    #[inline(always)]
+    fn resize(&mut self, precision: &Precision) {
+        self.size2 = precision.size2();
+        self.tolerance = precision.tolerance(self.limits.tolerance);
+        self.rounding = rounding(precision);
+        self.rounding2 = wide(self.rounding * self.rounding);
+        self.level = self.rounding + LEVEL * self.tolerance;
+        self.upper = Real::INFINITY;
     }
 
     /// Sizes and bounds as they are now.
@@ -215,13 +237,8 @@ impl Progress {
         let precision = &inquiry.precision;
         let depth = inquiry.lowest.depth;
         if precision.size2() > self.size2 {
-            self.size2 = precision.size2();
-            self.tolerance = precision.tolerance(self.limits.tolerance);
-            self.rounding = rounding(precision);
-            self.rounding2 = wide(self.rounding * self.rounding);
-            self.level = self.rounding + LEVEL * self.tolerance;
+            self.resize(precision);
             hull.grow(precision.size());
-            self.upper = Real::INFINITY;
         }
         if depth < self.upper {
             self.upper = depth;
@@ -264,6 +281,49 @@ impl Progress {
         self.same.1 > CIRCLES
     }
 
+    /// Makes a known point a corner that is above a face by more than `level`, metres, if there
+    /// is one.
+    #[inline(never)]
+    fn spend<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &mut Polytope<F>,
+        face: usize,
+        level: Real,
+    ) -> Option<Inserted> {
+        let mut left = self.spare;
+        while left != 0 {
+            let i = left.trailing_zeros() as usize;
+            let v = set.v(i);
+            if hull.height(face, &Plane::point(&v)) > level {
+                let done = hull.insert(face, i, &v, level, &|i| set.v(i));
+                if done == Inserted::Yes {
+                    self.spare &= !(1 << i);
+                }
+                return Some(done);
+            }
+            left &= left - 1;
+        }
+        None
+    }
+
+    /// The end where rounding leaves nothing to do. A face through the origin, to rounding, shows
+    /// neither inside nor outside.
+    #[inline(always)]
+    fn stuck(&self, top: &Top) -> End {
+        if top.key > self.rounding2 {
+            End::Stuck
+        } else {
+            End::Open
+        }
+    }
+
+    /// A point is above a face by more than this, metres.
+    #[inline(always)]
+    fn level(&self, inside: bool) -> Real {
+        if inside { self.level } else { self.rounding }
+    }
+
     /// Has one of the caller's caps come?
     #[inline(always)]
     fn is_spent(&self, supports: u64) -> bool {
@@ -296,7 +356,7 @@ impl Progress {
 
 /// A point above a face by no more than this, metres, is on it: products round, and the
 /// points of both are uncertain.
-pub fn rounding(precision: &Precision) -> Real {
+fn rounding(precision: &Precision) -> Real {
     precision.rounding() + 2.0 * precision.grain()
 }
 
@@ -307,8 +367,9 @@ pub fn exact(tolerance: Real, precision: &Precision) -> bool {
 
 /// Expands the polytope at its nearest face until the bounds meet, or [`End`] says why not.
 ///
-/// Each turn asks along one direction. A point above the nearest face becomes a corner. Else
-/// what was asked along decides: a promise of the ball, or a mean, that found nothing is
+/// Each turn asks along one direction, unless one of the start's points that are no corners yet
+/// is above the nearest face. A point above it becomes a corner. Else what was asked along
+/// decides: a promise of the ball, or a mean, that found nothing is
 /// forgotten; a normal that found nothing shows that no point lies above the face, so either
 /// the upper bound has fallen, or the face's plane can be sharpened, or rounding ends the
 /// search.
@@ -334,9 +395,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             }
             continue;
         }
-        // A face through the origin, to rounding, shows neither inside nor outside.
-        let shown = top.key > progress.rounding2;
-        let stuck = if shown { End::Inside } else { End::Open };
+        let stuck = progress.stuck(&top);
         if progress.circles(&top) {
             return Ok(stuck);
         }
@@ -345,27 +404,29 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         if inside && progress.is_spent(inquiry.md.supports()) {
             return Ok(End::Inside);
         }
+        let level = progress.level(inside);
+        if progress.spare != 0 {
+            match progress.spend(set, hull, top.face, level) {
+                Some(Inserted::Yes) => continue,
+                Some(Inserted::NoRoom) => return Ok(End::NoRoom),
+                None => {}
+            }
+        }
         let (dir, aim) = progress.aim(set, hull, &top);
         let Some(n) = normalised(&dir).or_else(|| unit(&hull.normal(top.face))) else {
             return Ok(stuck);
         };
         let before = inquiry.lowest.depth;
         let count = set.len();
-        let (i, h) = inquiry.ask(set, &n)?;
+        let Asked { i, h, v } = inquiry.ask(set, &n)?;
         progress.step(aim, h);
-        let v = set.v(i);
         let height = hull.height(top.face, &Plane::point(&v));
-        let level = if inside {
-            progress.level
-        } else {
-            progress.rounding
-        };
         if height > level && !(hull.borrowed(top.face) && is_corner(set, hull, top.face, &v)) {
             // The start's own points are far apart.
             if progress.iterations > 1 {
                 progress
                     .core
-                    .measure(set, &hull.corners(top.face), i, level);
+                    .measure(set, &hull.corners(top.face), [&n, &v], level);
             }
             match hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
                 Inserted::Yes => continue,
@@ -388,13 +449,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             Aim::Normal => return Ok(stuck),
         }
     }
-}
-
-/// v / |v| of a vector whose length can be squared.
-#[inline(always)]
-fn normalised(v: &Vec3) -> Option<Vec3> {
-    let n2 = v.norm_squared();
-    (n2 > Real::MIN_POSITIVE && n2 < Real::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
 #[cold]
@@ -454,6 +508,11 @@ impl Core {
             let m = if m.dot(&normal) < 0.0 { -m } else { m };
             (m, m.dot(&a) + self.radius)
         } else {
+            // The minimum is no farther from the origin than a corner.
+            let near = self.radius - (upper - PROMISE * allowed);
+            if [a, b, c].iter().any(|v| v.norm_squared() <= near * near) {
+                return None;
+            }
             let w = barycentric::triangle(&Vec3::zeros(), &a, &b, &c).point;
             let m = normalised(&-w)?;
             (m, self.radius - w.norm())
@@ -477,31 +536,31 @@ impl Core {
         }
     }
 
-    /// The radius that a new point and the corners of the face it is above tell.
+    /// The radius that a new sample, its direction and point, and the corners of the face it is
+    /// above tell.
     #[inline(always)]
     fn measure<const P: usize>(
         &mut self,
         set: &SupportSet<P>,
         corners: &[usize; 3],
-        new: usize,
+        new: [&Vec3; 2],
         least: Real,
     ) {
         for &i in corners {
             if i > 0 {
-                self.pair(set, i, new, least);
+                self.pair([&set.direction(i), &set.v(i)], new, least);
             }
         }
     }
 
     /// The radius that two samples tell, if they are of one ball.
     #[inline(always)]
-    fn pair<const P: usize>(&mut self, set: &SupportSet<P>, i: usize, j: usize, least: Real) {
-        let (n, n_) = (set.direction(i), set.direction(j));
-        let turn2 = 2.0 - 2.0 * n.dot(&n_);
+    fn pair(&mut self, [n, s]: [&Vec3; 2], [n_, s_]: [&Vec3; 2], least: Real) {
+        let turn2 = 2.0 - 2.0 * n.dot(n_);
         if !NEIGHBOURS.contains(&turn2) {
             return;
         }
-        let between = set.v(j) - set.v(i);
+        let between = s_ - s;
         let (e, e_) = (n_.dot(&between), -n.dot(&between));
         let sum = e + e_;
         if (e - e_).abs() <= ALIKE * sum && sum > least {

@@ -5,8 +5,7 @@
 //!
 //! 1. The first direction. Where its support point separates, that is the answer.
 //! 2. The apex, and the points that the last query's proof stood on ([`Search::begin`]).
-//! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::start`], and the polytope of
-//!    it and all other points so far ([`Search::build`]).
+//! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::start`].
 //! 4. The expansion ([`crate::expansion`]), in rooms that grow. Where it does not show the
 //!    origin inside, 3 and 4 are tried again in the next way.
 //! 5. The answer ([`Search::conclude`]).
@@ -16,15 +15,14 @@
 //! only then, and at last to a block that the caller lends ([`Arena`]), if it does.
 
 use crate::barycentric;
-use crate::contact::{Answer, Penetration};
+use crate::contact::Penetration;
 use crate::contact_patch::{self, Rest};
 use crate::distance;
 use crate::expansion::{self, End, Limits, Progress, expand};
 use crate::math::{Real, Vec3, larger, unit};
-use crate::plane::Plane;
-use crate::polytope::{Inserted, Polytope};
+use crate::polytope::Polytope;
 use crate::start;
-use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::support::{Fault, SupportMap, SupportPoint};
 use crate::support_set::{Inquiry, Lowest, Stop, SupportSet};
 
 /// Points and faces of the first room, 3 KB: enough for shallow contacts.
@@ -60,15 +58,13 @@ pub trait Arena {
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
     /// A point that the caller says is in D, the difference of the centres; trusted.
-    pub centre: Option<SupportPoint>,
-    /// The unit direction to ask first.
+    pub centre: Option<&'a SupportPoint>,
+    /// The unit direction that was asked first.
     pub first: Vec3,
-    /// Its support point, where that has been asked for.
-    pub asked: Option<SupportPoint>,
     /// Directions besides `first` that the last proof stood on; zero for none. Empty: cold.
     pub others: &'a [Vec3],
     /// How far to go.
-    pub limits: Limits,
+    pub limits: &'a Limits,
     /// Does anybody read the witness points? Else the width of the contact is not looked for.
     pub placed: bool,
     /// Did the pair rest face on face when it was asked last?
@@ -108,43 +104,35 @@ impl Basis {
     }
 }
 
-/// The global minimum penetration of `md`. `basis` takes the directions that the proof
-/// stands on, where somebody remembers them; without an `arena` the rooms on the stack are
-/// all there is.
+/// The global minimum penetration. `first`: the support point of the first direction;
+/// `basis` takes the directions that the proof stands on, where somebody remembers them;
+/// without an `arena` the rooms on the stack are all there is.
 ///
-/// `Hit`: proven to within the limits' gap; `depth_lower` is what the polytope proves.
-/// `Limit`: a cap or rounding came first; the depth is sound, and the lower bound proven,
-/// but they are farther apart. `Miss`: apart, or touching within rounding.
+/// Writes the answer to `hit`, all zero before, and returns whether it is proven to within the
+/// limits' gap; `depth_lower` is what the polytope proves. Where it is not, a cap or rounding
+/// came first: the depth is sound, and the lower bound proven, but they are farther apart.
 ///
 /// # Errors
-/// A callback's answer that is not finite, or an arena without memory.
+/// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not
+/// finite, or an arena without memory.
 #[inline(always)]
-pub fn minimum<'r, A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    request: &'r Request<'r>,
-    arena: Option<&'r mut dyn Arena>,
-    basis: Option<&'r mut Basis>,
-) -> Result<Answer, Fault> {
-    let mut inquiry = Inquiry::new(md);
-    // Before the rooms' frames: most misses are told by the first support point.
-    let ended = match inquiry.first(&request.first, request.asked) {
-        Ok(first) => {
-            let mut search = Search {
-                inquiry,
-                request,
-                arena,
-                basis,
-                open: None,
-            };
-            search.run(&first)
-        }
-        Err(stop) => Err(stop),
+pub fn minimum<'q, A: SupportMap, B: SupportMap>(
+    inquiry: Inquiry<'q, A, B>,
+    first: &SupportPoint,
+    request: &'q Request<'q>,
+    arena: Option<&'q mut dyn Arena>,
+    basis: Option<&'q mut Basis>,
+    hit: &'q mut Penetration,
+) -> Result<bool, Stop> {
+    let mut search = Search {
+        inquiry,
+        request,
+        arena,
+        basis,
+        hit,
+        open: None,
     };
-    match ended {
-        Ok(answer) => Ok(answer),
-        Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
-        Err(Stop::Fault(fault)) => Err(fault),
-    }
+    search.run(first)
 }
 
 /// A way to a first tetrahedron.
@@ -177,15 +165,17 @@ struct Search<'q, 'r, A, B> {
     request: &'r Request<'r>,
     arena: Option<&'r mut dyn Arena>,
     basis: Option<&'r mut Basis>,
-    /// The answer of the last expansion that has not shown the origin inside: given where no
-    /// other does.
-    open: Option<Answer>,
+    /// The answer of the last expansion.
+    hit: &'r mut Penetration,
+    /// Whether it is proven, where rounding has ended all expansions so far: the answer where it
+    /// ends the last one too.
+    open: Option<bool>,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// All that comes after the first support point.
     #[inline(never)]
-    fn run(&mut self, first: &SupportPoint) -> Result<Answer, Stop> {
+    fn run(&mut self, first: &SupportPoint) -> Result<bool, Stop> {
         let mut set = SupportSet::<{ FIRST.0 }>::EMPTY;
         let mut opposite = self.begin(&mut set, first)?;
         let tolerance = self.tolerance();
@@ -213,16 +203,23 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                     skip = set.push(&n, &point);
                 }
             }
-            if !names.is_some_and(|names| self.build(&set, &mut hull, names)) {
+            let Some(names) = names else {
+                continue;
+            };
+            let precision = &self.inquiry.precision;
+            let mut progress = Progress::new(self.request.limits, precision, set.len(), names);
+            let fine = expansion::exact(progress.tolerance, precision);
+            let points = names.map(|i| set.v(i));
+            // It may be flat.
+            if !hull.tetrahedron(names, points, precision.size(), fine) {
                 continue;
             }
-            let mut progress = Progress::new(&self.request.limits, set.len());
             let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
-            // Where an expansion stays open, rounding had the last word: from another
+            // Where an expansion stays open or is stuck, rounding had the last word: from another
             // tetrahedron it may not.
             if end != End::NoRoom {
-                if let Some(answer) = self.answer(&set, &hull, &progress, end) {
-                    return Ok(answer);
+                if let Some(proven) = self.answer(&set, &hull, &progress, end, true) {
+                    return Ok(proven);
                 }
                 continue;
             }
@@ -231,13 +228,15 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 &hull,
                 &mut progress,
             )?;
-            if let Some(answer) = answer {
-                return Ok(answer);
+            if let Some(proven) = answer {
+                return Ok(proven);
             }
             large = true;
         }
-        let open = self.open.take();
-        Ok(open.unwrap_or_else(|| Answer::Limit(self.bare(&set.point(1)))))
+        Ok(self.open.unwrap_or_else(|| {
+            *self.hit = self.bare(&set.point(1));
+            false
+        }))
     }
 
     /// No polytope has come to hold the origin, by rounding or by callbacks that contradict
@@ -251,8 +250,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         distance::overlap(&mut self.inquiry, set, None, &dir)
     }
 
-    /// The answer of an expansion; `None` where it has not shown the origin inside: then the
-    /// answer is kept in `open`.
+    /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
+    /// origin inside, or is stuck and may be tried `again` from elsewhere.
     #[inline(always)]
     fn answer<const P: usize, const F: usize>(
         &mut self,
@@ -260,14 +259,20 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
-    ) -> Option<Answer> {
-        let answer = self.conclude(set, hull, progress, end);
-        let outside = !(hull.nearest().key >= 0.0);
-        if end == End::Open || end == End::NoRoom && outside {
-            self.open = Some(answer);
+        again: bool,
+    ) -> Option<bool> {
+        let proven = self.conclude(set, hull, progress, end);
+        let open = match end {
+            End::Open => true,
+            End::NoRoom => !(hull.nearest().key >= 0.0),
+            End::Stuck => again && !proven,
+            End::Proven | End::Inside => false,
+        };
+        if open {
+            self.open = Some(proven);
             return None;
         }
-        Some(answer)
+        Some(proven)
     }
 
     fn tolerance(&self) -> Real {
@@ -292,7 +297,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             others,
             ..
         } = self.request;
-        let apex = centre.as_ref().unwrap_or(first);
+        let apex = centre.unwrap_or(first);
         set.push(&Vec3::zeros(), apex);
         set.push(dir, first);
         let mut opposite = None;
@@ -300,7 +305,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             self.inquiry.precision.note(apex);
         } else {
             let n = -dir;
-            let (i, _) = self.inquiry.ask(set, &n)?;
+            let i = self.inquiry.ask(set, &n)?.i;
             let point = set.point(i);
             set.truncate(2);
             set.put(0, &Vec3::zeros(), &first.middle(&point));
@@ -311,7 +316,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if let Some(n) =
                 unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, dir))
             {
-                let (i, _) = self.inquiry.ask(set, &n)?;
+                let i = self.inquiry.ask(set, &n)?.i;
                 set.swap(1, i);
             }
         }
@@ -324,38 +329,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Ok(opposite)
     }
 
-    /// The polytope of a tetrahedron and all other points. `false`: the tetrahedron is flat.
-    #[inline(always)]
-    fn build<const P: usize, const F: usize>(
-        &self,
-        set: &SupportSet<P>,
-        hull: &mut Polytope<F>,
-        names: [usize; 4],
-    ) -> bool {
-        let precision = &self.inquiry.precision;
-        let tolerance = self.tolerance();
-        let rounding = expansion::rounding(precision);
-        let fine = expansion::exact(tolerance, precision);
-        let points = names.map(|i| set.v(i));
-        if !hull.tetrahedron(names, points, precision.size(), fine) {
-            return false;
-        }
-        let level = rounding + expansion::LEVEL * tolerance;
-        for i in 1..set.len() {
-            if names.contains(&i) {
-                continue;
-            }
-            let v = set.v(i);
-            if let Some(f) = hull.farthest_below(&Plane::point(&v), level) {
-                // A point without room is left out: the polytope is none the worse.
-                if hull.insert(f, i, &v, level, &|i| set.v(i)) == Inserted::NoRoom {
-                    break;
-                }
-            }
-        }
-        true
-    }
-
     /// The expansion goes on in a larger room of `Q` points and `G` faces, and in those after
     /// it.
     #[cold]
@@ -365,7 +338,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
         progress: &mut Progress,
-    ) -> Result<Option<Answer>, Stop> {
+    ) -> Result<Option<bool>, Stop> {
         let mut set = SupportSet::<Q>::EMPTY;
         let mut hull = Polytope::<G>::BLANK;
         set.take(small);
@@ -379,7 +352,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
             return self.lent(arena.room()?, &set, &hull, progress);
         }
-        Ok(self.answer(&set, &hull, progress, end))
+        Ok(self.answer(&set, &hull, progress, end, false))
     }
 
     /// The expansion goes on in the room that is lent.
@@ -391,11 +364,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         small: &SupportSet<P>,
         polytope: &Polytope<F>,
         progress: &mut Progress,
-    ) -> Result<Option<Answer>, Stop> {
+    ) -> Result<Option<bool>, Stop> {
         set.take(small);
         polytope.moved_to(hull);
         let end = expand(&mut self.inquiry, set, hull, progress)?;
-        Ok(self.answer(set, hull, progress, end))
+        Ok(self.answer(set, hull, progress, end, false))
     }
 
     /// The answer where nothing is known but the upper bound.
@@ -413,8 +386,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
     }
 
-    /// The answer of an expansion: depth and direction are the upper bound's, lower bound and
-    /// witness points the polytope's.
+    /// Writes the answer of an expansion, and tells whether it is proven: depth and direction
+    /// are the upper bound's, lower bound and witness points the polytope's.
     #[inline(never)]
     fn conclude<const P: usize, const F: usize>(
         &mut self,
@@ -422,7 +395,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
-    ) -> Answer {
+    ) -> bool {
         let Lowest { mut depth, dir } = self.inquiry.lowest;
         let top = hull.nearest();
         let precision = &self.inquiry.precision;
@@ -434,21 +407,13 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             depth = reach;
         }
         let near = hull.distance(top.face);
-        let lower = larger(near - precision.grain(), 0.0).min(depth);
+        // What an earlier expansion has proven holds too; 0 before the first.
+        let lower = larger(near - precision.grain(), self.hit.depth_lower).min(depth);
         let (face, nearest) = exit_face(set, hull, top.face, &dir, depth, progress.tolerance);
         let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
-        let mut hit = Penetration {
-            depth,
-            depth_lower: lower,
-            dir,
-            normal: dir,
-            point1,
-            point2,
-            width: 0.0,
-            iterations: progress.iterations,
-        };
+        let mut width = 0.0;
         if self.request.placed {
             let error = progress.tolerance + precision.rounding();
             // Asked along the normal of two resting faces, a support mapping picks one corner
@@ -461,7 +426,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 let witnesses = |i| set.witnesses(i + 1);
                 let count = set.len() - 1;
                 let above = set.witnesses(lowest);
-                hit.width = match contact_patch::rest(
+                width = match contact_patch::rest(
                     witnesses,
                     count,
                     &dir,
@@ -475,6 +440,16 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 };
             }
         }
+        *self.hit = Penetration {
+            depth,
+            depth_lower: lower,
+            dir,
+            normal: dir,
+            point1,
+            point2,
+            width,
+            iterations: progress.iterations,
+        };
         if let Some(basis) = &mut self.basis {
             basis.add(&dir);
             // The point farthest along dir is found again by asking along dir.
@@ -490,11 +465,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let asked = larger(self.request.limits.tolerance, progress.tolerance);
         let close = asked + 16.0 * precision.grain();
         let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
-        if proven || depth - lower <= close {
-            Answer::Hit(hit)
-        } else {
-            Answer::Limit(hit)
-        }
+        proven || depth - lower <= close
     }
 }
 
@@ -537,6 +508,7 @@ fn exit_face<const P: usize, const F: usize>(
 mod tests {
     use super::*;
     use crate::shapes::{Random, capsule};
+    use crate::support::MinkowskiDifference;
 
     struct Heap(Option<Box<Room>>);
     impl Arena for Heap {
@@ -548,6 +520,33 @@ mod tests {
                 })
             }))
         }
+    }
+
+    /// The minimum of an overlap, and whether it is proven.
+    fn ask<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        first: Vec3,
+    ) -> Option<(bool, Penetration)> {
+        let mut inquiry = Inquiry::new(md);
+        let point = inquiry.first(&first, None).ok()?;
+        let limits = Limits {
+            tolerance: 1e-6,
+            gap: 0.0,
+            supports: 1500,
+            iterations: 1000,
+        };
+        let request = Request {
+            centre: None,
+            first,
+            others: &[],
+            limits: &limits,
+            placed: true,
+            rested: false,
+        };
+        let mut hit = Penetration::default();
+        let mut heap = Heap(None);
+        let proven = minimum(inquiry, &point, &request, Some(&mut heap), None, &mut hit);
+        Some((proven.ok()?, hit))
     }
 
     #[test]
@@ -562,24 +561,8 @@ mod tests {
             let n = a.cross(&b).normalize();
             let core = |n: &Vec3| n.dot(&-c) + n.dot(&a).abs() + n.dot(&b).abs();
             let exact = core(&n).min(core(&-n));
-            let limits = Limits {
-                tolerance: 1e-6,
-                gap: 0.0,
-                supports: 1500,
-                iterations: 1000,
-            };
             let n = c.normalize();
-            let request = Request {
-                centre: None,
-                first: n,
-                asked: None,
-                others: &[],
-                limits,
-                placed: true,
-                rested: false,
-            };
-            let Answer::Hit(hit) = minimum(&md, &request, Some(&mut Heap(None)), None).unwrap()
-            else {
+            let Some((true, hit)) = ask(&md, n) else {
                 continue;
             };
             let md_h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
@@ -616,28 +599,12 @@ mod tests {
                 rb * p + pb
             };
             let md = MinkowskiDifference::new(|_: &Vec3| Vec3::zeros(), b);
-            let limits = Limits {
-                tolerance: 1e-6,
-                gap: 0.0,
-                supports: 1500,
-                iterations: 1000,
-            };
             let n = if round % 2 == 0 {
                 r.direction()
             } else {
                 rb * Vec3::z()
             };
-            let request = Request {
-                centre: None,
-                first: n,
-                asked: None,
-                others: &[],
-                limits,
-                placed: true,
-                rested: false,
-            };
-            let a = minimum(&md, &request, Some(&mut Heap(None)), None);
-            if let Ok(Answer::Limit(hit)) = a {
+            if let Some((false, hit)) = ask(&md, n) {
                 if hit.depth_lower == 0.0 {
                     bad += 1;
                     println!("{round} {hit:?}");

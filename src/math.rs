@@ -28,18 +28,21 @@ pub const EPSILON: Real = Real::EPSILON;
 /// vectors under- or overflow when squared.
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
-    let scale = largest(v);
-    if !(scale > 0.0 && scale < Real::INFINITY) {
-        return None;
-    }
-    let scaled = v / scale;
+    // 0/0 and ∞/∞ are NaN, and so is then the norm.
+    let scaled = v / largest(v);
     let norm = scaled.norm();
-    // The largest coordinate of a vector with a NaN may be a number; its norm is not.
     if norm > 0.0 {
         Some(scaled / norm)
     } else {
         None
     }
+}
+
+/// `v / |v|` of a vector whose length can be squared, else `None`: in half the time of [`unit()`].
+#[inline(always)]
+pub fn normalised(v: &Vec3) -> Option<Vec3> {
+    let n2 = v.norm_squared();
+    (n2 > Real::MIN_POSITIVE && n2 < Real::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
 /// The larger of two numbers, the second where one is NaN: one instruction, where `max`

@@ -161,14 +161,24 @@ impl<const F: usize> Polytope<F> {
         Plane::of(&self.planes[Self::at(f)])
     }
 
+    /// The place of a half-edge among all of them.
+    #[inline(always)]
+    fn at_edge(h: usize) -> usize {
+        if F.is_power_of_two() {
+            h & (4 * F - 1)
+        } else {
+            h.min(4 * F - 1)
+        }
+    }
+
     #[inline(always)]
     fn twin(&self, h: usize) -> usize {
-        usize::from(self.twins[Self::at(h >> 2)][h & 3])
+        usize::from(self.twins.as_flattened()[Self::at_edge(h)])
     }
 
     #[inline(always)]
     fn set_twin(&mut self, h: usize, twin: usize) {
-        self.twins[Self::at(h >> 2)][h & 3] = twin as u16;
+        self.twins.as_flattened_mut()[Self::at_edge(h)] = twin as u16;
     }
 
     #[inline(always)]
@@ -353,18 +363,6 @@ impl<const F: usize> Polytope<F> {
         }
     }
 
-    /// The face that a point is farthest above, if by more than `rounding`, metres.
-    pub fn farthest_below(&self, p: &Plane, rounding: Real) -> Option<usize> {
-        let mut best = (None, wide(rounding));
-        for f in self.faces() {
-            let height = self.plane(f).height(p);
-            if height > best.1 {
-                best = (Some(f), height);
-            }
-        }
-        best.0
-    }
-
     /// Makes a point a corner: `first` is a face that it is above by more than `rounding`,
     /// metres; `corner` tells the points by their names.
     ///
@@ -509,7 +507,7 @@ impl<const F: usize> Polytope<F> {
         self.planes[f] = plane.array();
         let (mut square, n2) = plane.signed_square();
         if !(n2 >= self.collapsed) {
-            square = self.renew(f, &visible, corner);
+            square = self.renew(f, edge >> 2, corner);
         }
         self.keys[f] = Self::key(f, square);
         self.twins[f][0] = self.twin(edge) as u16;
@@ -565,16 +563,16 @@ impl<const F: usize> Polytope<F> {
 
     /// The plane of face `f` computed from its corners, unit normal, with d the least
     /// N·corner: taken where it inherits what the bound needs, see above. `parent` is the
-    /// plane it was interpolated from. Returns the signed square distance.
+    /// face it was interpolated from. Returns the signed square distance.
     #[cold]
     #[inline(never)]
-    fn renew(&mut self, f: usize, parent: &Plane, corner: &impl Fn(usize) -> Vec3) -> f64 {
+    fn renew(&mut self, f: usize, parent: usize, corner: &impl Fn(usize) -> Vec3) -> f64 {
         let f = Self::at(f);
-        let old = Plane::of(&self.planes[f]);
+        let (old, parent) = (self.plane(f), self.plane(parent));
         let (square, n2) = old.signed_square();
         let something = n2 > NOTHING;
         // Of a vanished plane neither side nor sign is known: its parent's sign counts.
-        let heir = if something { &old } else { parent };
+        let heir = if something { &old } else { &parent };
         let plane = match self.through_corners(f, heir, something, corner) {
             Some(plane) => plane,
             None if n2 >= COLLAPSED => {
@@ -589,7 +587,7 @@ impl<const F: usize> Polytope<F> {
             // Also for NaN.
             None => {
                 self.corners[f] |= BORROWED;
-                *parent
+                parent
             }
         };
         self.planes[f] = plane.array();
@@ -714,6 +712,22 @@ mod tests {
         assert_eq!(edges % 2, 0);
     }
 
+    /// The face that a point is farthest above, if by more than `rounding`, metres.
+    fn farthest_below<const F: usize>(
+        hull: &Polytope<F>,
+        p: &Plane,
+        rounding: Real,
+    ) -> Option<usize> {
+        let mut best = (None, wide(rounding));
+        for f in hull.faces() {
+            let height = hull.plane(f).height(p);
+            if height > best.1 {
+                best = (Some(f), height);
+            }
+        }
+        best.0
+    }
+
     /// The hull of the points in their order; the first four are the tetrahedron.
     fn grown(points: &[Vec3], exact: bool) -> Option<Box<Polytope<F>>> {
         let mut hull = Box::new(Polytope::<F>::BLANK);
@@ -724,7 +738,7 @@ mod tests {
             return None;
         }
         for (i, p) in points.iter().enumerate().skip(4) {
-            if let Some(f) = hull.farthest_below(&Plane::point(p), rounding) {
+            if let Some(f) = farthest_below(&hull, &Plane::point(p), rounding) {
                 let done = hull.insert(f, i, p, rounding, &|i| points[i]);
                 assert_eq!(done, Inserted::Yes);
             }
@@ -845,7 +859,7 @@ mod tests {
         for (i, p) in points.iter().enumerate().skip(4) {
             let seen = Plane::point(p);
             if !full {
-                if let Some(f) = small.farthest_below(&seen, LEVEL) {
+                if let Some(f) = farthest_below(&small, &seen, LEVEL) {
                     let before: Vec<_> = small.faces().map(|f| small.corners(f)).collect();
                     if small.insert(f, i, p, LEVEL, &|i| points[i]) == Inserted::NoRoom {
                         let after: Vec<_> = small.faces().map(|f| small.corners(f)).collect();
@@ -857,7 +871,7 @@ mod tests {
                 }
             }
             if full {
-                if let Some(f) = large.farthest_below(&seen, LEVEL) {
+                if let Some(f) = farthest_below(&large, &seen, LEVEL) {
                     assert_eq!(large.insert(f, i, p, LEVEL, &|i| points[i]), Inserted::Yes);
                 }
                 check(&large, &points);

@@ -74,6 +74,14 @@ impl Precision {
         4.0 * self.grain()
     }
 
+    /// Is a support value, metres, greater than [`Precision::touch`]? Told without its root,
+    /// for which every step would wait. `false` for NaN.
+    #[inline(always)]
+    pub fn is_depth(&self, h: Real) -> bool {
+        const TOUCH: Real = 8.0 * EPSILON;
+        h > 0.0 && h * h > TOUCH * TOUCH * self.reach2
+    }
+
     /// What two products of one direction with points of D may differ by where the points
     /// are equally far along it, metres: both points and both products are rounded.
     #[inline(always)]

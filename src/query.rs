@@ -36,7 +36,7 @@ use crate::precision::Precision;
 use crate::separation;
 use crate::state::State;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::support_set::{Inquiry, SupportSet};
+use crate::support_set::{Inquiry, Stop, SupportSet};
 
 /// A touch, within the tolerance, whose witness points do not meet? There the points that
 /// meet at the origin of D, which a proof of the overlap knows, are witnesses.
@@ -277,7 +277,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             supports: MPR_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(self.centre, state, limits, None, placed)
+        self.global(self.centre.as_ref(), state, &limits, None, placed)
     }
 
     /// The global minimum of the depth, proven by support points alone: from the state,
@@ -295,31 +295,42 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             supports: MOST_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(None, state, limits, Some(arena), placed)
+        self.global(None, state, &limits, Some(arena), placed)
     }
 
     /// The global search, from the state; `apex` is a point that is trusted to be in D.
+    #[inline(always)]
     fn global(
         &self,
-        apex: Option<SupportPoint>,
+        apex: Option<&SupportPoint>,
         state: &mut State,
-        limits: Limits,
+        limits: &Limits,
         arena: Option<&mut dyn Arena>,
         placed: bool,
     ) -> Result<Answer, Fault> {
-        let mut failed = SupportSet::EMPTY;
-        if let Some(n) = self.separated(state, &mut failed)? {
-            return Ok(Answer::Miss(n));
+        let mut asked = None;
+        if state.was_apart() {
+            let mut failed = SupportSet::EMPTY;
+            if let Some(n) = self.separated(state, &mut failed)? {
+                return Ok(Answer::Miss(n));
+            }
+            asked = failed
+                .lowest()
+                .map(|i| (failed.direction(i), failed.point(i)));
         }
-        let asked = failed.lowest();
-        let first = match asked {
-            Some(i) => failed.direction(i),
-            None => state.leaving().unwrap_or_else(|| self.cold_start()),
+        let (first, asked) = match asked {
+            Some((first, point)) => (first, Some(point)),
+            None => (state.leaving().unwrap_or_else(|| self.cold_start()), None),
+        };
+        // Before all that a search needs: most misses are told by the first support point.
+        let mut inquiry = Inquiry::new(&self.md);
+        let point = match inquiry.first(&first, asked) {
+            Ok(point) => point,
+            Err(stop) => return self.stopped(state, stop),
         };
         let request = Request {
             centre: apex,
             first,
-            asked: asked.map(|i| failed.point(i)),
             others: state.others(),
             limits,
             placed,
@@ -327,26 +338,40 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
+        let mut hit = Penetration::default();
         #[allow(clippy::needless_match, reason = "it shortens the lifetime")]
         let arena: Option<&mut dyn Arena> = match arena {
             Some(arena) => Some(arena),
             None => None,
         };
-        let mut answer = global::minimum(&self.md, &request, arena, kept)?;
-        match &mut answer {
-            Answer::Hit(hit) => {
+        match global::minimum(inquiry, &point, &request, arena, kept, &mut hit) {
+            Ok(true) => {
                 let alone = hit.point1;
-                contact_patch::settle(&self.md, hit, limits.tolerance)?;
+                contact_patch::settle(&self.md, &mut hit, limits.tolerance)?;
                 self.keep(state, &basis, hit.point1 != alone);
+                Ok(Answer::Hit(hit))
             }
-            Answer::Limit(hit) => {
-                self.floor(hit, limits.tolerance)?;
+            Ok(false) => {
+                self.floor(&mut hit, limits.tolerance)?;
                 self.keep(state, &basis, false);
+                Ok(Answer::Limit(hit))
             }
-            _ if self.lasting => self.remember(state, &answer)?,
-            _ => {}
+            Err(stop) => self.stopped(state, stop),
         }
-        Ok(answer)
+    }
+
+    /// The answer of a search that ended where it asked.
+    fn stopped(&self, state: &mut State, stop: Stop) -> Result<Answer, Fault> {
+        match stop {
+            Stop::Apart(n) => {
+                let miss = Answer::Miss(n);
+                if self.lasting {
+                    self.remember(state, &miss)?;
+                }
+                Ok(miss)
+            }
+            Stop::Fault(fault) => Err(fault),
+        }
     }
 
     /// Leaves the basis of a proof behind, where somebody keeps the state.

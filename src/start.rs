@@ -22,9 +22,9 @@
 //! axis is tilted as far as the portal seen so far suggests, and farther, up to the plane
 //! itself, where that brings nothing.
 
-use crate::math::{Real, Vec3, larger, perpendicular, unit};
+use crate::math::{Real, Vec3, larger, normalised, perpendicular, unit};
 use crate::support::SupportMap;
-use crate::support_set::{Inquiry, Stop, SupportSet};
+use crate::support_set::{Asked, Inquiry, Stop, SupportSet};
 
 // Measured: support points of the MPR calls in the mean of sixteen pair sets and the recorded
 // contacts (`cargo bench --bench charts -- record`), when one number changes alone.
@@ -100,7 +100,7 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
     for step in 0..STEPS {
         // From the ball's centre through the origin.
         let way = ball.n * ball.radius - ball.s;
-        let Some(n) = unit(&way) else { break };
+        let Some(n) = normalised(&way) else { break };
         let turn2 = (n - ball.n).norm_squared();
         let promise = 0.5 * turn2 * (ball.radius - ball.h);
         if !(promise > 0.25 * within(ball.h)) {
@@ -110,8 +110,7 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
         if step == 0 && turn2 > FAR {
             break;
         }
-        let (i, h) = inquiry.ask(set, &n)?;
-        let s = set.v(i);
+        let Asked { h, v: s, .. } = inquiry.ask(set, &n)?;
         let (e, e_) = (h - n.dot(&ball.s), ball.h - ball.n.dot(&s));
         let sum = e + e_;
         smooth = (e - e_).abs() <= ALIKE * sum && sum > inquiry.precision.rounding();
@@ -172,7 +171,7 @@ fn ring<A: SupportMap, B: SupportMap, const P: usize>(
     {
         if *name == 0 {
             let n = (ball.n + (a * x + b * y) * tilt) * by;
-            *name = inquiry.ask(set, &n)?.0;
+            *name = inquiry.ask(set, &n)?.i;
         }
     }
     Ok(names)
@@ -292,16 +291,19 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
             Some((_, seen)) => Side::of(&seen_a, seen),
         };
         let sideways = view.x * towards[0] + view.y * towards[1];
-        let known = beyond(set, skip, &sideways, rounding);
-        let i = match known {
-            Some(i) => i,
+        // The ends of the edge are not beyond it.
+        let name_b = b.map_or(a, |(name, _)| name);
+        let known = beyond(set, [skip, a, name_b], &sideways, rounding);
+        let (i, v) = match known {
+            Some(i) => (i, set.v(i)),
             None => {
                 let extent = larger(2.0 * off, 0.6 * span);
                 let n = view.tilted(&sideways, TILT * extent / length, vain);
-                inquiry.ask(set, &n)?.0
+                let Asked { i, v, .. } = inquiry.ask(set, &n)?;
+                (i, v)
             }
         };
-        let seen = view.see(&set.v(i));
+        let seen = view.see(&v);
         let gain = dot(&towards, &seen);
         if !(gain > rounding - off) || gain <= 0.0 && vain >= PATIENT {
             // No nearer to the origin than before. In the plane itself that is the end.
@@ -333,19 +335,19 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
     Ok(None)
 }
 
-/// The known point farthest along a direction across the axis, if it is past the origin
-/// by more than rounding.
+/// The known point farthest along a direction across the axis, but `others`, if it is past the
+/// origin by more than rounding.
 #[inline(always)]
 fn beyond<const P: usize>(
     set: &SupportSet<P>,
-    skip: usize,
+    others: [usize; 3],
     sideways: &Vec3,
     rounding: Real,
 ) -> Option<usize> {
     let (mut best, mut farthest) = (None, rounding);
-    for i in 1..set.len() {
+    for i in (1..set.len()).filter(|i| !others.contains(i)) {
         let d = sideways.dot(&set.v(i));
-        if d > farthest && i != skip {
+        if d > farthest {
             (best, farthest) = (Some(i), d);
         }
     }
@@ -402,8 +404,8 @@ fn extent<A: SupportMap, B: SupportMap, const P: usize>(
         // Towards the origin first.
         let inward = if set.v(from).dot(n) > 0.0 { -n } else { *n };
         for n in [inward, -inward] {
-            let (i, _) = inquiry.ask(set, &n)?;
-            let m = measure(&set.v(i));
+            let Asked { i, v, .. } = inquiry.ask(set, &n)?;
+            let m = measure(&v);
             if m > best.1 {
                 best = (i, m);
             }

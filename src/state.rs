@@ -136,6 +136,11 @@ impl State {
         }
     }
 
+    /// Was the pair apart?
+    pub fn was_apart(&self) -> bool {
+        self.kind == APART
+    }
+
     /// The direction that separated the pair.
     pub fn separating(&self) -> Option<Vec3> {
         match self.kind {

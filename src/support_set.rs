@@ -178,6 +178,17 @@ pub struct Lowest {
     pub dir: Vec3,
 }
 
+/// A support point that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// Its index in the set.
+    pub i: usize,
+    /// Its support value, metres.
+    pub h: Real,
+    /// The point of D.
+    pub v: Vec3,
+}
+
 /// A point of D that lies beyond the origin along the direction asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Beyond {
@@ -241,33 +252,35 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         };
         self.precision.note(&point);
         let depth = dir.dot(&point.v);
-        if !(depth > self.precision.touch()) {
+        if !self.precision.is_depth(depth) {
             return Err(Stop::Apart(*dir));
         }
         self.lowest = Lowest { depth, dir: *dir };
         Ok(point)
     }
 
-    /// Asks for the support point along unit `dir`, puts it into the set, and returns its
-    /// index and support value, metres.
+    /// Asks for the support point along unit `dir`, and puts it into the set.
     ///
-    /// Where the answer separates, but a known point lies farther along `dir`, index and value
-    /// are that point's and nothing is put.
+    /// Where the answer separates, but a known point lies farther along `dir`, that point is
+    /// returned and nothing is put.
     #[inline(always)]
     pub fn ask<const N: usize>(
         &mut self,
         set: &mut SupportSet<N>,
         dir: &Vec3,
-    ) -> Result<(usize, Real), Stop> {
+    ) -> Result<Asked, Stop> {
         let point = self.md.support(dir)?;
         self.precision.note(&point);
         let h = dir.dot(&point.v);
         // NaN is no depth.
-        if !(h > self.precision.touch()) {
-            return self.apart(set, dir, h);
+        if !self.precision.is_depth(h) {
+            // Taken apart: what is returned by way of memory would come from there always.
+            let Asked { i, h, v } = self.apart(set, *dir, h)?;
+            return Ok(Asked { i, h, v });
         }
         self.lower(dir, h);
-        Ok((set.push(dir, &point), h))
+        let i = set.push(dir, &point);
+        Ok(Asked { i, h, v: point.v })
     }
 
     /// Keeps a support plane if it is the lowest.
@@ -310,16 +323,17 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
     fn apart<const N: usize>(
         &mut self,
         set: &SupportSet<N>,
-        dir: &Vec3,
+        dir: Vec3,
         h: Real,
-    ) -> Result<(usize, Real), Stop> {
+    ) -> Result<Asked, Stop> {
         let touch = self.precision.touch();
-        let Some(i) = set.farther(dir, larger(h + self.precision.grain(), touch)) else {
-            return Err(Stop::Apart(*dir));
+        let Some(i) = set.farther(&dir, larger(h + self.precision.grain(), touch)) else {
+            return Err(Stop::Apart(dir));
         };
-        let h = dir.dot(&set.v(i));
-        self.lower(dir, h);
-        Ok((i, h))
+        let v = set.v(i);
+        let h = dir.dot(&v);
+        self.lower(&dir, h);
+        Ok(Asked { i, h, v })
     }
 }
 
@@ -334,9 +348,9 @@ mod tests {
         let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 1.5, 1.0));
         let mut inquiry = Inquiry::new(&md);
         let mut set = SupportSet::<4>::EMPTY;
-        let (a, h) = inquiry.ask(&mut set, &Vec3::y()).unwrap();
-        assert_eq!((a, h), (0, 2.0));
-        let (b, h) = inquiry.ask(&mut set, &Vec3::x()).unwrap();
+        let Asked { i: a, h, v } = inquiry.ask(&mut set, &Vec3::y()).unwrap();
+        assert_eq!((a, h, v), (0, 2.0, set.v(0)));
+        let Asked { i: b, h, .. } = inquiry.ask(&mut set, &Vec3::x()).unwrap();
         assert_eq!((b, h, inquiry.lowest.depth), (1, 0.5, 0.5));
         assert_eq!(set.point(b).v1, Vec3::x());
         assert_eq!(set.v(b), Vec3::x() * 0.5);
@@ -366,7 +380,8 @@ mod tests {
         let mut inquiry = Inquiry::new(&md);
         let mut set = SupportSet::<4>::EMPTY;
         inquiry.ask(&mut set, &Vec3::x()).unwrap();
-        assert_eq!(inquiry.ask(&mut set, &Vec3::x()), Ok((0, 1.0)));
+        let again = inquiry.ask(&mut set, &Vec3::x()).unwrap();
+        assert_eq!((again.i, again.h, again.v), (0, 1.0, Vec3::x()));
         assert_eq!(inquiry.lowest.depth, 1.0);
     }
 

@@ -102,7 +102,7 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     }
 }
 
-/// ccdMPRPenetration with a state; `None` when nothing was decided.
+/// ccdMPRPenetration with a state; a fault when nothing was decided.
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
@@ -111,15 +111,15 @@ pub unsafe fn mpr_penetration(
     state: &mut State,
     lasting: bool,
     placed: bool,
-) -> Option<Answer> {
+) -> Result<Answer, Fault> {
     // SAFETY: passed on.
     unsafe {
-        let pair = query.pair(lasting)?;
+        let pair = query.pair(lasting).ok_or(Fault::NonFinite)?;
         let settings = Settings {
             tolerance: or_default(query.mpr_tolerance()),
             max_iterations: query.max_iterations(),
         };
-        pair.mpr(state, &settings, placed).ok()
+        pair.mpr(state, &settings, placed)
     }
 }
 

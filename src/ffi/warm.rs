@@ -221,12 +221,12 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
             !warm.is_null(),
             !pos.is_null(),
         );
-        if answer.is_some() {
+        if answer.is_ok() {
             store(warm, &state);
         }
-        match answer {
-            Some(Answer::Hit(hit) | Answer::Limit(hit)) => {
-                write(&hit, depth, dir, pos);
+        match &answer {
+            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => {
+                write(hit, depth, dir, pos);
                 CCD_HIT
             }
             _ => CCD_MISS,
