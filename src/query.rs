@@ -478,6 +478,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// The few-supports solver, for as long as `patience`.
+    #[inline(never)]
     fn stroll(
         &self,
         memory: &mut Memory,
