@@ -18,18 +18,15 @@ use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 
-/// Smallest first step, radians: enough to see curvature.
-const ASIDE: Real = 0.01;
-/// Tangent of the angle between a bold first step and the gradient.
-const OBLIQUE: Real = 0.1;
-/// Step across the one direction known, radians.
-const ACROSS: Real = 0.03;
-/// Trust radius of a search that recalls a face, in parts of the angle to the directions
-/// asked first.
-const RECALLED: Real = 2.5;
-/// Support points asked to see witness points that are only foretold.
-pub const WITNESS_QUERIES: u32 = 4;
-/// Support points after which curvature is given up.
+/// A step aside, radians, that shows curvature and is still near: the smallest first step, the
+/// step across the one direction known, the largest one towards a remembered cut. Measured: ×2
+/// +0.2 %, +62 % (ellipsoids in motion); ÷2 +0.1 %, +4 % (hulls in motion).
+pub const ASIDE: Real = 0.03;
+/// Support points asked to see witness points that are only foretold: as many as are kept.
+/// Measured: ×2, ÷2 nothing; 0 −1 %, 27 more.
+pub const WITNESS_QUERIES: usize = CUTS;
+/// Support points after which curvature is given up. Measured: ×2 no change, +2 %; ÷2 no change,
+/// +1.4 %; never +44 % on touches of random pairs.
 pub const TRUST_CURVATURE: u64 = 40;
 
 /// A search for a local minimum.
@@ -49,7 +46,7 @@ pub struct Search<'a> {
     /// In force, metres.
     tolerance: Real,
     iterations: u64,
-    witness_queries: u32,
+    witness_queries: usize,
 }
 
 impl<'a> Search<'a> {
@@ -80,7 +77,7 @@ impl<'a> Search<'a> {
         self.queue = queue;
         match self.queue.pop() {
             Some(n) => {
-                self.trust.radius = self.trust.radius.min(RECALLED * angle);
+                self.trust.radius = self.trust.radius.min(trust_region::GROW * angle);
                 n
             }
             None => dir,
@@ -279,7 +276,7 @@ impl<'a> Search<'a> {
         // A bold step goes a little aside, so that no symmetry of the start hides what
         // is across.
         let down = if on_border {
-            down + n.cross(&down) * OBLIQUE
+            down + n.cross(&down) * trust_region::FIRST
         } else {
             down
         };
@@ -312,13 +309,12 @@ impl<'a> Search<'a> {
     ) -> ControlFlow<Answer, Option<Next>> {
         let (samples, curvature) = (&self.samples, &self.curvature);
         // As asked for, also where rounding allows the depth less.
-        let fine = self
-            .tolerance
-            .min(self.settings.tolerance + samples.rounding * 0.25);
+        let fine = self.tolerance.min(self.settings.tolerance);
         let witnesses = Witnesses::of(samples, curvature, model, step, fine);
         // A minimum is where the support plane touches D below the origin: witness points
         // farther apart across the normal than a curve of the object's size may be within the
-        // tolerance are not witnesses of one.
+        // tolerance (twice the root of tolerance · size; measured: ×2 nothing, ÷2 +0.2 %) are not
+        // witnesses of one.
         let size = samples.size.max(samples.depth());
         let apart2 = witnesses.across * witnesses.across;
         let met = samples.touch() || minimum && apart2 <= 4.0 * self.tolerance * size;
@@ -359,7 +355,7 @@ impl<'a> Search<'a> {
                 let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
                 self.curvature.spread = *line != Vec3::zeros();
                 let slope = self.samples.v.get(self.samples.centre).dot(&across);
-                d += across * ACROSS.copysign(-slope);
+                d += across * ASIDE.copysign(-slope);
             }
             Next::Aside(by) => d += by,
         }
@@ -371,10 +367,6 @@ impl<'a> Search<'a> {
     fn make_room(&mut self, newest: usize, model: &Model, step: &Step) {
         let levels = model.a + model.x * step.x + model.y * step.y;
         let samples = &mut self.samples;
-        let (probed, forgotten) = samples.evict(newest, &step.set, &levels, &model.a, self.probed);
-        self.probed = probed;
-        if forgotten {
-            self.trust.forget_cut();
-        }
+        self.probed = samples.evict(newest, &step.set, &levels, &model.a, self.probed);
     }
 }
