@@ -77,14 +77,13 @@
 //! The residual of a pair before its update, |s' − s − R (n' − n)| / |s' − s|, is the
 //! relative error of R. Until a second pair has told it, R serves for K alone, and a
 //! kink or a vertex seen twice that refutes it ends it: polytopes show a pair that
-//! looks smooth now and then. Δs exactly parallel to Δn is a ball's, while every smooth
-//! pair is so.
+//! looks smooth now and then; where a vertex was seen twice, a pair must be more alike.
+//! Δs exactly parallel to Δn is a ball's, while every smooth pair is so.
 //!
 //! *Steps.* A sample with a lower support value is a serious step: it becomes the centre. Any
 //! other is a null step: it adds a cut. Where there is no room, the cut that is lowest at the
 //! model's minimum is evicted. The trust radius grows when a reduction predicted on its border
-//! came true to seven tenths, and shrinks when there was none or when an active cut had to be
-//! evicted.
+//! came true to seven tenths, and shrinks when there was none.
 //!
 //! *Finish.* When the minimum of the model lies inside the trust region and no more than
 //! the tolerance below h(b), b is the answer if the model can be believed: with
@@ -130,6 +129,14 @@
 //! *Memory.* A face that is still there is found again by three directions aside of
 //! the last answer, each towards one active cut and farther than the pair moved, and
 //! proven by a fourth; a smooth contact by the last direction and one step with R.
+//!
+//! # Constants
+//!
+//! Each stands beside its use, with its reason. Where that is "measured: ×2 …, ÷2 …", it is
+//! what twice and half of it cost: support points in the mean and in the worst row of a table
+//! of the pair sets from 5°, 25°, 45° beside the minimum, cold, and in motion with memory, of
+//! recorded contacts, and of hulls of meshes from 10° and cold; and how many of the 2,600
+//! answers that are no global minimum become more or fewer (a dozen is chance).
 //!
 //! [`ALIKE`]: curvature::ALIKE
 //! [`Model::minimise`]: model::Model::minimise
@@ -588,6 +595,28 @@ mod tests {
             match solve(&a, &b, Vec3::x(), &mut memory, TOLERANCE) {
                 (Answer::Hit(p), _) => check(&a, &b, &p, TOLERANCE, 2.0),
                 (other, supports) => panic!("{round}: {other:?} after {supports}"),
+            }
+        }
+    }
+
+    #[test]
+    fn curvature_of_an_object_of_any_other_size_is_harmless() {
+        let a = cylinder(Vec3::zeros(), 0.5, 0.5);
+        let b = ellipsoid(Vec3::new(0.6, 0.3, 0.4), Vec3::new(0.5, 0.35, 0.25));
+        for power in -12..13 {
+            let r = (10.0 as Real).powi(3 * power);
+            let mut memory = Memory {
+                dir: Vec3::new(0.8, 0.4, 0.5),
+                curvature: [r, 0.1 * r, 0.0, r, 0.0, r],
+                curved: 1,
+                ..Memory::default()
+            };
+            match solve(&a, &b, Vec3::x(), &mut memory, TOLERANCE) {
+                (Answer::Hit(p), supports) => {
+                    check(&a, &b, &p, TOLERANCE, 2.0);
+                    assert!(supports <= 40, "{power}: {supports} support points");
+                }
+                (other, supports) => panic!("{power}: {other:?} after {supports}"),
             }
         }
     }

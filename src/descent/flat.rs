@@ -667,12 +667,7 @@ impl Flat {
     #[inline(always)]
     fn evict(&mut self, step: &Step) {
         let kept = step.bits() | 1 << self.newest | 1 << self.cuts.best;
-        let (out, free) = self.cuts.least(kept, step);
-        if !free {
-            // For what the model forgets the trust radius must pay.
-            self.trust.forget_cut();
-        }
-        self.spare = out;
+        self.spare = self.cuts.least(kept, step);
     }
 
     /// The answer at a sample, with witness points, if the objects' own points show them:

@@ -3,11 +3,11 @@
 
 //! The model of the depth around the bundle's centre, and its minimum within the trust radius.
 
-use super::curvature::{ALIKE, CONFIRMED, Curvature};
+use super::curvature::{ALIKE, BELIEVED, Curvature};
 use super::samples::{CUTS, Lanes, OTHERS, Samples, lane};
 use crate::math::{Real, Vec3};
 
-/// Cosine of the angle beyond which R says nothing.
+/// Cosine of the angle beyond which R says nothing. Measured: 0.45 or none −0.3 %, 8 more.
 const NEAR: Real = 0.9;
 
 /// The chart around the bundle's centre and the cuts α + β·x in it.
@@ -152,7 +152,7 @@ impl Model {
             len: samples.len,
             centre: samples.centre,
         };
-        if rho > 0.0 && curvature.error <= CONFIRMED {
+        if rho > 0.0 && curvature.error <= BELIEVED {
             model.curve_cuts(samples, &level);
         }
         model
@@ -433,13 +433,14 @@ mod tests {
             let dirs = around(&mut r, 2, 0.3);
             let mut known = Known::default();
             let samples = samples(&mut known, &shape, &dirs);
-            if samples.v.get(0) - dirs[0] * 0.5 == samples.v.get(1) - dirs[1] * 0.5 {
+            let apart = (samples.v.get(0) - dirs[0] * 0.5) - (samples.v.get(1) - dirs[1] * 0.5);
+            if apart.norm() < 0.1 {
                 continue;
             }
             let model = Model::new(&samples, &curvature);
             let step = model.minimise(1, 0.2, samples.rounding);
             let n = model.direction(step.x, step.y).normalize();
-            if model.lift.map(|lift| lift)[1 - samples.centre] > 0.0 {
+            if model.lift[1 - samples.centre] > 0.0 {
                 let slack = 32.0 * EPSILON;
                 assert!((n.dot(&shape(&n)) - step.value).abs() <= slack);
             }

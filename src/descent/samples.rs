@@ -154,9 +154,7 @@ impl<'a> Samples<'a> {
     /// Makes room for the next sample: evicts the cut that is lowest at the minimum of the
     /// model, where the cuts have these `levels`, but for the centre, the `newest` (it may
     /// have settled an error) and the `active` ones. Where these are all, the lowest one at
-    /// the centre goes, where the levels are `home`, and the model forgets an active cut.
-    ///
-    /// Returns where the sample `kept` is now, and whether an active cut was evicted.
+    /// the centre goes, where the levels are `home`. Returns where the sample `kept` is now.
     #[inline]
     pub fn evict(
         &mut self,
@@ -165,13 +163,13 @@ impl<'a> Samples<'a> {
         levels: &Lanes,
         home: &Lanes,
         kept: Option<usize>,
-    ) -> (Option<usize>, bool) {
+    ) -> Option<usize> {
         let centre = self.centre;
-        let spare = levels.lowest(|i| i != centre && i != newest && !active.contains(&i));
-        let evicted = spare
+        let evicted = levels
+            .lowest(|i| i != centre && i != newest && !active.contains(&i))
             .or_else(|| home.lowest(|i| i != centre))
             .unwrap_or((centre + 1) % CUTS);
-        (self.drop(evicted, kept), spare.is_none())
+        self.drop(evicted, kept)
     }
 }
 
@@ -242,8 +240,7 @@ pub mod tests {
                 let mut samples = samples(&mut known, &cube, &dirs);
                 samples.centre = 0;
                 let before: Vec<_> = (0..CUTS).map(|i| samples.n.get(i)).collect();
-                let (probed, forgotten) =
-                    samples.evict(newest, &active, &levels, &levels, Some(newest));
+                let probed = samples.evict(newest, &active, &levels, &levels, Some(newest));
                 let spare = |i: &usize| *i != newest && !active.contains(i);
                 let below = |i: &usize, j: &usize| levels[*i].total_cmp(&levels[*j]);
                 let evicted = (0..CUTS)
@@ -251,7 +248,6 @@ pub mod tests {
                     .min_by(below)
                     .or_else(|| (1..CUTS).min_by(below))
                     .unwrap();
-                assert_eq!(forgotten, (0..CUTS).filter(spare).count() == 0);
                 assert_eq!(samples.len, CUTS - 1);
                 let kept: Vec<_> = (0..samples.len).map(|i| samples.n.get(i)).collect();
                 assert!(!kept.contains(&before[evicted]));
@@ -272,8 +268,8 @@ pub mod tests {
             let mut known = Known::default();
             let mut samples = samples(&mut known, &cube, &dirs);
             samples.centre = centre;
-            let (_, forgotten) = samples.evict(centre, &[centre; 3], &nan, &nan, None);
-            assert!(forgotten && samples.dir() == dirs[centre]);
+            samples.evict(centre, &[centre; 3], &nan, &nan, None);
+            assert_eq!(samples.dir(), dirs[centre]);
         }
     }
 }

@@ -10,7 +10,7 @@ use super::curvature::Curvature;
 use super::memory::{Memory, Queue, Smooth};
 use super::model::{Model, Step};
 use super::samples::{CUTS, Sample, Samples};
-use super::trust_region::{self, TrustRegion};
+use super::trust_region::{self, ASIDE, TrustRegion};
 use super::verdict::{Next, Verdict, judge};
 use super::witness::{self, Witnesses};
 use crate::contact::{Answer, Settings};
@@ -18,11 +18,11 @@ use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 
-/// Step across the one direction known, radians.
-const ACROSS: Real = 0.03;
-/// Support points asked to see witness points that are only foretold.
-pub const WITNESS_QUERIES: u32 = 4;
-/// Support points after which curvature is given up.
+/// Support points asked to see witness points that are only foretold: as many as are kept.
+/// Measured: ×2, ÷2 nothing; 0 −1 %, 27 more.
+pub const WITNESS_QUERIES: usize = CUTS;
+/// Support points after which curvature is given up. Measured: ×2 no change, +2 %; ÷2 no change,
+/// +1.4 %; never +44 % on touches of random pairs.
 pub const TRUST_CURVATURE: u64 = 40;
 
 /// A search for a local minimum.
@@ -44,7 +44,7 @@ pub struct Search<'a> {
     /// In force, metres.
     tolerance: Real,
     iterations: u64,
-    witness_queries: u32,
+    witness_queries: usize,
 }
 
 impl<'a> Search<'a> {
@@ -306,13 +306,12 @@ impl<'a> Search<'a> {
     ) -> ControlFlow<Answer, Option<Next>> {
         let (samples, curvature) = (&self.samples, &self.curvature);
         // As asked for, also where rounding allows the depth less.
-        let fine = self
-            .tolerance
-            .min(self.settings.tolerance + samples.rounding * 0.25);
+        let fine = self.tolerance.min(self.settings.tolerance);
         let witnesses = Witnesses::of(samples, curvature, model, step, fine);
         // A minimum is where the support plane touches D below the origin: witness points
         // farther apart across the normal than a curve of the object's size may be within the
-        // tolerance are not witnesses of one.
+        // tolerance (twice the root of tolerance · size; measured: ×2 nothing, ÷2 +0.2 %) are not
+        // witnesses of one.
         let size = samples.size.max(samples.depth());
         let apart2 = witnesses.across * witnesses.across;
         let met = samples.touch() || minimum && apart2 <= 4.0 * self.tolerance * size;
@@ -358,7 +357,7 @@ impl<'a> Search<'a> {
                 let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
                 self.curvature.spread = *line != Vec3::zeros();
                 let slope = self.samples.v.get(self.samples.centre).dot(&across);
-                d += across * ACROSS.copysign(-slope);
+                d += across * ASIDE.copysign(-slope);
             }
             Next::Aside(by) => d += by,
         }
@@ -370,10 +369,6 @@ impl<'a> Search<'a> {
     fn make_room(&mut self, newest: usize, model: &Model, step: &Step) {
         let levels = model.a + model.x * step.x + model.y * step.y;
         let samples = &mut self.samples;
-        let (probed, forgotten) = samples.evict(newest, &step.set, &levels, &model.a, self.probed);
-        self.probed = probed;
-        if forgotten {
-            self.trust.forget_cut();
-        }
+        self.probed = samples.evict(newest, &step.set, &levels, &model.a, self.probed);
     }
 }

@@ -5,22 +5,30 @@
 
 use crate::math::{EPSILON, Real, Vec3, perpendicular};
 
-/// First trust radius, radians: the error of a good guess.
+/// First trust radius, radians: the error of a good guess. Measured: ×2 −2.5 %, 34 more, and 63
+/// more of those from 5°; ÷2 +4.9 %, +68 % (spheres).
 pub const FIRST: Real = 0.1;
-/// The radius grows by this when the model foretold a reduction on its border …
-const GROW: Real = 2.5;
-/// … and shrinks by this when there was none.
+/// The radius grows by this when a reduction foretold on its border came true … Measured: ×2
+/// +0.5 %, 12 more of the boxes from 45°; ÷2 +4 %, 100 more; 2 and 3 +0.5 %, +0.3 %.
+pub const GROW: Real = 2.5;
+/// … to this share, … Measured: 0.9 −0.5 %, 6 more; ÷2 +0.7 %, +12 %, 10 more; never +13 %.
+const TRUE: Real = 0.7;
+/// … and shrinks by this when there was none, …  Measured: 0.8 no change, +9 % (hulls from 45°),
+/// 74 fewer; ÷2 +4.2 %, 93 more; never +3 %, +130 % (hulls), 220 fewer.
 const SHRINK: Real = 0.6;
-/// Least radius, radians; below it the search has lost its way.
+/// … if the step was longer than the root of this share of it. Measured: ×2 +0.1 %, 17 fewer; ÷2
+/// no change, 19 more; 1 +2 %, +84 % (hulls from 45°).
+const HALFWAY: Real = 0.25;
+/// Largest radius, radians. Measured: ×2 no change; ÷2 −0.5 %, 17 fewer, but 7 more of the boxes
+/// from 45°.
+const LARGEST: Real = 1.0;
+/// Least radius, radians; below it the search has lost its way. Measured: ×2, ÷2 nothing.
 const STUCK: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
 
-/// Trust radius of a search that recalls a face, in parts of the angle to the directions
-/// asked first.
-const RECALLED: Real = 2.5;
-/// Smallest first step, radians: enough to see curvature.
-const ASIDE: Real = 0.01;
-/// Tangent of the angle between a bold first step and the gradient.
-const OBLIQUE: Real = 0.1;
+/// A step aside, radians, that shows curvature and is still near: the smallest first step, the
+/// step across the one direction known, the largest one towards a remembered cut. Measured: ×2
+/// +0.2 %, +62 % (ellipsoids in motion); ÷2 +0.1 %, +4 % (hulls in motion).
+pub const ASIDE: Real = 0.03;
 
 /// The trust radius, and what was foretold.
 pub struct TrustRegion {
@@ -48,7 +56,7 @@ impl TrustRegion {
     /// Directions this angle aside of the remembered one are asked first.
     #[inline]
     pub fn recall(&mut self, angle: Real) {
-        self.radius = self.radius.min(RECALLED * angle);
+        self.radius = self.radius.min(GROW * angle);
     }
 
     /// From the first sample (n, v), with nothing but the `size` of D to go by: down the
@@ -74,7 +82,7 @@ impl TrustRegion {
         // A bold step goes a little aside, so that no symmetry of the start hides what
         // is across.
         let down = if on_border {
-            down + n.cross(&down) * OBLIQUE
+            down + n.cross(&down) * FIRST
         } else {
             down
         };
@@ -107,24 +115,18 @@ impl TrustRegion {
     #[inline]
     pub fn compare(&mut self, n: &Vec3, h: Real, before: Real) {
         let (actual, predicted) = (before - h, before - self.foretold);
-        // False for NaN: no forecast.
-        if actual > 0.25 * predicted {
-            if self.on_border && actual > 0.7 * predicted {
-                self.radius = (self.radius * GROW).min(1.0);
+        if actual > 0.0 {
+            // False for NaN: no forecast.
+            if self.on_border && actual > TRUE * predicted {
+                self.radius = (self.radius * GROW).min(LARGEST);
             }
         } else if self.foretold.is_finite()
             // Level ground within rounding is no failure.
             && !(actual > -8.0 * EPSILON * h)
-            && (n - self.from).norm_squared() > 0.25 * self.radius * self.radius
+            && (n - self.from).norm_squared() > HALFWAY * self.radius * self.radius
         {
             self.radius *= SHRINK;
         }
-    }
-
-    /// The model forgets an active cut: for that the radius must pay.
-    #[inline]
-    pub fn forget_cut(&mut self) {
-        self.radius *= 0.5;
     }
 
     /// Has the search lost its way?
@@ -184,10 +186,10 @@ mod tests {
             trust.foretell(0.9, true, &Vec3::z());
             trust.compare(&Vec3::x(), 0.9, 1.0);
         }
-        assert_eq!(trust.radius, 1.0);
-        for _ in 0..40 {
-            assert!(!trust.is_stuck() || trust.radius < FIRST);
-            trust.forget_cut();
+        assert!(trust.radius == LARGEST && !trust.is_stuck());
+        for _ in 0..100 {
+            trust.foretell(0.9, true, &Vec3::z());
+            trust.compare(&Vec3::x(), 1.1, 1.0);
         }
         assert!(trust.is_stuck());
     }

@@ -142,7 +142,10 @@ pub fn judge(
     if minimum || last || !step.value.is_finite() || trust.is_stuck() {
         Verdict::End(minimum)
     } else if step.inside && errors.cut > tolerance && 2.0 * errors.cut >= gain {
-        // Near enough to the minimum to settle the error.
+        // So near to the minimum that of the error half of the tolerance is left, or so much of
+        // what there is to gain. Measured: 2 here ×2 +0.3 %, +3 %, ÷2 −0.2 %, +1 %; half the
+        // tolerance ×2 +0.2 %, +5 %, ÷2 −0.1 %; a tenth of the gain ×2 +0.1 %, ÷2 −0.1 %; half the
+        // way ×2, ÷2 no change.
         let share = (0.5 * tolerance.max(0.1 * gain) / errors.cut).sqrt();
         Verdict::Ask(Next::Beside(errors.worst, share.min(0.5)))
     } else if blind {
