@@ -534,65 +534,65 @@ impl Flat {
             return Next::Ask(self.trust.first_step(&self.best.n, &self.best.p.v, size));
         }
         self.chart();
-        let mut step = self.cuts.minimise(self.trust.radius);
-        let (mut gain, mut length) = self.gain(&step);
-        if rho > 0.0
-            && gain.abs() <= self.tolerance
-            && !step.inside
-            && self.trust.radius < FIRST
-            && !self.levelled
-        {
-            // Level so far: is it as far as the first radius?
-            self.levelled = true;
-            self.trust.radius = FIRST;
-            step = self.cuts.minimise(self.trust.radius);
-            (gain, length) = self.gain(&step);
-        }
-        let lost = gain < -self.tolerance;
-        let close = gain <= self.tolerance && step.inside;
-        if lost || close && !self.is_lowest(&self.b, h, &step) {
-            // The walk ended above b, or before the end: is it lower anywhere?
-            step = self.cuts.lowest(self.trust.radius);
-            (gain, length) = self.gain(&step);
-        }
-        // Also NaN.
-        if !(gain >= -self.tolerance && gain < Real::INFINITY) {
+        let Some((step, gain)) = self.predict() else {
             return Next::Open;
-        }
-        let close = gain.abs() <= self.tolerance;
-        let level = rho > 0.0 && self.trust.radius >= FIRST;
-        let mut d = self.b + self.e1 * step.x + self.e2 * step.y;
+        };
         self.trust.foretell(h - gain + rho, !step.inside, &self.b);
-        let mut probe = false;
-        if step.inside || close && level {
-            let doubtful = self.doubtful(&step, &(d / length));
+        self.step = step.inside.then_some(step);
+        let d = self.b + self.e1 * step.x + self.e2 * step.y;
+        let mut n = d * (1.0 / d.norm());
+        let close = gain.abs() <= self.tolerance;
+        if step.inside || close && rho > 0.0 && self.trust.radius >= FIRST {
+            let doubtful = self.doubtful(&step, &n);
             if doubtful != 0 {
                 self.doubts += 1;
                 if self.doubts > DOUBTS {
                     return Next::Open;
                 }
-                d += self.towards(&step, doubtful);
                 self.trust.no_forecast();
-                probe = true;
+                self.step = None;
+                n += self.towards(&step, doubtful);
+                n *= 1.0 / n.norm();
             } else if close {
-                return match self.conclude(&self.best, h, &step, known) {
-                    Some(minimum) => Next::Found(minimum),
-                    None => Next::Open,
-                };
+                let minimum = self.conclude(&self.best, h, &step, known);
+                return minimum.map_or(Next::Open, Next::Found);
             }
         }
         if self.cuts.len == CUTS {
             self.evict(&step);
         }
-        self.step = (step.inside && !probe).then_some(step);
-        Next::Ask(d * (1.0 / d.norm()))
+        Next::Ask(n)
     }
 
-    /// How much lower the model is at a step, metres, and the length of its direction.
+    /// The step to where the model is least, and how much lower it is there, metres. `None`: it
+    /// is no guide.
     #[inline(always)]
-    fn gain(&self, step: &Step) -> (Real, Real) {
-        let length = (1.0 + step.length2()).sqrt();
-        (self.best_h - step.level / length, length)
+    fn predict(&mut self) -> Option<(Step, Real)> {
+        let mut step = self.cuts.minimise(self.trust.radius);
+        let mut gain = self.gain(&step);
+        let level = gain.abs() <= self.tolerance && !step.inside;
+        if level && self.rho() > 0.0 && self.trust.radius < FIRST && !self.levelled {
+            // Level so far: is it as far as the first radius?
+            self.levelled = true;
+            self.trust.radius = FIRST;
+            step = self.cuts.minimise(self.trust.radius);
+            gain = self.gain(&step);
+        }
+        let lost = gain < -self.tolerance;
+        let close = gain <= self.tolerance && step.inside;
+        if lost || close && !self.is_lowest(&self.b, self.best_h, &step) {
+            // The walk ended above b, or before the end: is it lower anywhere?
+            step = self.cuts.lowest(self.trust.radius);
+            gain = self.gain(&step);
+        }
+        // Also NaN.
+        (gain >= -self.tolerance && gain < Real::INFINITY).then_some((step, gain))
+    }
+
+    /// How much lower the model is at a step, metres.
+    #[inline(always)]
+    fn gain(&self, step: &Step) -> Real {
+        self.best_h - step.level / (1.0 + step.length2()).sqrt()
     }
 
     /// The chart of the best direction, and the cuts in it.
