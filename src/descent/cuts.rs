@@ -23,7 +23,8 @@
 use super::lanes::{CUTS, Lanes};
 use crate::math::Real;
 
-/// Turns of the active-set method; mostly two or three.
+/// Turns of the active-set method; mostly two or three. Measured: ÷2 a fortieth more answers that
+/// are not the least, ×2 nothing.
 const TURNS: usize = 8;
 
 /// Up to four cuts.

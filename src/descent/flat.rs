@@ -36,14 +36,16 @@ use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular, unit};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 
 /// Squared sine of the angle within which two vectors are parallel: what rounding leaves of
-/// differences over a first step of a hundredth radian.
+/// differences over a first step of a few hundredths of a radian. Measured: ×10, ÷10 nothing.
 const PARALLEL: Real = if EPSILON > 1e-10 { 1e-6 } else { 1e-11 };
-/// Support points after which balls are looked for in smooth pairs alone.
+/// Support points after which balls are looked for in smooth pairs alone. Measured: 0 +0.2 %, +4 %
+/// (shallow spheres in capsules); twice as many nothing.
 const LOOK: usize = 3;
-/// Share of the tolerance by which two vertices that are the same may differ.
+/// Share of the tolerance by which two vertices that are the same may differ: a radius is in error
+/// by more than rounding. Free: measured, 0, ÷2, ×2 nothing.
 const SAME: Real = 0.06;
 /// Support points that show a vertex again and nothing else, after which the search has lost
-/// its way, or the balls do not fit.
+/// its way, or the balls do not fit. Measured: ÷2 no change, ×2 nothing.
 const DOUBTS: u32 = 6;
 
 /// How a search of exact cuts ends.
