@@ -84,17 +84,18 @@ fn signed_distance_beside_fcl() {
 /// for each.
 #[test]
 fn fcl_header() {
-    let (standards, optimize): (&[&str], _) = match harness::Precision::CURRENT {
-        harness::Precision::Double if harness::under_tool() => (&["c++17"], "-O1"),
-        harness::Precision::Double => (&["c++11", "c++17"], "-O2"),
-        harness::Precision::Single => (&["c++11"], "-O0"),
+    let (standards, flags): (&[&str], [&str; 2]) = match harness::Precision::CURRENT {
+        harness::Precision::Double if harness::under_tool() => (&["c++17"], ["-O1", "-g"]),
+        harness::Precision::Double => (&["c++11", "c++17"], ["-O2", "-g"]),
+        harness::Precision::Single => (&["c++11"], ["-O0", "-g0"]),
     };
     for standard in standards {
         Program::cpp("fcl")
             .source("extension/fcl.cpp")
             .standard(standard)
             .flag("-D_GNU_SOURCE")
-            .flag(optimize)
+            .flag(flags[0])
+            .flag(flags[1])
             .flag("-isystem/usr/include/eigen3")
             .library("fcl")
             .link_ours_shared()
