@@ -69,7 +69,7 @@ for tool in cargo rustc; do
     found=${found#* }
     found=${found%%[ -]*}
     if [ "$(printf '%s\n' "$oldest" "$found" | sort -V | head -n 1)" != "$oldest" ]; then
-        echo "setup.sh: $tool is $found, too old: Rust $oldest or later is needed (rustup update)" >&2
+        echo "setup.sh: $tool is $found, too old: Rust $oldest or later is needed (rustup update, or https://rustup.rs)" >&2
         exit 1
     fi
 done
@@ -88,6 +88,7 @@ if [ "$job" != main ]; then
     want_command make make
     want_command ninja ninja-build
     want_command git git
+    want_command xz xz-utils
     want_command abidiff abigail-tools
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then

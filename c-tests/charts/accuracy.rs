@@ -175,6 +175,8 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
 
 /// What a finer tolerance costs: a curve for each kind of pair.
 fn tolerance(page: &Page, rows: &[Row]) {
+    // Hues that are alike are next to each other, and have another mark.
+    let marks = [Mark::Dot, Mark::Ring, Mark::Triangle, Mark::Cross];
     let palette = [
         (220, 38, 38),
         (234, 88, 12),
@@ -196,17 +198,18 @@ fn tolerance(page: &Page, rows: &[Row]) {
             mine.filter_map(|r| Some((r.tolerance?, cost(r)?)))
                 .collect()
         };
-        let curve = |(set, (r, g, b)): (&&str, (u8, u8, u8))| Curve {
+        let curve = |((set, (r, g, b)), mark): ((&&str, (u8, u8, u8)), Mark)| Curve {
             label: super::kind(set),
             look: Look {
                 colour: RGBColor(r, g, b),
-                mark: Mark::Dot,
+                mark,
                 bold: false,
                 dashed: false,
             },
             points: of(set),
         };
-        RANDOM.iter().zip(palette).map(curve).collect::<Vec<_>>()
+        let marked = RANDOM.iter().zip(palette).zip(marks.into_iter().cycle());
+        marked.map(curve).collect::<Vec<_>>()
     };
     let x = ("tolerance", Unit::Metres);
     let error = ("mean |depth error| within 1 mm", Unit::Metres);

@@ -6,7 +6,8 @@
 //! wide as a page shows them.
 //!
 //! Ink and paper are two colours that nothing else uses; a style sheet in the file
-//! turns them round where the reader's system is dark.
+//! turns them round where the reader's system is dark, and lightens two colours that are
+//! hard to see there: the red of libccd's EPA, and the grey of other libraries.
 
 use std::path::Path;
 
@@ -22,7 +23,9 @@ const PAPER: RGBColor = RGBColor(254, 254, 253);
 const STYLE: &str = "<style>@media (prefers-color-scheme: dark){\
     [fill=\"#1F2329\"]{fill:#E6EDF3}[stroke=\"#1F2329\"]{stroke:#E6EDF3}\
     [fill=\"#D1D5DB\"]{fill:#3A424D}[stroke=\"#D1D5DB\"]{stroke:#3A424D}\
-    [fill=\"#FEFEFD\"]{fill:#0D1117}[stroke=\"#FEFEFD\"]{stroke:#0D1117}}</style>";
+    [fill=\"#FEFEFD\"]{fill:#0D1117}[stroke=\"#FEFEFD\"]{stroke:#0D1117}\
+    [fill=\"#991B1B\"]{fill:#F9A8A8}[stroke=\"#991B1B\"]{stroke:#F9A8A8}\
+    [fill=\"#6B7280\"]{fill:#9CA3AF}[stroke=\"#6B7280\"]{stroke:#9CA3AF}}</style>";
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Mark {
@@ -197,7 +200,8 @@ fn panel(area: &Cell, panel: &Panel) -> Result<(), Error> {
     let mut chart = ChartBuilder::on(area)
         .caption(&panel.title, ink(16))
         .margin(6)
-        .margin_right(14)
+        // Half of the longest label that can stand under the last tick.
+        .margin_right(26)
         .x_label_area_size(38)
         .y_label_area_size(60)
         .build_cartesian_2d(
@@ -301,7 +305,7 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
     } else {
         LINE * entries.len().div_ceil(3) as u32
     };
-    let below = strip + LINE * notes.len() as u32 + 14;
+    let below = strip + LINE * notes.len() as u32;
     let top = cell * rows;
     write(path, (900, 40 + top + below), |root| {
         let (head, foot) = root.titled(title, ink(20))?.split_vertically(top);
@@ -342,7 +346,7 @@ pub fn bars(
     }
     let (left, room) = (250, 560);
     let lines: i32 = groups.iter().map(|(_, bars)| bars.len() as i32 + 1).sum();
-    let height = 40 + lines * BAR + (LINE * (1 + notes.len()) as u32) as i32 + 30;
+    let height = 76 + lines * BAR + (LINE * notes.len() as u32) as i32;
     write(path, (900, height as u32), |root| {
         let area = root.titled(title, ink(20))?;
         let block = |(x, y): (i32, i32), wide: f64, colour: RGBColor| {

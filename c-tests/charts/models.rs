@@ -153,6 +153,10 @@ fn measure(
 /// What spheres and capsules are modelled as by a point or a segment with a margin.
 const CORES: &str = "core and margin";
 
+/// Errors below this many metres are drawn as this: those of the polytopes are a
+/// thousand times as large, and the decades between would press them together.
+const NOTHING: f64 = 1e-7;
+
 /// Modelling error against time, from the coarsest model to the finest.
 fn panel(title: &str, models: &[&Model]) -> Panel {
     let mut curves: Vec<Curve> = Vec::new();
@@ -171,7 +175,7 @@ fn panel(title: &str, models: &[&Model]) -> Panel {
             _ => ("the shape itself", Mark::Triangle),
         };
         // A primitive's modelling error is 0: what is left is its query's.
-        let error = m.modelling_error.max(m.query_error).max(1e-16);
+        let error = m.modelling_error.max(m.query_error).max(NOTHING);
         let label = format!("{}: {kind}", m.method);
         let point = (error, m.ns * 1e-9);
         match curves.iter_mut().find(|c| c.label == label) {
@@ -241,6 +245,7 @@ pub fn draw(page: &Page, all: &[Model]) {
         &[
             "polytopes: 12 to 2,562 vertices, right to left; their vertices scanned, or climbed along the edges"
                 .to_owned(),
+            "at the left edge: errors of 0.1 µm and less".to_owned(),
             page.footer(),
         ],
     );

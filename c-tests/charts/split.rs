@@ -183,7 +183,7 @@ pub fn draw(page: &Page, all: &[Split]) {
             ("in the solver", RGBColor(37, 99, 235)),
         ],
         &groups,
-        &[page.footer()],
+        &["each group to a scale of its own".to_owned(), page.footer()],
     );
 }
 

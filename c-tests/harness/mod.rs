@@ -765,9 +765,14 @@ fn collect(pipe: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u
 /// How many inputs a program gets: all, or a tenth under a tool, which looks at memory and
 /// not at answers, and is ten times slower.
 pub fn rounds(all: u32) -> String {
-    let tool = ["C_TESTS_FLAGS", "C_TESTS_RUNNER"].map(|name| !words(name).is_empty());
-    let share = if tool.contains(&true) { 10 } else { 1 };
+    let share = if under_tool() { 10 } else { 1 };
     (all / share).to_string()
+}
+
+/// Whether programs are compiled for a tool, or run under one.
+pub fn under_tool() -> bool {
+    let tool = ["C_TESTS_FLAGS", "C_TESTS_RUNNER"].map(|name| !words(name).is_empty());
+    tool.contains(&true)
 }
 
 /// An environment variable, split at blanks; empty when it is not set.

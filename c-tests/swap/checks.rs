@@ -731,9 +731,8 @@ pub fn long_table(rows: &[Piles]) -> String {
                 }
                 Some(_) => p.sum(library, key).to_string(),
             };
-            let _ = writeln!(
-                out,
-                "| {} | {} | {} × {} | {} | {} | {:.3} ({:.3}) | {:.1} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            let row = format!(
+                "| {} | {} | {} × {} | {} | {} | {:.3} ({:.3}) | {:.1} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
                 p.consumer,
                 p.scene,
                 p.runs[library].len(),
@@ -754,6 +753,10 @@ pub fn long_table(rows: &[Piles]) -> String {
                     .map(|key| judged(key, 1e3))
                     .join(", "),
             );
+            // Compared with two others, this library has one row.
+            if !out.contains(&row) {
+                out.push_str(&row);
+            }
         }
     }
     out

@@ -16,6 +16,7 @@
 #include "swap/interpose.h"
 
 #include <dart/collision/fcl/FCLCollisionDetector.hpp>
+#include <dart/config.hpp>
 #include <dart/constraint/ConstraintSolver.hpp>
 #include <dart/dynamics/BodyNode.hpp>
 #include <dart/dynamics/BoxShape.hpp>
@@ -69,7 +70,8 @@ int main(int argc, char **argv)
     if (scene == "ode") {
         /* the library makes its detector known when it is loaded; its header would need one more package */
         auto *factory = collision::CollisionDetector::getFactory();
-        if (!dlopen("libdart-collision-ode.so.6.12", RTLD_NOW | RTLD_GLOBAL) || !factory->canCreate("ode")) {
+        const std::string detector = "libdart-collision-ode.so." + std::to_string(DART_MAJOR_VERSION) + "." + std::to_string(DART_MINOR_VERSION);
+        if (!dlopen(detector.c_str(), RTLD_NOW | RTLD_GLOBAL) || !factory->canCreate("ode")) {
             fprintf(stderr, "no ODE detector\n");
             return 2;
         }

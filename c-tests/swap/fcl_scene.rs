@@ -17,8 +17,9 @@ pub struct Way {
     name: &'static str,
     library: &'static str,
     contacts: &'static str,
-    timed: Executable,
     judged: Executable,
+    /// The same without the judge, where times are asked for.
+    timed: Option<Executable>,
 }
 
 /// What one way answered.
@@ -36,29 +37,35 @@ fn program() -> Program {
 }
 
 /// FCL on libccd, FCL on this library, the header with one contact a pair and with several.
-pub fn ways() -> [Way; 4] {
-    let bound = |e: Executable| e.env("LD_BIND_NOW", "1").quiet();
-    let timed = bound(program().flag("-DTIMED").link_system().build());
-    let judged = bound(program().link_ours_renamed_and_system().build());
+pub fn ways(timed: bool) -> [Way; 4] {
+    let bound = |p: Program| p.build().env("LD_BIND_NOW", "1").quiet();
     let header = || program().flag("-DBY_HEADER").flag("-DOURS_ALONE");
-    let header_timed = bound(header().flag("-DTIMED").link_ours_shared().build());
-    let header_judged = bound(header().link_ours_shared().build());
-    let swapped = (timed.swapped(), judged.swapped());
-    let way = |name, library, contacts, (timed, judged): (Executable, Executable)| Way {
+    let judged = bound(program().link_ours_renamed_and_system());
+    let header_judged = bound(header().link_ours_shared());
+    let swapped = judged.swapped();
+    let [timed, header_timed] = match timed {
+        false => [None, None],
+        true => [
+            Some(bound(program().flag("-DTIMED").link_system())),
+            Some(bound(header().flag("-DTIMED").link_ours_shared())),
+        ],
+    };
+    let swapped = (swapped, timed.as_ref().map(Executable::swapped));
+    let way = |name, library, contacts, (judged, timed)| Way {
         name,
         library,
         contacts,
-        timed,
         judged,
+        timed,
     };
-    let by_header = (header_timed, header_judged);
+    let by_header = (header_judged, header_timed);
     let ours = "library warmccd ";
     [
         way(
             "`fcl::collide` on libccd",
             "library libccd",
             "0",
-            (timed, judged),
+            (judged, timed),
         ),
         way("`fcl::collide` on this library", ours, "0", swapped),
         way(
@@ -90,7 +97,7 @@ impl Way {
 /// Every way over the same frames; one pair in `exact` is judged by exact truth too. Timed
 /// `times` times, in turn.
 pub fn scenes(frames: usize, bodies: usize, exact: usize, times: usize) -> Vec<Scene> {
-    let ways = ways();
+    let ways = ways(times > 0);
     let numbers = [frames, bodies, exact].map(|n| n.to_string());
     let mut scenes: Vec<Scene> = ways
         .iter()
@@ -108,8 +115,9 @@ pub fn scenes(frames: usize, bodies: usize, exact: usize, times: usize) -> Vec<S
         .collect();
     for _ in 0..times {
         for (way, scene) in ways.iter().zip(&mut scenes) {
+            let Some(program) = &way.timed else { continue };
             let args = [&*numbers[0], &numbers[1], way.contacts, "0"];
-            let timed = fields(&way.lines(&way.timed, &args), "timed");
+            let timed = fields(&way.lines(program, &args), "timed");
             let a_frame = 1e-6 * timed["nanoseconds"] / frames as f64;
             scene.milliseconds = scene.milliseconds.min(a_frame);
         }
