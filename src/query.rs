@@ -636,4 +636,29 @@ mod tests {
             assert!((depth - swapped_depth).abs() < 16.0 * EPSILON);
         }
     }
+
+    /// Where the proof of an overlap may lean on a centre, it proves no bound.
+    #[test]
+    fn no_bound_leans_on_a_centre() {
+        let mut r = Random::new(8);
+        let a = corners(Vec3::repeat(1.0));
+        for _ in 0..100 {
+            let b = placed(&a, &r.rotation(), r.vector(1.0));
+            let v1 = r.vector(3.0);
+            let pair = Pair {
+                md: MinkowskiDifference::new(hull(&a), hull(&b)),
+                centre: Some(SupportPoint {
+                    v: v1,
+                    v1,
+                    v2: Vec3::zeros(),
+                }),
+                first_dir: None,
+                lasting: true,
+            };
+            let mut state = State::guess(&r.direction());
+            if let Ok(Answer::Hit(hit) | Answer::Limit(hit)) = pair.local(&mut state, &SETTINGS) {
+                assert_eq!(hit.depth_lower, 0.0);
+            }
+        }
+    }
 }
