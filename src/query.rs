@@ -41,8 +41,8 @@ use crate::support_set::{Inquiry, Stop, SupportSet};
 /// A touch, within the tolerance, whose witness points do not meet? There the points that
 /// meet at the origin of D, which a proof of the overlap knows, are witnesses.
 fn unmet(hit: &Penetration, settings: &Settings) -> bool {
-    let apart = (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
-    hit.depth <= settings.tolerance && apart > settings.tolerance
+    let apart = || (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
+    hit.depth <= settings.tolerance && apart() > settings.tolerance
 }
 
 /// Does the tetrahedron of `c` and the first three points hold the origin, by more than
@@ -141,9 +141,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             (None, Some(k)) => *k,
             (None, None) => self.md.support(&hit.normal)?,
         };
-        if self
-            .centre
-            .is_some_and(|c| around(&c.v, known.points(), &hit))
+        let plain = !unmet(&hit, settings);
+        if plain
+            && self
+                .centre
+                .is_some_and(|c| around(&c.v, known.points(), &hit))
         {
             return Ok(if limit {
                 Answer::Limit(hit)
