@@ -172,9 +172,10 @@ const EXACT: bool = EPSILON < 1e-10;
 /// A local minimum of the depth near the remembered direction, else near the unit
 /// vector `start`.
 ///
-/// `inner`: any inner point of D, its distance is what curvature is first guessed
-/// from. `known`: gains the support points, the best one first, the samples kept last
-/// among them, for the caller's proof of the overlap, which a local minimum alone is not.
+/// `Hit`: at a local minimum to within the tolerance; `Limit`: at the lowest direction met;
+/// the overlap of both is not proven. `Miss`: apart. `inner`: any inner point of D, its distance
+/// is what curvature is first guessed from. `known`: gains support points for the proof, the
+/// active ones or else the best one first.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.

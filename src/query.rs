@@ -12,7 +12,8 @@
 //!    the part of that direction in its plane.)
 //! 3. An overlap is proven. A local minimum of the support function can be positive
 //!    though the objects are apart (a plate that an object has passed through, seen
-//!    from the old side), so the origin must be shown to lie among points of D:
+//!    from the old side), so the origin must be shown to lie among points of D: in the
+//!    tetrahedron of the centres' difference and three active points, else by
 //!    [`gjk::intersect`] on the points the solver saw, the centres' difference among
 //!    them, asks for more only where these leave a side open. The global search (`mpr`,
 //!    `minimum`) proves its overlaps itself.

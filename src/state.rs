@@ -62,7 +62,7 @@ impl State {
 
     /// The state of a pair becomes that of the same objects in the other order, whose D is
     /// this one's mirror image in the origin: points, directions and slopes change sign,
-    /// lengths and curvatures stay.
+    /// lengths and curvatures stay, and the balls of the objects change places.
     pub fn flip(&mut self) {
         self.memory.flip();
     }

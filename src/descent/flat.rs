@@ -28,6 +28,7 @@ use super::curvature::{ALIKE, CLOSE, smooth};
 use super::cuts::{Cuts, Step};
 use super::lanes::{CUTS, Lanes, Vectors};
 use super::memory::{Memory, Queue, Smooth};
+use super::model::basis;
 use super::samples::Sample;
 use super::trust_region::{FIRST, TrustRegion};
 use crate::contact::{Penetration, Settings};
@@ -126,7 +127,6 @@ pub struct Flat {
     radius: [Real; 2],
     cuts: Cuts,
     /// The chart of the best direction.
-    b: Vec3,
     e1: Vec3,
     e2: Vec3,
     trust: TrustRegion,
@@ -159,7 +159,6 @@ impl Flat {
             spare: 0,
             radius: [0.0; 2],
             cuts: Cuts::default(),
-            b: Vec3::zeros(),
             e1: Vec3::zeros(),
             e2: Vec3::zeros(),
             trust: TrustRegion::new(FIRST),
@@ -195,7 +194,7 @@ impl Flat {
     /// Searches from `n`, after the queued directions.
     ///
     /// `centre`: any inner point of D, its distance is the size of what was not seen.
-    /// `known` gains the points of a minimum, the active ones first.
+    /// `known` gains the points of a minimum: the active ones, the one there, the others.
     ///
     /// # Errors
     /// [`Fault::NonFinite`] from a support mapping.
@@ -539,9 +538,10 @@ impl Flat {
         let Some((step, gain)) = self.predict() else {
             return Next::Open;
         };
-        self.trust.foretell(h - gain + rho, !step.inside, &self.b);
+        self.trust
+            .foretell(h - gain + rho, !step.inside, &self.best.n);
         self.step = step.inside.then_some(step);
-        let d = self.b + self.e1 * step.x + self.e2 * step.y;
+        let d = self.best.n + self.e1 * step.x + self.e2 * step.y;
         let mut n = d * (1.0 / d.norm());
         let close = gain.abs() <= self.tolerance;
         if step.inside || close && rho > 0.0 && self.trust.radius >= FIRST {
@@ -582,7 +582,7 @@ impl Flat {
         }
         let lost = gain < -self.tolerance;
         let close = gain <= self.tolerance && step.inside;
-        if lost || close && !self.is_lowest(&self.b, self.best_h, &step) {
+        if lost || close && !self.is_lowest(&self.best.n, self.best_h, &step) {
             // The walk ended above b, or before the end: is it lower anywhere?
             step = self.cuts.lowest(self.trust.radius);
             gain = self.gain(&step);
@@ -601,13 +601,7 @@ impl Flat {
     #[inline(always)]
     fn chart(&mut self) {
         let b = self.best.n;
-        // Orthonormal basis without a branch (Duff et al., JCGT 6(1), 2017).
-        let sign = (1.0 as Real).copysign(b.z);
-        let c = -1.0 / (sign + b.z);
-        let d = b.x * b.y * c;
-        self.e1 = Vec3::new(1.0 + sign * b.x * b.x * c, sign * d, -sign * b.x);
-        self.e2 = Vec3::new(d, sign + b.y * b.y * c, -b.y);
-        self.b = b;
+        (self.e1, self.e2) = basis(&b);
         self.cuts.height = self.best_h;
         self.cuts.a = self.u.dot(&b);
         self.cuts.x = self.u.dot(&self.e1);
@@ -646,16 +640,17 @@ impl Flat {
     /// there is the minimum's within the tolerance.
     #[cold]
     fn towards(&self, step: &Step, doubtful: u32) -> Vec3 {
+        let b = self.best.n;
         let mut side = Vec3::zeros();
         for &i in step.active() {
             let sign = if doubtful & (1 << i) != 0 { 1.0 } else { -1.0 };
             side += self.u.get(i) * sign;
         }
         if doubtful.count_ones() as usize == step.count {
-            side = self.n.get(step.set[0]) - self.b;
+            side = self.n.get(step.set[0]) - b;
         }
-        let side = side - self.b * self.b.dot(&side);
-        let side = unit(&side).unwrap_or_else(|| perpendicular(&self.b));
+        let side = side - b * b.dot(&side);
+        let side = unit(&side).unwrap_or_else(|| perpendicular(&b));
         let radius = larger(self.radius[0], self.radius[1]);
         let tilt = if step.count == 1 {
             larger(10.0 * CLOSE.sqrt(), 8.0 * self.same() / radius)
@@ -692,19 +687,10 @@ impl Flat {
             let across2 = (foot - n * height).norm_squared();
             (height >= least && across2 <= near2).then_some(foot)
         };
-        let mut set = step.set;
-        let mut weights = self.weights(step, n);
-        let mut foot = own(&set, &weights);
-        if foot.is_none() {
-            for (others, shares) in self.enclosing(n) {
-                foot = own(&others, &shares);
-                if foot.is_some() {
-                    (set, weights) = (others, shares);
-                    break;
-                }
-            }
-        }
-        let foot = foot?;
+        let serves = |(set, weights, count)| Some((own(&set, &weights)?, set, weights, count));
+        let active = serves((step.set, self.weights(step, n), step.count));
+        let of_three = || self.enclosing(n).find_map(|(set, w)| serves((set, w, 3)));
+        let (foot, set, weights, count) = active.or_else(of_three)?;
         let mut point1 = n * self.radius[0];
         for (&i, &w) in set.iter().zip(&weights) {
             point1 += (self.samples[i % CUTS].p.v1 - self.n.get(i) * self.radius[0]) * w;
@@ -737,7 +723,7 @@ impl Flat {
                 iterations: self.asked as u64,
             },
             slopes: set.map(slope),
-            count: step.count,
+            count,
             radius: self.radius,
         })
     }

@@ -116,7 +116,7 @@ impl Step {
 /// Two unit vectors that make an orthonormal basis with the unit vector b, without a branch
 /// (Duff et al., JCGT 6(1), 2017).
 #[inline(always)]
-fn basis(b: &Vec3) -> (Vec3, Vec3) {
+pub fn basis(b: &Vec3) -> (Vec3, Vec3) {
     let sign = (1.0 as Real).copysign(b.z);
     let c = -1.0 / (sign + b.z);
     let d = b.x * b.y * c;
