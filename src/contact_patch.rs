@@ -248,11 +248,46 @@ pub fn settle<A: SupportMap, B: SupportMap>(
     }
     let region = small.inside(&large, slack);
     if let Some([x, y]) = region.middle() {
-        let middle = origin + e1 * x + e2 * y;
-        hit.point1 = middle + n * n.dot(&(hit.point1 - middle));
-        hit.point2 = hit.point1 - lift;
+        move_to(hit, &(origin + e1 * x + e2 * y));
     }
     Ok(())
+}
+
+/// Moves the witness points of a hit, in their planes, to the middle of the touching region.
+#[inline]
+pub fn move_to(hit: &mut Penetration, middle: &Vec3) {
+    let n = hit.normal;
+    hit.point1 = middle + n * n.dot(&(hit.point1 - middle));
+    hit.point2 = hit.point1 - n * hit.depth;
+}
+
+/// A number made of `count` points of the two objects, centres or support points: the same
+/// again, and neither object has moved. 0 where they do not tell, because all of an object's
+/// points lie on one line.
+#[cold]
+#[inline(never)]
+pub fn mark<'p>(points: impl Fn(usize) -> &'p [Vec3; 2] + Copy, count: usize) -> u64 {
+    let of = |object: usize| (0..count).map(move |i| points(i)[object]);
+    // A line is narrower than a millionth of its length.
+    let solid = |object: usize| {
+        let least = of(object).map(|p| (p - points(0)[object]).norm_squared());
+        let blur = 1e-12 * least.fold(0.0, larger);
+        dimensions(of(object), blur).0 == 2
+    };
+    if !(solid(0) && solid(1)) {
+        return 0;
+    }
+    // Fowler, Noll and Vo's hash, a word at a time, its high bits brought down; added up, since
+    // the points may come in any order. Two sets have one number by one chance in 2⁶³.
+    let of_one = |p: &[Vec3; 2]| {
+        let coordinates = p.iter().flatten();
+        coordinates.fold(0xcbf2_9ce4_8422_2325, |hash: u64, x| {
+            let mixed = (hash ^ u64::from(x.to_bits())).wrapping_mul(0x0100_0000_01b3);
+            mixed ^ mixed >> 29
+        })
+    };
+    let hash = (0..count).fold(0, |sum: u64, i| sum.wrapping_add(of_one(points(i))));
+    hash | 1
 }
 
 /// A convex polygon in the plane, counterclockwise; corners may coincide.

@@ -84,6 +84,9 @@ impl Request<'_> {
 pub struct Basis {
     directions: [Vec3; Basis::ROOM],
     len: usize,
+    /// Of a face that rests on a face or an edge: a number made of all that tells where it is,
+    /// the same for the same contact alone. Else 0.
+    pub mark: u64,
 }
 
 impl Basis {
@@ -451,9 +454,13 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             iterations: progress.iterations,
         };
         if let Some(basis) = &mut self.basis {
+            if width > 0.0 {
+                basis.mark = contact_patch::mark(|i| set.witnesses(i), set.len());
+            }
             basis.add(&dir);
-            // The point farthest along dir is found again by asking along dir.
-            let found = set.v(lowest);
+            // What asking along dir has found it finds again: one of several that are as far.
+            let found = (1..set.len()).find(|&i| set.direction(i) == dir);
+            let found = set.v(found.unwrap_or(lowest));
             for i in hull.corners(top.face) {
                 if set.v(i) != found {
                     basis.add(&set.direction(i));

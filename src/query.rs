@@ -243,7 +243,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             other => other,
         };
         match answer {
-            Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(memory),
+            Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(&memory),
             other => self.remember(state, &other)?,
         }
         Ok(answer)
@@ -350,13 +350,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         match global::minimum(inquiry, &point, &request, arena, kept, &mut hit) {
             Ok(true) => {
                 let alone = hit.point1;
-                contact_patch::settle(&self.md, &mut hit, limits.tolerance)?;
-                self.keep(state, &basis, hit.point1 != alone);
+                let resting = state.resting();
+                let asked = self.md.supports();
+                if basis.mark != 0 && basis.mark == resting.mark {
+                    contact_patch::move_to(&mut hit, &resting.middle);
+                } else {
+                    contact_patch::settle(&self.md, &mut hit, limits.tolerance)?;
+                }
+                let middle = (hit.point1 != alone).then_some(hit.point1);
+                self.keep(state, &basis, middle, asked);
                 Ok(Answer::Hit(hit))
             }
             Ok(false) => {
                 self.floor(&mut hit, limits.tolerance)?;
-                self.keep(state, &basis, false);
+                self.keep(state, &basis, None, 0);
                 Ok(Answer::Limit(hit))
             }
             Err(stop) => self.stopped(state, stop),
@@ -377,10 +384,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
     }
 
-    /// Leaves the basis of a proof behind, where somebody keeps the state.
-    fn keep(&self, state: &mut State, basis: &Basis, rested: bool) {
-        if self.lasting {
-            *state = State::proven(basis, rested);
+    /// Leaves the basis of a proof behind, where somebody keeps the state. `middle`: of a face
+    /// that rests.
+    fn keep(&self, state: &mut State, basis: &Basis, middle: Option<Vec3>, asked: u64) {
+        if !self.lasting {
+            return;
+        }
+        // Many triangles of a resting face prove the same: the one that needed no other
+        // point stays.
+        if !(middle.is_some() && state.rested() && asked == state.asks()) {
+            *state = State::proven(basis);
+        }
+        if let Some(middle) = middle {
+            state.rest(middle, basis.mark);
         }
     }
 
@@ -396,7 +412,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             tolerance: tolerance * 0.01,
             max_iterations: ITERATION_CAP,
         };
-        let mut memory = State::guess(&hit.normal).memory;
+        let mut memory = Memory::towards(hit.normal);
         if let Answer::Hit(floor) | Answer::Limit(floor) =
             self.stroll(&mut memory, PATIENCE, &level, &mut Known::default())?
         {
@@ -461,7 +477,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             if left == 0 {
                 return Ok(lowest.map_or(found, Answer::Limit));
             }
-            *memory = State::guess(&start).memory;
+            *memory = Memory::towards(start);
             found = self.stroll(memory, PATIENCE.min(left), settings, known)?;
         };
         let rest = Settings {
@@ -473,7 +489,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // D reaches beyond that plane: a callback that errs must not separate.
             Answer::Miss(n) if gjk::farthest(known.points(), n, 0.0).is_some() => return Ok(found),
             Answer::Hit(hit) | Answer::Limit(hit) => {
-                *memory = State::guess(&hit.normal).memory;
+                *memory = Memory::towards(hit.normal);
             }
             _ => {}
         }

@@ -5,17 +5,16 @@
 //!
 //! Nothing in a state is trusted: it chooses where to look first, never what is true.
 //!
-//! What it holds depends on the query that left it. Of the fields of [`Memory`] all but the
-//! local search use `dir` and the three vectors of `slopes` alone:
+//! What it holds depends on the query that left it:
 //!
-//! | kind | left by | `dir` | the three vectors | besides |
+//! | kind | left by | `dir` | `vectors` | `numbers` and `words` |
 //! |---|---|---|---|---|
 //! | cold: 0, or no other | | | | |
-//! | `APART` | every query of a pair that is apart | the separating direction, as long as the margin to aim at | after [`State::near`] (the distance): the directions of the points around the nearest one | the radius of a ball, in `curvature[0]` |
-//! | `OVERLAP` | the local search | the minimum's | slopes of the active cuts | all of [`Memory`] |
+//! | `APART` | every query of a pair that is apart | the separating direction, as long as the margin to aim at | after [`State::near`] (the distance): the directions of the points around the nearest one | the radius of a ball |
+//! | `OVERLAP` | the local search | the minimum's | slopes of the active cuts | the rest of [`Memory`] |
 //! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | rested face on face, in `rested` |
+//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after a face that rested: [`Resting`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none.
@@ -28,12 +27,24 @@ use crate::math::{Real, Vec3, unit};
 /// [`State::rested`] of a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1;
 
+/// A face that rested on a face or an edge.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Resting {
+    /// The middle of where they touched: obj1's witness point.
+    pub middle: Vec3,
+    /// The [`Basis::mark`] of the contact: the same one, the same contact. 0 for none.
+    pub mark: u64,
+}
+
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct State {
-    /// What the solvers remember; see the table at the head of this file.
-    pub memory: Memory,
+    /// See the table at the head of this file, as all of these.
+    dir: Vec3,
+    vectors: [Vec3; 3],
+    numbers: [Real; 7],
+    words: [u32; 2],
     /// One of the constants below; anything else is cold.
     pub kind: u32,
     /// [`RESTED`] where the pair rested face on face, else 0.
@@ -64,26 +75,47 @@ impl State {
     /// this one's mirror image in the origin: points, directions and slopes change sign,
     /// lengths and curvatures stay, and the balls of the objects change places.
     pub fn flip(&mut self) {
-        self.memory.flip();
+        let mut memory = self.memory();
+        memory.flip();
+        *self = Self {
+            kind: self.kind,
+            rested: self.rested,
+            ..Self::overlap(&memory)
+        };
     }
 
     /// The pair overlaps, as the local search left it.
-    pub fn overlap(memory: Memory) -> Self {
+    pub fn overlap(memory: &Memory) -> Self {
+        let [a, b, c, d, e, f] = memory.curvature;
         Self {
-            memory,
+            dir: memory.dir,
+            vectors: memory.slopes,
+            numbers: [a, b, c, d, e, f, memory.drift],
+            words: [memory.count, memory.curved],
             kind: OVERLAP,
             rested: 0,
         }
     }
 
+    /// What [`State::overlap`] was given.
+    fn memory(&self) -> Memory {
+        let [a, b, c, d, e, f, drift] = self.numbers;
+        let [count, curved] = self.words;
+        Memory {
+            dir: self.dir,
+            slopes: self.vectors,
+            curvature: [a, b, c, d, e, f],
+            drift,
+            count,
+            curved,
+        }
+    }
+
     fn of(kind: u32, dir: Vec3) -> Self {
         Self {
-            memory: Memory {
-                dir,
-                ..Memory::default()
-            },
+            dir,
             kind,
-            rested: 0,
+            ..Self::default()
         }
     }
 
@@ -96,22 +128,22 @@ impl State {
     /// one (zero for none), and the radius of a ball that rounds D there, metres.
     pub fn near(dir: Vec3, directions: [Vec3; 3], ball: Real) -> Self {
         let mut state = Self::apart(dir);
-        state.memory.slopes = directions;
-        state.memory.curvature[0] = ball;
+        state.vectors = directions;
+        state.numbers[0] = ball;
         state
     }
 
     /// What [`State::near`] left.
     pub fn nearest(&self) -> ([Vec3; 3], Real) {
         match self.kind {
-            APART => (self.memory.slopes, self.memory.curvature[0]),
+            APART => (self.vectors, self.numbers[0]),
             _ => ([Vec3::zeros(); 3], 0.0),
         }
     }
 
     /// The margin to aim at, metres, where the pair was apart.
     pub fn aim(&self) -> Real {
-        self.memory.dir.norm()
+        self.dir.norm()
     }
 
     /// Did the pair overlap when its depth was asked?
@@ -123,15 +155,15 @@ impl State {
     /// for none.
     pub fn surrounded([a, b, c, d]: [Vec3; 4]) -> Self {
         let mut state = Self::of(SURROUNDED, a);
-        state.memory.slopes = [b, c, d];
+        state.vectors = [b, c, d];
         state
     }
 
     /// The directions of [`State::surrounded`], where the pair was.
     pub fn surrounding(&self) -> [Vec3; 4] {
-        let [b, c, d] = self.memory.slopes;
+        let [b, c, d] = self.vectors;
         match self.kind {
-            SURROUNDED => [self.memory.dir, b, c, d],
+            SURROUNDED => [self.dir, b, c, d],
             _ => [Vec3::zeros(); 4],
         }
     }
@@ -144,7 +176,7 @@ impl State {
     /// The direction that separated the pair.
     pub fn separating(&self) -> Option<Vec3> {
         match self.kind {
-            APART => unit(&self.memory.dir),
+            APART => unit(&self.dir),
             _ => None,
         }
     }
@@ -153,7 +185,7 @@ impl State {
     /// was apart and is no longer has just met there.
     pub fn leaving(&self) -> Option<Vec3> {
         match self.kind {
-            APART | OVERLAP | ALONG | PROVEN => unit(&self.memory.dir),
+            APART | OVERLAP | ALONG | PROVEN => unit(&self.dir),
             _ => None,
         }
     }
@@ -161,15 +193,15 @@ impl State {
     /// What the local search starts from.
     pub fn solver(&self) -> Memory {
         match self.kind {
-            OVERLAP => self.memory,
-            APART | ALONG | PROVEN => Self::of(OVERLAP, self.memory.dir).memory,
+            OVERLAP => self.memory(),
+            APART | ALONG | PROVEN => Memory::towards(self.dir),
             _ => Memory::default(),
         }
     }
 
     /// The directions of the last portal.
     pub fn portal(&self) -> Option<[Vec3; 3]> {
-        let [a, b, c] = &self.memory.slopes;
+        let [a, b, c] = &self.vectors;
         match self.kind {
             ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
             _ => None,
@@ -181,32 +213,56 @@ impl State {
         self.kind == PROVEN && self.rested == RESTED
     }
 
+    /// The face that rested, if one did.
+    pub fn resting(&self) -> Resting {
+        let [x, y, z, ..] = self.numbers;
+        let [low, high] = self.words;
+        if !(self.rested() && (x + y + z).is_finite()) {
+            return Resting::default();
+        }
+        Resting {
+            middle: Vec3::new(x, y, z),
+            mark: u64::from(high) << 32 | u64::from(low),
+        }
+    }
+
     /// Keeps the directions of a portal besides.
     pub fn keep_portal(&mut self, directions: [Vec3; 3]) {
         self.kind = ALONG;
-        self.memory.slopes = directions;
+        self.vectors = directions;
     }
 
     /// The directions that the last proof stood on, besides the minimum's own; zero for none.
     pub fn others(&self) -> &[Vec3] {
         match self.kind {
-            PROVEN => &self.memory.slopes,
+            PROVEN => &self.vectors,
             _ => &[],
         }
     }
 
-    /// The pair overlaps: its minimum is proven by support points along these directions;
-    /// `rested`: face on face.
-    pub fn proven(basis: &Basis, rested: bool) -> Self {
+    /// How many support points the directions of the last proof are worth.
+    pub fn asks(&self) -> u64 {
+        1 + self.others().iter().filter(|n| n.norm() > 0.0).count() as u64
+    }
+
+    /// The pair overlaps: its minimum is proven by support points along these directions.
+    pub fn proven(basis: &Basis) -> Self {
         let mut state = Self::default();
         if let Some((first, others)) = basis.directions().split_first() {
             state = Self::of(PROVEN, *first);
-            for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
+            for (slope, n) in state.vectors.iter_mut().zip(others) {
                 *slope = *n;
             }
-            state.rested = u32::from(rested) * RESTED;
         }
         state
+    }
+
+    /// The same, and it rests face on face.
+    pub fn rest(&mut self, middle: Vec3, mark: u64) {
+        self.rested = RESTED;
+        let [x, y, z, ..] = &mut self.numbers;
+        [*x, *y, *z] = middle.into();
+        self.words = [mark as u32, (mark >> 32) as u32];
     }
 
     /// Keeps the kind of the answer and its direction alone; a query without an answer leaves
@@ -228,12 +284,12 @@ mod tests {
     fn flipped_twice_is_as_it_was() {
         let mut cold = State::default();
         cold.flip();
-        assert!(cold.memory.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
+        assert!(cold.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
         let mut state = State::guess(&Vec3::new(1.0, -2.0, 3.0));
-        let dir = state.memory.dir;
+        let dir = state.dir;
         state.flip();
-        assert_eq!(state.memory.dir, -dir);
+        assert_eq!(state.dir, -dir);
         state.flip();
-        assert_eq!(state.memory.dir, dir);
+        assert_eq!(state.dir, dir);
     }
 }

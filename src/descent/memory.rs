@@ -10,7 +10,6 @@ use crate::math::{EPSILON, Real, Vec3, unit};
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
 /// any other bits are harmless, since they only choose where to look first.
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
 pub struct Memory {
     /// The direction of the answer, or a guess of it.
     pub dir: Vec3,
@@ -70,6 +69,14 @@ impl Queue {
 }
 
 impl Memory {
+    /// Nothing but a direction.
+    pub fn towards(dir: Vec3) -> Self {
+        Self {
+            dir,
+            ..Self::default()
+        }
+    }
+
     /// Leaves behind the direction of the minimum, the gradients of the active cuts and how
     /// many these are, and what is known of the smooth part.
     #[inline]
