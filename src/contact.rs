@@ -46,9 +46,6 @@ pub enum Answer {
     /// They overlap, and the iteration cap came before the tolerance: the best
     /// sound answer.
     Limit(Penetration),
-    /// The iteration cap came before the objects were shown to overlap or not; moving
-    /// obj2 by this answer would separate them.
-    Undecided(Penetration),
     /// They are apart, or touch within rounding: the support value of this unit direction,
     /// n·s(n), is negative or no more than rounding.
     Miss(Vec3),

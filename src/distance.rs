@@ -31,7 +31,7 @@
 //! kinds in use that is a sixth fewer support points than libccd's portal asks for.
 
 use crate::barycentric;
-use crate::math::{EPSILON, Real, Vec3, larger, normal, perpendicular, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, largest, normal, perpendicular, unit};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Beyond, Inquiry, Stop, SupportSet};
 
@@ -146,6 +146,16 @@ impl Simplex {
     #[allow(clippy::len_without_is_empty)]
     pub fn len(&self) -> usize {
         self.len
+    }
+
+    /// Does a simplex that holds the target, and is no tetrahedron, show that D does?
+    #[inline(always)]
+    fn proves(&self, kind: Proof) -> bool {
+        match kind {
+            Proof::Solid => false,
+            Proof::Centred => self.order.contains(&self.inner),
+            Proof::Planar => self.len > 1,
+        }
     }
 
     /// Adds a corner, one of at most three, wherever it is: [`Simplex::settle`] tells the rest.
@@ -410,7 +420,14 @@ fn beyond_first<A: SupportMap, B: SupportMap>(
     let (touch, size2) = (inquiry.precision.touch(), inquiry.precision.size2());
     let way = simplex.add(w, first.v, touch, size2);
     let next = way.and_then(|(way, _)| direction(&way)).unwrap_or(*dir);
-    search(inquiry, &mut set, simplex, false, next)?;
+    search(
+        inquiry,
+        &mut set,
+        simplex,
+        next,
+        Proof::Solid,
+        |_, _, _, _| Ok(None),
+    )?;
     Ok(())
 }
 
@@ -445,30 +462,184 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
         Some(c) => Simplex::around(c, &set.v(c)),
         None => Simplex::new(),
     };
-    let known = set.len() > simplex.len;
-    search(inquiry, set, simplex, known, *dir)
+    if set.len() > simplex.len {
+        search(
+            inquiry,
+            set,
+            simplex,
+            *dir,
+            Proof::Solid,
+            |inquiry, set, _, dir| Ok(set.farther(dir, inquiry.precision.touch())),
+        )
+    } else {
+        search(inquiry, set, simplex, *dir, Proof::Solid, |_, _, _, _| {
+            Ok(None)
+        })
+    }
 }
 
-/// [`overlap`], from a simplex and a direction to ask. `known`: the set has other points.
-#[inline(always)]
-fn search<A: SupportMap, B: SupportMap, const N: usize>(
+/// What shows that the origin is inside D.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Proof {
+    /// A tetrahedron that holds it.
+    Solid,
+    /// Also a segment or triangle that does, with a corner well inside D: point 0 of the set.
+    Centred,
+    /// Any segment or triangle that does: D lies in a plane, and has no other inside.
+    Planar,
+}
+
+/// [`overlap`], where a search for the depth has left points of D in the set: point 0 and
+/// others. A point of each object makes a point of D as well, so these are put together anew
+/// wherever that reaches beyond the origin: k support points of D are k² points of D.
+///
+/// `exit`: the point of the boundary where the origin leaves D. D is first asked beside it, on
+/// the side of the origin that is open: at the angle where a ball of D's size falls back from
+/// the support plane by a quarter of the depth. A distance algorithm asks far away, and halves
+/// its way back to a thin overlap; to a deep one it does not need to.
+pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<N>,
+    kind: Proof,
+    exit: &Vec3,
+) -> Result<[usize; 4], Stop> {
+    let start = set.v(0);
+    let mut simplex = Simplex::around(0, &start);
+    if kind != Proof::Centred {
+        simplex.inner = NOWHERE;
+    }
+    let mut beside = beside(exit, &start);
+    let dir = direction(&-start).unwrap_or(Vec3::x());
+    search(
+        inquiry,
+        set,
+        simplex,
+        dir,
+        kind,
+        |inquiry, set, simplex, n| {
+            let touch = inquiry.precision.touch();
+            if let Some(i) = recombined(set, simplex, n, touch) {
+                return Ok(Some(i));
+            }
+            let Some(d) = beside.take().and_then(|beside| beside(n)) else {
+                return Ok(None);
+            };
+            let place = room(set, simplex);
+            inquiry.ask_at(set, place, &d)?;
+            Ok((n.dot(&set.v(place)) > touch).then_some(place))
+        },
+    )
+}
+
+/// The index of the point of D farthest along `n`, of all that the points of obj1 and those of
+/// obj2 in the set make, if it reaches beyond `reach`; it is put into the set.
+fn recombined<const N: usize>(
+    set: &mut SupportSet<N>,
+    simplex: &Simplex,
+    n: &Vec3,
+    reach: Real,
+) -> Option<usize> {
+    let (mut one, mut two) = ((0, Real::NEG_INFINITY), (0, Real::INFINITY));
+    for i in 0..set.len() {
+        let [v1, v2] = set.witnesses(i);
+        let (a, b) = (n.dot(v1), n.dot(v2));
+        if a > one.1 {
+            one = (i, a);
+        }
+        if b < two.1 {
+            two = (i, b);
+        }
+    }
+    let (v1, v2) = (set.witnesses(one.0)[0], set.witnesses(two.0)[1]);
+    let v = v1 - v2;
+    if !(n.dot(&v) > reach) {
+        return None;
+    }
+    if one.0 == two.0 {
+        return Some(one.0);
+    }
+    let place = room(set, simplex);
+    set.place(place, &Vec3::zeros(), &SupportPoint { v, v1, v2 });
+    Some(place)
+}
+
+/// Where to ask beside the exit, on the side that a direction looks to; nowhere, if D there is
+/// not thin.
+fn beside(exit: &Vec3, start: &Vec3) -> Option<impl Fn(&Vec3) -> Option<Vec3> + use<>> {
+    let b = unit(exit)?;
+    let depth = exit.norm();
+    let size = depth - b.dot(start);
+    let tilt = (0.5 * depth / size).sqrt();
+    let side = move |n: &Vec3| unit(&(b + unit(&(n - b * n.dot(&b)))? * tilt));
+    // Also NaN.
+    (tilt <= THIN).then_some(side)
+}
+
+/// The angle, radians, that tells a thin overlap by.
+const THIN: Real = 0.2;
+
+/// A lower bound on the depth, metres: the distance from the origin to the nearest face of the
+/// tetrahedron of these points, which is inscribed in D. 0 where the origin is not strictly
+/// inside, beyond rounding.
+pub fn inner_distance(corners: [&SupportPoint; 4]) -> Real {
+    let magnitude = corners.iter().fold(0.0, |m, p| larger(m, p.magnitude()));
+    let rounding = 4.0 * EPSILON * magnitude;
+    let [p, q, r, s] = corners.map(|p| &p.v);
+    // The faces around s, and the base: all turned outwards or all inwards.
+    let [sp, sq, sr] = [p - s, q - s, r - s];
+    let [pr, pq] = [r - p, q - p];
+    let [at_s, at_p] = [largest(s), largest(p)];
+    let [p_, q_, r_] = [largest(&sp), largest(&sq), largest(&sr)];
+    let faces = [
+        (sp.cross(&sq), s, at_s * larger(p_, q_)),
+        (sq.cross(&sr), s, at_s * larger(q_, r_)),
+        (sr.cross(&sp), s, at_s * larger(r_, p_)),
+        (pr.cross(&pq), p, at_p * larger(largest(&pr), largest(&pq))),
+    ];
+    let mut least = Real::INFINITY;
+    let outwards = faces[0].0.dot(s) > 0.0;
+    for (n, a, lever) in &faces {
+        let origin = n.dot(a);
+        let origin = if outwards { origin } else { -origin };
+        // Less what the rounding of the corners may add, which a short edge
+        // magnifies by the way to the origin.
+        let distance = (origin - rounding * lever) / n.norm() - rounding;
+        // Not on the inner side, or within rounding of it, or a face whose area
+        // underflows (infinite or NaN): no bound.
+        if !(distance > 0.0 && distance < Real::INFINITY) {
+            return 0.0;
+        }
+        if distance < least {
+            least = distance;
+        }
+    }
+    least
+}
+
+/// [`overlap`], from a simplex and a direction to ask. `stand_in` may give the index of a point
+/// of the set that lies beyond the origin along a direction, by more than a touch.
+#[inline(always)]
+fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'q, A, B>,
+    set: &mut SupportSet<N>,
     mut simplex: Simplex,
-    known: bool,
     mut dir: Vec3,
+    kind: Proof,
+    mut stand_in: impl FnMut(
+        &mut Inquiry<'q, A, B>,
+        &mut SupportSet<N>,
+        &Simplex,
+        &Vec3,
+    ) -> Result<Option<usize>, Stop>,
 ) -> Result<[usize; 4], Stop> {
     // The square of the distance from the simplex; and whether points on the other side of
     // it, where it is a triangle, are known.
     let (mut nearest, mut backed) = (Real::INFINITY, false);
     let mut stalls = 0;
     for _ in 0..STEPS {
-        let stand_in = if known {
-            set.farther(&dir, inquiry.precision.touch())
-        } else {
-            None
-        };
-        let (w, at, noise) = match stand_in {
+        let (w, at, noise) = match stand_in(inquiry, set, &simplex, &dir)? {
+            // A corner, by rounding.
+            Some(w) if simplex.has(w) => break,
             Some(w) => (w, set.v(w), inquiry.precision.touch()),
             None => {
                 let place = room(set, &simplex);
@@ -479,10 +650,6 @@ fn search<A: SupportMap, B: SupportMap, const N: usize>(
                 }
             }
         };
-        // A corner, by rounding.
-        if known && simplex.has(w) {
-            break;
-        }
         let solid = simplex.len == 3;
         let Some((way, distance2)) = simplex.add(w, at, noise, inquiry.precision.size2()) else {
             let inside = simplex.inner != NOWHERE;
@@ -495,6 +662,10 @@ fn search<A: SupportMap, B: SupportMap, const N: usize>(
             let [i, j, k] = simplex.ids();
             return Ok([i, j, k, w]);
         };
+        if distance2 <= noise * noise && simplex.proves(kind) {
+            let [i, j, k] = simplex.ids();
+            return Ok([i, j, k, k]);
+        }
         // Negated for NaN.
         if !(distance2 > noise * noise && distance2 < nearest) {
             stalls += 1;

@@ -65,7 +65,6 @@ pub mod expansion;
 #[doc(hidden)]
 pub mod ffi;
 #[doc(hidden)]
-pub mod gjk;
 #[doc(hidden)]
 pub mod global;
 #[doc(hidden)]
@@ -93,7 +92,6 @@ mod shapes;
 #[doc(hidden)]
 pub mod signed_distance;
 #[doc(hidden)]
-pub mod simplex;
 #[doc(hidden)]
 pub mod start;
 pub mod state;

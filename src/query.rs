@@ -14,8 +14,8 @@
 //!    though the objects are apart (a plate that an object has passed through, seen
 //!    from the old side), so the origin must be shown to lie among points of D: in the
 //!    tetrahedron of the centres' difference and three active points, else by
-//!    [`gjk::intersect`] on the points the solver saw, the centres' difference among
-//!    them, asks for more only where these leave a side open. The global search (`mpr`,
+//!    [`distance::proof`], which puts the points the solver saw together anew and asks for
+//!    more only where these leave a side open. The global search (`mpr`,
 //!    `minimum`) proves its overlaps itself.
 //! 4. Witness points of a face that rests on another, or on an edge, are moved to the
 //!    middle of where they touch ([`contact_patch`]); not in `along` and `planar`.
@@ -23,17 +23,17 @@
 //!    is spent on it.
 
 use crate::along;
+use crate::barycentric;
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contact_patch;
 use crate::descent::{self, Memory};
+use crate::distance::{self, Proof};
 use crate::expansion::Limits;
-use crate::gjk::{self, Overlap};
 use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
 use crate::math::{EPSILON, ITERATION_CAP, Real, Vec3, larger, perpendicular, unit};
 use crate::planar;
 use crate::portal::rounding;
-use crate::precision::Precision;
 use crate::separation;
 use crate::state::State;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -41,9 +41,9 @@ use crate::support_set::{Inquiry, Stop, SupportSet};
 
 /// A touch, within the tolerance, whose witness points do not meet? There the points that
 /// meet at the origin of D, which a proof of the overlap knows, are witnesses.
-fn unmet(hit: &Penetration, settings: &Settings) -> bool {
+fn unmet(hit: &Penetration, tolerance: Real) -> bool {
     let apart = || (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
-    hit.depth <= settings.tolerance && apart() > settings.tolerance
+    hit.depth <= tolerance && apart() > tolerance
 }
 
 /// Does the tetrahedron of `c` and the first three points hold the origin, by more than
@@ -119,75 +119,114 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// Step 3: the answer of a solver, with the overlap proven or refuted. `known` gains
-    /// the points of the proof.
+    /// the points of the proof. `planar`: D lies in a plane.
     fn proven(
         &self,
-        hit: Penetration,
-        limit: bool,
+        mut answer: Answer,
         known: &mut Known,
         settings: &Settings,
+        planar: bool,
     ) -> Result<Answer, Fault> {
-        let mut precision = Precision::default();
-        precision.note(&SupportPoint {
+        let (Answer::Hit(hit) | Answer::Limit(hit)) = &mut answer else {
+            return Ok(answer);
+        };
+        let mut inquiry = Inquiry::new(&self.md);
+        inquiry.precision.note(&SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
             v2: hit.point2,
         });
         // A touch within rounding is a miss, in every query.
-        if !(hit.depth * hit.dir.dot(&hit.normal) > precision.touch()) {
+        if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
             return Ok(Answer::Miss(hit.normal));
         }
-        let start = match (self.centre, known.points().first()) {
-            (Some(c), _) => c,
-            (None, Some(k)) => *k,
-            (None, None) => self.md.support(&hit.normal)?,
-        };
-        let plain = !unmet(&hit, settings);
-        if plain
-            && self
-                .centre
-                .is_some_and(|c| around(&c.v, known.points(), &hit))
-        {
-            return Ok(if limit {
-                Answer::Limit(hit)
-            } else {
-                Answer::Hit(hit)
-            });
+        let quick = self
+            .centre
+            .is_some_and(|c| around(&c.v, known.points(), hit));
+        if quick && hit.depth > settings.tolerance {
+            return Ok(answer);
         }
-        // The proof has a budget of its own: a search cut short must still know
-        // whether it has an answer.
-        let overlap = gjk::intersect(
-            &self.md,
-            start,
-            known.points(),
-            Some(&(hit.normal * hit.depth)),
-            settings.max_iterations,
-        )?;
-        Ok(match overlap {
-            Overlap::Yes(simplex, inner) => {
-                for p in simplex.points() {
-                    known.add(p);
-                }
-                let mut hit = Penetration {
-                    depth_lower: if self.centre.is_some() {
-                        0.0
-                    } else {
-                        inner.min(hit.depth)
-                    },
-                    ..hit
-                };
-                if unmet(&hit, settings) {
-                    (hit.point1, hit.point2) = simplex.witnesses();
-                }
-                if limit {
-                    Answer::Limit(hit)
-                } else {
-                    Answer::Hit(hit)
-                }
-            }
-            Overlap::No(n) => Answer::Miss(n),
-            Overlap::Undecided => Answer::Undecided(hit),
-        })
+        match self.surround(
+            &mut inquiry,
+            self.centre,
+            hit,
+            known,
+            settings.tolerance,
+            planar,
+        ) {
+            Ok(()) => Ok(answer),
+            Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
+            Err(Stop::Fault(fault)) => Err(fault),
+        }
+    }
+
+    /// A depth within the tolerance, of which nothing is proven, may be a touch's. Then
+    /// [`Stop::Apart`].
+    #[cold]
+    #[inline(never)]
+    fn touching(
+        &self,
+        centre: Option<&SupportPoint>,
+        hit: &mut Penetration,
+        tolerance: Real,
+    ) -> Result<(), Stop> {
+        let (mut inquiry, mut known) = (Inquiry::new(&self.md), Known::default());
+        self.surround(
+            &mut inquiry,
+            centre.copied(),
+            hit,
+            &mut known,
+            tolerance,
+            false,
+        )
+    }
+
+    /// Shows that the origin lies among points of D. Where a touch, within the tolerance, has
+    /// witness points that do not meet, the points that meet at the origin take their place.
+    #[inline(never)]
+    fn surround(
+        &self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        centre: Option<SupportPoint>,
+        hit: &mut Penetration,
+        known: &mut Known,
+        tolerance: Real,
+        planar: bool,
+    ) -> Result<(), Stop> {
+        let mut set = SupportSet::<PROOF>::EMPTY;
+        let start = match (centre, known.points().is_empty()) {
+            (Some(c), _) => Some(c),
+            (None, true) => Some(self.md.support(&hit.normal)?),
+            (None, false) => None,
+        };
+        for point in start.iter().chain(known.points()) {
+            inquiry.precision.note(point);
+            set.push(&Vec3::zeros(), point);
+        }
+        let exit = hit.normal * hit.depth;
+        let kind = match centre {
+            _ if planar => Proof::Planar,
+            // A touch within the tolerance is for support points to tell.
+            Some(_) if hit.depth > tolerance => Proof::Centred,
+            _ => Proof::Solid,
+        };
+        let corners = distance::proof(inquiry, &mut set, kind, &exit)?;
+        let corners = corners.map(|i| set.point(i));
+        for corner in &corners {
+            known.add(corner);
+        }
+        let [a, b, c, d] = corners.each_ref();
+        if centre.is_none() {
+            hit.depth_lower = distance::inner_distance([a, b, c, d]).min(hit.depth);
+        }
+        if unmet(hit, tolerance) {
+            let inside = barycentric::tetrahedron(&Vec3::zeros(), [&a.v, &b.v, &c.v, &d.v]);
+            let (p1, p2) = barycentric::witnesses(&inside.weights, [a, b, c, d]);
+            // What the rounding of the weights leaves between them.
+            let rest = (p1 - p2) * 0.5;
+            (hit.point1, hit.point2) = (p1 - rest, p2 + rest);
+        }
+        Ok(())
     }
 
     /// Step 4: the witness points of two faces that touch in the middle of where they do.
@@ -237,11 +276,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if self.is_behind(&memory.dir)? {
             memory = Memory::default();
         }
-        let answer = match self.descend(&mut memory, settings, known)? {
-            Answer::Hit(hit) => self.proven(hit, false, known, settings)?,
-            Answer::Limit(hit) => self.proven(hit, true, known, settings)?,
-            other => other,
-        };
+        let found = self.descend(&mut memory, settings, known)?;
+        let answer = self.proven(found, known, settings, false)?;
         match answer {
             Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(&memory),
             other => self.remember(state, &other)?,
@@ -257,11 +293,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let start = state.leaving().unwrap_or_else(|| self.cold_start());
         let found = local::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
-        let answer = match found {
-            Answer::Hit(hit) => self.proven(hit, false, &mut Known::default(), settings)?,
-            Answer::Limit(hit) => self.proven(hit, true, &mut Known::default(), settings)?,
-            other => other,
-        };
+        let answer = self.proven(found, &mut Known::default(), settings, false)?;
         self.remember(state, &answer)?;
         self.settle(answer, settings)
     }
@@ -347,7 +379,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Some(arena) => Some(arena),
             None => None,
         };
-        match global::minimum(inquiry, &point, &request, arena, kept, &mut hit) {
+        let found = global::minimum(inquiry, &point, &request, arena, kept, &mut hit);
+        let found = found.and_then(|proven| {
+            if hit.depth <= limits.tolerance && !(hit.depth_lower > 0.0) {
+                self.touching(apex, &mut hit, limits.tolerance)?;
+            }
+            Ok(proven)
+        });
+        match found {
             Ok(true) => {
                 let alone = hit.point1;
                 let resting = state.resting();
@@ -487,7 +526,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
         match &answer {
             // D reaches beyond that plane: a callback that errs must not separate.
-            Answer::Miss(n) if gjk::farthest(known.points(), n, 0.0).is_some() => return Ok(found),
+            Answer::Miss(n) if known.farthest(n).is_some() => return Ok(found),
             Answer::Hit(hit) | Answer::Limit(hit) => {
                 *memory = Memory::towards(hit.normal);
             }
@@ -541,7 +580,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         for plane in way.portal.iter().flat_map(|p| &p.planes) {
             known.add(&plane.point);
         }
-        let mut answer = self.proven(way.hit, way.limit, &mut known, settings)?;
+        let found = if way.limit {
+            Answer::Limit(way.hit)
+        } else {
+            Answer::Hit(way.hit)
+        };
+        let mut answer = self.proven(found, &mut known, settings, false)?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
             // The bound along dir in place of the one all around.
             hit.depth_lower = way.hit.depth_lower;
@@ -568,12 +612,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .or_else(|| in_plane(Vec3::x()))
             .or_else(|| in_plane(Vec3::y()))
             .unwrap_or(Vec3::y());
-        let answer = planar::penetration(&self.md, &m, start, settings)?;
-        let answer = match answer {
-            Answer::Hit(hit) => self.proven(hit, false, &mut Known::default(), settings)?,
-            Answer::Limit(hit) => self.proven(hit, true, &mut Known::default(), settings)?,
-            other => other,
-        };
+        let found = planar::penetration(&self.md, &m, start, settings)?;
+        let answer = self.proven(found, &mut Known::default(), settings, true)?;
         self.remember(state, &answer)?;
         Ok(answer)
     }
@@ -601,6 +641,9 @@ fn beside(n: &Vec3, [c, s]: [Real; 2]) -> Vec3 {
     let e1 = perpendicular(n);
     n + (e1 * c + n.cross(&e1) * s) * 0.1
 }
+
+/// Points of the proof of an overlap: those known, the centre, and some more.
+const PROOF: usize = 2 * Known::ROOM;
 
 /// Support points of an MPR query, at most.
 const MPR_SUPPORTS: u64 = 160;

@@ -102,7 +102,7 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
         match minimum(pair, state, &wanted.settings)? {
             Answer::Hit(hit) => return Ok(deep(&hit, wanted, false)),
             Answer::Limit(hit) => return Ok(deep(&hit, wanted, true)),
-            Answer::Miss(_) | Answer::Undecided(_) => {}
+            Answer::Miss(_) => {}
         }
     }
     let start = match cores(pair, state, wanted)? {
@@ -112,7 +112,7 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
     *state = State::guess(&start);
     match minimum(pair, state, &wanted.settings)? {
         Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
-        Answer::Limit(hit) | Answer::Undecided(hit) => Ok(deep(&hit, wanted, true)),
+        Answer::Limit(hit) => Ok(deep(&hit, wanted, true)),
         Answer::Miss(normal) => Ok(apart(&touching(pair, &normal)?, wanted)),
     }
 }

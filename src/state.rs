@@ -265,13 +265,11 @@ impl State {
         self.words = [mark as u32, (mark >> 32) as u32];
     }
 
-    /// Keeps the kind of the answer and its direction alone; a query without an answer leaves
-    /// the state as it is.
+    /// Keeps the kind of the answer and its direction alone.
     pub fn remember(&mut self, answer: &Answer) {
         match answer {
             Answer::Miss(n) => *self = Self::of(APART, *n),
             Answer::Hit(hit) | Answer::Limit(hit) => *self = Self::of(OVERLAP, hit.normal),
-            Answer::Undecided(_) => {}
         }
     }
 }

@@ -96,6 +96,18 @@ impl Known {
         place
     }
 
+    /// The point farthest along `n`, if it lies beyond the origin.
+    pub fn farthest(&self, n: &Vec3) -> Option<SupportPoint> {
+        let mut best = (None, 0.0);
+        for p in self.points() {
+            let reach = n.dot(&p.v);
+            if reach > best.1 {
+                best = (Some(*p), reach);
+            }
+        }
+        best.0
+    }
+
     /// Adds a point that is not there, if there is room.
     #[inline(always)]
     pub fn push(&mut self, p: &SupportPoint) {

@@ -80,9 +80,9 @@ impl<'a> Samples<'a> {
         }
     }
 
-    /// The support points known.
-    pub fn points(&self) -> &[SupportPoint] {
-        self.known.points()
+    /// The support point farthest along `n`, if it lies beyond the origin.
+    pub fn farthest(&self, n: &Vec3) -> Option<SupportPoint> {
+        self.known.farthest(n)
     }
 
     /// The support point of sample `i`.

@@ -14,7 +14,6 @@ use super::trust_region::{self, ASIDE, TrustRegion};
 use super::verdict::{Next, Verdict, judge};
 use super::witness::{self, Witnesses};
 use crate::contact::{Answer, Settings};
-use crate::gjk;
 use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 
@@ -182,7 +181,7 @@ impl<'a> Search<'a> {
         if !(new.h < 0.0) {
             return Ok(Some(new));
         }
-        Ok(match gjk::farthest(self.samples.points(), n, 0.0) {
+        Ok(match self.samples.farthest(n) {
             // D holds what was seen: no miss.
             Some(seen) if self.again || self.samples.len == 0 => Some(Sample::new(n, seen)),
             Some(_) => Some(new),

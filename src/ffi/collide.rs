@@ -167,7 +167,7 @@ unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_i
         let answer = arena::with(|arena| pair.minimum(&mut cold, &settings, arena, placed));
         match answer {
             Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
-            Ok(Answer::Miss(_) | Answer::Undecided(_)) | Err(Fault::NonFinite) => Err(-1),
+            Ok(Answer::Miss(_)) | Err(Fault::NonFinite) => Err(-1),
             Err(Fault::NoMemory) => Err(-2),
         }
     }

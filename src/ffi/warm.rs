@@ -133,7 +133,7 @@ unsafe fn answer(
         let result = solve(&pair, &mut state, &settings);
         let (code, hit) = match result {
             Ok(Answer::Hit(hit)) => (CCD_HIT, Some(hit)),
-            Ok(Answer::Limit(hit) | Answer::Undecided(hit)) => (CCD_LIMIT, Some(hit)),
+            Ok(Answer::Limit(hit)) => (CCD_LIMIT, Some(hit)),
             Ok(Answer::Miss(_)) => (CCD_MISS, None),
             Err(Fault::NoMemory) => return CCD_NO_MEMORY,
             Err(Fault::NonFinite) => return CCD_BAD_INPUT,
