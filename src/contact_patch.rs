@@ -16,6 +16,8 @@
 //! are intersected by the halfplanes of one of them (Sutherland and Hodgman, Reentrant
 //! polygon clipping, CACM 17(1), 1974).
 
+use std::hash::{DefaultHasher, Hash, Hasher};
+
 use crate::contact::Penetration;
 use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -270,21 +272,21 @@ pub fn mark<'p>(points: impl Fn(usize) -> &'p [Vec3; 2] + Copy, count: usize) ->
     let of = |object: usize| (0..count).map(move |i| points(i)[object]);
     // A line is narrower than a millionth of its length.
     let solid = |object: usize| {
-        let least = of(object).map(|p| (p - points(0)[object]).norm_squared());
-        let blur = 1e-12 * least.fold(0.0, larger);
+        let far2 = of(object).map(|p| (p - points(0)[object]).norm_squared());
+        let blur = 1e-12 * far2.fold(0.0, larger);
         dimensions(of(object), blur).0 == 2
     };
     if !(solid(0) && solid(1)) {
         return 0;
     }
-    // Fowler, Noll and Vo's hash, a word at a time, its high bits brought down; added up, since
-    // the points may come in any order. Two sets have one number by one chance in 2⁶³.
+    // Added up, since the points may come in any order. Two sets have one number by one chance
+    // in 2⁶³.
     let of_one = |p: &[Vec3; 2]| {
-        let coordinates = p.iter().flatten();
-        coordinates.fold(0xcbf2_9ce4_8422_2325, |hash: u64, x| {
-            let mixed = (hash ^ u64::from(x.to_bits())).wrapping_mul(0x0100_0000_01b3);
-            mixed ^ mixed >> 29
-        })
+        let mut hasher = DefaultHasher::new();
+        for x in p.iter().flatten() {
+            x.to_bits().hash(&mut hasher);
+        }
+        hasher.finish()
     };
     let hash = (0..count).fold(0, |sum: u64, i| sum.wrapping_add(of_one(points(i))));
     hash | 1

@@ -508,6 +508,10 @@ pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
     if kind != Proof::Centred {
         simplex.inner = NOWHERE;
     }
+    if kind != Proof::Solid && !(start.norm() > inquiry.precision.touch()) {
+        // The point itself is the origin.
+        return Ok([0; 4]);
+    }
     let mut beside = beside(exit, &start);
     let dir = direction(&-start).unwrap_or(Vec3::x());
     search(
@@ -525,8 +529,11 @@ pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
                 return Ok(None);
             };
             let place = room(set, simplex);
-            inquiry.ask_at(set, place, &d)?;
-            Ok((n.dot(&set.v(place)) > touch).then_some(place))
+            let i = match inquiry.ask_at(set, place, &d)? {
+                Beyond::Put { .. } => place,
+                Beyond::Known(i) => i,
+            };
+            Ok((n.dot(&set.v(i)) > touch).then_some(i))
         },
     )
 }

@@ -104,6 +104,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             other => {
                 state.remember(other);
+                self.face(state);
                 Ok(())
             }
         }
@@ -246,20 +247,28 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.settle(answer, settings)
     }
 
-    /// Does the direction look away from where the centres look, and D reach farther there? The
-    /// state of the swapped pair leads to the far side.
-    fn is_behind(&self, dir: &Vec3) -> Result<bool, Fault> {
+    /// Does a state lead to the far side, as that of the swapped pair does? It was left when the
+    /// centres looked the other way; or, a guess, it looks away from them, and D reaches farther
+    /// there.
+    fn is_behind(&self, state: &State) -> Result<bool, Fault> {
         let Some(centre) = self.centre else {
             return Ok(false);
         };
-        if !(dir.dot(&centre.v) > 0.0) {
-            return Ok(false);
+        if let Some(before) = state.facing() {
+            return Ok(before.dot(&centre.v) < 0.0);
         }
-        let (Some(n), cold) = (unit(dir), self.cold_start()) else {
+        let Some(n) = state.leaving().filter(|n| n.dot(&centre.v) > 0.0) else {
             return Ok(false);
         };
         let reach = |n: &Vec3| Ok(n.dot(&self.md.support(n)?.v));
-        Ok(reach(&cold)? < reach(&n)?)
+        Ok(reach(&self.cold_start())? < reach(&n)?)
+    }
+
+    /// The state tells where the centres are.
+    fn face(&self, state: &mut State) {
+        if let Some(centre) = &self.centre {
+            state.face(&centre.v);
+        }
     }
 
     /// [`Pair::local`], and the points it came to know.
@@ -272,14 +281,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let mut memory = state.solver();
-        if self.is_behind(&memory.dir)? {
-            memory = Memory::default();
+        let mut memory = Memory::default();
+        if !self.is_behind(state)? {
+            memory = state.solver();
         }
         let found = self.descend(&mut memory, settings, known)?;
         let answer = self.proven(found, known, settings, false)?;
         match answer {
-            Answer::Hit(_) | Answer::Limit(_) => *state = State::overlap(&memory),
+            Answer::Hit(_) | Answer::Limit(_) => {
+                *state = State::overlap(&memory);
+                self.face(state);
+            }
             other => self.remember(state, &other)?,
         }
         Ok(answer)
@@ -437,6 +449,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(middle) = middle {
             state.rest(middle, basis.mark);
         }
+        self.face(state);
     }
 
     /// Lowers a depth that the global search could not prove. Where minima form a curve or a

@@ -17,15 +17,22 @@
 //! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after a face that rested: [`Resting`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
-//! A direction that is zero stands for none.
+//! A direction that is zero stands for none. Where centres are given, every kind but a guess
+//! also tells where obj2's lay as seen from obj1's ([`State::face`]).
 
 use crate::contact::Answer;
 use crate::descent::Memory;
 use crate::global::Basis;
 use crate::math::{Real, Vec3, unit};
 
-/// [`State::rested`] of a pair that rested face on face when its minimum was proven.
-const RESTED: u32 = 1;
+/// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.
+const RESTED: u32 = 1 << 31;
+/// The bits of [`State::marks`] for a coordinate of the direction of the centres' difference.
+const COORDINATE: u32 = 10;
+/// What a coordinate is greater by there: none is 0, and all bits 0 are no direction.
+const OFFSET: u32 = 1 << (COORDINATE - 1);
+/// Lengths in it are this many times as long.
+const SCALE: Real = (OFFSET - 1) as Real;
 
 /// A face that rested on a face or an edge.
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,8 +54,8 @@ pub struct State {
     words: [u32; 2],
     /// One of the constants below; anything else is cold.
     pub kind: u32,
-    /// [`RESTED`] where the pair rested face on face, else 0.
-    pub rested: u32,
+    /// [`RESTED`], and the direction of the centres' difference.
+    marks: u32,
 }
 
 /// The pair was apart.
@@ -77,11 +84,36 @@ impl State {
     pub fn flip(&mut self) {
         let mut memory = self.memory();
         memory.flip();
+        let facing = self.facing();
         *self = Self {
             kind: self.kind,
-            rested: self.rested,
+            marks: self.marks & RESTED,
             ..Self::overlap(&memory)
         };
+        if let Some(centre) = facing {
+            self.face(&-centre);
+        }
+    }
+
+    /// Keeps the direction of the centres' difference, obj1's less obj2's.
+    pub fn face(&mut self, centre: &Vec3) {
+        self.marks &= RESTED;
+        if let Some(n) = unit(centre) {
+            for (i, x) in (0..).zip(n.iter()) {
+                let x = (x * SCALE) as i32 + OFFSET as i32;
+                self.marks |= (x as u32) << (i * COORDINATE);
+            }
+        }
+    }
+
+    /// What [`State::face`] was given, about, unit length; `None` where it was not.
+    pub fn facing(&self) -> Option<Vec3> {
+        let coordinate = |i: u32| {
+            let x = self.marks >> (i * COORDINATE) & (2 * OFFSET - 1);
+            (x as i32 - OFFSET as i32) as Real / SCALE
+        };
+        let given = self.marks & !RESTED != 0;
+        given.then(|| Vec3::new(coordinate(0), coordinate(1), coordinate(2)))
     }
 
     /// The pair overlaps, as the local search left it.
@@ -93,7 +125,7 @@ impl State {
             numbers: [a, b, c, d, e, f, memory.drift],
             words: [memory.count, memory.curved],
             kind: OVERLAP,
-            rested: 0,
+            marks: 0,
         }
     }
 
@@ -210,7 +242,7 @@ impl State {
 
     /// Did the pair rest face on face when its minimum was proven?
     pub fn rested(&self) -> bool {
-        self.kind == PROVEN && self.rested == RESTED
+        self.kind == PROVEN && self.marks & RESTED != 0
     }
 
     /// The face that rested, if one did.
@@ -259,7 +291,7 @@ impl State {
 
     /// The same, and it rests face on face.
     pub fn rest(&mut self, middle: Vec3, mark: u64) {
-        self.rested = RESTED;
+        self.marks |= RESTED;
         let [x, y, z, ..] = &mut self.numbers;
         [*x, *y, *z] = middle.into();
         self.words = [mark as u32, (mark >> 32) as u32];
@@ -277,6 +309,7 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes::Random;
 
     #[test]
     fn flipped_twice_is_as_it_was() {
@@ -289,5 +322,22 @@ mod tests {
         assert_eq!(state.dir, -dir);
         state.flip();
         assert_eq!(state.dir, dir);
+    }
+
+    #[test]
+    fn where_the_other_object_lay_is_kept() {
+        let mut r = Random::new(3);
+        let mut state = State::guess(&Vec3::y());
+        assert!(state.facing().is_none());
+        state.rest(Vec3::x(), 7);
+        for _ in 0..1000 {
+            let n = r.direction();
+            state.face(&(n * 0.001));
+            assert!((state.facing().unwrap() - n).norm() < 0.004);
+            state.flip();
+            assert!((state.facing().unwrap() + n).norm() < 0.007);
+        }
+        state.face(&Vec3::zeros());
+        assert!(state.facing().is_none() && state.marks == RESTED);
     }
 }

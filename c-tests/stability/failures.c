@@ -577,7 +577,7 @@ int main(int argc, char **argv)
         {"U02", "nearly concentric parallel cylinders", nearly_concentric, 3, HOLDS},
         {"U06", "ellipsoids that touch", touching_ellipsoids, 0, HOLDS},
         {"U06", "touches by one rule", touches, 0, HOLDS},
-        {"U09", "boxes with a state of the swapped pair", swapped_state, 0, BROKEN},
+        {"U09", "boxes with a state of the swapped pair", swapped_state, 0, HOLDS},
         {"U09", "MPR with a state of the swapped pair", state_of_others, 0, HOLDS},
         {"U09", "MPR with a state of another pair", state_of_others, 1, HOLDS},
         {"U12", "the minimum of two cones 11 um apart", cones_apart, 0, HOLDS},

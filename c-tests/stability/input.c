@@ -76,6 +76,41 @@ static void nonsense_center2(const void *obj, ccd_vec3_t *out)
     out->v[0] = out->v[1] = out->v[2] = (ccd_real_t).2;
 }
 
+/* A centre that is not finite, where all else is good. */
+static void lost_center(const void *obj, ccd_vec3_t *out)
+{
+    shape_center(obj, out);
+    out->v[obj != NULL] = (ccd_real_t)NAN;
+}
+
+static void far_center(const void *obj, ccd_vec3_t *out)
+{
+    shape_center(obj, out);
+    out->v[2] = (ccd_real_t)HUGE_VAL;
+}
+
+static void bad_centers(const entry_t *e)
+{
+    static const ccd_center_fn center[3] = {shape_center, lost_center, far_center};
+    const int unread = e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_GJK_INTERSECT;
+    int i, k;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) {
+            const shape_t a = shape_box(1, 1, 1);
+            shape_t b = shape_box(1, 1, 1);
+            ccd_t ccd;
+            answer_t x;
+            shape_move(&b, .3, .2, .1);
+            shape_query(&ccd);
+            ccd.support1 = ccd.support2 = judge_support;
+            ccd.center1 = center[i];
+            ccd.center2 = center[k];
+            x = put(e, &a, &b, &ccd);
+            if (x.code != (unread || i + k == 0 ? CCD_HIT : is_extension(e) ? CCD_BAD_INPUT : CCD_MISS))
+                fail("a centre that is not finite", e, &x);
+        }
+}
+
 static void bad_numbers(const shape_t *a, const shape_t *b, int overlap, const entry_t *e)
 {
     static const double tols[] = {0, -1, NAN, HUGE_VAL, 1e-300};
@@ -275,6 +310,7 @@ int main(void)
             bad_numbers(&p.a, &p.b, p.truth.depth > 0, e);
         }
         bad_callbacks(e);
+        bad_centers(e);
         degenerate(e);
     }
     missing_outputs();

@@ -76,11 +76,20 @@ impl Query {
     }
 
     /// The difference of the objects' centres, an interior point of D; `None` when
-    /// a centre callback is NULL.
+    /// a centre callback is NULL or a centre not finite.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     pub unsafe fn centre(&self) -> Option<SupportPoint> {
+        // SAFETY: passed on.
+        unsafe { self.any_centre() }.filter(|c| c.v.sum().is_finite())
+    }
+
+    /// The same, finite or not.
+    ///
+    /// # Safety
+    /// \[inputs\] of the module contract.
+    unsafe fn any_centre(&self) -> Option<SupportPoint> {
         // SAFETY: [inputs]; only the two fields are read.
         let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
         // SAFETY: [callbacks].
@@ -112,7 +121,7 @@ impl Query {
         unsafe {
             Some(Pair {
                 md: self.difference()?,
-                centre: Some(self.centre().filter(|c| c.v.sum().is_finite())?),
+                centre: Some(self.centre()?),
                 first_dir: None,
                 lasting,
             })
@@ -129,7 +138,7 @@ impl Query {
         // SAFETY: passed on.
         unsafe {
             let md = self.difference()?;
-            let centre = self.centre();
+            let centre = self.any_centre();
             if centre.is_some_and(|c| !c.v.sum().is_finite()) {
                 return None;
             }
