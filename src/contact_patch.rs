@@ -16,8 +16,6 @@
 //! are intersected by the halfplanes of one of them (Sutherland and Hodgman, Reentrant
 //! polygon clipping, CACM 17(1), 1974).
 
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use crate::contact::Penetration;
 use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -263,33 +261,33 @@ pub fn move_to(hit: &mut Penetration, middle: &Vec3) {
     hit.point2 = hit.point1 - n * hit.depth;
 }
 
-/// A number made of `count` points of the two objects, centres or support points: the same
-/// again, and neither object has moved. 0 where they do not tell, because all of an object's
-/// points lie on one line.
-#[cold]
-#[inline(never)]
-pub fn mark<'p>(points: impl Fn(usize) -> &'p [Vec3; 2] + Copy, count: usize) -> u64 {
-    let of = |object: usize| (0..count).map(move |i| points(i)[object]);
-    // A line is narrower than a millionth of its length.
-    let solid = |object: usize| {
-        let far2 = of(object).map(|p| (p - points(0)[object]).norm_squared());
-        let blur = 1e-12 * far2.fold(0.0, larger);
-        dimensions(of(object), blur).0 == 2
-    };
-    if !(solid(0) && solid(1)) {
-        return 0;
-    }
-    // Added up, since the points may come in any order. Two sets have one number by one chance
-    // in 2⁶³.
-    let of_one = |p: &[Vec3; 2]| {
-        let mut hasher = DefaultHasher::new();
-        for x in p.iter().flatten() {
-            x.to_bits().hash(&mut hasher);
-        }
-        hasher.finish()
-    };
-    let hash = (0..count).fold(0, |sum: u64, i| sum.wrapping_add(of_one(points(i))));
-    hash | 1
+/// A number made of points of the two objects, in any order: that it is another one for other
+/// points is as sure as 64 bits can make it.
+pub fn mark<'p>(points: impl Iterator<Item = &'p [Vec3; 2]>) -> u64 {
+    points.fold(0, |sum: u64, p| {
+        // Fowler, Noll and Vo's hash, a word at a time, its high bits brought down.
+        let of_one = p
+            .iter()
+            .flatten()
+            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, x| {
+                #[allow(clippy::unnecessary_cast)] // In double precision.
+                let word = (*x as f64).to_bits();
+                let mixed = (hash ^ word).wrapping_mul(0x0100_0000_01b3);
+                mixed ^ mixed >> 29
+            });
+        sum.wrapping_add(of_one)
+    })
+}
+
+/// Can neither object move while its points, these, stay where they are? Not so, where they lie
+/// on one line.
+pub fn pins<'p>(points: impl Iterator<Item = &'p [Vec3; 2]> + Clone) -> bool {
+    (0..2).all(|object| {
+        let own = points.clone().map(|p| p[object]);
+        let longest = dimensions(own.clone(), 0.0).1;
+        // Narrower than a millionth of its length is a line.
+        dimensions(own, 1e-12 * longest * longest).0 == 2
+    })
 }
 
 /// A convex polygon in the plane, counterclockwise; corners may coincide.

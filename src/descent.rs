@@ -173,8 +173,8 @@ const EXACT: bool = EPSILON < 1e-10;
 /// vector `start`.
 ///
 /// `Hit`: at a local minimum to within the tolerance; `Limit`: at the lowest direction met;
-/// the overlap of both is not proven. `Miss`: apart. `inner`: any inner point of D, its distance
-/// is what curvature is first guessed from. `known`: gains support points for the proof, the
+/// the overlap of both is not proven. `Miss`: apart. `inner`: any inner point of D; how far the
+/// support points lie from it is what curvature is first guessed from. `known`: gains support points for the proof, the
 /// active ones or else the best one first.
 ///
 /// # Errors
@@ -215,10 +215,18 @@ fn curved<A: SupportMap, B: SupportMap>(
     known: &mut Known,
     asked: &Asked,
 ) -> Result<Answer, Fault> {
-    let mut search = Search::new(inner, settings, known);
+    let rest = Settings {
+        max_iterations: settings.max_iterations.saturating_sub(asked.dropped),
+        ..*settings
+    };
+    let mut search = Search::new(inner, &rest, known);
     let first = search.resume(asked.samples(), asked.trust);
     let first = first.unwrap_or_else(|| search.recall(memory, start));
-    search.run(md, first, memory)
+    let mut answer = search.run(md, first, memory)?;
+    if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
+        hit.iterations += asked.dropped;
+    }
+    Ok(answer)
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@
 //! kinds in use that is a sixth fewer support points than libccd's portal asks for.
 
 use crate::barycentric;
-use crate::math::{EPSILON, Real, Vec3, larger, largest, normal, perpendicular, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, normal, perpendicular, unit};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Beyond, Inquiry, Stop, SupportSet};
 
@@ -77,13 +77,21 @@ impl Simplex {
         }
     }
 
-    /// One point, well inside D.
+    /// One point.
     #[inline(always)]
-    fn around(id: usize, at: &Vec3) -> Self {
+    pub fn of(id: usize, at: &Vec3) -> Self {
         let mut simplex = Self::new();
         simplex.add(id, *at, 0.0, 0.0);
-        simplex.inner = 0;
         simplex
+    }
+
+    /// One point, well inside D.
+    #[inline(always)]
+    pub fn around(id: usize, at: &Vec3) -> Self {
+        Self {
+            inner: 0,
+            ..Self::of(id, at)
+        }
     }
 
     /// The corners' indices, as many as there are corners.
@@ -489,144 +497,10 @@ pub enum Proof {
     Planar,
 }
 
-/// [`overlap`], where a search for the depth has left points of D in the set: point 0 and
-/// others. A point of each object makes a point of D as well, so these are put together anew
-/// wherever that reaches beyond the origin: k support points of D are k² points of D.
-///
-/// `exit`: the point of the boundary where the origin leaves D. D is first asked beside it, on
-/// the side of the origin that is open: at the angle where a ball of D's size falls back from
-/// the support plane by a quarter of the depth. A distance algorithm asks far away, and halves
-/// its way back to a thin overlap; to a deep one it does not need to.
-pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
-    inquiry: &mut Inquiry<'_, A, B>,
-    set: &mut SupportSet<N>,
-    kind: Proof,
-    exit: &Vec3,
-) -> Result<[usize; 4], Stop> {
-    let start = set.v(0);
-    let mut simplex = Simplex::around(0, &start);
-    if kind != Proof::Centred {
-        simplex.inner = NOWHERE;
-    }
-    if kind != Proof::Solid && !(start.norm() > inquiry.precision.touch()) {
-        // The point itself is the origin.
-        return Ok([0; 4]);
-    }
-    let mut beside = beside(exit, &start);
-    let dir = direction(&-start).unwrap_or(Vec3::x());
-    search(
-        inquiry,
-        set,
-        simplex,
-        dir,
-        kind,
-        |inquiry, set, simplex, n| {
-            let touch = inquiry.precision.touch();
-            if let Some(i) = recombined(set, simplex, n, touch) {
-                return Ok(Some(i));
-            }
-            let Some(d) = beside.take().and_then(|beside| beside(n)) else {
-                return Ok(None);
-            };
-            let place = room(set, simplex);
-            let i = match inquiry.ask_at(set, place, &d)? {
-                Beyond::Put { .. } => place,
-                Beyond::Known(i) => i,
-            };
-            Ok((n.dot(&set.v(i)) > touch).then_some(i))
-        },
-    )
-}
-
-/// The index of the point of D farthest along `n`, of all that the points of obj1 and those of
-/// obj2 in the set make, if it reaches beyond `reach`; it is put into the set.
-fn recombined<const N: usize>(
-    set: &mut SupportSet<N>,
-    simplex: &Simplex,
-    n: &Vec3,
-    reach: Real,
-) -> Option<usize> {
-    let (mut one, mut two) = ((0, Real::NEG_INFINITY), (0, Real::INFINITY));
-    for i in 0..set.len() {
-        let [v1, v2] = set.witnesses(i);
-        let (a, b) = (n.dot(v1), n.dot(v2));
-        if a > one.1 {
-            one = (i, a);
-        }
-        if b < two.1 {
-            two = (i, b);
-        }
-    }
-    let (v1, v2) = (set.witnesses(one.0)[0], set.witnesses(two.0)[1]);
-    let v = v1 - v2;
-    if !(n.dot(&v) > reach) {
-        return None;
-    }
-    if one.0 == two.0 {
-        return Some(one.0);
-    }
-    let place = room(set, simplex);
-    set.place(place, &Vec3::zeros(), &SupportPoint { v, v1, v2 });
-    Some(place)
-}
-
-/// Where to ask beside the exit, on the side that a direction looks to; nowhere, if D there is
-/// not thin.
-fn beside(exit: &Vec3, start: &Vec3) -> Option<impl Fn(&Vec3) -> Option<Vec3> + use<>> {
-    let b = unit(exit)?;
-    let depth = exit.norm();
-    let size = depth - b.dot(start);
-    let tilt = (0.5 * depth / size).sqrt();
-    let side = move |n: &Vec3| unit(&(b + unit(&(n - b * n.dot(&b)))? * tilt));
-    // Also NaN.
-    (tilt <= THIN).then_some(side)
-}
-
-/// The angle, radians, that tells a thin overlap by.
-const THIN: Real = 0.2;
-
-/// A lower bound on the depth, metres: the distance from the origin to the nearest face of the
-/// tetrahedron of these points, which is inscribed in D. 0 where the origin is not strictly
-/// inside, beyond rounding.
-pub fn inner_distance(corners: [&SupportPoint; 4]) -> Real {
-    let magnitude = corners.iter().fold(0.0, |m, p| larger(m, p.magnitude()));
-    let rounding = 4.0 * EPSILON * magnitude;
-    let [p, q, r, s] = corners.map(|p| &p.v);
-    // The faces around s, and the base: all turned outwards or all inwards.
-    let [sp, sq, sr] = [p - s, q - s, r - s];
-    let [pr, pq] = [r - p, q - p];
-    let [at_s, at_p] = [largest(s), largest(p)];
-    let [p_, q_, r_] = [largest(&sp), largest(&sq), largest(&sr)];
-    let faces = [
-        (sp.cross(&sq), s, at_s * larger(p_, q_)),
-        (sq.cross(&sr), s, at_s * larger(q_, r_)),
-        (sr.cross(&sp), s, at_s * larger(r_, p_)),
-        (pr.cross(&pq), p, at_p * larger(largest(&pr), largest(&pq))),
-    ];
-    let mut least = Real::INFINITY;
-    let outwards = faces[0].0.dot(s) > 0.0;
-    for (n, a, lever) in &faces {
-        let origin = n.dot(a);
-        let origin = if outwards { origin } else { -origin };
-        // Less what the rounding of the corners may add, which a short edge
-        // magnifies by the way to the origin.
-        let distance = (origin - rounding * lever) / n.norm() - rounding;
-        // Not on the inner side, or within rounding of it, or a face whose area
-        // underflows (infinite or NaN): no bound.
-        if !(distance > 0.0 && distance < Real::INFINITY) {
-            return 0.0;
-        }
-        if distance < least {
-            least = distance;
-        }
-    }
-    least
-}
-
 /// [`overlap`], from a simplex and a direction to ask. `stand_in` may give the index of a point
 /// of the set that lies beyond the origin along a direction, by more than a touch.
 #[inline(always)]
-fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
+pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
     inquiry: &mut Inquiry<'q, A, B>,
     set: &mut SupportSet<N>,
     mut simplex: Simplex,
@@ -821,7 +695,7 @@ pub fn direction(way: &Vec3) -> Option<Vec3> {
 /// Where the next point goes: behind the others, or, in a set without room, in the place of
 /// one that is no corner.
 #[inline(always)]
-fn room<const N: usize>(set: &SupportSet<N>, simplex: &Simplex) -> usize {
+pub fn room<const N: usize>(set: &SupportSet<N>, simplex: &Simplex) -> usize {
     if N == 4 {
         // Indices and places are the same.
         return simplex.place();

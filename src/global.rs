@@ -67,8 +67,8 @@ pub struct Request<'a> {
     pub limits: &'a Limits,
     /// Does anybody read the witness points? Else the width of the contact is not looked for.
     pub placed: bool,
-    /// Did the pair rest face on face when it was asked last?
-    pub rested: bool,
+    /// The [`Basis::mark`] of a pair that rested face on face when it was asked last.
+    pub mark: Option<u64>,
 }
 
 impl Request<'_> {
@@ -84,9 +84,10 @@ impl Request<'_> {
 pub struct Basis {
     directions: [Vec3; Basis::ROOM],
     len: usize,
-    /// Of a face that rests on a face or an edge: a number made of all that tells where it is,
-    /// the same for the same contact alone. Else 0.
+    /// The [`contact_patch::mark`] of the points known, where a face rests on a face or an edge.
     pub mark: u64,
+    /// Has such a pair not moved since the state was left?
+    pub unmoved: bool,
 }
 
 impl Basis {
@@ -422,7 +423,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             // Asked along the normal of two resting faces, a support mapping picks one corner
             // of each: where little else was asked, the points do not show that they rest.
             let tied = (dir - set.direction(1)).norm() * precision.size() <= error;
-            let blind = self.request.rested || self.request.cold() && tied;
+            let blind = self.request.mark.is_some() || self.request.cold() && tied;
             // Mostly one of the two touches with a corner, which needs no look.
             let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
             if blind || !corner {
@@ -455,7 +456,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         if let Some(basis) = &mut self.basis {
             if width > 0.0 {
-                basis.mark = contact_patch::mark(|i| set.witnesses(i), set.len());
+                let points = (0..set.len()).map(|i| set.witnesses(i));
+                basis.mark = contact_patch::mark(points.clone());
+                basis.unmoved =
+                    self.request.mark == Some(basis.mark) && contact_patch::pins(points);
             }
             basis.add(&dir);
             // What asking along dir has found it finds again: one of several that are as far.
@@ -548,7 +552,7 @@ mod tests {
             others: &[],
             limits: &limits,
             placed: true,
-            rested: false,
+            mark: None,
         };
         let mut hit = Penetration::default();
         let mut heap = Heap(None);

@@ -84,6 +84,8 @@ pub mod polytope;
 pub mod portal;
 #[doc(hidden)]
 pub mod precision;
+#[doc(hidden)]
+pub mod proof;
 pub mod query;
 #[doc(hidden)]
 pub mod separation;

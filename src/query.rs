@@ -14,7 +14,7 @@
 //!    though the objects are apart (a plate that an object has passed through, seen
 //!    from the old side), so the origin must be shown to lie among points of D: in the
 //!    tetrahedron of the centres' difference and three active points, else by
-//!    [`distance::proof`], which puts the points the solver saw together anew and asks for
+//!    [`proof`], which puts the points the solver saw together anew and asks for
 //!    more only where these leave a side open. The global search (`mpr`,
 //!    `minimum`) proves its overlaps itself.
 //! 4. Witness points of a face that rests on another, or on an edge, are moved to the
@@ -27,13 +27,14 @@ use crate::barycentric;
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contact_patch;
 use crate::descent::{self, Memory};
-use crate::distance::{self, Proof};
+use crate::distance::Proof;
 use crate::expansion::Limits;
 use crate::global::{self, Arena, Basis, Request};
 use crate::local::{self, Shortcut};
-use crate::math::{EPSILON, ITERATION_CAP, Real, Vec3, larger, perpendicular, unit};
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
 use crate::planar;
 use crate::portal::rounding;
+use crate::proof::{inner_distance, is_around, proof};
 use crate::separation;
 use crate::state::State;
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
@@ -44,25 +45,6 @@ use crate::support_set::{Inquiry, Stop, SupportSet};
 fn unmet(hit: &Penetration, tolerance: Real) -> bool {
     let apart = || (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
     hit.depth <= tolerance && apart() > tolerance
-}
-
-/// Does the tetrahedron of `c` and the first three points hold the origin, by more than
-/// rounding? The ray from the origin along the hit's direction meets the triangle of these.
-///
-/// With Cᵢ = vⱼ × vₖ that is c·Cᵢ < 0 for all i, where v₀·C₀ > 0.
-#[inline]
-fn around(c: &Vec3, points: &[SupportPoint], hit: &Penetration) -> bool {
-    let [p, q, r, ..] = points else {
-        return false;
-    };
-    let (u, v, w) = (p.v, q.v, r.v);
-    let sides = [v.cross(&w), w.cross(&u), u.cross(&v)];
-    let sign = (1.0 as Real).copysign(-u.dot(&sides[0]));
-    let size2 = larger(larger(u.norm_squared(), v.norm_squared()), w.norm_squared());
-    let reach2 = larger(hit.point1.norm_squared(), hit.point2.norm_squared());
-    let size2 = larger(larger(size2, c.norm_squared()), reach2);
-    let rounding = 64.0 * EPSILON * size2 * size2.sqrt();
-    sides.iter().all(|side| sign * c.dot(side) > rounding)
 }
 
 /// A pair and what the caller knows of it besides the state.
@@ -119,12 +101,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .unwrap_or(Vec3::x())
     }
 
-    /// Step 3: the answer of a solver, with the overlap proven or refuted. `known` gains
-    /// the points of the proof. `planar`: D lies in a plane.
+    /// Step 3: the answer of a solver, with the overlap proven or refuted, from points
+    /// that are known. `planar`: D lies in a plane.
     fn proven(
         &self,
         mut answer: Answer,
-        known: &mut Known,
+        known: &Known,
         settings: &Settings,
         planar: bool,
     ) -> Result<Answer, Fault> {
@@ -143,7 +125,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let quick = self
             .centre
-            .is_some_and(|c| around(&c.v, known.points(), hit));
+            .is_some_and(|c| is_around(&c.v, known.points(), inquiry.precision.reach()));
         if quick && hit.depth > settings.tolerance {
             return Ok(answer);
         }
@@ -190,7 +172,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         inquiry: &mut Inquiry<'_, A, B>,
         centre: Option<SupportPoint>,
         hit: &mut Penetration,
-        known: &mut Known,
+        known: &Known,
         tolerance: Real,
         planar: bool,
     ) -> Result<(), Stop> {
@@ -211,14 +193,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Some(_) if hit.depth > tolerance => Proof::Centred,
             _ => Proof::Solid,
         };
-        let corners = distance::proof(inquiry, &mut set, kind, &exit)?;
+        let corners = proof(inquiry, &mut set, kind, &exit)?;
         let corners = corners.map(|i| set.point(i));
-        for corner in &corners {
-            known.add(corner);
-        }
         let [a, b, c, d] = corners.each_ref();
         if centre.is_none() {
-            hit.depth_lower = distance::inner_distance([a, b, c, d]).min(hit.depth);
+            hit.depth_lower = inner_distance([a, b, c, d]).min(hit.depth);
         }
         if unmet(hit, tolerance) {
             let inside = barycentric::tetrahedron(&Vec3::zeros(), [&a.v, &b.v, &c.v, &d.v]);
@@ -239,12 +218,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             other => Ok(other),
         }
-    }
-
-    /// A local minimum of the depth.
-    pub fn local(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        let answer = self.local_known(state, settings, &mut Known::default())?;
-        self.settle(answer, settings)
     }
 
     /// Does a state lead to the far side, as that of the swapped pair does? It was left when the
@@ -271,13 +244,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
     }
 
-    /// [`Pair::local`], and the points it came to know.
-    fn local_known(
-        &self,
-        state: &mut State,
-        settings: &Settings,
-        known: &mut Known,
-    ) -> Result<Answer, Fault> {
+    /// A local minimum of the depth.
+    pub fn local(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
@@ -285,8 +253,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !self.is_behind(state)? {
             memory = state.solver();
         }
-        let found = self.descend(&mut memory, settings, known)?;
-        let answer = self.proven(found, known, settings, false)?;
+        let mut known = Known::default();
+        let found = self.local_minimum(&mut memory, settings, &mut known)?;
+        let answer = self.proven(found, &known, settings, false)?;
         match answer {
             Answer::Hit(_) | Answer::Limit(_) => {
                 *state = State::overlap(&memory);
@@ -294,7 +263,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             other => self.remember(state, &other)?,
         }
-        Ok(answer)
+        self.settle(answer, settings)
     }
 
     /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
@@ -305,13 +274,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let start = state.leaving().unwrap_or_else(|| self.cold_start());
         let found = local::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
-        let answer = self.proven(found, &mut Known::default(), settings, false)?;
+        let answer = self.proven(found, &Known::default(), settings, false)?;
         self.remember(state, &answer)?;
         self.settle(answer, settings)
     }
 
     /// The minimum depth at MPR's price: within the tolerance or a thousandth of the depth,
-    /// in at most [`MPR_SUPPORTS`] support points; trusts the centre.
+    /// in at most [`MPR_SUPPORTS`] support points; where these do not do, a local search lowers
+    /// the depth. Trusts the centre.
     pub fn mpr(
         &self,
         state: &mut State,
@@ -381,7 +351,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             others: state.others(),
             limits,
             placed,
-            rested: state.rested(),
+            mark: state.mark(),
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
@@ -401,10 +371,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         match found {
             Ok(true) => {
                 let alone = hit.point1;
-                let resting = state.resting();
                 let asked = self.md.supports();
-                if basis.mark != 0 && basis.mark == resting.mark {
-                    contact_patch::move_to(&mut hit, &resting.middle);
+                if basis.unmoved {
+                    contact_patch::move_to(&mut hit, &state.middle());
                 } else {
                     contact_patch::settle(&self.md, &mut hit, limits.tolerance)?;
                 }
@@ -413,7 +382,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 Ok(Answer::Hit(hit))
             }
             Ok(false) => {
-                self.floor(&mut hit, limits.tolerance)?;
+                self.floor(&mut hit, limits)?;
                 self.keep(state, &basis, None, 0);
                 Ok(Answer::Limit(hit))
             }
@@ -457,16 +426,21 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// not be theirs to the tolerance. But its direction is near them, and a local search from
     /// there finds one: to a hundredth of the tolerance, since what falls so little over the
     /// first trust radius falls thirty times as much over the sphere.
+    /// It takes what is left of the iterations, and no more than one search's.
     #[cold]
     #[inline(never)]
-    fn floor(&self, hit: &mut Penetration, tolerance: Real) -> Result<(), Fault> {
+    fn floor(&self, hit: &mut Penetration, limits: &Limits) -> Result<(), Fault> {
+        let left = limits.iterations.saturating_sub(hit.iterations);
+        if left == 0 {
+            return Ok(());
+        }
         let level = Settings {
-            tolerance: tolerance * 0.01,
-            max_iterations: ITERATION_CAP,
+            tolerance: limits.tolerance * 0.01,
+            max_iterations: left,
         };
         let mut memory = Memory::towards(hit.normal);
         if let Answer::Hit(floor) | Answer::Limit(floor) =
-            self.stroll(&mut memory, PATIENCE, &level, &mut Known::default())?
+            self.search(&mut memory, left.min(BUDGET), &level, &mut Known::default())?
         {
             if floor.depth < hit.depth {
                 *hit = Penetration {
@@ -479,86 +453,85 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(())
     }
 
-    /// A local minimum, not yet a proven overlap: the few-supports solver, and where that
-    /// does not end in time the paper's method from there on.
+    /// A local minimum, its overlap not proven. After each local search there are three cases:
     ///
-    /// A search that tires goes on from the lowest place it saw with a fresh view, for as
-    /// long as that leads down: the floor of a long valley bends away from any straight
-    /// step. Where it does not, the search looks around from beside that place.
-    fn descend(
+    /// - It ended at a minimum, no higher than what was met before: the answer.
+    /// - It stalled, lower than before: the floor of a long valley bends away from any straight
+    ///   step. It goes on from there, and nothing is remembered.
+    /// - It stalled no lower, or ended higher: it starts again beside the lowest place met, in
+    ///   each of the [`RESTARTS`]. After these the paper's method goes on from there.
+    fn local_minimum(
         &self,
         memory: &mut Memory,
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Answer, Fault> {
-        let mut found = self.stroll(memory, PATIENCE, settings, known)?;
-        // Depths that differ by less are the same.
-        let level = |hit: &Penetration| {
-            let reach = larger(hit.point1.norm(), hit.point2.norm());
-            larger(settings.tolerance, rounding(reach))
-        };
-        let mut left = settings.max_iterations;
+        let most = settings.max_iterations;
+        let mut left = most;
         let mut lowest: Option<Penetration> = None;
-        let mut asides = 0;
+        let mut restarts = RESTARTS.iter();
         // Ends: `left` falls.
-        let tired = loop {
-            let (hit, ended) = match found {
+        let mut found = loop {
+            let mut found = self.search(memory, left.min(BUDGET), settings, known)?;
+            let (hit, ended) = match &mut found {
                 Answer::Hit(hit) => (hit, true),
                 Answer::Limit(hit) => (hit, false),
-                other => return Ok(other),
+                Answer::Miss(_) => return Ok(found),
             };
+            left = left.saturating_sub(hit.iterations.max(1));
+            hit.iterations = most - left;
+            // Depths that differ by less are the same.
+            let reach = larger(hit.point1.norm(), hit.point2.norm());
+            let level = larger(settings.tolerance, rounding(reach));
             let before = lowest.map_or(Real::INFINITY, |low| low.depth);
-            if ended && hit.depth <= before + level(&hit) {
+            if ended && hit.depth <= before + level {
                 return Ok(found);
             }
-            let start = match lowest {
-                Some(low) if ended || !(hit.depth <= before - level(&hit)) => {
-                    let Some(way) = WAYS.get(asides) else {
-                        break low;
-                    };
-                    asides += 1;
-                    beside(&low.normal, *way)
-                }
-                _ => {
-                    lowest = Some(hit);
-                    asides = 0;
-                    hit.normal
-                }
+            let start = if !ended && hit.depth <= before - level {
+                lowest = Some(*hit);
+                restarts = RESTARTS.iter();
+                hit.normal
+            } else if let (Some(way), Some(low)) = (restarts.next(), &lowest) {
+                beside(&low.normal, *way)
+            } else {
+                break found;
             };
-            left = left.saturating_sub(PATIENCE);
             if left == 0 {
                 return Ok(lowest.map_or(found, Answer::Limit));
             }
             *memory = Memory::towards(start);
-            found = self.stroll(memory, PATIENCE.min(left), settings, known)?;
+        };
+        let Some(low) = lowest else {
+            return Ok(found);
         };
         let rest = Settings {
             max_iterations: left,
             ..*settings
         };
-        let answer = local::penetration(&self.md, tired.normal, Shortcut::Always, &rest, |_| ())?;
-        match &answer {
+        let last = local::penetration(&self.md, low.normal, Shortcut::Always, &rest, |_| ())?;
+        match last {
             // D reaches beyond that plane: a callback that errs must not separate.
-            Answer::Miss(n) if known.farthest(n).is_some() => return Ok(found),
-            Answer::Hit(hit) | Answer::Limit(hit) => {
-                *memory = Memory::towards(hit.normal);
-            }
-            _ => {}
+            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(found),
+            other => found = other,
         }
-        Ok(answer)
+        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut found {
+            hit.iterations += most - left;
+            *memory = Memory::towards(hit.normal);
+        }
+        Ok(found)
     }
 
-    /// The few-supports solver, for as long as `patience`.
+    /// One local search, of so many iterations at most.
     #[inline(never)]
-    fn stroll(
+    fn search(
         &self,
         memory: &mut Memory,
-        patience: u64,
+        max_iterations: u64,
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Answer, Fault> {
-        let first = Settings {
-            max_iterations: settings.max_iterations.min(patience),
+        let settings = Settings {
+            max_iterations,
             ..*settings
         };
         descent::penetration(
@@ -566,7 +539,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             self.centre.map(|c| c.v).as_ref(),
             &self.cold_start(),
             memory,
-            &first,
+            &settings,
             known,
         )
     }
@@ -598,7 +571,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         } else {
             Answer::Hit(way.hit)
         };
-        let mut answer = self.proven(found, &mut known, settings, false)?;
+        let mut answer = self.proven(found, &known, settings, false)?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
             // The bound along dir in place of the one all around.
             hit.depth_lower = way.hit.depth_lower;
@@ -626,23 +599,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .or_else(|| in_plane(Vec3::y()))
             .unwrap_or(Vec3::y());
         let found = planar::penetration(&self.md, &m, start, settings)?;
-        let answer = self.proven(found, &mut Known::default(), settings, true)?;
+        let answer = self.proven(found, &Known::default(), settings, true)?;
         self.remember(state, &answer)?;
         Ok(answer)
     }
 }
 
-/// Support points after which the few-supports solver has failed: it needs a dozen, on
-/// the hardest pairs thirty.
-const PATIENCE: u64 = 64;
+/// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty.
+const BUDGET: u64 = 64;
 
-/// Places beside the lowest one that a tired search looks from.
-const ASIDES: usize = 4;
-
-/// Cosine and sine of the ways there: the golden angle apart, never twice nearly the same
-/// way. Written down, for the same bits in every build.
+/// The ways to restart beside the lowest place met, as cosines and sines: the golden angle apart,
+/// never twice nearly the same way. Written down, for the same bits in every build.
 #[allow(clippy::excessive_precision)] // In single precision.
-const WAYS: [[Real; 2]; ASIDES] = [
+const RESTARTS: [[Real; 2]; 4] = [
     [-0.7373937155412454, 0.675463180551151],
     [0.0874989834394464, -0.9961646088358407],
     [0.6083513145322552, 0.7936678638491527],

@@ -14,7 +14,7 @@
 //! | `OVERLAP` | the local search | the minimum's | slopes of the active cuts | the rest of [`Memory`] |
 //! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after a face that rested: [`Resting`] |
+//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::mark`] and [`State::middle`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none. Where centres are given, every kind but a guess
@@ -33,15 +33,6 @@ const COORDINATE: u32 = 10;
 const OFFSET: u32 = 1 << (COORDINATE - 1);
 /// Lengths in it are this many times as long.
 const SCALE: Real = (OFFSET - 1) as Real;
-
-/// A face that rested on a face or an edge.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Resting {
-    /// The middle of where they touched: obj1's witness point.
-    pub middle: Vec3,
-    /// The [`Basis::mark`] of the contact: the same one, the same contact. 0 for none.
-    pub mark: u64,
-}
 
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
 #[derive(Clone, Copy, Debug, Default)]
@@ -245,17 +236,16 @@ impl State {
         self.kind == PROVEN && self.marks & RESTED != 0
     }
 
-    /// The face that rested, if one did.
-    pub fn resting(&self) -> Resting {
+    /// Its [`Basis::mark`], if it did.
+    pub fn mark(&self) -> Option<u64> {
+        let [low, high] = self.words.map(u64::from);
+        self.rested().then_some(high << 32 | low)
+    }
+
+    /// The middle of where it did: obj1's witness point.
+    pub fn middle(&self) -> Vec3 {
         let [x, y, z, ..] = self.numbers;
-        let [low, high] = self.words;
-        if !(self.rested() && (x + y + z).is_finite()) {
-            return Resting::default();
-        }
-        Resting {
-            middle: Vec3::new(x, y, z),
-            mark: u64::from(high) << 32 | u64::from(low),
-        }
+        Vec3::new(x, y, z)
     }
 
     /// Keeps the directions of a portal besides.
@@ -289,7 +279,8 @@ impl State {
         state
     }
 
-    /// The same, and it rests face on face.
+    /// The same, and it rests face on face: the middle of where it does, obj1's witness point, and
+    /// the [`Basis::mark`].
     pub fn rest(&mut self, middle: Vec3, mark: u64) {
         self.marks |= RESTED;
         let [x, y, z, ..] = &mut self.numbers;

@@ -51,6 +51,7 @@ const MODULES: &[(&str, Option<Phase>)] = &[
     ("signed_distance", Some(Phase::Search)),
     ("start", Some(Phase::Search)),
     ("expansion", Some(Phase::Proof)),
+    ("proof", Some(Phase::Proof)),
     ("plane", Some(Phase::Proof)),
     ("polytope", Some(Phase::Proof)),
     ("contact_patch", Some(Phase::Patch)),

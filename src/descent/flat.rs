@@ -91,6 +91,8 @@ pub struct Asked {
     len: usize,
     /// The trust radius, radians.
     pub trust: Real,
+    /// How many samples were asked and are not kept.
+    pub dropped: u64,
 }
 
 impl Asked {
@@ -252,6 +254,7 @@ impl Flat {
             *place = *sample;
             asked.len += 1;
         }
+        asked.dropped = self.asked.saturating_sub(asked.len) as u64;
         Outcome::Open(asked)
     }
 

@@ -37,7 +37,8 @@ pub struct Search<'a> {
     /// The last sample contradicted another, or lay beyond the origin: the next one, a little
     /// beside it, is taken as it is.
     again: bool,
-    /// Any inner point of D, its distance is what curvature is first guessed from.
+    /// Any inner point of D: how far the support points lie from it is what curvature is first
+    /// guessed from.
     inner: Vec3,
     settings: Settings,
     /// In force, metres.
