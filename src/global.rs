@@ -427,7 +427,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             // Mostly one of the two touches with a corner, which needs no look.
             let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
             if blind || !corner {
-                let witnesses = |i| set.witnesses(i + 1);
+                let witnesses = |i| *set.witnesses(i + 1);
                 let count = set.len() - 1;
                 let above = set.witnesses(lowest);
                 width = match contact_patch::rest(
@@ -439,7 +439,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                     precision.size(),
                 ) {
                     Rest::Along(length) => length,
-                    Rest::Unsure(length) if blind => length,
+                    Rest::Corner(side) if blind => side.norm(),
+                    Rest::Crossing(length) if blind => length,
                     _ => 0.0,
                 };
             }

@@ -153,15 +153,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
         tolerance: Real,
     ) -> Result<(), Stop> {
-        let (mut inquiry, mut known) = (Inquiry::new(&self.md), Known::default());
-        self.surround(
-            &mut inquiry,
-            centre.copied(),
-            hit,
-            &mut known,
-            tolerance,
-            false,
-        )
+        let mut inquiry = Inquiry::new(&self.md);
+        let known = Known::default();
+        self.surround(&mut inquiry, centre.copied(), hit, &known, tolerance, false)
     }
 
     /// Shows that the origin lies among points of D. Where a touch, within the tolerance, has
