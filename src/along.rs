@@ -40,7 +40,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut budget = settings.max_iterations;
     let (exit, first) = follow(md, dir, last, settings.tolerance, &mut budget)?;
     let (limit, portal, plane) = match exit {
-        Exit::Miss(n) => return Ok(Err(n)),
+        Exit::Miss(plane) => return Ok(Err(plane.normal)),
         Exit::Converged(portal, plane) => (false, Some(portal), plane),
         Exit::Limit(portal) => (true, portal, nearest(dir, first, portal.as_ref())),
         Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => (false, None, first),
@@ -116,7 +116,7 @@ fn follow<A: SupportMap, B: SupportMap>(
             SupportPlane::of(md, c)?,
         ];
         if let Some(out) = planes.iter().find(|p| p.depth < 0.0) {
-            return Ok((Exit::Miss(out.normal), *out));
+            return Ok((Exit::Miss(*out), *out));
         }
         if let Some(portal) = Portal::of(*dir, planes) {
             let mut best = planes[0];

@@ -32,6 +32,7 @@
 
 use crate::barycentric;
 use crate::math::{EPSILON, Real, Vec3, larger, normal, perpendicular, unit};
+use crate::portal::{Exit, Found, Measure, SupportPlane, find_portal, refine};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::support_set::{Beyond, Inquiry, Stop, SupportSet};
 
@@ -449,7 +450,7 @@ const STALLS: u32 = 3;
 
 /// Support points after which the portal's answer is its last one. It halves what is open
 /// at each but few; what is open then is rounding.
-const LAST: u32 = 200;
+const LAST: u64 = 200;
 
 /// Shows that the objects overlap: the origin is strictly inside D, beyond rounding, or no
 /// direction asked separates. Or [`Stop::Apart`]. Returns the corners of the tetrahedron
@@ -727,104 +728,40 @@ fn decide<A: SupportMap, B: SupportMap, const N: usize>(
     if !(inner.v.norm() > inquiry.precision.touch()) {
         inner = inner.middle(&seen.point(0));
     }
-    let mut search = Search {
-        inquiry,
-        set: SupportSet::EMPTY,
-        corners: [0; 4],
-    };
-    search.set.push(&Vec3::zeros(), &inner);
     let ray = unit(&-inner.v).unwrap_or(*dir);
-    search.corners[1] = search.ask(&ray)?;
-    let a = search.set.v(search.corners[1]);
-    let side = unit(&inner.v.cross(&a)).unwrap_or_else(|| perpendicular(&ray));
-    search.corners[2] = search.ask(&side)?;
-    search.discover()?;
-    search.refine(&ray)
-}
-
-/// A search by portal.
-struct Search<'i, 'q, A, B> {
-    inquiry: &'i mut Inquiry<'q, A, B>,
-    set: SupportSet<8>,
-    /// The inner point, and three support points around the ray from it through the origin.
-    corners: [usize; 4],
-}
-
-impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
-    fn ask(&mut self, dir: &Vec3) -> Result<usize, Stop> {
-        let used = self.corners;
-        // The first that is free is no farther than behind the others.
-        let place = (1..8).find(|i| !used.contains(i)).unwrap_or(7);
-        Ok(match self.inquiry.ask_at(&mut self.set, place, dir)? {
-            Beyond::Put { .. } => place,
-            Beyond::Known(id) => id,
-        })
-    }
-
-    /// From the inner point and two support points to a portal, wound so that its triangle's
-    /// normal looks along the ray.
-    fn discover(&mut self) -> Result<(), Stop> {
-        let inner = self.set.v(self.corners[0]);
-        let across = |set: &SupportSet<8>, [_, a, b, _]: [usize; 4]| {
-            (set.v(a) - inner).cross(&(set.v(b) - inner))
-        };
-        // The third point lies where the origin does, seen from the plane of the others.
-        if across(&self.set, self.corners).dot(&inner) > 0.0 {
-            self.corners.swap(1, 2);
-        }
-        for _ in 0..LAST {
-            let Some(n) = unit(&across(&self.set, self.corners)) else {
-                break;
-            };
-            self.corners[3] = self.ask(&n)?;
-            let [_, a, b, w] = self.corners.map(|i| self.set.v(i));
-            // Beyond a side, the corner opposite to that side goes.
-            if a.cross(&w).dot(&inner) < 0.0 {
-                self.corners[2] = self.corners[3];
-            } else if w.cross(&b).dot(&inner) < 0.0 {
-                self.corners[1] = self.corners[3];
-            } else {
-                break;
+    let first = SupportPlane::of(inquiry.md, ray)?;
+    let (mut best, mut budget) = (first, LAST);
+    let found = find_portal(inquiry.md, &first, Some(&inner.v), &mut best, &mut budget)?;
+    let lowest = match found {
+        Found::Miss(plane) => plane,
+        // Any portal that has the origin on its inner side decides.
+        Found::Portal(portal) => {
+            let beyond = Real::INFINITY;
+            let normal = Measure::Normal;
+            match refine(
+                inquiry.md,
+                portal,
+                beyond,
+                normal,
+                false,
+                &mut best,
+                &mut budget,
+            )? {
+                Exit::Miss(plane) => plane,
+                _ => best,
             }
         }
-        let [_, p, q, r] = self.corners.map(|i| self.set.v(i));
-        if normal(&p, &q, &r).dot(&inner) > 0.0 {
-            self.corners.swap(1, 2);
-        }
+        Found::Vertex | Found::Touch | Found::Limit => best,
+    };
+    inquiry.precision.note(&lowest.point);
+    let touch = inquiry.precision.touch();
+    // A callback that contradicts itself separates nothing.
+    let contradicted = |h: Real| set.farther(&lowest.normal, h).is_some();
+    let grain = inquiry.precision.grain();
+    if lowest.depth > touch || contradicted(larger(lowest.depth + grain, touch)) {
         Ok(())
-    }
-
-    /// Moves a portal outwards until the origin lies on its inner side or a plane separates.
-    fn refine(&mut self, ray: &Vec3) -> Result<(), Stop> {
-        for _ in 0..LAST {
-            let [_, p, q, r] = self.corners.map(|i| self.set.v(i));
-            // Without area, or turned over: rounding is all that is left.
-            let Some(n) = unit(&normal(&p, &q, &r)).filter(|n| n.dot(ray) > 0.0) else {
-                break;
-            };
-            let noise = self.inquiry.precision.touch();
-            let inside = n.dot(&p);
-            if inside > noise {
-                break;
-            }
-            let w = self.ask(&n)?;
-            let v = self.set.v(w);
-            if !(n.dot(&v) - inside > noise) {
-                break;
-            }
-            // As in [`crate::portal::Portal::update`].
-            let across = ray.cross(&v);
-            let [t1, t2, t3] = [p, q, r].map(|x| across.dot(&x));
-            let split = [t2.min(-t3), t3.min(-t1), t1.min(-t2)];
-            let mut replaced = 0;
-            for i in 1..3 {
-                if split[i] > split[replaced] {
-                    replaced = i;
-                }
-            }
-            self.corners[replaced + 1] = w;
-        }
-        Ok(())
+    } else {
+        Err(Stop::Apart(lowest.normal))
     }
 }
 

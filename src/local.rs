@@ -68,7 +68,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             &mut budget,
         )?;
         let next = match exit {
-            Exit::Miss(n) => return Ok(Answer::Miss(n)),
+            Exit::Miss(plane) => return Ok(Answer::Miss(plane.normal)),
             Exit::Touch => return Ok(Answer::Hit(answer(best, None, used(budget)))),
             Exit::Limit(_) => return Ok(Answer::Limit(answer(best, None, used(budget)))),
             Exit::Shortcut(plane) => plane,

@@ -167,8 +167,8 @@ pub enum Found {
     Vertex,
     /// `best` has depth zero within rounding: no direction is shallower.
     Touch,
-    /// This unit direction separates.
-    Miss(Vec3),
+    /// This plane separates.
+    Miss(SupportPlane),
     /// The iterations were used up.
     Limit,
 }
@@ -189,7 +189,7 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
 ) -> Result<Found, Fault> {
     let d = first.normal;
     if first.depth < 0.0 {
-        return Ok(Found::Miss(d));
+        return Ok(Found::Miss(*first));
     }
     let size = first.point.magnitude();
     let side = first.point.v.cross(&d);
@@ -202,7 +202,7 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
     };
     let second = match probe(md, side, best)? {
         Probe::Plane(p) => p,
-        Probe::Miss(n) => return Ok(Found::Miss(n)),
+        Probe::Miss(plane) => return Ok(Found::Miss(plane)),
     };
     if !(second.depth > rounding(size.max(second.point.magnitude()))) {
         return Ok(Found::Touch);
@@ -225,7 +225,7 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
         };
         let third = match probe(md, n, best)? {
             Probe::Plane(p) => p,
-            Probe::Miss(n) => return Ok(Found::Miss(n)),
+            Probe::Miss(plane) => return Ok(Found::Miss(plane)),
         };
         let w = third.point.v;
         if triple(&d, &a, &w) > 0.0 {
@@ -242,7 +242,7 @@ pub fn find_portal<A: SupportMap, B: SupportMap>(
 
 enum Probe {
     Plane(SupportPlane),
-    Miss(Vec3),
+    Miss(SupportPlane),
 }
 
 #[inline]
@@ -253,7 +253,7 @@ fn probe<A: SupportMap, B: SupportMap>(
 ) -> Result<Probe, Fault> {
     let plane = SupportPlane::of(md, n)?;
     if plane.depth < 0.0 {
-        return Ok(Probe::Miss(n));
+        return Ok(Probe::Miss(plane));
     }
     if plane.depth < best.depth {
         *best = plane;
@@ -274,7 +274,7 @@ pub enum Exit {
     /// See [`Found`].
     Touch,
     /// See [`Found`].
-    Miss(Vec3),
+    Miss(SupportPlane),
     /// The iterations were used up; the last portal if there was one.
     Limit(Option<Portal>),
 }
@@ -302,7 +302,7 @@ pub fn mpr<A: SupportMap, B: SupportMap>(
         Found::Portal(p) => refine(md, p, tolerance, Measure::Normal, shortcut, best, budget),
         Found::Vertex => Ok(Exit::Vertex),
         Found::Touch => Ok(Exit::Touch),
-        Found::Miss(n) => Ok(Exit::Miss(n)),
+        Found::Miss(plane) => Ok(Exit::Miss(plane)),
         Found::Limit => Ok(Exit::Limit(None)),
     }
 }
@@ -339,7 +339,7 @@ pub fn refine<A: SupportMap, B: SupportMap>(
                 };
                 return Ok(Exit::Converged(portal, plane));
             }
-            Probe::Miss(n) => return Ok(Exit::Miss(n)),
+            Probe::Miss(plane) => return Ok(Exit::Miss(plane)),
         };
         let mut gap = plane.depth - inner;
         let mut least = floor;
@@ -492,7 +492,10 @@ mod tests {
             let mut best = first;
             let mut budget = 1000;
             match mpr(&md, &first, 1e-6, false, &mut best, &mut budget).unwrap() {
-                Exit::Miss(n) => assert!(n.dot(&md.support(&n).unwrap().v) < 0.0),
+                Exit::Miss(n) => {
+                    let n = n.normal;
+                    assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
+                }
                 _ => panic!("the origin is outside"),
             }
         }
