@@ -13,11 +13,11 @@
 //! either face; five of them, evenly around, show all corners of a rectangle, however it
 //! is turned, since each is the farthest one over a right angle. Of faces with more
 //! corners the region is an inscribed polygon, still inside both objects. Convex polygons
-//! are intersected by the halfplanes of one of them (Sutherland and Hodgman, Reentrant
-//! polygon clipping, CACM 17(1), 1974).
+//! are intersected by the halfplanes of one of them ([`Polygon::inside`]).
 
 use crate::contact::Penetration;
 use crate::math::{self, EPSILON, Real, Vec3, larger, perpendicular};
+use crate::polygon::{Flat, Polygon, between, cross, dot, side};
 use crate::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// Directions around the normal.
@@ -239,8 +239,8 @@ pub fn settle<A: SupportMap, B: SupportMap>(
         [e1.dot(&p), e2.dot(&p)]
     };
     let lift = n * hit.depth;
-    let one = Polygon::of(corners.map(|p| flat(p.v1)));
-    let two = Polygon::of(corners.map(|p| flat(p.v2 + lift)));
+    let one = Polygon::<ROOM>::of(corners.map(|p| flat(p.v1)));
+    let two = Polygon::<ROOM>::of(corners.map(|p| flat(p.v2 + lift)));
     let (small, large) = if one.area() > two.area() {
         (two, one)
     } else {
@@ -259,25 +259,20 @@ pub fn settle<A: SupportMap, B: SupportMap>(
 }
 
 /// The middle of what two edges share that lie along each other.
-fn shared([a, b]: [[Real; 2]; 2], [p, q]: [[Real; 2]; 2]) -> Option<[Real; 2]> {
-    let (s, t) = ([b[0] - a[0], b[1] - a[1]], [q[0] - p[0], q[1] - p[1]]);
-    let length2 = s[0] * s[0] + s[1] * s[1];
+fn shared([a, b]: [Flat; 2], [p, q]: [Flat; 2]) -> Option<Flat> {
+    let s = side(&a, &b);
     // How far a point is along the first edge and beside it, as shares of its length.
-    let at = |c: [Real; 2]| {
-        let d = [c[0] - a[0], c[1] - a[1]];
-        [
-            (s[0] * d[0] + s[1] * d[1]) / length2,
-            (s[0] * d[1] - s[1] * d[0]) / length2,
-        ]
+    let at = |c: &Flat| {
+        let d = side(&a, c);
+        [dot(&s, &d), cross(&s, &d)].map(|x| x / dot(&s, &s))
     };
-    let [[from, one], [to, other]] = [at(p), at(q)];
+    let [[from, one], [to, other]] = [at(&p), at(&q)];
     if !(larger(one.abs(), other.abs()) <= ASIDE) {
         return None;
     }
     let (from, to) = (larger(from.min(to), 0.0), from.max(to).min(1.0));
-    let middle = 0.5 * (from + to);
     // NaN, of an edge without length, is no share.
-    (from <= to && t != [0.0; 2]).then_some([a[0] + s[0] * middle, a[1] + s[1] * middle])
+    (from <= to).then(|| between(&a, &b, 0.5 * (from + to)))
 }
 
 /// Edges that are this share of their length aside of each other lie along each other: as rounded
@@ -319,106 +314,6 @@ pub fn pins<'p>(points: impl Iterator<Item = &'p [Vec3; 2]> + Clone) -> bool {
         // Narrower than a millionth of its length is a line.
         dimensions(own, 1e-12 * longest * longest).0 == 2
     })
-}
-
-/// A convex polygon in the plane, counterclockwise; corners may coincide.
-struct Polygon {
-    corners: [[Real; 2]; ROOM],
-    len: usize,
-}
-
-impl Polygon {
-    fn of(points: [[Real; 2]; AROUND]) -> Self {
-        let mut polygon = Self {
-            corners: [[0.0; 2]; ROOM],
-            len: 0,
-        };
-        points.into_iter().for_each(|p| polygon.push(p));
-        polygon
-    }
-
-    fn push(&mut self, p: [Real; 2]) {
-        if let Some(corner) = self.corners.get_mut(self.len) {
-            *corner = p;
-            self.len += 1;
-        }
-    }
-
-    /// Its sides, from corner to corner.
-    fn sides(&self) -> impl Iterator<Item = ([Real; 2], [Real; 2])> {
-        let corners = self.corners.iter().take(self.len);
-        let next = corners.clone().cycle().skip(1);
-        corners.copied().zip(next.copied())
-    }
-
-    /// Twice its area.
-    fn area(&self) -> Real {
-        self.sides().map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum()
-    }
-
-    /// What of it is inside another, or no farther than `slack` outside.
-    fn inside(&self, other: &Self, slack: Real) -> Self {
-        let mut rest = Self {
-            corners: self.corners,
-            len: self.len,
-        };
-        for (p, q) in other.sides() {
-            let side = [q[0] - p[0], q[1] - p[1]];
-            let length = (side[0] * side[0] + side[1] * side[1]).sqrt();
-            let within =
-                |a: &[Real; 2]| side[0] * (a[1] - p[1]) - side[1] * (a[0] - p[0]) + slack * length;
-            let whole = rest;
-            rest = Self {
-                corners: [[0.0; 2]; ROOM],
-                len: 0,
-            };
-            for (a, b) in whole.sides() {
-                let (at_a, at_b) = (within(&a), within(&b));
-                if at_a >= 0.0 {
-                    rest.push(a);
-                }
-                if (at_a >= 0.0) != (at_b >= 0.0) {
-                    let t = at_a / (at_a - at_b);
-                    rest.push([a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]);
-                }
-            }
-        }
-        rest
-    }
-
-    /// The two corners that are farthest apart.
-    fn edge(&self) -> [[Real; 2]; 2] {
-        let mut edge = [[0.0; 2]; 2];
-        let mut longest = -1.0;
-        for (i, p) in self.corners.iter().take(self.len).enumerate() {
-            for q in &self.corners[..i] {
-                let length2 = (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2);
-                if length2 > longest {
-                    (edge, longest) = ([*p, *q], length2);
-                }
-            }
-        }
-        edge
-    }
-
-    /// The centre of its outline, which is also that of a segment or a point.
-    fn middle(&self) -> Option<[Real; 2]> {
-        let mut sum = [0.0; 2];
-        let mut length = 0.0;
-        for (p, q) in self.sides() {
-            let side = ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt();
-            sum[0] += 0.5 * (p[0] + q[0]) * side;
-            sum[1] += 0.5 * (p[1] + q[1]) * side;
-            length += side;
-        }
-        let middle = sum.map(|s| s / length);
-        // Not NaN: of no corner, or of one alone.
-        if middle.iter().all(|m| m.is_finite()) {
-            Some(middle)
-        } else {
-            (self.len > 0).then_some(self.corners[0])
-        }
-    }
 }
 
 #[cfg(test)]
@@ -557,41 +452,5 @@ mod tests {
         for pos in [at_ball, at_vertex] {
             assert!((pos - Vec3::new(0.2, 0.1, 0.45)).norm() < 1e-2, "{pos}");
         }
-    }
-
-    #[test]
-    fn polygons() {
-        let square = |x: Real, y: Real, h: Real| {
-            let c = |s: Real, t: Real| [x + s * h, y + t * h];
-            Polygon::of([
-                c(-1.0, -1.0),
-                c(1.0, -1.0),
-                c(1.0, 1.0),
-                c(1.0, 1.0),
-                c(-1.0, 1.0),
-            ])
-        };
-        let near = |p: Option<[Real; 2]>, q: [Real; 2]| {
-            let p = p.expect("a middle");
-            assert!(
-                (p[0] - q[0]).abs() + (p[1] - q[1]).abs() < 16.0 * EPSILON,
-                "{p:?}"
-            );
-        };
-        let whole = square(0.0, 0.0, 1.0);
-        assert_eq!(whole.area(), 8.0);
-        near(
-            whole.inside(&square(1.0, 1.0, 1.0), 0.0).middle(),
-            [0.5, 0.5],
-        );
-        near(
-            square(0.1, 0.2, 0.25).inside(&whole, 0.0).middle(),
-            [0.1, 0.2],
-        );
-        assert!(whole.inside(&square(3.0, 0.0, 1.0), 0.0).middle().is_none());
-        let segment = Polygon::of([[-3.0, 0.5], [-3.0, 0.5], [0.5, 0.5], [0.5, 0.5], [0.5, 0.5]]);
-        near(segment.inside(&whole, 0.0).middle(), [-0.25, 0.5]);
-        let point = Polygon::of([[0.3, 0.4]; AROUND]);
-        near(point.inside(&whole, 0.0).middle(), [0.3, 0.4]);
     }
 }
