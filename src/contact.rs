@@ -8,8 +8,8 @@ use crate::math::{Real, Vec3};
 /// How much work a query may do, and how exact its depth must be.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Largest error of the depth, metres; already checked to be finite and not
-    /// negative. Solvers floor it at a few ulps of the size they see.
+    /// Largest error of the depth, metres; already checked to be no NaN and not negative, but
+    /// it may be infinite. Solvers floor it at a few ulps of the size they see.
     pub tolerance: Real,
     /// Cap on the iterations of any one loop; at most the library's own cap.
     pub max_iterations: u64,

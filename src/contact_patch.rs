@@ -41,11 +41,13 @@ const ROOM: usize = 2 * AROUND;
 /// that touches, but of two objects that lie along each other it may have seen no more than one
 /// end of one on the plane. The other end, seen a little lower, gives that away.
 pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> Real {
-    let reach = |p: &&SupportPoint| n.dot(&p.v);
-    let Some(top) = points.iter().max_by(|p, q| reach(p).total_cmp(&reach(q))) else {
-        return 0.0;
-    };
-    let top = [top.v1, top.v2];
+    let mut top = [Vec3::zeros(); 2];
+    let mut reach = Real::NEG_INFINITY;
+    for p in points {
+        if n.dot(&p.v) > reach {
+            (top, reach) = ([p.v1, p.v2], n.dot(&p.v));
+        }
+    }
     let point = |i: usize| [points[i].v1, points[i].v2];
     match rest(point, points.len(), n, &top, tolerance, size) {
         Rest::Along(length) => length,
@@ -102,7 +104,7 @@ struct Touch {
     /// The way from the first to the one farthest from it, and its square.
     side: Vec3,
     side2: Real,
-    /// How many there are.
+    /// How many there are; one that comes again mostly counts once.
     count: u32,
 }
 
@@ -114,16 +116,16 @@ impl Touch {
             least: n.dot(&first) - tolerance,
             side: Vec3::zeros(),
             side2: 0.0,
-            count: 0,
+            count: 1,
         }
     }
 
     #[inline(always)]
     fn add(&mut self, v: &Vec3, n: &Vec3) {
         if n.dot(v) >= self.least {
-            self.count += 1;
             let side = v - self.first;
             let side2 = side.norm_squared();
+            self.count += u32::from(side2 > 0.0 && side != self.side);
             if side2 > self.side2 {
                 (self.side, self.side2) = (side, side2);
             }

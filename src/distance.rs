@@ -115,15 +115,15 @@ impl Simplex {
     }
 
     /// Adds a point, `at` from the target, and keeps the face that holds the point nearest
-    /// to it. What is nearer than `noise` is as good as touching, metres; `size2` is
+    /// to it. What is nearer than `touch`, metres, touches; `size2` is
     /// the square of a length that no corner is farther from the target than.
     ///
     /// Returns the way from there to the target, of any length, and the square of the
     /// distance, m². The way is zero where a triangle without area holds the target. `None`:
-    /// the target is inside the tetrahedron, off its three new faces by more than the noise;
+    /// the target is inside the tetrahedron, off its three new faces by more than a touch;
     /// its distance from the old one, the base, is not looked at.
     #[inline(always)]
-    pub fn add(&mut self, id: usize, at: Vec3, noise: Real, size2: Real) -> Option<(Vec3, Real)> {
+    pub fn add(&mut self, id: usize, at: Vec3, touch: Real, size2: Real) -> Option<(Vec3, Real)> {
         let w = self.place();
         self.ids[w] = id;
         self.at[w] = at;
@@ -133,18 +133,18 @@ impl Simplex {
         let [i, j, _] = self.order;
         let face = match self.len {
             0 => self.corner(w),
-            1 => self.line(i, w, noise),
+            1 => self.line(i, w, touch),
             2 => {
                 let [a, b] = [i, j].map(|p| self.at[p & 3]);
                 let n = normal(&a, &b, &at);
                 // Outwards is where the target is. NaN, or a flat D: either.
                 if n.dot(&at) > 0.0 {
-                    self.triangle([j, i, w], -n, a.cross(&at), at.cross(&b), noise)
+                    self.triangle([j, i, w], -n, a.cross(&at), at.cross(&b), touch)
                 } else {
-                    self.triangle([i, j, w], n, b.cross(&at), at.cross(&a), noise)
+                    self.triangle([i, j, w], n, b.cross(&at), at.cross(&a), touch)
                 }
             }
-            _ => self.tetrahedron(w, noise, size2)?,
+            _ => self.tetrahedron(w, touch, size2)?,
         };
         self.order = face.order;
         self.len = face.len;
@@ -182,12 +182,12 @@ impl Simplex {
 
     /// As [`Simplex::add`] without a new point; and every face of the simplex counts, not
     /// only those with the newest point.
-    pub fn settle(&mut self, noise: Real) -> (Vec3, Real) {
+    pub fn settle(&mut self, touch: Real) -> (Vec3, Real) {
         let [i, j, k] = self.order;
         let at = self.order.map(|p| self.at[p & 3]);
         let face = match self.len {
             0 | 1 => self.corner(i),
-            2 => self.line(i, j, noise),
+            2 => self.line(i, j, touch),
             _ => {
                 let [a, b, c] = &at;
                 let weights = barycentric::triangle(&Vec3::zeros(), a, b, c).weights;
@@ -207,9 +207,9 @@ impl Simplex {
                             distance2: height / n.norm_squared() * height,
                         }
                     }
-                    [true, true, _] => self.line(i, j, noise),
-                    [true, _, true] => self.line(i, k, noise),
-                    [_, true, true] => self.line(j, k, noise),
+                    [true, true, _] => self.line(i, j, touch),
+                    [true, _, true] => self.line(i, k, touch),
+                    [_, true, true] => self.line(j, k, touch),
                     [_, _, true] => self.corner(k),
                     [_, true, _] => self.corner(j),
                     _ => self.corner(i),
@@ -258,9 +258,9 @@ impl Simplex {
 
     /// The nearest point of two; where they hold the target, any way aside.
     #[inline(always)]
-    fn line(&self, i: usize, w: usize, noise: Real) -> Face {
+    fn line(&self, i: usize, w: usize, touch: Real) -> Face {
         let mut face = self.segment(i, w);
-        if !(face.distance2 > noise * noise) {
+        if !(face.distance2 > touch * touch) {
             let along = unit(&(self.at[w & 3] - self.at[i & 3])).unwrap_or(Vec3::x());
             face.way = perpendicular(&along);
         }
@@ -271,7 +271,7 @@ impl Simplex {
     /// the newest point w, or of its edges those with w, which alone can. Given are its outward
     /// normal `n`, and with the corners as vectors j × w and w × i.
     #[inline(always)]
-    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, noise: Real) -> Face {
+    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, touch: Real) -> Face {
         let [i, j, w] = order;
         // The weights of i and j, as multiples of n².
         let (beyond_i, beyond_j) = (!(n.dot(&jw) > 0.0), !(n.dot(&wi) > 0.0));
@@ -296,7 +296,7 @@ impl Simplex {
                 }
             }
         };
-        if edge.distance2 > noise * noise {
+        if edge.distance2 > touch * touch {
             return edge;
         }
         // On the edge within rounding.
@@ -310,21 +310,21 @@ impl Simplex {
 
     /// The face nearest to the target; `None` where it is inside.
     #[inline(always)]
-    fn tetrahedron(&self, place: usize, noise: Real, size2: Real) -> Option<Face> {
+    fn tetrahedron(&self, place: usize, touch: Real, size2: Real) -> Option<Face> {
         let [i, j, k] = self.order;
         let [a, b, c, w] = [i, j, k, place].map(|p| &self.at[p & 3]);
         let (wa, wb, wc) = (w.cross(a), w.cross(b), w.cross(c));
         let heights = [wa.dot(b), wb.dot(c), wc.dot(a)];
         // The normal of a face is at most four squares of the farthest corner long: what is
         // higher is off it by more than twice the rounding.
-        let least = 8.0 * size2 * noise;
+        let least = 8.0 * size2 * touch;
         // A face that has the inner point for a corner is inside D, and so is the target where
         // rounding puts it on either side of that: what counts is the face opposite.
         let kept = [i, j, k].map(|p| p == self.inner);
         let inside = kept != [false; 3];
         // NaN is outside.
         let clear = |height: Real, p: &Vec3, q: &Vec3, opposite: bool| {
-            let slack = if inside && !opposite { -noise } else { noise };
+            let slack = if inside && !opposite { -touch } else { touch };
             height > least || height > -least && off(height, p, q, w, slack)
         };
         let mut best: Option<Face> = None;
@@ -337,7 +337,7 @@ impl Simplex {
             }
             let order = [corners[s], corners[s + 1], place];
             let n = normal(p, q, w);
-            let face = self.triangle(order, n, -crosses[s + 1], crosses[s], noise);
+            let face = self.triangle(order, n, -crosses[s + 1], crosses[s], touch);
             if best.as_ref().is_none_or(|b| face.distance2 < b.distance2) {
                 best = Some(face);
             }
@@ -519,7 +519,7 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
     let (mut nearest, mut backed) = (Real::INFINITY, false);
     let mut stalls = 0;
     for _ in 0..STEPS {
-        let (w, at, noise) = match stand_in(inquiry, set, &simplex, &dir)? {
+        let (w, at, touch) = match stand_in(inquiry, set, &simplex, &dir)? {
             // A corner, by rounding.
             Some(w) if simplex.has(w) => break,
             Some(w) => (w, set.v(w), inquiry.precision.touch()),
@@ -533,9 +533,9 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
             }
         };
         let solid = simplex.len == 3;
-        let Some((way, distance2)) = simplex.add(w, at, noise, inquiry.precision.size2()) else {
+        let Some((way, distance2)) = simplex.add(w, at, touch, inquiry.precision.size2()) else {
             let inside = simplex.inner != NOWHERE;
-            if !(nearest > noise * noise || backed || inside) {
+            if !(nearest > touch * touch || backed || inside) {
                 // The origin is in the base's plane, within rounding: in one of the two
                 // tetrahedra on either side of it, if there is another.
                 let place = room(set, &simplex);
@@ -544,12 +544,12 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
             let [i, j, k] = simplex.ids();
             return Ok([i, j, k, w]);
         };
-        if distance2 <= noise * noise && simplex.proves(kind) {
+        if distance2 <= touch * touch && simplex.proves(kind) {
             let [i, j, k] = simplex.ids();
             return Ok([i, j, k, k]);
         }
         // Negated for NaN.
-        if !(distance2 > noise * noise && distance2 < nearest) {
+        if !(distance2 > touch * touch && distance2 < nearest) {
             stalls += 1;
             if stalls > STALLS {
                 break;

@@ -20,8 +20,10 @@
 //!   no value with a destructor is alive, no lock is held and no Rust reference into the
 //!   caller's memory exists.
 //! - \[outputs\] An output pointer is NULL (where its function says so) or points to
-//!   writable memory of its type. It may be an input too: inputs are copied first, outputs
-//!   are written last.
+//!   writable memory of its type, or of as many as its function says. It may be an input too:
+//!   inputs are copied first, outputs are written last.
+//! - \[heap\] malloc, calloc and free are C's. A block is used for what it is large enough
+//!   and aligned for, and freed once, by the one who took it.
 //! - \[polytope\] A [`ccd_pt_t`](types::ccd_pt_t) went through `ccdPtInit`, its lists are
 //!   circular, its links lead to live elements, each element is a block of C's malloc, and
 //!   during a call only that call touches it. It is reached through raw pointers alone.

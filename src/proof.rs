@@ -62,7 +62,7 @@ fn widest(c: &Vec3, first: &Vec3, others: &[SupportPoint]) -> Option<[Vec3; 2]> 
     Some([q, r])
 }
 
-/// [`distance::overlap`], where a search for the depth has left points of D in the set: point 0 and
+/// [`crate::distance::overlap`], where a search for the depth has left points of D in the set: point 0 and
 /// others. A point of each object makes a point of D as well, so these are put together anew
 /// wherever that reaches beyond the origin: k support points of D are k² points of D.
 ///

@@ -245,7 +245,7 @@ fn cores<A: SupportMap, B: SupportMap>(
         if plain.is_none() && !(search.lower >= -touch) {
             return Ok(Cores::Overlap(search.normal));
         }
-        // No way on: callbacks that err by more than rounding.
+        // The cap on iterations, or callbacks that err by more than rounding.
         let (Some(plain), true) = (plain, search.iterations < wanted.settings.max_iterations)
         else {
             break true;
@@ -283,8 +283,8 @@ fn cores<A: SupportMap, B: SupportMap>(
 ///
 /// **Warm**, the directions that found the corners are asked again. Where a face is nearest,
 /// three find its corners and a fourth proves its plane: fewer cannot do, for after any turn a
-/// support point says nothing of another direction's. (Measured on the six `_trajS` sets moved
-/// apart, tolerance 1e-6: boxes and hulls 4.0 to 4.2 support points, 6.3 in the mean of all.)
+/// support point says nothing of another direction's. (Measured on six slow motions, the `_trajS` pair
+/// sets, moved apart, tolerance 1e-6: boxes and hulls 4.0 to 4.2 support points, 6.3 in the mean of all.)
 struct Search<'p, A, B> {
     pair: &'p Pair<A, B>,
     set: SupportSet<4>,

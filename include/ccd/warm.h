@@ -364,7 +364,7 @@ int ccdSignedDistance(const void *obj1,
                       struct ccd_distance_t *out);
 
 /**
- * Which library a process really runs, and in which precision: "warmccd 0.1.0 double", a
+ * Which library a process really runs, and in which precision: "warmccd 0.2.0 double", a
  * string that lives as long as the library.
  */
 CCD_EXPORT const char *ccdImplementation(void);

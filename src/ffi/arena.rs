@@ -19,13 +19,13 @@ impl Arena for Block {
         let block = match self.0 {
             Some(block) => block,
             None => {
-                // SAFETY: calloc may be called with any size.
+                // SAFETY: [heap]; calloc takes any size.
                 let block = unsafe { calloc(1, size_of::<Room>()) };
                 NonNull::new(block.cast()).ok_or(Fault::NoMemory)?
             }
         };
         self.0 = Some(block);
-        // SAFETY: aligned for reals, large enough, and zero bytes are a Room.
+        // SAFETY: [heap]; and zero bytes are a Room, which holds numbers alone.
         Ok(unsafe { &mut *block.as_ptr() })
     }
 }
@@ -35,7 +35,7 @@ pub fn with<R>(query: impl FnOnce(&mut dyn Arena) -> R) -> R {
     let mut block = Block(None);
     let result = query(&mut block);
     if let Some(block) = block.0 {
-        // SAFETY: a block of calloc that nobody uses any more.
+        // SAFETY: [heap]; nobody uses the block any more.
         unsafe { free(block.as_ptr().cast()) };
     }
     result

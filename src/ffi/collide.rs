@@ -129,6 +129,10 @@ pub unsafe fn mpr_penetration(
 /// `depth` in metres, `dir` unit, the way obj2 moves, `pos` the middle of two
 /// witness points. Returns -1 and leaves the outputs alone when they do not, when a
 /// callback is NULL or a point not finite.
+///
+/// Of a support function, depth exceeds the least depth by no more than mpr_tolerance or 0.1 %
+/// of it; but where 160 support points or max_iterations came first, which is not told, it is
+/// only sound: moving obj2 by depth along dir separates.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     obj1: *const c_void,
@@ -178,7 +182,8 @@ unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_i
 ///
 /// Returns 0 and writes the outputs that are not NULL when they overlap, as
 /// [`ccdMPRPenetration`] does; -2 when memory cannot be had and -1 otherwise, and leaves
-/// the outputs alone.
+/// the outputs alone. Where max_iterations or 1,400 support points came first, which is not
+/// told, the depth is only sound.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     obj1: *const c_void,

@@ -23,7 +23,7 @@ use crate::math::{EPSILON, Real, Vec3};
 /// An empty polytope.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
-    // SAFETY: [polytope].
+    // SAFETY: [outputs].
     unsafe {
         list_init(&raw mut (*pt).vertices);
         list_init(&raw mut (*pt).edges);
@@ -60,7 +60,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddVertex(
     if vertex.is_null() {
         return vertex;
     }
-    // SAFETY: [polytope], and `vertex` is a new block of its size.
+    // SAFETY: [polytope], [inputs] for v, and `vertex` is a new block of its size ([heap]).
     unsafe {
         let v = *v;
         (*vertex).id = 0;

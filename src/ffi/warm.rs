@@ -116,7 +116,7 @@ unsafe fn answer(
     if query.ccd.is_null() || out.is_null() {
         return CCD_BAD_INPUT;
     }
-    // SAFETY: [inputs].
+    // SAFETY: [inputs], [outputs]; `solve` runs callbacks, [callbacks].
     unsafe {
         let tolerance = tolerance(&query);
         if !(tolerance >= 0.0) {
@@ -599,7 +599,7 @@ unsafe fn unit_of(dir: *const ccd_vec3_t) -> Option<Vec3> {
     unit(&unsafe { *dir.as_ref()? }.into())
 }
 
-/// Which library a process really runs, and in which precision: "warmccd 0.1.0 double", a
+/// Which library a process really runs, and in which precision: "warmccd 0.2.0 double", a
 /// string that lives as long as the library.
 #[unsafe(no_mangle)]
 pub extern "C-unwind" fn ccdImplementation() -> *const c_char {
