@@ -196,7 +196,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             }
             let names = match way {
                 Way::Known => start::known(&set),
-                Way::Ring => start::ring_of_ball(&mut self.inquiry, &mut set, within)?,
+                Way::Ring => {
+                    let warm = !self.request.cold();
+                    start::ring_of_ball(&mut self.inquiry, &mut set, warm, within)?
+                }
                 Way::Portal => start::portal(&mut self.inquiry, &mut set, skip)?,
                 Way::Solid => start::solid(&mut self.inquiry, &mut set)?,
                 Way::Surround => Some(self.surround(&mut set)?),

@@ -13,7 +13,8 @@
 //! support plane by, for a ball both are ½ρ|n′ − n|², and ρ = (e + e′) / |n′ − n|². Where
 //! the next step promises less than a quarter of the tolerance, three points in a ring
 //! around the last direction are the face; the ring is as wide as a face may be that bounds
-//! a ball's distance to the tolerance.
+//! a ball's distance to the tolerance. In a warm query the points of the last proof must tell of
+//! one ball: else the pair is not round.
 //!
 //! *Else* a small portal: seen along the axis from the apex through the origin, D is flat
 //! and the origin a point of the plane, and a triangle around it is wanted. That is GJK in
@@ -44,6 +45,10 @@ const AWAY: Real = 0.3;
 /// Relative difference of e and e′ up to which two samples are of one ball. Measured: with
 /// 0.03 shallow ellipsoids take 18 % more, with 0.3 the mean is 0.6 % more.
 const ALIKE: Real = 0.1;
+/// The square of the sine of the angle at one of three points below which they lie on a line.
+/// Measured: warm ellipsoids take 20 % more without the ball, contacts 6 % with it for pairs
+/// that it does not fit; 0.01 to 0.3 change neither by 0.3 %.
+const BROAD: Real = 0.1;
 /// The share of the size below which known points are no good measure of an extent. Free.
 const LITTLE: Real = 0.05;
 /// Directions tried for a portal. Free.
@@ -95,13 +100,40 @@ struct Ball {
     radius: Real,
 }
 
+impl Ball {
+    /// The radius that another sample tells, if the two are of one ball.
+    #[inline(always)]
+    fn with(&self, n: &Vec3, s: &Vec3, rounding: Real) -> Option<Real> {
+        let between = s - self.s;
+        let (e, e_) = (n.dot(&between), -self.n.dot(&between));
+        let sum = e + e_;
+        let alike = (e - e_).abs() <= ALIKE * sum && sum > rounding;
+        alike.then(|| sum / (n - self.n).norm_squared())
+    }
+
+    /// Do the known points from index 2 on tell of a ball too? Not where they lie on a line with
+    /// the first one: a capsule or an edge over an edge is round in one direction alone.
+    #[inline(always)]
+    fn is_known<const P: usize>(&mut self, set: &SupportSet<P>, rounding: Real) -> bool {
+        for i in 2..set.len() {
+            match self.with(&set.direction(i), &set.v(i), rounding) {
+                Some(radius) => self.radius = radius,
+                None => return false,
+            }
+        }
+        let [a, b] = [2, set.len() - 1].map(|i| set.v(i) - self.s);
+        a.cross(&b).norm_squared() > BROAD * (a.norm_squared() * b.norm_squared())
+    }
+}
+
 /// The apex and three points in a ring, where D looks like a ball; else `None`. `set` holds
-/// the apex as point 0 and the known points after it, of which there is at least one;
-/// `within` is the tolerance for a depth.
+/// the apex as point 0 and the known points after it, of which there is at least one; where
+/// the query is `warm` they are near the minimum. `within` is the tolerance for a depth.
 #[inline(always)]
 pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<P>,
+    warm: bool,
     within: impl Fn(Real) -> Real,
 ) -> Result<Option<[usize; 4]>, Stop> {
     let (n, s) = (set.direction(1), set.v(1));
@@ -111,6 +143,9 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
         h: n.dot(&s),
         radius: n.dot(&(s - set.v(0))),
     };
+    if warm && !ball.is_known(set, inquiry.precision.rounding()) {
+        return Ok(None);
+    }
     let mut smooth = false;
     for step in 0..STEPS {
         // From the ball's centre through the origin.
@@ -126,12 +161,9 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
             break;
         }
         let Asked { h, v: s, .. } = inquiry.ask(set, &n)?;
-        let (e, e_) = (h - n.dot(&ball.s), ball.h - ball.n.dot(&s));
-        let sum = e + e_;
-        smooth = (e - e_).abs() <= ALIKE * sum && sum > inquiry.precision.rounding();
-        if smooth {
-            ball.radius = sum / turn2;
-        }
+        let radius = ball.with(&n, &s, inquiry.precision.rounding());
+        smooth = radius.is_some();
+        ball.radius = radius.unwrap_or(ball.radius);
         if h < ball.h {
             (ball.n, ball.s, ball.h) = (n, s, h);
         }
