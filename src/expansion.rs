@@ -47,7 +47,7 @@ use crate::plane::Plane;
 use crate::polytope::{Inserted, Polytope, Top};
 use crate::precision::Precision;
 use crate::support::SupportMap;
-use crate::support_set::{Asked, Inquiry, Stop, SupportSet};
+use crate::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
 
 // Measured: support points of MPR and the minimum in the mean of sixteen pair sets and the
 // recorded contacts (`cargo bench --bench charts -- record`), when one number changes alone.
@@ -72,6 +72,9 @@ const PROMISE: Real = 0.1;
 const MISSED: Real = 0.2;
 /// Steps of distrust for each failure. Measured: 2 to 8 change no set by more than 1.1 %.
 const PAUSE: i32 = 4;
+/// The tilt across an edge, as the depth's share of its length. Measured: 2 to 8 take up to
+/// 0.7 % more; without it motions take 3 %, hulls in motion 5 % more.
+const ASIDE: Real = 4.0;
 /// Steps without a change of the nearest distance. Free: more than the faces of a symmetric
 /// object that tie.
 const CIRCLES: u32 = 24;
@@ -144,7 +147,8 @@ pub struct Progress {
     plain: i32,
     /// How many means were asked in vain.
     vain: i32,
-    /// The key of the face whose mean was in vain last: it is not asked twice.
+    /// The key of the face whose mean, or what is aside of it, was in vain last: it is not asked
+    /// twice.
     lone: f64,
     core: Core,
     /// The known points that are no corners, a bit each: while one of them is above the nearest
@@ -175,6 +179,8 @@ enum Aim {
     Normal,
     /// The mean of normals around that face.
     Mean,
+    /// The lowest direction, tilted across an edge of the portal.
+    Aside,
     /// The ball.
     Core,
 }
@@ -412,7 +418,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
                 None => {}
             }
         }
-        let (dir, aim) = progress.aim(set, hull, &top);
+        let (dir, aim) = progress.aim(set, hull, &top, &inquiry.lowest);
         let Some(n) = normalised(&dir).or_else(|| unit(&hull.normal(top.face))) else {
             return Ok(stuck);
         };
@@ -439,6 +445,10 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         }
         match aim {
             Aim::Core => set.truncate(count),
+            Aim::Aside => {
+                set.truncate(count);
+                progress.lone = top.key;
+            }
             Aim::Mean => {
                 set.truncate(count);
                 progress.mean_was_in_vain(&top);
@@ -469,19 +479,56 @@ impl Progress {
         set: &SupportSet<P>,
         hull: &Polytope<F>,
         top: &Top,
+        lowest: &Lowest,
     ) -> (Vec3, Aim) {
-        if top.key > 0.0 {
-            if self.core.radius > 0.0 && self.core.pause <= 0 && self.core.key != top.key {
-                if let Some(n) = self.core.aim(set, hull, top, self.upper, self.allowed) {
-                    return (n, Aim::Core);
-                }
-            }
-            if self.plain <= 0 && top.key != self.lone {
-                return (hull.mean_normal(top.face, self.target), Aim::Mean);
+        let normal = (hull.normal(top.face), Aim::Normal);
+        if !(top.key > 0.0) {
+            return normal;
+        }
+        let known = top.key == self.lone;
+        let names = hull.corners(top.face);
+        if names.contains(&0) {
+            return if known {
+                normal
+            } else {
+                (aside(set, hull, top.face, lowest), Aim::Aside)
+            };
+        }
+        if self.core.radius > 0.0 && self.core.pause <= 0 && self.core.key != top.key {
+            if let Some(n) = self.core.aim(set, hull, top, self.upper, self.allowed) {
+                return (n, Aim::Core);
             }
         }
-        (hull.normal(top.face), Aim::Normal)
+        if self.plain <= 0 && !known {
+            return (hull.mean_normal(top.face, self.target), Aim::Mean);
+        }
+        normal
     }
+}
+
+/// The direction for a face with the apex for a corner. The axis passes the portal's edge that
+/// is opposite there by a hair's breadth, and what is wanted is a point beyond it; the face's
+/// own normal lies a quarter turn aside. The lowest direction, tilted that way, finds one nearby.
+#[cold]
+#[inline(never)]
+fn aside<const P: usize, const F: usize>(
+    set: &SupportSet<P>,
+    hull: &Polytope<F>,
+    face: usize,
+    lowest: &Lowest,
+) -> Vec3 {
+    let [a, b, c] = hull.corners(face);
+    let (a, b) = if a == 0 {
+        (b, c)
+    } else if b == 0 {
+        (a, c)
+    } else {
+        (a, b)
+    };
+    let edge = set.v(b) - set.v(a);
+    let normal = hull.normal(face);
+    let long = (edge.norm_squared() * normal.norm_squared()).sqrt();
+    lowest.dir + normal * (ASIDE * lowest.depth / long)
 }
 
 impl Core {
@@ -497,10 +544,6 @@ impl Core {
         allowed: Real,
     ) -> Option<Vec3> {
         let names = hull.corners(top.face);
-        if names.contains(&0) {
-            // The apex was not asked for.
-            return None;
-        }
         let [a, b, c] = names.map(|i| set.v(i) - set.direction(i) * self.radius);
         let normal = hull.normal(top.face);
         let (n, foretold) = if self.radius <= upper {
