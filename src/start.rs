@@ -283,10 +283,12 @@ impl View {
     /// and at last all the way.
     #[inline(always)]
     fn tilted(from: &Vec3, sideways: &Vec3, tilt: Real, vain: usize) -> Vec3 {
-        match GROWTH.get(vain) {
-            Some(by) if tilt > 0.0 => unit(&(from + sideways * (tilt * by))).unwrap_or(*sideways),
+        let way = match GROWTH.get(vain) {
+            Some(by) if tilt > 0.0 => from + sideways * (tilt * by),
+            // Unit but where the point that tells it is hardly beside the axis.
             _ => *sideways,
-        }
+        };
+        unit(&way).unwrap_or(*from)
     }
 
     /// Where a point is seen.
