@@ -589,25 +589,28 @@ impl Core {
         new: [&Vec3; 2],
         least: Real,
     ) {
-        for &i in corners {
-            if i > 0 {
-                self.pair([&set.direction(i), &set.v(i)], new, least);
+        // The newest corner is the last.
+        for &i in corners.iter().rev() {
+            if i > 0 && self.pair([&set.direction(i), &set.v(i)], new, least) {
+                return;
             }
         }
     }
 
-    /// The radius that two samples tell, if they are of one ball.
+    /// The radius that two samples tell: are they of one ball?
     #[inline(always)]
-    fn pair(&mut self, [n, s]: [&Vec3; 2], [n_, s_]: [&Vec3; 2], least: Real) {
+    fn pair(&mut self, [n, s]: [&Vec3; 2], [n_, s_]: [&Vec3; 2], least: Real) -> bool {
         let turn2 = 2.0 - 2.0 * n.dot(n_);
         if !NEIGHBOURS.contains(&turn2) {
-            return;
+            return false;
         }
         let between = s_ - s;
         let (e, e_) = (n_.dot(&between), -n.dot(&between));
         let sum = e + e_;
-        if (e - e_).abs() <= ALIKE * sum && sum > least {
+        let alike = (e - e_).abs() <= ALIKE * sum && sum > least;
+        if alike {
             self.radius = sum / turn2;
         }
+        alike
     }
 }
