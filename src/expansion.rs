@@ -589,8 +589,8 @@ impl Core {
         new: [&Vec3; 2],
         least: Real,
     ) {
-        // The newest corner is the last.
-        for &i in corners.iter().rev() {
+        // The newest corner is the last; the first one is mostly the oldest and far away.
+        for &i in corners.iter().rev().take(2) {
             if i > 0 && self.pair([&set.direction(i), &set.v(i)], new, least) {
                 return;
             }
