@@ -216,7 +216,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             let precision = &self.inquiry.precision;
             let mut progress = Progress::new(self.request.limits, precision, set.len(), names);
             let fine = expansion::exact(progress.tolerance, precision);
-            let points = names.map(|i| set.v(i));
+            let [i, j, k, l] = names;
+            let points = [set.v(i), set.v(j), set.v(k), set.v(l)];
             // It may be flat.
             if !hull.tetrahedron(names, points, precision.size(), fine) {
                 continue;

@@ -266,11 +266,11 @@ impl<const F: usize> Polytope<F> {
     pub fn tetrahedron(
         &mut self,
         names: [usize; 4],
-        points: [Vec3; 4],
+        [o, a, b, c]: [Vec3; 4],
         size: Real,
         exact: bool,
     ) -> bool {
-        let [o, mut a, mut b, c] = points.map(|p| wide3(&p));
+        let (o, mut a, mut b, c) = (wide3(&o), wide3(&a), wide3(&b), wide3(&c));
         self.ulp = f64::EPSILON * wide(size);
         let flat2 = FLAT * FLAT * self.ulp * self.ulp;
         let (e, f, g) = (a - o, b - o, c - o);
@@ -299,14 +299,13 @@ impl<const F: usize> Polytope<F> {
             (three, [b, o, c], face(ib, io, ic), [0, 6, 9, 0]),
         ];
         self.clear();
-        for (i, (n, corners, names, twins)) in faces.into_iter().enumerate() {
+        for (i, (n, [p, q, r], names, twins)) in faces.into_iter().enumerate() {
             let n2 = n.norm_squared();
             if !(n2 > flat2 * long) {
                 return false;
             }
             let n = n / n2.sqrt();
-            let [p, q, r] = corners.map(|v| n.dot(&v));
-            let d = lesser(lesser(p, q), r);
+            let d = lesser(lesser(n.dot(&p), n.dot(&q)), n.dot(&r));
             self.planes[i] = Plane::new(&n, d).array();
             self.keys[i] = Self::key(i, d * d.abs());
             self.corners[i] = names;

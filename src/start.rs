@@ -71,27 +71,26 @@ pub fn is_far(n: &Vec3, other: &Vec3) -> bool {
     (n - other).norm_squared() > AWAY
 }
 
-/// The apex and three different points that were known, if there are so many and the axis
-/// goes through their triangle: in a warm query of a pair that has moved little, the corners
-/// of the last proof's nearest face.
+/// The apex and three known points whose triangle the axis goes through, if there are such: in
+/// a warm query of a pair that has moved little, the corners of the last proof's nearest face.
 #[inline(always)]
 pub fn known<const P: usize>(set: &SupportSet<P>) -> Option<[usize; 4]> {
-    let mut names = [0; 4];
-    let mut count = 1;
-    for i in 1..set.len() {
-        if count < 4 && names[1..count].iter().all(|&j| set.v(j) != set.v(i)) {
-            names[count] = i;
-            count += 1;
+    const TRIANGLES: [[usize; 3]; 4] = [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]];
+    let apex = set.v(0);
+    // The last corner is the greatest number.
+    let known = TRIANGLES.iter().filter(|[_, _, k]| *k < set.len());
+    for &[i, j, k] in known {
+        let (a, b, c) = (set.v(i), set.v(j), set.v(k));
+        // The origin is on the same side of all planes through the apex and an edge. (Where two
+        // points are one, it is on opposite sides of two.)
+        let x = apex.dot(&a.cross(&b));
+        let y = apex.dot(&b.cross(&c));
+        let z = apex.dot(&c.cross(&a));
+        if x >= 0.0 && y >= 0.0 && z >= 0.0 || x <= 0.0 && y <= 0.0 && z <= 0.0 {
+            return Some([0, i, j, k]);
         }
     }
-    if count < 4 {
-        return None;
-    }
-    // The origin is on the same side of all planes through the apex and an edge.
-    let [o, a, b, c] = names.map(|i| set.v(i));
-    let sides = [a.cross(&b), b.cross(&c), c.cross(&a)].map(|side| o.dot(&side));
-    let around = sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0);
-    around.then_some(names)
+    None
 }
 
 /// A ball that D looks like: its centre is s − radius · n.
