@@ -17,6 +17,10 @@ pub const TRIES: usize = 2;
 const KEEP: Real = 0.95;
 /// The share of the aim below which a margin has the direction turned. Free.
 const ENOUGH: Real = 0.7;
+/// The share of the size that is aimed at, at least, where a direction has failed. Measured on
+/// pairs that stay apart: with none 1.117 support points a query, 0.01 costs as much for a
+/// cylinder over a box; contacts with 0.01 take 0.3 % more.
+const HOPE: Real = 0.0035;
 
 /// The length, metres, of a direction with no margin to aim at: next to none beside objects of
 /// any size, and its coordinates keep their digits. Zero would be no direction.
@@ -46,13 +50,19 @@ pub fn still_apart<A: SupportMap, B: SupportMap, const N: usize>(
         let point = inquiry.md.support(&n)?;
         inquiry.precision.note(&point);
         let margin = -n.dot(&point.v);
-        aim = margin.max(KEEP * aim).max(UNSURE);
+        let apart = margin >= -inquiry.precision.touch();
+        let least = if apart {
+            UNSURE
+        } else {
+            HOPE * inquiry.precision.size()
+        };
+        aim = margin.max(KEEP * aim).max(least);
         let mut next = n;
         if margin < ENOUGH * aim {
             let g = point.v + n * margin;
             next = unit(&(n - g * ((aim - margin) / g.norm_squared()))).unwrap_or(n);
         }
-        if margin >= -inquiry.precision.touch() {
+        if apart {
             *state = State::apart(next * aim);
             return Ok(Some(n));
         }
