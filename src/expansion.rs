@@ -35,6 +35,11 @@
 //! triangle v nearest to the origin; where the core holds the origin, along the normal of
 //! that triangle. *It chooses where to ask, and proves nothing.*
 //!
+//! A face with the apex for a corner is near the origin where the axis passes an edge of the
+//! first portal closely. What is wanted is a point beyond that edge, near the minimum; the
+//! face's own normal lies a quarter turn aside. So the lowest direction is asked, tilted
+//! across the edge.
+//!
 //! # Where rounding has the last word
 //!
 //! A face that no support point is above is recomputed from its corners. If that takes it
@@ -345,12 +350,17 @@ impl Progress {
         self.core.learn(aim, h);
     }
 
-    /// Plain normals for a while, longer each time.
+    /// An aim found nothing above the nearest face. Of means that is a reason for plain normals
+    /// for a while, longer each time.
     #[inline(always)]
-    fn mean_was_in_vain(&mut self, top: &Top) {
-        self.lone = top.key;
-        self.vain += 1;
-        self.plain = 1 + 2 * self.vain;
+    fn was_in_vain(&mut self, aim: Aim, top: &Top) {
+        if aim != Aim::Core {
+            self.lone = top.key;
+        }
+        if aim == Aim::Mean {
+            self.vain += 1;
+            self.plain = 1 + 2 * self.vain;
+        }
     }
 
     /// The search has left the first room: from here on [`Limits::gap`] counts too.
@@ -375,7 +385,7 @@ pub fn exact(tolerance: Real, precision: &Precision) -> bool {
 ///
 /// Each turn asks along one direction, unless one of the start's points that are no corners yet
 /// is above the nearest face. A point above it becomes a corner. Else what was asked along
-/// decides: a promise of the ball, or a mean, that found nothing is
+/// decides: a promise of the ball, a mean or a step aside that found nothing is
 /// forgotten; a normal that found nothing shows that no point lies above the face, so either
 /// the upper bound has fallen, or the face's plane can be sharpened, or rounding ends the
 /// search.
@@ -444,19 +454,14 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             }
         }
         match aim {
-            Aim::Core => set.truncate(count),
-            Aim::Aside => {
-                set.truncate(count);
-                progress.lone = top.key;
-            }
-            Aim::Mean => {
-                set.truncate(count);
-                progress.mean_was_in_vain(&top);
-            }
             // A lower upper bound moves the target nearer in the next turn.
             Aim::Normal if inquiry.lowest.depth < before => {}
             Aim::Normal if hull.refine(top.face, &|i| set.v(i)) => set.truncate(count),
             Aim::Normal => return Ok(stuck),
+            _ => {
+                set.truncate(count);
+                progress.was_in_vain(aim, &top);
+            }
         }
     }
 }
@@ -506,9 +511,7 @@ impl Progress {
     }
 }
 
-/// The direction for a face with the apex for a corner. The axis passes the portal's edge that
-/// is opposite there by a hair's breadth, and what is wanted is a point beyond it; the face's
-/// own normal lies a quarter turn aside. The lowest direction, tilted that way, finds one nearby.
+/// The direction for a face with the apex for a corner, see the head of this file. Not unit.
 #[cold]
 #[inline(never)]
 fn aside<const P: usize, const F: usize>(
