@@ -421,34 +421,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
-        let mut width = 0.0;
-        if self.request.placed {
-            let error = progress.tolerance + precision.rounding();
-            // Asked along the normal of two resting faces, a support mapping picks one corner
-            // of each: where little else was asked, the points do not show that they rest.
-            let tied = (dir - set.direction(1)).norm() * precision.size() <= error;
-            let blind = self.request.mark.is_some() || self.request.cold() && tied;
-            // Mostly one of the two touches with a corner, which needs no look.
-            let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
-            if blind || !corner {
-                let witnesses = |i| *set.witnesses(i + 1);
-                let count = set.len() - 1;
-                let above = set.witnesses(lowest);
-                width = match contact_patch::rest(
-                    witnesses,
-                    count,
-                    &dir,
-                    above,
-                    error,
-                    precision.size(),
-                ) {
-                    Rest::Along(length) => length,
-                    Rest::Corner(side) if blind => side.norm(),
-                    Rest::Crossing(length) if blind => length,
-                    _ => 0.0,
-                };
-            }
-        }
+        let width = self.width(set, lowest, [a, b, c], progress.tolerance);
         *self.hit = Penetration {
             depth,
             depth_lower: lower,
@@ -482,6 +455,43 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let close = asked + 16.0 * precision.grain();
         let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
         proven || depth - lower <= close
+    }
+
+    /// The length, metres, along which the objects touch, as far as the points tell; 0 where
+    /// that is a point, or nobody asks. Point `lowest` is the farthest along the answer's
+    /// direction; the corners are those of the face that the witness points lie in.
+    #[inline(always)]
+    fn width<const P: usize>(
+        &self,
+        set: &SupportSet<P>,
+        lowest: usize,
+        [a, b, c]: [&[Vec3; 2]; 3],
+        tolerance: Real,
+    ) -> Real {
+        if !self.request.placed {
+            return 0.0;
+        }
+        let dir = &self.inquiry.lowest.dir;
+        let precision = &self.inquiry.precision;
+        let size = precision.size();
+        let error = tolerance + precision.rounding();
+        // Asked along the normal of two resting faces, a support mapping picks one corner of
+        // each: where little else was asked, the points do not show that they rest.
+        let tied = (dir - set.direction(1)).norm() * size <= error;
+        let blind = self.request.mark.is_some() || self.request.cold() && tied;
+        // Mostly one of the two touches with a corner, which needs no look.
+        let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
+        if corner && !blind {
+            return 0.0;
+        }
+        let witnesses = |i| *set.witnesses(i + 1);
+        let (count, above) = (set.len() - 1, set.witnesses(lowest));
+        match contact_patch::rest(witnesses, count, dir, above, error, size) {
+            Rest::Along(length) => length,
+            Rest::Corner(side) if blind => side.norm(),
+            Rest::Crossing(length) if blind => length,
+            _ => 0.0,
+        }
     }
 }
 
