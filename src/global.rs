@@ -135,6 +135,7 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
         basis,
         hit,
         open: None,
+        stuck: false,
     };
     search.run(first)
 }
@@ -174,6 +175,8 @@ struct Search<'q, 'r, A, B> {
     /// Whether it is proven, where rounding has ended all expansions so far: the answer where it
     /// ends the last one too.
     open: Option<bool>,
+    /// Was that one stuck?
+    stuck: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
@@ -193,6 +196,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             // What a larger room has not shown no other tetrahedron of the same points will.
             if large && way != Way::Surround {
                 continue;
+            }
+            if set.is_full() {
+                // A larger room was stuck.
+                set.truncate(START);
+                skip = if skip < START { skip } else { usize::MAX };
             }
             let names = match way {
                 Way::Known => start::known(&set),
@@ -226,7 +234,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             // Where an expansion stays open or is stuck, rounding had the last word: from another
             // tetrahedron it may not.
             if end != End::NoRoom {
-                if let Some(proven) = self.answer(&set, &hull, &progress, end, true) {
+                if let Some(proven) = self.answer(&set, &hull, &progress, end) {
                     return Ok(proven);
                 }
                 continue;
@@ -239,10 +247,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if let Some(proven) = answer {
                 return Ok(proven);
             }
-            large = true;
+            large = !self.stuck;
         }
         Ok(self.open.unwrap_or_else(|| {
-            *self.hit = self.bare(&set.point(1));
+            let lowest = set.farther(&self.inquiry.lowest.dir, Real::NEG_INFINITY);
+            *self.hit = self.bare(&set.point(lowest.unwrap_or(1)));
             false
         }))
     }
@@ -259,7 +268,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     }
 
     /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
-    /// origin inside, or is stuck and may be tried `again` from elsewhere.
+    /// origin inside, or is stuck and may be tried from elsewhere.
     #[inline(always)]
     fn answer<const P: usize, const F: usize>(
         &mut self,
@@ -267,17 +276,20 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
-        again: bool,
     ) -> Option<bool> {
         let proven = self.conclude(set, hull, progress, end);
         let open = match end {
             End::Open => true,
             End::NoRoom => !(hull.nearest().key >= 0.0),
-            End::Stuck => again && !proven,
+            // Of a larger room only what is no answer at all is worth another start.
+            End::Stuck => {
+                !proven && (P == FIRST.0 || !(self.hit.depth_lower > 0.9 * self.hit.depth))
+            }
             End::Proven | End::Inside => false,
         };
         if open {
             self.open = Some(proven);
+            self.stuck = end == End::Stuck;
             return None;
         }
         Some(proven)
@@ -360,7 +372,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
             return self.lent(arena.room()?, &set, &hull, progress);
         }
-        Ok(self.answer(&set, &hull, progress, end, false))
+        Ok(self.answer(&set, &hull, progress, end))
     }
 
     /// The expansion goes on in the room that is lent.
@@ -376,7 +388,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         set.take(small);
         polytope.moved_to(hull);
         let end = expand(&mut self.inquiry, set, hull, progress)?;
-        Ok(self.answer(set, hull, progress, end, false))
+        Ok(self.answer(set, hull, progress, end))
     }
 
     /// The answer where nothing is known but the upper bound.

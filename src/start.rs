@@ -39,6 +39,9 @@ use crate::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
 
 /// Steps on the ball. Measured: with 3 shallow ellipsoids take 11 % more, 10 change nothing.
 const STEPS: usize = 6;
+/// Steps on the ball that go no farther than the depth allows. Measured: with 1 misses take 5 %
+/// more, without a bound the shallowest contacts of a random mix 20 %.
+const ALLOWED: usize = 2;
 /// A direction is tilted by this much of what leaves the known points no support value: at 1
 /// itself a separation hardly shows. Measured: 1.05 to 1.3 are the same; without
 /// the bound on a step to the ball's minimum contacts take 8 % more, misses 17 %.
@@ -163,8 +166,14 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
         if step == 0 && off2 > ahead * ahead {
             break;
         }
-        // From the ball's centre through the origin, or as far as the depth allows.
-        let way = ball.n * larger(ahead, off2 / (TILT * ball.h)) - across;
+        // From the ball's centre through the origin; the first steps, which may tell a miss, as
+        // far as the depth allows. (All: contacts of a micrometre take 20 % more.)
+        let least = if step < ALLOWED {
+            off2 / (TILT * ball.h)
+        } else {
+            0.0
+        };
+        let way = ball.n * larger(ahead, least) - across;
         let Some(n) = normalised(&way) else { break };
         let Asked { h, v: s, .. } = inquiry.ask(set, &n)?;
         let radius = ball.with(&n, &s, inquiry.precision.rounding());
