@@ -197,11 +197,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if large && way != Way::Surround {
                 continue;
             }
-            if set.is_full() {
-                // A larger room was stuck.
-                set.truncate(START);
-                skip = if skip < START { skip } else { usize::MAX };
-            }
+            skip = begin_again(&mut set, skip);
             let names = match way {
                 Way::Known => start::known(&set),
                 Way::Ring => {
@@ -505,6 +501,17 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             _ => 0.0,
         }
     }
+}
+
+/// Makes room for another start where a larger room was stuck. Returns `skip`, if that point
+/// stays.
+#[inline(always)]
+fn begin_again<const P: usize>(set: &mut SupportSet<P>, skip: usize) -> usize {
+    if !set.is_full() {
+        return skip;
+    }
+    set.truncate(START);
+    if skip < START { skip } else { usize::MAX }
 }
 
 /// The face through which the ray along `dir` leaves the polytope, about, and its point
