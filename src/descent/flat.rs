@@ -1075,12 +1075,31 @@ impl Flat {
                 normal: *n,
                 point1,
                 point2,
-                width: contact_patch::width(known.points(), n, self.tolerance, self.extent2.sqrt()),
+                width: self.width::<BENT>(at, &discs, known),
                 iterations: self.asked as u64,
             },
             slopes,
             count,
         })
+    }
+
+    /// The length along which the objects touch at a sample, as far as the points known tell, the
+    /// discs where they are there.
+    #[inline(always)]
+    fn width<const BENT: bool>(&self, at: &Sample, discs: &[Vec3; 2], known: &Known) -> Real {
+        let (n, size) = (&at.n, self.extent2.sqrt());
+        let Some(taken) = self.discs::<BENT>() else {
+            return contact_patch::width(known.points(), n, self.tolerance, size);
+        };
+        let mut points = [at.p; CUTS + 1];
+        for (i, point) in points.iter_mut().take(CUTS).enumerate() {
+            let moved = |o| taken.carried(i, o, discs, &self.seen) - taken.kept(i, o);
+            *point = self.samples[i].p;
+            point.v1 += moved(0);
+            point.v2 -= moved(1);
+            point.v = point.v1 - point.v2;
+        }
+        contact_patch::width(&points, n, self.tolerance, size)
     }
 
     /// The mean of obj1's points, below the origin along `n`.
