@@ -16,7 +16,8 @@
 //!
 //! | file | part |
 //! |---|---|
-//! | `flat.rs` | the search as long as all cuts are exact: polytopes, and balls around them |
+//! | `flat.rs` | the search as long as all cuts are exact: polytopes, and balls and discs around them |
+//! | `discs.rs` | those discs: found, confirmed, and where they are |
 //! | `cuts.rs` | those cuts, and where they are least within the trust radius |
 //! | `search.rs` | the search with curvature, the loop: ask, learn, serious or null step, model, verdict, eviction |
 //! | `lanes.rs` | a number or vector for each sample, side by side |
@@ -51,6 +52,11 @@
 //! h(x) = max over cuts of (α + β·x + ½ x'Ax) / sqrt(1 + x²) + ρ; to second order
 //! that is max (α + β·x) + ½ x'Kx + ρ with K = A − (h(b) − ρ) I, the same K for all
 //! cuts. Its minimum within the trust radius |x| ≤ Δ is where to look next.
+//!
+//! *Balls and discs.* Most round objects are a polytope and a ball or a disc: with these taken
+//! off the samples, the cuts of P are exact, and K is known: −h' I without a ball, where h' is
+//! h less the balls' radii, plus (r/|b⊥|) t t' for each disc (`discs.rs`). That is where the
+//! search begins, and only what is neither is left to R.
 //!
 //! *Subproblem.* One cut: x = −K⁻¹β. Two cuts meet in a line, along which the
 //! quadratic has its minimum; three meet in a point. Where K is not positive along
@@ -126,9 +132,14 @@
 //! until own points serve: a third of a support point on cylinders and cones, an eighth on
 //! ellipsoids.
 //!
+//! Balls and discs choose where to ask, and prove nothing: an answer stands on vertices that
+//! were seen with them along two directions, or so near that the cut is right without.
+//!
 //! *Memory.* A face that is still there is found again by three directions aside of
 //! the last answer, each towards one active cut and farther than the pair moved, and
-//! proven by a fourth; a smooth contact by the last direction and one step with R.
+//! proven by a fourth; a smooth contact by the last direction and one step with R. The radii of
+//! balls and discs stay; a disc's axis turns with its object, and is found anew by two samples
+//! that show the same radius.
 //!
 //! # Constants
 //!
@@ -145,10 +156,12 @@
 
 mod curvature;
 mod cuts;
+mod discs;
 mod flat;
 mod lanes;
 mod memory;
 mod model;
+
 mod samples;
 mod search;
 mod trust_region;
@@ -161,7 +174,6 @@ use crate::contact::{Answer, Settings};
 use crate::math::{EPSILON, Vec3};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use flat::{Asked, Flat, Outcome};
-use memory::Smooth;
 use search::Search;
 
 /// Does the search begin with exact cuts? Not in single precision: there it ends up to the
@@ -188,13 +200,23 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     known: &mut Known,
 ) -> Result<Answer, Fault> {
     let mut asked = Asked::default();
-    if EXACT && !matches!(memory.smooth(), Smooth::Curved(_)) {
-        let mut flat = Flat::new();
-        let (first, mut queue) = flat.recall(memory, start);
+    let mut flat = Flat::new();
+    let first = if EXACT {
+        flat.recall(memory, start)
+    } else {
+        None
+    };
+    if let Some((first, mut queue)) = first {
         let centre = inner.copied().unwrap_or_default();
-        match flat.run(md, &centre, first, &mut queue, settings, known)? {
+        let first = Some(first);
+        let outcome = if flat.bends() {
+            flat.run::<true, A, B>(md, &centre, first, &mut queue, settings, known)
+        } else {
+            flat.run::<false, A, B>(md, &centre, first, &mut queue, settings, known)
+        };
+        match outcome? {
             Outcome::Found(minimum) => {
-                minimum.remember(memory);
+                flat.remember(&minimum, memory);
                 return Ok(Answer::Hit(minimum.hit));
             }
             Outcome::Apart(n) => return Ok(Answer::Miss(n)),
@@ -235,6 +257,7 @@ mod tests {
     use crate::contact::Penetration;
     use crate::local::{self, Shortcut};
     use crate::math::{Real, perpendicular};
+    use nalgebra::Rotation3;
 
     /// A support function, placed.
     type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
@@ -655,6 +678,19 @@ mod tests {
             ),
             if EPSILON > 1e-10 { 6 } else { 4 },
         );
+        // A cylinder on its rim, on its side, and upright, smaller and larger than the face.
+        for up in [Vec3::new(0.3, 0.1, 1.0), Vec3::x(), Vec3::z()] {
+            for radius in [0.2, 0.9] {
+                let half = Vec3::new(0.6, 0.5, 0.3);
+                let turn = Rotation3::rotation_between(&Vec3::z(), &up).unwrap_or_default();
+                let shape = cylinder(Vec3::zeros(), radius, 0.5);
+                let turned = move |d: &Vec3| turn * shape(&(turn.inverse() * d));
+                let lowest = turned(&-Vec3::z()).z;
+                let stands = at(Vec3::new(0.03, 0.02, 0.25 - lowest), turned);
+                let most = if EPSILON > 1e-10 { 12 } else { 4 };
+                still(&block(Vec3::zeros(), half), &stands, most);
+            }
+        }
         still(
             &ball(Vec3::zeros(), 0.5),
             &ball(Vec3::new(0.1, 0.2, 0.8), 0.5),

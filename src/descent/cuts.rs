@@ -6,13 +6,16 @@
 //! A vertex u of a polytope gives, along the direction b + E x, a support value of at least
 //! u·b + (E'u)·x. Divided by the direction's length that is a depth, to second order
 //!
-//!   m(x) = max over i of (aᵢ + βᵢ·x) − ½ h x²,   aᵢ = uᵢ·b, βᵢ = E'uᵢ, h = the best cut's a.
+//!   m(x) = max over i of (aᵢ + βᵢ·x) + ½ x'Kx,   aᵢ = uᵢ·b, βᵢ = E'uᵢ, K = −h I,
+//!
+//! h the best cut's a. A disc that is taken off adds r m(b) to u, and its curvature to K; E is
+//! along the principal directions, so K is two numbers.
 //!
 //! *Unknown*: the x with |x| ≤ Δ where m is least. *Condition* (Karush, Kuhn, Tucker): no
 //! other cut lies above those that are active, and their gradients balance with weights
 //! ≥ 0; on the border but for a part along x. *Solution*, an active-set method: from the
 //! lowest point of the best cut alone, the cut that lies highest above enters, and the one
-//! whose weight is negative leaves. One cut: x = β/h where h < 0, else the border. Two meet
+//! whose weight is negative leaves. One cut: x = −K⁻¹β where K > 0, else the border. Two meet
 //! in a line, three in a point.
 //!
 //! h < 0 where balls have been taken off shallow objects: m is convex, and the minimum the
@@ -21,7 +24,7 @@
 //! chooses where to ask.
 
 use super::lanes::{CUTS, Lanes};
-use crate::math::Real;
+use crate::math::{Real, larger, lesser};
 
 /// Turns of the active-set method; mostly two or three. Measured: ÷2 a fortieth more answers that
 /// are not the least, ×2 nothing.
@@ -38,8 +41,8 @@ pub struct Cuts {
     pub y: Lanes,
     /// How many there are. Lanes beyond repeat one of them.
     pub len: usize,
-    /// h, metres.
-    pub height: Real,
+    /// K along x and y, metres: −h where no disc is taken off.
+    pub bend: [Real; 2],
     /// The highest cut at x = 0, where the search for the least value begins.
     pub best: usize,
     /// Cuts that differ by no more are equally high, metres.
@@ -100,8 +103,53 @@ impl Cuts {
     /// The gradient of m on cut `i` at a step.
     #[inline(always)]
     fn slope(&self, i: usize, step: &Step) -> [Real; 2] {
-        let h = self.height;
-        [self.x[i] - h * step.x, self.y[i] - h * step.y]
+        let [k, l] = self.bend;
+        [self.x[i] + k * step.x, self.y[i] + l * step.y]
+    }
+
+    /// ½ x'Kx at a step.
+    #[inline(always)]
+    fn bent(&self, step: &Step) -> Real {
+        let [k, l] = self.bend;
+        0.5 * (k * step.x * step.x + l * step.y * step.y)
+    }
+
+    /// The weights of the active cuts whose gradients balance, or come nearest to it.
+    pub fn weights(&self, step: &Step) -> [Real; 3] {
+        let [g, o, p] = step.set.map(|i| self.slope(i, step));
+        let weights = match step.count {
+            3 => [cross(o, p), cross(p, g), cross(g, o)],
+            2 => {
+                let d = [g[0] - o[0], g[1] - o[1]];
+                [-(o[0] * d[0] + o[1] * d[1]), g[0] * d[0] + g[1] * d[1], 0.0]
+            }
+            _ => [1.0, 0.0, 0.0],
+        };
+        let sum = weights[0] + weights[1] + weights[2];
+        // max drops NaN.
+        let weights = weights.map(|w| (w / sum).max(0.0));
+        let sum = weights[0] + weights[1] + weights[2];
+        if sum > 0.0 && sum < Real::INFINITY {
+            weights.map(|w| w / sum)
+        } else {
+            [1.0, 0.0, 0.0]
+        }
+    }
+
+    /// Of a step to where two cuts are least: is m nowhere lower within the radius of it?
+    ///
+    /// With the gradients g = w₁ d and −w₀ d, d = g − g′, m is higher by at least
+    /// min w |d| |q| + ½ x'Kx, x = s t + q d/|d|, where K along t is not negative: no lower, if
+    /// min w |d| is at least |t'K d/|d|| and half of what K is negative, times Δ.
+    pub fn is_ridge(&self, step: &Step, radius: Real) -> bool {
+        let [g, o, _] = step.set.map(|i| self.slope(i, step));
+        let [w, v, _] = self.weights(step);
+        let d = [g[0] - o[0], g[1] - o[1]];
+        let d2 = d[0] * d[0] + d[1] * d[1];
+        let [k, l] = self.bend;
+        let twist = ((k - l) * d[0] * d[1]).abs() / d2;
+        let falls = larger(-lesser(k, l), 0.0);
+        lesser(w, v) * d2.sqrt() >= (twist + 0.5 * falls) * radius
     }
 
     /// Where m is least within the radius, in the end that the best cut leads to.
@@ -122,7 +170,7 @@ impl Cuts {
             let Some(mut step) = step else { return };
             let levels = self.a + self.x * step.x + self.y * step.y;
             step.level = levels[step.set[0]];
-            step.value = step.level - 0.5 * self.height * step.length2();
+            step.value = step.level + self.bent(&step);
             let above = Self::highest(&levels, levels[step.set[0]] + self.rounding);
             if step.value < lowest.value && above.is_none_or(|i| step.bits() & (1 << i) != 0) {
                 lowest = step;
@@ -150,7 +198,7 @@ impl Cuts {
             let above =
                 Self::highest(&levels, top + self.rounding).filter(|i| step.bits() & (1 << i) == 0);
             step.level = above.map_or(top, |i| levels[i]);
-            step.value = step.level - 0.5 * self.height * step.length2();
+            step.value = step.level + self.bent(&step);
             if step.value < lowest.value {
                 lowest = step;
             }
@@ -180,25 +228,30 @@ impl Cuts {
     #[inline(always)]
     fn one(&self, i: usize, radius2: Real) -> Step {
         let [x, y] = self.gradient(i);
-        let h = self.height;
-        let g2 = x * x + y * y;
+        let [k, l] = self.bend;
         let mut step = Step {
-            x: radius2.sqrt(),
-            y: 0.0,
+            x: -x,
+            y: -y,
             level: 0.0,
             value: 0.0,
             set: [i; 3],
             count: 1,
-            inside: h < 0.0 && g2 <= h * h * radius2,
+            inside: false,
         };
-        // No gradient: one way along the border is as good as another.
-        if step.inside || g2 > 0.0 {
-            let f = if step.inside {
-                1.0 / h
+        // Convex: towards the minimum; else down the gradient.
+        if k > 0.0 && l > 0.0 {
+            (step.x, step.y) = (-x / k, -y / l);
+            step.inside = step.length2() <= radius2;
+        }
+        if !step.inside {
+            let length2 = step.length2();
+            // No gradient: one way along the border is as good as another.
+            (step.x, step.y) = if length2 > 0.0 {
+                let f = (radius2 / length2).sqrt();
+                (f * step.x, f * step.y)
             } else {
-                -(radius2 / g2).sqrt()
+                (radius2.sqrt(), 0.0)
             };
-            (step.x, step.y) = (f * x, f * y);
         }
         step
     }
@@ -206,8 +259,8 @@ impl Cuts {
     /// The step to where cuts `i` and `j` are equally high and least, if they are in reach.
     #[inline(always)]
     fn two(&self, i: usize, j: usize, radius2: Real) -> Option<Step> {
-        let (g, k) = (self.gradient(i), self.gradient(j));
-        let d = [g[0] - k[0], g[1] - k[1]];
+        let (g, o) = (self.gradient(i), self.gradient(j));
+        let d = [g[0] - o[0], g[1] - o[1]];
         let da = self.a[i] - self.a[j];
         let iq = 1.0 / (d[0] * d[0] + d[1] * d[1]);
         let f = -da * iq;
@@ -217,14 +270,14 @@ impl Cuts {
             return None;
         }
         // Along the line, from its point nearest to x = 0, in parts of |d|.
-        let slope = cross(d, g);
-        let h = self.height;
-        let inside = h < 0.0 && slope * slope * iq <= h * h * room;
-        let t = if inside {
-            slope * iq / h
-        } else {
-            (room * iq).sqrt().copysign(-slope)
-        };
+        let [k, l] = self.bend;
+        let slope = cross(d, g) + f * d[0] * d[1] * (l - k);
+        let bend = k * d[1] * d[1] + l * d[0] * d[0];
+        let mut t = -slope / bend;
+        let inside = bend > 0.0 && t * t <= room * iq;
+        if !inside {
+            t = (room * iq).sqrt().copysign(-slope);
+        }
         Some(Step {
             x: f * d[0] - t * d[1],
             y: f * d[1] + t * d[0],
@@ -356,7 +409,7 @@ mod tests {
     fn cuts(random: &mut Random, len: usize, h: Real) -> Cuts {
         let mut cuts = Cuts {
             len,
-            height: h,
+            bend: [-h; 2],
             ..Cuts::default()
         };
         for i in 0..4 {
@@ -381,7 +434,7 @@ mod tests {
         let top = (0..cuts.len)
             .map(|i| cuts.a[i] + cuts.x[i] * x + cuts.y[i] * y)
             .fold(Real::NEG_INFINITY, Real::max);
-        top - 0.5 * cuts.height * (x * x + y * y)
+        top + 0.5 * (cuts.bend[0] * x * x + cuts.bend[1] * y * y)
     }
 
     /// The least value on a fine grid of the disc.
@@ -423,6 +476,42 @@ mod tests {
         }
         assert!(least * 10 > all * 9, "{least} of {all}");
         assert!(walked > 1800, "{walked} of 2000");
+    }
+
+    /// With a disc taken off: stationary inside, and the least value where m is convex.
+    #[test]
+    fn the_least_value_where_a_disc_bends() {
+        let mut random = Random::new(5);
+        let (mut inside, mut least) = (0, 0);
+        for round in 0..2000 {
+            let h = random.within(0.0, 0.3);
+            let mut c = cuts(&mut random, 1 + round % 4, h);
+            c.bend = [random.within(0.1, 2.0) - h, random.within(0.0, 0.6) - h];
+            let radius = random.within(0.02, 0.5);
+            let step = c.lowest(radius);
+            let there = value(&c, step.x, step.y);
+            assert!(
+                (there - step.value).abs() < 1e-6 && step.length2() <= radius * radius * 1.000_001
+            );
+            let best = grid(&c, radius);
+            least += usize::from(there <= best + 1e-3 * h + 1e-5);
+            let weights = c.weights(&step);
+            assert!((weights.iter().sum::<Real>() - 1.0).abs() < 1e-5);
+            let mean = |lanes: &Lanes, bend: Real, x: Real| -> Real {
+                let terms = step.set.iter().zip(weights);
+                terms.map(|(&i, w)| lanes[i] * w).sum::<Real>() + bend * x
+            };
+            let (x, y) = (mean(&c.x, c.bend[0], step.x), mean(&c.y, c.bend[1], step.y));
+            // Gradients that balance, where m is convex.
+            if step.inside && x.abs() + y.abs() < 1e-5 && c.bend[0] > 0.0 && c.bend[1] > 0.0 {
+                inside += 1;
+                assert!(there <= best + 1e-5, "{there} {best} {step:?}");
+            }
+            let ridge = step.inside && step.count == 2 && c.is_ridge(&step, radius);
+            assert!(!ridge || there <= grid(&c, radius - step.length2().sqrt()) + 1e-5);
+        }
+        assert!(inside > 300, "{inside}");
+        assert!(least > 1400, "{least} of 2000");
     }
 
     #[test]

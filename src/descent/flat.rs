@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The search as long as all cuts are exact: of polytopes, and of polytopes with a ball
-//! around them (spheres, capsules, rounded boxes), whose balls are taken off.
+//! The search as long as all cuts are exact: of polytopes, and of polytopes with a ball or a disc
+//! around them (spheres, capsules, rounded boxes; cylinders, cones), which are taken off.
 //!
-//! With ρ = ρ₁ + ρ₂ the radii of the two objects' balls, u = v − ρ n is a vertex of what is
-//! left, and its cut is exact: the support value along d is at least u·d + ρ|d|. No
-//! curvature is needed, and the only doubt is whether a ball is round where it was not seen.
+//! With ρ = ρ₁ + ρ₂ the radii of the two objects' balls, and r, m(n) of each disc (`discs.rs`),
+//! u = v − ρ n − Σ r m(n) is a vertex of what is left, and its cut is exact: the support value
+//! along d is at least u·d + ρ|d| + Σ r|d⊥|. No curvature is to be learned, and the only doubt is
+//! whether a ball or a disc is round where it was not seen.
 //!
 //! *Found*: the model's least value within the trust region ([`Cuts::minimise`]) is where to
 //! ask next. If it is stationary and the support value there is as low as foretold, it is a
@@ -20,12 +21,21 @@
 //! right without the ball. Where one was not, the model's minimum is asked by a hair on that
 //! vertex's side.
 //!
-//! *The end*: a pair of samples that is smooth and no ball's, points that contradict each
-//! other, a trust region that has shrunk to nothing. Then the search with curvature goes on
-//! with the samples of this one.
+//! *Discs* likewise, but three samples must show one, because two always do. To second order
+//! they add (r/|b⊥|) t t' to K, for as much weight as the active cuts have that carry them. Along
+//! its axis a disc's support function has its least value and a kink, which the model knows
+//! nothing of: where that is within the trust radius its exact value there is compared, too. No
+//! vertex is known of a sample along the axis, so it ends the search, one way or the other.
+//!
+//! *The end*: a pair of samples that is smooth and no ball's or disc's, points that contradict
+//! each other, a trust region that has shrunk to nothing. Then the search with curvature goes
+//! on with the samples of this one.
+//!
+//! Polytopes and balls need none of what discs need: `BENT` is false until one is met.
 
 use super::curvature::{ALIKE, CLOSE, smooth};
 use super::cuts::{Cuts, Step};
+use super::discs::{Discs, Shown, moves, shows};
 use super::lanes::{CUTS, Lanes, Vectors};
 use super::memory::{Memory, Queue, Smooth};
 use super::model::basis;
@@ -67,21 +77,6 @@ pub struct Minimum {
     pub slopes: [Vec3; 3],
     /// How many cuts are active.
     pub count: usize,
-    /// The radii of the balls, metres; 0 for none.
-    pub radius: [Real; 2],
-}
-
-impl Minimum {
-    /// Leaves behind what finds the same cuts again.
-    #[inline]
-    pub fn remember(&self, memory: &mut Memory) {
-        let smooth = if self.radius == [0.0; 2] {
-            Smooth::Unknown
-        } else {
-            Smooth::Round(self.radius)
-        };
-        memory.keep(&self.hit.dir, &self.slopes, self.count, smooth);
-    }
 }
 
 /// The samples kept, and the last one.
@@ -127,6 +122,15 @@ pub struct Flat {
     spare: usize,
     /// The radii of the balls taken off, metres; 0 for none.
     radius: [Real; 2],
+    /// The discs taken off.
+    discs: Option<Discs>,
+    /// Where both objects may have discs, if the next sample shows them: the slope of the pair
+    /// that they were seen by, metres; else 0.
+    slope: Real,
+    /// The last sample that was not kept beside its twin, or no longer; told of discs only.
+    dropped: Option<Sample>,
+    /// With this sample a new one makes a smooth pair that is no ball's.
+    pair: Option<usize>,
     cuts: Cuts,
     /// The chart of the best direction.
     e1: Vec3,
@@ -160,6 +164,10 @@ impl Flat {
             best_h: 0.0,
             spare: 0,
             radius: [0.0; 2],
+            discs: None,
+            slope: 0.0,
+            dropped: None,
+            pair: None,
             cuts: Cuts::default(),
             e1: Vec3::zeros(),
             e2: Vec3::zeros(),
@@ -174,70 +182,112 @@ impl Flat {
         }
     }
 
-    /// The directions to ask first: what the memory leads to, else `start`.
+    /// The directions to ask first: what the memory leads to, else `start`. `None`: it is of
+    /// another curvature.
     #[inline]
-    pub fn recall(&mut self, memory: &Memory, start: &Vec3) -> (Vec3, Queue) {
+    pub fn recall(&mut self, memory: &Memory, start: &Vec3) -> Option<(Vec3, Queue)> {
+        let smooth = memory.smooth();
+        if let Smooth::Curved(_) = smooth {
+            return None;
+        }
         let Some(dir) = unit(&memory.dir) else {
-            return (*start, Queue::EMPTY);
+            return Some((*start, Queue::EMPTY));
         };
-        if let Smooth::Round(radius) = memory.smooth() {
-            self.radius = radius;
+        if let Smooth::Round { balls, discs } = smooth {
+            self.radius = balls;
+            self.discs = Discs::recall(&discs);
         }
         let (mut queue, angle) = memory.recall(&dir);
-        match queue.pop() {
+        Some(match queue.pop() {
             Some(n) => {
                 self.trust.recall(angle);
                 (n, queue)
             }
             None => (dir, queue),
-        }
+        })
     }
 
-    /// Searches from `n`, after the queued directions.
+    /// Is there a disc?
+    pub fn bends(&self) -> bool {
+        self.discs.is_some()
+    }
+
+    /// Leaves behind what finds the cuts of a minimum again.
+    #[inline]
+    pub fn remember(&self, minimum: &Minimum, memory: &mut Memory) {
+        let dir = &minimum.hit.dir;
+        // Along a disc's axis its points are those of a polytope.
+        let discs = self.discs.as_ref().filter(|discs| !discs.along_axis(dir));
+        let smooth = if self.rho() > 0.0 || discs.is_some() {
+            Smooth::Round {
+                balls: self.radius,
+                discs: discs.map_or_else(Default::default, Discs::discs),
+            }
+        } else {
+            Smooth::Unknown
+        };
+        memory.keep(dir, &minimum.slopes, minimum.count, smooth);
+    }
+
+    /// Searches from `n`, after the queued directions; without `n` from what was taken. `BENT`: with
+    /// discs, which the search without goes over to when it meets one.
     ///
     /// `centre`: any inner point of D, its distance is the size of what was not seen.
     /// `known` gains the points of a minimum: the active ones, the one there, the others.
     ///
     /// # Errors
     /// [`Fault::NonFinite`] from a support mapping.
-    pub fn run<A: SupportMap, B: SupportMap>(
+    pub fn run<const BENT: bool, A: SupportMap, B: SupportMap>(
         &mut self,
         md: &MinkowskiDifference<A, B>,
         centre: &Vec3,
-        mut n: Vec3,
+        mut n: Option<Vec3>,
         queue: &mut Queue,
         settings: &Settings,
         known: &mut Known,
     ) -> Result<Outcome, Fault> {
         loop {
-            let new = Sample::new(&n, md.support(&n)?);
-            self.asked += 1;
-            if new.h < 0.0 {
-                // D holds what was seen: where that lies beyond, a callback errs.
-                let beyond = self.u.dot(&n) + self.n.dot(&n) * self.rho();
-                return Ok(if self.cuts.len == 0 || !(beyond.most() > 0.0) {
-                    Outcome::Apart(n)
-                } else {
-                    self.open(None)
-                });
-            }
-            if !self.take(&new, centre, settings.tolerance) {
-                return Ok(self.open(Some(&new)));
-            }
-            if let Some(minimum) = self.came_true(&new, known) {
-                return Ok(Outcome::Found(minimum));
+            if let Some(n) = n {
+                let new = Sample::new(&n, md.support(&n)?);
+                self.asked += 1;
+                if new.h < 0.0 {
+                    // D holds what was seen: where that lies beyond, a callback errs.
+                    let mut kept = self.samples.iter().take(self.cuts.len);
+                    return Ok(if !kept.any(|sample| sample.p.v.dot(&n) > 0.0) {
+                        Outcome::Apart(n)
+                    } else {
+                        self.open(None)
+                    });
+                }
+                // No vertex is left of a disc there.
+                let axial = self
+                    .discs::<BENT>()
+                    .is_some_and(|discs| discs.along_axis(&n));
+                if !axial && !self.take::<BENT>(&new, centre, settings.tolerance) {
+                    return match self.pair.take() {
+                        Some(i) if !BENT && self.take_smooth(i, &new) => {
+                            self.run::<true, A, B>(md, centre, None, queue, settings, known)
+                        }
+                        _ => Ok(self.open(Some(&new))),
+                    };
+                }
+                if let Some(minimum) = self.came_true::<BENT>(&new, known) {
+                    return Ok(Outcome::Found(minimum));
+                }
+                if axial {
+                    return Ok(self.open(Some(&new)));
+                }
             }
             if self.asked as u64 >= settings.max_iterations {
                 return Ok(self.open(None));
             }
-            if let Some(queued) = queue.pop() {
-                n = queued;
-                continue;
-            }
-            match self.next(known) {
-                Next::Ask(next) => n = next,
-                Next::Found(minimum) => return Ok(Outcome::Found(minimum)),
-                Next::Open => return Ok(self.open(None)),
+            n = queue.pop();
+            if n.is_none() {
+                match self.next::<BENT>(known) {
+                    Next::Ask(next) => n = Some(next),
+                    Next::Found(minimum) => return Ok(Outcome::Found(minimum)),
+                    Next::Open => return Ok(self.open(None)),
+                }
             }
         }
     }
@@ -250,7 +300,14 @@ impl Flat {
             ..Asked::default()
         };
         let kept = self.samples.iter().take(self.cuts.len);
-        for (place, sample) in asked.samples.iter_mut().zip(kept.chain(last)) {
+        let doubted = self.discs.as_ref().is_some_and(Discs::is_doubted);
+        let room = doubted && self.cuts.len < CUTS;
+        let dropped = self.dropped.iter().filter(|_| room);
+        for (place, sample) in asked
+            .samples
+            .iter_mut()
+            .zip(kept.chain(dropped).chain(last))
+        {
             *place = *sample;
             asked.len += 1;
         }
@@ -258,25 +315,69 @@ impl Flat {
         Outcome::Open(asked)
     }
 
+    /// The vertex of sample `i` with those of these points of the discs that it carries.
+    #[inline(always)]
+    fn with_discs<const BENT: bool>(&self, i: usize, points: &[Vec3; 2]) -> Vec3 {
+        let u = self.u.get(i);
+        match self.discs::<BENT>() {
+            Some(discs) => {
+                let seen = &self.seen;
+                u + discs.carried(i, 0, points, seen) + discs.carried(i, 1, points, seen)
+            }
+            None => u,
+        }
+    }
+
+    /// The vertex of a sample, and its support value.
+    #[inline(always)]
+    fn vertex<const BENT: bool>(&mut self, sample: &Sample) -> (Vec3, Real) {
+        let n = &sample.n;
+        let u = sample.p.v - n * self.rho();
+        let same = self.same_round();
+        match &mut self.discs {
+            Some(discs) if BENT => {
+                let u = u - discs.look_at(sample, same);
+                (u, u.dot(n))
+            }
+            _ => (u, sample.h - self.rho()),
+        }
+    }
+
     #[inline(always)]
     fn rho(&self) -> Real {
         self.radius[0] + self.radius[1]
     }
 
+    #[inline(always)]
+    fn discs<const BENT: bool>(&self) -> Option<&Discs> {
+        if BENT { self.discs.as_ref() } else { None }
+    }
+
+    /// Is there a ball or a disc?
+    #[inline(always)]
+    fn is_round<const BENT: bool>(&self) -> bool {
+        self.rho() > 0.0 || self.discs::<BENT>().is_some()
+    }
+
     /// How far apart two vertices may be that are the same, metres: where a ball was taken
     /// off its radius is uncertain.
     #[inline(always)]
-    fn same(&self) -> Real {
-        if self.rho() > 0.0 {
-            larger(self.cuts.rounding, self.tolerance * SAME)
+    fn same<const BENT: bool>(&self) -> Real {
+        if self.is_round::<BENT>() {
+            self.same_round()
         } else {
             self.cuts.rounding
         }
     }
 
+    #[inline(always)]
+    fn same_round(&self) -> Real {
+        larger(self.cuts.rounding, self.tolerance * SAME)
+    }
+
     /// Takes a support point. Not, if it is of no exact cut.
     #[inline(always)]
-    fn take(&mut self, new: &Sample, centre: &Vec3, tolerance: Real) -> bool {
+    fn take<const BENT: bool>(&mut self, new: &Sample, centre: &Vec3, tolerance: Real) -> bool {
         let p = &new.p;
         let rounding = larger(new.rounding(), self.cuts.rounding);
         self.cuts.rounding = rounding;
@@ -290,48 +391,67 @@ impl Flat {
                     *radius = 0.0;
                 }
             }
-            let rho = self.rho();
-            let (u, k) = (p.v - new.n * rho, new.h - rho);
+            if let (true, Some(discs)) = (BENT, &mut self.discs) {
+                discs.forget_unless_fits(self.extent2);
+                if !discs.is_there() {
+                    self.discs = None;
+                }
+            }
+            let (u, k) = self.vertex::<BENT>(new);
             // Of all lanes: those beyond the samples repeat the first one.
             for i in (0..CUTS).rev() {
-                self.put(i, new, &u, k, 0);
+                self.put::<BENT>(i, new, &u, k, 0);
             }
             (self.cuts.len, self.spare) = (1, 1);
-            (self.best, self.best_h) = (*new, k);
+            (self.best, self.best_h) = (*new, new.h - self.rho());
             return true;
         }
         self.tolerance = larger(self.tolerance, rounding);
         self.trust.compare(&new.n, new.h, self.best.h);
+        if BENT && self.slope > 0.0 && !self.settle(new) {
+            return false;
+        }
         let lopsided = (self.radius[0] > 0.0) != (self.radius[1] > 0.0);
         if self.asked <= LOOK || lopsided {
             let best = self.best;
             self.look(&best, new);
         }
-        self.compare(new)
+        self.compare::<BENT>(new)
     }
 
     /// Compares a new sample with those that are kept, and keeps it.
     #[inline(always)]
-    fn compare(&mut self, new: &Sample) -> bool {
-        let (n, rho) = (&new.n, self.rho());
-        let (u, k) = (new.p.v - n * rho, new.h - rho);
-        let ahead = Lanes::all(k) - self.u.dot(n);
-        let behind = self.h - self.n.dot(&u);
+    fn compare<const BENT: bool>(&mut self, new: &Sample) -> bool {
+        let n = &new.n;
+        let (u, k) = self.vertex::<BENT>(new);
+        let mut ahead = Lanes::all(k) - self.u.dot(n);
+        let mut behind = self.h - self.n.dot(&u);
+        if let Some(discs) = self.discs::<BENT>() {
+            if discs.refuted_by(new, &self.samples) {
+                return false;
+            }
+            ahead = ahead - discs.heights(n) + Lanes::all(new.h - self.rho() - k);
+            behind = behind + discs.heights_less_latest();
+        }
         let rounding = self.cuts.rounding;
         // A cut above a support value.
-        if ahead.lesser(&behind).least() < -self.same() {
+        if ahead.lesser(&behind).least() < -self.same::<BENT>() {
             return false;
         }
-        let seen = if rho > 0.0 { self.see(new) } else { 0 };
+        let seen = if self.is_round::<BENT>() {
+            self.see::<BENT>(new)
+        } else {
+            0
+        };
         let unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
         let mut twin = None;
         if unlike.least() > rounding {
-            return self.keep(new, &u, k, seen, twin);
+            return self.keep::<BENT>(new, &u, k, seen, twin);
         }
         let mut nearest = Real::INFINITY;
-        let same2 = self.same() * self.same();
+        let same2 = self.same::<BENT>() * self.same::<BENT>();
         for i in 0..self.cuts.len.min(CUTS) {
-            if unlike[i] > rounding {
+            if unlike[i] > rounding || self.discs::<BENT>().is_some_and(|discs| !discs.alike(i)) {
                 continue;
             }
             let dn2 = (n - self.n.get(i)).norm_squared();
@@ -342,12 +462,32 @@ impl Flat {
                     (twin, nearest) = (Some(i), dn2);
                 }
             } else if self.smooth(ahead[i], behind[i], ds2, dn2) {
-                // Of one ball more, or of none.
+                // Of one ball or disc more, or of none.
                 let old = self.samples[i];
-                return self.look(&old, new) && self.compare(new);
+                if self.look(&old, new) {
+                    return self.compare::<BENT>(new);
+                }
+                self.pair = Some(i);
+                return BENT && self.take_smooth(i, new);
             }
         }
-        self.keep(new, &u, k, seen, twin)
+        self.keep::<BENT>(new, &u, k, seen, twin)
+    }
+
+    /// Takes the discs off that a new sample shows with sample `i`, and that sample. Not, if there
+    /// are none.
+    #[inline(never)]
+    fn take_smooth(&mut self, i: usize, new: &Sample) -> bool {
+        self.step = None;
+        let old = self.samples[i % CUTS];
+        match self.look_for_discs(&old, new) {
+            Shown::Discs => self.compare::<true>(new),
+            Shown::Maybe if self.suspect(&old, new) => {
+                let (u, k) = self.vertex::<true>(new);
+                self.keep::<true>(new, &u, k, 0, None)
+            }
+            _ => false,
+        }
     }
 
     /// Does a pair with these excesses, this far apart, look smooth?
@@ -361,13 +501,24 @@ impl Flat {
     /// Keeps the sample: in the place of its `twin`, of the same vertex, if it is nearer to
     /// the best direction. False, where too many have said nothing new.
     #[inline(always)]
-    fn keep(&mut self, new: &Sample, u: &Vec3, k: Real, seen: u32, twin: Option<usize>) -> bool {
-        let better = k < self.best_h;
+    fn keep<const BENT: bool>(
+        &mut self,
+        new: &Sample,
+        u: &Vec3,
+        k: Real,
+        seen: u32,
+        twin: Option<usize>,
+    ) -> bool {
+        let better = new.h < self.best.h;
         let place = match twin {
             Some(twin) => {
                 let best = self.cuts.best;
                 let b = &self.best.n;
                 let nearer = twin != best && self.n.get(twin).dot(b) < new.n.dot(b);
+                if BENT {
+                    let kept = self.samples[twin % CUTS];
+                    self.dropped = Some(if better || nearer { kept } else { *new });
+                }
                 if !(better || nearer) {
                     self.newest = best;
                     self.see_again(twin, seen);
@@ -378,31 +529,34 @@ impl Flat {
             }
             None => self.spare,
         };
-        self.put(place, new, u, k, seen);
+        self.put::<BENT>(place, new, u, k, seen);
         self.newest = place;
         if place == self.cuts.len {
             self.cuts.len += 1;
             self.spare += 1;
         } else if twin.is_some() {
             for i in self.cuts.len..CUTS {
-                self.put(i, new, u, k, seen);
+                self.put::<BENT>(i, new, u, k, seen);
             }
         }
         if better {
             self.cuts.best = place;
-            (self.best, self.best_h) = (*new, k);
+            (self.best, self.best_h) = (*new, new.h - self.rho());
         }
         true
     }
 
     #[inline(always)]
-    fn put(&mut self, i: usize, new: &Sample, u: &Vec3, k: Real, seen: u32) {
+    fn put<const BENT: bool>(&mut self, i: usize, new: &Sample, u: &Vec3, k: Real, seen: u32) {
         self.n.set(i, &new.n);
         self.u.set(i, u);
         self.h[i] = k;
         self.samples[i % CUTS] = *new;
-        // Nothing is to be seen of what has no ball.
-        if self.rho() > 0.0 {
+        if let (true, Some(discs)) = (BENT, &mut self.discs) {
+            discs.put(i);
+        }
+        // Nothing is to be seen of what is not round.
+        if self.is_round::<BENT>() {
             for (o, bits) in self.seen.iter_mut().enumerate() {
                 *bits = *bits & !(1 << i) | (seen >> o & 1) << i;
             }
@@ -426,21 +580,24 @@ impl Flat {
         if !(turned > CLOSE) {
             return false;
         }
-        let moves = [new.p.v1 - old.p.v1, old.p.v2 - new.p.v2];
+        let moves = moves(old, new);
         let least = self.cuts.rounding * self.cuts.rounding;
         let mut found = false;
-        for (radius, d) in self.radius.iter_mut().zip(moves) {
+        for (o, d) in moves.into_iter().enumerate() {
             let (along, moved) = (d.dot(&dn), d.norm_squared());
             let parallel = along > 0.0
                 && moved > 4.0 * least
                 && moved * turned - along * along <= PARALLEL * moved * turned
                 // No larger than the object.
                 && along * along <= 1.02 * self.extent2 * turned * turned;
-            if parallel && *radius == 0.0 {
-                *radius = along / turned;
-                self.u.add(&self.n, -*radius);
-                self.h = self.h - Lanes::all(*radius);
-                self.best_h -= *radius;
+            // Across the axis the points of a disc move like a ball's.
+            let disc = self.discs.as_ref().is_some_and(|discs| discs.has(o));
+            if parallel && !disc && self.radius[o] == 0.0 {
+                let radius = along / turned;
+                self.radius[o] = radius;
+                self.u.add(&self.n, -radius);
+                self.h = self.h - Lanes::all(radius);
+                self.best_h -= radius;
                 found = true;
             }
         }
@@ -448,27 +605,79 @@ impl Flat {
         found
     }
 
+    /// Looks for discs, and takes them off all samples.
+    #[inline(never)]
+    fn look_for_discs(&mut self, old: &Sample, new: &Sample) -> Shown {
+        let same = self.same_round();
+        let kept = &self.samples[..self.cuts.len.min(CUTS)];
+        let discs = self.discs.get_or_insert_default();
+        let (extent2, asked) = (self.extent2, self.asked);
+        let shown = discs.look([old, new], kept, &self.radius, same, extent2, asked);
+        match shown {
+            Shown::Discs => self.take_off(),
+            Shown::Maybe => (),
+            Shown::Nothing if discs.is_there() => (),
+            Shown::Nothing => self.discs = None,
+        }
+        shown
+    }
+
+    /// Both objects may have discs: the next sample is to tell, a step down that serves the
+    /// search with curvature as well if these are none. Only of the first two samples.
+    #[inline(never)]
+    fn suspect(&mut self, old: &Sample, new: &Sample) -> bool {
+        let [d, e] = moves(old, new);
+        let dn = new.n - old.n;
+        self.slope = (d + e).dot(&dn) / dn.norm_squared();
+        self.cuts.len == 1
+    }
+
+    /// Were both suspected discs ones? Then they are taken off.
+    #[inline(never)]
+    fn settle(&mut self, new: &Sample) -> bool {
+        self.slope = 0.0;
+        let discs = self.discs.as_mut();
+        let settled = discs.is_some_and(|discs| discs.settle(new, self.asked));
+        if settled {
+            self.take_off();
+        }
+        settled
+    }
+
+    /// Takes the discs off all samples.
+    fn take_off(&mut self) {
+        self.flat = false;
+        for i in 0..CUTS {
+            let sample = self.samples[i];
+            let (u, k) = self.vertex::<true>(&sample);
+            self.u.set(i, &u);
+            self.h[i] = k;
+            if let Some(discs) = &mut self.discs {
+                discs.put(i);
+            }
+        }
+    }
+
     /// Notes which vertices a new sample shows again from another direction. Returns whose
     /// were: a bit for each object.
     #[inline(always)]
-    fn see(&mut self, new: &Sample) -> u32 {
-        let same = self.same();
+    fn see<const BENT: bool>(&mut self, new: &Sample) -> u32 {
+        let same = self.same::<BENT>();
         let mut seen = 0;
         for i in 0..self.cuts.len.min(CUTS) {
             let old = &self.samples[i];
             let dn = new.n - old.n;
-            let moves = [new.p.v1 - old.p.v1, old.p.v2 - new.p.v2];
-            for (o, d) in moves.into_iter().enumerate() {
-                let r = self.radius[o];
-                // The ball must have moved by more than a vertex without it would need to
-                // pass for one with it.
-                let moved2 = r * r * dn.norm_squared();
-                let least = larger(CLOSE * r * r, 16.0 * same * same);
-                if moved2 > least && (d - dn * r).norm_squared() <= same * same {
+            for (o, d) in moves(old, new).into_iter().enumerate() {
+                let radius = self.radius[o];
+                if shows(radius, &(dn * radius), &d, same) {
                     self.seen[o] |= 1 << i;
                     seen |= 1 << o;
                 }
             }
+        }
+        if let (true, Some(discs)) = (BENT, &mut self.discs) {
+            let kept = &self.samples[..self.cuts.len.min(CUTS)];
+            seen |= discs.see(new, kept, &mut self.seen, same, self.asked);
         }
         seen
     }
@@ -477,31 +686,40 @@ impl Flat {
     /// to unit `n` that their cuts are right without the ball, within a quarter of the
     /// tolerance.
     #[inline(always)]
-    fn unseen(&self, n: &Vec3) -> u32 {
+    fn unseen<const BENT: bool>(&self, n: &Vec3) -> u32 {
         let mut unseen = 0;
         for (radius, seen) in self.radius.iter().zip(self.seen) {
             if *radius > 0.0 {
                 unseen |= !seen;
             }
         }
+        if let Some(discs) = self.discs::<BENT>() {
+            unseen |= discs.unseen(&self.seen);
+        }
         if unseen == 0 {
             return 0;
         }
-        let lift = (Lanes::all(1.0) - self.n.dot(n)) * self.rho();
+        let mut lift = (Lanes::all(1.0) - self.n.dot(n)) * self.rho();
+        if let Some(discs) = self.discs::<BENT>() {
+            lift = lift + discs.lifts(n);
+        }
         unseen & lift.mask(|lift| lift > 0.25 * self.tolerance)
     }
 
     /// The answer, if the last step was to the minimum, came true there, and no cut shows a
     /// lower place.
     #[inline(always)]
-    fn came_true(&mut self, new: &Sample, known: &mut Known) -> Option<Minimum> {
+    fn came_true<const BENT: bool>(&mut self, new: &Sample, known: &mut Known) -> Option<Minimum> {
         let step = self.step.take()?;
         let k = new.h - self.rho();
         let came = self.trust.came_true(new.h, self.tolerance);
-        if !came || self.unseen(&new.n) & step.bits() != 0 || !self.is_lowest(&new.n, k, &step) {
+        if !came
+            || self.unseen::<BENT>(&new.n) & step.bits() != 0
+            || !self.is_lowest::<BENT>(&new.n, k, &step)
+        {
             return None;
         }
-        self.conclude(new, k, &step, known)
+        self.conclude::<BENT>(new, k, &step, &new.n, known)
     }
 
     /// Is it nowhere lower within the trust radius, as far as the active cuts tell?
@@ -511,11 +729,18 @@ impl Flat {
     /// triangle, where it is the side's distance times |x|: no lower, if that distance is at
     /// least ½ k Δ. (Vertices of equal height are as far apart as their gradients.)
     #[inline(always)]
-    fn is_lowest(&self, n: &Vec3, k: Real, step: &Step) -> bool {
+    fn is_lowest<const BENT: bool>(&self, n: &Vec3, k: Real, step: &Step) -> bool {
         if !(k > 0.0) {
             return true;
         }
-        let [u, v, w] = step.set.map(|i| self.u.get(i));
+        match self.discs::<BENT>() {
+            Some(_) if step.count == 2 => return self.cuts.is_ridge(step, self.trust.radius),
+            // The disc around an axis is, and no sample along it can be kept.
+            Some(discs) if step.count == 1 => return discs.along_axis(n),
+            _ => (),
+        }
+        let discs = self.discs_below::<BENT>(n, step);
+        let [u, v, w] = step.set.map(|i| self.with_discs::<BENT>(i, &discs));
         let least = 0.5 * k * self.trust.radius;
         let far = |a: &Vec3, b: &Vec3| {
             let area = n.dot(&a.cross(b));
@@ -526,29 +751,32 @@ impl Flat {
 
     /// Where to ask next, or the answer.
     #[inline(always)]
-    fn next(&mut self, known: &mut Known) -> Next {
+    fn next<const BENT: bool>(&mut self, known: &mut Known) -> Next {
         let h = self.best_h;
         let rho = self.rho();
         // A touch cannot be lower, and is for others to tell.
         if !(h + rho > self.cuts.rounding) || self.trust.is_stuck() {
             return Next::Open;
         }
-        if self.cuts.len == 1 && !(rho > 0.0) {
+        if self.cuts.len == 1 && !self.is_round::<BENT>() {
             let size = self.extent2.sqrt();
             return Next::Ask(self.trust.first_step(&self.best.n, &self.best.p.v, size));
         }
-        self.chart();
-        let Some((step, gain)) = self.predict() else {
+        if BENT && self.slope > 0.0 {
+            let best = &self.best;
+            return Next::Ask(self.trust.first_step(&best.n, &best.p.v, self.slope));
+        }
+        self.chart::<BENT>();
+        let Some((step, gain)) = self.predict::<BENT>() else {
             return Next::Open;
         };
         self.trust
             .foretell(h - gain + rho, !step.inside, &self.best.n);
         self.step = step.inside.then_some(step);
-        let d = self.best.n + self.e1 * step.x + self.e2 * step.y;
-        let mut n = d * (1.0 / d.norm());
+        let mut n = self.direction(&step);
         let close = gain.abs() <= self.tolerance;
-        if step.inside || close && rho > 0.0 && self.trust.radius >= FIRST {
-            let doubtful = self.doubtful(&step, &n);
+        if step.inside || close && self.is_round::<BENT>() && self.trust.radius >= FIRST {
+            let doubtful = self.doubtful::<BENT>(&step, &n);
             if doubtful != 0 {
                 self.doubts += 1;
                 if self.doubts > DOUBTS {
@@ -559,7 +787,7 @@ impl Flat {
                 n += self.towards(&step, doubtful);
                 n *= 1.0 / n.norm();
             } else if close {
-                let minimum = self.conclude(&self.best, h, &step, known);
+                let minimum = self.conclude::<BENT>(&self.best, h, &step, &n, known);
                 return minimum.map_or(Next::Open, Next::Found);
             }
         }
@@ -572,40 +800,106 @@ impl Flat {
     /// The step to where the model is least, and how much lower it is there, metres. `None`: it
     /// is no guide.
     #[inline(always)]
-    fn predict(&mut self) -> Option<(Step, Real)> {
+    fn predict<const BENT: bool>(&mut self) -> Option<(Step, Real)> {
         let mut step = self.cuts.minimise(self.trust.radius);
-        let mut gain = self.gain(&step);
+        if BENT && self.weigh(&step) {
+            self.chart::<BENT>();
+            step = self.cuts.minimise(self.trust.radius);
+        }
+        let mut gain = self.gain::<BENT>(&step);
         let level = gain.abs() <= self.tolerance && !step.inside;
-        if level && self.rho() > 0.0 && self.trust.radius < FIRST && !self.levelled {
+        if level && self.is_round::<BENT>() && self.trust.radius < FIRST && !self.levelled {
             // Level so far: is it as far as the first radius?
             self.levelled = true;
             self.trust.radius = FIRST;
             step = self.cuts.minimise(self.trust.radius);
-            gain = self.gain(&step);
+            gain = self.gain::<BENT>(&step);
         }
         let lost = gain < -self.tolerance;
         let close = gain <= self.tolerance && step.inside;
-        if lost || close && !self.is_lowest(&self.best.n, self.best_h, &step) {
+        if lost || close && !self.is_lowest::<BENT>(&self.best.n, self.best_h, &step) {
             // The walk ended above b, or before the end: is it lower anywhere?
             step = self.cuts.lowest(self.trust.radius);
-            gain = self.gain(&step);
+            gain = self.gain::<BENT>(&step);
+        }
+        if BENT
+            && let Some((apex, lower)) = self.apex()
+            && !(gain >= lower)
+        {
+            (step, gain) = (apex, lower);
         }
         // Also NaN.
         (gain >= -self.tolerance && gain < Real::INFINITY).then_some((step, gain))
     }
 
+    /// Weighs the cuts that are active at a step, for what they bend. Returns whether that is
+    /// another than thought.
+    #[cold]
+    fn weigh(&mut self, step: &Step) -> bool {
+        match &mut self.discs {
+            Some(discs) => discs.weigh(&step.set, &self.cuts.weights(step)),
+            None => false,
+        }
+    }
+
     /// How much lower the model is at a step, metres.
     #[inline(always)]
-    fn gain(&self, step: &Step) -> Real {
+    fn gain<const BENT: bool>(&self, step: &Step) -> Real {
+        if BENT {
+            let n = self.direction(step);
+            return self.best_h - self.levels(&n).most();
+        }
         self.best_h - step.level / (1.0 + step.length2()).sqrt()
+    }
+
+    /// The unit direction that a step leads to.
+    #[inline(always)]
+    fn direction(&self, step: &Step) -> Vec3 {
+        let d = self.best.n + self.e1 * step.x + self.e2 * step.y;
+        d * (1.0 / d.norm())
+    }
+
+    /// The step to the axis of a disc, where its support value is least, if it is within the
+    /// trust radius, and how much lower the model is there.
+    #[cold]
+    fn apex(&self) -> Option<(Step, Real)> {
+        let discs = self.discs.as_ref()?;
+        let b = &self.best.n;
+        let n = discs.axis_near(b, self.trust.radius)?;
+        let cos = n.dot(b);
+        let levels = self.levels(&n);
+        let top = levels.most();
+        let i = (0..CUTS).find(|&i| levels[i] >= top)?;
+        let step = Step {
+            x: n.dot(&self.e1) / cos,
+            y: n.dot(&self.e2) / cos,
+            level: top,
+            value: top,
+            set: [i; 3],
+            count: 1,
+            inside: discs.balances(&n, i, &self.u.get(i))?,
+        };
+        Some((step, self.best_h - top))
+    }
+
+    /// The support values of the kept vertices along unit `n`, with their discs.
+    fn levels(&self, n: &Vec3) -> Lanes {
+        let levels = self.u.dot(n);
+        self.discs
+            .as_ref()
+            .map_or(levels, |discs| levels + discs.heights(n))
     }
 
     /// The chart of the best direction, and the cuts in it.
     #[inline(always)]
-    fn chart(&mut self) {
+    fn chart<const BENT: bool>(&mut self) {
         let b = self.best.n;
         (self.e1, self.e2) = basis(&b);
-        self.cuts.height = self.best_h;
+        self.cuts.bend = [-self.best_h; 2];
+        if self.discs::<BENT>().is_some() {
+            self.bend();
+            return;
+        }
         self.cuts.a = self.u.dot(&b);
         self.cuts.x = self.u.dot(&self.e1);
         self.cuts.y = self.u.dot(&self.e2);
@@ -613,21 +907,57 @@ impl Flat {
         // that the others do not.
         let (cuts, best) = (&self.cuts, self.cuts.best);
         let flat = larger(cuts.x[best].abs(), cuts.y[best].abs()) <= cuts.rounding;
-        let ties = |i: &usize| *i != best && cuts.a[*i] >= cuts.height - cuts.rounding;
+        let ties = |i: &usize| *i != best && cuts.a[*i] >= self.best_h - cuts.rounding;
         if let (true, Some(other)) = (flat, (0..cuts.len.min(CUTS)).find(ties)) {
             self.cuts.best = other;
+        }
+    }
+
+    /// The chart along the principal directions of K, K along these, and the cuts in it.
+    #[inline(never)]
+    fn bend(&mut self) {
+        let b = self.best.n;
+        let Some(discs) = &self.discs else { return };
+        // K along e1 and e2, and across.
+        let (mut k, mut l, mut m) = (0.0, 0.0, 0.0);
+        for (t, bend) in discs.bends(&b) {
+            let (x, y) = (t.dot(&self.e1), t.dot(&self.e2));
+            k += bend * x * x;
+            l += bend * y * y;
+            m += bend * x * y;
+        }
+        let (half, mean) = (0.5 * (k - l), 0.5 * (k + l));
+        let spread = (half * half + m * m).sqrt();
+        let cos2 = if spread > 0.0 { half / spread } else { 1.0 };
+        // Of half the angle; the sine has m's sign.
+        let cos = (0.5 * (1.0 + cos2)).sqrt();
+        let sin = (0.5 * (1.0 - cos2)).sqrt().copysign(m);
+        let (e1, e2) = (self.e1, self.e2);
+        self.e1 = e1 * cos + e2 * sin;
+        self.e2 = e2 * cos - e1 * sin;
+        let h = self.best_h;
+        let cuts = &mut self.cuts;
+        cuts.bend = [mean + spread - h, mean - spread - h];
+        let points = discs.points(&b, &Vec3::zeros());
+        for (lanes, along) in [
+            (&mut cuts.a, &b),
+            (&mut cuts.x, &self.e1),
+            (&mut cuts.y, &self.e2),
+        ] {
+            *lanes = self.u.dot(along);
+            discs.add_along(lanes, &points, along);
         }
     }
 
     /// The active cuts whose balls must be seen, as bits. Of three cuts the best one's own
     /// point is as good as any.
     #[inline(always)]
-    fn doubtful(&self, step: &Step, n: &Vec3) -> u32 {
+    fn doubtful<const BENT: bool>(&self, step: &Step, n: &Vec3) -> u32 {
         if self.asked == 1 {
             // A remembered ball is no more than a guess.
             return step.bits();
         }
-        let unseen = self.unseen(n);
+        let unseen = self.unseen::<BENT>(n);
         if unseen == 0 {
             return 0;
         }
@@ -654,9 +984,12 @@ impl Flat {
         }
         let side = side - b * b.dot(&side);
         let side = unit(&side).unwrap_or_else(|| perpendicular(&b));
-        let radius = larger(self.radius[0], self.radius[1]);
+        let mut radius = larger(self.radius[0], self.radius[1]);
+        for disc in self.discs.iter().flat_map(Discs::discs) {
+            radius = larger(radius, disc.radius);
+        }
         let tilt = if step.count == 1 {
-            larger(10.0 * CLOSE.sqrt(), 8.0 * self.same() / radius)
+            larger(10.0 * CLOSE.sqrt(), 8.0 * self.same_round() / radius)
         } else {
             0.25 * self.tolerance / self.extent2.sqrt()
         };
@@ -674,30 +1007,43 @@ impl Flat {
     /// the points of the active cuts, or, where a direction ties several vertices, of any
     /// three.
     #[inline(always)]
-    fn conclude(&self, at: &Sample, k: Real, step: &Step, known: &mut Known) -> Option<Minimum> {
+    fn conclude<const BENT: bool>(
+        &self,
+        at: &Sample,
+        k: Real,
+        step: &Step,
+        foot: &Vec3,
+        known: &mut Known,
+    ) -> Option<Minimum> {
         let n = &at.n;
         let depth = k + self.rho();
         let near2 = 2.0 * depth * self.tolerance;
         let rounding = self.cuts.rounding;
         let near2 = larger(near2, rounding * rounding);
         let least = k - self.tolerance;
+        let discs = self.discs_below::<BENT>(foot, step);
         let own = |set: &[usize; 3], weights: &[Real; 3]| {
             let mut foot = Vec3::zeros();
             for (&i, &w) in set.iter().zip(weights) {
-                foot += self.u.get(i) * w;
+                // Discs bend between here and where the step began: there its weights were none
+                // negative.
+                if BENT && w < 0.0 {
+                    return None;
+                }
+                foot += self.with_discs::<BENT>(i, &discs) * w;
             }
             let height = foot.dot(n);
             let across2 = (foot - n * height).norm_squared();
             (height >= least && across2 <= near2).then_some(foot)
         };
         let serves = |(set, weights, count)| Some((own(&set, &weights)?, set, weights, count));
-        let active = serves((step.set, self.weights(step, n), step.count));
-        let of_three = || self.enclosing(n).find_map(|(set, w)| serves((set, w, 3)));
-        let (foot, set, weights, count) = active.or_else(of_three)?;
-        let mut point1 = n * self.radius[0];
-        for (&i, &w) in set.iter().zip(&weights) {
-            point1 += (self.samples[i % CUTS].p.v1 - self.n.get(i) * self.radius[0]) * w;
-        }
+        let active = serves((step.set, self.weights::<BENT>(step, n, &discs), step.count));
+        let of_three = || {
+            self.enclosing::<BENT>(n, &discs)
+                .find_map(|(set, w)| serves((set, w, 3)))
+        };
+        let (foot, set, weights, mut count) = active.or_else(of_three)?;
+        let mut point1 = self.point1::<BENT>(n, &set, &weights, &discs);
         let mut point2 = point1 - foot - n * self.rho();
         // Onto the support planes of both objects.
         point1 += n * n.dot(&(at.p.v1 - point1));
@@ -711,9 +1057,16 @@ impl Flat {
             known.add(&self.samples[i % CUTS].p);
         }
         let slope = |i: usize| {
-            let u = self.u.get(i);
+            let u = self.with_discs::<BENT>(i, &discs);
             u - n * n.dot(&u)
         };
+        let mut slopes = set.map(slope);
+        match self.discs::<BENT>() {
+            Some(discs) if count == 1 && discs.along_axis(n) => {
+                (slopes, count) = (discs.rim_below(&self.u.get(set[0]), n), 3);
+            }
+            _ => (),
+        }
         Some(Minimum {
             hit: Penetration {
                 depth,
@@ -722,20 +1075,69 @@ impl Flat {
                 normal: *n,
                 point1,
                 point2,
-                width: contact_patch::width(known.points(), n, self.tolerance, self.extent2.sqrt()),
+                width: self.width::<BENT>(at, &discs, known),
                 iterations: self.asked as u64,
             },
-            slopes: set.map(slope),
+            slopes,
             count,
-            radius: self.radius,
         })
+    }
+
+    /// The length along which the objects touch at a sample, as far as the points known tell, the
+    /// discs where they are there.
+    #[inline(always)]
+    fn width<const BENT: bool>(&self, at: &Sample, discs: &[Vec3; 2], known: &Known) -> Real {
+        let (n, size) = (&at.n, self.extent2.sqrt());
+        let Some(taken) = self.discs::<BENT>() else {
+            return contact_patch::width(known.points(), n, self.tolerance, size);
+        };
+        let mut points = [at.p; CUTS + 1];
+        for (i, point) in points.iter_mut().take(CUTS).enumerate() {
+            let moved = |o| taken.carried(i, o, discs, &self.seen) - taken.kept(i, o);
+            *point = self.samples[i].p;
+            point.v1 += moved(0);
+            point.v2 -= moved(1);
+            point.v = point.v1 - point.v2;
+        }
+        contact_patch::width(&points, n, self.tolerance, size)
+    }
+
+    /// The mean of obj1's points, below the origin along `n`.
+    #[inline(always)]
+    fn point1<const BENT: bool>(
+        &self,
+        n: &Vec3,
+        set: &[usize; 3],
+        weights: &[Real; 3],
+        discs: &[Vec3; 2],
+    ) -> Vec3 {
+        let ball = self.radius[0];
+        let mut point1 = n * ball;
+        for (&i, &w) in set.iter().zip(weights) {
+            let at = &self.n.get(i);
+            let mut own = self.samples[i % CUTS].p.v1 - at * ball;
+            if let Some(taken) = self.discs::<BENT>() {
+                own += taken.carried(i, 0, discs, &self.seen) - taken.kept(i, 0);
+            }
+            point1 += own * w;
+        }
+        point1
+    }
+
+    /// The points of the discs at a minimum along `n`: the farthest; along an axis, where all of
+    /// a disc is, the one below the origin.
+    #[inline(always)]
+    fn discs_below<const BENT: bool>(&self, n: &Vec3, step: &Step) -> [Vec3; 2] {
+        let vertex = self.u.get(step.set[0]);
+        self.discs::<BENT>()
+            .map_or_else(Default::default, |discs| discs.points(n, &vertex))
     }
 
     /// Weights of the active cuts whose vertices have a mean on the line of `n`, or come
     /// nearest to it.
     #[inline(always)]
-    fn weights(&self, step: &Step, n: &Vec3) -> [Real; 3] {
-        let [u, v, w] = step.set.map(|i| self.u.get(i));
+    fn weights<const BENT: bool>(&self, step: &Step, n: &Vec3, discs: &[Vec3; 2]) -> [Real; 3] {
+        let [u, v, w] = step.set.map(|i| self.with_discs::<BENT>(i, discs));
         match step.count {
             3 => {
                 let shares = [
@@ -761,8 +1163,12 @@ impl Flat {
     /// Each three samples whose triangle the line of `n` meets, and the weights of where it
     /// does.
     #[cold]
-    fn enclosing(&self, n: &Vec3) -> impl Iterator<Item = ([usize; 3], [Real; 3])> + use<'_> {
-        let n = *n;
+    fn enclosing<const BENT: bool>(
+        &self,
+        n: &Vec3,
+        discs: &[Vec3; 2],
+    ) -> impl Iterator<Item = ([usize; 3], [Real; 3])> + use<'_, BENT> {
+        let (n, discs) = (*n, *discs);
         let len = self.cuts.len.min(CUTS);
         let triples = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
         triples
@@ -778,7 +1184,7 @@ impl Flat {
                     count: 3,
                     inside: true,
                 };
-                let w = self.weights(&step, &n);
+                let w = self.weights::<BENT>(&step, &n, &discs);
                 // False for NaN: three points on a line.
                 w.iter().all(|&w| w >= 0.0).then_some((set, w))
             })
@@ -806,7 +1212,9 @@ mod tests {
         let mut known = Known::default();
         let n = start.normalize();
         let mut queue = Queue::EMPTY;
-        let outcome = Flat::new().run(&md, centre, n, &mut queue, &settings, &mut known);
+        let mut flat = Flat::new();
+        let outcome =
+            flat.run::<false, _, _>(&md, centre, Some(n), &mut queue, &settings, &mut known);
         (outcome.unwrap(), md.supports())
     }
 
@@ -908,6 +1316,106 @@ mod tests {
                 Outcome::Apart(n) => panic!("apart along {n}"),
             }
         }
+    }
+
+    /// Of this radius about the z axis, its upper rim in the plane z = 0.
+    fn cylinder(radius: Real) -> impl Fn(&Vec3) -> Vec3 {
+        move |d| {
+            let f = radius / d.x.hypot(d.y);
+            Vec3::new(d.x * f, d.y * f, if d.z > 0.0 { 0.0 } else { -2.0 })
+        }
+    }
+
+    /// A straight line over a cylinder's rim, by e inside of it at 45°: across the line the rim
+    /// bends, and the depth is √2 e. Two exact cuts, and K along the line.
+    #[test]
+    fn an_edge_on_a_rim() {
+        let mut random = Random::new(4);
+        let n = Vec3::new(1.0, 0.0, 1.0).normalize();
+        let along = Vec3::new(1.0, 0.0, -1.0) * 3.0;
+        let mut open = 0;
+        for _ in 0..100 {
+            let (r, e) = (random.within(0.3, 1.5), random.within(0.01, 0.1));
+            let at = Vec3::new(r - e, 0.0, -e);
+            let (outcome, supports) = run(
+                cylinder(r),
+                hull(&[at + along, at - along]),
+                &(-at - Vec3::z()),
+                &(n + random.vector(0.15)),
+            );
+            // Ends of the line that look like points of one smooth surface.
+            if let Outcome::Open(_) = outcome {
+                open += 1;
+                continue;
+            }
+            let hit = found(outcome);
+            let depth = (2.0 as Real).sqrt() * e;
+            assert!((hit.depth - depth).abs() < 2.0 * TOLERANCE, "{}", hit.depth);
+            assert!((hit.dir - n).norm() < TOLERANCE.sqrt() * 2.0);
+            let near = (4.0 * depth * TOLERANCE).sqrt() + TOLERANCE;
+            assert!((hit.point1 - Vec3::x() * r).norm() < near, "{}", hit.point1);
+            assert!((hit.point1 - hit.point2 - hit.dir * hit.depth).norm() < near);
+            assert!(supports <= 12, "{supports}");
+        }
+        assert!(open <= 10, "{open}");
+    }
+
+    /// A cylinder's flat end on a vertex: least along its axis, where its disc has no curvature.
+    #[test]
+    fn a_vertex_in_a_flat_end() {
+        let mut random = Random::new(5);
+        for _ in 0..100 {
+            let at = Vec3::new(0.2, random.within(-0.2, 0.2), random.within(-0.2, -0.01));
+            let (outcome, supports) = run(
+                cylinder(0.5),
+                ball(at, 0.0),
+                &(-at - Vec3::z()),
+                &(Vec3::z() + random.vector(0.15)),
+            );
+            let hit = found(outcome);
+            assert!((hit.depth + at.z).abs() < TOLERANCE, "{} {at}", hit.depth);
+            assert!((hit.dir - Vec3::z()).norm() < 1e-4);
+            assert!((hit.point2 - at).norm() < TOLERANCE.sqrt());
+            assert!(supports <= 12, "{supports}");
+        }
+    }
+
+    /// The hull of a cylinder and an edge beside it, parallel to its axis, and a point: round
+    /// where the search starts, and a wedge at its minimum, 0.4 / 3 deep; 1 at the flat ends.
+    #[test]
+    fn a_wedge_is_no_cylinder() {
+        let mut random = Random::new(6);
+        let wedge = |d: &Vec3| {
+            let f = 1.0 / d.x.hypot(d.y);
+            let z = (1.0 as Real).copysign(d.z);
+            if 3.0 * d.x * f > 1.0 {
+                Vec3::new(3.0, 0.0, z)
+            } else {
+                Vec3::new(d.x * f, d.y * f, z)
+            }
+        };
+        let mut met = 0;
+        for _ in 0..400 {
+            let start = random.direction();
+            match run(
+                wedge,
+                ball(Vec3::x() * 2.6, 0.0),
+                &(Vec3::x() * -2.6),
+                &start,
+            )
+            .0
+            {
+                Outcome::Found(minimum) => {
+                    met += 1;
+                    let depth = minimum.hit.depth;
+                    let right = (depth - 0.4 / 3.0).abs() < 1e-3 || (depth - 1.0).abs() < 1e-6;
+                    assert!(right, "{depth} from {start}");
+                }
+                Outcome::Open(_) => {}
+                Outcome::Apart(n) => panic!("apart along {n}"),
+            }
+        }
+        assert!(met > 50, "{met}");
     }
 
     /// What is smooth and no ball is left to the search with curvature, with all that is

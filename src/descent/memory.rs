@@ -4,8 +4,9 @@
 //! What a search leaves behind for the next one of the pair.
 
 use super::curvature::Symmetric;
+use super::discs::Disc;
 use super::trust_region::ASIDE;
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, unit};
 
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
 /// any other bits are harmless, since they only choose where to look first.
@@ -15,20 +16,24 @@ pub struct Memory {
     pub dir: Vec3,
     /// The gradients of the active cuts there, metres.
     pub slopes: [Vec3; 3],
-    /// R, metres: xx, xy, xz, yy, yz, zz. Or the radii of the two objects' balls, and zeros.
+    /// R, metres: xx, xy, xz, yy, yz, zz. Or three numbers for each object: its ball's radius and
+    /// zeros, or its disc's axis times its radius.
     pub curvature: [Real; 6],
     /// How far `dir` moved since the query before, radians.
     pub drift: Real,
     /// How many of `slopes` are in use.
     pub count: u32,
-    /// 1 if `curvature` is R, 2 if it is balls; else nothing is known of it.
+    /// 1 if `curvature` is R; 2 if it is balls and discs, and 4 more for a disc of obj1, 8 more for
+    /// one of obj2; else nothing is known of it.
     pub curved: u32,
 }
 
 /// [`Memory::curved`] where R was known.
 const CURVED: u32 = 1;
-/// Where balls were.
+/// Where balls and discs were, …
 const ROUND: u32 = 2;
+/// … and whose these discs were.
+const DISC: [u32; 2] = [4, 8];
 
 /// What is known of the smooth part of D.
 #[derive(Clone, Copy, Debug)]
@@ -37,8 +42,12 @@ pub enum Smooth {
     Unknown,
     /// R, metres.
     Curved(Symmetric),
-    /// The radii of the two objects' balls, metres; 0 for none.
-    Round([Real; 2]),
+    /// The two objects' balls and discs.
+    Round {
+        /// Radii, metres; 0 for none.
+        balls: [Real; 2],
+        discs: [Disc; 2],
+    },
 }
 
 /// Directions to ask before the first model, last one first.
@@ -89,7 +98,20 @@ impl Memory {
         let (curved, curvature) = match smooth {
             Smooth::Unknown => (0, [0.0; 6]),
             Smooth::Curved(r) => (CURVED, r.entries()),
-            Smooth::Round([r1, r2]) => (ROUND, [r1, r2, 0.0, 0.0, 0.0, 0.0]),
+            Smooth::Round { balls, discs } => {
+                let mut curved = ROUND;
+                let mut of = [0, 1].map(|o| Vec3::new(balls[o], 0.0, 0.0));
+                for (o, disc) in discs.iter().enumerate() {
+                    if disc.is_there() {
+                        curved += DISC[o];
+                        of[o] = disc.axis * disc.radius;
+                    }
+                }
+                (
+                    curved,
+                    [of[0].x, of[0].y, of[0].z, of[1].x, of[1].y, of[1].z],
+                )
+            }
         };
         // One cut has no others to be found again.
         let several = count > 1;
@@ -104,14 +126,29 @@ impl Memory {
     }
 
     /// What was known of the smooth part and still makes sense.
-    #[inline]
+    #[inline(always)]
     pub fn smooth(&self) -> Smooth {
-        let [r1, r2, ..] = self.curvature;
+        let [a, b, c, d, e, f] = self.curvature;
+        if self.curved == 0 || !(a + b + c + d + e + f).is_finite() {
+            return Smooth::Unknown;
+        }
         match self.curved {
-            CURVED if self.curvature.iter().sum::<Real>().is_finite() => {
-                Smooth::Curved(Symmetric::of(self.curvature))
+            CURVED => Smooth::Curved(Symmetric::of(self.curvature)),
+            _ if self.curved & ROUND != 0 => {
+                let [x, y, z, p, q, r] = self.curvature;
+                let of = [Vec3::new(x, y, z), Vec3::new(p, q, r)];
+                let mut balls = [0.0; 2];
+                let mut discs = [Disc::default(); 2];
+                for (o, v) in of.iter().enumerate() {
+                    if self.curved & DISC[o] == 0 {
+                        balls[o] = larger(v.x, 0.0);
+                    } else if let Some(axis) = unit(v) {
+                        let radius = v.norm();
+                        discs[o] = Disc { radius, axis };
+                    }
+                }
+                Smooth::Round { balls, discs }
             }
-            ROUND if r1 >= 0.0 && r2 >= 0.0 && r1 + r2 < Real::INFINITY => Smooth::Round([r1, r2]),
             _ => Smooth::Unknown,
         }
     }
@@ -123,8 +160,10 @@ impl Memory {
             // Not -v: a cold memory is one of plain zeros.
             *v = Vec3::zeros() - *v;
         }
-        if self.curved == ROUND {
-            self.curvature.swap(0, 1);
+        if self.curved & ROUND != 0 {
+            self.curvature.rotate_left(3);
+            let [a, b] = DISC.map(|disc| self.curved & disc != 0);
+            self.curved = ROUND + u32::from(b) * DISC[0] + u32::from(a) * DISC[1];
         }
     }
 
@@ -227,12 +266,62 @@ mod tests {
     #[test]
     fn balls_change_sides_with_the_objects() {
         let mut memory = Memory::default();
-        memory.keep(&Vec3::z(), &[Vec3::x(); 3], 2, Smooth::Round([0.5, 0.25]));
+        memory.keep(
+            &Vec3::z(),
+            &[Vec3::x(); 3],
+            2,
+            Smooth::Round {
+                balls: [0.5, 0.25],
+                discs: Default::default(),
+            },
+        );
         memory.flip();
-        assert!(matches!(memory.smooth(), Smooth::Round([0.25, 0.5])));
+        assert!(matches!(
+            memory.smooth(),
+            Smooth::Round {
+                balls: [0.25, 0.5],
+                ..
+            }
+        ));
         assert_eq!((memory.dir, memory.slopes[1]), (-Vec3::z(), -Vec3::x()));
         memory.curvature[0] = Real::NAN;
         assert!(matches!(memory.smooth(), Smooth::Unknown));
+    }
+
+    #[test]
+    fn discs_change_sides_with_the_objects() {
+        let disc = Disc {
+            radius: 0.5,
+            axis: Vec3::new(0.0, 0.6, 0.8),
+        };
+        let mut memory = Memory::default();
+        let smooth = Smooth::Round {
+            balls: [0.0, 0.25],
+            discs: [disc, Disc::default()],
+        };
+        memory.keep(&Vec3::z(), &[Vec3::x(); 3], 2, smooth);
+        memory.flip();
+        match memory.smooth() {
+            Smooth::Round {
+                balls: [ball, other],
+                discs: [none, there],
+            } => {
+                assert_eq!((ball, other), (0.25, 0.0));
+                assert!(!none.is_there() && (there.radius - 0.5).abs() < 4.0 * EPSILON);
+                assert!((there.axis - disc.axis).norm() < 4.0 * EPSILON);
+            }
+            other => panic!("{other:?}"),
+        }
+        for i in 0..6 {
+            let mut broken = memory;
+            broken.curvature[i] = Real::NAN;
+            assert!(matches!(broken.smooth(), Smooth::Unknown));
+        }
+        // An axis of no length is no disc's.
+        memory.curvature = [0.0; 6];
+        assert!(
+            matches!(memory.smooth(), Smooth::Round { discs: [_, none], .. } if !none.is_there())
+        );
     }
 
     #[test]
