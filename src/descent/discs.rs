@@ -93,9 +93,11 @@ impl Disc {
         let axis = axis * (1.0 / axis.norm());
         let unit = Self { radius: 1.0, axis };
         let moved = unit.turned(n, other);
-        let radius = d.dot(&moved) / moved.norm_squared();
-        // False for NaN.
-        (radius > 0.0 && radius < Real::INFINITY).then_some(Self { radius, axis })
+        let moved2 = moved.norm_squared();
+        let radius = d.dot(&moved) / moved2;
+        // By no more than a quarter of a turn: the two ends of anything are opposite on a disc
+        // whose axis lies between the directions. False for NaN.
+        (moved2 < 2.0 && radius > 0.0 && radius < Real::INFINITY).then_some(Self { radius, axis })
     }
 }
 
@@ -626,7 +628,8 @@ mod tests {
             let n = random.direction();
             let other = (n + random.vector(0.1)).normalize();
             let d = disc.turned(&n, &other);
-            if disc.across(&n).norm() < 0.1 || d.norm() < 0.02 * disc.radius {
+            let turn = d.norm() / disc.radius;
+            if disc.across(&n).norm() < 0.1 || !(0.02..1.4).contains(&turn) {
                 continue;
             }
             met += 1;
@@ -642,6 +645,9 @@ mod tests {
         assert!(Disc::of(&x, &y, &Vec3::zeros()).is_none());
         assert!(Disc::of(&x, &y, &Vec3::repeat(Real::NAN)).is_none());
         assert!(Disc::of(&x, &x, &Vec3::y()).is_none());
+        // The ends of a line.
+        let z = Vec3::new(1.0, -0.1, 0.0).normalize();
+        assert!(Disc::of(&z, &y, &Vec3::y()).is_none());
     }
 
     #[test]
