@@ -26,9 +26,8 @@
 use super::lanes::{CUTS, Lanes};
 use crate::math::{Real, larger, lesser};
 
-/// Turns of the active-set method; mostly two or three. Measured: ÷2 a fortieth more answers that
-/// are not the least, ×2 nothing.
-const TURNS: usize = 8;
+/// Turns of the active-set method; mostly two or three. Derived: each cut enters and leaves once.
+const TURNS: usize = 2 * CUTS;
 
 /// Up to four cuts.
 #[derive(Clone, Copy, Debug, Default)]

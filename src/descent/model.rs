@@ -7,9 +7,6 @@ use super::curvature::{ALIKE, BELIEVED, Curvature};
 use super::samples::{CUTS, Lanes, OTHERS, Samples, lane};
 use crate::math::{Real, Vec3};
 
-/// Cosine of the angle beyond which R says nothing. Measured: 0.45 or none −0.3 %, 8 more.
-const NEAR: Real = 0.9;
-
 /// The chart around the bundle's centre and the cuts α + β·x in it.
 pub struct Model {
     pub b: Vec3,
@@ -173,13 +170,8 @@ impl Model {
         let unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
         for i in 0..CUTS {
             // A smooth pair is one piece, which b itself represents; a lift above
-            // h(b) is refuted; far away R means nothing. All stay exact cuts.
-            if i != self.centre
-                && z[i] > NEAR
-                && lift[i] >= 0.0
-                && lift[i] <= behind[i]
-                && unlike[i] > 0.0
-            {
+            // h(b) is refuted. Both stay exact cuts.
+            if i != self.centre && lift[i] >= 0.0 && lift[i] <= behind[i] && unlike[i] > 0.0 {
                 self.a[i] += lift[i];
                 self.x[i] -= rho * tx[i] + ax[i];
                 self.y[i] -= rho * ty[i] + ay[i];

@@ -3,6 +3,7 @@
 
 //! The trust region: how far around the bundle's centre the model is believed.
 
+use super::curvature::CLOSE;
 use crate::math::{EPSILON, Real, Vec3, perpendicular};
 
 /// First trust radius, radians: the error of a good guess. Measured: ×2 −2.5 %, 34 more, and 63
@@ -19,11 +20,11 @@ const SHRINK: Real = 0.6;
 /// … if the step was longer than the root of this share of it. Measured: ×2 +0.1 %, 17 fewer; ÷2
 /// no change, 19 more; 1 +2 %, +84 % (hulls from 45°).
 const HALFWAY: Real = 0.25;
-/// Largest radius, radians. Measured: ×2 no change; ÷2 −0.5 %, 17 fewer, but 7 more of the boxes
-/// from 45°.
+/// Largest radius, in the chart: tan 45°. Derived: farther off it stretches more than it shows.
 const LARGEST: Real = 1.0;
-/// Least radius, radians; below it the search has lost its way. Measured: ×2, ÷2 nothing.
-const STUCK: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
+/// Least radius, as a share of the angle below which samples tell nothing ([`CLOSE`]): the search
+/// has lost its way. Derived: nothing is left to be told.
+const STUCK: Real = 0.1;
 
 /// A step aside, radians, that shows curvature and is still near: the smallest first step, the
 /// step across the one direction known, the largest one towards a remembered cut. Measured: ×2
@@ -132,7 +133,7 @@ impl TrustRegion {
     /// Has the search lost its way?
     #[inline]
     pub fn is_stuck(&self) -> bool {
-        self.radius < STUCK
+        self.radius * self.radius < STUCK * STUCK * CLOSE
     }
 }
 
