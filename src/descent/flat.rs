@@ -406,7 +406,7 @@ impl Flat {
             return false;
         }
         let lopsided = (self.radius[0] > 0.0) != (self.radius[1] > 0.0);
-        if self.asked <= CUTS || lopsided {
+        if self.asked < CUTS || lopsided {
             let best = self.best;
             self.look(&best, new);
         }
