@@ -475,6 +475,6 @@ fn extent<A: SupportMap, B: SupportMap, const P: usize>(
             }
         }
     }
-    // Where D is no vain than rounding that is `from`, and no tetrahedron comes of it.
+    // Where D is no wider than rounding that is `from`, and no tetrahedron comes of it.
     Ok(best.0)
 }

@@ -107,8 +107,16 @@ pub fn moves(old: &Sample, new: &Sample) -> [Vec3; 2] {
     [new.p.v1 - old.p.v1, old.p.v2 - new.p.v2]
 }
 
+/// May a round part of this radius be one of an object of that squared extent, of which a little
+/// may not have been seen?
+#[inline(always)]
+pub fn fits(radius: Real, extent2: Real) -> bool {
+    radius * radius <= (1.0 + ALIKE) * extent2
+}
+
 /// Did a vertex move by `d` because its ball or disc of this radius moved so? That must be more
-/// than a vertex without it would need to pass for one with it.
+/// than a vertex without it would need to pass for one with it: the difference of two points,
+/// each off by as much twice, where it was taken and where it is compared.
 #[inline(always)]
 pub fn shows(radius: Real, moved: &Vec3, d: &Vec3, same: Real) -> bool {
     let least = larger(CLOSE * radius * radius, 16.0 * same * same);
@@ -229,7 +237,7 @@ impl Discs {
     /// One larger than an object of this squared extent was another's.
     pub fn forget_unless_fits(&mut self, extent2: Real) {
         for own in &mut self.of {
-            if own.at.disc.radius * own.at.disc.radius > 1.1 * extent2 {
+            if !fits(own.at.disc.radius, extent2) {
                 own.at.disc = Disc::default();
             }
         }
@@ -533,7 +541,7 @@ impl Discs {
                 return Shown::Nothing;
             }
             let disc = Disc::of(&old.n, &new.n, &d[o]);
-            let Some(disc) = disc.filter(|d| d.radius * d.radius <= 1.1 * extent2) else {
+            let Some(disc) = disc.filter(|d| fits(d.radius, extent2)) else {
                 return Shown::Nothing;
             };
             let remembered = before.at.disc.radius;

@@ -35,7 +35,7 @@
 
 use super::curvature::{ALIKE, BALL, CLOSE, smooth};
 use super::cuts::{Cuts, Step};
-use super::discs::{Discs, Shown, moves, shows};
+use super::discs::{Discs, Shown, fits, moves, shows};
 use super::lanes::{CUTS, Lanes, Vectors};
 use super::memory::{Memory, Queue, Smooth};
 use super::model::basis;
@@ -49,6 +49,9 @@ use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 /// Share of the tolerance by which two vertices that are the same may differ: a radius is in error
 /// by more than rounding. Free: measured, 0, ÷2, ×2 nothing.
 const SAME: Real = 0.06;
+/// Share of the tolerance by which a depth may differ for what a round part is not: it leaves room
+/// for rounding, the radius and the model. Free.
+const HAIR: Real = 0.25;
 /// Support points that show a vertex again and nothing else, after which the search has lost
 /// its way, or the balls do not fit: as many as are kept.
 const DOUBTS: u32 = CUTS as u32;
@@ -381,7 +384,7 @@ impl Flat {
             self.tolerance = larger(self.tolerance, rounding);
             for radius in &mut self.radius {
                 // A remembered ball larger than the object was another's.
-                if *radius * *radius > 1.1 * self.extent2 {
+                if !fits(*radius, self.extent2) {
                     *radius = 0.0;
                 }
             }
@@ -579,11 +582,11 @@ impl Flat {
         let mut found = false;
         for (o, d) in moves.into_iter().enumerate() {
             let (along, moved) = (d.dot(&dn), d.norm_squared());
+            // Two points, each off by the rounding.
             let parallel = along > 0.0
                 && moved > 4.0 * least
                 && moved * turned - along * along <= BALL * BALL * moved * turned
-                // No larger than the object.
-                && along * along <= 1.02 * self.extent2 * turned * turned;
+                && fits(along / turned, self.extent2);
             // Across the axis the points of a disc move like a ball's.
             let disc = self.discs.as_ref().is_some_and(|discs| discs.has(o));
             if parallel && !disc && self.radius[o] == 0.0 {
@@ -697,7 +700,7 @@ impl Flat {
         if let Some(discs) = self.discs::<BENT>() {
             lift = lift + discs.lifts(n);
         }
-        unseen & lift.mask(|lift| lift > 0.25 * self.tolerance)
+        unseen & lift.mask(|lift| lift > HAIR * self.tolerance)
     }
 
     /// The answer, if the last step was to the minimum, came true there, and no cut shows a
@@ -983,9 +986,10 @@ impl Flat {
             radius = larger(radius, disc.radius);
         }
         let tilt = if step.count == 1 {
+            // Enough, and to spare, for [`shows`].
             larger(10.0 * CLOSE.sqrt(), 8.0 * self.same_round() / radius)
         } else {
-            0.25 * self.tolerance / self.extent2.sqrt()
+            HAIR * self.tolerance / self.extent2.sqrt()
         };
         side * tilt
     }
