@@ -48,7 +48,7 @@ pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> 
             (top, reach) = ([p.v1, p.v2], n.dot(&p.v));
         }
     }
-    let point = |i: usize| [points[i].v1, points[i].v2];
+    let point = |i: usize| points.get(i).map_or(top, |p| [p.v1, p.v2]);
     match rest(point, points.len(), n, &top, tolerance, size) {
         Rest::Along(length) => length,
         Rest::Corner(side) if lies_along(point, points.len(), n, &top, &side) => side.norm(),
@@ -68,7 +68,7 @@ fn lies_along(
     let side2 = side.norm_squared();
     (0..2).all(|object| {
         (0..count).any(|i| {
-            let way = point(i)[object] - top[object];
+            let way = point(i)[object % 2] - top[object % 2];
             let far2 = way.norm_squared();
             let drop2 = n.dot(&way).powi(2);
             let aside2 = way.cross(side).norm_squared() / side2;
@@ -311,7 +311,7 @@ pub fn mark<'p>(points: impl Iterator<Item = &'p [Vec3; 2]>) -> u64 {
 /// on one line.
 pub fn pins<'p>(points: impl Iterator<Item = &'p [Vec3; 2]> + Clone) -> bool {
     (0..2).all(|object| {
-        let own = points.clone().map(|p| p[object]);
+        let own = points.clone().map(|p| p[object % 2]);
         let longest = dimensions(own.clone(), 0.0).1;
         // Narrower than a millionth of its length is a line.
         dimensions(own, 1e-12 * longest * longest).0 == 2

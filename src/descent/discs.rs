@@ -320,7 +320,7 @@ impl Discs {
     #[inline(never)]
     pub fn refuted_by(&self, new: &Sample, kept: &[Sample]) -> bool {
         let smooth = |o: usize, old: &Sample| {
-            let d = moves(old, new)[o];
+            let d = moves(old, new)[o % 2];
             let (ahead, behind) = (d.dot(&new.n), -d.dot(&old.n));
             (ahead - behind).abs() <= OWN * (ahead + behind)
         };
@@ -436,7 +436,7 @@ impl Discs {
             let mut shown: u32 = 0;
             for (i, old) in kept.iter().enumerate() {
                 let moved = own.latest.point - own.point.get(i);
-                let d = &moves(old, new)[o];
+                let d = &moves(old, new)[o % 2];
                 if own.carries[i] > 0.0 && shows(own.at.disc.radius, &moved, d, same) {
                     shown |= 1 << i;
                     // A remembered one, whose axis has not turned.
@@ -457,7 +457,7 @@ impl Discs {
                 }
             }
             if own.confirmed {
-                seen[o] |= shown | seen_by_pair;
+                seen[o % 2] |= shown | seen_by_pair;
                 whose |= u32::from(shown != 0) << o;
             }
         }

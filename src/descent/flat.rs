@@ -819,11 +819,9 @@ impl Flat {
             step = self.cuts.lowest(self.trust.radius);
             gain = self.gain::<BENT>(&step);
         }
-        if BENT
-            && let Some((apex, lower)) = self.apex()
-            && !(gain >= lower)
-        {
-            (step, gain) = (apex, lower);
+        let apex = if BENT { self.apex() } else { None };
+        if let Some(apex) = apex.filter(|(_, lower)| !(gain >= *lower)) {
+            (step, gain) = apex;
         }
         // Also NaN.
         (gain >= -self.tolerance && gain < Real::INFINITY).then_some((step, gain))
