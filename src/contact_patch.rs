@@ -277,8 +277,8 @@ fn shared([a, b]: [Flat; 2], [p, q]: [Flat; 2]) -> Option<Flat> {
     (from <= to).then(|| between(&a, &b, 0.5 * (from + to)))
 }
 
-/// Edges that are this share of their length aside of each other lie along each other: as rounded
-/// objects seen aside by the tilt, and no such crossing can be told from the middle. Free.
+/// Edges that are aside of each other by no more than this share of their length lie along each
+/// other. Free: more than the tilt moves the edge of a rounded object, less than shows.
 const ASIDE: Real = 1e-3;
 
 /// Moves the witness points of a hit, in their planes, to the middle of the touching region.

@@ -492,8 +492,8 @@ mod tests {
             let mut best = first;
             let mut budget = 1000;
             match mpr(&md, &first, 1e-6, false, &mut best, &mut budget).unwrap() {
-                Exit::Miss(n) => {
-                    let n = n.normal;
+                Exit::Miss(plane) => {
+                    let n = plane.normal;
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
                 _ => panic!("the origin is outside"),

@@ -62,14 +62,19 @@ fn widest(c: &Vec3, first: &Vec3, others: &[SupportPoint]) -> Option<[Vec3; 2]> 
     Some([q, r])
 }
 
-/// [`crate::distance::overlap`], where a search for the depth has left points of D in the set: point 0 and
-/// others. A point of each object makes a point of D as well, so these are put together anew
-/// wherever that reaches beyond the origin: k support points of D are k² points of D.
+/// [`crate::distance::overlap`], where a search for the depth has left points of D in the set:
+/// point 0, which a [`Proof::Centred`] trusts to be well inside, and others. A point of each object
+/// makes a point of D as well, so these are put together anew wherever that reaches beyond the
+/// origin: k support points of D are k² points of D. Returns the indices of the corners of what
+/// holds the origin, the last one repeated where it is no tetrahedron.
 ///
 /// `exit`: the point of the boundary where the origin leaves D. D is first asked beside it, on
 /// the side of the origin that is open: at the angle where a ball of D's size falls back from
 /// the support plane by a quarter of the depth. A distance algorithm asks far away, and halves
 /// its way back to a thin overlap; to a deep one it does not need to.
+///
+/// # Errors
+/// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not finite.
 pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<N>,

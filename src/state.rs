@@ -17,8 +17,8 @@
 //! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::mark`] and [`State::middle`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
-//! A direction that is zero stands for none. Where centres are given, every kind but a guess
-//! also tells where obj2's lay as seen from obj1's ([`State::face`]).
+//! A direction that is zero stands for none. What a query for the depth of an overlap leaves
+//! behind also tells how the centres lay, where they are given ([`State::face`]).
 
 use crate::contact::Answer;
 use crate::descent::Memory;

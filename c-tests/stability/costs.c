@@ -341,7 +341,24 @@ static size_t stack_touched(void)
     return touched;
 }
 
-enum { STACK_MISS, STACK_SHALLOW, STACK_POLYTOPES, STACK_ANY };
+/* Of the MPR calls three classes of pairs; of every pair all calls, those for a depth that ask
+ * for few support points, yes or no, and the local search. */
+enum { STACK_MISS, STACK_SHALLOW, STACK_POLYTOPES, STACK_ANY, STACK_FEW, STACK_VERDICT, STACK_LOCAL };
+static const size_t stack_limits[] = {12, 12, 12, 44, 12, 6, 14}; /* KB */
+enum { FEW = 22 };
+
+static int stack_asks(int class, const entry_t *e)
+{
+    const int mpr = e->ask == ASK_MPR || e->ask == ASK_MPR_WARM;
+    const int verdict = e->ask == ASK_MPR_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM;
+    switch (class) {
+    case STACK_ANY: return 1;
+    case STACK_FEW: return mpr || e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_MINIMUM;
+    case STACK_VERDICT: return verdict || e->ask == ASK_GJK_INTERSECT;
+    case STACK_LOCAL: return e->ask == ASK_LOCAL;
+    default: return mpr || verdict;
+    }
+}
 
 static int stack_class(const mix_t *p)
 {
@@ -355,12 +372,12 @@ static int stack_class(const mix_t *p)
                : STACK_ANY;
 }
 
-/* All MPR calls of one class, or every call of all: the deepest. */
+/* The deepest of a class. */
 static int stack_of(int class)
 {
     static const entry_t refused = {"", 0, ASK_ALONG, STATE_NONE};
     static mix_t p;
-    size_t empty, most[ENTRIES] = {0}, limit = class == STACK_ANY ? 44 * 1024 : 12 * 1024, deepest = 0;
+    size_t empty, most[ENTRIES] = {0}, limit = stack_limits[class] * 1024, deepest = 0;
     int i, k, asked = 0;
     stack_query = query();
     if (!stack_floor)
@@ -380,16 +397,14 @@ static int stack_of(int class)
         stack_dir = NULL;
         empty += stack_touched();
         stack_dir = &stack_along;
-        if (class != STACK_ANY && stack_class(&p) != class)
+        if (class < STACK_ANY && stack_class(&p) != class)
             continue;
         asked++;
         for (k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
-            const int is_mpr = e->ask == ASK_MPR || e->ask == ASK_MPR_WARM || e->ask == ASK_MPR_INTERSECT
-                || e->ask == ASK_MPR_INTERSECT_WARM;
             ccd_warm_t warm = fresh();
             size_t n;
-            if (e->system || (class != STACK_ANY && !is_mpr))
+            if (e->system || !stack_asks(class, e))
                 continue;
             stack_entry = e;
             stack_warm = e->state == STATE_NONE ? NULL : &warm;
@@ -399,6 +414,8 @@ static int stack_of(int class)
                 judge_calls = 0;
                 n = stack_touched();
             }
+            if (class == STACK_FEW && judge_calls > 2 * FEW)
+                continue;
             n = n > empty ? n - empty : 0;
             most[k] = n > most[k] ? n : most[k];
         }
@@ -499,6 +516,9 @@ int main(int argc, char **argv)
         {"U03", "stack of MPR, shallow contacts", stack_of, STACK_SHALLOW, BROKEN},
         {"U03", "stack of MPR, polytopes", stack_of, STACK_POLYTOPES, BROKEN},
         {"U03", "stack of any call", stack_of, STACK_ANY, HOLDS},
+        {"U03", "stack of a depth by up to 22 support points", stack_of, STACK_FEW, HOLDS},
+        {"U03", "stack of yes or no", stack_of, STACK_VERDICT, HOLDS},
+        {"U03", "stack of the local search", stack_of, STACK_LOCAL, HOLDS},
         {"U04", "the slowest MPR, random poses", slowest_mpr, MIX_RANDOM, HOLDS},
         {"U04", "the slowest MPR, near contact", slowest_mpr, MIX_NEAR, HOLDS},
         {"U04", "the slowest MPR, corners and rims", slowest_mpr, MIX_CORNERS, HOLDS},

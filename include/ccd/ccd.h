@@ -84,7 +84,7 @@ CCD_EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *
  * the answer is the lowest that was met. Who must know asks ccdPenetrationMinimum.
  * Relies on the centers lying in their objects: a center outside makes the answer wrong.
  * Returns 0 or -1 and stores as ccdGJKPenetration does. A touch within rounding is -1.
- * Uses the centers, not first_dir, and no heap: 13 KB of stack for up to 23 support points,
+ * Uses the centers, not first_dir, and no heap: 12 KB of stack for up to 22 support points,
  * 44 KB beyond. */
 CCD_EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd,
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
