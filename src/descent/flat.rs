@@ -184,7 +184,8 @@ impl Flat {
     #[inline]
     pub fn recall(&mut self, memory: &Memory, start: &Vec3) -> Option<(Vec3, Queue)> {
         let smooth = memory.smooth();
-        if let Smooth::Curved(_) = smooth {
+        // Three active cuts are mostly exact ones.
+        if matches!(smooth, Smooth::Curved(_)) && memory.count < 3 {
             return None;
         }
         let Some(dir) = unit(&memory.dir) else {
@@ -221,7 +222,11 @@ impl Flat {
                 discs: discs.map_or_else(Default::default, Discs::discs),
             }
         } else {
-            Smooth::Unknown
+            match memory.smooth() {
+                // Not needed this time.
+                curved @ Smooth::Curved(_) => curved,
+                _ => Smooth::Unknown,
+            }
         };
         memory.keep(dir, &minimum.slopes, minimum.count, smooth);
     }
@@ -412,6 +417,12 @@ impl Flat {
         if self.asked < CUTS || lopsided {
             let best = self.best;
             self.look(&best, new);
+            let same = self.same_round();
+            if let (true, Some(discs)) = (BENT, &mut self.discs) {
+                if discs.turn(&best, new, same, self.asked) {
+                    self.take_off();
+                }
+            }
         }
         self.compare::<BENT>(new)
     }

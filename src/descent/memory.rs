@@ -175,7 +175,7 @@ impl Memory {
         // the better the nearer the samples are (in double precision); NaN becomes the least
         // angle. Measured in motion: ×2, ÷2 of the factors up to 12 % and 4 % of one set, of the
         // least angles 5 % and 2 %; the same two numbers for both 10 to 23 %.
-        let (times, least) = if self.curved != 0 && EPSILON < 1e-10 {
+        let (times, least) = if (self.curved == CURVED || self.curved == ROUND) && EPSILON < 1e-10 {
             (2.0, 0.0005)
         } else {
             (5.0, 0.004)

@@ -88,8 +88,11 @@ impl<'a> Search<'a> {
 
     /// Goes on from what a search of exact cuts has asked: the first direction to go through.
     #[inline]
-    pub fn resume(&mut self, asked: &'a [Sample], trust: Real) -> Option<Vec3> {
+    pub fn resume(&mut self, asked: &'a [Sample], trust: Real, memory: &Memory) -> Option<Vec3> {
         let first = asked.first()?;
+        if let Smooth::Curved(r) = memory.smooth() {
+            self.curvature.recall(r);
+        }
         self.asked = asked;
         self.trust.radius = trust;
         Some(first.n)
