@@ -353,6 +353,17 @@ impl Discs {
         }
     }
 
+    /// Lane `i` is that of sample `from`.
+    #[inline]
+    pub fn repeat(&mut self, i: usize, from: usize) {
+        for own in &mut self.of {
+            let point = own.point.get(from);
+            own.point.set(i, &point);
+            own.height[i] = own.height[from];
+            own.carries[i] = own.carries[from];
+        }
+    }
+
     /// Does the latest sample show another smooth surface where a disc is not confirmed yet?
     #[inline(never)]
     pub fn refuted_by(&self, new: &Sample, kept: &[Sample]) -> bool {

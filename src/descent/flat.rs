@@ -400,11 +400,9 @@ impl Flat {
                 }
             }
             let (u, k) = self.vertex::<BENT>(new);
-            // Of all lanes: those beyond the samples repeat the first one.
-            for i in (0..CUTS).rev() {
-                self.put::<BENT>(i, new, &u, k, 0);
-            }
+            self.put::<BENT>(0, new, &u, k, 0);
             (self.cuts.len, self.spare) = (1, 1);
+            self.repeat::<BENT>(0);
             (self.best, self.best_h) = (*new, new.h - self.rho());
             return true;
         }
@@ -435,7 +433,7 @@ impl Flat {
         let mut ahead = Lanes::all(k) - self.u.dot(n);
         let mut behind = self.h - self.n.dot(&u);
         if let Some(discs) = self.discs::<BENT>() {
-            if discs.refuted_by(new, &self.samples) {
+            if discs.refuted_by(new, &self.samples[..self.cuts.len.min(CUTS)]) {
                 return false;
             }
             ahead = ahead - discs.heights(n) + Lanes::all(new.h - self.rho() - k);
@@ -543,9 +541,7 @@ impl Flat {
             self.cuts.len += 1;
             self.spare += 1;
         } else if twin.is_some() {
-            for i in self.cuts.len..CUTS {
-                self.put::<BENT>(i, new, u, k, seen);
-            }
+            self.repeat::<BENT>(place);
         }
         if better {
             self.cuts.best = place;
@@ -567,6 +563,20 @@ impl Flat {
         if self.is_round::<BENT>() {
             for (o, bits) in self.seen.iter_mut().enumerate() {
                 *bits = *bits & !(1 << i) | (seen >> o & 1) << i;
+            }
+        }
+    }
+
+    /// The lanes beyond the samples are those of sample `i`.
+    #[inline(always)]
+    fn repeat<const BENT: bool>(&mut self, i: usize) {
+        let (n, u, k) = (self.n.get(i), self.u.get(i), self.h[i]);
+        for beyond in self.cuts.len..CUTS {
+            self.n.set(beyond, &n);
+            self.u.set(beyond, &u);
+            self.h[beyond] = k;
+            if let (true, Some(discs)) = (BENT, &mut self.discs) {
+                discs.repeat(beyond, i);
             }
         }
     }
@@ -655,7 +665,7 @@ impl Flat {
     /// Takes the discs off all samples.
     fn take_off(&mut self) {
         self.flat = false;
-        for i in 0..CUTS {
+        for i in 0..self.cuts.len.min(CUTS) {
             let sample = self.samples[i];
             let (u, k) = self.vertex::<true>(&sample);
             self.u.set(i, &u);
@@ -664,6 +674,7 @@ impl Flat {
                 discs.put(i);
             }
         }
+        self.repeat::<true>(0);
     }
 
     /// Notes which vertices a new sample shows again from another direction. Returns whose
@@ -1101,7 +1112,7 @@ impl Flat {
             return contact_patch::width(known.points(), n, self.tolerance, size);
         };
         let mut points = [at.p; CUTS + 1];
-        for (i, point) in points.iter_mut().take(CUTS).enumerate() {
+        for (i, point) in points.iter_mut().take(self.cuts.len.min(CUTS)).enumerate() {
             let moved = |o| taken.carried(i, o, discs, &self.seen) - taken.kept(i, o);
             *point = self.samples[i].p;
             point.v1 += moved(0);
