@@ -216,12 +216,9 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         flat.run::<false, A, B>(md, &centre, first, &mut queue, settings, known)
     };
     match outcome? {
-        Outcome::Found(minimum) => {
-            flat.remember(&minimum, memory);
-            Ok(Answer::Hit(minimum.hit))
-        }
+        Outcome::Found => Ok(Answer::Hit(*flat.minimum(memory))),
         Outcome::Apart(n) => Ok(Answer::Miss(n)),
-        Outcome::Open(asked) => curved(md, inner, start, memory, settings, known, &asked),
+        Outcome::Open => curved(md, inner, start, memory, settings, known, &flat.asked()),
     }
 }
 

@@ -57,16 +57,18 @@ const HAIR: Real = 0.25;
 const DOUBTS: u32 = CUTS as u32;
 
 /// How a search of exact cuts ends.
+#[derive(Debug)]
 pub enum Outcome {
-    /// At a local minimum.
-    Found(Minimum),
+    /// At a local minimum: [`Flat::minimum`].
+    Found,
     /// All of D is on the far side of this unit direction's support plane.
     Apart(Vec3),
-    /// Not here: what was asked, to go on from.
-    Open(Asked),
+    /// Not here; [`Flat::asked`] to go on from.
+    Open,
 }
 
 /// A local minimum.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Minimum {
     /// The answer, its overlap not proven.
     pub hit: Penetration,
@@ -97,7 +99,7 @@ impl Asked {
 /// What comes after a support point.
 enum Next {
     Ask(Vec3),
-    Found(Minimum),
+    Found,
     Open,
 }
 
@@ -139,6 +141,10 @@ pub struct Flat {
     /// Squared extent of D from its centre, m².
     extent2: Real,
     tolerance: Real,
+    /// The last sample, if it was not taken.
+    last: Option<Sample>,
+    /// What was found.
+    minimum: Minimum,
     asked: usize,
     doubts: u32,
     levelled: bool,
@@ -172,6 +178,8 @@ impl Flat {
             step: None,
             extent2: 0.0,
             tolerance: 0.0,
+            last: None,
+            minimum: Minimum::default(),
             asked: 0,
             doubts: 0,
             levelled: false,
@@ -210,9 +218,10 @@ impl Flat {
         self.discs.is_some()
     }
 
-    /// Leaves behind what finds the cuts of a minimum again.
+    /// The answer of a search that found a minimum; what finds its cuts again stays behind.
     #[inline]
-    pub fn remember(&self, minimum: &Minimum, memory: &mut Memory) {
+    pub fn minimum(&self, memory: &mut Memory) -> &Penetration {
+        let minimum = &self.minimum;
         let dir = &minimum.hit.dir;
         // Along a disc's axis its points are those of a polytope.
         let discs = self.discs.as_ref().filter(|discs| !discs.along_axis(dir));
@@ -229,6 +238,7 @@ impl Flat {
             }
         };
         memory.keep(dir, &minimum.slopes, minimum.count, smooth);
+        &minimum.hit
     }
 
     /// Searches from `n`, after the queued directions; without `n` from what was taken. `BENT`: with
@@ -258,7 +268,7 @@ impl Flat {
                     return Ok(if !kept.any(|sample| sample.p.v.dot(&n) > 0.0) {
                         Outcome::Apart(n)
                     } else {
-                        self.open(None)
+                        Outcome::Open
                     });
                 }
                 // No vertex is left of a disc there.
@@ -270,33 +280,37 @@ impl Flat {
                         Some(i) if !BENT && self.take_smooth(i, &new) => {
                             self.run::<true, A, B>(md, centre, None, queue, settings, known)
                         }
-                        _ => Ok(self.open(Some(&new))),
+                        _ => {
+                            self.last = Some(new);
+                            Ok(Outcome::Open)
+                        }
                     };
                 }
-                if let Some(minimum) = self.came_true::<BENT>(&new, known) {
-                    return Ok(Outcome::Found(minimum));
+                if self.came_true::<BENT>(&new, known) {
+                    return Ok(Outcome::Found);
                 }
                 if axial {
-                    return Ok(self.open(Some(&new)));
+                    self.last = Some(new);
+                    return Ok(Outcome::Open);
                 }
             }
             if self.asked as u64 >= settings.max_iterations {
-                return Ok(self.open(None));
+                return Ok(Outcome::Open);
             }
             n = queue.pop();
             if n.is_none() {
                 match self.next::<BENT>(known) {
                     Next::Ask(next) => n = Some(next),
-                    Next::Found(minimum) => return Ok(Outcome::Found(minimum)),
-                    Next::Open => return Ok(self.open(None)),
+                    Next::Found => return Ok(Outcome::Found),
+                    Next::Open => return Ok(Outcome::Open),
                 }
             }
         }
     }
 
-    /// The end without a minimum; `last` was not taken.
+    /// What was asked, after a search that found no minimum.
     #[cold]
-    fn open(&self, last: Option<&Sample>) -> Outcome {
+    pub fn asked(&self) -> Asked {
         let mut asked = Asked {
             trust: self.trust.radius,
             ..Asked::default()
@@ -308,13 +322,13 @@ impl Flat {
         for (place, sample) in asked
             .samples
             .iter_mut()
-            .zip(kept.chain(dropped).chain(last))
+            .zip(kept.chain(dropped).chain(&self.last))
         {
             *place = *sample;
             asked.len += 1;
         }
         asked.dropped = self.asked.saturating_sub(asked.len) as u64;
-        Outcome::Open(asked)
+        asked
     }
 
     /// The vertex of sample `i` with those of these points of the discs that it carries.
@@ -728,15 +742,17 @@ impl Flat {
     /// The answer, if the last step was to the minimum, came true there, and no cut shows a
     /// lower place.
     #[inline(always)]
-    fn came_true<const BENT: bool>(&mut self, new: &Sample, known: &mut Known) -> Option<Minimum> {
-        let step = self.step.take()?;
+    fn came_true<const BENT: bool>(&mut self, new: &Sample, known: &mut Known) -> bool {
+        let Some(step) = self.step.take() else {
+            return false;
+        };
         let k = new.h - self.rho();
         let came = self.trust.came_true(new.h, self.tolerance);
         if !came
             || self.unseen::<BENT>(&new.n) & step.bits() != 0
             || !self.is_lowest::<BENT>(&new.n, k, &step)
         {
-            return None;
+            return false;
         }
         self.conclude::<BENT>(new, k, &step, &new.n, known)
     }
@@ -806,8 +822,12 @@ impl Flat {
                 n += self.towards(&step, doubtful);
                 n *= 1.0 / n.norm();
             } else if close {
-                let minimum = self.conclude::<BENT>(&self.best, h, &step, &n, known);
-                return minimum.map_or(Next::Open, Next::Found);
+                let best = self.best;
+                return if self.conclude::<BENT>(&best, h, &step, &n, known) {
+                    Next::Found
+                } else {
+                    Next::Open
+                };
             }
         }
         if self.cuts.len == CUTS {
@@ -1026,13 +1046,13 @@ impl Flat {
     /// three.
     #[inline(always)]
     fn conclude<const BENT: bool>(
-        &self,
+        &mut self,
         at: &Sample,
         k: Real,
         step: &Step,
         foot: &Vec3,
         known: &mut Known,
-    ) -> Option<Minimum> {
+    ) -> bool {
         let n = &at.n;
         let depth = k + self.rho();
         let near2 = 2.0 * depth * self.tolerance;
@@ -1062,7 +1082,9 @@ impl Flat {
             self.enclosing::<BENT>(n, &discs)
                 .find_map(|(set, w)| serves((set, w, 3)))
         };
-        let (foot, set, weights, mut count) = active.or_else(of_three)?;
+        let Some((foot, set, weights, mut count)) = active.or_else(of_three) else {
+            return false;
+        };
         let mut point1 = self.point1::<BENT>(n, &set, &weights, &discs);
         let mut point2 = point1 - foot - n * self.rho();
         // Onto the support planes of both objects.
@@ -1087,7 +1109,7 @@ impl Flat {
             }
             _ => (),
         }
-        Some(Minimum {
+        self.minimum = Minimum {
             hit: Penetration {
                 depth,
                 depth_lower: 0.0,
@@ -1100,7 +1122,8 @@ impl Flat {
             },
             slopes,
             count,
-        })
+        };
+        true
     }
 
     /// The length along which the objects touch at a sample, as far as the points known tell, the
@@ -1220,12 +1243,19 @@ mod tests {
 
     const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
 
+    /// How a search ends, and with what.
+    enum End {
+        Found(Penetration),
+        Apart(Vec3),
+        Open(Asked),
+    }
+
     fn run(
         a: impl Fn(&Vec3) -> Vec3,
         b: impl Fn(&Vec3) -> Vec3,
         centre: &Vec3,
         start: &Vec3,
-    ) -> (Outcome, u64) {
+    ) -> (End, u64) {
         let md = MinkowskiDifference::new(a, b);
         let settings = Settings {
             tolerance: TOLERANCE,
@@ -1237,14 +1267,19 @@ mod tests {
         let mut flat = Flat::new();
         let outcome =
             flat.run::<false, _, _>(&md, centre, Some(n), &mut queue, &settings, &mut known);
-        (outcome.unwrap(), md.supports())
+        let end = match outcome.unwrap() {
+            Outcome::Found => End::Found(*flat.minimum(&mut Memory::default())),
+            Outcome::Apart(n) => End::Apart(n),
+            Outcome::Open => End::Open(flat.asked()),
+        };
+        (end, md.supports())
     }
 
-    fn found(outcome: Outcome) -> Penetration {
-        match outcome {
-            Outcome::Found(minimum) => minimum.hit,
-            Outcome::Apart(n) => panic!("apart along {n}"),
-            Outcome::Open(asked) => panic!("open: {asked:?}"),
+    fn found(end: End) -> Penetration {
+        match end {
+            End::Found(hit) => hit,
+            End::Apart(n) => panic!("apart along {n}"),
+            End::Open(asked) => panic!("open: {asked:?}"),
         }
     }
 
@@ -1266,12 +1301,12 @@ mod tests {
             let axis = turn * Vec3::x();
             let b = place(axis * 0.98);
             let start = axis + random.vector(0.05);
-            let (outcome, supports) = run(hull(&a), hull(&b), &(axis * -0.98), &start);
-            if let Outcome::Open(_) = outcome {
+            let (end, supports) = run(hull(&a), hull(&b), &(axis * -0.98), &start);
+            if let End::Open(_) = end {
                 open += 1;
                 continue;
             }
-            let hit = found(outcome);
+            let hit = found(end);
             assert!((hit.depth - 0.02).abs() < 64.0 * EPSILON, "{}", hit.depth);
             assert!((hit.dir - axis).norm() < 64.0 * EPSILON);
             assert!((hit.point1 - hit.point2 - hit.dir * hit.depth).norm() < 64.0 * EPSILON);
@@ -1287,13 +1322,13 @@ mod tests {
         let mut random = Random::new(2);
         for _ in 0..200 {
             let c = random.direction() * random.within(0.4, 1.2);
-            let (outcome, supports) = run(
+            let (end, supports) = run(
                 ball(Vec3::zeros(), 1.0),
                 ball(c, 0.5),
                 &-c,
                 &(c.normalize() + random.vector(0.2)),
             );
-            let hit = found(outcome);
+            let hit = found(end);
             assert!((hit.depth - (1.5 - c.norm())).abs() < TOLERANCE);
             assert!((hit.dir.dot(&c) - c.norm()).abs() < TOLERANCE);
             assert!((hit.point1 - hit.dir).norm() < TOLERANCE.sqrt());
@@ -1306,13 +1341,13 @@ mod tests {
     fn crossed_capsules() {
         let (x, y) = (Vec3::x(), Vec3::y());
         let up = Vec3::z() * 0.3;
-        let (outcome, supports) = run(
+        let (end, supports) = run(
             capsule(-x, x, 0.25),
             capsule(up - y, up + y, 0.15),
             &-up,
             &Vec3::new(0.06, -0.05, 1.0),
         );
-        let hit = found(outcome);
+        let hit = found(end);
         assert!((hit.depth - 0.1).abs() < TOLERANCE, "{}", hit.depth);
         assert!((hit.dir - Vec3::z()).norm() < TOLERANCE.sqrt());
         assert!(supports <= 10, "{supports}");
@@ -1330,12 +1365,12 @@ mod tests {
         for _ in 0..200 {
             let start = random.direction();
             match run(tip, ball(Vec3::x() * 2.6, 0.0), &(Vec3::x() * -2.6), &start).0 {
-                Outcome::Found(minimum) => {
-                    let depth = minimum.hit.depth;
+                End::Found(hit) => {
+                    let depth = hit.depth;
                     assert!((depth - 0.4 / 3.0).abs() < 1e-3, "{depth} from {start}");
                 }
-                Outcome::Open(_) => {}
-                Outcome::Apart(n) => panic!("apart along {n}"),
+                End::Open(_) => {}
+                End::Apart(n) => panic!("apart along {n}"),
             }
         }
     }
@@ -1359,18 +1394,18 @@ mod tests {
         for _ in 0..100 {
             let (r, e) = (random.within(0.3, 1.5), random.within(0.01, 0.1));
             let at = Vec3::new(r - e, 0.0, -e);
-            let (outcome, supports) = run(
+            let (end, supports) = run(
                 cylinder(r),
                 hull(&[at + along, at - along]),
                 &(-at - Vec3::z()),
                 &(n + random.vector(0.15)),
             );
             // Ends of the line that look like points of one smooth surface.
-            if let Outcome::Open(_) = outcome {
+            if let End::Open(_) = end {
                 open += 1;
                 continue;
             }
-            let hit = found(outcome);
+            let hit = found(end);
             let depth = (2.0 as Real).sqrt() * e;
             assert!((hit.depth - depth).abs() < 2.0 * TOLERANCE, "{}", hit.depth);
             assert!((hit.dir - n).norm() < TOLERANCE.sqrt() * 2.0);
@@ -1389,18 +1424,18 @@ mod tests {
         let mut open = 0;
         for _ in 0..100 {
             let at = Vec3::new(0.2, random.within(-0.2, 0.2), random.within(-0.2, -0.01));
-            let (outcome, supports) = run(
+            let (end, supports) = run(
                 cylinder(0.5),
                 ball(at, 0.0),
                 &(-at - Vec3::z()),
                 &(Vec3::z() + random.vector(0.15)),
             );
             // Started so near the axis that the rim turned by more than a quarter.
-            if let Outcome::Open(_) = outcome {
+            if let End::Open(_) = end {
                 open += 1;
                 continue;
             }
-            let hit = found(outcome);
+            let hit = found(end);
             assert!((hit.depth + at.z).abs() < TOLERANCE, "{} {at}", hit.depth);
             assert!((hit.dir - Vec3::z()).norm() < 1e-4);
             assert!((hit.point2 - at).norm() < TOLERANCE.sqrt());
@@ -1434,14 +1469,14 @@ mod tests {
             )
             .0
             {
-                Outcome::Found(minimum) => {
+                End::Found(hit) => {
                     met += 1;
-                    let depth = minimum.hit.depth;
+                    let depth = hit.depth;
                     let right = (depth - 0.4 / 3.0).abs() < 1e-3 || (depth - 1.0).abs() < 1e-6;
                     assert!(right, "{depth} from {start}");
                 }
-                Outcome::Open(_) => {}
-                Outcome::Apart(n) => panic!("apart along {n}"),
+                End::Open(_) => {}
+                End::Apart(n) => panic!("apart along {n}"),
             }
         }
         assert!(met > 50, "{met}");
@@ -1456,27 +1491,27 @@ mod tests {
             let w = r.component_mul(&r.component_mul(d));
             w / w.dot(d).sqrt()
         };
-        let (outcome, supports) = run(
+        let (end, supports) = run(
             ellipsoid,
             ball(Vec3::new(0.3, 0.2, 0.1), 0.2),
             &Vec3::new(-0.3, -0.2, -0.1),
             &Vec3::new(1.0, 0.5, 0.3),
         );
-        match outcome {
-            Outcome::Open(asked) => assert_eq!(asked.samples().len() as u64, supports),
+        match end {
+            End::Open(asked) => assert_eq!(asked.samples().len() as u64, supports),
             _ => panic!("exact cuts of an ellipsoid"),
         }
     }
 
     #[test]
     fn apart_is_told() {
-        let (outcome, supports) = run(
+        let (end, supports) = run(
             ball(Vec3::zeros(), 1.0),
             ball(Vec3::x() * 3.0, 1.0),
             &(Vec3::x() * -3.0),
             &Vec3::new(1.0, 0.1, 0.0),
         );
-        assert!(matches!(outcome, Outcome::Apart(_)) && supports == 1);
+        assert!(matches!(end, End::Apart(_)) && supports == 1);
     }
 
     /// A callback that contradicts what it showed before separates nothing.
@@ -1491,7 +1526,7 @@ mod tests {
                 -d
             }
         };
-        let (outcome, _) = run(liar, ball(Vec3::zeros(), 0.1), &Vec3::zeros(), &Vec3::x());
-        assert!(matches!(outcome, Outcome::Open(_)));
+        let (end, _) = run(liar, ball(Vec3::zeros(), 0.1), &Vec3::zeros(), &Vec3::x());
+        assert!(matches!(end, End::Open(_)));
     }
 }
