@@ -145,6 +145,8 @@ pub struct Flat {
     last: Option<Sample>,
     /// What was found.
     minimum: Minimum,
+    /// Did the search before find balls where there are any?
+    recalled: bool,
     asked: usize,
     doubts: u32,
     levelled: bool,
@@ -180,6 +182,7 @@ impl Flat {
             tolerance: 0.0,
             last: None,
             minimum: Minimum::default(),
+            recalled: false,
             asked: 0,
             doubts: 0,
             levelled: false,
@@ -203,6 +206,7 @@ impl Flat {
             self.radius = balls;
             self.discs = Discs::recall(&discs);
         }
+        self.recalled = memory.count > 0 || memory.curved != 0;
         let (mut queue, angle) = memory.recall(&dir);
         Some(match queue.pop() {
             Some(n) => {
@@ -426,14 +430,14 @@ impl Flat {
             return false;
         }
         let lopsided = (self.radius[0] > 0.0) != (self.radius[1] > 0.0);
-        if self.asked < CUTS || lopsided {
+        if !self.recalled && (self.asked < CUTS || lopsided) {
             let best = self.best;
             self.look(&best, new);
-            let same = self.same_round();
-            if let (true, Some(discs)) = (BENT, &mut self.discs) {
-                if discs.turn(&best, new, same, self.asked) {
-                    self.take_off();
-                }
+        }
+        let same = self.same_round();
+        if let (true, Some(discs)) = (BENT && self.recalled, &mut self.discs) {
+            if discs.turn(&self.best, new, same, self.asked) {
+                self.take_off();
             }
         }
         self.compare::<BENT>(new)
