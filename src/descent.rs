@@ -693,4 +693,33 @@ mod tests {
             2,
         );
     }
+
+    /// A cylinder that rolls on its rim: the disc is found again where its axis has turned.
+    #[test]
+    #[cfg_attr(feature = "single", ignore = "begins with curvature")]
+    fn a_rim_that_rolls_is_found_again_cheaply() {
+        let floor = block(Vec3::zeros(), Vec3::new(2.0, 2.0, 0.5));
+        let mut memory = Memory::default();
+        let (mut supports, mut discs) = (0, 0);
+        for frame in 0..50 {
+            let (sin, cos) = (0.01 * frame as Real).sin_cos();
+            let axis = Vec3::new(0.5 * cos, 0.5 * sin, 0.8).normalize();
+            let turn = Rotation3::rotation_between(&Vec3::z(), &axis).unwrap_or_default();
+            let shape = cylinder(Vec3::zeros(), 0.2, 0.3);
+            let turned = move |d: &Vec3| turn * shape(&(turn.inverse() * d));
+            let lowest = turned(&-Vec3::z()).z;
+            let place = Vec3::new(0.3, 0.2, 0.49 - lowest);
+            let rolls = at(place, turned);
+            let (answer, count) = solve(&rolls, &floor, -Vec3::z(), &mut memory, 1e-6);
+            let Answer::Hit(hit) = answer else {
+                panic!("{answer:?}");
+            };
+            assert!((hit.depth - 0.01).abs() <= 1e-6, "{}", hit.depth);
+            if frame > 1 {
+                supports += count;
+                discs += u32::from(matches!(memory.curved, 6 | 10));
+            }
+        }
+        assert!(discs == 48 && supports <= 48 * 4, "{discs} {supports}");
+    }
 }
