@@ -26,7 +26,10 @@ impl SupportMap for Object {
         let mut point = ccd_vec3_t::default();
         // SAFETY: [callbacks]; nothing with a destructor is alive here.
         unsafe { (self.support)(self.obj, &dir, &mut point) };
-        point.into()
+        // And three scalar loads, because most callees store three scalars: a packed load cannot
+        // be forwarded from two stores.
+        // SAFETY: a local variable.
+        unsafe { Vec3::from(point.v.each_ref().map(|x| core::ptr::read_volatile(x))) }
     }
 }
 
