@@ -1136,7 +1136,7 @@ impl Flat {
     fn width<const BENT: bool>(&self, at: &Sample, discs: &[Vec3; 2], known: &Known) -> Real {
         let (n, size) = (&at.n, self.extent2.sqrt());
         let Some(taken) = self.discs::<BENT>() else {
-            return contact_patch::width(known.points(), n, self.tolerance, size);
+            return contact_patch::width(known.points(), &at.p, n, self.tolerance, size);
         };
         let mut points = [at.p; CUTS + 1];
         for (i, point) in points.iter_mut().take(self.cuts.len.min(CUTS)).enumerate() {
@@ -1146,7 +1146,7 @@ impl Flat {
             point.v2 -= moved(1);
             point.v = point.v1 - point.v2;
         }
-        contact_patch::width(&points, n, self.tolerance, size)
+        contact_patch::width(&points, &at.p, n, self.tolerance, size)
     }
 
     /// The mean of obj1's points, below the origin along `n`.
