@@ -106,7 +106,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     fn proven(
         &self,
         mut answer: Answer,
-        known: &Known,
+        known: &mut Known,
         settings: &Settings,
         planar: bool,
     ) -> Result<Answer, Fault> {
@@ -123,11 +123,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
             return Ok(Answer::Miss(hit.normal));
         }
-        let quick = self
-            .centre
-            .is_some_and(|c| is_around(&c.v, known.points(), inquiry.precision.reach()));
-        if quick && hit.depth > settings.tolerance {
-            return Ok(answer);
+        if let (Some(c), true) = (&self.centre, !planar && hit.depth > settings.tolerance) {
+            match is_around(&mut inquiry, c, known, &(hit.normal * hit.depth)) {
+                Ok(true) => return Ok(answer),
+                Ok(false) => (),
+                Err(Stop::Apart(n)) => return Ok(Answer::Miss(n)),
+                Err(Stop::Fault(fault)) => return Err(fault),
+            }
         }
         match self.surround(
             &mut inquiry,
@@ -249,7 +251,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let mut known = Known::default();
         let found = self.local_minimum(&mut memory, settings, &mut known)?;
-        let answer = self.proven(found, &known, settings, false)?;
+        let answer = self.proven(found, &mut known, settings, false)?;
         match answer {
             Answer::Hit(_) | Answer::Limit(_) => {
                 *state = State::overlap(&memory);
@@ -268,7 +270,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let start = state.leaving().unwrap_or_else(|| self.cold_start());
         let found = local::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
-        let answer = self.proven(found, &Known::default(), settings, false)?;
+        let answer = self.proven(found, &mut Known::default(), settings, false)?;
         self.remember(state, &answer)?;
         self.settle(answer, settings)
     }
@@ -565,7 +567,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         } else {
             Answer::Hit(way.hit)
         };
-        let mut answer = self.proven(found, &known, settings, false)?;
+        let mut answer = self.proven(found, &mut known, settings, false)?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
             // The bound along dir in place of the one all around.
             hit.depth_lower = way.hit.depth_lower;
@@ -593,7 +595,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .or_else(|| in_plane(Vec3::y()))
             .unwrap_or(Vec3::y());
         let found = planar::penetration(&self.md, &m, start, settings)?;
-        let answer = self.proven(found, &Known::default(), settings, true)?;
+        let answer = self.proven(found, &mut Known::default(), settings, true)?;
         self.remember(state, &answer)?;
         Ok(answer)
     }
