@@ -227,15 +227,24 @@ fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: Real) -> (u32, R
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
-#[inline(never)]
+#[inline(always)]
 pub fn settle<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     hit: &mut Penetration,
     tolerance: Real,
 ) -> Result<(), Fault> {
-    if !(hit.width > 0.0) {
-        return Ok(());
+    if hit.width > 0.0 {
+        to_middle(md, hit, tolerance)?;
     }
+    Ok(())
+}
+
+#[inline(never)]
+fn to_middle<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    hit: &mut Penetration,
+    tolerance: Real,
+) -> Result<(), Fault> {
     let n = hit.normal;
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);

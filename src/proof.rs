@@ -5,9 +5,9 @@
 //! the search came to know.
 //!
 //! A support value is a depth only if the origin is in D, and a search that is no polytope's
-//! does not show that. Mostly the points it saw do, at once: the tetrahedron of a point inside D
-//! and of three of them ([`is_around`]). Else the distance algorithm tells, which takes known
-//! points wherever they do as well as new ones ([`proof`]).
+//! does not show that. Where a point well inside D is trusted, a tetrahedron of it and of three
+//! others is looked for, which mostly are known ([`is_around`]). Else the distance algorithm
+//! tells, which takes known points wherever they do as well as new ones ([`proof`]).
 
 use crate::distance::{Proof, Simplex, direction, room, search};
 use crate::math::{EPSILON, Real, Vec3, larger, largest, unit};

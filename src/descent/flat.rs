@@ -190,31 +190,25 @@ impl Flat {
         }
     }
 
-    /// The directions to ask first: what the memory leads to, else `start`. `None`: it is of
-    /// another curvature.
+    /// The directions to ask first: what the memory leads to, else `start`'s.
     #[inline]
-    pub fn recall(&mut self, memory: &Memory, start: &Vec3) -> Option<(Vec3, Queue)> {
-        let smooth = memory.smooth();
-        // Three active cuts are mostly exact ones.
-        if matches!(smooth, Smooth::Curved(_)) && memory.count < 3 {
-            return None;
-        }
+    pub fn recall(&mut self, memory: &Memory, start: impl Fn() -> Vec3) -> (Vec3, Queue) {
         let Some(dir) = unit(&memory.dir) else {
-            return Some((*start, Queue::EMPTY));
+            return (start(), Queue::EMPTY);
         };
-        if let Smooth::Round { balls, discs } = smooth {
+        if let Smooth::Round { balls, discs } = memory.smooth() {
             self.radius = balls;
             self.discs = Discs::recall(&discs);
         }
         self.recalled = memory.count > 0 || memory.curved != 0;
         let (mut queue, angle) = memory.recall(&dir);
-        Some(match queue.pop() {
+        match queue.pop() {
             Some(n) => {
                 self.trust.recall(angle);
                 (n, queue)
             }
             None => (dir, queue),
-        })
+        }
     }
 
     /// Is there a disc?

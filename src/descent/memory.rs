@@ -11,6 +11,7 @@ use crate::math::{EPSILON, Real, Vec3, larger, unit};
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
 /// any other bits are harmless, since they only choose where to look first.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub struct Memory {
     /// The direction of the answer, or a guess of it.
     pub dir: Vec3,
@@ -151,6 +152,12 @@ impl Memory {
             }
             _ => Smooth::Unknown,
         }
+    }
+
+    /// Does the search begin with curvature? Three active cuts are mostly exact ones.
+    #[inline]
+    pub fn is_curved(&self) -> bool {
+        self.count < 3 && matches!(self.smooth(), Smooth::Curved(_))
     }
 
     /// The memory of the same objects in the other order, whose D is this one's mirror image
