@@ -4,6 +4,7 @@
 //! What a query answers.
 
 use crate::math::{Real, Vec3};
+use crate::support_set::Stop;
 
 /// How much work a query may do, and how exact its depth must be.
 #[derive(Clone, Copy, Debug)]
@@ -49,4 +50,24 @@ pub enum Answer {
     /// They are apart, or touch within rounding: the support value of this unit direction,
     /// n·s(n), is negative or no more than rounding.
     Miss(Vec3),
+}
+
+impl Answer {
+    /// Writes an overlap to `hit`: `true` where the cap did not come before the tolerance.
+    ///
+    /// # Errors
+    /// [`Stop::Apart`].
+    pub fn put(self, hit: &mut Penetration) -> Result<bool, Stop> {
+        match self {
+            Answer::Hit(found) => {
+                *hit = found;
+                Ok(true)
+            }
+            Answer::Limit(found) => {
+                *hit = found;
+                Ok(false)
+            }
+            Answer::Miss(n) => Err(Stop::Apart(n)),
+        }
+    }
 }

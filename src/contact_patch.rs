@@ -35,25 +35,47 @@ const CIRCLE: [[Real; 2]; AROUND] = [
 const ROOM: usize = 2 * AROUND;
 
 /// The length, metres, along which the objects touch, as far as the points known of a local
-/// search tell; 0 where it is one pair of points.
+/// search tell; 0 where it is one pair of points. `top`: the support point along `n`.
 ///
 /// The search asks around the minimum for no more than it needs: mostly all corners of a face
 /// that touches, but of two objects that lie along each other it may have seen no more than one
 /// end of one on the plane. The other end, seen a little lower, gives that away.
-pub fn width(points: &[SupportPoint], n: &Vec3, tolerance: Real, size: Real) -> Real {
-    let mut top = [Vec3::zeros(); 2];
-    let mut reach = Real::NEG_INFINITY;
-    for p in points {
-        if n.dot(&p.v) > reach {
-            (top, reach) = ([p.v1, p.v2], n.dot(&p.v));
-        }
+pub fn width(
+    points: &[SupportPoint],
+    top: &SupportPoint,
+    n: &Vec3,
+    tolerance: Real,
+    size: Real,
+) -> Real {
+    let blur = blur(tolerance, size);
+    // Mostly one of the two touches with a corner: none of its other points is as high, nor
+    // a side's way off and hardly lower.
+    let corner = |way: &dyn Fn(&SupportPoint) -> Vec3| {
+        points.iter().all(|p| {
+            let way = way(p);
+            let far2 = way.norm_squared();
+            far2 <= 0.25 * blur || {
+                let drop = n.dot(&way);
+                drop > tolerance && drop * drop > ALONG * ALONG * far2
+            }
+        })
+    };
+    if corner(&|p| p.v2 - top.v2) || corner(&|p| top.v1 - p.v1) {
+        return 0.0;
     }
+    let top = [top.v1, top.v2];
     let point = |i: usize| points.get(i).map_or(top, |p| [p.v1, p.v2]);
     match rest(point, points.len(), n, &top, tolerance, size) {
         Rest::Along(length) => length,
         Rest::Corner(side) if lies_along(point, points.len(), n, &top, &side) => side.norm(),
         _ => 0.0,
     }
+}
+
+/// The square of the length that is nothing, m²: what rounds within the tolerance.
+#[inline(always)]
+fn blur(tolerance: Real, size: Real) -> Real {
+    8.0 * tolerance * size
 }
 
 /// Is of each object a point known that is a good part of this side away from its top one, along
@@ -122,10 +144,10 @@ impl Touch {
 
     #[inline(always)]
     fn add(&mut self, v: &Vec3, n: &Vec3) {
-        if n.dot(v) >= self.least {
-            let side = v - self.first;
-            let side2 = side.norm_squared();
-            self.count += u32::from(side2 > 0.0 && side != self.side);
+        let side = v - self.first;
+        let side2 = side.norm_squared();
+        if side2 > 0.0 && n.dot(v) >= self.least {
+            self.count += u32::from(side != self.side);
             if side2 > self.side2 {
                 (self.side, self.side2) = (side, side2);
             }
@@ -154,7 +176,7 @@ pub fn rest(
         one.add(&v1, n);
         two.add(&v2, &opposite);
     }
-    let blur = 8.0 * tolerance * size;
+    let blur = blur(tolerance, size);
     if !(one.side2 > blur) && !(two.side2 > blur) {
         return Rest::Point;
     }
@@ -205,15 +227,24 @@ fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: Real) -> (u32, R
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
-#[inline(never)]
+#[inline(always)]
 pub fn settle<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     hit: &mut Penetration,
     tolerance: Real,
 ) -> Result<(), Fault> {
-    if !(hit.width > 0.0) {
-        return Ok(());
+    if hit.width > 0.0 {
+        to_middle(md, hit, tolerance)?;
     }
+    Ok(())
+}
+
+#[inline(never)]
+fn to_middle<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    hit: &mut Penetration,
+    tolerance: Real,
+) -> Result<(), Fault> {
     let n = hit.normal;
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);

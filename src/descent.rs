@@ -170,9 +170,10 @@ mod witness;
 
 pub use memory::Memory;
 
-use crate::contact::{Answer, Settings};
+use crate::contact::{Penetration, Settings};
 use crate::math::{EPSILON, Vec3};
-use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
+use crate::support::{Known, MinkowskiDifference, SupportMap};
+use crate::support_set::Stop;
 use flat::{Asked, Flat, Outcome};
 use search::Search;
 
@@ -182,32 +183,29 @@ use search::Search;
 const EXACT: bool = EPSILON < 1e-10;
 
 /// A local minimum of the depth near the remembered direction, else near the unit
-/// vector `start`.
+/// vector that `start` gives.
 ///
-/// `Hit`: at a local minimum to within the tolerance; `Limit`: at the lowest direction met;
-/// the overlap of both is not proven. `Miss`: apart. `inner`: any inner point of D; how far the
-/// support points lie from it is what curvature is first guessed from. `known`: gains support points for the proof, the
-/// active ones or else the best one first.
+/// Writes a `hit`, whose overlap is not proven; `true`: at a local minimum to within the
+/// tolerance, `false`: at the lowest direction met. `inner`: any inner point of D; how far the
+/// support points lie from it is what curvature is first guessed from. `known`: gains support
+/// points for the proof, the active ones or else the best one first.
 ///
 /// # Errors
-/// [`Fault::NonFinite`] from a support mapping.
+/// [`Stop::Apart`]. [`Fault::NonFinite`](crate::support::Fault) from a support mapping.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     inner: Option<&Vec3>,
-    start: &Vec3,
+    start: impl Fn() -> Vec3,
     memory: &mut Memory,
     settings: &Settings,
     known: &mut Known,
-) -> Result<Answer, Fault> {
+    hit: &mut Penetration,
+) -> Result<bool, Stop> {
+    if !EXACT || memory.is_curved() {
+        return curved(md, inner, start, memory, settings, known, None, hit);
+    }
     let mut flat = Flat::new();
-    let first = if EXACT {
-        flat.recall(memory, start)
-    } else {
-        None
-    };
-    let Some((first, mut queue)) = first else {
-        return curved(md, inner, start, memory, settings, known, &Asked::default());
-    };
+    let (first, mut queue) = flat.recall(memory, &start);
     let centre = inner.copied().unwrap_or_default();
     let first = Some(first);
     let outcome = if flat.bends() {
@@ -216,43 +214,51 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         flat.run::<false, A, B>(md, &centre, first, &mut queue, settings, known)
     };
     match outcome? {
-        Outcome::Found => Ok(Answer::Hit(*flat.minimum(memory))),
-        Outcome::Apart(n) => Ok(Answer::Miss(n)),
-        Outcome::Open => curved(md, inner, start, memory, settings, known, &flat.asked()),
+        Outcome::Found => {
+            *hit = *flat.minimum(memory);
+            Ok(true)
+        }
+        Outcome::Apart(n) => Err(Stop::Apart(n)),
+        Outcome::Open => {
+            let asked = Some(&flat.asked());
+            curved(md, inner, start, memory, settings, known, asked, hit)
+        }
     }
 }
 
-/// The search with curvature, from where the one by exact cuts ended.
+/// The search with curvature, from where the one by exact cuts ended, if there was one.
 #[inline(never)]
+#[allow(clippy::too_many_arguments)]
 fn curved<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     inner: Option<&Vec3>,
-    start: &Vec3,
+    start: impl Fn() -> Vec3,
     memory: &mut Memory,
     settings: &Settings,
     known: &mut Known,
-    asked: &Asked,
-) -> Result<Answer, Fault> {
+    asked: Option<&Asked>,
+    hit: &mut Penetration,
+) -> Result<bool, Stop> {
+    let dropped = asked.map_or(0, |asked| asked.dropped);
     let rest = Settings {
-        max_iterations: settings.max_iterations.saturating_sub(asked.dropped),
+        max_iterations: settings.max_iterations.saturating_sub(dropped),
         ..*settings
     };
     let mut search = Search::new(inner, &rest, known);
-    let first = search.resume(asked.samples(), asked.trust, memory);
-    let first = first.unwrap_or_else(|| search.recall(memory, start));
-    let mut answer = search.run(md, first, memory)?;
-    if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
-        hit.iterations += asked.dropped;
-    }
-    Ok(answer)
+    let first = asked.and_then(|asked| search.resume(asked.samples(), asked.trust, memory));
+    let first = first.unwrap_or_else(|| search.recall(memory, &start()));
+    let minimum = search.run(md, first, memory)?.put(hit)?;
+    hit.iterations += dropped;
+    Ok(minimum)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Penetration;
+    use crate::contact::Answer;
     use crate::local::{self, Shortcut};
     use crate::math::{Real, perpendicular};
+    use crate::support::Fault;
     use nalgebra::Rotation3;
 
     /// A support function, placed.
@@ -334,24 +340,28 @@ mod tests {
     ) -> (Answer, u64) {
         let md = MinkowskiDifference::new(a, b);
         let mut known = Known::default();
-        let answer = penetration(
+        let mut hit = Penetration::default();
+        let found = penetration(
             &md,
             None,
-            &start.normalize(),
+            || start.normalize(),
             memory,
             &settings(tolerance),
             &mut known,
+            &mut hit,
         );
-        match answer {
+        let answer: Result<Answer, Fault> = match found {
+            Ok(true) => Ok(Answer::Hit(hit)),
             // What every caller does with a search that did not end in a minimum.
-            Ok(Answer::Limit(p)) => {
+            Ok(false) => {
                 let shortcut = Shortcut::Always;
                 let rest = settings(tolerance);
-                match local::penetration(&md, p.normal, shortcut, &rest, |_| ()) {
-                    Ok(answer) => (answer, md.supports()),
-                    Err(fault) => panic!("{fault:?}"),
-                }
+                local::penetration(&md, hit.normal, shortcut, &rest, |_| ())
             }
+            Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
+            Err(Stop::Fault(fault)) => Err(fault),
+        };
+        match answer {
             Ok(answer) => (answer, md.supports()),
             Err(fault) => panic!("{fault:?}"),
         }

@@ -100,15 +100,14 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 if stationary && !lower_elsewhere {
                     let face = last.planes.map(|plane| plane.point);
                     let size = face.iter().fold(0.0, |m, p| larger(m, p.v.norm()));
-                    let hit = match aside {
-                        Some(first) if first.depth <= plane.depth => {
-                            answer(first, None, used(budget))
-                        }
-                        _ => answer(plane, Some(last), used(budget)),
+                    let (lowest, portal) = match aside {
+                        Some(first) if first.depth <= plane.depth => (first, None),
+                        _ => (plane, Some(last)),
                     };
+                    let (top, n) = (&lowest.point, &lowest.normal);
                     return Ok(Answer::Hit(Penetration {
-                        width: contact_patch::width(&face, &hit.normal, floor, size),
-                        ..hit
+                        width: contact_patch::width(&face, top, n, floor, size),
+                        ..answer(lowest, portal, used(budget))
                     }));
                 }
                 if lower_elsewhere { best } else { plane }

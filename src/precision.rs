@@ -46,6 +46,12 @@ impl Precision {
         self.size2.sqrt()
     }
 
+    /// Square of [`Precision::reach`], m².
+    #[inline(always)]
+    pub fn reach2(&self) -> Real {
+        self.reach2
+    }
+
     /// Largest distance of a witness from the world's origin, metres.
     #[inline(always)]
     pub fn reach(&self) -> Real {

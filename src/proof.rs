@@ -5,61 +5,180 @@
 //! the search came to know.
 //!
 //! A support value is a depth only if the origin is in D, and a search that is no polytope's
-//! does not show that. Mostly the points it saw do, at once: the tetrahedron of a point inside D
-//! and of three of them ([`is_around`]). Else the distance algorithm tells, which takes known
-//! points wherever they do as well as new ones ([`proof`]).
+//! does not show that. Where a point well inside D is trusted, a tetrahedron of it and of three
+//! others is looked for, which mostly are known ([`is_around`]). Else the distance algorithm
+//! tells, which takes known points wherever they do as well as new ones ([`proof`]).
 
 use crate::distance::{Proof, Simplex, direction, room, search};
 use crate::math::{EPSILON, Real, Vec3, larger, largest, unit};
-use crate::support::{SupportMap, SupportPoint};
+use crate::support::{Known, SupportMap, SupportPoint};
 use crate::support_set::{Beyond, Inquiry, Stop, SupportSet};
 
-/// Does a tetrahedron of `c`, the first of the points, and two others hold the origin, by more
-/// than rounding? `reach`: about how far the objects' points lie from the world's origin.
+/// Shows that D holds the origin, by more than rounding, from the points known and the `centre`,
+/// which is trusted to be well inside D. `exit`: the point of the boundary where the origin leaves
+/// D. `false`: nothing is shown yet.
 ///
-/// With the first three it mostly does: the ray from the origin away from c meets their
-/// triangle. Seen along that ray a triangle that holds it is one around a point, and of those
-/// with the first point for a corner the widest is: its other corners are the points that lie
-/// farthest round on either side.
-#[inline]
-pub fn is_around(c: &Vec3, points: &[SupportPoint], reach: Real) -> bool {
-    let [p, q, r, ..] = points else {
-        return false;
-    };
-    holds(c, &p.v, &q.v, &r.v, reach)
-        || widest(c, &p.v, &points[1..]).is_some_and(|[q, r]| holds(c, &p.v, &q, &r, reach))
-}
-
-/// Does the tetrahedron hold the origin? With Cᵢ = vⱼ × vₖ that is c·Cᵢ < 0 for all i, where
-/// v₀·C₀ > 0.
+/// With c the centre, a tetrahedron of c and three points of D holds the origin where −c is a sum
+/// of positive multiples of the three: where it lies in their cone, inside the three planes
+/// through the origin and two of them. The first three known mostly do; else [`enclose`].
+///
+/// # Errors
+/// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not finite.
 #[inline(always)]
-fn holds(c: &Vec3, u: &Vec3, v: &Vec3, w: &Vec3, reach: Real) -> bool {
-    let sides = [v.cross(w), w.cross(u), u.cross(v)];
-    let sign = (1.0 as Real).copysign(-u.dot(&sides[0]));
-    let size2 = larger(larger(u.norm_squared(), v.norm_squared()), w.norm_squared());
-    let size2 = larger(larger(size2, c.norm_squared()), reach * reach);
-    let rounding = 64.0 * EPSILON * size2 * size2.sqrt();
-    sides.iter().all(|side| sign * c.dot(side) > rounding)
+pub fn is_around<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    centre: &SupportPoint,
+    known: &mut Known,
+    exit: &Vec3,
+) -> Result<bool, Stop> {
+    let c = &centre.v;
+    let face = match known.points() {
+        [] => return Ok(false),
+        [p] => {
+            // The exit from a ball, seen from its centre, is on the other side of the origin.
+            let opposite = |m: Vec3| {
+                p.v.dot(&m) < 0.0
+                    && p.v.cross(&m).norm() <= inquiry.precision.touch() * (p.v - m).norm()
+            };
+            if opposite(centre.v1 - p.v2) || opposite(p.v1 - centre.v2) {
+                return Ok(true);
+            }
+            (p.v, None)
+        }
+        [p, q] => (p.v, Some(q.v)),
+        [p, q, r, ..] => match open_side(c, [&p.v, &q.v, &r.v], inquiry.precision.reach2()) {
+            None => return Ok(true),
+            Some(0) => (q.v, Some(r.v)),
+            Some(1) => (r.v, Some(p.v)),
+            Some(_) => (p.v, Some(q.v)),
+        },
+    };
+    enclose(inquiry, centre, known, face, exit)
 }
 
-/// Of these points the farthest round from `first` on either side, seen along the line from `c`
-/// through the origin.
-fn widest(c: &Vec3, first: &Vec3, others: &[SupportPoint]) -> Option<[Vec3; 2]> {
-    // Perpendicular to c: a point's two coordinates seen along it are its dot products with
-    // `across` and, stretched by |c| |across|, with `up`. The first point lies where `up` points.
-    let across = first.cross(c);
-    let up = c.cross(&across);
-    let mut sides: [Option<(Vec3, Real, Real)>; 2] = [None; 2];
-    for point in others {
-        let (x, y) = (across.dot(&point.v), up.dot(&point.v));
-        let side = &mut sides[usize::from(x > 0.0)];
-        // y / |x| is less.
-        if side.is_none_or(|(_, a, b)| y * a.abs() < b * x.abs()) {
-            *side = Some((point.v, x, y));
+/// [`is_around`], from one or two corners of a cone on.
+///
+/// Beyond the plane of two corners, where −c is, the point of D farthest is the third: a known
+/// one, or of those that points of obj1 and obj2 make anew (k support points of D are k² points
+/// of D), or else a support point. So it is beyond one corner, where −c is nearer to that than to
+/// any other sum of multiples. Where the triangle of c and two corners, or the side of c and one,
+/// holds the origin within rounding, that is a proof as well.
+#[inline(never)]
+fn enclose<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    centre: &SupportPoint,
+    known: &mut Known,
+    mut face: (Vec3, Option<Vec3>),
+    exit: &Vec3,
+) -> Result<bool, Stop> {
+    let c = &centre.v;
+    let mut exit = Some(exit);
+    for _ in 0..STEPS {
+        let touch = inquiry.precision.touch();
+        let mut n = Vec3::zeros();
+        let mut third = None;
+        if let (a, Some(b)) = face {
+            let side = a.cross(&b);
+            let height = -c.dot(&side);
+            let Some(normal) = direction(&(side * (1.0 as Real).copysign(height))) else {
+                return Ok(false);
+            };
+            n = normal;
+            third = known.made_beyond(centre, &n, touch);
+            if third.is_none() {
+                if across(c, &a).dot(&b) <= 0.0 {
+                    face = (a, None);
+                } else if across(c, &b).dot(&a) <= 0.0 {
+                    face = (b, None);
+                } else if in_plane(c, &a, &b, touch) {
+                    return Ok(true);
+                }
+            }
+        }
+        if let (a, None) = face {
+            let way = across(c, &a);
+            let height = way.norm();
+            if height <= touch {
+                return Ok(c.dot(&a) < 0.0);
+            }
+            n = way / height;
+            third = known.made_beyond(centre, &n, touch);
+        }
+        let new = match third {
+            Some(made) => made,
+            None => ask_beyond(
+                inquiry,
+                known,
+                &n,
+                exit.take().and_then(|exit| beside(exit, c)),
+            )?,
+        };
+        face = match face {
+            (a, None) => (a, Some(new)),
+            (a, Some(b)) => match open_side(c, [&a, &b, &new], inquiry.precision.reach2()) {
+                None => return Ok(true),
+                Some(0) => (b, Some(new)),
+                Some(1) => (a, Some(new)),
+                // In the plane of a and b, within rounding.
+                Some(_) => {
+                    let between = across(c, &a).dot(&b) > 0.0 && across(c, &b).dot(&a) > 0.0;
+                    return Ok(between && in_plane(c, &a, &b, touch));
+                }
+            },
+        };
+    }
+    Ok(false)
+}
+
+/// Steps of [`enclose`] before the distance algorithm takes over. Free: mostly it takes two.
+const STEPS: usize = 9;
+
+/// Is −c in the cone of these, by more than rounding? Else the one that it lies farthest beyond
+/// the plane of the others from.
+#[inline(always)]
+fn open_side(c: &Vec3, [u, v, w]: [&Vec3; 3], reach2: Real) -> Option<usize> {
+    let sides = [v.cross(w), w.cross(u), u.cross(v)];
+    let sign = (1.0 as Real).copysign(u.dot(&sides[0]));
+    let outside = sides.map(|side| sign * c.dot(&side));
+    let most = larger(larger(outside[0], outside[1]), outside[2]);
+    let size2 = larger(larger(u.norm_squared(), v.norm_squared()), w.norm_squared());
+    let size2 = larger(larger(size2, c.norm_squared()), reach2);
+    if most < -64.0 * EPSILON * size2 * size2.sqrt() {
+        return None;
+    }
+    Some((0..2).find(|&i| outside[i] >= most).unwrap_or(2))
+}
+
+/// Of −c what is across `a`.
+#[inline(always)]
+fn across(c: &Vec3, a: &Vec3) -> Vec3 {
+    a * (c.dot(a) / a.norm_squared()) - c
+}
+
+/// Is the origin in the plane of these, within a touch?
+fn in_plane(c: &Vec3, a: &Vec3, b: &Vec3, touch: Real) -> bool {
+    let side = a.cross(b);
+    c.dot(&side).abs() <= touch * (side + b.cross(c) + c.cross(a)).norm()
+}
+
+/// Asks for a point of D beyond the origin along unit `n`: first beside the exit, if D is thin
+/// there, else along n itself.
+fn ask_beyond<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    known: &mut Known,
+    n: &Vec3,
+    beside: Option<impl Fn(&Vec3) -> Option<Vec3>>,
+) -> Result<Vec3, Stop> {
+    let aside = beside.and_then(|beside| beside(n));
+    for d in aside.iter().chain([n]) {
+        let point = inquiry.md.support(d)?;
+        inquiry.precision.note(&point);
+        known.push(&point);
+        if n.dot(&point.v) > inquiry.precision.touch() {
+            return Ok(point.v);
         }
     }
-    let [(q, ..), (r, ..)] = [sides[0]?, sides[1]?];
-    Some([q, r])
+    Err(Stop::Apart(*n))
 }
 
 /// [`crate::distance::overlap`], where a search for the depth has left points of D in the set:

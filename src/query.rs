@@ -12,11 +12,11 @@
 //!    the part of that direction in its plane.)
 //! 3. An overlap is proven. A local minimum of the support function can be positive
 //!    though the objects are apart (a plate that an object has passed through, seen
-//!    from the old side), so the origin must be shown to lie among points of D: in the
-//!    tetrahedron of the centres' difference and three active points, else by
-//!    [`proof`], which puts the points the solver saw together anew and asks for
-//!    more only where these leave a side open. The global search (`mpr`,
-//!    `minimum`) proves its overlaps itself.
+//!    from the old side), so the origin must be shown to lie among points of D: in a
+//!    tetrahedron of the centres' difference and three others ([`is_around`]), else by
+//!    [`proof`]. Both put the points the solver saw together anew, and ask for more only
+//!    where these leave a side open. The global search (`mpr`, `minimum`) proves its
+//!    overlaps itself.
 //! 4. Witness points of a face that rests on another, or on an edge, are moved to the
 //!    middle of where they touch ([`contact_patch`]); not in `along` and `planar`.
 //! 5. What was learned stays behind in the [`State`]; where the caller keeps none, nothing
@@ -63,6 +63,9 @@ pub struct Pair<A, B> {
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Step 1: the separating direction that still separates, see [`crate::separation`].
     fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
+        if !state.was_apart() {
+            return Ok(None);
+        }
         let mut failed = SupportSet::<{ separation::TRIES }>::EMPTY;
         self.separated(state, &mut failed)
     }
@@ -81,7 +84,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     fn remember(&self, state: &mut State, answer: &Answer) -> Result<(), Fault> {
         match answer {
             Answer::Miss(n) if self.lasting => {
-                let was_apart = state.separating().is_some();
+                let was_apart = state.was_apart();
                 separation::leave(&mut Inquiry::new(&self.md), state, was_apart, *n)
             }
             other => {
@@ -101,18 +104,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .unwrap_or(Vec3::x())
     }
 
-    /// Step 3: the answer of a solver, with the overlap proven or refuted, from points
-    /// that are known. `planar`: D lies in a plane.
-    fn proven(
+    /// Step 3: proves the overlap of a solver's `hit`, from points that are known, or refutes it:
+    /// [`Stop::Apart`]. `planar`: D lies in a plane.
+    fn prove(
         &self,
-        mut answer: Answer,
-        known: &Known,
+        hit: &mut Penetration,
+        known: &mut Known,
         settings: &Settings,
         planar: bool,
-    ) -> Result<Answer, Fault> {
-        let (Answer::Hit(hit) | Answer::Limit(hit)) = &mut answer else {
-            return Ok(answer);
-        };
+    ) -> Result<(), Stop> {
         let mut inquiry = Inquiry::new(&self.md);
         inquiry.precision.note(&SupportPoint {
             v: hit.point1 - hit.point2,
@@ -121,22 +121,29 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         });
         // A touch within rounding is a miss, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
-            return Ok(Answer::Miss(hit.normal));
+            return Err(Stop::Apart(hit.normal));
         }
-        let quick = self
-            .centre
-            .is_some_and(|c| is_around(&c.v, known.points(), inquiry.precision.reach()));
-        if quick && hit.depth > settings.tolerance {
+        if let (Some(c), true) = (&self.centre, !planar && hit.depth > settings.tolerance) {
+            if is_around(&mut inquiry, c, known, &(hit.normal * hit.depth))? {
+                return Ok(());
+            }
+        }
+        let tolerance = settings.tolerance;
+        self.surround(&mut inquiry, self.centre, hit, known, tolerance, planar)
+    }
+
+    /// The same of a solver's answer.
+    fn proven(
+        &self,
+        mut answer: Answer,
+        known: &mut Known,
+        settings: &Settings,
+        planar: bool,
+    ) -> Result<Answer, Fault> {
+        let (Answer::Hit(hit) | Answer::Limit(hit)) = &mut answer else {
             return Ok(answer);
-        }
-        match self.surround(
-            &mut inquiry,
-            self.centre,
-            hit,
-            known,
-            settings.tolerance,
-            planar,
-        ) {
+        };
+        match self.prove(hit, known, settings, planar) {
             Ok(()) => Ok(answer),
             Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
             Err(Stop::Fault(fault)) => Err(fault),
@@ -224,7 +231,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(before) = state.facing() {
             return Ok(before.dot(&centre.v) < 0.0);
         }
-        let Some(n) = state.leaving().filter(|n| n.dot(&centre.v) > 0.0) else {
+        if !state.looks_along(&centre.v) {
+            return Ok(false);
+        }
+        let Some(n) = state.leaving() else {
             return Ok(false);
         };
         let reach = |n: &Vec3| Ok(n.dot(&self.md.support(n)?.v));
@@ -243,21 +253,26 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let mut memory = Memory::default();
-        if !self.is_behind(state)? {
-            memory = state.solver();
-        }
+        let cold = self.is_behind(state)?;
         let mut known = Known::default();
-        let found = self.local_minimum(&mut memory, settings, &mut known)?;
-        let answer = self.proven(found, &known, settings, false)?;
-        match answer {
-            Answer::Hit(_) | Answer::Limit(_) => {
-                *state = State::overlap(&memory);
-                self.face(state);
-            }
-            other => self.remember(state, &other)?,
+        let mut hit = Penetration::default();
+        let found = self
+            .local_minimum(state.solver(cold), settings, &mut known, &mut hit)
+            .and_then(|minimum| {
+                self.prove(&mut hit, &mut known, settings, false)?;
+                Ok(minimum)
+            });
+        let minimum = match found {
+            Ok(minimum) => minimum,
+            Err(stop) => return self.stopped(state, stop),
+        };
+        state.overlap();
+        self.face(state);
+        if !minimum {
+            return Ok(Answer::Limit(hit));
         }
-        self.settle(answer, settings)
+        contact_patch::settle(&self.md, &mut hit, settings.tolerance)?;
+        Ok(Answer::Hit(hit))
     }
 
     /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
@@ -268,7 +283,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let start = state.leaving().unwrap_or_else(|| self.cold_start());
         let found = local::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
-        let answer = self.proven(found, &Known::default(), settings, false)?;
+        let answer = self.proven(found, &mut Known::default(), settings, false)?;
         self.remember(state, &answer)?;
         self.settle(answer, settings)
     }
@@ -433,45 +448,64 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_iterations: left,
         };
         let mut memory = Memory::towards(hit.normal);
-        if let Answer::Hit(floor) | Answer::Limit(floor) =
-            self.search(&mut memory, left.min(BUDGET), &level, &mut Known::default())?
-        {
-            if floor.depth < hit.depth {
+        let mut known = Known::default();
+        let mut floor = Penetration::default();
+        match self.search(
+            &mut memory,
+            left.min(BUDGET),
+            &level,
+            &mut known,
+            &mut floor,
+        ) {
+            Ok(_) if floor.depth < hit.depth => {
                 *hit = Penetration {
                     depth_lower: hit.depth_lower.min(floor.depth),
                     iterations: hit.iterations + floor.iterations,
                     ..floor
                 };
+                Ok(())
             }
+            Ok(_) | Err(Stop::Apart(_)) => Ok(()),
+            Err(Stop::Fault(fault)) => Err(fault),
         }
-        Ok(())
     }
 
-    /// A local minimum, its overlap not proven. After each local search there are three cases:
+    /// A local minimum, its overlap not proven: mostly the first search ends at one.
+    fn local_minimum(
+        &self,
+        memory: &mut Memory,
+        settings: &Settings,
+        known: &mut Known,
+        hit: &mut Penetration,
+    ) -> Result<bool, Stop> {
+        let first = settings.max_iterations.min(BUDGET);
+        Ok(self.search(memory, first, settings, known, hit)?
+            || self.search_on(memory, settings, known, hit)?)
+    }
+
+    /// Goes on from a search that stalled. After each there are three cases:
     ///
     /// - It ended at a minimum, no higher than what was met before: the answer.
     /// - It stalled, lower than before: the floor of a long valley bends away from any straight
     ///   step. It goes on from there, and nothing is remembered.
     /// - It stalled no lower, or ended higher: it starts again beside the lowest place met, in
     ///   each of the [`RESTARTS`]. After these the paper's method goes on from there.
-    fn local_minimum(
+    #[cold]
+    #[inline(never)]
+    fn search_on(
         &self,
         memory: &mut Memory,
         settings: &Settings,
         known: &mut Known,
-    ) -> Result<Answer, Fault> {
+        hit: &mut Penetration,
+    ) -> Result<bool, Stop> {
         let most = settings.max_iterations;
         let mut left = most;
+        let mut ended = false;
         let mut lowest: Option<Penetration> = None;
         let mut restarts = RESTARTS.iter();
         // Ends: `left` falls.
-        let mut found = loop {
-            let mut found = self.search(memory, left.min(BUDGET), settings, known)?;
-            let (hit, ended) = match &mut found {
-                Answer::Hit(hit) => (hit, true),
-                Answer::Limit(hit) => (hit, false),
-                Answer::Miss(_) => return Ok(found),
-            };
+        loop {
             left = left.saturating_sub(hit.iterations.max(1));
             hit.iterations = most - left;
             // Depths that differ by less are the same.
@@ -479,7 +513,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let level = larger(settings.tolerance, rounding(reach));
             let before = lowest.map_or(Real::INFINITY, |low| low.depth);
             if ended && hit.depth <= before + level {
-                return Ok(found);
+                return Ok(true);
             }
             let start = if !ended && hit.depth <= before - level {
                 lowest = Some(*hit);
@@ -488,15 +522,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             } else if let (Some(way), Some(low)) = (restarts.next(), &lowest) {
                 beside(&low.normal, *way)
             } else {
-                break found;
+                break;
             };
             if left == 0 {
-                return Ok(lowest.map_or(found, Answer::Limit));
+                *hit = lowest.unwrap_or(*hit);
+                return Ok(false);
             }
             *memory = Memory::towards(start);
-        };
+            ended = self.search(memory, left.min(BUDGET), settings, known, hit)?;
+        }
         let Some(low) = lowest else {
-            return Ok(found);
+            return Ok(ended);
         };
         let rest = Settings {
             max_iterations: left,
@@ -505,14 +541,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let last = local::penetration(&self.md, low.normal, Shortcut::Always, &rest, |_| ())?;
         match last {
             // D reaches beyond that plane: a callback that errs must not separate.
-            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(found),
-            other => found = other,
+            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(ended),
+            other => ended = other.put(hit)?,
         }
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut found {
-            hit.iterations += most - left;
-            *memory = Memory::towards(hit.normal);
-        }
-        Ok(found)
+        hit.iterations += most - left;
+        *memory = Memory::towards(hit.normal);
+        Ok(ended)
     }
 
     /// One local search, of so many iterations at most.
@@ -523,18 +557,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         max_iterations: u64,
         settings: &Settings,
         known: &mut Known,
-    ) -> Result<Answer, Fault> {
+        hit: &mut Penetration,
+    ) -> Result<bool, Stop> {
         let settings = Settings {
             max_iterations,
             ..*settings
         };
         descent::penetration(
             &self.md,
-            self.centre.map(|c| c.v).as_ref(),
-            &self.cold_start(),
+            self.centre.as_ref().map(|c| &c.v),
+            || self.cold_start(),
             memory,
             &settings,
             known,
+            hit,
         )
     }
 
@@ -565,7 +601,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         } else {
             Answer::Hit(way.hit)
         };
-        let mut answer = self.proven(found, &known, settings, false)?;
+        let mut answer = self.proven(found, &mut known, settings, false)?;
         if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
             // The bound along dir in place of the one all around.
             hit.depth_lower = way.hit.depth_lower;
@@ -593,7 +629,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .or_else(|| in_plane(Vec3::y()))
             .unwrap_or(Vec3::y());
         let found = planar::penetration(&self.md, &m, start, settings)?;
-        let answer = self.proven(found, &Known::default(), settings, true)?;
+        let answer = self.proven(found, &mut Known::default(), settings, true)?;
         self.remember(state, &answer)?;
         Ok(answer)
     }

@@ -7,14 +7,14 @@
 //!
 //! What it holds depends on the query that left it:
 //!
-//! | kind | left by | `dir` | `vectors` | `numbers` and `words` |
+//! | kind | left by | `dir` | `slopes` | `curvature`, `count` and `curved` |
 //! |---|---|---|---|---|
 //! | cold: 0, or no other | | | | |
 //! | `APART` | every query of a pair that is apart | the separating direction, as long as the margin to aim at | after [`State::near`] (the distance): the directions of the points around the nearest one | the radius of a ball |
-//! | `OVERLAP` | the local search | the minimum's | slopes of the active cuts | the rest of [`Memory`] |
+//! | `OVERLAP` | the local search: its [`Memory`] | the minimum's | slopes of the active cuts | what is known of the smooth part |
 //! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::mark`] and [`State::middle`] |
+//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::middle`] and [`State::mark`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none. What a query for the depth of an overlap leaves
@@ -23,7 +23,7 @@
 use crate::contact::Answer;
 use crate::descent::Memory;
 use crate::global::Basis;
-use crate::math::{Real, Vec3, unit};
+use crate::math::{Real, Vec3, normalised, unit};
 
 /// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1 << 31;
@@ -38,11 +38,8 @@ const SCALE: Real = (OFFSET - 1) as Real;
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct State {
-    /// See the table at the head of this file, as all of these.
-    dir: Vec3,
-    vectors: [Vec3; 3],
-    numbers: [Real; 7],
-    words: [u32; 2],
+    /// See the table at the head of this file.
+    memory: Memory,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
     /// [`RESTED`], and the direction of the centres' difference.
@@ -73,15 +70,8 @@ impl State {
     /// this one's mirror image in the origin: points, directions and slopes change sign,
     /// lengths and curvatures stay, and the balls of the objects change places.
     pub fn flip(&mut self) {
-        let mut memory = self.memory();
-        memory.flip();
-        let facing = self.facing();
-        *self = Self {
-            kind: self.kind,
-            marks: self.marks & RESTED,
-            ..Self::overlap(&memory)
-        };
-        if let Some(centre) = facing {
+        self.memory.flip();
+        if let Some(centre) = self.facing() {
             self.face(&-centre);
         }
     }
@@ -89,10 +79,11 @@ impl State {
     /// Keeps the direction of the centres' difference, obj1's less obj2's.
     pub fn face(&mut self, centre: &Vec3) {
         self.marks &= RESTED;
-        if let Some(n) = unit(centre) {
+        if let Some(n) = normalised(centre) {
             for (i, x) in (0..).zip(n.iter()) {
-                let x = (x * SCALE) as i32 + OFFSET as i32;
-                self.marks |= (x as u32) << (i * COORDINATE);
+                // To the nearest whole number.
+                let x = (x * SCALE + (OFFSET as Real + 0.5)) as u32;
+                self.marks |= x << (i * COORDINATE);
             }
         }
     }
@@ -107,38 +98,16 @@ impl State {
         given.then(|| Vec3::new(coordinate(0), coordinate(1), coordinate(2)))
     }
 
-    /// The pair overlaps, as the local search left it.
-    pub fn overlap(memory: &Memory) -> Self {
-        let [a, b, c, d, e, f] = memory.curvature;
-        Self {
-            dir: memory.dir,
-            vectors: memory.slopes,
-            numbers: [a, b, c, d, e, f, memory.drift],
-            words: [memory.count, memory.curved],
-            kind: OVERLAP,
-            marks: 0,
-        }
-    }
-
-    /// What [`State::overlap`] was given.
-    fn memory(&self) -> Memory {
-        let [a, b, c, d, e, f, drift] = self.numbers;
-        let [count, curved] = self.words;
-        Memory {
-            dir: self.dir,
-            slopes: self.vectors,
-            curvature: [a, b, c, d, e, f],
-            drift,
-            count,
-            curved,
-        }
+    /// The pair overlaps, as the local search left it in [`State::solver`].
+    pub fn overlap(&mut self) {
+        (self.kind, self.marks) = (OVERLAP, 0);
     }
 
     fn of(kind: u32, dir: Vec3) -> Self {
         Self {
-            dir,
+            memory: Memory::towards(dir),
             kind,
-            ..Self::default()
+            marks: 0,
         }
     }
 
@@ -151,22 +120,22 @@ impl State {
     /// one (zero for none), and the radius of a ball that rounds D there, metres.
     pub fn near(dir: Vec3, directions: [Vec3; 3], ball: Real) -> Self {
         let mut state = Self::apart(dir);
-        state.vectors = directions;
-        state.numbers[0] = ball;
+        state.memory.slopes = directions;
+        state.memory.curvature[0] = ball;
         state
     }
 
     /// What [`State::near`] left.
     pub fn nearest(&self) -> ([Vec3; 3], Real) {
         match self.kind {
-            APART => (self.vectors, self.numbers[0]),
+            APART => (self.memory.slopes, self.memory.curvature[0]),
             _ => ([Vec3::zeros(); 3], 0.0),
         }
     }
 
     /// The margin to aim at, metres, where the pair was apart.
     pub fn aim(&self) -> Real {
-        self.dir.norm()
+        self.memory.dir.norm()
     }
 
     /// Did the pair overlap when its depth was asked?
@@ -178,15 +147,15 @@ impl State {
     /// for none.
     pub fn surrounded([a, b, c, d]: [Vec3; 4]) -> Self {
         let mut state = Self::of(SURROUNDED, a);
-        state.vectors = [b, c, d];
+        state.memory.slopes = [b, c, d];
         state
     }
 
     /// The directions of [`State::surrounded`], where the pair was.
     pub fn surrounding(&self) -> [Vec3; 4] {
-        let [b, c, d] = self.vectors;
+        let [b, c, d] = self.memory.slopes;
         match self.kind {
-            SURROUNDED => [self.dir, b, c, d],
+            SURROUNDED => [self.memory.dir, b, c, d],
             _ => [Vec3::zeros(); 4],
         }
     }
@@ -199,7 +168,7 @@ impl State {
     /// The direction that separated the pair.
     pub fn separating(&self) -> Option<Vec3> {
         match self.kind {
-            APART => unit(&self.dir),
+            APART => unit(&self.memory.dir),
             _ => None,
         }
     }
@@ -208,23 +177,31 @@ impl State {
     /// was apart and is no longer has just met there.
     pub fn leaving(&self) -> Option<Vec3> {
         match self.kind {
-            APART | OVERLAP | ALONG | PROVEN => unit(&self.dir),
+            APART | OVERLAP | ALONG | PROVEN => unit(&self.memory.dir),
             _ => None,
         }
     }
 
-    /// What the local search starts from.
-    pub fn solver(&self) -> Memory {
+    /// Does its direction lead the way that `v` does?
+    #[inline]
+    pub fn looks_along(&self, v: &Vec3) -> bool {
+        self.memory.dir.dot(v) > 0.0
+    }
+
+    /// What the local search starts from, and where it leaves what it learns; `cold`: from nothing.
+    pub fn solver(&mut self, cold: bool) -> &mut Memory {
         match self.kind {
-            OVERLAP => self.memory(),
-            APART | ALONG | PROVEN => Memory::towards(self.dir),
-            _ => Memory::default(),
+            _ if cold => self.memory = Memory::default(),
+            OVERLAP => (),
+            APART | ALONG | PROVEN => self.memory = Memory::towards(self.memory.dir),
+            _ => self.memory = Memory::default(),
         }
+        &mut self.memory
     }
 
     /// The directions of the last portal.
     pub fn portal(&self) -> Option<[Vec3; 3]> {
-        let [a, b, c] = &self.vectors;
+        let [a, b, c] = &self.memory.slopes;
         match self.kind {
             ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
             _ => None,
@@ -238,26 +215,26 @@ impl State {
 
     /// Its [`Basis::mark`], if it did.
     pub fn mark(&self) -> Option<u64> {
-        let [low, high] = self.words.map(u64::from);
+        let [low, high] = [self.memory.count, self.memory.curved].map(u64::from);
         self.rested().then_some(high << 32 | low)
     }
 
     /// The middle of where it did: obj1's witness point.
     pub fn middle(&self) -> Vec3 {
-        let [x, y, z, ..] = self.numbers;
+        let [x, y, z, ..] = self.memory.curvature;
         Vec3::new(x, y, z)
     }
 
     /// Keeps the directions of a portal besides.
     pub fn keep_portal(&mut self, directions: [Vec3; 3]) {
         self.kind = ALONG;
-        self.vectors = directions;
+        self.memory.slopes = directions;
     }
 
     /// The directions that the last proof stood on, besides the minimum's own; zero for none.
     pub fn others(&self) -> &[Vec3] {
         match self.kind {
-            PROVEN => &self.vectors,
+            PROVEN => &self.memory.slopes,
             _ => &[],
         }
     }
@@ -272,7 +249,7 @@ impl State {
         let mut state = Self::default();
         if let Some((first, others)) = basis.directions().split_first() {
             state = Self::of(PROVEN, *first);
-            for (slope, n) in state.vectors.iter_mut().zip(others) {
+            for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
                 *slope = *n;
             }
         }
@@ -283,9 +260,9 @@ impl State {
     /// the [`Basis::mark`].
     pub fn rest(&mut self, middle: Vec3, mark: u64) {
         self.marks |= RESTED;
-        let [x, y, z, ..] = &mut self.numbers;
+        let [x, y, z, ..] = &mut self.memory.curvature;
         [*x, *y, *z] = middle.into();
-        self.words = [mark as u32, (mark >> 32) as u32];
+        (self.memory.count, self.memory.curved) = (mark as u32, (mark >> 32) as u32);
     }
 
     /// Keeps the kind of the answer and its direction alone.
@@ -306,13 +283,13 @@ mod tests {
     fn flipped_twice_is_as_it_was() {
         let mut cold = State::default();
         cold.flip();
-        assert!(cold.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
+        assert!(cold.memory.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
         let mut state = State::guess(&Vec3::new(1.0, -2.0, 3.0));
-        let dir = state.dir;
+        let dir = state.memory.dir;
         state.flip();
-        assert_eq!(state.dir, -dir);
+        assert_eq!(state.memory.dir, -dir);
         state.flip();
-        assert_eq!(state.dir, dir);
+        assert_eq!(state.memory.dir, dir);
     }
 
     #[test]

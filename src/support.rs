@@ -108,6 +108,24 @@ impl Known {
         best.0
     }
 
+    /// The point of D farthest along `n` of all that the points of obj1 and those of obj2 make,
+    /// those of `c` too, if it reaches beyond `reach`.
+    #[inline]
+    pub fn made_beyond(&self, c: &SupportPoint, n: &Vec3, reach: Real) -> Option<Vec3> {
+        let (mut one, mut two) = ((&c.v1, n.dot(&c.v1)), (&c.v2, n.dot(&c.v2)));
+        for p in self.points() {
+            let (a, b) = (n.dot(&p.v1), n.dot(&p.v2));
+            if a > one.1 {
+                one = (&p.v1, a);
+            }
+            if b < two.1 {
+                two = (&p.v2, b);
+            }
+        }
+        let made = one.0 - two.0;
+        (n.dot(&made) > reach).then_some(made)
+    }
+
     /// Adds a point that is not there, if there is room.
     #[inline(always)]
     pub fn push(&mut self, p: &SupportPoint) {

@@ -190,31 +190,25 @@ impl Flat {
         }
     }
 
-    /// The directions to ask first: what the memory leads to, else `start`. `None`: it is of
-    /// another curvature.
+    /// The directions to ask first: what the memory leads to, else `start`'s.
     #[inline]
-    pub fn recall(&mut self, memory: &Memory, start: &Vec3) -> Option<(Vec3, Queue)> {
-        let smooth = memory.smooth();
-        // Three active cuts are mostly exact ones.
-        if matches!(smooth, Smooth::Curved(_)) && memory.count < 3 {
-            return None;
-        }
+    pub fn recall(&mut self, memory: &Memory, start: impl Fn() -> Vec3) -> (Vec3, Queue) {
         let Some(dir) = unit(&memory.dir) else {
-            return Some((*start, Queue::EMPTY));
+            return (start(), Queue::EMPTY);
         };
-        if let Smooth::Round { balls, discs } = smooth {
+        if let Smooth::Round { balls, discs } = memory.smooth() {
             self.radius = balls;
             self.discs = Discs::recall(&discs);
         }
         self.recalled = memory.count > 0 || memory.curved != 0;
         let (mut queue, angle) = memory.recall(&dir);
-        Some(match queue.pop() {
+        match queue.pop() {
             Some(n) => {
                 self.trust.recall(angle);
                 (n, queue)
             }
             None => (dir, queue),
-        })
+        }
     }
 
     /// Is there a disc?
@@ -1136,7 +1130,7 @@ impl Flat {
     fn width<const BENT: bool>(&self, at: &Sample, discs: &[Vec3; 2], known: &Known) -> Real {
         let (n, size) = (&at.n, self.extent2.sqrt());
         let Some(taken) = self.discs::<BENT>() else {
-            return contact_patch::width(known.points(), n, self.tolerance, size);
+            return contact_patch::width(known.points(), &at.p, n, self.tolerance, size);
         };
         let mut points = [at.p; CUTS + 1];
         for (i, point) in points.iter_mut().take(self.cuts.len.min(CUTS)).enumerate() {
@@ -1146,7 +1140,7 @@ impl Flat {
             point.v2 -= moved(1);
             point.v = point.v1 - point.v2;
         }
-        contact_patch::width(&points, n, self.tolerance, size)
+        contact_patch::width(&points, &at.p, n, self.tolerance, size)
     }
 
     /// The mean of obj1's points, below the origin along `n`.

@@ -5,12 +5,15 @@
 
 use super::curvature::Symmetric;
 use super::discs::Disc;
+use super::model::basis;
 use super::trust_region::ASIDE;
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
+use crate::polygon::{Flat, dot, length, side};
 
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
 /// any other bits are harmless, since they only choose where to look first.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub struct Memory {
     /// The direction of the answer, or a guess of it.
     pub dir: Vec3,
@@ -153,6 +156,12 @@ impl Memory {
         }
     }
 
+    /// Does the search begin with curvature? Three active cuts are mostly exact ones.
+    #[inline]
+    pub fn is_curved(&self) -> bool {
+        self.count < 3 && matches!(self.smooth(), Smooth::Curved(_))
+    }
+
     /// The memory of the same objects in the other order, whose D is this one's mirror image
     /// in the origin: directions and gradients change sign, lengths and R stay.
     pub fn flip(&mut self) {
@@ -189,32 +198,38 @@ impl Memory {
         (self.towards_cuts(dir, angle), angle)
     }
 
-    /// A direction for each remembered cut, where it is above the other two by as much as it
+    /// A direction for each remembered cut, where it is above the others by as much as it
     /// can, this far aside.
     fn towards_cuts(&self, dir: &Vec3, angle: Real) -> Queue {
         let mut queue = Queue::EMPTY;
-        let count = (self.count as usize).min(self.slopes.len());
-        let at = |i: usize| self.slopes[(i % count).min(2)];
-        for i in 0..count {
-            let (g, h, k) = (at(i), at(i + 1), at(i + 2));
-            // Across the line on which the other two are equal, and, since a face may have a
-            // fourth vertex there, towards the vertex itself.
-            let side = if count == 3 {
-                let across = dir.cross(&(k - h));
-                let up = across.dot(&(g - h));
-                unit(&across)
-                    .zip(unit(&g))
-                    .map(|(a, g)| a * (1.0 as Real).copysign(up) + g)
-            } else {
-                Some(g - h)
-            };
-            let across = side.map(|s| s - dir * dir.dot(&s));
-            if let Some(n) = across
-                .and_then(|a| unit(&a))
-                .and_then(|s| unit(&(dir + s * angle)))
-            {
-                queue.push(n);
+        if self.count < 2 {
+            return queue;
+        }
+        let (e1, e2) = basis(dir);
+        let [a, b, c] = self.slopes.map(|g| [e1.dot(&g), e2.dot(&g)]);
+        // All as long.
+        let scale = 1.0 / (1.0 + angle * angle).sqrt();
+        let (centre, e1, e2) = (dir * scale, e1 * (angle * scale), e2 * (angle * scale));
+        let mut push = |side: Flat| {
+            let length2 = dot(&side, &side);
+            if length2 > Real::MIN_POSITIVE && length2 < Real::INFINITY {
+                let [x, y] = side.map(|x| x * (1.0 / length2.sqrt()));
+                queue.push(centre + e1 * x + e2 * y);
             }
+        };
+        if self.count == 2 {
+            push(side(&b, &a));
+            push(side(&a, &b));
+            return queue;
+        }
+        // Across the line on which the other two are equal, and, since a face may have a
+        // fourth vertex there, towards the vertex itself.
+        for (g, h, k) in [(&a, &b, &c), (&b, &c, &a), (&c, &a, &b)] {
+            let line = side(h, k);
+            let across = [-line[1], line[0]];
+            let sign = (1.0 as Real).copysign(dot(&across, &side(h, g)));
+            let share = length(&line) / length(g);
+            push([0, 1].map(|i| across[i] * sign + g[i] * share));
         }
         queue
     }

@@ -145,7 +145,13 @@ impl Witnesses {
             normal: dir,
             point1: self.point1,
             point2: self.point2,
-            width: contact_patch::width(&seen, &dir, tolerance, samples.size),
+            width: contact_patch::width(
+                &seen,
+                samples.point(samples.centre),
+                &dir,
+                tolerance,
+                samples.size,
+            ),
             iterations,
         }
     }
