@@ -199,31 +199,31 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     settings: &Settings,
     known: &mut Known,
 ) -> Result<Answer, Fault> {
-    let mut asked = Asked::default();
     let mut flat = Flat::new();
     let first = if EXACT {
         flat.recall(memory, start)
     } else {
         None
     };
-    if let Some((first, mut queue)) = first {
-        let centre = inner.copied().unwrap_or_default();
-        let first = Some(first);
-        let outcome = if flat.bends() {
-            flat.run::<true, A, B>(md, &centre, first, &mut queue, settings, known)
-        } else {
-            flat.run::<false, A, B>(md, &centre, first, &mut queue, settings, known)
-        };
-        match outcome? {
-            Outcome::Found(minimum) => {
-                flat.remember(&minimum, memory);
-                return Ok(Answer::Hit(minimum.hit));
-            }
-            Outcome::Apart(n) => return Ok(Answer::Miss(n)),
-            Outcome::Open(open) => asked = open,
+    let Some((first, mut queue)) = first else {
+        return curved(md, inner, start, memory, settings, known, None);
+    };
+    let centre = inner.copied().unwrap_or_default();
+    let first = Some(first);
+    let outcome = if flat.bends() {
+        flat.run::<true, A, B>(md, &centre, first, &mut queue, settings, known)
+    } else {
+        flat.run::<false, A, B>(md, &centre, first, &mut queue, settings, known)
+    };
+    match &outcome {
+        Err(fault) => Err(*fault),
+        Ok(Outcome::Found(minimum)) => {
+            flat.remember(minimum, memory);
+            Ok(Answer::Hit(minimum.hit))
         }
+        Ok(Outcome::Apart(n)) => Ok(Answer::Miss(*n)),
+        Ok(Outcome::Open(asked)) => curved(md, inner, start, memory, settings, known, Some(asked)),
     }
-    curved(md, inner, start, memory, settings, known, &asked)
 }
 
 /// The search with curvature, from where the one by exact cuts ended.
@@ -235,18 +235,19 @@ fn curved<A: SupportMap, B: SupportMap>(
     memory: &mut Memory,
     settings: &Settings,
     known: &mut Known,
-    asked: &Asked,
+    asked: Option<&Asked>,
 ) -> Result<Answer, Fault> {
+    let dropped = asked.map_or(0, |asked| asked.dropped);
     let rest = Settings {
-        max_iterations: settings.max_iterations.saturating_sub(asked.dropped),
+        max_iterations: settings.max_iterations.saturating_sub(dropped),
         ..*settings
     };
     let mut search = Search::new(inner, &rest, known);
-    let first = search.resume(asked.samples(), asked.trust);
+    let first = asked.and_then(|asked| search.resume(asked.samples(), asked.trust));
     let first = first.unwrap_or_else(|| search.recall(memory, start));
     let mut answer = search.run(md, first, memory)?;
     if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
-        hit.iterations += asked.dropped;
+        hit.iterations += dropped;
     }
     Ok(answer)
 }
