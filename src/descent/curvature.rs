@@ -13,7 +13,7 @@ pub const CLOSE: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-10 };
 /// Relative residual of a pair that is parallel, a ball's. Measured: ×2, ÷2 nothing; 1e-9
 /// +0.1 %, +3 %.
 pub const BALL: Real = if EPSILON > 1e-10 { 3e-5 } else { 1e-6 };
-/// Relative error of R up to which it foretells the witness points of one active cut, and up
+/// Relative error of R up to which it leads to the witness points of one active cut, and up
 /// to which the first pair that confirms a remembered R confirms all of it. Measured: ×2 −0.1 %,
 /// 3 more; ÷2 +0.1 %, +3 % (ellipsoids), 25 fewer.
 pub const FORETOLD: Real = 0.1;
@@ -124,12 +124,10 @@ pub struct Curvature {
     pub known: bool,
     /// Relative error, by the last smooth pair.
     pub error: Real,
-    /// How much of it is obj1's, …
-    pub share: Real,
-    /// … and how far off that was for a pair's own points, in parts of the lesser share.
-    pub uneven: Real,
-    /// The direction of the first smooth pair; zero before it.
-    pub line: Vec3,
+    /// How far the points of the last smooth pair are apart: those of D, and obj1's.
+    apart: [Vec3; 2],
+    /// The direction of the first smooth pair.
+    pub line: Option<Vec3>,
     /// Measured along a second direction too.
     pub spread: bool,
     /// Every smooth pair so far was exactly parallel: a ball, which is part of every
@@ -162,9 +160,8 @@ impl Curvature {
             r: Symmetric::default(),
             known: false,
             error: 1.0,
-            share: 0.5,
-            uneven: 0.0,
-            line: Vec3::zeros(),
+            apart: [Vec3::zeros(); 2],
+            line: None,
             spread: false,
             round: true,
             flat: false,
@@ -181,7 +178,7 @@ impl Curvature {
     }
 
     /// R is no longer looked for.
-    #[inline]
+    #[cold]
     pub fn give_up(&mut self) {
         self.given_up = true;
         self.known = false;
@@ -220,6 +217,20 @@ impl Curvature {
         } else {
             self.error.max(samples.error[i])
         }
+    }
+
+    /// How much of R is obj1's, by the last smooth pair, and whether each object's points moved more
+    /// along D's than aside; half where no pair has told.
+    pub fn share(&self) -> (Real, bool) {
+        let [ds, ds1] = &self.apart;
+        let ds2 = ds.norm_squared();
+        if !(ds2 > 0.0) {
+            return (0.5, true);
+        }
+        let share = (ds1.dot(ds) / ds2).clamp(0.0, 1.0);
+        let lesser = share.min(1.0 - share) + BALL;
+        let aside = ds1 - ds * share;
+        (share, aside.norm_squared() <= lesser * lesser * ds2)
     }
 
     /// Learns from a new sample, not yet kept. Returns the nearest sample that makes a smooth
@@ -309,11 +320,13 @@ impl Curvature {
         let (ds, ds1) = (new.p.v - other.v, new.p.v1 - other.v1);
         let ds2 = ds.norm_squared();
         // The first pair that confirms a remembered R confirms all of it.
-        let remembered = self.known && self.line == Vec3::zeros();
-        if self.line == Vec3::zeros() {
-            self.line = dn;
-        } else if self.line.cross(&dn).norm_squared() > SPREAD * dn2 * self.line.norm_squared() {
-            self.spread = true;
+        let remembered = self.known && self.line.is_none();
+        match &self.line {
+            None => self.line = Some(dn),
+            Some(line) => {
+                self.spread = self.spread
+                    || line.cross(&dn).norm_squared() > SPREAD * dn2 * line.norm_squared();
+            }
         }
         if ds2 <= samples.rounding * samples.rounding {
             self.flatten(&dn);
@@ -321,10 +334,7 @@ impl Curvature {
         }
         let bend = ds.dot(&dn);
         let slope = bend / dn2;
-        self.share = (ds1.dot(&dn) / bend).clamp(0.0, 1.0);
-        let lesser = self.share.min(1.0 - self.share) + BALL;
-        let uneven = (ds1 - ds * self.share).norm_squared() / ds2;
-        self.uneven = self.uneven.max(uneven.sqrt() / lesser);
+        self.apart = [ds, ds1];
         let measured = self.known;
         if !measured {
             self.known = true;
@@ -382,21 +392,6 @@ impl Curvature {
             self.r.add(-across, w);
             self.r.add(-across - along * across * across, dn);
         }
-    }
-
-    /// Is sample `i` the same vertex of P as the new one, within R, and farther from `dir`, the
-    /// bundle's centre? Then it tells nothing more.
-    #[inline]
-    pub fn outdates(&self, samples: &Samples, i: usize, new: &Sample, dir: &Vec3) -> bool {
-        let old = samples.n.get(i);
-        let mut residual = new.p.v - samples.v.get(i);
-        let mut small = samples.rounding * samples.rounding;
-        if self.known {
-            let rd = self.r.times(&(new.n - old));
-            small += ALIKE * ALIKE * rd.norm_squared().min(residual.norm_squared());
-            residual -= rd;
-        }
-        residual.norm_squared() <= small && old.dot(dir) <= new.n.dot(dir)
     }
 }
 

@@ -12,13 +12,13 @@ use super::model::{Model, Step};
 use super::samples::{CUTS, Sample, Samples};
 use super::trust_region::{self, ASIDE, TrustRegion};
 use super::verdict::{Next, Verdict, judge};
-use super::witness::{self, Witnesses};
+use super::witness::Witnesses;
 use crate::contact::{Answer, Settings};
 use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 
-/// Support points asked to see witness points that are only foretold: as many as are kept.
-/// Without any there are 27 more.
+/// Support points asked to see witness points that only R leads to: as many as are kept. Derived:
+/// each makes one point the objects' own. Without any there are 11 more.
 pub const WITNESS_QUERIES: usize = CUTS;
 /// Support points after which curvature is given up. Measured: ×2 no change, +2 %; ÷2 no change,
 /// +1.4 %; never +44 % on touches of random pairs.
@@ -129,6 +129,9 @@ impl<'a> Search<'a> {
     #[inline]
     pub fn take(&mut self, new: &Sample) -> Option<usize> {
         self.iterations += 1;
+        if self.iterations == TRUST_CURVATURE {
+            self.curvature.give_up();
+        }
         self.measure(new);
         let twin = if self.samples.len == 0 {
             self.curvature.forget_unless_fits(self.samples.size);
@@ -148,26 +151,23 @@ impl<'a> Search<'a> {
         if let Some(n) = self.planned() {
             return ControlFlow::Continue(n);
         }
-        let (model, step, next) = loop {
+        loop {
             let model = Model::new(&self.samples, &self.curvature);
             let step = model.minimise(newest, self.trust.radius, self.samples.rounding);
-            match self.judge(&model, &step) {
-                Verdict::Ask(next) => break (model, step, next),
-                Verdict::End(minimum) => {
-                    if let Some(query) = self.end(&model, &step, minimum, memory)? {
-                        break (model, step, query);
-                    }
-                    // R has led astray: on from here by exact cuts, and what the next pairs
-                    // tell.
-                    self.curvature.known = false;
+            let next = match self.judge(&model, &step) {
+                Verdict::Ask(next) => Some(next),
+                Verdict::End(minimum) => self.end(&model, &step, minimum, memory)?,
+            };
+            if let Some(next) = next {
+                let n = self.turn(&model, &step, &next);
+                if self.samples.len == CUTS {
+                    self.make_room(newest, &model, &step);
                 }
+                return ControlFlow::Continue(n);
             }
-        };
-        let n = self.turn(&model, &step, &next);
-        if self.samples.len == CUTS {
-            self.make_room(newest, &model, &step);
+            // R has led astray: on from here by exact cuts, and what the next pairs tell.
+            self.curvature.known = false;
         }
-        ControlFlow::Continue(n)
     }
 
     /// The sample along n; `None` where it separates the objects.
@@ -223,9 +223,6 @@ impl<'a> Search<'a> {
         if let Some(twin) = twin {
             self.samples.error[twin] = self.curvature.error;
         }
-        if self.iterations >= TRUST_CURVATURE {
-            self.curvature.give_up();
-        }
         Some(twin)
     }
 
@@ -244,7 +241,8 @@ impl<'a> Search<'a> {
         let dir = if serious { new.n } else { samples.dir() };
         let centre = samples.centre;
         let free = |i: &usize| serious || *i != centre;
-        let outdated = |i: &usize| self.curvature.outdates(samples, *i, new, &dir);
+        // The same vertex within R, and farther off: it tells nothing more.
+        let outdated = |i: &usize| samples.n.get(*i).dot(&dir) <= new.n.dot(&dir);
         let error = twin.map_or(1.0, |_| self.curvature.error);
         let place = self.probed.filter(free);
         let place = place.or_else(|| twin.filter(free).filter(outdated));
@@ -316,12 +314,12 @@ impl<'a> Search<'a> {
         // tolerance (twice the root of tolerance · size; measured: ×2 nothing, ÷2 +0.2 %) are not
         // witnesses of one.
         let size = samples.size.max(samples.depth());
-        let apart2 = witnesses.across * witnesses.across;
+        let apart2 = witnesses.apart2();
         let met = samples.touch() || minimum && apart2 <= 4.0 * self.tolerance * size;
         let enough = samples.touch() || self.last() || self.witness_queries == 0;
-        if met && !enough && !witnesses.believed(samples, curvature, step, fine) {
+        if met && !enough && !witnesses.believed {
             self.witness_queries -= 1;
-            return ControlFlow::Continue(Some(witness::query(samples, model, step, fine)));
+            return ControlFlow::Continue(Some(witnesses.query(samples, model, fine)));
         }
         if !met && !self.last() && curvature.known {
             return ControlFlow::Continue(None);
@@ -332,7 +330,7 @@ impl<'a> Search<'a> {
             false => Smooth::Unknown,
         };
         memory.keep(&model.b, &step.set.map(gradient), step.count, smooth);
-        let answer = witnesses.answer(samples, fine, self.iterations);
+        let answer = witnesses.answer(samples, model, fine, self.iterations);
         self.samples.lead();
         ControlFlow::Break(if met {
             Answer::Hit(answer)
@@ -357,8 +355,9 @@ impl<'a> Search<'a> {
             }
             Next::Across => {
                 let line = &self.curvature.line;
-                let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
-                self.curvature.spread = *line != Vec3::zeros();
+                let across = line.and_then(|line| unit(&line.cross(&model.b)));
+                let across = across.unwrap_or(model.e1);
+                self.curvature.spread = line.is_some();
                 let slope = self.samples.v.get(self.samples.centre).dot(&across);
                 d += across * ASIDE.copysign(-slope);
             }
