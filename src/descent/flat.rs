@@ -694,20 +694,21 @@ impl Flat {
     #[inline(always)]
     fn see<const BENT: bool>(&mut self, new: &Sample) -> u32 {
         let same = self.same::<BENT>();
+        let kept = &self.samples[..self.cuts.len.min(CUTS)];
         let mut seen = 0;
-        for i in 0..self.cuts.len.min(CUTS) {
-            let old = &self.samples[i];
-            let dn = new.n - old.n;
-            for (o, d) in moves(old, new).into_iter().enumerate() {
-                let radius = self.radius[o];
-                if shows(radius, &(dn * radius), &d, same) {
-                    self.seen[o] |= 1 << i;
-                    seen |= 1 << o;
+        if self.rho() > 0.0 {
+            for (i, old) in kept.iter().enumerate() {
+                let dn = new.n - old.n;
+                for (o, d) in moves(old, new).into_iter().enumerate() {
+                    let radius = self.radius[o];
+                    if shows(radius, &(dn * radius), &d, same) {
+                        self.seen[o] |= 1 << i;
+                        seen |= 1 << o;
+                    }
                 }
             }
         }
         if let (true, Some(discs)) = (BENT, &mut self.discs) {
-            let kept = &self.samples[..self.cuts.len.min(CUTS)];
             seen |= discs.see(new, kept, &mut self.seen, same, self.asked);
         }
         seen
