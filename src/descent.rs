@@ -123,14 +123,14 @@
 //! has led astray there, is forgotten, and the search goes on by exact cuts; where these
 //! do not meet either, it is a limit too.
 //!
-//! *Witness points* are means of the objects' own points, hence inside them, where the
-//! points seen have a mean that lies low enough and below the origin. Otherwise they are
-//! where R takes the points of the active cuts, which is believed of balls, and of one
-//! active cut whose curvature the objects share evenly; of anything else (a cylinder's rim
-//! moves along the rim alone) up to [`WITNESS_QUERIES`] more support points are asked, at the
-//! minimum, beside it or, of a face that ties, aside towards the point below the origin,
-//! until own points serve: a third of a support point on cylinders and cones, an eighth on
-//! ellipsoids.
+//! *Witness points* are a point of the hull of the samples, so a mean of the objects' own
+//! points and inside them: the nearest to the point of the support plane below the origin, as the
+//! distance algorithm has it. Where that is not near enough, the samples' points count that R
+//! leads to. These are believed of balls, and of one active cut that both objects bend; for
+//! anything else (a cylinder's rim moves along the rim alone) up to [`WITNESS_QUERIES`] more support
+//! points are asked, beside the minimum or, of a face that ties, aside the way that is left, until
+//! own points serve: a tenth of a support point on ellipsoids. Without what R leads to, and with
+//! it for balls alone, it is three tenths, and in motion 0.8 more.
 //!
 //! Balls and discs choose where to ask, and prove nothing: an answer stands on vertices that
 //! were seen with them along two directions, or so near that the cut is right without.

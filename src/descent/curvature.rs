@@ -13,7 +13,7 @@ pub const CLOSE: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-10 };
 /// Relative residual of a pair that is parallel, a ball's. Measured: ×2, ÷2 nothing; 1e-9
 /// +0.1 %, +3 %.
 pub const BALL: Real = if EPSILON > 1e-10 { 3e-5 } else { 1e-6 };
-/// Relative error of R up to which it foretells the witness points of one active cut, and up
+/// Relative error of R up to which it leads to the witness points of one active cut, and up
 /// to which the first pair that confirms a remembered R confirms all of it. Measured: ×2 −0.1 %,
 /// 3 more; ÷2 +0.1 %, +3 % (ellipsoids), 25 fewer.
 pub const FORETOLD: Real = 0.1;
@@ -126,8 +126,8 @@ pub struct Curvature {
     pub error: Real,
     /// How much of it is obj1's, …
     pub share: Real,
-    /// … and how far off that was for a pair's own points, in parts of the lesser share.
-    pub uneven: Real,
+    /// … and whether each object's points moved more along D's than aside, in every pair.
+    pub even: bool,
     /// The direction of the first smooth pair; zero before it.
     pub line: Vec3,
     /// Measured along a second direction too.
@@ -163,7 +163,7 @@ impl Curvature {
             known: false,
             error: 1.0,
             share: 0.5,
-            uneven: 0.0,
+            even: true,
             line: Vec3::zeros(),
             spread: false,
             round: true,
@@ -323,8 +323,8 @@ impl Curvature {
         let slope = bend / dn2;
         self.share = (ds1.dot(&dn) / bend).clamp(0.0, 1.0);
         let lesser = self.share.min(1.0 - self.share) + BALL;
-        let uneven = (ds1 - ds * self.share).norm_squared() / ds2;
-        self.uneven = self.uneven.max(uneven.sqrt() / lesser);
+        let aside = ds1 - ds * self.share;
+        self.even &= aside.norm_squared() <= lesser * lesser * ds2;
         let measured = self.known;
         if !measured {
             self.known = true;

@@ -24,8 +24,12 @@ pub struct Model {
     /// β.
     pub x: Lanes,
     pub y: Lanes,
-    /// How far R lifts each cut at x = 0, metres.
+    /// The cuts without R: the heights of the support points along b, metres.
+    pub level: Lanes,
+    /// How far R lifts each cut at x = 0, metres, …
     pub lift: Lanes,
+    /// … and how far it moves the support point across b, metres.
+    pub turned: [Lanes; 2],
     len: usize,
     centre: usize,
 }
@@ -80,33 +84,14 @@ impl Step {
         self.x * self.x + self.y * self.y
     }
 
-    /// Weights of the active cuts whose gradients (x, y) balance, or come nearest to it.
-    pub fn weights(&self, x: &Lanes, y: &Lanes) -> [Real; 3] {
-        let [g, h, k] = self.set.map(|i| (x[i], y[i]));
-        let cross = |a: (Real, Real), b: (Real, Real)| a.0 * b.1 - a.1 * b.0;
-        match self.count {
-            3 => {
-                let w = [cross(h, k), cross(k, g), cross(g, h)];
-                let sum = w[0] + w[1] + w[2];
-                // max drops NaN
-                let w = w.map(|w| (w / sum).max(0.0));
-                let sum = w[0] + w[1] + w[2];
-                // Infinite where gradients on one line add up to no area.
-                if sum > 0.0 && sum < Real::INFINITY {
-                    w.map(|w| w / sum)
-                } else {
-                    [1.0, 0.0, 0.0]
-                }
-            }
-            2 => {
-                let d = (h.0 - g.0, h.1 - g.1);
-                let t = -(g.0 * d.0 + g.1 * d.1) / (d.0 * d.0 + d.1 * d.1);
-                // NaN becomes 0
-                let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
-                [1.0 - t, t, 0.0]
-            }
-            _ => [1.0, 0.0, 0.0],
-        }
+    /// Weights of one or two active cuts whose gradients (x, y) come nearest to balance.
+    pub fn weights(&self, x: &Lanes, y: &Lanes) -> [Real; 2] {
+        let [g, h, _] = self.set.map(|i| (x[i], y[i]));
+        let d = (h.0 - g.0, h.1 - g.1);
+        let t = -(g.0 * d.0 + g.1 * d.1) / (d.0 * d.0 + d.1 * d.1);
+        // NaN, of one cut, becomes 0.
+        let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
+        [1.0 - t, t]
     }
 }
 
@@ -145,19 +130,21 @@ impl Model {
             a: level - Lanes::all(rho),
             x: samples.v.dot(&e1),
             y: samples.v.dot(&e2),
+            level,
             lift: Lanes::default(),
+            turned: [Lanes::default(); 2],
             len: samples.len,
             centre: samples.centre,
         };
         if rho > 0.0 && curvature.error <= BELIEVED {
-            model.curve_cuts(samples, &level);
+            model.curve_cuts(samples);
         }
         model
     }
 
-    /// Makes cuts curved, those that R can be believed of; `level`: their values at x = 0.
+    /// Makes cuts curved, those that R can be believed of.
     #[inline]
-    fn curve_cuts(&mut self, samples: &Samples, level: &Lanes) {
+    fn curve_cuts(&mut self, samples: &Samples) {
         let Self { rho, axx, axy, .. } = *self;
         let h = samples.depth();
         let z = samples.n.dot(&self.b);
@@ -165,19 +152,21 @@ impl Model {
         let (x, y) = (tx / z, ty / z);
         let (ax, ay) = (x * axx + y * axy, x * axy - y * axx);
         let lift = (Lanes::all(1.0) - z) * rho + (ax * x + ay * y) * 0.5;
-        let behind = Lanes::all(h) - *level;
+        let behind = Lanes::all(h) - self.level;
         let ahead = samples.h - samples.n.dot(&samples.v.get(self.centre));
         let unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
         for i in 0..CUTS {
             // A smooth pair is one piece, which b itself represents; a lift above
             // h(b) is refuted. Both stay exact cuts.
             if i != self.centre && lift[i] >= 0.0 && lift[i] <= behind[i] && unlike[i] > 0.0 {
-                self.a[i] += lift[i];
-                self.x[i] -= rho * tx[i] + ax[i];
-                self.y[i] -= rho * ty[i] + ay[i];
                 self.lift[i] = lift[i];
+                self.turned[0][i] = -(rho * tx[i] + ax[i]);
+                self.turned[1][i] = -(rho * ty[i] + ay[i]);
             }
         }
+        self.a = self.a + self.lift;
+        self.x = self.x + self.turned[0];
+        self.y = self.y + self.turned[1];
     }
 
     /// Least model value within the trust radius: the lowest of the points where one cut has
@@ -297,19 +286,19 @@ impl Model {
         }
     }
 
-    /// How far R raises cut `i`, of the support point v, at (x, y).
+    /// How far R raises cut `i` at (x, y).
     #[inline]
-    pub fn raise(&self, i: usize, v: &Vec3, x: Real, y: Real) -> Real {
-        let turned = (self.x[i] - v.dot(&self.e1)) * x + (self.y[i] - v.dot(&self.e2)) * y;
-        let bent = 0.5 * (self.rho + self.axx) * x * x + 0.5 * (self.rho - self.axx) * y * y;
-        self.lift[i] + turned + bent + self.axy * x * y
+    pub fn raise(&self, i: usize, x: Real, y: Real) -> Real {
+        let turned = self.turned[0][i] * x + self.turned[1][i] * y;
+        self.lift[i] + turned + 0.5 * self.curvature_along(x, y)
     }
 
-    /// How far across b R moves the support point v of cut `i` on the way to (x, y).
-    pub fn moved(&self, i: usize, v: &Vec3, x: Real, y: Real) -> (Real, Real) {
+    /// How far R moves a support point across b on the way to (x, y), as seen from the point below
+    /// the origin.
+    pub fn pull(&self, x: Real, y: Real) -> (Real, Real) {
         (
-            self.x[i] - v.dot(&self.e1) + (self.rho + self.axx) * x + self.axy * y,
-            self.y[i] - v.dot(&self.e2) + self.axy * x + (self.rho - self.axx) * y,
+            (self.axx - self.core) * x + self.axy * y,
+            self.axy * x - (self.axx + self.core) * y,
         )
     }
 

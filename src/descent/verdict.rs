@@ -60,7 +60,7 @@ impl Errors {
             for i in step.active() {
                 let error = curvature.error_of(samples, i);
                 if i != samples.centre {
-                    let raise = model.raise(i, &samples.v.get(i), step.x, step.y);
+                    let raise = model.raise(i, step.x, step.y);
                     errors.open = errors.open.max(raise * error);
                 }
                 if model.lift[i] * error > errors.cut {
