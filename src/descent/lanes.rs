@@ -29,6 +29,12 @@ impl Lanes {
         Self([a; CUTS])
     }
 
+    /// A number for each sample's index.
+    #[inline(always)]
+    pub fn from_fn(f: impl FnMut(usize) -> Real) -> Self {
+        Self(from_fn(f))
+    }
+
     /// A lane-by-lane function.
     #[inline(always)]
     pub fn map(self, f: impl FnMut(Real) -> Real) -> Self {

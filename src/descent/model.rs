@@ -4,7 +4,7 @@
 //! The model of the depth around the bundle's centre, and its minimum within the trust radius.
 
 use super::curvature::{ALIKE, BELIEVED, Curvature};
-use super::samples::{CUTS, Lanes, OTHERS, Samples, lane};
+use super::samples::{Lanes, OTHERS, Samples, lane};
 use crate::math::{Real, Vec3};
 
 /// The chart around the bundle's centre and the cuts α + β·x in it.
@@ -143,7 +143,7 @@ impl Model {
     }
 
     /// Makes cuts curved, those that R can be believed of.
-    #[inline]
+    #[inline(always)]
     fn curve_cuts(&mut self, samples: &Samples) {
         let Self { rho, axx, axy, .. } = *self;
         let h = samples.depth();
@@ -154,16 +154,14 @@ impl Model {
         let lift = (Lanes::all(1.0) - z) * rho + (ax * x + ay * y) * 0.5;
         let behind = Lanes::all(h) - self.level;
         let ahead = samples.h - samples.n.dot(&samples.v.get(self.centre));
-        let unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
-        for i in 0..CUTS {
-            // A smooth pair is one piece, which b itself represents; a lift above
-            // h(b) is refuted. Both stay exact cuts.
-            if i != self.centre && lift[i] >= 0.0 && lift[i] <= behind[i] && unlike[i] > 0.0 {
-                self.lift[i] = lift[i];
-                self.turned[0][i] = -(rho * tx[i] + ax[i]);
-                self.turned[1][i] = -(rho * ty[i] + ay[i]);
-            }
-        }
+        let mut unlike = (ahead - behind).map(Real::abs) - (ahead + behind) * ALIKE;
+        unlike[self.centre] = 0.0;
+        // A smooth pair is one piece, which b itself represents; a lift above
+        // h(b) is refuted. Both stay exact cuts.
+        let curves = |i: usize| (lift[i] >= 0.0) & (lift[i] <= behind[i]) & (unlike[i] > 0.0);
+        let curved = |l: Lanes| Lanes::from_fn(|i| if curves(i) { l[i] } else { 0.0 });
+        self.lift = curved(lift);
+        self.turned = [curved(tx * -rho - ax), curved(ty * -rho - ay)];
         self.a = self.a + self.lift;
         self.x = self.x + self.turned[0];
         self.y = self.y + self.turned[1];
@@ -317,6 +315,7 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::super::curvature::Symmetric;
+    use super::super::samples::CUTS;
     use super::super::samples::tests::{around, samples};
     use super::*;
     use crate::math::EPSILON;

@@ -148,26 +148,23 @@ impl<'a> Search<'a> {
         if let Some(n) = self.planned() {
             return ControlFlow::Continue(n);
         }
-        let (model, step, next) = loop {
+        loop {
             let model = Model::new(&self.samples, &self.curvature);
             let step = model.minimise(newest, self.trust.radius, self.samples.rounding);
-            match self.judge(&model, &step) {
-                Verdict::Ask(next) => break (model, step, next),
-                Verdict::End(minimum) => {
-                    if let Some(query) = self.end(&model, &step, minimum, memory)? {
-                        break (model, step, query);
-                    }
-                    // R has led astray: on from here by exact cuts, and what the next pairs
-                    // tell.
-                    self.curvature.known = false;
+            let next = match self.judge(&model, &step) {
+                Verdict::Ask(next) => Some(next),
+                Verdict::End(minimum) => self.end(&model, &step, minimum, memory)?,
+            };
+            if let Some(next) = next {
+                let n = self.turn(&model, &step, &next);
+                if self.samples.len == CUTS {
+                    self.make_room(newest, &model, &step);
                 }
+                return ControlFlow::Continue(n);
             }
-        };
-        let n = self.turn(&model, &step, &next);
-        if self.samples.len == CUTS {
-            self.make_room(newest, &model, &step);
+            // R has led astray: on from here by exact cuts, and what the next pairs tell.
+            self.curvature.known = false;
         }
-        ControlFlow::Continue(n)
     }
 
     /// The sample along n; `None` where it separates the objects.
