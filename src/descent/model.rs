@@ -180,8 +180,8 @@ impl Model {
             count: 1,
             inside: false,
         };
-        self.pivot(self.centre, radius, rounding, &mut step);
-        if newest != self.centre {
+        let found = self.pivot(self.centre, radius, rounding, &mut step);
+        if !found && newest != self.centre {
             self.pivot(newest, radius, rounding, &mut step);
         }
         // The model's own value of the depth there, exact for P and for balls.
@@ -202,9 +202,10 @@ impl Model {
         }
     }
 
-    /// The candidates of [`Self::minimise`] with cut `p`.
+    /// The candidates of [`Self::minimise`] with cut `p`. True where one of them is the minimum:
+    /// that of a cut whose own is within the trust radius, and below no other cut.
     #[inline]
-    fn pivot(&self, p: usize, radius: Real, rounding: Real, step: &mut Step) {
+    fn pivot(&self, p: usize, radius: Real, rounding: Real, step: &mut Step) -> bool {
         let c = self.cut(p);
         let (kxx, kxy, kyy) = (self.axx - self.core, self.axy, -self.axx - self.core);
         let radius2 = radius * radius;
@@ -218,11 +219,11 @@ impl Model {
         ];
         let mut offer = |x: Real, y: Real, i: usize, j: usize, count: usize, inside: bool| {
             let value = c.at(x, y) + 0.5 * (kxx * x * x + kyy * y * y) + kxy * x * y;
-            if value < step.value
+            let lowest = value < step.value
                 && above[0].at(x, y) >= -rounding
                 && above[1].at(x, y) >= -rounding
-                && above[2].at(x, y) >= -rounding
-            {
+                && above[2].at(x, y) >= -rounding;
+            if lowest {
                 *step = Step {
                     x,
                     y,
@@ -232,6 +233,7 @@ impl Model {
                     inside,
                 };
             }
+            lowest
         };
         let (mut x, mut y) = (-c.x, -c.y);
         let mut inside = false;
@@ -251,7 +253,9 @@ impl Model {
                 (radius, 0.0)
             };
         }
-        offer(x, y, p, p, 1, inside);
+        if offer(x, y, p, p, 1, inside) && inside {
+            return true;
+        }
         for k in 0..len.min(3) {
             let (d, i) = (&above[k], others[k]);
             // On the line d = 0, from its point nearest to x = 0.
@@ -282,6 +286,7 @@ impl Model {
                 }
             }
         }
+        false
     }
 
     /// How far R raises cut `i` at (x, y).
