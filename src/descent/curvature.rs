@@ -181,7 +181,7 @@ impl Curvature {
     }
 
     /// R is no longer looked for.
-    #[inline]
+    #[cold]
     pub fn give_up(&mut self) {
         self.given_up = true;
         self.known = false;
@@ -312,7 +312,9 @@ impl Curvature {
         let remembered = self.known && self.line == Vec3::zeros();
         if self.line == Vec3::zeros() {
             self.line = dn;
-        } else if self.line.cross(&dn).norm_squared() > SPREAD * dn2 * self.line.norm_squared() {
+        } else if !self.spread
+            && self.line.cross(&dn).norm_squared() > SPREAD * dn2 * self.line.norm_squared()
+        {
             self.spread = true;
         }
         if ds2 <= samples.rounding * samples.rounding {
@@ -382,21 +384,6 @@ impl Curvature {
             self.r.add(-across, w);
             self.r.add(-across - along * across * across, dn);
         }
-    }
-
-    /// Is sample `i` the same vertex of P as the new one, within R, and farther from `dir`, the
-    /// bundle's centre? Then it tells nothing more.
-    #[inline]
-    pub fn outdates(&self, samples: &Samples, i: usize, new: &Sample, dir: &Vec3) -> bool {
-        let old = samples.n.get(i);
-        let mut residual = new.p.v - samples.v.get(i);
-        let mut small = samples.rounding * samples.rounding;
-        if self.known {
-            let rd = self.r.times(&(new.n - old));
-            small += ALIKE * ALIKE * rd.norm_squared().min(residual.norm_squared());
-            residual -= rd;
-        }
-        residual.norm_squared() <= small && old.dot(dir) <= new.n.dot(dir)
     }
 }
 

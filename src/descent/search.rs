@@ -129,6 +129,9 @@ impl<'a> Search<'a> {
     #[inline]
     pub fn take(&mut self, new: &Sample) -> Option<usize> {
         self.iterations += 1;
+        if self.iterations == TRUST_CURVATURE {
+            self.curvature.give_up();
+        }
         self.measure(new);
         let twin = if self.samples.len == 0 {
             self.curvature.forget_unless_fits(self.samples.size);
@@ -220,9 +223,6 @@ impl<'a> Search<'a> {
         if let Some(twin) = twin {
             self.samples.error[twin] = self.curvature.error;
         }
-        if self.iterations >= TRUST_CURVATURE {
-            self.curvature.give_up();
-        }
         Some(twin)
     }
 
@@ -241,7 +241,8 @@ impl<'a> Search<'a> {
         let dir = if serious { new.n } else { samples.dir() };
         let centre = samples.centre;
         let free = |i: &usize| serious || *i != centre;
-        let outdated = |i: &usize| self.curvature.outdates(samples, *i, new, &dir);
+        // The same vertex within R, and farther off: it tells nothing more.
+        let outdated = |i: &usize| samples.n.get(*i).dot(&dir) <= new.n.dot(&dir);
         let error = twin.map_or(1.0, |_| self.curvature.error);
         let place = self.probed.filter(free);
         let place = place.or_else(|| twin.filter(free).filter(outdated));
