@@ -124,10 +124,8 @@ pub struct Curvature {
     pub known: bool,
     /// Relative error, by the last smooth pair.
     pub error: Real,
-    /// How much of it is obj1's, …
-    pub share: Real,
-    /// … and whether each object's points moved more along D's than aside, in every pair.
-    pub even: bool,
+    /// How far the points of the last smooth pair are apart: those of D, and obj1's.
+    apart: [Vec3; 2],
     /// The direction of the first smooth pair; zero before it.
     pub line: Vec3,
     /// Measured along a second direction too.
@@ -162,8 +160,7 @@ impl Curvature {
             r: Symmetric::default(),
             known: false,
             error: 1.0,
-            share: 0.5,
-            even: true,
+            apart: [Vec3::zeros(); 2],
             line: Vec3::zeros(),
             spread: false,
             round: true,
@@ -220,6 +217,20 @@ impl Curvature {
         } else {
             self.error.max(samples.error[i])
         }
+    }
+
+    /// How much of R is obj1's, by the last smooth pair, and whether each object's points moved more
+    /// along D's than aside; half where no pair has told.
+    pub fn share(&self) -> (Real, bool) {
+        let [ds, ds1] = &self.apart;
+        let ds2 = ds.norm_squared();
+        if !(ds2 > 0.0) {
+            return (0.5, true);
+        }
+        let share = (ds1.dot(ds) / ds2).clamp(0.0, 1.0);
+        let lesser = share.min(1.0 - share) + BALL;
+        let aside = ds1 - ds * share;
+        (share, aside.norm_squared() <= lesser * lesser * ds2)
     }
 
     /// Learns from a new sample, not yet kept. Returns the nearest sample that makes a smooth
@@ -323,10 +334,7 @@ impl Curvature {
         }
         let bend = ds.dot(&dn);
         let slope = bend / dn2;
-        self.share = (ds1.dot(&dn) / bend).clamp(0.0, 1.0);
-        let lesser = self.share.min(1.0 - self.share) + BALL;
-        let aside = ds1 - ds * self.share;
-        self.even &= aside.norm_squared() <= lesser * lesser * ds2;
+        self.apart = [ds, ds1];
         let measured = self.known;
         if !measured {
             self.known = true;

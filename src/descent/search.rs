@@ -330,7 +330,7 @@ impl<'a> Search<'a> {
             false => Smooth::Unknown,
         };
         memory.keep(&model.b, &step.set.map(gradient), step.count, smooth);
-        let answer = witnesses.answer(samples, curvature, model, fine, self.iterations);
+        let answer = witnesses.answer(samples, model, fine, self.iterations);
         self.samples.lead();
         ControlFlow::Break(if met {
             Answer::Hit(answer)

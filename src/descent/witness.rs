@@ -25,6 +25,8 @@ pub struct Witnesses {
     weights: [Real; CUTS],
     /// How far R moves these across b, in the chart.
     moved: [Lanes; 2],
+    /// How much of that is obj1's part.
+    share: Real,
     /// The way across b that is left to the point below the origin, in the chart.
     gap: [Real; 2],
     /// Little enough is left.
@@ -54,9 +56,11 @@ impl Witnesses {
         let mut led = Self::nearest(samples, model, moved, model.lift, tolerance);
         // A ball's points are as good as seen, wherever they are; of other round objects one that
         // is a little aside, but not on an edge: that bends another way.
-        let little = step.count == 1 && curvature.even;
+        let (share, even) = curvature.share();
+        let little = step.count == 1 && even;
         let most = if little { FORETOLD } else { BALL };
         let error = |i: usize| led.weights[i] * curvature.error_of(samples, i);
+        led.share = share;
         led.believed = led.near && (0..samples.len).all(|i| error(i) <= most);
         led
     }
@@ -82,6 +86,7 @@ impl Witnesses {
         Self {
             weights,
             moved,
+            share: 0.5,
             gap: [-nearest.x, -nearest.y],
             near,
             believed: near,
@@ -98,7 +103,6 @@ impl Witnesses {
     pub fn answer(
         &self,
         samples: &Samples,
-        curvature: &Curvature,
         model: &Model,
         tolerance: Real,
         iterations: u64,
@@ -114,8 +118,8 @@ impl Witnesses {
             (point1, point2) = (centre.v1, centre.v2);
         } else if x != 0.0 || y != 0.0 {
             let moved = model.e1 * x + model.e2 * y;
-            point1 += moved * curvature.share;
-            point2 -= moved * (1.0 - curvature.share);
+            point1 += moved * self.share;
+            point2 -= moved * (1.0 - self.share);
             // Onto the support planes of both objects.
             point1 += dir * (centre.v1 - point1).dot(&dir);
             point2 += dir * (centre.v2 - point2).dot(&dir);
@@ -217,7 +221,7 @@ mod tests {
         let model = Model::new(&samples, curvature);
         let step = model.minimise(dirs.len() - 1, 0.1, samples.rounding);
         let witnesses = Witnesses::of(&samples, curvature, &model, &step, TOLERANCE);
-        let answer = witnesses.answer(&samples, curvature, &model, TOLERANCE, 1);
+        let answer = witnesses.answer(&samples, &model, TOLERANCE, 1);
         let next = witnesses.query(&samples, &model, TOLERANCE);
         (witnesses, answer, next)
     }
