@@ -126,8 +126,8 @@ pub struct Curvature {
     pub error: Real,
     /// How far the points of the last smooth pair are apart: those of D, and obj1's.
     apart: [Vec3; 2],
-    /// The direction of the first smooth pair; zero before it.
-    pub line: Vec3,
+    /// The direction of the first smooth pair.
+    pub line: Option<Vec3>,
     /// Measured along a second direction too.
     pub spread: bool,
     /// Every smooth pair so far was exactly parallel: a ball, which is part of every
@@ -161,7 +161,7 @@ impl Curvature {
             known: false,
             error: 1.0,
             apart: [Vec3::zeros(); 2],
-            line: Vec3::zeros(),
+            line: None,
             spread: false,
             round: true,
             flat: false,
@@ -320,13 +320,13 @@ impl Curvature {
         let (ds, ds1) = (new.p.v - other.v, new.p.v1 - other.v1);
         let ds2 = ds.norm_squared();
         // The first pair that confirms a remembered R confirms all of it.
-        let remembered = self.known && self.line == Vec3::zeros();
-        if self.line == Vec3::zeros() {
-            self.line = dn;
-        } else if !self.spread
-            && self.line.cross(&dn).norm_squared() > SPREAD * dn2 * self.line.norm_squared()
-        {
-            self.spread = true;
+        let remembered = self.known && self.line.is_none();
+        match &self.line {
+            None => self.line = Some(dn),
+            Some(line) => {
+                self.spread = self.spread
+                    || line.cross(&dn).norm_squared() > SPREAD * dn2 * line.norm_squared();
+            }
         }
         if ds2 <= samples.rounding * samples.rounding {
             self.flatten(&dn);

@@ -355,8 +355,9 @@ impl<'a> Search<'a> {
             }
             Next::Across => {
                 let line = &self.curvature.line;
-                let across = unit(&line.cross(&model.b)).unwrap_or(model.e1);
-                self.curvature.spread = *line != Vec3::zeros();
+                let across = line.and_then(|line| unit(&line.cross(&model.b)));
+                let across = across.unwrap_or(model.e1);
+                self.curvature.spread = line.is_some();
                 let slope = self.samples.v.get(self.samples.centre).dot(&across);
                 d += across * ASIDE.copysign(-slope);
             }

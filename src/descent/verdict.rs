@@ -7,7 +7,7 @@ use super::curvature::{CLOSE, Curvature};
 use super::model::{Model, Step};
 use super::samples::Samples;
 use super::trust_region::{self, TrustRegion};
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, larger};
 
 /// Where to ask next.
 pub enum Next {
@@ -28,54 +28,55 @@ pub enum Verdict {
     End(bool),
 }
 
-/// By how much the model may be in error, metres.
-struct Errors {
-    /// At the centre, of the active cut for which it is the largest, …
-    cut: Real,
-    /// … this one.
-    worst: usize,
-    /// What the same error of R leaves open where the model has its minimum: of the active
-    /// cuts, and along what they leave free.
-    open: Real,
+/// The active cut that R may be most in error of at the centre, and by how much, metres.
+#[inline]
+fn worst_cut(
+    samples: &Samples,
+    curvature: &Curvature,
+    model: &Model,
+    step: &Step,
+) -> (usize, Real) {
+    let mut worst = (samples.centre, 0.0);
+    // One alone is the model itself.
+    if model.rho == 0.0 || step.count == 1 {
+        return worst;
+    }
+    for i in step.active() {
+        let error = model.lift[i] * curvature.error_of(samples, i);
+        if error > worst.1 {
+            worst = (i, error);
+        }
+    }
+    worst
 }
 
-impl Errors {
-    #[inline]
-    fn of(
-        samples: &Samples,
-        curvature: &Curvature,
-        model: &Model,
-        step: &Step,
-        radius: Real,
-    ) -> Self {
-        let mut errors = Self {
-            cut: 0.0,
-            worst: samples.centre,
-            open: 0.0,
-        };
-        if model.rho == 0.0 {
-            return errors;
-        }
-        if step.count > 1 {
-            for i in step.active() {
-                let error = curvature.error_of(samples, i);
-                if i != samples.centre {
-                    let raise = model.raise(i, step.x, step.y);
-                    errors.open = errors.open.max(raise * error);
-                }
-                if model.lift[i] * error > errors.cut {
-                    errors.cut = model.lift[i] * error;
-                    errors.worst = i;
-                }
-            }
-        }
-        // So near to b another point would tell nothing.
-        if step.count < 3 && step.inside && step.length2() > CLOSE {
-            let free = free_direction_error(samples, curvature, model, step, radius);
-            errors.open = errors.open.max(free);
-        }
-        errors
+/// What errors of R leave open where the model has its minimum, metres: of the active cuts, and
+/// along what they leave free.
+#[inline]
+fn open_error(
+    samples: &Samples,
+    curvature: &Curvature,
+    model: &Model,
+    step: &Step,
+    radius: Real,
+) -> Real {
+    let mut open = 0.0;
+    if model.rho == 0.0 {
+        return open;
     }
+    if step.count > 1 {
+        for i in step.active().filter(|&i| i != samples.centre) {
+            let raise = model.raise(i, step.x, step.y);
+            open = larger(raise * curvature.error_of(samples, i), open);
+        }
+    }
+    // So near to b another point would tell nothing.
+    if step.count < 3 && step.inside && step.length2() > CLOSE {
+        open = open.max(free_direction_error(
+            samples, curvature, model, step, radius,
+        ));
+    }
+    open
 }
 
 /// How much deeper the minimum can be along what one or two active cuts leave free, if R
@@ -130,7 +131,8 @@ pub fn judge(
     tolerance: Real,
     last: bool,
 ) -> Verdict {
-    let errors = Errors::of(samples, curvature, model, step, trust.radius);
+    let (worst, error) = worst_cut(samples, curvature, model, step);
+    let open = || open_error(samples, curvature, model, step, trust.radius);
     let gain = samples.depth() - step.value;
     // Flat as far as the eye reaches: minima that form a curve or a surface.
     let level = trust.radius >= trust_region::FIRST && curvature.spread;
@@ -138,16 +140,16 @@ pub fn judge(
     // The minimum rests on R, which was measured in one direction.
     let blind = close && model.rho != 0.0 && step.count < 3 && !curvature.spread;
     let minimum = samples.touch()
-        || close && !blind && errors.cut <= tolerance && gain.abs() + errors.open <= tolerance;
+        || close && !blind && error <= tolerance && gain.abs() + open() <= tolerance;
     if minimum || last || !step.value.is_finite() || trust.is_stuck() {
         Verdict::End(minimum)
-    } else if step.inside && errors.cut > tolerance && 2.0 * errors.cut >= gain {
+    } else if step.inside && error > tolerance && 2.0 * error >= gain {
         // So near to the minimum that of the error half of the tolerance is left, or so much of
         // what there is to gain. Measured: 2 here ×2 +0.3 %, +3 %, ÷2 −0.2 %, +1 %; half the
         // tolerance ×2 +0.2 %, +5 %, ÷2 −0.1 %; a tenth of the gain ×2 +0.1 %, ÷2 −0.1 %; half the
         // way ×2, ÷2 no change.
-        let share = (0.5 * tolerance.max(0.1 * gain) / errors.cut).sqrt();
-        Verdict::Ask(Next::Beside(errors.worst, share.min(0.5)))
+        let share = (0.5 * tolerance.max(0.1 * gain) / error).sqrt();
+        Verdict::Ask(Next::Beside(worst, share.min(0.5)))
     } else if blind {
         Verdict::Ask(Next::Across)
     } else {
@@ -201,7 +203,7 @@ mod tests {
         let mut curvature = Curvature::new();
         let r = [0.5, 0.0, 0.0, 0.5, 0.0, 0.5];
         curvature.recall(super::super::curvature::Symmetric::of(r));
-        curvature.line = Vec3::x();
+        curvature.line = Some(Vec3::x());
         assert!(matches!(
             verdict(&shape, &dirs, &curvature),
             Verdict::Ask(Next::Across)
