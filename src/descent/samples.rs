@@ -91,6 +91,11 @@ impl<'a> Samples<'a> {
         self.known.get(self.at[lane(i)])
     }
 
+    /// The support points asked, as far as there was room for them.
+    pub fn known(&self) -> &[SupportPoint] {
+        self.known.points()
+    }
+
     /// The direction of the bundle's centre.
     #[inline(always)]
     pub fn dir(&self) -> Vec3 {

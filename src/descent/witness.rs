@@ -109,9 +109,8 @@ impl Witnesses {
     ) -> Penetration {
         let dir = model.b;
         let centre = samples.point(samples.centre);
-        let seen: [_; CUTS] = core::array::from_fn(|i| *samples.point(i));
-        let [a, b, c, d] = &seen;
-        let (mut point1, mut point2) = barycentric::witnesses(&self.weights, [a, b, c, d]);
+        let seen: [_; CUTS] = core::array::from_fn(|i| samples.point(i));
+        let (mut point1, mut point2) = barycentric::witnesses(&self.weights, seen);
         let [x, y] = self.moved.map(|moved| mean(&moved, &self.weights));
         if samples.touch() && !self.near {
             // The proof of the overlap knows points that meet.
@@ -131,7 +130,7 @@ impl Witnesses {
             normal: dir,
             point1,
             point2,
-            width: contact_patch::width(&seen, &dir, tolerance, samples.size),
+            width: contact_patch::width(samples.known(), &dir, tolerance, samples.size),
             iterations,
         }
     }
