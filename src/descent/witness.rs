@@ -29,9 +29,9 @@ pub struct Witnesses {
     share: Real,
     /// The way across b that is left to the point below the origin, in the chart.
     gap: [Real; 2],
-    /// Little enough is left.
-    near: bool,
-    /// And where R leads to is certain enough.
+    /// Little enough of the objects' own points is left, …
+    own: bool,
+    /// … or of points that R leads to and is certain enough of.
     pub believed: bool,
 }
 
@@ -44,8 +44,13 @@ impl Witnesses {
         tolerance: Real,
     ) -> Self {
         let zero = Lanes::default();
-        let own = Self::nearest(samples, model, [zero; 2], zero, tolerance);
-        if own.near || !curvature.known {
+        let mut own = Self::nearest(samples, model, [zero; 2], zero, tolerance);
+        if own.own {
+            return own;
+        }
+        let (share, even) = curvature.share();
+        own.share = share;
+        if !curvature.known {
             return own;
         }
         let (x, y) = model.pull(step.x, step.y);
@@ -56,12 +61,12 @@ impl Witnesses {
         let mut led = Self::nearest(samples, model, moved, model.lift, tolerance);
         // A ball's points are as good as seen, wherever they are; of other round objects one that
         // is a little aside, but not on an edge: that bends another way.
-        let (share, even) = curvature.share();
         let little = step.count == 1 && even;
         let most = if little { FORETOLD } else { BALL };
         let error = |i: usize| led.weights[i] * curvature.error_of(samples, i);
         led.share = share;
-        led.believed = led.near && (0..samples.len).all(|i| error(i) <= most);
+        led.believed = led.own && (0..samples.len).all(|i| error(i) <= most);
+        led.own = false;
         led
     }
 
@@ -88,7 +93,7 @@ impl Witnesses {
             moved,
             share: 0.5,
             gap: [-nearest.x, -nearest.y],
-            near,
+            own: near,
             believed: near,
         }
     }
@@ -111,12 +116,12 @@ impl Witnesses {
         let centre = samples.point(samples.centre);
         let seen: [_; CUTS] = core::array::from_fn(|i| samples.point(i));
         let (mut point1, mut point2) = barycentric::witnesses(&self.weights, seen);
-        let [x, y] = self.moved.map(|moved| mean(&moved, &self.weights));
-        if samples.touch() && !self.near {
+        if samples.touch() && !self.own {
             // The proof of the overlap knows points that meet.
             (point1, point2) = (centre.v1, centre.v2);
-        } else if x != 0.0 || y != 0.0 {
-            let moved = model.e1 * x + model.e2 * y;
+        } else if !self.own {
+            let [x, y] = self.moved.map(|moved| mean(&moved, &self.weights));
+            let moved = model.e1 * (x + self.gap[0]) + model.e2 * (y + self.gap[1]);
             point1 += moved * self.share;
             point2 -= moved * (1.0 - self.share);
             // Onto the support planes of both objects.
@@ -252,8 +257,8 @@ mod tests {
             assert!((witnesses.weights.iter().sum::<Real>() - 1.0).abs() < 8.0 * EPSILON);
             let low = samples.depth() - on.dot(&model.b);
             let allowed2 = 0.2 * samples.depth();
-            assert_eq!(witnesses.near, witnesses.apart2() <= allowed2 && low <= 0.1);
-            near += usize::from(witnesses.near);
+            assert_eq!(witnesses.own, witnesses.apart2() <= allowed2 && low <= 0.1);
+            near += usize::from(witnesses.own);
         }
         assert!(near > 100 && near < 300, "{near}");
     }
@@ -264,7 +269,7 @@ mod tests {
         let dirs = aside.map(|(x, y)| Vec3::new(x, y, 1.0).normalize());
         let mut known = Known::default();
         let (witnesses, answer, _) = found(&mut known, &resting(), &dirs, &Curvature::new());
-        assert!(witnesses.near && witnesses.believed);
+        assert!(witnesses.own && witnesses.believed);
         let off = (2.0 * 0.6 * TOLERANCE).sqrt();
         assert!((answer.point1 - Vec3::z() * 0.6).norm() <= off);
         assert!(answer.point2 == Vec3::zeros());
@@ -275,7 +280,7 @@ mod tests {
         let dirs = [Vec3::z()];
         let mut known = Known::default();
         let (witnesses, _, next) = found(&mut known, &resting(), &dirs, &Curvature::new());
-        assert!(!witnesses.near && !witnesses.believed);
+        assert!(!witnesses.own && !witnesses.believed);
         let Next::Aside(by) = next else {
             panic!("not aside")
         };
@@ -296,11 +301,11 @@ mod tests {
         // One end each, where the least depth of 0.1 is between.
         let dirs = [(0.0, 0.0), (-0.05, 0.02)].map(|(x, y)| Vec3::new(x, y, 1.0).normalize());
         let (guess, ..) = found(&mut known, &shape, &dirs, &curvature);
-        assert!(guess.near && !guess.believed);
+        assert!(!guess.own && !guess.believed);
         curvature.error = BALL;
         let mut known = Known::default();
         let (witnesses, answer, next) = found(&mut known, &shape, &dirs, &curvature);
-        assert!(witnesses.near && witnesses.believed);
+        assert!(!witnesses.own && witnesses.believed);
         let off = (2.0 * 0.1 * TOLERANCE).sqrt();
         assert!((answer.point1 - answer.point2 - Vec3::z() * 0.1).norm() <= off);
         // The one that R moved is the one to ask.
