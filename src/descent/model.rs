@@ -209,9 +209,9 @@ impl Model {
         let c = self.cut(p);
         let (kxx, kxy, kyy) = (self.axx - self.core, self.axy, -self.axx - self.core);
         let radius2 = radius * radius;
-        // How far c lies above each other cut.
         let others = &OTHERS[lane(p)];
         let len = self.len - 1;
+        // How far c lies above each other cut.
         let above = [
             c.minus(&self.cut(others[0])),
             c.minus(&self.cut(others[1])),
@@ -235,24 +235,7 @@ impl Model {
             }
             lowest
         };
-        let (mut x, mut y) = (-c.x, -c.y);
-        let mut inside = false;
-        let det = kxx * kyy - kxy * kxy;
-        if det > 0.0 && kxx > 0.0 {
-            let di = 1.0 / det;
-            (x, y) = ((kyy * x - kxy * y) * di, (kxx * y - kxy * x) * di);
-            inside = x * x + y * y <= radius2;
-        }
-        if !inside {
-            let g = x * x + y * y;
-            // No gradient: one way is as good as another.
-            (x, y) = if g > 0.0 {
-                let f = radius / g.sqrt();
-                (x * f, y * f)
-            } else {
-                (radius, 0.0)
-            };
-        }
+        let (x, y, inside) = self.lowest_on(&c, radius);
         if offer(x, y, p, p, 1, inside) && inside {
             return true;
         }
@@ -287,6 +270,29 @@ impl Model {
             }
         }
         false
+    }
+
+    /// Where one cut alone has its minimum within the trust radius, and whether that is inside.
+    #[inline(always)]
+    fn lowest_on(&self, c: &Cut, radius: Real) -> (Real, Real, bool) {
+        let (kxx, kxy, kyy) = (self.axx - self.core, self.axy, -self.axx - self.core);
+        let (mut x, mut y) = (-c.x, -c.y);
+        let det = kxx * kyy - kxy * kxy;
+        if det > 0.0 && kxx > 0.0 {
+            let di = 1.0 / det;
+            (x, y) = ((kyy * x - kxy * y) * di, (kxx * y - kxy * x) * di);
+            if x * x + y * y <= radius * radius {
+                return (x, y, true);
+            }
+        }
+        let g = x * x + y * y;
+        if g > 0.0 {
+            let f = radius / g.sqrt();
+            (x * f, y * f, false)
+        } else {
+            // No gradient: one way is as good as another.
+            (radius, 0.0, false)
+        }
     }
 
     /// How far R raises cut `i` at (x, y).
