@@ -136,7 +136,7 @@ impl Model {
             len: samples.len,
             centre: samples.centre,
         };
-        if rho > 0.0 && curvature.error <= BELIEVED {
+        if rho > 0.0 && curvature.error <= BELIEVED && samples.len > 1 {
             model.curve_cuts(samples);
         }
         model
