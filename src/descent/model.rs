@@ -180,8 +180,9 @@ impl Model {
             count: 1,
             inside: false,
         };
-        let found = self.pivot(self.centre, radius, rounding, &mut step);
-        if !found && newest != self.centre {
+        if self.len == 1 {
+            (step.x, step.y, step.inside) = self.lowest_on(&self.cut(self.centre), radius);
+        } else if !self.pivot(self.centre, radius, rounding, &mut step) && newest != self.centre {
             self.pivot(newest, radius, rounding, &mut step);
         }
         // The model's own value of the depth there, exact for P and for balls.
