@@ -3,7 +3,7 @@
 
 //! The curvature R of the smooth part of D, learned from pairs of samples.
 
-use super::samples::{CUTS, Lanes, Sample, Samples};
+use super::samples::{CUTS, Sample, Samples};
 use crate::math::{EPSILON, Real, Vec3};
 
 /// Squared angle below which a pair tells nothing above the rounding errors: the difference of
@@ -269,12 +269,11 @@ impl Curvature {
             room: Real::INFINITY,
             contradicted: false,
         };
-        let dn2s = Lanes::all(2.0) - samples.n.dot(&new.n) * 2.0;
-        let ds2s = samples.v.distance2(&new.p.v);
-        let aheads = Lanes::all(new.h) - samples.v.dot(&new.n);
-        let behinds = samples.h - samples.n.dot(&new.p.v);
         for i in 0..samples.len.min(CUTS) {
-            let (dn2, ds2, ahead, behind) = (dn2s[i], ds2s[i], aheads[i], behinds[i]);
+            let n = samples.n.get(i);
+            let (dn, ds) = (new.n - n, new.p.v - samples.v.get(i));
+            let (dn2, ds2) = (dn.norm_squared(), ds.norm_squared());
+            let (ahead, behind) = (ds.dot(&new.n), -ds.dot(&n));
             // Also NaN.
             if !(dn2 > CLOSE) {
                 continue;
