@@ -4,7 +4,7 @@
 //! The curvature R of the smooth part of D, learned from pairs of samples.
 
 use super::samples::{CUTS, Sample, Samples};
-use crate::math::{EPSILON, Real, Vec3};
+use crate::math::{EPSILON, Real, Vec3, larger};
 
 /// Squared angle below which a pair tells nothing above the rounding errors: the difference of
 /// numbers of about one, it has five digits there, in single precision three. Measured: ×2, ÷2
@@ -215,7 +215,7 @@ impl Curvature {
         if self.round {
             self.error
         } else {
-            self.error.max(samples.error[i])
+            larger(self.error, samples.error[i])
         }
     }
 
@@ -345,7 +345,7 @@ impl Curvature {
         if measured {
             self.error = (w2 / ds2).sqrt();
             // By as much as this pair corrects it R is another for the other samples.
-            samples.error = samples.error.map(|error| error.max(self.error));
+            samples.error = samples.error.map(|error| larger(self.error, error));
         }
         self.spread |= remembered && self.error < FORETOLD;
         // Exactly parallel: a ball, if the object has room for it.
