@@ -70,7 +70,11 @@ impl TrustRegion {
         let core = h - size;
         let ball = -slope / core;
         let radius = self.radius;
-        let length = if ball > 0.0 { lesser(ball, radius) } else { radius };
+        let length = if ball > 0.0 {
+            lesser(ball, radius)
+        } else {
+            radius
+        };
         let length = larger(length, ASIDE);
         let on_border = length == radius;
         let depth = (core - slope * length) / (1.0 + length * length).sqrt() + h - core;
