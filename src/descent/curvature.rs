@@ -3,8 +3,8 @@
 
 //! The curvature R of the smooth part of D, learned from pairs of samples.
 
-use super::samples::{CUTS, Lanes, Sample, Samples};
-use crate::math::{EPSILON, Real, Vec3};
+use super::samples::{CUTS, Sample, Samples};
+use crate::math::{EPSILON, Real, Vec3, larger};
 
 /// Squared angle below which a pair tells nothing above the rounding errors: the difference of
 /// numbers of about one, it has five digits there, in single precision three. Measured: ×2, ÷2
@@ -215,7 +215,7 @@ impl Curvature {
         if self.round {
             self.error
         } else {
-            self.error.max(samples.error[i])
+            larger(self.error, samples.error[i])
         }
     }
 
@@ -269,12 +269,11 @@ impl Curvature {
             room: Real::INFINITY,
             contradicted: false,
         };
-        let dn2s = Lanes::all(2.0) - samples.n.dot(&new.n) * 2.0;
-        let ds2s = samples.v.distance2(&new.p.v);
-        let aheads = Lanes::all(new.h) - samples.v.dot(&new.n);
-        let behinds = samples.h - samples.n.dot(&new.p.v);
         for i in 0..samples.len.min(CUTS) {
-            let (dn2, ds2, ahead, behind) = (dn2s[i], ds2s[i], aheads[i], behinds[i]);
+            let n = samples.n.get(i);
+            let (dn, ds) = (new.n - n, new.p.v - samples.v.get(i));
+            let (dn2, ds2) = (dn.norm_squared(), ds.norm_squared());
+            let (ahead, behind) = (ds.dot(&new.n), -ds.dot(&n));
             // Also NaN.
             if !(dn2 > CLOSE) {
                 continue;
@@ -346,7 +345,7 @@ impl Curvature {
         if measured {
             self.error = (w2 / ds2).sqrt();
             // By as much as this pair corrects it R is another for the other samples.
-            samples.error = samples.error.map(|error| error.max(self.error));
+            samples.error = samples.error.map(|error| larger(self.error, error));
         }
         self.spread |= remembered && self.error < FORETOLD;
         // Exactly parallel: a ball, if the object has room for it.

@@ -182,17 +182,6 @@ impl Vectors {
         self.y = self.y + o.y * f;
         self.z = self.z + o.z * f;
     }
-
-    /// The squared distances from `v`.
-    #[inline(always)]
-    pub fn distance2(&self, v: &Vec3) -> Lanes {
-        let (x, y, z) = (
-            self.x - Lanes::all(v.x),
-            self.y - Lanes::all(v.y),
-            self.z - Lanes::all(v.z),
-        );
-        x * x + y * y + z * z
-    }
 }
 
 #[cfg(test)]
@@ -214,6 +203,5 @@ mod tests {
         v.set(2, &Vec3::new(1.0, 2.0, 3.0));
         assert_eq!(v.get(2), Vec3::new(1.0, 2.0, 3.0));
         assert_eq!(v.dot(&Vec3::new(3.0, 2.0, 1.0))[2], 10.0);
-        assert_eq!(v.distance2(&Vec3::new(1.0, 0.0, 3.0))[2], 4.0);
     }
 }

@@ -242,6 +242,10 @@ impl Model {
         }
         for k in 0..len.min(3) {
             let (d, i) = (&above[k], others[k]);
+            if i == self.centre {
+                // It was looked at with the centre.
+                continue;
+            }
             // On the line d = 0, from its point nearest to x = 0.
             let q = d.x * d.x + d.y * d.y;
             let f = -d.a / q;
@@ -262,6 +266,9 @@ impl Model {
             }
             for l in 0..k {
                 let (e, j) = (&above[l], others[l]);
+                if j == self.centre {
+                    continue;
+                }
                 let w = 1.0 / (d.x * e.y - d.y * e.x);
                 let (x, y) = ((e.a * d.y - d.a * e.y) * w, (e.x * d.a - d.x * e.a) * w);
                 // Refuses NaN and infinity too.

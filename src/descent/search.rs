@@ -14,7 +14,7 @@ use super::trust_region::{self, ASIDE, TrustRegion};
 use super::verdict::{Next, Verdict, judge};
 use super::witness::Witnesses;
 use crate::contact::{Answer, Settings};
-use crate::math::{EPSILON, Real, Vec3, perpendicular, tolerance, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, tolerance, unit};
 use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 
 /// Support points asked to see witness points that only R leads to: as many as are kept. Derived:
@@ -200,14 +200,15 @@ impl<'a> Search<'a> {
         let samples = &mut self.samples;
         if rounding > samples.rounding {
             samples.rounding = rounding;
-            self.tolerance = self.tolerance.max(rounding);
+            self.tolerance = larger(rounding, self.tolerance);
         }
         let extent = (new.p.v - self.inner).norm();
         if samples.len == 0 {
             samples.size = extent;
-            self.tolerance = tolerance(self.settings.tolerance, extent, 0.0).max(rounding);
+            let asked = tolerance(self.settings.tolerance, extent, 0.0);
+            self.tolerance = larger(rounding, asked);
         } else {
-            samples.size = samples.size.max(extent);
+            samples.size = larger(extent, samples.size);
         }
     }
 
@@ -238,11 +239,11 @@ impl<'a> Search<'a> {
         self.trust.compare(&new.n, new.h, samples.depth());
         // A serious step moves the centre, a null step adds a cut.
         let serious = new.h < samples.depth();
-        let dir = if serious { new.n } else { samples.dir() };
+        let dir = samples.dir();
         let centre = samples.centre;
         let free = |i: &usize| serious || *i != centre;
         // The same vertex within R, and farther off: it tells nothing more.
-        let outdated = |i: &usize| samples.n.get(*i).dot(&dir) <= new.n.dot(&dir);
+        let outdated = |i: &usize| serious || samples.n.get(*i).dot(&dir) <= new.n.dot(&dir);
         let error = twin.map_or(1.0, |_| self.curvature.error);
         let place = self.probed.filter(free);
         let place = place.or_else(|| twin.filter(free).filter(outdated));

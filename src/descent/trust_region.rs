@@ -4,7 +4,7 @@
 //! The trust region: how far around the bundle's centre the model is believed.
 
 use super::curvature::CLOSE;
-use crate::math::{EPSILON, Real, Vec3, perpendicular};
+use crate::math::{EPSILON, Real, Vec3, larger, lesser, perpendicular};
 
 /// First trust radius, radians: the error of a good guess. Measured: ×2 −2.5 %, 34 more, and 63
 /// more of those from 5°; ÷2 +4.9 %, +68 % (spheres).
@@ -70,7 +70,12 @@ impl TrustRegion {
         let core = h - size;
         let ball = -slope / core;
         let radius = self.radius;
-        let length = if ball > 0.0 { ball.min(radius) } else { radius }.max(ASIDE);
+        let length = if ball > 0.0 {
+            lesser(ball, radius)
+        } else {
+            radius
+        };
+        let length = larger(length, ASIDE);
         let on_border = length == radius;
         let depth = (core - slope * length) / (1.0 + length * length).sqrt() + h - core;
         self.foretell(depth, on_border, n);
@@ -119,7 +124,7 @@ impl TrustRegion {
         if actual > 0.0 {
             // False for NaN: no forecast.
             if self.on_border && actual > TRUE * predicted {
-                self.radius = (self.radius * GROW).min(LARGEST);
+                self.radius = lesser(self.radius * GROW, LARGEST);
             }
         } else if self.foretold.is_finite()
             // Level ground within rounding is no failure.
