@@ -322,6 +322,8 @@ impl<'a> Search<'a> {
             self.witness_queries -= 1;
             return ControlFlow::Continue(Some(witnesses.query(samples, model, fine)));
         }
+        // Exact cuts of a minimum have points of the objects' own for witnesses.
+        let met = met && (samples.touch() || curvature.known || witnesses.own);
         if !met && !self.last() && curvature.known {
             return ControlFlow::Continue(None);
         }

@@ -30,7 +30,7 @@ pub struct Witnesses {
     /// The way across b that is left to the point below the origin, in the chart.
     gap: [Real; 2],
     /// Little enough of the objects' own points is left, …
-    own: bool,
+    pub own: bool,
     /// … or of points that R leads to and is certain enough of.
     pub believed: bool,
 }
