@@ -39,8 +39,9 @@ use super::discs::{Discs, Shown, fits, moves, shows};
 use super::lanes::{CUTS, Lanes, Vectors};
 use super::memory::{Memory, Queue, Smooth};
 use super::model::basis;
-use super::samples::Sample;
+use super::samples::{OTHERS, Sample};
 use super::trust_region::{FIRST, TrustRegion};
+use super::witness::hull;
 use crate::contact::{Penetration, Settings};
 use crate::contact_patch;
 use crate::math::{self, Real, Vec3, larger, perpendicular, unit};
@@ -95,6 +96,9 @@ impl Asked {
         self.samples.get(..self.len).unwrap_or(&[])
     }
 }
+
+/// Cuts, their weights, and how many are active.
+type Active = ([usize; 3], [Real; 3], usize);
 
 /// What comes after a support point.
 enum Next {
@@ -1075,13 +1079,11 @@ impl Flat {
             let across2 = (foot - n * height).norm_squared();
             (height >= least && across2 <= near2).then_some(foot)
         };
-        let serves = |(set, weights, count)| Some((own(&set, &weights)?, set, weights, count));
+        let serves =
+            |(set, weights, count): Active| Some((own(&set, &weights)?, set, weights, count));
         let active = serves((step.set, self.weights::<BENT>(step, n, &discs), step.count));
-        let of_three = || {
-            self.enclosing::<BENT>(n, &discs)
-                .find_map(|(set, w)| serves((set, w, 3)))
-        };
-        let Some((foot, set, weights, mut count)) = active.or_else(of_three) else {
+        let of_any = || serves(self.nearest::<BENT>(&(n * k), &discs)?);
+        let Some((foot, set, weights, mut count)) = active.or_else(of_any) else {
             return false;
         };
         let mut point1 = self.point1::<BENT>(n, &set, &weights, &discs);
@@ -1202,34 +1204,17 @@ impl Flat {
         }
     }
 
-    /// Each three samples whose triangle the line of `n` meets, and the weights of where it
-    /// does.
+    /// The three vertices, of all kept, that have a mean nearest to this point, and its weights.
     #[cold]
-    fn enclosing<const BENT: bool>(
-        &self,
-        n: &Vec3,
-        discs: &[Vec3; 2],
-    ) -> impl Iterator<Item = ([usize; 3], [Real; 3])> + use<'_, BENT> {
-        let (n, discs) = (*n, *discs);
-        let len = self.cuts.len.min(CUTS);
-        let triples = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
-        triples
-            .into_iter()
-            .filter(move |t| t[2] < len)
-            .filter_map(move |set| {
-                let step = Step {
-                    x: 0.0,
-                    y: 0.0,
-                    level: 0.0,
-                    value: 0.0,
-                    set,
-                    count: 3,
-                    inside: true,
-                };
-                let w = self.weights::<BENT>(&step, &n, &discs);
-                // False for NaN: three points on a line.
-                w.iter().all(|&w| w >= 0.0).then_some((set, w))
-            })
+    fn nearest<const BENT: bool>(&self, to: &Vec3, discs: &[Vec3; 2]) -> Option<Active> {
+        if self.cuts.len < 3 {
+            return None;
+        }
+        let at = core::array::from_fn(|i| self.with_discs::<BENT>(i, discs) - to);
+        let weights = hull(&at, self.cuts.len).1;
+        let less = |i: &usize, j: &usize| weights[*i].total_cmp(&weights[*j]);
+        let [i, j, k, _] = OTHERS[(0..CUTS).min_by(less)?];
+        Some(([i, j, k], [i, j, k].map(|i| weights[i]), 3))
     }
 }
 

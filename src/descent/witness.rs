@@ -177,7 +177,7 @@ impl Witnesses {
 }
 
 /// The point of the hull of the first `len` that is nearest to the origin, and its weights.
-fn hull(at: &[Vec3; CUTS], len: usize) -> (Vec3, [Real; CUTS]) {
+pub fn hull(at: &[Vec3; CUTS], len: usize) -> (Vec3, [Real; CUTS]) {
     let origin = Vec3::zeros();
     let [a, b, c, d] = at;
     match len {
