@@ -367,7 +367,10 @@ impl Simplex {
 /// the face's area.
 #[cold]
 fn off(height: Real, p: &Vec3, q: &Vec3, w: &Vec3, slack: Real) -> bool {
-    height > 2.0 * slack * normal(p, q, w).norm()
+    // Of the product itself, which is far above a touch where the face is a sliver.
+    let size2 = p.norm_squared() * q.norm_squared() * w.norm_squared();
+    let rounding = (4.0 * EPSILON * size2.sqrt()).copysign(slack);
+    height > 2.0 * slack * normal(p, q, w).norm() + rounding
 }
 
 impl Default for Simplex {
