@@ -75,11 +75,17 @@ fn enclose<A: SupportMap, B: SupportMap>(
     let mut exit = Some(exit);
     for _ in 0..STEPS {
         let touch = inquiry.precision.touch();
-        face = match face {
-            (a, Some(b)) if across(c, &a).dot(&b) <= 0.0 => (a, None),
-            (a, Some(b)) if across(c, &b).dot(&a) <= 0.0 => (b, None),
-            other => other,
-        };
+        if let (a, Some(b)) = face {
+            let (from_a, from_b) = (across(c, &a), across(c, &b));
+            if larger(from_a.dot(&b), from_b.dot(&a)) <= 0.0 {
+                let nearer = from_b.norm_squared() < from_a.norm_squared();
+                face = (if nearer { b } else { a }, None);
+            } else if from_a.dot(&b) <= 0.0 {
+                face = (a, None);
+            } else if from_b.dot(&a) <= 0.0 {
+                face = (b, None);
+            }
+        }
         let n = match face {
             (a, None) => {
                 let way = across(c, &a);
