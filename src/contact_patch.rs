@@ -144,9 +144,9 @@ impl Touch {
 
     #[inline(always)]
     fn add(&mut self, v: &Vec3, n: &Vec3) {
-        let side = v - self.first;
-        let side2 = side.norm_squared();
-        if side2 > 0.0 && n.dot(v) >= self.least {
+        if *v != self.first && n.dot(v) >= self.least {
+            let side = v - self.first;
+            let side2 = side.norm_squared();
             self.count += u32::from(side != self.side);
             if side2 > self.side2 {
                 (self.side, self.side2) = (side, side2);

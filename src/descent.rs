@@ -170,9 +170,9 @@ mod witness;
 
 pub use memory::Memory;
 
-use crate::contact::{Penetration, Settings};
+use crate::contact::{Answer, Penetration, Settings};
 use crate::math::{EPSILON, Vec3};
-use crate::support::{Known, MinkowskiDifference, SupportMap};
+use crate::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use crate::support_set::Stop;
 use flat::{Asked, Flat, Outcome};
 use search::Search;
@@ -191,7 +191,7 @@ const EXACT: bool = EPSILON < 1e-10;
 /// points for the proof, the active ones or else the best one first.
 ///
 /// # Errors
-/// [`Stop::Apart`]. [`Fault::NonFinite`](crate::support::Fault) from a support mapping.
+/// [`Stop::Apart`]. [`Fault::NonFinite`] from a support mapping.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     inner: Option<&Vec3>,
@@ -202,7 +202,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     hit: &mut Penetration,
 ) -> Result<bool, Stop> {
     if !EXACT || memory.is_curved() {
-        return curved(md, inner, start, memory, settings, known, None, hit);
+        return curved(md, inner, start, memory, settings, known, None)?.put(hit);
     }
     let mut flat = Flat::new();
     let (first, mut queue) = flat.recall(memory, &start);
@@ -221,14 +221,13 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         Outcome::Apart(n) => Err(Stop::Apart(n)),
         Outcome::Open => {
             let asked = Some(&flat.asked());
-            curved(md, inner, start, memory, settings, known, asked, hit)
+            curved(md, inner, start, memory, settings, known, asked)?.put(hit)
         }
     }
 }
 
 /// The search with curvature, from where the one by exact cuts ended, if there was one.
 #[inline(never)]
-#[allow(clippy::too_many_arguments)]
 fn curved<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     inner: Option<&Vec3>,
@@ -237,8 +236,7 @@ fn curved<A: SupportMap, B: SupportMap>(
     settings: &Settings,
     known: &mut Known,
     asked: Option<&Asked>,
-    hit: &mut Penetration,
-) -> Result<bool, Stop> {
+) -> Result<Answer, Fault> {
     let dropped = asked.map_or(0, |asked| asked.dropped);
     let rest = Settings {
         max_iterations: settings.max_iterations.saturating_sub(dropped),
@@ -247,18 +245,18 @@ fn curved<A: SupportMap, B: SupportMap>(
     let mut search = Search::new(inner, &rest, known);
     let first = asked.and_then(|asked| search.resume(asked.samples(), asked.trust, memory));
     let first = first.unwrap_or_else(|| search.recall(memory, &start()));
-    let minimum = search.run(md, first, memory)?.put(hit)?;
-    hit.iterations += dropped;
-    Ok(minimum)
+    let mut answer = search.run(md, first, memory)?;
+    if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
+        hit.iterations += dropped;
+    }
+    Ok(answer)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Answer;
     use crate::local::{self, Shortcut};
     use crate::math::{Real, perpendicular};
-    use crate::support::Fault;
     use nalgebra::Rotation3;
 
     /// A support function, placed.

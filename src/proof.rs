@@ -58,11 +58,11 @@ pub fn is_around<A: SupportMap, B: SupportMap>(
 
 /// [`is_around`], from one or two corners of a cone on.
 ///
-/// Beyond the plane of two corners, where −c is, the point of D farthest is the third: a known
-/// one, or of those that points of obj1 and obj2 make anew (k support points of D are k² points
-/// of D), or else a support point. So it is beyond one corner, where −c is nearer to that than to
-/// any other sum of multiples. Where the triangle of c and two corners, or the side of c and one,
-/// holds the origin within rounding, that is a proof as well.
+/// Where −c is nearer to a multiple of one corner than to other sums, that corner goes on alone.
+/// Across it, or beyond the plane of the two, where −c is, the point of D farthest is the next
+/// corner: a known one, or of those that points of obj1 and obj2 make anew (k support points of D
+/// are k² points of D), or else a support point. Where the side of c and the one corner, or the
+/// triangle of c and the two, holds the origin within rounding, that is a proof as well.
 #[inline(never)]
 fn enclose<A: SupportMap, B: SupportMap>(
     inquiry: &mut Inquiry<'_, A, B>,
@@ -75,43 +75,41 @@ fn enclose<A: SupportMap, B: SupportMap>(
     let mut exit = Some(exit);
     for _ in 0..STEPS {
         let touch = inquiry.precision.touch();
-        let mut n = Vec3::zeros();
-        let mut third = None;
         if let (a, Some(b)) = face {
-            let side = a.cross(&b);
-            let height = -c.dot(&side);
-            let Some(normal) = direction(&(side * (1.0 as Real).copysign(height))) else {
-                return Ok(false);
-            };
-            n = normal;
-            third = known.made_beyond(centre, &n, touch);
-            if third.is_none() {
-                if across(c, &a).dot(&b) <= 0.0 {
-                    face = (a, None);
-                } else if across(c, &b).dot(&a) <= 0.0 {
-                    face = (b, None);
-                } else if in_plane(c, &a, &b, touch) {
-                    return Ok(true);
+            let (from_a, from_b) = (across(c, &a), across(c, &b));
+            if larger(from_a.dot(&b), from_b.dot(&a)) <= 0.0 {
+                let nearer = from_b.norm_squared() < from_a.norm_squared();
+                face = (if nearer { b } else { a }, None);
+            } else if from_a.dot(&b) <= 0.0 {
+                face = (a, None);
+            } else if from_b.dot(&a) <= 0.0 {
+                face = (b, None);
+            }
+        }
+        let n = match face {
+            (a, None) => {
+                let way = across(c, &a);
+                let height = way.norm();
+                if height <= touch {
+                    return Ok(c.dot(&a) < 0.0);
+                }
+                way / height
+            }
+            (a, Some(b)) => {
+                let side = a.cross(&b);
+                match direction(&(side * (1.0 as Real).copysign(-c.dot(&side)))) {
+                    Some(n) => n,
+                    None => return Ok(false),
                 }
             }
-        }
-        if let (a, None) = face {
-            let way = across(c, &a);
-            let height = way.norm();
-            if height <= touch {
-                return Ok(c.dot(&a) < 0.0);
+        };
+        let new = match (known.made_beyond(centre, &n, touch), face) {
+            (Some(made), _) => made,
+            (None, (a, Some(b))) if in_plane(c, &a, &b, touch) => return Ok(true),
+            _ => {
+                let beside = exit.take().and_then(|exit| beside(exit, c));
+                ask_beyond(inquiry, known, &n, beside)?
             }
-            n = way / height;
-            third = known.made_beyond(centre, &n, touch);
-        }
-        let new = match third {
-            Some(made) => made,
-            None => ask_beyond(
-                inquiry,
-                known,
-                &n,
-                exit.take().and_then(|exit| beside(exit, c)),
-            )?,
         };
         face = match face {
             (a, None) => (a, Some(new)),
@@ -120,10 +118,7 @@ fn enclose<A: SupportMap, B: SupportMap>(
                 Some(0) => (b, Some(new)),
                 Some(1) => (a, Some(new)),
                 // In the plane of a and b, within rounding.
-                Some(_) => {
-                    let between = across(c, &a).dot(&b) > 0.0 && across(c, &b).dot(&a) > 0.0;
-                    return Ok(between && in_plane(c, &a, &b, touch));
-                }
+                Some(_) => return Ok(in_plane(c, &a, &b, touch)),
             },
         };
     }
