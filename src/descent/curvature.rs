@@ -126,7 +126,8 @@ pub struct Curvature {
     pub error: Real,
     /// How far the points of the last smooth pair are apart: those of D, and obj1's.
     apart: [Vec3; 2],
-    /// In every smooth pair the points of each object moved more along those of D than aside.
+    /// In every smooth pair the points of each object moved along those of D, and less aside than
+    /// [`BELIEVED`] of that.
     pub even: bool,
     /// The direction of the first smooth pair.
     pub line: Option<Vec3>,
@@ -336,7 +337,7 @@ impl Curvature {
         let slope = bend / dn2;
         self.apart = [ds, ds1];
         let along = ds1.dot(&ds);
-        let least = lesser(along, ds2 - along) + BALL * ds2;
+        let least = BELIEVED * lesser(along, ds2 - along) + BALL * ds2;
         self.even &= (ds1 * ds2 - ds * along).norm_squared() <= least * least * ds2;
         let measured = self.known;
         if !measured {
