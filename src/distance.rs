@@ -362,15 +362,19 @@ impl Simplex {
     }
 }
 
-/// Is the target off the face of p, q and w by more than twice the slack? For heights that
-/// [`Simplex::tetrahedron`]'s cheaper bound leaves open; `height` is the distance times twice
-/// the face's area.
+/// Is the target off the face of p, q and w by more than twice the slack, and by more than
+/// rounding? For heights that [`Simplex::tetrahedron`]'s cheaper bound leaves open; `height` is
+/// the distance times twice the face's area.
 #[cold]
 fn off(height: Real, p: &Vec3, q: &Vec3, w: &Vec3, slack: Real) -> bool {
-    // Of the product itself, which is far above a touch where the face is a sliver.
-    let size2 = p.norm_squared() * q.norm_squared() * w.norm_squared();
-    let rounding = (4.0 * EPSILON * size2.sqrt()).copysign(slack);
-    height > 2.0 * slack * normal(p, q, w).norm() + rounding
+    // The product itself is off by ulps of the corners' lengths, however small the face is.
+    let lengths = p.norm() * q.norm() * w.norm();
+    let error = if slack > 0.0 {
+        8.0 * EPSILON * lengths
+    } else {
+        0.0
+    };
+    height > 2.0 * slack * normal(p, q, w).norm() + error
 }
 
 impl Default for Simplex {
@@ -786,6 +790,22 @@ mod tests {
     use super::*;
     use crate::precision::Precision;
     use crate::shapes::{self, KINDS, Random, Shape, ball, corners, hull, pair, placed, scaled};
+
+    /// Corners that lie in a plane with the target, and near each other.
+    #[test]
+    fn rounding_of_a_small_face_is_no_height() {
+        let mut r = Random::new(41);
+        for round in 0..2000 {
+            let apart = [1e-2, 1e-4, 1e-6][round % 3];
+            let p = r.direction() * 1e-3;
+            let q = p + r.vector(1e-3 * apart);
+            let w = p * r.within(0.5, 2.0) + q * r.within(-1.0, 1.0);
+            let height = p.cross(&q).dot(&w);
+            // Of an object a thousand times as large.
+            assert!(!off(height, &p, &q, &w, EPSILON));
+            assert!(off(1e3 * EPSILON * 1e-9, &p, &q, &w, EPSILON));
+        }
+    }
 
     /// Do they overlap? Also: a miss must come with a direction that separates, and
     /// swapped objects must give the same answer.

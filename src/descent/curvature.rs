@@ -4,7 +4,7 @@
 //! The curvature R of the smooth part of D, learned from pairs of samples.
 
 use super::samples::{CUTS, Sample, Samples};
-use crate::math::{EPSILON, Real, Vec3, larger};
+use crate::math::{EPSILON, Real, Vec3, larger, lesser};
 
 /// Squared angle below which a pair tells nothing above the rounding errors: the difference of
 /// numbers of about one, it has five digits there, in single precision three. Measured: ×2, ÷2
@@ -126,6 +126,9 @@ pub struct Curvature {
     pub error: Real,
     /// How far the points of the last smooth pair are apart: those of D, and obj1's.
     apart: [Vec3; 2],
+    /// In every smooth pair the points of each object moved along those of D, and less aside than
+    /// [`BELIEVED`] of that.
+    pub even: bool,
     /// The direction of the first smooth pair.
     pub line: Option<Vec3>,
     /// Measured along a second direction too.
@@ -161,6 +164,7 @@ impl Curvature {
             known: false,
             error: 1.0,
             apart: [Vec3::zeros(); 2],
+            even: true,
             line: None,
             spread: false,
             round: true,
@@ -219,18 +223,16 @@ impl Curvature {
         }
     }
 
-    /// How much of R is obj1's, by the last smooth pair, and whether each object's points moved more
-    /// along D's than aside; half where no pair has told.
-    pub fn share(&self) -> (Real, bool) {
+    /// How much of R is obj1's, by the last smooth pair; half where none has told.
+    pub fn share(&self) -> Real {
         let [ds, ds1] = &self.apart;
-        let ds2 = ds.norm_squared();
-        if !(ds2 > 0.0) {
-            return (0.5, true);
+        let share = ds1.dot(ds) / ds.norm_squared();
+        // False for NaN.
+        if share.abs() < Real::INFINITY {
+            share.clamp(0.0, 1.0)
+        } else {
+            0.5
         }
-        let share = (ds1.dot(ds) / ds2).clamp(0.0, 1.0);
-        let lesser = share.min(1.0 - share) + BALL;
-        let aside = ds1 - ds * share;
-        (share, aside.norm_squared() <= lesser * lesser * ds2)
     }
 
     /// Learns from a new sample, not yet kept. Returns the nearest sample that makes a smooth
@@ -334,6 +336,9 @@ impl Curvature {
         let bend = ds.dot(&dn);
         let slope = bend / dn2;
         self.apart = [ds, ds1];
+        let along = ds1.dot(&ds);
+        let least = BELIEVED * lesser(along, ds2 - along) + BALL * ds2;
+        self.even &= (ds1 * ds2 - ds * along).norm_squared() <= least * least * ds2;
         let measured = self.known;
         if !measured {
             self.known = true;

@@ -48,8 +48,7 @@ impl Witnesses {
         if own.own {
             return own;
         }
-        let (share, even) = curvature.share();
-        own.share = share;
+        own.share = curvature.share();
         if !curvature.known {
             return own;
         }
@@ -61,10 +60,10 @@ impl Witnesses {
         let mut led = Self::nearest(samples, model, moved, model.lift, tolerance);
         // A ball's points are as good as seen, wherever they are; of other round objects one that
         // is a little aside, but not on an edge: that bends another way.
-        let little = step.count == 1 && even;
+        let little = step.count == 1 && curvature.even;
         let most = if little { FORETOLD } else { BALL };
         let error = |i: usize| led.weights[i] * curvature.error_of(samples, i);
-        led.share = share;
+        led.share = own.share;
         led.believed = led.own && (0..samples.len).all(|i| error(i) <= most);
         led.own = false;
         led
