@@ -220,8 +220,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         }
         Outcome::Apart(n) => Err(Stop::Apart(n)),
         Outcome::Open => {
-            let asked = Some(&flat.asked());
-            curved(md, inner, start, memory, settings, known, asked)?.put(hit)
+            let asked = flat.asked();
+            curved(md, inner, start, memory, settings, known, Some(&asked))?.put(hit)
         }
     }
 }

@@ -62,9 +62,11 @@ impl Witnesses {
         // is a little aside, but not on an edge: that bends another way.
         let little = step.count == 1 && curvature.even;
         let most = if little { FORETOLD } else { BALL };
-        let error = |i: usize| led.weights[i] * curvature.error_of(samples, i);
+        let certain = |(i, w): (usize, &Real)| w * curvature.error_of(samples, i) <= most;
+        let mut weights = led.weights.iter().enumerate().take(samples.len);
+        let certain = weights.all(certain);
         led.share = own.share;
-        led.believed = led.own && (0..samples.len).all(|i| error(i) <= most);
+        led.believed = led.own && certain;
         led.own = false;
         led
     }
