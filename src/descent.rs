@@ -139,7 +139,8 @@
 //! the last answer, each towards one active cut and farther than the pair moved, and
 //! proven by a fourth; a smooth contact by the last direction and one step with R. The radii of
 //! balls and discs stay; a disc's axis turns with its object, and is found anew by two samples
-//! that show the same radius.
+//! beside each other. Three active cuts are mostly exact ones: there R is kept for later, and the
+//! search begins as one without.
 //!
 //! # Constants
 //!
