@@ -124,8 +124,9 @@ pub struct Curvature {
     pub known: bool,
     /// Relative error, by the last smooth pair.
     pub error: Real,
-    /// How far the points of the last smooth pair are apart: those of D, and obj1's.
-    apart: [Vec3; 2],
+    /// How far the points of the last smooth pair are apart along its directions' difference: those
+    /// of D, and obj1's.
+    apart: [Real; 2],
     /// In every smooth pair the points of each object moved along those of D, and less aside than
     /// [`BELIEVED`] of that.
     pub even: bool,
@@ -163,7 +164,7 @@ impl Curvature {
             r: Symmetric::default(),
             known: false,
             error: 1.0,
-            apart: [Vec3::zeros(); 2],
+            apart: [0.0; 2],
             even: true,
             line: None,
             spread: false,
@@ -225,8 +226,7 @@ impl Curvature {
 
     /// How much of R is obj1's, by the last smooth pair; half where none has told.
     pub fn share(&self) -> Real {
-        let [ds, ds1] = &self.apart;
-        let share = ds1.dot(ds) / ds.norm_squared();
+        let share = self.apart[1] / self.apart[0];
         // False for NaN.
         if share.abs() < Real::INFINITY {
             share.clamp(0.0, 1.0)
@@ -335,10 +335,10 @@ impl Curvature {
         }
         let bend = ds.dot(&dn);
         let slope = bend / dn2;
-        self.apart = [ds, ds1];
-        let along = ds1.dot(&ds);
-        let least = BELIEVED * lesser(along, ds2 - along) + BALL * ds2;
-        self.even &= (ds1 * ds2 - ds * along).norm_squared() <= least * least * ds2;
+        let along = ds1.dot(&dn);
+        self.apart = [bend, along];
+        let least = BELIEVED * lesser(along, bend - along) + BALL * bend;
+        self.even &= (ds1 * bend - ds * along).norm_squared() <= least * least * ds2;
         let measured = self.known;
         if !measured {
             self.known = true;
