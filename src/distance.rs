@@ -478,7 +478,7 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
         Some(c) => Simplex::around(c, &set.v(c)),
         None => Simplex::new(),
     };
-    if set.len() > simplex.len {
+    let held = if set.len() > simplex.len {
         search(
             inquiry,
             set,
@@ -486,12 +486,13 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
             *dir,
             Proof::Solid,
             |inquiry, set, _, dir| Ok(set.farther(dir, inquiry.precision.touch())),
-        )
+        )?
     } else {
         search(inquiry, set, simplex, *dir, Proof::Solid, |_, _, _, _| {
             Ok(None)
-        })
-    }
+        })?
+    };
+    Ok(held.corners)
 }
 
 /// What shows that the origin is inside D.
@@ -503,6 +504,24 @@ pub enum Proof {
     Centred,
     /// Any segment or triangle that does: D lies in a plane, and has no other inside.
     Planar,
+}
+
+/// What holds the origin.
+pub struct Held {
+    /// The indices of the corners in the set, the last one repeated where it is no tetrahedron.
+    pub corners: [usize; 4],
+    /// Where a portal had the last word, and the corners need not hold it: two points that it
+    /// lies between.
+    pub between: Option<[SupportPoint; 2]>,
+}
+
+impl Held {
+    fn by(corners: [usize; 4]) -> Self {
+        Self {
+            corners,
+            between: None,
+        }
+    }
 }
 
 /// [`overlap`], from a simplex and a direction to ask. `stand_in` may give the index of a point
@@ -520,7 +539,7 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
         &Simplex,
         &Vec3,
     ) -> Result<Option<usize>, Stop>,
-) -> Result<[usize; 4], Stop> {
+) -> Result<Held, Stop> {
     // The square of the distance from the simplex; and whether points on the other side of
     // it, where it is a triangle, are known.
     let (mut nearest, mut backed) = (Real::INFINITY, false);
@@ -549,11 +568,11 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
                 inquiry.ask_at(set, place, &-dir)?;
             }
             let [i, j, k] = simplex.ids();
-            return Ok([i, j, k, w]);
+            return Ok(Held::by([i, j, k, w]));
         };
         if distance2 <= touch * touch && simplex.proves(kind) {
             let [i, j, k] = simplex.ids();
-            return Ok([i, j, k, k]);
+            return Ok(Held::by([i, j, k, k]));
         }
         // Negated for NaN.
         if !(distance2 > touch * touch && distance2 < nearest) {
@@ -568,9 +587,12 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
             None => break,
         }
     }
-    decide(inquiry, set, &simplex, &dir)?;
+    let between = decide(inquiry, set, &simplex, &dir)?;
     let [i, j, k] = simplex.ids();
-    Ok([i, j, k, k])
+    Ok(Held {
+        corners: [i, j, k, k],
+        between,
+    })
 }
 
 /// Points of the objects whose difference is within `tolerance` of `target`, a point of D
@@ -714,14 +736,15 @@ pub fn room<const N: usize>(set: &SupportSet<N>, simplex: &Simplex) -> usize {
     (0..N).find(|i| !simplex.has(*i)).unwrap_or(N - 1)
 }
 
-/// The last word where the origin is as good as on the surface of the simplex: a portal.
+/// The last word where the origin is as good as on the surface of the simplex: a portal. Returns
+/// the inner point and where the ray from it crosses the last portal: the origin is between them.
 #[cold]
 fn decide<A: SupportMap, B: SupportMap, const N: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &SupportSet<N>,
     simplex: &Simplex,
     dir: &Vec3,
-) -> Result<(), Stop> {
+) -> Result<Option<[SupportPoint; 2]>, Stop> {
     // The simplex may be as flat as touching faces: the middle between it and the far
     // side of D is well inside.
     let mut seen = SupportSet::<8>::EMPTY;
@@ -739,6 +762,7 @@ fn decide<A: SupportMap, B: SupportMap, const N: usize>(
     let first = SupportPlane::of(inquiry.md, ray)?;
     let (mut best, mut budget) = (first, LAST);
     let found = find_portal(inquiry.md, &first, Some(&inner.v), &mut best, &mut budget)?;
+    let mut between = None;
     let lowest = match found {
         Found::Miss(plane) => plane,
         // Any portal that has the origin on its inner side decides.
@@ -755,6 +779,11 @@ fn decide<A: SupportMap, B: SupportMap, const N: usize>(
                 &mut budget,
             )? {
                 Exit::Miss(plane) => plane,
+                Exit::Converged(last, _) | Exit::Limit(Some(last)) => {
+                    let (v1, v2) = last.witnesses();
+                    between = Some([inner, SupportPoint { v: v1 - v2, v1, v2 }]);
+                    best
+                }
                 _ => best,
             }
         }
@@ -766,7 +795,7 @@ fn decide<A: SupportMap, B: SupportMap, const N: usize>(
     let contradicted = |h: Real| set.farther(&lowest.normal, h).is_some();
     let grain = inquiry.precision.grain();
     if lowest.depth > touch || contradicted(larger(lowest.depth + grain, touch)) {
-        Ok(())
+        Ok(between)
     } else {
         Err(Stop::Apart(lowest.normal))
     }

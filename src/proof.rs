@@ -206,7 +206,7 @@ pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
     }
     let mut beside = beside(exit, &start);
     let dir = direction(&-start).unwrap_or(Vec3::x());
-    search(
+    let held = search(
         inquiry,
         set,
         simplex,
@@ -227,7 +227,13 @@ pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
             };
             Ok((n.dot(&set.v(i)) > touch).then_some(i))
         },
-    )
+    )?;
+    let Some([p, q]) = held.between else {
+        return Ok(held.corners);
+    };
+    set.place(0, &Vec3::zeros(), &p);
+    set.place(1, &Vec3::zeros(), &q);
+    Ok([0, 1, 1, 1])
 }
 
 /// The index of the point of D farthest along `n`, of all that the points of obj1 and those of
