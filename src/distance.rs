@@ -836,6 +836,27 @@ mod tests {
         }
     }
 
+    /// The points that a portal's last word gives have the origin between them.
+    #[test]
+    fn a_portal_decides_between_two_points() {
+        let mut r = Random::new(43);
+        for _ in 0..200 {
+            let half = Vec3::new(0.5, 0.4, 0.3);
+            let turned = placed(&corners(half), &r.rotation(), r.vector(0.2));
+            let md = MinkowskiDifference::new(hull(&corners(half)), hull(&turned));
+            let mut inquiry = Inquiry::new(&md);
+            let mut set = SupportSet::<4>::EMPTY;
+            let n = r.direction();
+            let point = md.support(&n).unwrap();
+            set.push(&n, &point);
+            let simplex = Simplex::of(0, &point.v);
+            let between = decide(&mut inquiry, &set, &simplex, &n).ok().flatten();
+            let [p, q] = between.unwrap().map(|p| p.v);
+            let apart = (q - p).norm();
+            assert!(p.dot(&q) < 0.0 && p.cross(&q).norm() <= 64.0 * EPSILON * apart * apart);
+        }
+    }
+
     /// Do they overlap? Also: a miss must come with a direction that separates, and
     /// swapped objects must give the same answer.
     fn overlap(a: &Shape, b: &Shape, dir: &Vec3) -> bool {

@@ -89,19 +89,19 @@ fn enclose<A: SupportMap, B: SupportMap>(
         let n = match face {
             (a, None) => {
                 let way = across(c, &a);
-                let height = way.norm();
-                if height <= touch {
+                if way.norm() <= touch {
                     return Ok(c.dot(&a) < 0.0);
                 }
-                way / height
+                way
             }
             (a, Some(b)) => {
                 let side = a.cross(&b);
-                match direction(&(side * (1.0 as Real).copysign(-c.dot(&side)))) {
-                    Some(n) => n,
-                    None => return Ok(false),
-                }
+                side * (1.0 as Real).copysign(-c.dot(&side))
             }
+        };
+        // None of a point at the origin, or of two on a line with it.
+        let Some(n) = direction(&n) else {
+            return Ok(false);
         };
         let new = match (known.made_beyond(centre, &n, touch), face) {
             (Some(made), _) => made,

@@ -180,9 +180,9 @@ impl Memory {
     /// vector `dir`, and the angle between them and it.
     #[inline]
     pub fn recall(&self, dir: &Vec3) -> (Queue, Real) {
-        // Farther aside than the pair moved, and not as far where R is known, which serves
-        // the better the nearer the samples are (in double precision); NaN becomes the least
-        // angle. Measured in motion: ×2, ÷2 of the factors up to 12 % and 4 % of one set, of the
+        // Farther aside than the pair moved, and not as far where R or balls alone are known, which
+        // serve the better the nearer the samples are (in double precision); a disc's axis is told
+        // by samples that are not as near. NaN becomes the least angle. Measured in motion: ×2, ÷2 of the factors up to 12 % and 4 % of one set, of the
         // least angles 5 % and 2 %; the same two numbers for both 10 to 23 %.
         let (times, least) = if (self.curved == CURVED || self.curved == ROUND) && EPSILON < 1e-10 {
             (2.0, 0.0005)
