@@ -3,8 +3,8 @@
 
 //! What a query answers.
 
+use crate::known::support_set::Stop;
 use crate::math::{Real, Vec3};
-use crate::support_set::Stop;
 
 /// How much work a query may do, and how exact its depth must be.
 #[derive(Clone, Copy, Debug)]

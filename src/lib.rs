@@ -13,7 +13,7 @@
 //! use ccd::math::Vec3;
 //! use ccd::query::Pair;
 //! use ccd::state::State;
-//! use ccd::support::MinkowskiDifference;
+//! use ccd::known::support::MinkowskiDifference;
 //!
 //! let ball = |at: Vec3| move |dir: &Vec3| at + dir; // of radius 1
 //! let pair = Pair {
@@ -47,56 +47,22 @@
     reason = "solvers are explained to who reads their source"
 )]
 
-#[doc(hidden)]
-pub mod along;
-#[doc(hidden)]
-pub mod barycentric;
 pub mod contact;
 #[doc(hidden)]
-pub mod contact_manifold;
-#[doc(hidden)]
-pub mod contact_patch;
-#[doc(hidden)]
-pub mod descent;
-#[doc(hidden)]
-pub mod distance;
-#[doc(hidden)]
-pub mod expansion;
+pub mod contacts;
 #[doc(hidden)]
 pub mod ffi;
 #[doc(hidden)]
+pub mod gjk;
 #[doc(hidden)]
-pub mod global;
-#[doc(hidden)]
-pub mod intersect;
+pub mod hull;
+pub mod known;
 #[doc(hidden)]
 pub mod local;
 pub mod math;
 #[doc(hidden)]
-pub mod planar;
-#[doc(hidden)]
-pub mod plane;
-#[doc(hidden)]
-pub mod polygon;
-#[doc(hidden)]
-pub mod polytope;
-#[doc(hidden)]
-pub mod portal;
-#[doc(hidden)]
-pub mod precision;
-#[doc(hidden)]
-pub mod proof;
+pub mod paper;
 pub mod query;
-#[doc(hidden)]
-pub mod separation;
 #[cfg(test)]
 mod shapes;
-#[doc(hidden)]
-pub mod signed_distance;
-#[doc(hidden)]
-#[doc(hidden)]
-pub mod start;
 pub mod state;
-pub mod support;
-#[doc(hidden)]
-pub mod support_set;

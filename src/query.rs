@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The penetration queries of a pair, and the order of steps that they share. (Yes or no
-//! with memory is [`crate::intersect`], the distance [`crate::signed_distance`].)
+//! with memory is [`crate::gjk::intersect`], the distance [`crate::gjk::signed_distance`].)
 //!
 //! 1. A pair that was apart is asked about the direction that separated it: while
 //!    that still separates, one support point is the whole answer, and turns the
-//!    direction for the next time ([`crate::separation`]).
+//!    direction for the next time ([`crate::gjk::separation`]).
 //! 2. The solver starts from what the state holds, else from the centres, else from
 //!    the caller's first direction. (`along` starts from the last portal, `planar` from
 //!    the part of that direction in its plane.)
@@ -18,27 +18,27 @@
 //!    where these leave a side open. The global search (`mpr`, `minimum`) proves its
 //!    overlaps itself.
 //! 4. Witness points of a face that rests on another, or on an edge, are moved to the
-//!    middle of where they touch ([`contact_patch`]); not in `along` and `planar`.
+//!    middle of where they touch ([`patch`]); not in `along` and `planar`.
 //! 5. What was learned stays behind in the [`State`]; where the caller keeps none, nothing
 //!    is spent on it.
 
-use crate::along;
-use crate::barycentric;
 use crate::contact::{Answer, Penetration, Settings};
-use crate::contact_patch;
-use crate::descent::{self, Memory};
-use crate::distance::Proof;
-use crate::expansion::Limits;
-use crate::global::{self, Arena, Basis, Request};
-use crate::local::{self, Shortcut};
+use crate::contacts::patch;
+use crate::gjk::barycentric;
+use crate::gjk::distance::Proof;
+use crate::gjk::proof::{inner_distance, is_around, proof};
+use crate::gjk::separation;
+use crate::hull::expansion::Limits;
+use crate::hull::global::{self, Arena, Basis, Request};
+use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support_set::{Inquiry, Stop, SupportSet};
+use crate::local::{self, Memory};
 use crate::math::{Real, Vec3, larger, perpendicular, unit};
-use crate::planar;
-use crate::portal::rounding;
-use crate::proof::{inner_distance, is_around, proof};
-use crate::separation;
+use crate::paper::along;
+use crate::paper::incremental::{self, Shortcut};
+use crate::paper::planar;
+use crate::paper::portal::rounding;
 use crate::state::State;
-use crate::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::support_set::{Inquiry, Stop, SupportSet};
 
 /// A touch, within the tolerance, whose witness points do not meet? There the points that
 /// meet at the origin of D, which a proof of the overlap knows, are witnesses.
@@ -61,7 +61,7 @@ pub struct Pair<A, B> {
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// Step 1: the separating direction that still separates, see [`crate::separation`].
+    /// Step 1: the separating direction that still separates, see [`crate::gjk::separation`].
     fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
         if !state.was_apart() {
             return Ok(None);
@@ -214,7 +214,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     pub fn settle(&self, answer: Answer, settings: &Settings) -> Result<Answer, Fault> {
         match answer {
             Answer::Hit(mut hit) => {
-                contact_patch::settle(&self.md, &mut hit, settings.tolerance)?;
+                patch::settle(&self.md, &mut hit, settings.tolerance)?;
                 Ok(Answer::Hit(hit))
             }
             other => Ok(other),
@@ -271,7 +271,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !minimum {
             return Ok(Answer::Limit(hit));
         }
-        contact_patch::settle(&self.md, &mut hit, settings.tolerance)?;
+        patch::settle(&self.md, &mut hit, settings.tolerance)?;
         Ok(Answer::Hit(hit))
     }
 
@@ -282,7 +282,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Miss(n));
         }
         let start = state.leaving().unwrap_or_else(|| self.cold_start());
-        let found = local::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
+        let found = incremental::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
         let answer = self.proven(found, &mut Known::default(), settings, false)?;
         self.remember(state, &answer)?;
         self.settle(answer, settings)
@@ -382,9 +382,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 let alone = hit.point1;
                 let asked = self.md.supports();
                 if basis.unmoved {
-                    contact_patch::move_to(&mut hit, &state.middle());
+                    patch::move_to(&mut hit, &state.middle());
                 } else {
-                    contact_patch::settle(&self.md, &mut hit, limits.tolerance)?;
+                    patch::settle(&self.md, &mut hit, limits.tolerance)?;
                 }
                 let middle = (hit.point1 != alone).then_some(hit.point1);
                 self.keep(state, &basis, middle, asked);
@@ -538,7 +538,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_iterations: left,
             ..*settings
         };
-        let last = local::penetration(&self.md, low.normal, Shortcut::Always, &rest, |_| ())?;
+        let last = incremental::penetration(&self.md, low.normal, Shortcut::Always, &rest, |_| ())?;
         match last {
             // D reaches beyond that plane: a callback that errs must not separate.
             Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(ended),
@@ -563,7 +563,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_iterations,
             ..*settings
         };
-        descent::penetration(
+        local::penetration(
             &self.md,
             self.centre.as_ref().map(|c| &c.v),
             || self.cold_start(),

@@ -21,8 +21,8 @@
 //! behind also tells how the centres lay, where they are given ([`State::face`]).
 
 use crate::contact::Answer;
-use crate::descent::Memory;
-use crate::global::Basis;
+use crate::hull::global::Basis;
+use crate::local::Memory;
 use crate::math::{Real, Vec3, normalised, unit};
 
 /// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.

@@ -37,38 +37,22 @@ enum Phase {
     Callbacks,
 }
 
-/// The modules of `src`; `None` is used by every phase and counts as its user's. A
+/// The folders and files of `src`; `None` is used by every phase and counts as its user's. A
 /// module that is missing here fails this file's test.
 const MODULES: &[(&str, Option<Phase>)] = &[
-    ("along", Some(Phase::Search)),
-    ("descent", Some(Phase::Search)),
-    ("distance", Some(Phase::Search)),
-    ("intersect", Some(Phase::Search)),
+    ("gjk", Some(Phase::Search)),
     ("local", Some(Phase::Search)),
-    ("planar", Some(Phase::Search)),
-    ("portal", Some(Phase::Search)),
-    ("separation", Some(Phase::Search)),
-    ("signed_distance", Some(Phase::Search)),
-    ("start", Some(Phase::Search)),
-    ("expansion", Some(Phase::Proof)),
-    ("proof", Some(Phase::Proof)),
-    ("plane", Some(Phase::Proof)),
-    ("polytope", Some(Phase::Proof)),
-    ("contact_patch", Some(Phase::Patch)),
-    ("polygon", Some(Phase::Patch)),
+    ("paper", Some(Phase::Search)),
+    ("hull", Some(Phase::Proof)),
+    ("contacts", Some(Phase::Patch)),
     ("contact", Some(Phase::Rest)),
-    ("contact_manifold", Some(Phase::Rest)),
     ("ffi", Some(Phase::Rest)),
-    ("global", Some(Phase::Rest)),
-    ("shapes", Some(Phase::Rest)),
-    ("support", Some(Phase::Rest)),
-    ("support_set", Some(Phase::Rest)),
     ("query", Some(Phase::Rest)),
+    ("shapes", Some(Phase::Rest)),
     ("state", Some(Phase::Rest)),
-    ("barycentric", None),
+    ("known", None),
     ("lib", None),
     ("math", None),
-    ("precision", None),
 ];
 
 /// What the rows are about: a pair set, moved this far apart if it is.
@@ -366,12 +350,12 @@ pub fn run(options: &Options) {
 mod tests {
     #[test]
     fn callgrind_self_cost_by_phase() {
-        let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/src/expansion.rs\n\
-            fn=ccd::expansion::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/contact_patch.rs\n3 100\n\
-            fi=/w/src/math.rs\n4 200\nfe=/w/src/expansion.rs\n5 1\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
-            fl=/rustc/core/zip.rs\nfn=<core::Zip<ccd::local::M> as X>::next\n7 1000\n\
+        let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/src/hull/expansion.rs\n\
+            fn=ccd::hull::expansion::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/contacts/patch.rs\n3 100\n\
+            fi=/w/src/math.rs\n4 200\nfe=/w/src/hull/expansion.rs\n5 1\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
+            fl=/rustc/core/zip.rs\nfn=<core::Zip<ccd::paper::incremental::M> as X>::next\n7 1000\n\
             ob=/bin/charts\nfl=/w/c-tests/lab.rs\nfn=run\n1 77\nob=/l/libccd.so\n\
-            fl=/w/src/ffi/collide.rs\nfn=ccdMPRPenetration\n8 10000\nfi=/w/src/portal.rs\n9 3\n";
+            fl=/w/src/ffi/collide.rs\nfn=ccdMPRPenetration\n8 10000\nfi=/w/src/paper/portal.rs\n9 3\n";
         let expected = super::Count {
             search: 1003,
             proof: 15,

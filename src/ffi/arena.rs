@@ -9,8 +9,8 @@
 use core::ptr::NonNull;
 
 use super::{calloc, free};
-use crate::global::{Arena, Room};
-use crate::support::Fault;
+use crate::hull::global::{Arena, Room};
+use crate::known::support::Fault;
 
 struct Block(Option<NonNull<Room>>);
 

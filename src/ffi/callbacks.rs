@@ -6,9 +6,9 @@
 use core::ffi::{c_ulong, c_void};
 
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
+use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::math::{ITERATION_CAP, Real, Vec3};
 use crate::query::Pair;
-use crate::support::{MinkowskiDifference, SupportMap, SupportPoint};
 
 /// One object behind libccd's support callback.
 #[derive(Clone, Copy)]

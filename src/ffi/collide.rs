@@ -10,10 +10,10 @@ use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::ccdMPRPenetrationWarm;
 use crate::contact::{Answer, Penetration, Settings};
-use crate::distance;
+use crate::gjk::distance;
+use crate::known::support::Fault;
+use crate::known::support_set::Stop;
 use crate::math::{Real, Vec3, unit};
-use crate::support::Fault;
-use crate::support_set::Stop;
 use crate::{query::Pair, state::State};
 
 /// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.

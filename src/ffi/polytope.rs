@@ -6,7 +6,7 @@
 //! functions of its own that unlink and free() what is allocated here.
 //!
 //! So a node is one block of C's malloc, every link stands where libccd puts it, and
-//! `nearest` is kept by libccd's rule. The distances are [`crate::barycentric`]'s.
+//! `nearest` is kept by libccd's rule. The distances are [`crate::gjk::barycentric`]'s.
 
 use core::ffi::{c_char, c_int};
 use core::mem::offset_of;
@@ -17,7 +17,7 @@ use super::types::{
     ccd_pt_t, ccd_pt_vertex_t, ccd_support_t, ccd_vec3_t,
 };
 use super::{free, malloc};
-use crate::barycentric;
+use crate::gjk::barycentric;
 use crate::math::{EPSILON, Real, Vec3};
 
 /// An empty polytope.

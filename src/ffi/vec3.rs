@@ -4,7 +4,7 @@
 //! Point to segment and point to triangle distances, and the library's three data objects.
 
 use super::types::ccd_vec3_t;
-use crate::barycentric::{self, Nearest};
+use crate::gjk::barycentric::{self, Nearest};
 use crate::math::{Real, Vec3};
 
 /// Squared distance, m², of point `p` from segment `ab`; the nearest point goes to

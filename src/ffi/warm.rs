@@ -10,12 +10,12 @@ use super::callbacks::{Object, Query};
 use super::collide::{mpr_penetration, write};
 use super::types::{ccd_t, ccd_vec3_t};
 use crate::contact::{Answer, Penetration, Settings};
-use crate::contact_manifold;
-use crate::distance;
-use crate::intersect;
+use crate::contacts::manifold;
+use crate::gjk::distance;
+use crate::gjk::intersect;
+use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
+use crate::known::support::Fault;
 use crate::math::{Real, Vec3, unit};
-use crate::signed_distance::{Distance, Wanted, signed_distance};
-use crate::support::Fault;
 use crate::{query::Pair, state::State};
 
 /// The objects overlap, by more than rounding.
@@ -469,8 +469,8 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     let (Some(normal), Some((one, two))) = (normal, objects) else {
         return CCD_BAD_INPUT;
     };
-    let max = (max as usize).min(contact_manifold::ROOM);
-    let Ok(manifold) = contact_manifold::contacts(&one, &two, &normal, slop, max) else {
+    let max = (max as usize).min(manifold::ROOM);
+    let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop, max) else {
         return CCD_BAD_INPUT;
     };
     for (i, contact) in manifold.contacts().iter().enumerate() {

@@ -7,9 +7,9 @@ use std::ffi::{c_int, c_void};
 
 use ccd::contact::{Answer as Outcome, Settings};
 use ccd::ffi::types::{ccd_t, ccd_vec3_t};
-use ccd::local::{self, Shortcut};
+use ccd::known::support::MinkowskiDifference;
 use ccd::math::Vec3;
-use ccd::support::MinkowskiDifference;
+use ccd::paper::incremental::{self, Shortcut};
 
 use super::deep::{Deep, Polytope};
 use super::libraries::{CDistance, CPenetration, Classic, Libraries, Truth, Warm};
@@ -325,7 +325,7 @@ pub fn paper<'a>(
         let memory = if pair.frame == 0 { None } else { last };
         let from = start.direction(&pair.truth).map(Vec3::from).or(memory);
         let from = from.unwrap_or_else(|| pair.truth.cold.into());
-        let answer = local::penetration(&md, from, shortcut, &settings, |_| ());
+        let answer = incremental::penetration(&md, from, shortcut, &settings, |_| ());
         let (Ok(Outcome::Hit(found)) | Ok(Outcome::Limit(found))) = answer else {
             return None;
         };

@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Where the objects touch, once depth and direction are known.
+//!
+//! [`patch`] finds the position of one contact, [`manifold`] several contacts; [`polygon`]
+//! clips and measures the faces.
+
+pub mod manifold;
+pub mod patch;
+pub mod polygon;

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Do two objects overlap, with memory: the yes or no of [`crate::gjk::distance`], and what one
+//! query of a pair leaves behind for the next.
+//!
+//! A pair that was apart is asked about its separating direction first
+//! ([`crate::gjk::separation`]). A pair that overlapped is asked along the directions of the tetrahedron that proved
+//! it: where those points still surround the origin, they are the whole answer. Whatever
+//! fails is not lost: the points go into the search.
+
+use crate::gjk::distance::overlap;
+use crate::gjk::separation::{leave, still_apart};
+use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support_set::{Inquiry, Stop, SupportSet};
+use crate::math::{Vec3, unit};
+use crate::state::State;
+
+/// Room for the points of a query: what the state's directions give, and a simplex.
+const ROOM: usize = 8;
+
+/// Do the objects overlap? `centre`, an interior point of D, is trusted.
+///
+/// # Errors
+/// A callback's answer that is not finite.
+pub fn intersect<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    centre: &SupportPoint,
+    state: &mut State,
+) -> Result<bool, Fault> {
+    let mut inquiry = Inquiry::new(md);
+    let mut set = SupportSet::<ROOM>::EMPTY;
+    let dir = unit(&-centre.v);
+    // A centre at the origin is no corner to look from.
+    let inner = dir.map(|_| set.push(&Vec3::zeros(), centre));
+    inquiry.precision.note(centre);
+    let was_apart = state.separating().is_some();
+    if still_apart(&mut inquiry, &mut set, state)?.is_some() {
+        return Ok(false);
+    }
+    let answer = match surround(&mut inquiry, &mut set, state) {
+        Ok(()) => overlap(&mut inquiry, &mut set, inner, &dir.unwrap_or(Vec3::x())),
+        Err(stop) => Err(stop),
+    };
+    match answer {
+        Ok(corners) => {
+            // What a depth query left is worth more than this.
+            if !state.overlapped() {
+                *state = State::surrounded(corners.map(|i| set.direction(i)));
+            }
+            Ok(true)
+        }
+        Err(Stop::Apart(n)) => {
+            leave(&mut inquiry, state, was_apart, n)?;
+            Ok(false)
+        }
+        Err(Stop::Fault(fault)) => Err(fault),
+    }
+}
+
+/// Asks along the directions of the state's last tetrahedron. `Err`: one separates.
+fn surround<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<ROOM>,
+    state: &State,
+) -> Result<(), Stop> {
+    for n in state.surrounding().iter().filter_map(unit) {
+        let place = set.len();
+        inquiry.ask_at(set, place, &n)?;
+    }
+    Ok(())
+}

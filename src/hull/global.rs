@@ -1,0 +1,660 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The global minimum of the depth from start to end.
+//!
+//! 1. The first direction. Where its support point separates, that is the answer.
+//! 2. The apex, and the points that the last query's proof stood on ([`Search::begin`]).
+//! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::hull::start`].
+//! 4. The expansion ([`crate::hull::expansion`]), in rooms that grow. Where it does not show the
+//!    origin inside, 3 and 4 are tried again in the next way.
+//! 5. The answer ([`Search::conclude`]).
+//!
+//! *Rooms.* Points and faces live in a small room on the stack that most queries never leave;
+//! where it is full they move to larger ones, each in a stack frame of its own that is entered
+//! only then, and at last to a block that the caller lends ([`Arena`]), if it does.
+
+use crate::contact::Penetration;
+use crate::contacts::patch::{self, Rest};
+use crate::gjk::barycentric;
+use crate::gjk::distance;
+use crate::hull::expansion::{self, End, Limits, Progress, expand};
+use crate::hull::polytope::Polytope;
+use crate::hull::start;
+use crate::known::support::{Fault, SupportMap, SupportPoint};
+use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet};
+use crate::math::{Real, Vec3, larger, unit};
+
+/// Points and faces of the first room, 3 KB: enough for shallow contacts.
+///
+/// In each room, a closed surface of V points has 2V − 4 faces, and some are left over for a
+/// fan, which is made before the faces that it replaces are freed.
+const FIRST: (usize, usize) = (16, 32);
+/// Of the second, 5 KB (double): enough for most polytopes.
+const SECOND: (usize, usize) = (24, 48);
+/// Of the third, 31 KB: enough for the 160 support points of an MPR query.
+const THIRD: (usize, usize) = (162, 328);
+/// Of the one that is lent, 348 KB.
+const LENT: (usize, usize) = (1536, crate::hull::polytope::MOST_FACES);
+/// Places in the first room that are kept free for the start's own points.
+const START: usize = 9;
+
+/// Memory for the largest polytopes. All bytes zero is a valid one.
+pub struct Room {
+    set: SupportSet<{ LENT.0 }>,
+    hull: Polytope<{ LENT.1 }>,
+}
+
+/// Where a query gets a [`Room`] from, once and only if it needs it.
+pub trait Arena {
+    /// A room with any contents.
+    ///
+    /// # Errors
+    /// [`Fault::NoMemory`].
+    fn room(&mut self) -> Result<&mut Room, Fault>;
+}
+
+/// What is wanted, and where to start.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'a> {
+    /// A point that the caller says is in D, the difference of the centres; trusted.
+    pub centre: Option<&'a SupportPoint>,
+    /// The unit direction that was asked first.
+    pub first: Vec3,
+    /// Directions besides `first` that the last proof stood on; zero for none. Empty: cold.
+    pub others: &'a [Vec3],
+    /// How far to go.
+    pub limits: &'a Limits,
+    /// Does anybody read the witness points? Else the width of the contact is not looked for.
+    pub placed: bool,
+    /// The [`Basis::mark`] of a pair that rested face on face when it was asked last.
+    pub mark: Option<u64>,
+}
+
+impl Request<'_> {
+    /// Is nothing known but where to begin?
+    fn cold(&self) -> bool {
+        self.others.is_empty()
+    }
+}
+
+/// The directions that a proof stands on, for the next query of the pair: unit, the minimum's
+/// first, then those that found the corners of the polytope's nearest face.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Basis {
+    directions: [Vec3; Basis::ROOM],
+    len: usize,
+    /// The [`patch::mark`] of the points known, where a face rests on a face or an edge.
+    pub mark: u64,
+    /// Has such a pair not moved since the state was left?
+    pub unmoved: bool,
+}
+
+impl Basis {
+    /// How many there is room for: the minimum's and three corners'.
+    pub const ROOM: usize = 4;
+
+    /// The directions.
+    pub fn directions(&self) -> &[Vec3] {
+        &self.directions[..self.len.min(Self::ROOM)]
+    }
+
+    /// Adds a direction, unless it is there, is zero, or there is no room.
+    pub fn add(&mut self, n: &Vec3) {
+        if self.len < Self::ROOM && *n != Vec3::zeros() && !self.directions().contains(n) {
+            self.directions[self.len] = *n;
+            self.len += 1;
+        }
+    }
+}
+
+/// The global minimum penetration. `first`: the support point of the first direction;
+/// `basis` takes the directions that the proof stands on, where somebody remembers them;
+/// without an `arena` the rooms on the stack are all there is.
+///
+/// Writes the answer to `hit`, all zero before, and returns whether it is proven to within the
+/// limits' gap; `depth_lower` is what the polytope proves. Where it is not, a cap or rounding
+/// came first: the depth is sound, and the lower bound proven, but they are farther apart.
+///
+/// # Errors
+/// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not
+/// finite, or an arena without memory.
+#[inline(always)]
+pub fn minimum<'q, A: SupportMap, B: SupportMap>(
+    inquiry: Inquiry<'q, A, B>,
+    first: &SupportPoint,
+    request: &'q Request<'q>,
+    arena: Option<&'q mut dyn Arena>,
+    basis: Option<&'q mut Basis>,
+    hit: &'q mut Penetration,
+) -> Result<bool, Stop> {
+    let mut search = Search {
+        inquiry,
+        request,
+        arena,
+        basis,
+        hit,
+        open: None,
+        stuck: false,
+    };
+    search.run(first)
+}
+
+/// A way to a first tetrahedron.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// [`start::known`].
+    Known,
+    /// [`start::ring_of_ball`].
+    Ring,
+    /// [`start::portal`].
+    Portal,
+    /// [`start::solid`].
+    Solid,
+    /// The corners around the origin that the distance algorithm finds.
+    Surround,
+}
+
+/// In the order in which they are tried: what costs least comes first.
+const WAYS: [Way; 5] = [
+    Way::Known,
+    Way::Ring,
+    Way::Portal,
+    Way::Solid,
+    Way::Surround,
+];
+
+/// A query on its way.
+struct Search<'q, 'r, A, B> {
+    inquiry: Inquiry<'q, A, B>,
+    request: &'r Request<'r>,
+    arena: Option<&'r mut dyn Arena>,
+    basis: Option<&'r mut Basis>,
+    /// The answer of the last expansion.
+    hit: &'r mut Penetration,
+    /// Whether it is proven, where rounding has ended all expansions so far: the answer where it
+    /// ends the last one too.
+    open: Option<bool>,
+    /// Was that one stuck?
+    stuck: bool,
+}
+
+impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
+    /// All that comes after the first support point.
+    #[inline(never)]
+    fn run(&mut self, first: &SupportPoint) -> Result<bool, Stop> {
+        let mut set = SupportSet::<{ FIRST.0 }>::EMPTY;
+        let mut opposite = self.begin(&mut set, first)?;
+        let tolerance = self.tolerance();
+        let gap = self.request.limits.gap;
+        let within = |depth: Real| larger(gap * depth, tolerance);
+        let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
+        // The index of `opposite`, once it is in the set.
+        let mut skip = usize::MAX;
+        let mut large = false;
+        for way in WAYS {
+            // What a larger room has not shown no other tetrahedron of the same points will.
+            if large && way != Way::Surround {
+                continue;
+            }
+            skip = begin_again(&mut set, skip);
+            let names = match way {
+                Way::Known => start::known(&set),
+                Way::Ring => {
+                    let warm = !self.request.cold();
+                    start::ring_of_ball(&mut self.inquiry, &mut set, warm, within)?
+                }
+                Way::Portal => start::portal(&mut self.inquiry, &mut set, skip)?,
+                Way::Solid => start::solid(&mut self.inquiry, &mut set)?,
+                Way::Surround => Some(self.surround(&mut set)?),
+            };
+            // A point of the polytope like others from here on, but no corner of a portal.
+            if names.is_some() || way == Way::Ring {
+                if let Some((n, point)) = opposite.take() {
+                    skip = set.push(&n, &point);
+                }
+            }
+            let Some(names) = names else {
+                continue;
+            };
+            let precision = &self.inquiry.precision;
+            let mut progress = Progress::new(self.request.limits, precision, set.len(), names);
+            let fine = expansion::exact(progress.tolerance, precision);
+            let [i, j, k, l] = names;
+            let points = [set.v(i), set.v(j), set.v(k), set.v(l)];
+            // It may be flat.
+            if !hull.tetrahedron(names, points, precision.size(), fine) {
+                continue;
+            }
+            let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
+            // Where an expansion stays open or is stuck, rounding had the last word: from another
+            // tetrahedron it may not.
+            if end != End::NoRoom {
+                if let Some(proven) = self.answer(&set, &hull, &progress, end) {
+                    return Ok(proven);
+                }
+                continue;
+            }
+            let answer = self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
+                &set,
+                &hull,
+                &mut progress,
+            )?;
+            if let Some(proven) = answer {
+                return Ok(proven);
+            }
+            large = !self.stuck;
+        }
+        Ok(self.open.unwrap_or_else(|| {
+            let lowest = set.farther(&self.inquiry.lowest.dir, Real::NEG_INFINITY);
+            *self.hit = self.bare(&set.point(lowest.unwrap_or(1)));
+            false
+        }))
+    }
+
+    /// No polytope has come to hold the origin, by rounding or by callbacks that contradict
+    /// themselves: the distance algorithm decides whether the objects overlap, and its
+    /// tetrahedron is the last start.
+    #[cold]
+    #[inline(never)]
+    fn surround<const P: usize>(&mut self, set: &mut SupportSet<P>) -> Result<[usize; 4], Stop> {
+        set.truncate(START);
+        let dir = self.inquiry.lowest.dir;
+        distance::overlap(&mut self.inquiry, set, None, &dir)
+    }
+
+    /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
+    /// origin inside, or is stuck and may be tried from elsewhere.
+    #[inline(always)]
+    fn answer<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &Polytope<F>,
+        progress: &Progress,
+        end: End,
+    ) -> Option<bool> {
+        let proven = self.conclude(set, hull, progress, end);
+        let open = match end {
+            End::Open => true,
+            End::NoRoom => !(hull.nearest().key >= 0.0),
+            // Of a larger room only what is no answer at all is worth another start.
+            End::Stuck => {
+                !proven && (P == FIRST.0 || !(self.hit.depth_lower > 0.9 * self.hit.depth))
+            }
+            End::Proven | End::Inside => false,
+        };
+        if open {
+            self.open = Some(proven);
+            self.stuck = end == End::Stuck;
+            return None;
+        }
+        Some(proven)
+    }
+
+    fn tolerance(&self) -> Real {
+        self.inquiry
+            .precision
+            .tolerance(self.request.limits.tolerance)
+    }
+
+    /// Puts the apex into the set as point 0, `first` as point 1, and the points that the last
+    /// proof stood on. Where no centre is given the apex is the middle of `first` and the
+    /// support point opposite, which is returned with its direction. It is not in the set yet:
+    /// on a line with the apex and `first`, it makes no tetrahedron with them.
+    #[inline(always)]
+    fn begin<const P: usize>(
+        &mut self,
+        set: &mut SupportSet<P>,
+        first: &SupportPoint,
+    ) -> Result<Option<(Vec3, SupportPoint)>, Stop> {
+        let Request {
+            centre,
+            first: dir,
+            others,
+            ..
+        } = self.request;
+        let apex = centre.unwrap_or(first);
+        set.push(&Vec3::zeros(), apex);
+        set.push(dir, first);
+        let mut opposite = None;
+        if centre.is_some() {
+            self.inquiry.precision.note(apex);
+        } else {
+            let n = -dir;
+            let i = self.inquiry.ask(set, &n)?.i;
+            let point = set.point(i);
+            set.truncate(2);
+            set.put(0, &Vec3::zeros(), &first.middle(&point));
+            opposite = Some((n, point));
+            // A cold query's first direction may have nothing to do with where the objects
+            // are. Then it is only good for an apex, and the support point along the way from
+            // there through the origin takes its place as point 1.
+            if let Some(n) =
+                unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, dir))
+            {
+                let i = self.inquiry.ask(set, &n)?.i;
+                set.swap(1, i);
+            }
+        }
+        // A state may hold anything: made unit, and no more than there is room for.
+        for n in others.iter().filter_map(unit) {
+            if set.len() + START <= P {
+                self.inquiry.ask(set, &n)?;
+            }
+        }
+        Ok(opposite)
+    }
+
+    /// The expansion goes on in a larger room of `Q` points and `G` faces, and in those after
+    /// it.
+    #[cold]
+    #[inline(never)]
+    fn widened<const P: usize, const F: usize, const Q: usize, const G: usize>(
+        &mut self,
+        small: &SupportSet<P>,
+        polytope: &Polytope<F>,
+        progress: &mut Progress,
+    ) -> Result<Option<bool>, Stop> {
+        let mut set = SupportSet::<Q>::EMPTY;
+        let mut hull = Polytope::<G>::BLANK;
+        set.take(small);
+        polytope.moved_to(&mut hull);
+        progress.coarsen();
+        let end = expand(&mut self.inquiry, &mut set, &mut hull, progress)?;
+        if end == End::NoRoom && Q < THIRD.0 {
+            return self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, progress);
+        }
+        // It is lent once: an expansion that fills it stays open.
+        if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
+            return self.lent(arena.room()?, &set, &hull, progress);
+        }
+        Ok(self.answer(&set, &hull, progress, end))
+    }
+
+    /// The expansion goes on in the room that is lent.
+    #[cold]
+    #[inline(never)]
+    fn lent<const P: usize, const F: usize>(
+        &mut self,
+        Room { set, hull }: &mut Room,
+        small: &SupportSet<P>,
+        polytope: &Polytope<F>,
+        progress: &mut Progress,
+    ) -> Result<Option<bool>, Stop> {
+        set.take(small);
+        polytope.moved_to(hull);
+        let end = expand(&mut self.inquiry, set, hull, progress)?;
+        Ok(self.answer(set, hull, progress, end))
+    }
+
+    /// The answer where nothing is known but the upper bound.
+    fn bare(&self, witness: &SupportPoint) -> Penetration {
+        let Lowest { depth, dir, .. } = self.inquiry.lowest;
+        Penetration {
+            depth,
+            depth_lower: 0.0,
+            dir,
+            normal: dir,
+            point1: witness.v1,
+            point2: witness.v2,
+            width: 0.0,
+            iterations: 0,
+        }
+    }
+
+    /// Writes the answer of an expansion, and tells whether it is proven: depth and direction
+    /// are the upper bound's, lower bound and witness points the polytope's.
+    #[inline(never)]
+    fn conclude<const P: usize, const F: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        hull: &Polytope<F>,
+        progress: &Progress,
+        end: End,
+    ) -> bool {
+        let Lowest { mut depth, dir } = self.inquiry.lowest;
+        let top = hull.nearest();
+        let precision = &self.inquiry.precision;
+        // The point that was asked for along dir; or a farther one, where a callback
+        // contradicts itself: D reaches as far as all its known points.
+        let lowest = set.farther(&dir, Real::NEG_INFINITY).unwrap_or(1);
+        let reach = dir.dot(&set.v(lowest));
+        if reach > depth + precision.tie() {
+            depth = reach;
+        }
+        let near = hull.distance(top.face);
+        // What an earlier expansion has proven holds too; 0 before the first.
+        let lower = larger(near - precision.grain(), self.hit.depth_lower).min(depth);
+        let (face, nearest) = exit_face(set, hull, top.face, &dir, depth, progress.tolerance);
+        let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
+        let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
+        let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
+        let width = self.width(set, lowest, [a, b, c], progress.tolerance);
+        *self.hit = Penetration {
+            depth,
+            depth_lower: lower,
+            dir,
+            normal: dir,
+            point1,
+            point2,
+            width,
+            iterations: progress.iterations,
+        };
+        if let Some(basis) = &mut self.basis {
+            if width > 0.0 {
+                let points = (0..set.len()).map(|i| set.witnesses(i));
+                basis.mark = patch::mark(points.clone());
+                basis.unmoved = self.request.mark == Some(basis.mark) && patch::pins(points);
+            }
+            basis.add(&dir);
+            // What asking along dir has found it finds again: one of several that are as far.
+            let found = (1..set.len()).find(|&i| set.direction(i) == dir);
+            let found = set.v(found.unwrap_or(lowest));
+            for i in hull.corners(top.face) {
+                if set.v(i) != found {
+                    basis.add(&set.direction(i));
+                }
+            }
+        }
+        // Where rounding or a cap ended the search: a tolerance that was asked for coarser
+        // than the one in force is met all the same. (In this order NaN is none.)
+        let asked = larger(self.request.limits.tolerance, progress.tolerance);
+        let close = asked + 16.0 * precision.grain();
+        let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
+        proven || depth - lower <= close
+    }
+
+    /// The length, metres, along which the objects touch, as far as the points tell; 0 where
+    /// that is a point, or nobody asks. Point `lowest` is the farthest along the answer's
+    /// direction; the corners are those of the face that the witness points lie in.
+    #[inline(always)]
+    fn width<const P: usize>(
+        &self,
+        set: &SupportSet<P>,
+        lowest: usize,
+        [a, b, c]: [&[Vec3; 2]; 3],
+        tolerance: Real,
+    ) -> Real {
+        if !self.request.placed {
+            return 0.0;
+        }
+        let dir = &self.inquiry.lowest.dir;
+        let precision = &self.inquiry.precision;
+        let size = precision.size();
+        let error = tolerance + precision.rounding();
+        // Asked along the normal of two resting faces, a support mapping picks one corner of
+        // each: where little else was asked, the points do not show that they rest.
+        let tied = (dir - set.direction(1)).norm() * size <= error;
+        let blind = self.request.mark.is_some() || self.request.cold() && tied;
+        // Mostly one of the two touches with a corner, which needs no look.
+        let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
+        if corner && !blind {
+            return 0.0;
+        }
+        let witnesses = |i| *set.witnesses(i + 1);
+        let (count, above) = (set.len() - 1, set.witnesses(lowest));
+        match patch::rest(witnesses, count, dir, above, error, size) {
+            Rest::Along(length) => length,
+            Rest::Corner(side) if blind => side.norm(),
+            Rest::Crossing(length) if blind => length,
+            _ => 0.0,
+        }
+    }
+}
+
+/// Makes room for another start where a larger room was stuck. Returns `skip`, if that point
+/// stays.
+#[inline(always)]
+fn begin_again<const P: usize>(set: &mut SupportSet<P>, skip: usize) -> usize {
+    if !set.is_full() {
+        return skip;
+    }
+    set.truncate(START);
+    if skip < START { skip } else { usize::MAX }
+}
+
+/// The face through which the ray along `dir` leaves the polytope, about, and its point
+/// nearest to the foot depth · dir.
+///
+/// Mostly that is the nearest face, `top`. Where several lie in one plane it is the one nearest
+/// to the foot, of all that the ray crosses no later than at the depth.
+#[inline(always)]
+fn exit_face<const P: usize, const F: usize>(
+    set: &SupportSet<P>,
+    hull: &Polytope<F>,
+    top: usize,
+    dir: &Vec3,
+    depth: Real,
+    tolerance: Real,
+) -> (usize, barycentric::Nearest<3>) {
+    let foot = dir * depth;
+    let nearest = |f: usize| {
+        let [a, b, c] = hull.corners(f).map(|i| set.v(i));
+        barycentric::triangle(&foot, &a, &b, &c)
+    };
+    let mut best = (top, nearest(top));
+    if best.1.distance2 <= tolerance * tolerance {
+        return best;
+    }
+    for f in hull.faces() {
+        let rise = hull.normal(f).dot(dir);
+        if rise > 0.0 && hull.offset(f) <= rise * (depth + tolerance) {
+            let other = nearest(f);
+            if other.distance2 < best.1.distance2 {
+                best = (f, other);
+            }
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::known::support::MinkowskiDifference;
+    use crate::shapes::{Random, capsule};
+
+    struct Heap(Option<Box<Room>>);
+    impl Arena for Heap {
+        fn room(&mut self) -> Result<&mut Room, Fault> {
+            Ok(self.0.get_or_insert_with(|| {
+                Box::new(Room {
+                    set: SupportSet::EMPTY,
+                    hull: Polytope::BLANK,
+                })
+            }))
+        }
+    }
+
+    /// The minimum of an overlap, and whether it is proven.
+    fn ask<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        first: Vec3,
+    ) -> Option<(bool, Penetration)> {
+        let mut inquiry = Inquiry::new(md);
+        let point = inquiry.first(&first, None).ok()?;
+        let limits = Limits {
+            tolerance: 1e-6,
+            gap: 0.0,
+            supports: 1500,
+            iterations: 1000,
+        };
+        let request = Request {
+            centre: None,
+            first,
+            others: &[],
+            limits: &limits,
+            placed: true,
+            mark: None,
+        };
+        let mut hit = Penetration::default();
+        let mut heap = Heap(None);
+        let proven = minimum(inquiry, &point, &request, Some(&mut heap), None, &mut hit);
+        Some((proven.ok()?, hit))
+    }
+
+    #[test]
+    fn capsules_are_no_deeper_than_their_cores_tell() {
+        let mut r = Random::new(1);
+        for round in 0..3000 {
+            let (a, b) = (r.direction() * 0.5, r.direction() * 0.5);
+            let c = r.direction() * 0.6;
+            let (pa, pb) = (capsule(-a, a, 0.5), capsule(c - b, c + b, 0.5));
+            let md = MinkowskiDifference::new(pa, pb);
+            // cores: parallelogram; exact: facets of segment difference + 1
+            let n = a.cross(&b).normalize();
+            let core = |n: &Vec3| n.dot(&-c) + n.dot(&a).abs() + n.dot(&b).abs();
+            let exact = core(&n).min(core(&-n));
+            let n = c.normalize();
+            let Some((true, hit)) = ask(&md, n) else {
+                continue;
+            };
+            let md_h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
+            assert!((md_h - hit.depth).abs() < 1e-9);
+            if exact > 0.0 {
+                assert!(
+                    hit.depth <= exact + 1.0 + 1e-5,
+                    "{round} {hit:?} {}",
+                    exact + 1.0
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_cone_is_proven_from_any_direction() {
+        let mut r = Random::new(1);
+        let mut bad = 0;
+        for round in 0..20000 {
+            let rb = r.rotation();
+            let (rad, h): (Real, Real) = (0.7046, 0.583);
+            let pb = r.vector(0.3);
+            let b = move |n: &Vec3| {
+                let d: Vec3 = rb.inverse() * n;
+                let l = d.x.hypot(d.y);
+                let sin = rad / (rad * rad + 4.0 * h * h).sqrt();
+                let p = if d.z > sin {
+                    Vec3::z() * h
+                } else if l > 0.0 {
+                    Vec3::new(d.x / l * rad, d.y / l * rad, -h)
+                } else {
+                    -Vec3::z() * h
+                };
+                rb * p + pb
+            };
+            let md = MinkowskiDifference::new(|_: &Vec3| Vec3::zeros(), b);
+            let n = if round % 2 == 0 {
+                r.direction()
+            } else {
+                rb * Vec3::z()
+            };
+            if let Some((false, hit)) = ask(&md, n) {
+                if hit.depth_lower == 0.0 {
+                    bad += 1;
+                    println!("{round} {hit:?}");
+                }
+            }
+        }
+        assert_eq!(bad, 0);
+    }
+}

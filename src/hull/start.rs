@@ -1,0 +1,480 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The first tetrahedron of the global search: a point inside D, the *apex*, and three
+//! support points where the minimum is likely to be.
+//!
+//! A small first polytope around the right place saves support points: faces far from
+//! the origin never need to be expanded. Two kinds of places are told apart.
+//!
+//! *Round.* As long as D looks like a ball, with s(n) = m + ρn, the minimum of h is along
+//! −m, of depth ρ − |m|. The apex is the first m; a pair of samples (n, s), (n′, s′) tells
+//! the radius: e = n′·(s′ − s) and e′ = n·(s − s′) are what each exceeds the other's
+//! support plane by, for a ball both are ½ρ|n′ − n|², and ρ = (e + e′) / |n′ − n|². Where
+//! the next step promises less than a quarter of the tolerance, three points in a ring
+//! around the last direction are the face; the ring is as wide as a face may be that bounds
+//! a ball's distance to the tolerance. In a warm query the points of the last proof must tell of
+//! one ball: else the pair is not round.
+//!
+//! *Else* a small portal: seen along the axis from the apex through the origin, D is flat
+//! and the origin a point of the plane, and a triangle around it is wanted. That is GJK in
+//! the plane: from the point or edge nearest to the origin, ask towards the origin. A
+//! direction that lies in the plane is MPR's first portal, a quarter turn wide; here the
+//! direction of the lowest support plane is tilted that way. How wide a portal may be bounds
+//! the tilt; and where it brings nothing it grows, up to the plane itself.
+//!
+//! *No tilt is wider than the depth allows.* Let n be a direction of the support value h, and
+//! the known points no farther along it, and w short of the origin as seen along the axis, or
+//! across n. Along n tilted by h / w they have no positive support value: if the minimum is
+//! this side of there, it is what lies beyond those points that holds it back, and if nothing
+//! does the objects are apart. That tilt is small where a contact is shallow, and where n is
+//! near the minimum, as a state has it.
+
+use crate::known::support::SupportMap;
+use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
+use crate::math::{Real, Vec3, larger, lesser, normalised, perpendicular, unit};
+
+// Measured: support points of the MPR calls in the mean of sixteen pair sets and the recorded
+// contacts (`cargo bench --bench charts -- record`), when one number changes alone.
+
+/// Steps on the ball. Measured: with 3 shallow ellipsoids take 11 % more, 10 change nothing.
+const STEPS: usize = 6;
+/// Steps on the ball that go no farther than the depth allows. Measured: with 1 misses take 5 %
+/// more, without a bound the shallowest contacts of a random mix 20 %.
+const ALLOWED: usize = 2;
+/// A direction is tilted by this much of what leaves the known points no support value: at 1
+/// itself a separation hardly shows. Measured: 1.05 to 1.3 are the same; without
+/// the bound on a step to the ball's minimum contacts take 8 % more, misses 17 %.
+const TILT: Real = 1.15;
+/// |n′ − n|² above which a first direction has nothing to do with the way from the apex: 31
+/// degrees. Measured for GJK: 0.6 costs hulls 2.5 % and contacts 1 %, 0.06 costs less than 1 %.
+const AWAY: Real = 0.3;
+/// Relative difference of e and e′ up to which two samples are of one ball. Measured: with
+/// 0.03 shallow ellipsoids take 18 % more, with 0.3 the mean is 0.6 % more.
+const ALIKE: Real = 0.1;
+/// The square of the sine of the angle at one of three points below which they lie on a line.
+/// Measured: warm ellipsoids take 20 % more without the ball, contacts 6 % with it for pairs
+/// that it does not fit; 0.01 to 0.3 change neither by 0.3 %.
+const BROAD: Real = 0.1;
+/// The share of the size below which known points are no good measure of an extent. Free.
+const LITTLE: Real = 0.05;
+/// Directions tried for a portal. Free.
+const TRIES: usize = 12;
+/// What a tilt grows by each time that it was in vain; from then on the direction lies in the
+/// plane. Measured: without the second and third misses take 4.6 % more, with a fourth the same.
+const GROWTH: [Real; 3] = [1.0, 1.5, 2.25];
+/// How wide a portal may be, for each unit of the origin's distance from its edge, and of the
+/// edge's length. Measured: 2 and 3 for the first cost deep boxes and small motions 0.5 and
+/// 2 %; 0.3 to 0.9 for the second change contacts by 0.7 %.
+const WIDE: [Real; 2] = [2.5, 0.6];
+
+/// Is a direction so far from another that samples along the two are no neighbours?
+#[inline(always)]
+pub fn is_far(n: &Vec3, other: &Vec3) -> bool {
+    (n - other).norm_squared() > AWAY
+}
+
+/// The apex and three known points whose triangle the axis goes through, if there are such: in
+/// a warm query of a pair that has moved little, the corners of the last proof's nearest face.
+#[inline(always)]
+pub fn known<const P: usize>(set: &SupportSet<P>) -> Option<[usize; 4]> {
+    const TRIANGLES: [[usize; 3]; 4] = [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]];
+    let apex = set.v(0);
+    // The last corner is the greatest number.
+    let known = TRIANGLES.iter().filter(|[_, _, k]| *k < set.len());
+    for &[i, j, k] in known {
+        let (a, b, c) = (set.v(i), set.v(j), set.v(k));
+        // The origin is on the same side of all planes through the apex and an edge. (Where two
+        // points are one, it is on opposite sides of two.)
+        let x = apex.dot(&a.cross(&b));
+        let y = apex.dot(&b.cross(&c));
+        let z = apex.dot(&c.cross(&a));
+        if x >= 0.0 && y >= 0.0 && z >= 0.0 || x <= 0.0 && y <= 0.0 && z <= 0.0 {
+            return Some([0, i, j, k]);
+        }
+    }
+    None
+}
+
+/// A ball that D looks like: its centre is s − radius · n.
+struct Ball {
+    /// The lowest sample: its direction, support point and support value.
+    n: Vec3,
+    s: Vec3,
+    h: Real,
+    /// What the last two samples tell, metres.
+    radius: Real,
+}
+
+impl Ball {
+    /// The radius that another sample tells, if the two are of one ball.
+    #[inline(always)]
+    fn with(&self, n: &Vec3, s: &Vec3, rounding: Real) -> Option<Real> {
+        let between = s - self.s;
+        let (e, e_) = (n.dot(&between), -self.n.dot(&between));
+        let sum = e + e_;
+        let alike = (e - e_).abs() <= ALIKE * sum && sum > rounding;
+        alike.then(|| sum / (n - self.n).norm_squared())
+    }
+
+    /// Do the known points from index 2 on tell of a ball too? Not where they lie on a line with
+    /// the first one: a capsule or an edge over an edge is round in one direction alone.
+    #[inline(always)]
+    fn is_known<const P: usize>(&mut self, set: &SupportSet<P>, rounding: Real) -> bool {
+        for i in 2..set.len() {
+            match self.with(&set.direction(i), &set.v(i), rounding) {
+                Some(radius) => self.radius = radius,
+                None => return false,
+            }
+        }
+        let [a, b] = [2, set.len() - 1].map(|i| set.v(i) - self.s);
+        a.cross(&b).norm_squared() > BROAD * (a.norm_squared() * b.norm_squared())
+    }
+}
+
+/// The apex and three points in a ring, where D looks like a ball; else `None`. `set` holds
+/// the apex as point 0 and the known points after it, of which there is at least one; where
+/// the query is `warm` they are near the minimum. `within` is the tolerance for a depth.
+#[inline(always)]
+pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    warm: bool,
+    within: impl Fn(Real) -> Real,
+) -> Result<Option<[usize; 4]>, Stop> {
+    let (n, s) = (set.direction(1), set.v(1));
+    let mut ball = Ball {
+        n,
+        s,
+        h: n.dot(&s),
+        radius: n.dot(&(s - set.v(0))),
+    };
+    if warm && !ball.is_known(set, inquiry.precision.rounding()) {
+        return Ok(None);
+    }
+    let mut smooth = false;
+    for step in 0..STEPS {
+        let across = ball.s - ball.n * ball.h;
+        let off2 = across.norm_squared();
+        let ahead = ball.radius - ball.h;
+        // The ball's minimum is lower by off² / 2 ahead, about.
+        if !(off2 > 0.5 * within(ball.h) * ahead) {
+            smooth = true;
+            break;
+        }
+        // Samples 45 degrees apart are no neighbours.
+        if step == 0 && off2 > ahead * ahead {
+            break;
+        }
+        // From the ball's centre through the origin; the first steps, which may tell a miss, as
+        // far as the depth allows. (All: contacts of a micrometre take 20 % more.)
+        let least = if step < ALLOWED {
+            off2 / (TILT * ball.h)
+        } else {
+            0.0
+        };
+        let way = ball.n * larger(ahead, least) - across;
+        let Some(n) = normalised(&way) else { break };
+        let Asked { h, v: s, .. } = inquiry.ask(set, &n)?;
+        let radius = ball.with(&n, &s, inquiry.precision.rounding());
+        smooth = radius.is_some();
+        ball.radius = radius.unwrap_or(ball.radius);
+        if h < ball.h {
+            (ball.n, ball.s, ball.h) = (n, s, h);
+        }
+        if !(smooth && ball.radius > 1.05 * ball.h) {
+            break;
+        }
+    }
+    if !smooth {
+        return Ok(None);
+    }
+    ring(inquiry, set, &ball, within(ball.h)).map(Some)
+}
+
+/// The apex and three points around the ball's direction: the known point farthest aside,
+/// and two asked for; all three where none is known.
+#[inline(always)]
+fn ring<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    ball: &Ball,
+    tolerance: Real,
+) -> Result<[usize; 4], Stop> {
+    // The middle of a triangle with corners at this angle lies a tolerance below the ball.
+    let tilt = (2.0 * tolerance / (ball.h + tolerance)).sqrt();
+    let tilt = tilt.clamp(2e-4, 0.3);
+    let (mut aside, mut farthest, mut old) = (Vec3::zeros(), 0.0, 0);
+    for i in 1..set.len() {
+        let v = set.v(i);
+        let across = v - ball.n * ball.n.dot(&v);
+        let far2 = across.norm_squared();
+        if far2 > farthest && v != ball.s {
+            (aside, farthest, old) = (across, far2, i);
+        }
+    }
+    let tie = inquiry.precision.tie();
+    if !(farthest > tie * tie) {
+        old = 0;
+    }
+    // A short way aside is only across to rounding: once more.
+    let a = match unit(&(aside - ball.n * ball.n.dot(&aside))) {
+        Some(a) if old > 0 => a,
+        _ => perpendicular(&ball.n),
+    };
+    let b = ball.n.cross(&a);
+    // A third of a turn apart.
+    let (cos, sin) = (-0.5, 0.75_f64.sqrt() as Real);
+    let by = 1.0 / (1.0 + tilt * tilt).sqrt();
+    let mut names = [0, 0, 0, old];
+    for (name, (x, y)) in names[1..]
+        .iter_mut()
+        .zip([(cos, sin), (cos, -sin), (1.0, 0.0)])
+    {
+        if *name == 0 {
+            let n = (ball.n + (a * x + b * y) * tilt) * by;
+            *name = inquiry.ask(set, &n)?.i;
+        }
+    }
+    Ok(names)
+}
+
+/// D as it is seen along the axis, in a plane whose origin is the axis.
+struct View {
+    x: Vec3,
+    y: Vec3,
+}
+
+/// On which side of a line through two points the origin is, as they are seen.
+struct Side {
+    /// The unit way there, from the line.
+    towards: [Real; 2],
+    /// How far the origin is from the line.
+    off: Real,
+    /// How far apart the points are.
+    span: Real,
+}
+
+impl Side {
+    #[inline(always)]
+    fn of(a: &[Real; 2], b: &[Real; 2]) -> Self {
+        let d = [b[0] - a[0], b[1] - a[1]];
+        let span = dot(&d, &d).sqrt();
+        let w = [-d[1] / span, d[0] / span];
+        let off = -dot(&w, a);
+        let (towards, off) = if off < 0.0 {
+            ([-w[0], -w[1]], -off)
+        } else {
+            (w, off)
+        };
+        Self { towards, off, span }
+    }
+}
+
+impl View {
+    /// Along a unit axis, with a point on the x axis; and how far from the origin that is seen,
+    /// 0 within rounding, where any x axis will do.
+    #[inline(always)]
+    fn along(axis: Vec3, point: &Vec3, rounding: Real) -> (Self, Real) {
+        let side = point - axis * axis.dot(point);
+        let width = side.norm();
+        let (x, width) = if width > rounding {
+            (side / width, width)
+        } else {
+            (perpendicular(&axis), 0.0)
+        };
+        let y = axis.cross(&x);
+        (Self { x, y }, width)
+    }
+
+    /// The direction to ask: `from` tilted sideways, farther the more often that was in vain,
+    /// and at last all the way.
+    #[inline(always)]
+    fn tilted(from: &Vec3, sideways: &Vec3, tilt: Real, vain: usize) -> Vec3 {
+        let way = match GROWTH.get(vain) {
+            Some(by) if tilt > 0.0 => from + sideways * (tilt * by),
+            // Unit but where the point that tells it is hardly beside the axis.
+            _ => *sideways,
+        };
+        unit(&way).unwrap_or(*from)
+    }
+
+    /// Where a point is seen.
+    #[inline(always)]
+    fn see(&self, v: &Vec3) -> [Real; 2] {
+        [self.x.dot(v), self.y.dot(v)]
+    }
+}
+
+#[inline(always)]
+fn cross(a: &[Real; 2], b: &[Real; 2]) -> Real {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[inline(always)]
+fn dot(a: &[Real; 2], b: &[Real; 2]) -> Real {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The apex and three points whose triangle the axis goes through. Point `skip` is no corner.
+///
+/// It begins with point 1. Of the triangle seen so far a and b are the ends of the edge that
+/// the axis lies beyond, and the next point is looked for there.
+///
+/// `None` where none was found: the apex is on the boundary of D or outside, or D is flat.
+#[inline(always)]
+pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    skip: usize,
+) -> Result<Option<[usize; 4]>, Stop> {
+    let apex = set.v(0);
+    let rounding = inquiry.precision.rounding();
+    let from_apex = apex.norm();
+    let axis = if from_apex > rounding {
+        apex / -from_apex
+    } else {
+        inquiry.lowest.dir
+    };
+    let mut a = 1;
+    let (view, width) = View::along(axis, &set.v(1), rounding);
+    // The way from the apex to where the axis leaves D, about.
+    let length = larger(axis.dot(&(set.v(1) - apex)), width);
+    let mut seen_a = [width, 0.0];
+    let mut b: Option<(usize, [Real; 2])> = None;
+    let mut vain = 0;
+    for _ in 0..TRIES {
+        let Side { towards, off, span } = match &b {
+            None => Side {
+                towards: [-1.0, 0.0],
+                off: width,
+                span: 0.0,
+            },
+            Some((_, seen)) => Side::of(&seen_a, seen),
+        };
+        let sideways = view.x * towards[0] + view.y * towards[1];
+        // The ends of the edge are not beyond it.
+        let name_b = b.map_or(a, |(name, _)| name);
+        let known = beyond(set, [skip, a, name_b], &sideways, rounding);
+        let (i, v) = match known {
+            Some(i) => (i, set.v(i)),
+            None => {
+                let Lowest { depth, dir } = inquiry.lowest;
+                let wide = larger(WIDE[0] * off, WIDE[1] * span);
+                let tilt = lesser(TILT * depth / off, wide / length);
+                let n = View::tilted(&dir, &sideways, tilt, vain);
+                let Asked { i, v, .. } = inquiry.ask(set, &n)?;
+                (i, v)
+            }
+        };
+        let seen = view.see(&v);
+        let gain = dot(&towards, &seen);
+        if !(gain > rounding - off) || gain <= 0.0 && vain >= GROWTH.len() {
+            // No nearer to the origin than before. In the plane itself that is the end.
+            if vain >= GROWTH.len() {
+                return Ok(None);
+            }
+            vain += 1;
+            continue;
+        }
+        if gain <= 0.0 {
+            vain += 1;
+        }
+        let Some((name_b, seen_b)) = b else {
+            b = Some((i, seen));
+            continue;
+        };
+        let turn = cross(&seen_b, &seen_a);
+        let (with_a, with_b) = (cross(&seen_a, &seen), cross(&seen, &seen_b));
+        if gain > 0.0 && with_a * turn >= 0.0 && with_b * turn >= 0.0 {
+            return Ok(Some([0, a, name_b, i]));
+        }
+        // The origin lies beyond one of the new edges.
+        if with_a * turn < 0.0 {
+            b = Some((i, seen));
+        } else {
+            (a, seen_a) = (i, seen);
+        }
+    }
+    Ok(None)
+}
+
+/// The known point farthest along a direction across the axis, but `others`, if it is past the
+/// origin by more than rounding.
+#[inline(always)]
+fn beyond<const P: usize>(
+    set: &SupportSet<P>,
+    others: [usize; 3],
+    sideways: &Vec3,
+    rounding: Real,
+) -> Option<usize> {
+    let (mut best, mut farthest) = (None, rounding);
+    for i in (1..set.len()).filter(|i| !others.contains(i)) {
+        let d = sideways.dot(&set.v(i));
+        if d > farthest {
+            (best, farthest) = (Some(i), d);
+        }
+    }
+    best
+}
+
+/// A tetrahedron of known support points, the largest in sight, and of new ones where
+/// these have no extent: for D that is thin, and for an apex that was no point of D.
+///
+/// `None` where D is flat to rounding and no direction that was asked has shown a touch.
+#[cold]
+#[inline(never)]
+pub fn solid<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+) -> Result<Option<[usize; 4]>, Stop> {
+    let a = 1;
+    let va = set.v(a);
+    let b = extent(inquiry, set, a, &inquiry.lowest.dir.clone(), |v| {
+        (v - va).norm()
+    })?;
+    let Some(along) = unit(&(set.v(b) - va)) else {
+        return Ok(None);
+    };
+    let across = |v: &Vec3| (v - va) - along * along.dot(&(v - va));
+    let c = extent(inquiry, set, a, &perpendicular(&along), |v| {
+        across(v).norm()
+    })?;
+    let Some(normal) = unit(&along.cross(&across(&set.v(c)))) else {
+        return Ok(None);
+    };
+    let d = extent(inquiry, set, a, &normal, |v| normal.dot(&(v - va)).abs())?;
+    Ok(Some([a, b, c, d]))
+}
+
+/// The point that is farthest by `measure`: of the known ones, and where these measure
+/// little of the support points along `n` and `-n`.
+fn extent<A: SupportMap, B: SupportMap, const P: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<P>,
+    from: usize,
+    n: &Vec3,
+    measure: impl Fn(&Vec3) -> Real,
+) -> Result<usize, Stop> {
+    let rounding = inquiry.precision.tie();
+    let mut best = (from, rounding);
+    for i in 1..set.len() {
+        let m = measure(&set.v(i));
+        if m > best.1 {
+            best = (i, m);
+        }
+    }
+    if !(best.1 > LITTLE * inquiry.precision.size()) {
+        // Towards the origin first.
+        let inward = if set.v(from).dot(n) > 0.0 { -n } else { *n };
+        for n in [inward, -inward] {
+            let Asked { i, v, .. } = inquiry.ask(set, &n)?;
+            let m = measure(&v);
+            if m > best.1 {
+                best = (i, m);
+            }
+        }
+    }
+    // Where D is no wider than rounding that is `from`, and no tetrahedron comes of it.
+    Ok(best.0)
+}

@@ -1,0 +1,413 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The support points of a query, each kept once and named by its index, and where a
+//! solver that needs no more than h(n) > 0 asks for them.
+//!
+//! [`Inquiry::ask`] notes the sizes, keeps the lowest support plane, and ends the query
+//! where the objects are apart. (What goes on after a direction separates, as the distance
+//! does, asks the [`MinkowskiDifference`] itself and notes the sizes.) The points live in a
+//! [`SupportSet`], whose room is the solver's to choose: an inquiry goes on when its points
+//! move to a larger one.
+//!
+//! A callback that is no support function can contradict itself: what it answers along n
+//! is less far along n than a point it gave before. D reaches as far as all its known
+//! points. So where an answer would separate, the farther point stands in; and whoever
+//! gives the lowest plane for an answer looks through the points first.
+
+use crate::known::precision::Precision;
+use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::math::{Real, Vec3, larger};
+
+/// Room for `N` support points with the directions they were asked along.
+///
+/// A point of D is not stored: it is the difference of its two witnesses, to the bit, and
+/// rooms are small.
+pub struct SupportSet<const N: usize> {
+    witnesses: [[Vec3; 2]; N],
+    directions: [Vec3; N],
+    len: usize,
+}
+
+impl<const N: usize> SupportSet<N> {
+    /// No point.
+    pub const EMPTY: Self = Self {
+        witnesses: [[Vec3::new(0.0, 0.0, 0.0); 2]; N],
+        directions: [Vec3::new(0.0, 0.0, 0.0); N],
+        len: 0,
+    };
+
+    /// A place that is in range whatever `i` is: the compiler sees it, and checks nothing.
+    #[inline(always)]
+    fn at(i: usize) -> usize {
+        if N.is_power_of_two() {
+            i & (N - 1)
+        } else {
+            i.min(N - 1)
+        }
+    }
+
+    /// How many points there are.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Is there no point?
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Is there no room for another point?
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.len >= N
+    }
+
+    /// The point of D with this index.
+    #[inline(always)]
+    pub fn v(&self, i: usize) -> Vec3 {
+        let [v1, v2] = &self.witnesses[Self::at(i)];
+        v1 - v2
+    }
+
+    /// The point with its witnesses.
+    #[inline(always)]
+    pub fn point(&self, i: usize) -> SupportPoint {
+        let i = Self::at(i);
+        let [v1, v2] = self.witnesses[i];
+        SupportPoint { v: v1 - v2, v1, v2 }
+    }
+
+    /// The points of obj1 and obj2 that the point with this index is the difference of.
+    #[inline(always)]
+    pub fn witnesses(&self, i: usize) -> &[Vec3; 2] {
+        &self.witnesses[Self::at(i)]
+    }
+
+    /// The unit direction that the point was asked along; zero for one that was not.
+    #[inline(always)]
+    pub fn direction(&self, i: usize) -> Vec3 {
+        self.directions[Self::at(i)]
+    }
+
+    /// Adds a point and returns its index; where there is no room it takes the place of
+    /// the last.
+    #[inline(always)]
+    pub fn push(&mut self, direction: &Vec3, point: &SupportPoint) -> usize {
+        let i = self.len.min(N - 1);
+        self.put(i, direction, point);
+        self.len = i + 1;
+        i
+    }
+
+    /// [`SupportSet::put`], where `i` may also be the first free index: then it is added.
+    #[inline(always)]
+    pub fn place(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
+        self.put(i, direction, point);
+        if i >= self.len {
+            self.len = (i + 1).min(N);
+        }
+    }
+
+    /// Puts a point in the place of another.
+    #[inline(always)]
+    pub fn put(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
+        let i = Self::at(i);
+        self.witnesses[i] = [point.v1, point.v2];
+        self.directions[i] = *direction;
+    }
+
+    /// Lets two points change places.
+    #[inline(always)]
+    pub fn swap(&mut self, i: usize, j: usize) {
+        let (i, j) = (Self::at(i), Self::at(j));
+        self.witnesses.swap(i, j);
+        self.directions.swap(i, j);
+    }
+
+    /// Forgets all points from this index on.
+    #[inline(always)]
+    pub fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
+    }
+
+    /// Takes the points of a smaller set, with their indices.
+    pub fn take<const M: usize>(&mut self, other: &SupportSet<M>) {
+        let len = other.len.min(M).min(N);
+        self.witnesses[..len].copy_from_slice(&other.witnesses[..len]);
+        self.directions[..len].copy_from_slice(&other.directions[..len]);
+        self.len = len;
+    }
+
+    /// The point with the least support value in the direction it was asked along, if there
+    /// is one.
+    pub fn lowest(&self) -> Option<usize> {
+        let reach = |i: usize| self.directions[i].dot(&self.v(i));
+        let mut best = (None, Real::INFINITY);
+        for i in 0..self.len.min(N) {
+            if reach(i) < best.1 {
+                best = (Some(i), reach(i));
+            }
+        }
+        best.0
+    }
+
+    /// The point farthest along `n` of those that were asked for, if it reaches beyond
+    /// `reach`.
+    #[inline(always)]
+    pub fn farther(&self, n: &Vec3, mut reach: Real) -> Option<usize> {
+        let mut best = None;
+        for i in 0..self.len.min(N) {
+            let d = n.dot(&self.v(i));
+            if d > reach && self.directions[i] != Vec3::zeros() {
+                reach = d;
+                best = Some(i);
+            }
+        }
+        best
+    }
+}
+
+/// A support plane of D: h(dir) = dir · s(dir).
+#[derive(Clone, Copy, Debug)]
+pub struct Lowest {
+    /// The support value, metres: moving obj2 by depth · dir separates the objects.
+    pub depth: Real,
+    /// Unit.
+    pub dir: Vec3,
+}
+
+/// A support point that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked {
+    /// Its index in the set.
+    pub i: usize,
+    /// Its support value, metres.
+    pub h: Real,
+    /// The point of D.
+    pub v: Vec3,
+}
+
+/// A point of D that lies beyond the origin along the direction asked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Beyond {
+    /// The answer, which is in the set now.
+    Put {
+        /// The point of D.
+        v: Vec3,
+        /// [`Precision::touch`], metres.
+        touch: Real,
+    },
+    /// A point of the set, where the answer contradicts it.
+    Known(usize),
+}
+
+/// Why a query ends where it asks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stop {
+    /// The objects are apart, or touch within rounding: along this unit direction D
+    /// reaches no farther than the origin, but for rounding.
+    Apart(Vec3),
+    /// A callback's answer that no query can work with, or no memory.
+    Fault(Fault),
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Self {
+        Self::Fault(fault)
+    }
+}
+
+/// What a query has learned by asking, wherever its points are kept.
+pub struct Inquiry<'q, A, B> {
+    /// What is asked.
+    pub md: &'q MinkowskiDifference<A, B>,
+    /// Sizes and roundings.
+    pub precision: Precision,
+    /// The lowest support plane met; of infinite depth before the first.
+    pub lowest: Lowest,
+}
+
+impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
+    /// Nothing asked yet.
+    #[inline(always)]
+    pub fn new(md: &'q MinkowskiDifference<A, B>) -> Self {
+        Self {
+            md,
+            precision: Precision::default(),
+            lowest: Lowest {
+                depth: Real::INFINITY,
+                dir: Vec3::x(),
+            },
+        }
+    }
+
+    /// Asks for the first support point, unless it has been asked for. It needs no set.
+    #[inline(always)]
+    pub fn first(&mut self, dir: &Vec3, asked: Option<SupportPoint>) -> Result<SupportPoint, Stop> {
+        let point = match asked {
+            Some(point) => point,
+            None => self.md.support(dir)?,
+        };
+        self.precision.note(&point);
+        let depth = dir.dot(&point.v);
+        if !self.precision.is_depth(depth) {
+            return Err(Stop::Apart(*dir));
+        }
+        self.lowest = Lowest { depth, dir: *dir };
+        Ok(point)
+    }
+
+    /// Asks for the support point along unit `dir`, and puts it into the set.
+    ///
+    /// Where the answer separates, but a known point lies farther along `dir`, that point is
+    /// returned and nothing is put.
+    #[inline(always)]
+    pub fn ask<const N: usize>(
+        &mut self,
+        set: &mut SupportSet<N>,
+        dir: &Vec3,
+    ) -> Result<Asked, Stop> {
+        let point = self.md.support(dir)?;
+        self.precision.note(&point);
+        let h = dir.dot(&point.v);
+        // NaN is no depth.
+        if !self.precision.is_depth(h) {
+            // Taken apart: what is returned by way of memory would come from there always.
+            let Asked { i, h, v } = self.apart(set, *dir, h)?;
+            return Ok(Asked { i, h, v });
+        }
+        self.lower(dir, h);
+        let i = set.push(dir, &point);
+        Ok(Asked { i, h, v: point.v })
+    }
+
+    /// Keeps a support plane if it is the lowest.
+    #[inline(always)]
+    fn lower(&mut self, dir: &Vec3, h: Real) {
+        if h < self.lowest.depth {
+            self.lowest = Lowest {
+                depth: h,
+                dir: *dir,
+            };
+        }
+    }
+
+    /// As [`Inquiry::ask`], for a query that wants yes or no: the point goes to this place
+    /// in the set, and the lowest plane is not kept.
+    #[inline(always)]
+    pub fn ask_at<const N: usize>(
+        &mut self,
+        set: &mut SupportSet<N>,
+        place: usize,
+        dir: &Vec3,
+    ) -> Result<Beyond, Stop> {
+        let point = self.md.support(dir)?;
+        self.precision.note(&point);
+        let h = dir.dot(&point.v);
+        let touch = self.precision.touch();
+        // NaN is no depth.
+        if h > touch {
+            set.place(place, dir, &point);
+            return Ok(Beyond::Put { v: point.v, touch });
+        }
+        let known = set.farther(dir, larger(h + self.precision.grain(), touch));
+        known.map(Beyond::Known).ok_or(Stop::Apart(*dir))
+    }
+
+    /// The answer along `dir`, of value `h`, separates, or touches within rounding: unless the
+    /// callback contradicts itself, and a known point is farther along `dir`.
+    #[cold]
+    #[inline(never)]
+    fn apart<const N: usize>(
+        &mut self,
+        set: &SupportSet<N>,
+        dir: Vec3,
+        h: Real,
+    ) -> Result<Asked, Stop> {
+        let touch = self.precision.touch();
+        let Some(i) = set.farther(&dir, larger(h + self.precision.grain(), touch)) else {
+            return Err(Stop::Apart(dir));
+        };
+        let v = set.v(i);
+        let h = dir.dot(&v);
+        self.lower(&dir, h);
+        Ok(Asked { i, h, v })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::ball;
+    use core::cell::Cell;
+
+    #[test]
+    fn points_have_names_and_the_lowest_plane_is_kept() {
+        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 1.5, 1.0));
+        let mut inquiry = Inquiry::new(&md);
+        let mut set = SupportSet::<4>::EMPTY;
+        let Asked { i: a, h, v } = inquiry.ask(&mut set, &Vec3::y()).unwrap();
+        assert_eq!((a, h, v), (0, 2.0, set.v(0)));
+        let Asked { i: b, h, .. } = inquiry.ask(&mut set, &Vec3::x()).unwrap();
+        assert_eq!((b, h, inquiry.lowest.depth), (1, 0.5, 0.5));
+        assert_eq!(set.point(b).v1, Vec3::x());
+        assert_eq!(set.v(b), Vec3::x() * 0.5);
+        assert_eq!(set.direction(b), Vec3::x());
+        assert_eq!(md.supports(), 2);
+    }
+
+    #[test]
+    fn apart_and_touching_end_the_query() {
+        for gap in [1.0, 0.0] {
+            let other = ball(Vec3::x() * (2.0 + gap), 1.0);
+            let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), other);
+            let mut set = SupportSet::<4>::EMPTY;
+            let stop = Inquiry::new(&md).ask(&mut set, &Vec3::x()).unwrap_err();
+            assert_eq!(stop, Stop::Apart(Vec3::x()));
+        }
+    }
+
+    #[test]
+    fn a_callback_that_contradicts_itself_separates_nothing() {
+        let asked = Cell::new(0);
+        let lying = |_: &Vec3| {
+            asked.set(asked.get() + 1);
+            Vec3::x() * if asked.get() == 1 { 1.0 } else { -1.0 }
+        };
+        let md = MinkowskiDifference::new(lying, |_: &Vec3| Vec3::zeros());
+        let mut inquiry = Inquiry::new(&md);
+        let mut set = SupportSet::<4>::EMPTY;
+        inquiry.ask(&mut set, &Vec3::x()).unwrap();
+        let again = inquiry.ask(&mut set, &Vec3::x()).unwrap();
+        assert_eq!((again.i, again.h, again.v), (0, 1.0, Vec3::x()));
+        assert_eq!(inquiry.lowest.depth, 1.0);
+    }
+
+    #[test]
+    fn points_that_are_not_finite_are_faults() {
+        let md =
+            MinkowskiDifference::new(|_: &Vec3| Vec3::x() * Real::NAN, |_: &Vec3| Vec3::zeros());
+        let mut set = SupportSet::<4>::EMPTY;
+        let stop = Inquiry::new(&md).ask(&mut set, &Vec3::x()).unwrap_err();
+        assert_eq!(stop, Stop::Fault(Fault::NonFinite));
+    }
+
+    #[test]
+    fn a_larger_room_keeps_the_names() {
+        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 1.0));
+        let mut inquiry = Inquiry::new(&md);
+        let mut small = SupportSet::<4>::EMPTY;
+        for n in [Vec3::x(), Vec3::y(), Vec3::z()] {
+            inquiry.ask(&mut small, &n).unwrap();
+        }
+        let mut large = SupportSet::<6>::EMPTY;
+        large.take(&small);
+        assert_eq!(large.len(), 3);
+        for i in 0..3 {
+            assert_eq!(large.point(i), small.point(i));
+            assert_eq!(large.direction(i), small.direction(i));
+        }
+    }
+}

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! How far obj2 must move along a given direction: where the ray from the origin leaves D
+//! (paper, Algorithm 1), found by portal refinement, which the portal of the last query
+//! may begin.
+//!
+//! The support plane that the ray meets is the upper bound. The portal is inscribed in D, so
+//! where the ray crosses it is the lower bound, once the origin is known to be in D.
+
+use crate::contact::{Penetration, Settings};
+use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::math::{Real, Vec3};
+use crate::paper::portal::{self, Exit, Found, Measure, Portal, SupportPlane, rounding};
+
+/// Where the ray leaves D, as long as the origin is in D.
+pub struct Way {
+    /// The answer with its lower bound.
+    pub hit: Penetration,
+    /// What rounding keeps the bounds apart by, metres.
+    pub error: Real,
+    /// Did a cap come first?
+    pub limit: bool,
+    /// The last portal, where there was one.
+    pub portal: Option<Portal>,
+}
+
+/// Follows the ray along unit `dir`; `last` are the normals of the portal to begin with.
+///
+/// `Err` holds a unit direction that separates.
+///
+/// # Errors
+/// A callback's answer that is not finite.
+pub fn penetration<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    dir: &Vec3,
+    last: Option<[Vec3; 3]>,
+    settings: &Settings,
+) -> Result<Result<Way, Vec3>, Fault> {
+    let mut budget = settings.max_iterations;
+    let (exit, first) = follow(md, dir, last, settings.tolerance, &mut budget)?;
+    let (limit, portal, plane) = match exit {
+        Exit::Miss(plane) => return Ok(Err(plane.normal)),
+        Exit::Converged(portal, plane) => (false, Some(portal), plane),
+        Exit::Limit(portal) => (true, portal, nearest(dir, first, portal.as_ref())),
+        Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => (false, None, first),
+    };
+    let depth = plane.depth / dir.dot(&plane.normal);
+    let (lower, error) = match &portal {
+        Some(portal) => inscribed(dir, portal),
+        None if matches!(exit, Exit::Vertex) => (depth, 0.0),
+        None => (0.0, 0.0),
+    };
+    let (point1, point2) = match &portal {
+        Some(portal) if !limit => portal.witnesses(),
+        _ => (plane.point.v1, plane.point.v2),
+    };
+    let hit = Penetration {
+        depth,
+        // `max` passes over NaN.
+        depth_lower: lower.max(0.0).min(depth),
+        dir: *dir,
+        normal: plane.normal,
+        point1,
+        point2,
+        width: 0.0,
+        iterations: settings.max_iterations - budget,
+    };
+    Ok(Ok(Way {
+        hit,
+        error,
+        limit,
+        portal,
+    }))
+}
+
+/// After the cap, or a portal without area: every support plane is sound, and the one that
+/// the ray meets first is the best of them.
+fn nearest(dir: &Vec3, first: SupportPlane, portal: Option<&Portal>) -> SupportPlane {
+    let reach = |p: &SupportPlane| p.depth / dir.dot(&p.normal);
+    let mut best = first;
+    for p in portal.iter().flat_map(|p| &p.planes) {
+        if dir.dot(&p.normal) > 0.0 && reach(p) < reach(&best) {
+            best = *p;
+        }
+    }
+    best
+}
+
+/// Where the ray crosses the portal less its error, and that error, metres.
+fn inscribed(dir: &Vec3, portal: &Portal) -> (Real, Real) {
+    let largest = |m: Real, plane: &SupportPlane| m.max(plane.point.magnitude());
+    let size = portal.planes.iter().fold(0.0, largest);
+    portal.normal().map_or((0.0, 0.0), |n| {
+        let error = rounding(size) / n.dot(dir);
+        (portal.reach() - error, error)
+    })
+}
+
+/// The exit, and the first support plane.
+fn follow<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    dir: &Vec3,
+    last: Option<[Vec3; 3]>,
+    tolerance: Real,
+    budget: &mut u64,
+) -> Result<(Exit, SupportPlane), Fault> {
+    let finish = |portal: Portal, best: &mut SupportPlane, budget: &mut u64| {
+        portal::refine(md, portal, tolerance, Measure::Ray, false, best, budget)
+    };
+    // The last portal, found again by its three directions.
+    if let Some([a, b, c]) = last {
+        let planes = [
+            SupportPlane::of(md, a)?,
+            SupportPlane::of(md, b)?,
+            SupportPlane::of(md, c)?,
+        ];
+        if let Some(out) = planes.iter().find(|p| p.depth < 0.0) {
+            return Ok((Exit::Miss(*out), *out));
+        }
+        if let Some(portal) = Portal::of(*dir, planes) {
+            let mut best = planes[0];
+            let exit = finish(portal, &mut best, budget)?;
+            if matches!(exit, Exit::Converged(..) | Exit::Miss(_)) {
+                return Ok((exit, best));
+            }
+        }
+    }
+    let first = SupportPlane::of(md, *dir)?;
+    let mut best = first;
+    let exit = match portal::find_portal(md, &first, None, &mut best, budget)? {
+        Found::Portal(portal) => finish(portal, &mut best, budget)?,
+        Found::Vertex => Exit::Vertex,
+        Found::Touch => Exit::Touch,
+        Found::Miss(n) => Exit::Miss(n),
+        Found::Limit => Exit::Limit(None),
+    };
+    Ok((exit, first))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::shapes::{Random, Rotation, ellipsoid};
+
+    /// On an ellipsoid around the origin the ray along d leaves at 1 / |d / radii|; the
+    /// bounds hold it, cold and from the portal that the last query left.
+    #[test]
+    fn the_bounds_hold_where_the_ray_leaves() {
+        let mut r = Random::new(1);
+        let settings = Settings {
+            tolerance: 1e-4,
+            max_iterations: 1000,
+        };
+        for _ in 0..300 {
+            let radii = Vec3::from_fn(|_, _| r.within(0.3, 2.0));
+            let d = r.direction();
+            let exact = 1.0 / d.component_div(&radii).norm();
+            let support = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
+            let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
+            let mut last = None;
+            for _ in 0..2 {
+                let Ok(way) = penetration(&md, &d, last, &settings).unwrap() else {
+                    panic!("the origin is inside");
+                };
+                let slack = 100.0 * EPSILON;
+                assert!(way.hit.depth >= exact - slack && way.hit.depth_lower <= exact + slack);
+                assert!(!way.limit && way.hit.depth - way.hit.depth_lower <= 2e-4);
+                last = way.portal.map(|p| p.planes.map(|plane| plane.normal));
+            }
+        }
+    }
+}
