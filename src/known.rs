@@ -9,6 +9,8 @@
 
 #[doc(hidden)]
 pub mod precision;
+#[doc(hidden)]
+pub mod round;
 pub mod support;
 #[doc(hidden)]
 pub mod support_set;
