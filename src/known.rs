@@ -4,8 +4,9 @@
 //! What is known of a pair: its support mappings, the points that they answered, and how
 //! exact these are.
 //!
-//! Every solver asks here, and keeps what it was answered here: no other module calls a
-//! support mapping.
+//! Every solver asks here, and keeps what it was answered here. A support point tells a point of
+//! each object, and D holds the difference of any two: k calls are worth k² points
+//! ([`support_set::SupportSet::extreme`]).
 
 #[doc(hidden)]
 pub mod precision;

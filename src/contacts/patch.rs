@@ -322,7 +322,7 @@ pub fn move_to(hit: &mut Penetration, middle: &Vec3) {
 
 /// A number made of points of the two objects, in any order: that it is another one for other
 /// points is as sure as 64 bits can make it.
-pub fn mark<'p>(points: impl Iterator<Item = &'p [Vec3; 2]>) -> u64 {
+pub fn mark(points: impl Iterator<Item = [Vec3; 2]>) -> u64 {
     points.fold(0, |sum: u64, p| {
         // Fowler, Noll and Vo's hash, a word at a time, its high bits brought down.
         let of_one = p
@@ -340,7 +340,7 @@ pub fn mark<'p>(points: impl Iterator<Item = &'p [Vec3; 2]>) -> u64 {
 
 /// Can neither object move while its points, these, stay where they are? Not so, where they lie
 /// on one line.
-pub fn pins<'p>(points: impl Iterator<Item = &'p [Vec3; 2]> + Clone) -> bool {
+pub fn pins(points: impl Iterator<Item = [Vec3; 2]> + Clone) -> bool {
     (0..2).all(|object| {
         let own = points.clone().map(|p| p[object % 2]);
         let longest = dimensions(own.clone(), 0.0).1;

@@ -617,8 +617,7 @@ pub fn witnesses<A: SupportMap, B: SupportMap, const N: usize>(
     let mut id = match (0..set.len()).reduce(nearer) {
         Some(id) => id,
         None => {
-            let point = inquiry.md.support(dir)?;
-            inquiry.precision.note(&point);
+            let point = inquiry.point(dir)?;
             set.push(dir, &point)
         }
     };
@@ -655,8 +654,7 @@ pub fn witnesses<A: SupportMap, B: SupportMap, const N: usize>(
             break;
         }
         left -= 1;
-        let point = inquiry.md.support(&n)?;
-        inquiry.precision.note(&point);
+        let point = inquiry.point(&n)?;
         // As near as D comes.
         if !(n.dot(&point.v) > least) {
             break;
@@ -680,8 +678,7 @@ pub fn separate<A: SupportMap, B: SupportMap>(
     let mut best = (n, 0.0);
     let mut simplex = Simplex::new();
     for i in 0..WIDENING {
-        let point = inquiry.md.support(&n)?;
-        inquiry.precision.note(&point);
+        let point = inquiry.point(&n)?;
         let margin = -n.dot(&point.v);
         if margin > best.1 {
             best = (n, margin);

@@ -166,8 +166,7 @@ fn ask_beyond<A: SupportMap, B: SupportMap>(
 ) -> Result<Vec3, Stop> {
     let aside = beside.and_then(|beside| beside(n));
     for d in aside.iter().chain([n]) {
-        let point = inquiry.md.support(d)?;
-        inquiry.precision.note(&point);
+        let point = inquiry.point(d)?;
         known.push(&point);
         if n.dot(&point.v) > inquiry.precision.touch() {
             return Ok(point.v);
@@ -244,26 +243,17 @@ fn recombined<const N: usize>(
     n: &Vec3,
     reach: Real,
 ) -> Option<usize> {
-    let (mut one, mut two) = ((0, Real::NEG_INFINITY), (0, Real::INFINITY));
-    for i in 0..set.len() {
-        let [v1, v2] = set.witnesses(i);
-        let (a, b) = (n.dot(v1), n.dot(v2));
-        if a > one.1 {
-            one = (i, a);
-        }
-        if b < two.1 {
-            two = (i, b);
-        }
-    }
-    let (v1, v2) = (set.witnesses(one.0)[0], set.witnesses(two.0)[1]);
-    let v = v1 - v2;
-    if !(n.dot(&v) > reach) {
+    let farthest = set.extreme(n, 0);
+    if !(farthest.reach > reach) {
         return None;
     }
-    if one.0 == two.0 {
-        return Some(one.0);
+    let [i, j] = farthest.names;
+    if i == j {
+        return Some(i);
     }
+    let (v1, v2) = (set.witnesses(i)[0], set.witnesses(j)[1]);
     let place = room(set, simplex);
+    let v = v1 - v2;
     set.place(place, &Vec3::zeros(), &SupportPoint { v, v1, v2 });
     Some(place)
 }

@@ -47,8 +47,7 @@ pub fn still_apart<A: SupportMap, B: SupportMap, const N: usize>(
     };
     let mut aim = state.aim();
     for _ in 0..TRIES {
-        let point = inquiry.md.support(&n)?;
-        inquiry.precision.note(&point);
+        let point = inquiry.point(&n)?;
         let margin = -n.dot(&point.v);
         let apart = margin >= -inquiry.precision.touch();
         let least = if apart {

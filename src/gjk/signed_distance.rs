@@ -121,8 +121,7 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
 fn touching<A: SupportMap, B: SupportMap>(pair: &Pair<A, B>, normal: &Vec3) -> Result<Gap, Fault> {
     let mut inquiry = Inquiry::new(&pair.md);
     let mut set = SupportSet::<TOUCHED>::EMPTY;
-    let point = pair.md.support(normal)?;
-    inquiry.precision.note(&point);
+    let point = inquiry.point(normal)?;
     set.push(normal, &point);
     let h = normal.dot(&point.v);
     let touch = larger(inquiry.precision.touch(), h.abs());

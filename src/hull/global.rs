@@ -429,7 +429,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
-        let width = self.width(set, lowest, [a, b, c], progress.tolerance);
+        let width = self.width(set, lowest, [&a, &b, &c], progress.tolerance);
         *self.hit = Penetration {
             depth,
             depth_lower: lower,
@@ -491,9 +491,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if corner && !blind {
             return 0.0;
         }
-        let witnesses = |i| *set.witnesses(i + 1);
+        let witnesses = |i| set.witnesses(i + 1);
         let (count, above) = (set.len() - 1, set.witnesses(lowest));
-        match patch::rest(witnesses, count, dir, above, error, size) {
+        match patch::rest(witnesses, count, dir, &above, error, size) {
             Rest::Along(length) => length,
             Rest::Corner(side) if blind => side.norm(),
             Rest::Crossing(length) if blind => length,

@@ -6,6 +6,7 @@
 
 use core::cell::Cell;
 
+use super::support_set::Extreme;
 use crate::math::{Real, Vec3, larger, largest};
 
 /// A convex object, known only by its support mapping.
@@ -112,18 +113,10 @@ impl Known {
     /// those of `c` too, if it reaches beyond `reach`.
     #[inline]
     pub fn made_beyond(&self, c: &SupportPoint, n: &Vec3, reach: Real) -> Option<Vec3> {
-        let (mut one, mut two) = ((&c.v1, n.dot(&c.v1)), (&c.v2, n.dot(&c.v2)));
-        for p in self.points() {
-            let (a, b) = (n.dot(&p.v1), n.dot(&p.v2));
-            if a > one.1 {
-                one = (&p.v1, a);
-            }
-            if b < two.1 {
-                two = (&p.v2, b);
-            }
-        }
-        let made = one.0 - two.0;
-        (n.dot(&made) > reach).then_some(made)
+        let pairs = self.points().iter().chain([c]).map(|p| (&p.v1, &p.v2));
+        let farthest = Extreme::of(n, pairs);
+        let [p, q] = farthest.names.map(|i| self.points().get(i).unwrap_or(c));
+        (farthest.reach > reach).then(|| p.v1 - q.v2)
     }
 
     /// Adds a point that is not there, if there is room.

@@ -6,7 +6,7 @@
 //!
 //! [`Inquiry::ask`] notes the sizes, keeps the lowest support plane, and ends the query
 //! where the objects are apart. (What goes on after a direction separates, as the distance
-//! does, asks the [`MinkowskiDifference`] itself and notes the sizes.) The points live in a
+//! does, asks by [`Inquiry::point`].) The points live in a
 //! [`SupportSet`], whose room is the solver's to choose: an inquiry goes on when its points
 //! move to a larger one.
 //!
@@ -19,20 +19,55 @@ use crate::known::precision::Precision;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::math::{Real, Vec3, larger};
 
-/// Room for `N` support points with the directions they were asked along.
+/// What is known of each object: room for `N` points of it with the directions they were asked
+/// along.
 ///
-/// A point of D is not stored: it is the difference of its two witnesses, to the bit, and
-/// rooms are small.
+/// Index i names obj1's point and obj2's that one direction found (asked along, and against it).
+/// Their difference is a support point of D; it is not stored, being that difference to the bit,
+/// and rooms are small. But D holds the difference of *any* point of obj1 and any of obj2, so k
+/// support points are worth k² points of D. The farthest of these costs no callback:
+/// [`SupportSet::extreme`].
 pub struct SupportSet<const N: usize> {
-    witnesses: [[Vec3; 2]; N],
+    /// obj1's points, and obj2's.
+    points: [[Vec3; N]; 2],
     directions: [Vec3; N],
     len: usize,
+}
+
+/// The farthest point of D along a direction, of all that known points of the objects make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// The places of obj1's and of obj2's point.
+    pub names: [usize; 2],
+    /// How far it is, metres, times the length of the direction.
+    pub reach: Real,
+}
+
+impl Extreme {
+    /// Along `n`, of these points of obj1 and of obj2, the first of equal ones. It reaches -∞ where
+    /// there is none.
+    #[inline(always)]
+    pub fn of<'a>(n: &Vec3, points: impl Iterator<Item = (&'a Vec3, &'a Vec3)>) -> Self {
+        let (mut top, mut low) = (Real::NEG_INFINITY, Real::INFINITY);
+        let mut names = [0; 2];
+        for (i, (v1, v2)) in points.enumerate() {
+            let (a, b) = (n.dot(v1), n.dot(v2));
+            if a > top {
+                (top, names[0]) = (a, i);
+            }
+            if b < low {
+                (low, names[1]) = (b, i);
+            }
+        }
+        let reach = top - low;
+        Self { names, reach }
+    }
 }
 
 impl<const N: usize> SupportSet<N> {
     /// No point.
     pub const EMPTY: Self = Self {
-        witnesses: [[Vec3::new(0.0, 0.0, 0.0); 2]; N],
+        points: [[Vec3::new(0.0, 0.0, 0.0); N]; 2],
         directions: [Vec3::new(0.0, 0.0, 0.0); N],
         len: 0,
     };
@@ -67,22 +102,41 @@ impl<const N: usize> SupportSet<N> {
     /// The point of D with this index.
     #[inline(always)]
     pub fn v(&self, i: usize) -> Vec3 {
-        let [v1, v2] = &self.witnesses[Self::at(i)];
-        v1 - v2
+        self.made([i; 2])
+    }
+
+    /// The point of D that obj1's point and obj2's with these indices make.
+    #[inline(always)]
+    pub fn made(&self, [i, j]: [usize; 2]) -> Vec3 {
+        self.points[0][Self::at(i)] - self.points[1][Self::at(j)]
+    }
+
+    /// The farthest point along `n`, which need not be unit, that the points of obj1 and of obj2
+    /// make from index `first` on.
+    #[inline(always)]
+    pub fn extreme(&self, n: &Vec3, first: usize) -> Extreme {
+        let [one, two] = self
+            .points
+            .each_ref()
+            .map(|points| points.get(first..self.len).unwrap_or(&[]));
+        let Extreme { names, reach } = Extreme::of(n, one.iter().zip(two));
+        Extreme {
+            names: names.map(|i| first + i),
+            reach,
+        }
     }
 
     /// The point with its witnesses.
     #[inline(always)]
     pub fn point(&self, i: usize) -> SupportPoint {
-        let i = Self::at(i);
-        let [v1, v2] = self.witnesses[i];
+        let [v1, v2] = self.witnesses(i);
         SupportPoint { v: v1 - v2, v1, v2 }
     }
 
     /// The points of obj1 and obj2 that the point with this index is the difference of.
     #[inline(always)]
-    pub fn witnesses(&self, i: usize) -> &[Vec3; 2] {
-        &self.witnesses[Self::at(i)]
+    pub fn witnesses(&self, i: usize) -> [Vec3; 2] {
+        self.points.each_ref().map(|points| points[Self::at(i)])
     }
 
     /// The unit direction that the point was asked along; zero for one that was not.
@@ -114,7 +168,8 @@ impl<const N: usize> SupportSet<N> {
     #[inline(always)]
     pub fn put(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
         let i = Self::at(i);
-        self.witnesses[i] = [point.v1, point.v2];
+        self.points[0][i] = point.v1;
+        self.points[1][i] = point.v2;
         self.directions[i] = *direction;
     }
 
@@ -122,7 +177,9 @@ impl<const N: usize> SupportSet<N> {
     #[inline(always)]
     pub fn swap(&mut self, i: usize, j: usize) {
         let (i, j) = (Self::at(i), Self::at(j));
-        self.witnesses.swap(i, j);
+        for points in &mut self.points {
+            points.swap(i, j);
+        }
         self.directions.swap(i, j);
     }
 
@@ -135,7 +192,9 @@ impl<const N: usize> SupportSet<N> {
     /// Takes the points of a smaller set, with their indices.
     pub fn take<const M: usize>(&mut self, other: &SupportSet<M>) {
         let len = other.len.min(M).min(N);
-        self.witnesses[..len].copy_from_slice(&other.witnesses[..len]);
+        for (points, others) in self.points.iter_mut().zip(&other.points) {
+            points[..len].copy_from_slice(&others[..len]);
+        }
         self.directions[..len].copy_from_slice(&other.directions[..len]);
         self.len = len;
     }
@@ -243,6 +302,18 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         }
     }
 
+    /// The support point along unit `dir`, counted, checked, and its sizes noted; for those who go
+    /// on where a direction separates, or keep the point themselves.
+    ///
+    /// # Errors
+    /// A callback's answer that is not finite.
+    #[inline(always)]
+    pub fn point(&mut self, dir: &Vec3) -> Result<SupportPoint, Fault> {
+        let point = self.md.support(dir)?;
+        self.precision.note(&point);
+        Ok(point)
+    }
+
     /// Asks for the first support point, unless it has been asked for. It needs no set.
     #[inline(always)]
     pub fn first(&mut self, dir: &Vec3, asked: Option<SupportPoint>) -> Result<SupportPoint, Stop> {
@@ -269,8 +340,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         set: &mut SupportSet<N>,
         dir: &Vec3,
     ) -> Result<Asked, Stop> {
-        let point = self.md.support(dir)?;
-        self.precision.note(&point);
+        let point = self.point(dir)?;
         let h = dir.dot(&point.v);
         // NaN is no depth.
         if !self.precision.is_depth(h) {
@@ -303,8 +373,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         place: usize,
         dir: &Vec3,
     ) -> Result<Beyond, Stop> {
-        let point = self.md.support(dir)?;
-        self.precision.note(&point);
+        let point = self.point(dir)?;
         let h = dir.dot(&point.v);
         let touch = self.precision.touch();
         // NaN is no depth.
@@ -340,7 +409,8 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::ball;
+    use crate::math::EPSILON;
+    use crate::shapes::{Random, ball};
     use core::cell::Cell;
 
     #[test]
@@ -392,6 +462,28 @@ mod tests {
         let mut set = SupportSet::<4>::EMPTY;
         let stop = Inquiry::new(&md).ask(&mut set, &Vec3::x()).unwrap_err();
         assert_eq!(stop, Stop::Fault(Fault::NonFinite));
+    }
+
+    #[test]
+    fn any_two_points_make_one() {
+        let mut r = Random::new(5);
+        let mut set = SupportSet::<8>::EMPTY;
+        assert_eq!(set.extreme(&Vec3::x(), 0).reach, Real::NEG_INFINITY);
+        for _ in 0..7 {
+            let [v1, v2] = [r.vector(1.0), r.vector(1.0)];
+            set.push(&Vec3::zeros(), &SupportPoint { v: v1 - v2, v1, v2 });
+        }
+        for first in [0, 1, 6] {
+            let n = r.vector(3.0);
+            let all = (first..7).flat_map(|i| (first..7).map(move |j| [i, j]));
+            let far = |names: [usize; 2]| n.dot(&set.made(names));
+            let best = all.max_by(|a, b| far(*a).total_cmp(&far(*b))).unwrap();
+            let found = set.extreme(&n, first);
+            assert_eq!(found.names, best);
+            assert!((found.reach - far(best)).abs() < 64.0 * EPSILON);
+        }
+        assert_eq!(set.extreme(&Vec3::x(), 7).reach, Real::NEG_INFINITY);
+        assert_eq!(set.extreme(&Vec3::x(), 9).reach, Real::NEG_INFINITY);
     }
 
     #[test]
