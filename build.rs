@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The shared library answers to libccd's own SONAME; nothing else is built here.
-//! The tests learn what they are compiled for, to compile C for the same.
+//! The tests, and the benchmark, whose package has this script too, learn what they are
+//! compiled for, to compile C for the same.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,libccd.so.2");
+    if std::env::var("CARGO_PKG_NAME").is_ok_and(|name| name == "warmccd") {
+        println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,libccd.so.2");
+    }
     for name in ["HOST", "TARGET"] {
         let triple = std::env::var(name).expect("cargo names both");
         println!("cargo::rustc-env={name}={triple}");

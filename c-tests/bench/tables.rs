@@ -8,60 +8,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
-use serde::{Deserialize, Serialize};
 
 use crate::harness;
+use crate::lab::csv::{self, table};
 use crate::lab::libraries::Libraries;
 use crate::lab::measure::{self, Row};
-use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::peers::{self, Compiled};
-use crate::lab::progress;
+use crate::lab::methods::{self, Method, Start};
+use crate::lab::recorded::{MOTIONS, RANDOM, SHALLOW, ours};
 use crate::lab::scene::Scene;
-
-/// The sets over which averages are taken: independent poses of every depth.
-pub const RANDOM: [&str; 11] = [
-    "box_box",
-    "p12_p12",
-    "p162_p162",
-    "p642_p642",
-    "cyl_box",
-    "cone_cyl",
-    "p162_cap",
-    "cap_cap",
-    "sph_cap",
-    "ell_ell",
-    "sph_sph",
-];
-/// Shallow contacts.
-pub const SHALLOW: [&str; 6] = [
-    "sph_cap_sh",
-    "cap_cap_sh",
-    "box_box_sh",
-    "p162_p162_sh",
-    "cyl_box_sh",
-    "ell_ell_sh",
-];
-/// Motions of 50 steps.
-pub const MOTIONS: [&str; 18] = [
-    "cap_cap_trajS",
-    "box_box_trajS",
-    "p162_p162_trajS",
-    "p642_cap_trajS",
-    "ell_ell_trajS",
-    "cyl_box_trajS",
-    "cap_cap_trajM",
-    "box_box_trajM",
-    "p162_p162_trajM",
-    "p642_cap_trajM",
-    "ell_ell_trajM",
-    "cyl_box_trajM",
-    "cap_cap_trajL",
-    "box_box_trajL",
-    "p162_p162_trajL",
-    "p642_cap_trajL",
-    "ell_ell_trajL",
-    "cyl_box_trajL",
-];
+use crate::peers::{self, Compiled};
+use crate::progress;
 
 #[derive(Args)]
 pub struct Options {
@@ -79,92 +35,21 @@ pub struct Options {
     csv: Option<PathBuf>,
 }
 
-/// A figure of `published.csv`.
-#[derive(Clone, Deserialize)]
-pub struct Published {
-    pub set: String,
-    pub method: String,
-    #[serde(deserialize_with = "csv::invalid_option")]
-    pub start: Option<String>,
-    pub supports: f64,
-    pub ns: f64,
-    #[serde(deserialize_with = "csv::invalid_option")]
-    pub nonminimal: Option<f64>,
+table! {
+    /// A figure of `published.csv`.
+    pub struct Published {
+        pub set: String,
+        pub method: String,
+        pub start: Option<String>,
+        pub supports: f64,
+        pub ns: f64,
+        pub nonminimal: Option<f64>,
+    }
 }
 
 /// Figures of the paper's own implementation and of MuJoCo, measured elsewhere.
 pub fn published() -> Vec<Published> {
-    progress::read_csv(&harness::root().join("c-tests/bench/published.csv"))
-}
-
-/// What a later change may not lose: one of ours on one set.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct Recorded {
-    pub set: String,
-    pub method: String,
-    pub start: String,
-    pub tolerance: f64,
-    pub supports: f64,
-    pub mean_error_1mm: f64,
-    pub nonminimal: f64,
-}
-
-pub fn recorded_file() -> PathBuf {
-    harness::root().join("c-tests/bench/support_counts.csv")
-}
-
-/// Every method of ours over the random and the shallow sets and the small motions.
-pub fn measure_recorded(libraries: &Libraries) -> Vec<Row> {
-    let motions = MOTIONS.iter().filter(|s| s.ends_with("_trajS"));
-    let sets = RANDOM.iter().chain(&SHALLOW).chain(motions);
-    let of = |set: &&str| {
-        let scene = Scene::load(libraries, set, usize::MAX);
-        let mut methods = ours(libraries, &scene);
-        let rows = methods
-            .iter_mut()
-            .map(|m| measure::judge(libraries, &scene, m));
-        rows.collect::<Vec<Row>>()
-    };
-    sets.flat_map(of).collect()
-}
-
-/// Writes what is recorded anew, from what is measured now.
-pub fn record() {
-    let libraries = Libraries::open();
-    let rows: Vec<Recorded> = measure_recorded(&libraries)
-        .into_iter()
-        .map(|row| Recorded {
-            set: row.set,
-            method: row.method,
-            start: row.start,
-            tolerance: row.tolerance.unwrap_or_default(),
-            supports: row.supports.unwrap_or_default(),
-            mean_error_1mm: row.mean_error_1mm,
-            nonminimal: row.nonminimal,
-        })
-        .collect();
-    progress::write_csv(&recorded_file(), &progress::machine(&libraries), &rows);
-}
-
-/// This library's queries on a scene, from every start it has.
-fn ours<'a>(libraries: &'a Libraries, scene: &Scene) -> Vec<Method<'a>> {
-    let mut all = vec![methods::mpr(libraries, &libraries.ours, 1e-6)];
-    let local = |start, t| methods::extension(libraries, Ask::Local, start, t);
-    let minimum = |start, t| methods::extension(libraries, Ask::Minimum, start, t);
-    if scene.motion > 0 {
-        all.extend([
-            local(Start::Centres, 1e-6),
-            local(Start::Warm, 1e-6),
-            local(Start::Warm, 1e-10),
-        ]);
-        all.push(methods::extension(libraries, Ask::Mpr, Start::Warm, 1e-6));
-        all.extend([minimum(Start::Warm, 1e-6), minimum(Start::None, 1e-6)]);
-    } else {
-        all.extend(Start::GUESSES.map(|start| local(start, 1e-6)));
-        all.extend([local(Start::Centres, 1e-6), local(Start::Five, 1e-10)]);
-        all.extend([minimum(Start::None, 1e-6), minimum(Start::None, 1e-10)]);
-    }
-    all
+    csv::read(&harness::root().join("c-tests/bench/published.csv"))
 }
 
 fn roster<'a>(libraries: &'a Libraries, compiled: &Compiled, scene: &Scene) -> Vec<Method<'a>> {
@@ -318,7 +203,7 @@ pub fn run(options: &Options) {
     } else {
         options.sets.iter().map(String::as_str).collect()
     };
-    println!("{}", progress::machine(&libraries));
+    println!("{}", libraries.machine());
     for (name, why) in &compiled.missing {
         println!(
             "not measured here: {name}: {}",
@@ -412,7 +297,7 @@ pub fn run(options: &Options) {
          measured on another machine and day. Their supports compare, their times only roughly."
     );
     if let Some(path) = &options.csv {
-        progress::write_csv(path, &progress::machine(&libraries), &rows);
+        csv::write(path, &libraries.machine(), &rows);
     }
     std::io::stdout().flush().expect("standard output");
 }

@@ -27,7 +27,7 @@ mkdir "$tree"
 } | tar -c --null -T - | tar -x -C "$tree"
 
 # Cargo wants every crate of the manifest at hand, those of the tests too.
-awk '/^\[/ { drop = /^\[(dev-dependencies|\[(test|bench|example)\])/ } !drop' Cargo.toml >"$tree/Cargo.toml"
+awk '/^\[/ { drop = /^\[(workspace|dev-dependencies|\[(test|bench|example)\])/ } !drop' Cargo.toml >"$tree/Cargo.toml"
 mkdir "$tree/.cargo"
 (cd "$tree" && cargo vendor --quiet)
 cat >"$tree/.cargo/config.toml" <<'END'

@@ -55,7 +55,7 @@ use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, lesser, normalised, unit, wide};
 
 // Measured: support points of MPR and the minimum in the mean of sixteen pair sets and the
-// recorded contacts (`cargo bench --bench charts -- record`), when one number changes alone.
+// recorded contacts (`cargo bench -p charts -- record`), when one number changes alone.
 
 /// A point above a face by less than this share of the tolerance counts as on it. Measured:
 /// from 0.005 to 0.05 no set changes by 0.3 %; the planes' error stays below it.

@@ -35,7 +35,7 @@ use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, lesser, normalised, perpendicular, unit};
 
 // Measured: support points of the MPR calls in the mean of sixteen pair sets and the recorded
-// contacts (`cargo bench --bench charts -- record`), when one number changes alone.
+// contacts (`cargo bench -p charts -- record`), when one number changes alone.
 
 /// Steps on the ball. Measured: with 3 shallow ellipsoids take 11 % more, 10 change nothing.
 const STEPS: usize = 6;

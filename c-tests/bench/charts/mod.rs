@@ -17,13 +17,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use plotters::style::RGBColor;
-use serde::{Serialize, de::DeserializeOwned};
 
+use crate::lab::csv::{self, Line};
 use crate::lab::libraries::Libraries;
 use crate::lab::measure::Row;
 use crate::lab::methods::Method;
-use crate::lab::peers::Compiled;
-use crate::lab::progress;
+use crate::peers::Compiled;
 use figure::{Look, Mark};
 
 #[derive(Args)]
@@ -38,7 +37,7 @@ pub struct Options {
     #[arg(long)]
     pub models: bool,
     /// Where CSV and pictures go.
-    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/c-tests/charts"))]
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../charts"))]
     pub out: PathBuf,
 }
 
@@ -67,13 +66,13 @@ impl Page {
         format!("{place}; {version}; all in one process, rustc and gcc -O3")
     }
 
-    fn write<T: Serialize>(&self, name: &str, rows: &[T]) {
-        progress::write_csv(&self.file(name), &self.machine, rows);
+    fn write<T: Line>(&self, name: &str, rows: &[T]) {
+        csv::write(&self.file(name), &self.machine, rows);
     }
 
     /// None where the file is missing, as instructions.csv without valgrind.
-    fn read<T: DeserializeOwned>(&self, name: &str) -> Vec<T> {
-        progress::read_csv(&self.file(name))
+    fn read<T: Line>(&self, name: &str) -> Vec<T> {
+        csv::read(&self.file(name))
     }
 }
 
@@ -167,7 +166,7 @@ fn draw(page: &Page, results: &results::Results) {
     // Measured at another time, perhaps.
     let page_of_models = Page {
         out: page.out.clone(),
-        machine: progress::origin(&page.file("models.csv")),
+        machine: csv::origin(&page.file("models.csv")),
     };
     models::draw(&page_of_models, &results.models);
     split::draw(page, &results.split);
@@ -180,7 +179,7 @@ pub fn redraw(options: &Options) {
         out: options.out.clone(),
         machine: String::new(),
     };
-    page.machine = progress::origin(&page.file("accuracy.csv"));
+    page.machine = csv::origin(&page.file("accuracy.csv"));
     let results = results::Results {
         accuracy: page.read("accuracy.csv"),
         paper: page.read("paper.csv"),
@@ -204,7 +203,7 @@ pub fn run(options: &Options) {
     };
     let page = Page {
         out: options.out.clone(),
-        machine: progress::machine(&libraries),
+        machine: libraries.machine(),
     };
     println!("{}", page.machine);
     for (name, why) in &compiled.missing {

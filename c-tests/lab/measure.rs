@@ -11,62 +11,53 @@ use std::time::Instant;
 
 use ccd::ffi::types::ccd_vec3_t;
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
-use statrs::statistics::{Data, Max, OrderStatistics, Statistics};
 
+use super::csv::table;
 use super::libraries::Libraries;
 use super::methods::Method;
 use super::scene::{Pair, Scene};
 
-/// What a query answered.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Answer {
-    pub depth: f64,
-    /// The way obj2 moves.
-    pub dir: [f64; 3],
-    /// Proven lower bound; 0 where none.
-    pub lower: f64,
-}
-
-/// One method on one scene. Lengths in metres.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Row {
-    pub set: String,
-    pub method: String,
-    /// Where the search starts: `5`, `25`, `45` degrees off the truth, `centres`,
-    /// `warm` (the last frame's state) or nothing.
-    pub start: String,
-    pub tolerance: Option<f64>,
-    pub ours: bool,
-    /// What a chart varies: vertices, degrees a frame.
-    pub x: Option<f64>,
-    pub queries: usize,
-    /// Of these, overlaps deeper than 1 nm: the ones that are judged.
-    pub overlaps: usize,
-    /// Support points of D per query; none for a method that does not use our callbacks.
-    pub supports: Option<f64>,
-    /// Mean time of a query, of medians over repetitions; none when not timed.
-    pub ns: Option<f64>,
-    /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
-    pub mean_error: f64,
-    pub median_error: f64,
-    pub max_error: f64,
-    /// Mean over the answers within 1 mm of the truth.
-    pub mean_error_1mm: f64,
-    /// Share of answers more than 1 mm too deep (percent).
-    pub nonminimal: f64,
-    /// Share of answers more than 1 mm too shallow (percent).
-    pub shallow: f64,
-    /// Share of overlaps answered by no hit or by a failure (percent).
-    pub missed: f64,
-    /// Largest h(dir) - depth: how far from separated the shapes may be left.
-    pub unsound: f64,
-    /// Mean angle to the true direction over the answers within 1 mm (milliradian).
-    pub direction: f64,
-    /// Largest depth - depth_lower, where a bound was proven.
-    pub gap: Option<f64>,
-    /// Widest uncertainty of the truth itself.
-    pub truth_gap: f64,
+table! {
+    /// One method on one scene. Lengths in metres.
+    #[derive(Clone, Debug, Default)]
+    pub struct Row {
+        pub set: String,
+        pub method: String,
+        /// Where the search starts: `5`, `25`, `45` degrees off the truth, `centres`,
+        /// `warm` (the last frame's state) or nothing.
+        pub start: String,
+        pub tolerance: Option<f64>,
+        pub ours: bool,
+        /// What a chart varies: vertices, degrees a frame.
+        pub x: Option<f64>,
+        pub queries: usize,
+        /// Of these, overlaps deeper than 1 nm: the ones that are judged.
+        pub overlaps: usize,
+        /// Support points of D per query; none for a method that does not use our callbacks.
+        pub supports: Option<f64>,
+        /// Mean time of a query, of medians over repetitions; none when not timed.
+        pub ns: Option<f64>,
+        /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
+        pub mean_error: f64,
+        pub median_error: f64,
+        pub max_error: f64,
+        /// Mean over the answers within 1 mm of the truth.
+        pub mean_error_1mm: f64,
+        /// Share of answers more than 1 mm too deep (percent).
+        pub nonminimal: f64,
+        /// Share of answers more than 1 mm too shallow (percent).
+        pub shallow: f64,
+        /// Share of overlaps answered by no hit or by a failure (percent).
+        pub missed: f64,
+        /// Largest h(dir) - depth: how far from separated the shapes may be left.
+        pub unsound: f64,
+        /// Mean angle to the true direction over the answers within 1 mm (milliradian).
+        pub direction: f64,
+        /// Largest depth - depth_lower, where a bound was proven.
+        pub gap: Option<f64>,
+        /// Widest uncertainty of the truth itself.
+        pub truth_gap: f64,
+    }
 }
 
 /// The support value of D along `dir`.
@@ -81,12 +72,32 @@ fn support_value(libraries: &Libraries, pair: &Pair, dir: &[f64; 3]) -> f64 {
     n.dot(&(at(pair.a.cast_const(), n) - at(pair.b.cast_const(), -n)))
 }
 
-fn mean(values: &[f64]) -> f64 {
-    if values.is_empty() {
-        0.0
+/// 0 of none.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// NaN of any NaN; 0 of none, and never less.
+fn largest(values: &[f64]) -> f64 {
+    let larger = |m: f64, v: f64| if m >= v || m.is_nan() { m } else { v };
+    values.iter().copied().fold(0.0, larger)
+}
+
+/// 0 of none.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let of = |k: usize| sorted.get(k).copied().unwrap_or_default();
+    let half = sorted.len() / 2;
+    if sorted.len() % 2 == 1 {
+        of(half)
     } else {
-        values.mean()
+        (of(half.saturating_sub(1)) + of(half)) / 2.0
     }
+}
+
+pub fn geometric_mean(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp()
 }
 
 /// Runs the method over the scene and judges every answer. A warm method's first
@@ -138,13 +149,6 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         }
     }
     let percent = |k: usize| 100.0 * k as f64 / hits.max(1) as f64;
-    let largest = |v: &[f64]| {
-        if v.is_empty() {
-            0.0
-        } else {
-            Data::new(v.to_vec()).max()
-        }
-    };
     Row {
         set: scene.name.clone(),
         method: method.name.clone(),
@@ -159,11 +163,7 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
             .then(|| supports as f64 / 2.0 / queries as f64),
         ns: None,
         mean_error: mean(&errors),
-        median_error: if errors.is_empty() {
-            0.0
-        } else {
-            median(&errors)
-        },
+        median_error: median(&errors),
         max_error: largest(&errors),
         mean_error_1mm: mean(&near),
         nonminimal: percent(nonminimal),
@@ -174,14 +174,6 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         gap: (!gaps.is_empty()).then(|| largest(&gaps)),
         truth_gap,
     }
-}
-
-pub fn median(values: &[f64]) -> f64 {
-    Data::new(values.to_vec()).median()
-}
-
-pub fn geometric_mean(values: &[f64]) -> f64 {
-    values.iter().geometric_mean()
 }
 
 /// Poses timed in one go, where they are independent: long against the clock's

@@ -349,7 +349,7 @@ fn instructions(split: &[Split]) -> String {
 
 /// Which methods no other beats in both supports and error, by kind of pair.
 fn front(rows: &[Row]) -> String {
-    let lines = crate::tables::RANDOM.iter().map(|set| {
+    let lines = crate::lab::recorded::RANDOM.iter().map(|set| {
         let best = super::accuracy::front(rows, set);
         let mut names: Vec<String> = Vec::new();
         for row in &best {

@@ -11,34 +11,36 @@ use parry3d_f64::transformation::convex_hull;
 use plotters::style::RGBColor;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
-use serde::{Deserialize, Serialize};
-use statrs::statistics::Statistics;
 
 use super::figure::{self, Curve, Look, Mark, Panel, Unit};
 use super::paper::VERTICES;
 use super::{Bench, Page};
+use crate::lab::csv::table;
 use crate::lab::libraries::Truth;
 use crate::lab::measure;
 use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::progress;
-use crate::lab::scene::{self, Form, Mesh, Oracle, Pose, Scene};
+use crate::lab::scene::{Form, Mesh, Pose, Scene};
+use crate::poses::{self, Oracle};
+use crate::progress;
 
-/// One model of a body in contact with a capsule.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Model {
-    /// What the body is.
-    pub body: String,
-    /// What it is modelled as.
-    pub model: String,
-    /// 0 for a primitive.
-    pub vertices: usize,
-    pub method: String,
-    /// Mean |depth of the model - depth of the body|, metres.
-    pub modelling_error: f64,
-    /// Mean |answer - depth of the model|, metres.
-    pub query_error: f64,
-    pub supports: f64,
-    pub ns: f64,
+table! {
+    /// One model of a body in contact with a capsule.
+    #[derive(Clone, Debug)]
+    pub struct Model {
+        /// What the body is.
+        pub body: String,
+        /// What it is modelled as.
+        pub model: String,
+        /// 0 for a primitive.
+        pub vertices: usize,
+        pub method: String,
+        /// Mean |depth of the model - depth of the body|, metres.
+        pub modelling_error: f64,
+        /// Mean |answer - depth of the model|, metres.
+        pub query_error: f64,
+        pub supports: f64,
+        pub ns: f64,
+    }
 }
 
 /// The hull of two copies of an icosphere, `half` up and down: a capsule's polytope.
@@ -65,15 +67,15 @@ fn poses(bench: &Bench, body: &Form, other: &Form) -> Vec<([Pose; 2], Truth)> {
     while found.len() < n {
         let still = Pose {
             position: Vector3::zeros(),
-            rotation: scene::rotation(&mut rng),
+            rotation: poses::rotation(&mut rng),
         };
         let moving = Pose {
-            position: scene::direction(&mut rng) * 1.6,
-            rotation: scene::rotation(&mut rng),
+            position: poses::direction(&mut rng) * 1.6,
+            rotation: poses::rotation(&mut rng),
         };
         // Wherever it is, bring it to the depth that is wanted.
         let deep = 0.05 * (found.len() + 1) as f64 / n as f64;
-        let Some((depth, normal)) = scene::rounded_depth([body, other], &[still, moving]) else {
+        let Some((depth, normal)) = poses::rounded_depth([body, other], &[still, moving]) else {
             continue;
         };
         let pose = [
@@ -83,7 +85,7 @@ fn poses(bench: &Bench, body: &Form, other: &Form) -> Vec<([Pose; 2], Truth)> {
                 ..moving
             },
         ];
-        found.extend(scene::rounded_truth([body, other], &pose, &mut rng).map(|t| (pose, t)));
+        found.extend(poses::rounded_truth([body, other], &pose, &mut rng).map(|t| (pose, t)));
     }
     found
 }
@@ -122,7 +124,7 @@ fn measure(
         methods::libccd_epa(bench.libraries, 1e-6),
     ];
     let ns = measure::times(&scene, &mut methods, bench.repetitions(), || ());
-    let modelling_error = modelling.iter().mean();
+    let modelling_error = measure::mean(&modelling);
     let row_of = |model: &str, scene: &Scene, method: &mut Method, ns| {
         let row = measure::judge(bench.libraries, scene, method);
         Model {

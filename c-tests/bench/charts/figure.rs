@@ -299,7 +299,7 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
     }
     let rows = panels.len().div_ceil(columns) as u32;
     let cell = if columns == 2 { 320 } else { 270 };
-    let free = panels.len() % columns != 0;
+    let free = !panels.len().is_multiple_of(columns);
     let strip = if free {
         0
     } else {

@@ -1,50 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Tests of what the benchmark measures exactly: support counts and errors that no
-//! later change may lose, the quick charts' files, and the DEEP baseline.
+//! Tests of what is measured exactly: support counts and errors that no later change may
+//! lose, and the DEEP baseline.
 
 #![cfg(not(feature = "single"))]
 
-// The benchmark's own parts; this test uses some.
-#[allow(dead_code)]
-#[path = "../charts/mod.rs"]
-mod charts;
 #[path = "../harness/mod.rs"]
 mod harness;
+#[path = "mod.rs"]
 mod lab;
-#[allow(dead_code)]
-mod tables;
 
-use std::path::Path;
-
+use lab::csv;
 use lab::deep::{Deep, Polytope};
 use lab::libraries::Libraries;
-use lab::measure::Row;
 use lab::methods::Start;
+use lab::recorded::{self, Recorded};
 use lab::scene::{Mesh, Scene};
 use nalgebra::{Matrix3, Vector3};
-use serde::de::DeserializeOwned;
 
 type V = Vector3<f64>;
 
-fn read<T: DeserializeOwned>(path: &Path) -> Vec<T> {
-    csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .from_path(path)
-        .and_then(|mut r| r.deserialize().collect())
-        .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
-
 /// No set needs more supports, or errs more, than `support_counts.csv` says.
-/// `cargo bench --bench charts -- record` writes the file anew.
+/// `cargo bench -p charts -- record` writes the file anew.
 #[test]
 fn no_set_needs_more_supports_or_errs_more() {
     let libraries = Libraries::open();
-    let recorded: Vec<tables::Recorded> = read(&tables::recorded_file());
+    let recorded: Vec<Recorded> = csv::read(&recorded::file());
     assert!(recorded.len() > 50, "{} lines recorded", recorded.len());
     let mut lost = Vec::new();
-    for now in tables::measure_recorded(&libraries) {
+    for now in recorded::measure(&libraries) {
         let then = recorded.iter().find(|h| {
             (&h.set, &h.method, &h.start) == (&now.set, &now.method, &now.start)
                 && Some(h.tolerance) == now.tolerance
@@ -63,73 +48,6 @@ fn no_set_needs_more_supports_or_errs_more() {
         }
     }
     assert!(lost.is_empty(), "{}", lost.join("\n"));
-}
-
-#[test]
-fn quick_charts_are_whole_and_ours_on_the_front() {
-    let out = tempfile::tempdir().expect("a temporary directory");
-    charts::run(&charts::Options {
-        models: false,
-        quick: true,
-        no_instructions: true,
-        out: out.path().to_owned(),
-    });
-    let rows: Vec<Row> = ["accuracy", "paper", "vertices", "coherence", "recorded"]
-        .iter()
-        .flat_map(|name| read::<Row>(&out.path().join(name).with_extension("csv")))
-        .collect();
-    assert!(rows.len() > 500, "{} rows", rows.len());
-    for row in &rows {
-        let numbers = [
-            row.mean_error,
-            row.median_error,
-            row.max_error,
-            row.mean_error_1mm,
-            row.unsound,
-            row.direction,
-            row.ns.unwrap_or(0.0),
-            row.supports.unwrap_or(0.0),
-            row.gap.unwrap_or(0.0),
-        ];
-        assert!(numbers.iter().all(|x| x.is_finite()), "{row:?}");
-        if row.ours {
-            assert!(row.unsound <= 1e-12, "unsound: {row:?}");
-            assert!(row.missed == 0.0 && row.shallow == 0.0, "{row:?}");
-        }
-    }
-    // libccd's MPR starts two spheres at the answer: one support, exact.
-    for set in tables::RANDOM.iter().filter(|s| **s != "sph_sph") {
-        let front = charts::accuracy::front(&rows, set);
-        assert!(front.iter().any(|r| r.ours), "{set}: {front:#?}");
-        let fewest = front.first().expect("a front");
-        assert!(fewest.ours, "{set}: fewest supports: {fewest:?}");
-    }
-    for name in [
-        "front",
-        "accuracy_supports",
-        "accuracy_time",
-        "frames_supports",
-        "frames_time",
-        "tolerance",
-        "vertices",
-        "coherence_supports",
-        "coherence_time",
-        "models",
-    ] {
-        let path = out.path().join(name).with_extension("svg");
-        let picture = std::fs::read_to_string(&path).unwrap_or_default();
-        assert!(
-            picture.starts_with("<svg") && picture.ends_with("</svg>\n"),
-            "{}",
-            path.display()
-        );
-        assert!(!picture.contains("NaN"), "{}", path.display());
-    }
-    let page = std::fs::read_to_string(out.path().join("README.md")).unwrap_or_default();
-    assert!(
-        page.contains("# Speed against accuracy") && !page.contains("{{"),
-        "{page}"
-    );
 }
 
 /// Every facet of D = A − B as (unit normal, distance of its plane from the origin):

@@ -14,8 +14,9 @@ use super::{Bench, Page};
 use crate::lab::libraries::Truth;
 use crate::lab::measure::Row;
 use crate::lab::methods::{self, Ask, Start};
-use crate::lab::progress;
-use crate::lab::scene::{self, Form, Oracle, Pose, Scene};
+use crate::lab::scene::{Form, Pose, Scene};
+use crate::poses::{Oracle, direction, rotation};
+use crate::progress;
 
 const STEPS: [f64; 8] = [0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 20.0];
 const FRAMES: usize = 50;
@@ -56,17 +57,17 @@ fn motion(bench: &Bench, name: &str, forms: [&Form; 2], step: f64, motions: usiz
     let mut poses = Vec::new();
     for _ in 0..motions {
         let turn = UnitQuaternion::from_axis_angle(
-            &Unit::new_normalize(scene::direction(&mut rng)),
+            &Unit::new_normalize(direction(&mut rng)),
             step.to_radians(),
         );
-        let drift = scene::direction(&mut rng) * (2e-3 * step);
+        let drift = direction(&mut rng) * (2e-3 * step);
         let still = Pose {
             position: Vector3::zeros(),
-            rotation: scene::rotation(&mut rng),
+            rotation: rotation(&mut rng),
         };
         let mut moving = Pose {
-            position: scene::direction(&mut rng) * 0.2,
-            rotation: scene::rotation(&mut rng),
+            position: direction(&mut rng) * 0.2,
+            rotation: rotation(&mut rng),
         };
         let mut normal = Vector3::zeros();
         for _ in 0..FRAMES {

@@ -13,8 +13,17 @@ use ccd::paper::incremental::{self, Shortcut};
 
 use super::deep::{Deep, Polytope};
 use super::libraries::{CDistance, CPenetration, Classic, Libraries, Truth, Warm};
-use super::measure::Answer;
 use super::scene::{Pair, Scene};
+
+/// What a query answered.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Answer {
+    pub depth: f64,
+    /// The way obj2 moves.
+    pub dir: [f64; 3],
+    /// Proven lower bound; 0 where none.
+    pub lower: f64,
+}
 
 /// Where a search starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use super::figure::{self, Curve, Panel, Unit};
 use super::{Bench, Page, look, name};
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::progress;
 use crate::lab::scene::{Form, Scene};
+use crate::{poses, progress};
 
 /// Icospheres of the pair sets, by their number of vertices.
 pub const VERTICES: [usize; 5] = [12, 42, 162, 642, 2562];
@@ -73,7 +73,7 @@ pub fn tables(bench: &Bench) -> Vec<Row> {
     let bar = progress::bar(3, "the paper's tables");
     let mut all = Vec::new();
     for (k, forms) in forms.into_iter().enumerate() {
-        let scene = Scene::random_rounded(libraries, PAPER[k].pair, forms, n, k as u64);
+        let scene = poses::random_rounded(libraries, PAPER[k].pair, forms, n, k as u64);
         let mut methods = Vec::new();
         for start in Start::GUESSES {
             methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));

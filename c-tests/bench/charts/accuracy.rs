@@ -9,10 +9,9 @@ use super::figure::{self, Curve, Look, Mark, Panel, Unit};
 use super::{Bench, Page, look, name};
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::peers;
-use crate::lab::progress;
+use crate::lab::recorded::RANDOM;
 use crate::lab::scene::Scene;
-use crate::tables::RANDOM;
+use crate::{peers, progress};
 
 /// The motions whose frames are near each other: 0.1° and 0.1 mm a step.
 const FRAMES: [&str; 6] = [

@@ -252,7 +252,7 @@ impl Libraries {
         let work = tempfile::tempdir().expect("a temporary directory");
         let tests = harness::root().join("c-tests");
         let object = work.path().join("callbacks.so");
-        let source = tests.join("bench/lab/callbacks.c");
+        let source = tests.join("lab/callbacks.c");
         let compiler = compile(&compiler(false), &[], &source, &object, &[])
             .unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
 
@@ -325,7 +325,7 @@ impl Libraries {
         }
     }
 
-    /// Compiles another helper, in C++, and opens it; why not, where that fails.
+    /// Compiles another helper of `c-tests/bench`, in C++, and opens it; why not, where that fails.
     pub fn helper(
         &self,
         source: &str,
@@ -336,9 +336,31 @@ impl Libraries {
             .work
             .path()
             .join(format!("{source}{}.so", flags.concat().replace('/', "_")));
-        let source: PathBuf = harness::root().join("c-tests/bench/lab").join(source);
+        let source: PathBuf = harness::root().join("c-tests/bench").join(source);
         compile(&compiler(true), flags, &source, &object, libraries)?;
         open(&object).map_err(|e| e.to_string())
+    }
+
+    /// One line: libraries, processor, compiler and flags, date.
+    pub fn machine(&self) -> String {
+        let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let line = info.lines().find(|l| l.starts_with("model name"));
+        let processor = line
+            .and_then(|l| l.split_once(": "))
+            .map_or("unknown processor", |l| l.1);
+        let cores = std::thread::available_parallelism().map_or(0, usize::from);
+        let date = Command::new("date").args(["-u", "+%F"]).output().ok();
+        let date = date
+            .map(|d| String::from_utf8_lossy(&d.stdout).trim().to_owned())
+            .unwrap_or_default();
+        let version = Command::new("rustc").arg("--version").output().ok();
+        let version = version
+            .map(|d| String::from_utf8_lossy(&d.stdout).trim().to_owned())
+            .unwrap_or_default();
+        format!(
+            "{date}, {processor}, {cores} cores; {} ({version}, release), beside {}; callbacks: {}",
+            self.implementation, self.system_file, self.compiler
+        )
     }
 
     /// A C string's worth of path.
