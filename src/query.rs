@@ -25,7 +25,7 @@
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contacts::patch;
 use crate::gjk::barycentric;
-use crate::gjk::distance::Proof;
+use crate::gjk::overlap::Proof;
 use crate::gjk::proof::{inner_distance, is_around, proof};
 use crate::gjk::separation;
 use crate::hull::expansion::Limits;

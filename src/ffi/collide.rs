@@ -10,7 +10,7 @@ use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::ccdMPRPenetrationWarm;
 use crate::contact::{Answer, Penetration, Settings};
-use crate::gjk::distance;
+use crate::gjk::overlap;
 use crate::known::support::Fault;
 use crate::known::support_set::Stop;
 use crate::math::{Real, Vec3, unit};
@@ -69,7 +69,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
         let (Some(md), Some(centre)) = (query.difference(), query.centre()) else {
             return 0;
         };
-        distance::from_centre(&md, &centre)
+        overlap::from_centre(&md, &centre)
     };
     c_int::from(overlap.is_ok())
 }
@@ -82,7 +82,7 @@ unsafe fn gjk_intersect(query: Query) -> Option<Result<(), Stop>> {
         let md = query.difference()?;
         let first = query.first_dir()?;
         let dir = unit(&first).unwrap_or(Vec3::x());
-        Some(distance::from_direction(&md, &dir))
+        Some(overlap::from_direction(&md, &dir))
     }
 }
 

@@ -11,8 +11,8 @@ use super::collide::{mpr_penetration, write};
 use super::types::{ccd_t, ccd_vec3_t};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contacts::manifold;
-use crate::gjk::distance;
 use crate::gjk::intersect;
+use crate::gjk::overlap;
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
 use crate::known::support::Fault;
 use crate::math::{Real, Vec3, unit};
@@ -252,7 +252,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
             return 0;
         };
         if warm.is_null() {
-            return c_int::from(distance::from_centre(&md, &centre).is_ok());
+            return c_int::from(overlap::from_centre(&md, &centre).is_ok());
         }
         let mut state = read(warm);
         match intersect::intersect(&md, &centre, &mut state) {

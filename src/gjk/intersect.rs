@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Do two objects overlap, with memory: the yes or no of [`crate::gjk::distance`], and what one
+//! Do two objects overlap, with memory: the yes or no of [`crate::gjk::overlap`], and what one
 //! query of a pair leaves behind for the next.
 //!
 //! A pair that was apart is asked about its separating direction first
@@ -9,7 +9,7 @@
 //! it: where those points still surround the origin, they are the whole answer. Whatever
 //! fails is not lost: the points go into the search.
 
-use crate::gjk::distance::overlap;
+use crate::gjk::overlap::overlap;
 use crate::gjk::separation::{leave, still_apart};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};

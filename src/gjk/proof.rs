@@ -9,7 +9,8 @@
 //! others is looked for, which mostly are known ([`is_around`]). Else the distance algorithm
 //! tells, which takes known points wherever they do as well as new ones ([`proof`]).
 
-use crate::gjk::distance::{Proof, Simplex, direction, room, search};
+use crate::gjk::overlap::{Proof, search};
+use crate::gjk::simplex::{Simplex, direction, room};
 use crate::known::support::{Known, SupportMap, SupportPoint};
 use crate::known::support_set::{Beyond, Inquiry, Stop, SupportSet};
 use crate::math::{EPSILON, Real, Vec3, larger, largest, unit};
@@ -175,7 +176,7 @@ fn ask_beyond<A: SupportMap, B: SupportMap>(
     Err(Stop::Apart(*n))
 }
 
-/// [`crate::gjk::distance::overlap`], where a search for the depth has left points of D in the set:
+/// [`crate::gjk::overlap::overlap`], where a search for the depth has left points of D in the set:
 /// point 0, which a [`Proof::Centred`] trusts to be well inside, and others. A point of each object
 /// makes a point of D as well, so these are put together anew wherever that reaches beyond the
 /// origin: k support points of D are k² points of D. Returns the indices of the corners of what

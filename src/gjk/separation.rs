@@ -85,7 +85,7 @@ pub fn leave<A: SupportMap, B: SupportMap>(
     n: Vec3,
 ) -> Result<(), Fault> {
     *state = if was_apart {
-        let (n, margin) = separate(inquiry, n)?;
+        let (n, margin) = separate(inquiry, &n)?;
         State::apart(n * larger(margin, UNSURE))
     } else {
         State::apart(n * UNSURE)

@@ -18,11 +18,9 @@
 //! The centres and the state choose where to look first, and prove nothing.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::gjk::barycentric;
-use crate::gjk::distance::{Simplex, direction, witnesses};
-use crate::known::precision::Precision;
-use crate::known::support::{Fault, SupportMap, SupportPoint};
-use crate::known::support_set::{Inquiry, SupportSet};
+use crate::gjk::distance::{Approach, Step};
+use crate::known::support::{Fault, SupportMap};
+use crate::known::support_set::Inquiry;
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::{query::Pair, state::State};
 
@@ -70,9 +68,9 @@ pub struct Distance {
 enum Cores {
     /// Apart, or touching within rounding.
     Apart(Gap),
-    /// They overlap, or so nearly that only a proof tells. Along this unit direction
-    /// the overlap was least.
-    Overlap(Vec3),
+    /// They overlap, or so nearly that only a proof tells. Along this unit direction the overlap
+    /// was least, and these points of the two are at most a touch apart.
+    Overlap(Vec3, [Vec3; 2]),
 }
 
 /// The gap between two cores.
@@ -105,42 +103,35 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
             Answer::Miss(_) => {}
         }
     }
-    let start = match cores(pair, state, wanted)? {
+    let (start, met) = match cores(pair, state, wanted)? {
         Cores::Apart(gap) => return Ok(apart(&gap, wanted)),
-        Cores::Overlap(n) => n,
+        Cores::Overlap(n, met) => (n, met),
     };
     *state = State::guess(&start);
     match minimum(pair, state, &wanted.settings)? {
         Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
         Answer::Limit(hit) => Ok(deep(&hit, wanted, true)),
-        Answer::Miss(normal) => Ok(apart(&touching(pair, &normal)?, wanted)),
+        Answer::Miss(normal) => Ok(apart(&touching(pair, normal, met)?, wanted)),
     }
 }
 
-/// Where the cores touch: the proof's word, whatever one support value says of it.
-fn touching<A: SupportMap, B: SupportMap>(pair: &Pair<A, B>, normal: &Vec3) -> Result<Gap, Fault> {
+/// Where the cores touch: the proof's word, whatever one support value says of it. The points
+/// `met` where the search came upon the origin.
+fn touching<A: SupportMap, B: SupportMap>(
+    pair: &Pair<A, B>,
+    normal: Vec3,
+    [point1, point2]: [Vec3; 2],
+) -> Result<Gap, Fault> {
     let mut inquiry = Inquiry::new(&pair.md);
-    let mut set = SupportSet::<TOUCHED>::EMPTY;
-    let point = inquiry.point(normal)?;
-    set.push(normal, &point);
-    let h = normal.dot(&point.v);
-    let touch = larger(inquiry.precision.touch(), h.abs());
-    let (point1, point2, _) = witnesses(
-        &mut inquiry,
-        &mut set,
-        &(normal * h),
-        normal,
-        touch,
-        TOUCHED,
-    )?;
+    let h = normal.dot(&inquiry.point(&normal)?.v);
     Ok(Gap {
         lower: -h,
-        normal: *normal,
+        normal,
         point1,
         point2,
         iterations: 0,
         limit: false,
-        touch,
+        touch: larger(inquiry.precision.touch(), h.abs()),
     })
 }
 
@@ -196,12 +187,9 @@ fn apart(gap: &Gap, wanted: &Wanted) -> Distance {
     }
 }
 
-/// Support points to find where a touch is. (Three of a face, and as many again for each of two
-/// round parts: free.)
-const TOUCHED: usize = 16;
-
-/// Steps that bring the simplex no nearer before rounding is all that is left.
-const STALLS: u32 = 3;
+/// Corners nearer to each other than this share of the size, once the ball is off, are one
+/// round part. (Insensitive.)
+const ONE_PART: Real = 0.02;
 
 /// The gap between the cores, from the state, else from the centres, else from the caller's
 /// first direction.
@@ -210,19 +198,22 @@ fn cores<A: SupportMap, B: SupportMap>(
     state: &mut State,
     wanted: &Wanted,
 ) -> Result<Cores, Fault> {
-    let mut search = Search::new(pair);
-    let (mut nearest, mut stalls) = (Real::INFINITY, 0);
+    let mut inquiry = Inquiry::new(&pair.md);
+    let mut search = Approach::new(&mut inquiry);
     let margin = wanted.margin();
-    if !search.resume(state)? {
+    if !resume(&mut search, state)? {
         let start = state.separating().unwrap_or_else(|| pair.cold_start());
         search.ask(&start)?;
     }
     let limit = loop {
-        let touch = search.precision.touch();
-        let tolerance = search.precision.tolerance(wanted.settings.tolerance);
+        let touch = search.inquiry.precision.touch();
+        let tolerance = search
+            .inquiry
+            .precision
+            .tolerance(wanted.settings.tolerance);
         // A plane between the objects is wanted even where the tolerance would not ask.
         let far = search.lower - margin > wanted.beyond;
-        let told = |search: &Search<'_, A, B>| {
+        let told = |search: &Approach<'_, '_, A, B>| {
             (search.lower - margin > -touch || !(search.upper - margin > touch))
                 && search.upper - search.lower <= tolerance
         };
@@ -233,31 +224,20 @@ fn cores<A: SupportMap, B: SupportMap>(
                 break false;
             }
         }
-        let aim = search.aim(tolerance);
-        if aim.is_none() {
-            if !(search.upper < nearest) {
-                stalls += 1;
-            }
-            nearest = search.upper;
-        }
-        let plain = direction(&search.way).filter(|_| stalls <= STALLS);
-        if plain.is_none() && !(search.lower >= -touch) {
-            return Ok(Cores::Overlap(search.normal));
-        }
         // The cap on iterations, or callbacks that err by more than rounding.
-        let (Some(plain), true) = (plain, search.iterations < wanted.settings.max_iterations)
-        else {
+        if search.iterations >= wanted.settings.max_iterations {
             break true;
-        };
-        let inside = match aim {
-            Some((n, promise)) => search.try_out(&n, promise)?,
-            None => search.ask(&plain)?,
-        };
-        if inside {
-            return Ok(Cores::Overlap(search.normal));
+        }
+        let step = search.step(tolerance)?;
+        if step == Step::Inside || step == Step::Stalled && !(search.lower >= -touch) {
+            let (point1, point2) = search.witnesses();
+            return Ok(Cores::Overlap(search.normal, [point1, point2]));
+        }
+        if step == Step::Stalled {
+            break true;
         }
     };
-    let (point1, point2) = search.simplex.witnesses(&search.set, &Vec3::zeros());
+    let (point1, point2) = search.witnesses();
     let gap = Gap {
         lower: search.lower,
         normal: search.normal,
@@ -265,220 +245,54 @@ fn cores<A: SupportMap, B: SupportMap>(
         point2,
         iterations: search.iterations,
         limit,
-        touch: search.precision.touch(),
+        touch: search.inquiry.precision.touch(),
     };
-    search.leave(state);
+    *state = left_behind(&search);
     Ok(Cores::Apart(gap))
 }
 
-/// The distance algorithm on two cores.
+/// Starts from the directions that the state holds, if it holds any.
 ///
-/// **Balls are taken off to choose where to ask.** On a round part of D of radius ρ the points
-/// of directions n are s = u + ρ n around a fixed u, and two of them tell ρ: with
-/// e = n′·(s′ − s) and e′ = n·(s − s′), which agree there, ρ = (e + e′) / |n′ − n|². The point
-/// nearest to the origin of the corners u tells the way to ask, which for balls rolled over
-/// a polytope is the right one at once, where the simplex itself would take many halvings.
-/// It promises a distance; one that was not kept is not asked for a while.
-///
-/// **Warm**, the directions that found the corners are asked again. Where a face is nearest,
-/// three find its corners and a fourth proves its plane: fewer cannot do, for after any turn a
-/// support point says nothing of another direction's. (Measured on six slow motions, the `_trajS` pair
-/// sets, moved apart, tolerance 1e-6: boxes and hulls 4.0 to 4.2 support points, 6.3 in the mean of all.)
-struct Search<'p, A, B> {
-    pair: &'p Pair<A, B>,
-    set: SupportSet<4>,
-    simplex: Simplex,
-    precision: Precision,
-    /// The greatest −h(n), metres, and its n.
-    lower: Real,
-    normal: Vec3,
-    /// From the simplex to the origin, of any length, and the distance, metres.
-    way: Vec3,
-    upper: Real,
-    /// The last direction asked, and its point.
-    last: Option<(Vec3, Vec3)>,
-    /// Radius of the ball taken off, metres; 0 for none.
-    ball: Real,
-    /// Steps without a try, and how many the next failure costs.
-    pause: u32,
-    penalty: u32,
-    iterations: u64,
+/// Where a face is nearest, three find its corners and a fourth proves its plane: fewer cannot do,
+/// for after any turn a support point says nothing of another direction's. (Measured on six slow
+/// motions, the `_trajS` pair sets, moved apart, tolerance 1e-6: boxes and hulls 4.0 to 4.2 support
+/// points, 6.3 in the mean of all.)
+fn resume<A: SupportMap, B: SupportMap>(
+    search: &mut Approach<'_, '_, A, B>,
+    state: &State,
+) -> Result<bool, Fault> {
+    let (corners, ball) = state.nearest();
+    for n in corners.iter().filter_map(unit) {
+        search.ask_again(&n)?;
+    }
+    if search.iterations == 0 {
+        return Ok(false);
+    }
+    // What the state says of it counts where the points say nothing.
+    if search.ball == 0.0 && ball > 0.0 && ball < search.inquiry.precision.size() {
+        search.ball = ball;
+    }
+    search.settle();
+    Ok(true)
 }
 
-/// How far the two measures of a ball may differ, as a share of their sum. (Measured on the
-/// random sets moved apart: a fifth of it costs ellipsoids one support point more, six times
-/// it boxes 0.3 and cylinders 0.7.)
-const ALIKE: Real = 0.05;
-/// The share of what a ball promises that makes it believed again. (Free.)
-const KEPT: Real = 0.5;
-/// Corners nearer to each other than this share of the size, once the ball is off, are one
-/// round part. (Free.)
-const ONE_PART: Real = 0.02;
-
-impl<'p, A: SupportMap, B: SupportMap> Search<'p, A, B> {
-    fn new(pair: &'p Pair<A, B>) -> Self {
-        Self {
-            pair,
-            set: SupportSet::EMPTY,
-            simplex: Simplex::new(),
-            precision: Precision::default(),
-            lower: -Real::INFINITY,
-            normal: Vec3::x(),
-            way: Vec3::x(),
-            upper: Real::INFINITY,
-            last: None,
-            ball: 0.0,
-            pause: 0,
-            penalty: 1,
-            iterations: 0,
+/// The directions that find the corners again: one for each part, the best direction for the
+/// part that it touches.
+fn left_behind<A: SupportMap, B: SupportMap>(search: &Approach<'_, '_, A, B>) -> State {
+    let ids = search.simplex.ids();
+    let bare = search.bare();
+    let near2 = ONE_PART * ONE_PART * search.inquiry.precision.size2();
+    let mut directions = [Vec3::zeros(); 3];
+    for i in 0..search.simplex.len().min(3) {
+        let alone = (0..i).all(|k| (bare[k] - bare[i]).norm_squared() > near2);
+        if search.ball == 0.0 || alone {
+            directions[i] = search.set.direction(ids[i]);
         }
     }
-
-    /// Asks along unit `n`, and learns what there is to learn without the simplex.
-    fn sample(&mut self, n: &Vec3) -> Result<SupportPoint, Fault> {
-        self.iterations += 1;
-        let point = self.pair.md.support(n)?;
-        self.precision.note(&point);
-        let lower = -n.dot(&point.v);
-        if lower > self.lower {
-            (self.lower, self.normal) = (lower, *n);
-        }
-        if let Some((m, v)) = self.last {
-            let (e, f) = (n.dot(&(point.v - v)), m.dot(&(v - point.v)));
-            let ball = (e + f) / (n - m).norm_squared();
-            // Not rounding, not two corners of a polytope, not larger than D.
-            let rounding = self.precision.touch();
-            if e + f > 4.0 * rounding
-                && (e - f).abs() <= ALIKE * (e + f)
-                && ball < self.precision.size()
-            {
-                self.ball = ball;
-            }
-        }
-        self.last = Some((*n, point.v));
-        Ok(point)
+    if directions[1] == directions[2] {
+        directions[0] = search.normal;
     }
-
-    /// Asks along the way of the simplex, unit `n`, or anywhere where there is none.
-    /// Returns whether the new simplex holds the origin.
-    fn ask(&mut self, n: &Vec3) -> Result<bool, Fault> {
-        let point = self.sample(n)?;
-        self.pause = self.pause.saturating_sub(1);
-        if self.beyond(&point) {
-            return Ok(self.add(n, &point));
-        }
-        // What is left is rounding, or the plane of a touching face, in which the simplex's
-        // last point was no nearer than the others.
-        self.settle();
-        Ok(false)
-    }
-
-    /// Does the point lie beyond the simplex, as seen along the way, by more than rounding?
-    /// Only such a one is a corner of the next.
-    fn beyond(&self, point: &SupportPoint) -> bool {
-        if self.simplex.len() == 0 {
-            return true;
-        }
-        let corner = self.set.v(self.simplex.ids()[0]);
-        let ahead = self.way.dot(&(point.v - corner));
-        ahead > 0.5 * self.precision.touch() * self.way.norm()
-    }
-
-    fn add(&mut self, n: &Vec3, point: &SupportPoint) -> bool {
-        let place = self.simplex.place();
-        self.set.place(place, n, point);
-        let (touch, size2) = (self.precision.touch(), self.precision.size2());
-        match self.simplex.add(place, point.v, touch, size2) {
-            Some((way, distance2)) => {
-                (self.way, self.upper) = (way, distance2.sqrt());
-                false
-            }
-            None => true,
-        }
-    }
-
-    /// Asks along unit `n`, which a ball chose and which promises this distance, metres.
-    fn try_out(&mut self, n: &Vec3, promise: Real) -> Result<bool, Fault> {
-        let before = self.lower;
-        let point = self.sample(n)?;
-        let inside = self.beyond(&point) && self.add(n, &point);
-        if !(self.lower - before >= KEPT * (promise - before)) {
-            self.pause = self.penalty;
-            self.penalty += 2;
-        }
-        Ok(inside)
-    }
-
-    /// The simplex's corners with the ball taken off.
-    fn bare(&self) -> [Vec3; 3] {
-        let ids = self.simplex.ids();
-        ids.map(|i| self.set.v(i) - self.set.direction(i) * self.ball)
-    }
-
-    /// The direction that the ball foretells to be best, and the distance, metres, that it
-    /// promises there; none where that is not worth a support point.
-    fn aim(&self, tolerance: Real) -> Option<(Vec3, Real)> {
-        if !(self.ball > 0.0) || self.pause > 0 {
-            return None;
-        }
-        let [a, b, c] = self.bare();
-        let origin = Vec3::zeros();
-        let w = match self.simplex.len() {
-            1 => a,
-            2 => barycentric::segment(&origin, &a, &b).point,
-            _ => barycentric::triangle(&origin, &a, &b, &c).point,
-        };
-        let n = direction(&-w)?;
-        let promise = w.norm() - self.ball;
-        let gain = promise - self.lower;
-        // (A third of the tolerance: less is not worth it, and rounding is less.)
-        (gain > 0.3 * tolerance && promise < self.upper + tolerance).then_some((n, promise))
-    }
-
-    /// The way and the distance anew, from every face of the simplex.
-    fn settle(&mut self) {
-        let (way, distance2) = self.simplex.settle(self.precision.touch());
-        (self.way, self.upper) = (way, distance2.sqrt());
-    }
-
-    /// Starts from the directions that the state holds, if it holds any.
-    fn resume(&mut self, state: &State) -> Result<bool, Fault> {
-        let (corners, ball) = state.nearest();
-        for n in corners.iter().filter_map(unit) {
-            let point = self.sample(&n)?;
-            let place = self.simplex.place();
-            self.set.place(place, &n, &point);
-            self.simplex.put(place, point.v);
-        }
-        if self.iterations == 0 {
-            return Ok(false);
-        }
-        // What the state says of it counts where the points say nothing.
-        if self.ball == 0.0 && ball > 0.0 && ball < self.precision.size() {
-            self.ball = ball;
-        }
-        self.settle();
-        Ok(true)
-    }
-
-    /// Leaves the directions behind that find the corners again: one for each part, the
-    /// best direction for the part that it touches.
-    fn leave(&self, state: &mut State) {
-        let ids = self.simplex.ids();
-        let bare = self.bare();
-        let near2 = ONE_PART * ONE_PART * self.precision.size2();
-        let mut directions = [Vec3::zeros(); 3];
-        for i in 0..self.simplex.len().min(3) {
-            let alone = (0..i).all(|k| (bare[k] - bare[i]).norm_squared() > near2);
-            if self.ball == 0.0 || alone {
-                directions[i] = self.set.direction(ids[i]);
-            }
-        }
-        if directions[1] == directions[2] {
-            directions[0] = self.normal;
-        }
-        // The length is the margin to aim at; a touch has none.
-        let margin = larger(self.lower, self.precision.touch());
-        *state = State::near(self.normal * margin, directions, self.ball);
-    }
+    // The length is the margin to aim at; a touch has none.
+    let margin = larger(search.lower, search.inquiry.precision.touch());
+    State::near(search.normal * margin, directions, search.ball)
 }

@@ -17,7 +17,7 @@
 use crate::contact::Penetration;
 use crate::contacts::patch::{self, Rest};
 use crate::gjk::barycentric;
-use crate::gjk::distance;
+use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
 use crate::hull::polytope::Polytope;
 use crate::hull::start;
@@ -260,7 +260,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     fn surround<const P: usize>(&mut self, set: &mut SupportSet<P>) -> Result<[usize; 4], Stop> {
         set.truncate(START);
         let dir = self.inquiry.lowest.dir;
-        distance::overlap(&mut self.inquiry, set, None, &dir)
+        overlap::overlap(&mut self.inquiry, set, None, &dir)
     }
 
     /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
