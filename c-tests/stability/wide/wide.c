@@ -1,0 +1,469 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Every call on bodies that are hard for one method or another, judged in 128 bits.
+ *
+ *   wide [pairs a row [row, -1 all [first pair [seed]]]]
+ *
+ * For each pair: every call cold at five tolerances, 1e-2 to 1e-9 and 0 of the size; then
+ * the pair moves and every call that takes a state is asked again. Nothing false may be
+ * said: the truth is an interval, and an answer counts as wrong where it contradicts all of
+ * it. Prints a table, the counts by call, and the first pair of each kind of fault; exits
+ * with 1 where there is one that `marked` does not have. */
+
+#include "rows.h"
+
+#include "ours.h"
+#include "tolerances.h"
+
+#include <stdio.h>
+
+/* --- answers ------------------------------------------------------------------------ */
+
+enum {
+    CALL_MPR,
+    CALL_MPR_WARM,
+    CALL_GJK,
+    CALL_SEPARATE,
+    CALL_MPR_INTERSECT,
+    CALL_GJK_INTERSECT,
+    CALL_MINIMUM,
+    CALL_MINIMUM_BARE, /* without centres */
+    CALL_LOCAL,
+    CALL_LOCAL_BARE,
+    CALL_INCREMENTAL,
+    CALL_ALONG,
+    CALL_DISTANCE,
+    CALLS
+};
+
+static const char *const call_names[CALLS] = {
+    "MPR", "MPR warm", "GJK", "GJK separate", "MPR yes or no", "GJK yes or no", "minimum", "minimum, no centres",
+    "local", "local, no centres", "incremental", "along", "distance"};
+
+typedef struct {
+    int code, call, points; /* points: witness points are given */
+    double tol, depth, lower, dir[3], normal[3], at[2][3];
+    unsigned long supports, stack;
+    int moved; /* asked with a state, after a motion */
+} said_t;
+
+static void take(const ccd_vec3_t *v, double o[3])
+{
+    int i;
+    for (i = 0; i < 3; i++)
+        o[i] = (double)v->v[i];
+}
+
+static void take_penetration(said_t *x, const ccd_penetration_t *o)
+{
+    x->depth = (double)o->depth;
+    x->lower = (double)o->depth_lower;
+    x->points = 1;
+    take(&o->dir, x->dir);
+    take(&o->normal, x->normal);
+    take(&o->point1, x->at[0]);
+    take(&o->point2, x->at[1]);
+}
+
+static said_t say(int call, const wide_pair_t *p, double tol, const double along[3], ccd_warm_t *warm)
+{
+    const void *a = &p->body[0], *b = &p->body[1];
+    ccd_penetration_t o;
+    ccd_distance_t q;
+    ccd_vec3_t dir, pos;
+    ccd_real_t depth = 0;
+    said_t x;
+    ccd_t ccd;
+    int i;
+    memset(&x, 0, sizeof x);
+    memset(&dir, 0, sizeof dir);
+    CCD_INIT(&ccd);
+    ccd.support1 = ccd.support2 = body_support;
+    ccd.center1 = ccd.center2 = call == CALL_MINIMUM_BARE || call == CALL_LOCAL_BARE ? NULL : body_centre;
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
+    ccd.max_iterations = (unsigned long)-1;
+    x.call = call;
+    x.tol = tol;
+    body_calls = 0;
+    body_stack_lowest = (const char *)__builtin_frame_address(0);
+    switch (call) {
+    case CALL_MPR: x.code = OURS(ccdMPRPenetration)(a, b, &ccd, &depth, &dir, &pos); break;
+    case CALL_MPR_WARM: x.code = OURS(ccdMPRPenetrationWarm)(a, b, &ccd, warm, &depth, &dir, &pos); break;
+    case CALL_GJK: x.code = OURS(ccdGJKPenetration)(a, b, &ccd, &depth, &dir, &pos); break;
+    case CALL_SEPARATE: x.code = OURS(ccdGJKSeparate)(a, b, &ccd, &dir); break;
+    case CALL_MPR_INTERSECT: x.code = OURS(ccdMPRIntersect)(a, b, &ccd) ? CCD_HIT : CCD_MISS; break;
+    case CALL_GJK_INTERSECT: x.code = OURS(ccdGJKIntersect)(a, b, &ccd) ? CCD_HIT : CCD_MISS; break;
+    case CALL_MINIMUM:
+    case CALL_MINIMUM_BARE: x.code = OURS(ccdPenetrationMinimum)(a, b, &ccd, warm, &o); break;
+    case CALL_LOCAL:
+    case CALL_LOCAL_BARE: x.code = OURS(ccdPenetrationLocal)(a, b, &ccd, warm, &o); break;
+    case CALL_INCREMENTAL: x.code = OURS(ccdPenetrationIncremental)(a, b, &ccd, warm, &o); break;
+    case CALL_ALONG:
+        for (i = 0; i < 3; i++)
+            dir.v[i] = (ccd_real_t)along[i];
+        x.code = OURS(ccdPenetrationAlong)(a, b, &ccd, &dir, warm, &o);
+        break;
+    default: x.code = OURS(ccdSignedDistance)(a, b, &ccd, 0, 0, (ccd_real_t)HUGE_VAL, warm, &q); break;
+    }
+    x.stack = (unsigned long)((const char *)__builtin_frame_address(0) - body_stack_lowest);
+    x.supports = body_calls / 2;
+    if (call == CALL_DISTANCE) {
+        /* as a depth: upper and lower bound change places with the sign */
+        if (x.code == CCD_HIT || x.code == CCD_MISS || x.code == CCD_LIMIT) {
+            x.depth = -(double)q.distance;
+            x.lower = -(double)q.distance_upper;
+            x.points = 1;
+            take(&q.normal, x.dir);
+            take(&q.normal, x.normal);
+            take(&q.point1, x.at[0]);
+            take(&q.point2, x.at[1]);
+        }
+    } else if (x.code == CCD_HIT || x.code == CCD_LIMIT) {
+        if (call >= CALL_MINIMUM) {
+            take_penetration(&x, &o);
+        } else if (call != CALL_MPR_INTERSECT && call != CALL_GJK_INTERSECT) {
+            x.depth = (double)depth;
+            take(&dir, x.dir);
+            if (call == CALL_SEPARATE) {
+                x.depth = sqrt(truth_dot3(x.dir, x.dir));
+                for (i = 0; i < 3 && x.depth > 0; i++)
+                    x.dir[i] /= x.depth;
+            }
+            memcpy(x.normal, x.dir, sizeof x.normal);
+        }
+    }
+    return x;
+}
+
+/* --- faults ------------------------------------------------------------------------- */
+
+#define FAULTS(X) \
+    X(CODE, "code") \
+    X(NUMBER, "not a number or not unit") \
+    X(MISSED, "overlap missed") \
+    X(FALSE_HIT, "false hit") \
+    X(UNSOUND, "unsound") \
+    X(TOO_DEEP, "too deep") \
+    X(FALSE_PROOF, "false proof") \
+    X(OPEN, "bounds open") \
+    X(OUTSIDE, "point outside") \
+    X(NO_MINIMUM, "no local minimum") \
+    X(STACK, "stack") \
+    X(TAIL, "tail")
+
+enum {
+#define WIDE_FAULT_BIT(name, text) FAULT_BIT_##name,
+    FAULTS(WIDE_FAULT_BIT)
+#undef WIDE_FAULT_BIT
+        FAULT_BITS
+};
+enum {
+#define WIDE_FAULT(name, text) FAULT_##name = 1 << FAULT_BIT_##name,
+    FAULTS(WIDE_FAULT)
+#undef WIDE_FAULT
+};
+
+static const char *const fault_names[FAULT_BITS] = {
+#define WIDE_FAULT_NAME(name, text) text,
+    FAULTS(WIDE_FAULT_NAME)
+#undef WIDE_FAULT_NAME
+};
+
+enum {
+    MPR_POINTS = 160,      /* beyond so many support points MPR promises nothing */
+    STACK_BYTES = 44 << 10, /* in any call, down to a support function */
+    TAIL_POINTS = 400      /* support points, at CCD_INIT's tolerance relative to the size */
+};
+
+static const double shares[5] = {1e-2, 1e-4, 1e-6, 1e-9, 0};
+enum { TOLERANCES = 5, DEFAULT_TOLERANCE = 1 };
+
+/* What is known to be broken: by call, the faults. Taken out as it is mended. */
+static const int marked[CALLS] = {
+    [CALL_MPR] = FAULT_TOO_DEEP,
+    [CALL_MPR_WARM] = FAULT_TOO_DEEP,
+    [CALL_GJK] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_TAIL,
+    [CALL_SEPARATE] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_TAIL,
+    [CALL_MINIMUM] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_FALSE_PROOF | FAULT_OUTSIDE | FAULT_TAIL,
+    [CALL_MINIMUM_BARE] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_FALSE_PROOF | FAULT_OUTSIDE | FAULT_TAIL,
+    [CALL_LOCAL] = FAULT_OUTSIDE | FAULT_NO_MINIMUM | FAULT_TAIL,
+    [CALL_LOCAL_BARE] = FAULT_OUTSIDE | FAULT_NO_MINIMUM | FAULT_TAIL,
+    [CALL_INCREMENTAL] = FAULT_OUTSIDE | FAULT_TAIL,
+    [CALL_ALONG] = FAULT_TAIL,
+    [CALL_DISTANCE] = FAULT_TOO_DEEP | FAULT_FALSE_PROOF | FAULT_OPEN | FAULT_OUTSIDE | FAULT_STACK | FAULT_TAIL,
+};
+
+/* What rounding may do to a support value of such bodies, metres: some ulps of the largest
+ * coordinate, in the callbacks and in the difference of two points. */
+static double wide_noise(const wide_pair_t *p) { return tolerance(TOL_ULPS) * real_ulp() * p->largest; }
+
+/* Is the point outside the body by more than the bound, metres? */
+static int is_outside(const body_t *s, const double at[3], double bound)
+{
+    body_t point;
+    memset(&point, 0, sizeof point);
+    memcpy(point.at, at, sizeof point.at);
+    return wide_bounds(s, &point, bound / 4, -bound, -bound / 2, 120).upper < -bound;
+}
+
+/* How far h falls within a fiftieth of a rad around n: less than four times that far in
+ * directions chosen at random, nearer and nearer to the lowest. */
+static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
+{
+    const double reach = .02;
+    const double first = wide_value(&p->body[0], &p->body[1], n);
+    double best[3], least = first, step = reach / 2;
+    int i, k;
+    memcpy(best, n, sizeof best);
+    for (i = 0; i < 120; i++) {
+        double m[3], l = 0, far = 0, h;
+        for (k = 0; k < 3; k++) {
+            m[k] = best[k] + step * dice_in(d, -1, 1);
+            l += m[k] * m[k];
+        }
+        for (k = 0; k < 3; k++) {
+            m[k] /= sqrt(l);
+            far += (m[k] - n[k]) * (m[k] - n[k]);
+        }
+        if (far > reach * reach)
+            continue;
+        h = wide_value(&p->body[0], &p->body[1], m);
+        if (h < least) {
+            least = h;
+            memcpy(best, m, sizeof best);
+        } else {
+            step *= .95;
+        }
+    }
+    return first - least;
+}
+
+/* What the judge knows of a pair in one pose. */
+typedef struct {
+    bounds_t truth;
+    double noise, least; /* least: truth.upper, or lower where an answer knows better */
+    int may_be_deep[TOLERANCES]; /* at this tolerance the minimum said CCD_LIMIT */
+} case_t;
+
+static int is_proven(int call)
+{
+    return call == CALL_GJK || call == CALL_SEPARATE || call == CALL_MINIMUM || call == CALL_MINIMUM_BARE || call == CALL_DISTANCE;
+}
+
+static int judge_points(const said_t *x, const wide_pair_t *p, double within, dice_t *d)
+{
+    const double bound = fmax(within, tolerance(TOL_INSIDE) * p->size) + tolerance(TOL_ULPS) * real_ulp() * p->largest;
+    int k;
+    for (k = 0; k < 2; k++)
+        if (is_outside(&p->body[k], x->at[k], bound))
+            return FAULT_OUTSIDE;
+    if ((x->call == CALL_LOCAL || x->call == CALL_LOCAL_BARE) && x->code == CCD_HIT && fall(p, x->dir, d) > 2 * within + bound)
+        return FAULT_NO_MINIMUM;
+    return 0;
+}
+
+static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, int t, dice_t *d)
+{
+    const double floor = tolerance(TOL_PROOF_FLOOR) * p->largest, within = x->tol + floor;
+    const int overlap = c->truth.lower > c->noise, apart = c->least < -c->noise;
+    const double *n = x->normal;
+    int faults = 0, i;
+    double h, along;
+    if (x->stack > STACK_BYTES)
+        faults |= FAULT_STACK;
+    if (t == DEFAULT_TOLERANCE && x->supports > TAIL_POINTS)
+        faults |= FAULT_TAIL;
+    if (x->code != CCD_HIT && x->code != CCD_MISS && x->code != CCD_LIMIT)
+        return faults | FAULT_CODE;
+    if (x->code == CCD_MISS && overlap)
+        return faults | FAULT_MISSED;
+    if (x->code == CCD_HIT && apart)
+        return faults | FAULT_FALSE_HIT;
+    if (x->code == CCD_LIMIT && apart && x->call != CALL_DISTANCE)
+        return faults | FAULT_FALSE_HIT;
+    if ((x->code == CCD_MISS && x->call != CALL_DISTANCE) || x->call == CALL_MPR_INTERSECT || x->call == CALL_GJK_INTERSECT)
+        return faults;
+    if (x->call == CALL_SEPARATE && x->depth == 0)
+        return faults;
+    for (i = 0; i < 3; i++)
+        if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->points && !(isfinite(x->at[0][i]) && isfinite(x->at[1][i]))))
+            return faults | FAULT_NUMBER;
+    along = truth_dot3(x->dir, n);
+    if (!(fabs(sqrt(truth_dot3(n, n)) - 1) <= tolerance(TOL_UNIT) * 4) || !(along > 0) || !isfinite(x->depth) || !isfinite(x->lower))
+        return faults | FAULT_NUMBER;
+    h = wide_value(&p->body[0], &p->body[1], n);
+    if (x->depth * along < h - c->noise)
+        faults |= FAULT_UNSOUND;
+    /* along a direction of the caller's the least depth is greater, and so may its bound be */
+    if (x->call != CALL_ALONG && x->lower > c->least + c->noise)
+        faults |= FAULT_FALSE_PROOF;
+    if ((x->call == CALL_MINIMUM || x->call == CALL_MINIMUM_BARE || x->call == CALL_DISTANCE) && x->code != CCD_LIMIT
+        && x->depth - x->lower > within)
+        faults |= FAULT_OPEN;
+    if (is_proven(x->call) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
+        && x->code == CCD_HIT)
+        faults |= FAULT_TOO_DEEP;
+    if ((x->call == CALL_MPR || x->call == CALL_MPR_WARM) && x->supports < MPR_POINTS
+        && x->depth > fmax(c->least, 0) + fmax(within, tolerance(TOL_PROMISED) * c->least) + c->noise)
+        faults |= FAULT_TOO_DEEP;
+    if (x->points && dice_below(d, 8) == 0)
+        faults |= judge_points(x, p, within + (x->code == CCD_LIMIT ? fmax(x->depth - x->lower, 0) : 0), d);
+    return faults;
+}
+
+/* --- the table ---------------------------------------------------------------------- */
+
+static unsigned long judged, wrong[ROWS][CALLS][FAULT_BITS], limits[ROWS], minima[ROWS], pairs_of[ROWS];
+static unsigned long most_supports[CALLS], most_stack[CALLS];
+
+static void print_body(const char *name, const body_t *s)
+{
+    int i;
+    printf("  %s: part %d (%.17g, %.17g, %.17g, %.17g) points %d child %d (%.17g, %.17g, %.17g) margin %.17g at (%.17g, %.17g, %.17g) m",
+           name, (int)s->part.kind, s->part.p[0], s->part.p[1], s->part.p[2], s->part.p[3], s->part.count, (int)s->child.kind,
+           s->child.p[0], s->child.p[1], s->child.p[2], s->margin, s->at[0], s->at[1], s->at[2]);
+    for (i = 0; i < 9; i++)
+        printf(" %.17g", s->m[i]);
+    printf("\n");
+}
+
+static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c, const said_t *x, int faults)
+{
+    int bit, new = 0;
+    judged++;
+    if (x->call == CALL_MINIMUM) {
+        minima[row] += x->code == CCD_HIT || x->code == CCD_LIMIT;
+        limits[row] += x->code == CCD_LIMIT;
+    }
+    for (bit = 0; bit < FAULT_BITS; bit++)
+        if (faults >> bit & 1)
+            new |= wrong[row][x->call][bit]++ == 0;
+    if (new) {
+        printf("first seen in row %d (%s), pair %lu%s, tolerance %g, %s:", row, rows[row].name, (unsigned long)index,
+               x->moved ? ", moved" : "", x->tol, call_names[x->call]);
+        for (bit = 0; bit < FAULT_BITS; bit++)
+            if (faults >> bit & 1)
+                printf(" %s;", fault_names[bit]);
+        printf("\n  code %d depth %.17g lower %.17g supports %lu stack %lu dir %.17g %.17g %.17g; truth %.17g to %.17g, least known %.17g, noise %.2g\n",
+               x->code, x->depth, x->lower, x->supports, x->stack, x->dir[0], x->dir[1], x->dir[2], c->truth.lower, c->truth.upper,
+               c->least, c->noise);
+        if (x->points)
+            printf("  points %.17g %.17g %.17g, %.17g %.17g %.17g\n", x->at[0][0], x->at[0][1], x->at[0][2], x->at[1][0], x->at[1][1],
+                   x->at[1][2]);
+        print_body("a", &p->body[0]);
+        print_body("b", &p->body[1]);
+    }
+}
+
+/* The truth of a pose, and what the answers add to it: h of every direction they name. */
+static case_t known(const wide_pair_t *p, const said_t *said, int count)
+{
+    case_t c;
+    int i;
+    c.noise = wide_noise(p);
+    c.truth = wide_bounds(&p->body[0], &p->body[1], c.noise / 4, -2 * c.noise, HUGE_VAL, 200);
+    c.least = c.truth.upper;
+    memset(c.may_be_deep, 0, sizeof c.may_be_deep);
+    for (i = 0; i < count; i++) {
+        if (said[i].normal[0] != 0 || said[i].normal[1] != 0 || said[i].normal[2] != 0)
+            c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].normal));
+        if (said[i].call == CALL_MINIMUM_BARE && said[i].code == CCD_LIMIT)
+            c.may_be_deep[i / CALLS % TOLERANCES] = 1;
+    }
+    return c;
+}
+
+static void judge_pair(int row, uint64_t seed, uint64_t index)
+{
+    static wide_pair_t p;
+    static said_t said[TOLERANCES * CALLS];
+    ccd_warm_t warm[CALLS];
+    dice_t d = dice(9000 + (uint64_t)row + 100 * seed, index);
+    const int kept = (int)(index % TOLERANCES);
+    double along[3];
+    case_t c;
+    int t, k, frame;
+    wide_pair(row, seed, index, &p);
+    dice_unit(&d, along);
+    pairs_of[row]++;
+    for (t = 0; t < TOLERANCES; t++)
+        for (k = 0; k < CALLS; k++) {
+            ccd_warm_t cold;
+            memset(&cold, 0, sizeof cold);
+            said[t * CALLS + k] = say(k, &p, shares[t] * p.size, along, &cold);
+            if (t == kept)
+                warm[k] = cold;
+            most_supports[k] = t == DEFAULT_TOLERANCE && said[t * CALLS + k].supports > most_supports[k] ? said[t * CALLS + k].supports
+                                                                                                        : most_supports[k];
+            most_stack[k] = said[t * CALLS + k].stack > most_stack[k] ? said[t * CALLS + k].stack : most_stack[k];
+        }
+    c = known(&p, said, TOLERANCES * CALLS);
+    for (t = 0; t < TOLERANCES; t++)
+        for (k = 0; k < CALLS; k++)
+            tally(row, index, &p, &c, &said[t * CALLS + k], judge_said(&said[t * CALLS + k], &p, &c, t, &d));
+    for (frame = 0; frame < 2; frame++) {
+        wide_move(&d, &p, dice_log(&d, 1e-9, 1e-2));
+        for (k = 0; k < CALLS; k++) {
+            said[k] = say(k, &p, shares[kept] * p.size, along, &warm[k]);
+            said[k].moved = 1;
+        }
+        c = known(&p, said, CALLS);
+        c.may_be_deep[kept] = c.may_be_deep[0];
+        for (k = 0; k < CALLS; k++)
+            tally(row, index, &p, &c, &said[k], judge_said(&said[k], &p, &c, kept, &d));
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const int pairs = argc > 1 ? atoi(argv[1]) : 20, only = argc > 2 ? atoi(argv[2]) : -1;
+    const uint64_t first = argc > 3 ? strtoull(argv[3], NULL, 10) : 0, seed = argc > 4 ? strtoull(argv[4], NULL, 10) : 0;
+    unsigned long sum, all = 0, unmarked = 0;
+    int row, k, bit, i;
+    if (pairs < 1 || only >= (int)ROWS) {
+        fprintf(stderr, "usage: wide [pairs a row [row, -1 all [first pair [seed]]]]\n");
+        return 2;
+    }
+    for (row = 0; row < (int)ROWS; row++)
+        for (i = 0; i < pairs && (only < 0 || row == only); i++)
+            judge_pair(row, seed, first + (uint64_t)i);
+    printf("\n| row | pairs |");
+    for (bit = 0; bit < FAULT_BITS; bit++)
+        printf(" %s |", fault_names[bit]);
+    printf(" CCD_LIMIT of minima, %% |\n|---|---|");
+    for (bit = 0; bit <= FAULT_BITS; bit++)
+        printf("---|");
+    printf("\n");
+    for (row = 0; row < (int)ROWS; row++) {
+        if (!pairs_of[row])
+            continue;
+        printf("| %s | %lu |", rows[row].name, pairs_of[row]);
+        for (bit = 0; bit < FAULT_BITS; bit++) {
+            for (sum = 0, k = 0; k < CALLS; k++)
+                sum += wrong[row][k][bit];
+            all += sum;
+            printf(" %lu |", sum);
+        }
+        printf(" %.2f |\n", minima[row] ? 100. * (double)limits[row] / (double)minima[row] : 0);
+    }
+    printf("\n| call | most supports | most stack |");
+    for (bit = 0; bit < FAULT_BITS; bit++)
+        printf(" %s |", fault_names[bit]);
+    printf("\n|---|---|---|");
+    for (bit = 0; bit < FAULT_BITS; bit++)
+        printf("---|");
+    printf("\n");
+    for (k = 0; k < CALLS; k++) {
+        printf("| %s | %lu | %lu |", call_names[k], most_supports[k], most_stack[k]);
+        for (bit = 0; bit < FAULT_BITS; bit++) {
+            for (sum = 0, row = 0; row < (int)ROWS; row++)
+                sum += wrong[row][k][bit];
+            unmarked += marked[k] >> bit & 1 ? 0 : sum;
+            printf(" %lu%s |", sum, sum && marked[k] >> bit & 1 ? " (known)" : "");
+        }
+        printf("\n");
+    }
+    printf("\n%lu calls judged, %lu faults, %lu of them not known\n", judged, all, unmarked);
+    return unmarked > 0;
+}
