@@ -27,10 +27,11 @@ fn program(name: &str) -> Executable {
 }
 
 fn source(name: &str) -> Program {
-    Program::c(name)
-        .source(format!("stability/{name}.c"))
-        .flag("-pedantic")
-        .flag("-Werror")
+    strict(name).source(format!("stability/{name}.c"))
+}
+
+fn strict(name: &str) -> Program {
+    Program::c(name).flag("-pedantic").flag("-Werror")
 }
 
 /// Every pair set under c-tests/pairs.
@@ -122,6 +123,41 @@ fn categories() {
 #[test]
 fn exact_minima() {
     alone("exact").run(["300"]);
+}
+
+/// Every call on bodies that are hard for one method or another, judged in 128 bits: a
+/// sample of every row. Other processors than x86 have no such numbers, or by another name.
+#[test]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+fn judged_in_128_bits() {
+    wide().run([harness::rounds(60)]);
+}
+
+/// The same, a thousand pairs a row: `cargo test --test stability -- --ignored --nocapture
+/// wide_campaign`. Three minutes; more, of one row, from another pair or another seed with
+/// `WIDE_PAIRS`, `WIDE_ROW`, `WIDE_FIRST` and `WIDE_SEED`, the program's arguments.
+#[test]
+#[ignore = "takes minutes; prints tables"]
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+fn wide_campaign() {
+    let args = [
+        ("WIDE_PAIRS", "1000"),
+        ("WIDE_ROW", "-1"),
+        ("WIDE_FIRST", "0"),
+        ("WIDE_SEED", "1"),
+    ]
+    .map(|(name, value)| std::env::var(name).unwrap_or(value.to_owned()));
+    let status = wide().command().args(args).status();
+    assert!(status.is_ok_and(|s| s.success()));
+}
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+fn wide() -> Executable {
+    strict("wide")
+        .source("stability/wide/wide.c")
+        .flag("-DOURS_ALONE")
+        .link_ours_static()
+        .build()
 }
 
 /// The table of 100,000 pairs a kind, with its progress:
