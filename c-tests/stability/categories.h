@@ -7,8 +7,9 @@
 #ifndef STABILITY_CATEGORIES_H
 #define STABILITY_CATEGORIES_H
 
-#include "dice.h"
 #include "judge.h"
+
+#include "dice.h"
 
 /* --- pairs ---------------------------------------------------------------------- */
 
