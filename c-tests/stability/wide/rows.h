@@ -209,6 +209,8 @@ static void make_hull(dice_t *d, body_t *s, double *points)
         points[1] *= y;
         points[2] *= z;
     }
+    for (i = 0; i < 3 * n; i++)
+        s->centre[i % 3] += s->part.points[i] / n;
 }
 
 static make_t *const plain[] = {make_box, make_ball, make_capsule, make_frustum, make_ellipsoid, make_hull};

@@ -315,7 +315,7 @@ static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, in
 /* --- the table ---------------------------------------------------------------------- */
 
 static unsigned long judged, wrong[ROWS][CALLS][FAULT_BITS], limits[ROWS], minima[ROWS], pairs_of[ROWS];
-static unsigned long most_supports[CALLS], most_stack[CALLS];
+static unsigned long most_supports[CALLS], most_stack[CALLS], limits_of[CALLS];
 
 static void print_body(const char *name, const body_t *s)
 {
@@ -332,6 +332,7 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
 {
     int bit, new = 0;
     judged++;
+    limits_of[x->call] += x->code == CCD_LIMIT;
     if (x->call == CALL_MINIMUM) {
         minima[row] += x->code == CCD_HIT || x->code == CCD_LIMIT;
         limits[row] += x->code == CCD_LIMIT;
@@ -447,15 +448,15 @@ int main(int argc, char **argv)
         }
         printf(" %.2f |\n", minima[row] ? 100. * (double)limits[row] / (double)minima[row] : 0);
     }
-    printf("\n| call | most supports | most stack |");
+    printf("\n| call | most supports | most stack | CCD_LIMIT |");
     for (bit = 0; bit < FAULT_BITS; bit++)
         printf(" %s |", fault_names[bit]);
-    printf("\n|---|---|---|");
+    printf("\n|---|---|---|---|");
     for (bit = 0; bit < FAULT_BITS; bit++)
         printf("---|");
     printf("\n");
     for (k = 0; k < CALLS; k++) {
-        printf("| %s | %lu | %lu |", call_names[k], most_supports[k], most_stack[k]);
+        printf("| %s | %lu | %lu | %lu |", call_names[k], most_supports[k], most_stack[k], limits_of[k]);
         for (bit = 0; bit < FAULT_BITS; bit++) {
             for (sum = 0, row = 0; row < (int)ROWS; row++)
                 sum += wrong[row][k][bit];
