@@ -130,7 +130,7 @@ readme_table() {
             row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
             row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
             row("`ccdPenetrationLocal`, warm", warm, "local, warm", "no")
-            row("`ccdPenetrationMinimum`, warm", warm, "minimum, warm", "tolerance")
+            row("`ccdPenetrationProven`, warm", warm, "minimum, warm", "tolerance")
         }' theirs.txt ours.txt warm.txt
 }
 

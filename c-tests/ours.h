@@ -12,6 +12,7 @@
 #ifndef TESTS_OURS_H
 #define TESTS_OURS_H
 
+#include <ccd/paper.h>
 #include <ccd/warm.h>
 
 #ifdef OURS_ALONE
@@ -42,18 +43,21 @@ int OURS(ccdMPRPenetrationWarm)(const void *obj1, const void *obj2, const ccd_t 
 int OURS(ccdMPRIntersectWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
 void OURS(ccdWarmGuess)(ccd_warm_t *warm, const ccd_vec3_t *dir);
 void OURS(ccdWarmFlip)(ccd_warm_t *warm);
-int OURS(ccdPenetrationLocal)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+int OURS(ccdPenetration)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
+                         ccd_penetration_t *out);
+int OURS(ccdIntersect)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
+int OURS(ccdPenetrationLocal)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
                               ccd_penetration_t *out);
-int OURS(ccdPenetrationIncremental)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+int OURS(ccdPenetrationIncremental)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
                                     ccd_penetration_t *out);
-int OURS(ccdPenetrationMinimum)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
+int OURS(ccdPenetrationProven)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
                                 ccd_penetration_t *out);
 int OURS(ccdPenetrationAlong)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *dir,
-                              ccd_warm_t *warm, ccd_penetration_t *out);
+                              ccd_warm_t *warm, unsigned want, ccd_penetration_t *out);
 int OURS(ccdPenetrationPlanar)(const void *obj1, const void *obj2, const ccd_t *ccd,
-                               const ccd_vec3_t *plane_normal, ccd_warm_t *warm, ccd_penetration_t *out);
+                               const ccd_vec3_t *plane_normal, ccd_warm_t *warm, unsigned want, ccd_penetration_t *out);
 int OURS(ccdSignedDistance)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t margin1,
-                            ccd_real_t margin2, ccd_real_t beyond, ccd_warm_t *warm, ccd_distance_t *out);
+                            ccd_real_t margin2, ccd_real_t max_distance, ccd_warm_t *warm, unsigned want, ccd_distance_t *out);
 int OURS(ccdContacts)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
                       ccd_contact_t *contacts, int max);
 const char *OURS(ccdImplementation)(void);

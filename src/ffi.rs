@@ -37,6 +37,7 @@ use core::ffi::c_void;
 mod arena;
 pub mod callbacks;
 pub mod collide;
+pub mod paper;
 pub mod polytope;
 pub mod support;
 pub mod types;

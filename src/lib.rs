@@ -24,7 +24,7 @@
 //! };
 //! let settings = Settings { tolerance: 1e-5, max_iterations: 1000 };
 //! let mut state = State::default(); // cold
-//! match pair.local(&mut state, &settings) {
+//! match pair.local(&mut state, &settings, true) {
 //!     Ok(Answer::Hit(hit)) => assert!((hit.depth - 0.5).abs() < 1e-4),
 //!     other => panic!("the balls overlap by 0.5: {other:?}"),
 //! }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The penetration queries of a pair, and the order of steps that they share. (Yes or no
-//! with memory is [`crate::gjk::intersect`], the distance [`crate::gjk::signed_distance`].)
+//! The queries of a pair, and the order of steps that those for the depth share. (Yes or no
+//! is [`crate::gjk::intersect`]'s, the distance [`crate::gjk::signed_distance`].)
 //!
 //! 1. A pair that was apart is asked about the direction that separated it: while
 //!    that still separates, one support point is the whole answer, and turns the
@@ -25,7 +25,8 @@
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contacts::patch;
 use crate::gjk::barycentric;
-use crate::gjk::overlap::Proof;
+use crate::gjk::intersect;
+use crate::gjk::overlap::{self, Proof};
 use crate::gjk::proof::{inner_distance, is_around, proof};
 use crate::gjk::separation;
 use crate::hull::expansion::Limits;
@@ -210,17 +211,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(())
     }
 
-    /// Step 4: the witness points of two faces that touch in the middle of where they do.
-    pub fn settle(&self, answer: Answer, settings: &Settings) -> Result<Answer, Fault> {
-        match answer {
-            Answer::Hit(mut hit) => {
-                patch::settle(&self.md, &mut hit, settings.tolerance)?;
-                Ok(Answer::Hit(hit))
-            }
-            other => Ok(other),
-        }
-    }
-
     /// Does a state lead to the far side, as that of the swapped pair does? It was left when the
     /// centres looked the other way; or, a guess, it looks away from them, and D reaches farther
     /// there.
@@ -248,8 +238,31 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
     }
 
+    /// Do the objects overlap? With memory, or cold.
+    #[inline]
+    pub fn intersect(&self, state: Option<&mut State>) -> Result<bool, Fault> {
+        let Some(state) = state else {
+            let answer = match &self.centre {
+                Some(centre) => overlap::from_centre(&self.md, centre),
+                None => overlap::from_direction(&self.md, &self.cold_start()),
+            };
+            return match answer {
+                Ok(()) => Ok(true),
+                Err(Stop::Apart(_)) => Ok(false),
+                Err(Stop::Fault(fault)) => Err(fault),
+            };
+        };
+        let first = || self.cold_start();
+        intersect::intersect(&self.md, self.centre.as_ref(), first, state)
+    }
+
     /// A local minimum of the depth.
-    pub fn local(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+    pub fn local(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        wants_witnesses: bool,
+    ) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
@@ -271,13 +284,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !minimum {
             return Ok(Answer::Limit(hit));
         }
-        patch::settle(&self.md, &mut hit, settings.tolerance)?;
+        if wants_witnesses {
+            patch::settle(&self.md, &mut hit, settings.tolerance)?;
+        }
         Ok(Answer::Hit(hit))
     }
 
     /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
     /// the last direction, else from the centres.
-    pub fn incremental(&self, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+    pub fn incremental(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        wants_witnesses: bool,
+    ) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
@@ -285,7 +305,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let found = incremental::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
         let answer = self.proven(found, &mut Known::default(), settings, false)?;
         self.remember(state, &answer)?;
-        self.settle(answer, settings)
+        match answer {
+            Answer::Hit(mut hit) if wants_witnesses => {
+                patch::settle(&self.md, &mut hit, settings.tolerance)?;
+                Ok(Answer::Hit(hit))
+            }
+            other => Ok(other),
+        }
     }
 
     /// The minimum depth at MPR's price: within the tolerance or a thousandth of the depth,
@@ -295,7 +321,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         state: &mut State,
         settings: &Settings,
-        placed: bool,
+        wants_witnesses: bool,
     ) -> Result<Answer, Fault> {
         let limits = Limits {
             tolerance: settings.tolerance,
@@ -303,7 +329,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             supports: MPR_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(self.centre.as_ref(), state, &limits, None, placed)
+        self.global(self.centre.as_ref(), state, &limits, None, wants_witnesses)
     }
 
     /// The global minimum of the depth, proven by support points alone: from the state,
@@ -313,7 +339,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         settings: &Settings,
         arena: &mut dyn Arena,
-        placed: bool,
+        wants_witnesses: bool,
     ) -> Result<Answer, Fault> {
         let limits = Limits {
             tolerance: settings.tolerance,
@@ -321,7 +347,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             supports: MOST_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(None, state, &limits, Some(arena), placed)
+        self.global(None, state, &limits, Some(arena), wants_witnesses)
     }
 
     /// The global search, from the state; `apex` is a point that is trusted to be in D.
@@ -332,7 +358,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         limits: &Limits,
         arena: Option<&mut dyn Arena>,
-        placed: bool,
+        wants_witnesses: bool,
     ) -> Result<Answer, Fault> {
         let mut asked = None;
         if state.was_apart() {
@@ -359,7 +385,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             first,
             others: state.others(),
             limits,
-            placed,
+            wants_witnesses,
             mark: state.mark(),
         };
         let mut basis = Basis::default();
@@ -683,7 +709,7 @@ mod tests {
             first_dir: None,
             lasting: true,
         };
-        match pair.local(&mut state, &SETTINGS).unwrap() {
+        match pair.local(&mut state, &SETTINGS, true).unwrap() {
             Answer::Hit(hit) => (pair.md.supports(), hit.depth, state),
             other => panic!("{other:?}"),
         }
@@ -730,7 +756,9 @@ mod tests {
                 lasting: true,
             };
             let mut state = State::guess(&r.direction());
-            if let Ok(Answer::Hit(hit) | Answer::Limit(hit)) = pair.local(&mut state, &SETTINGS) {
+            if let Ok(Answer::Hit(hit) | Answer::Limit(hit)) =
+                pair.local(&mut state, &SETTINGS, true)
+            {
                 assert_eq!(hit.depth_lower, 0.0);
             }
         }

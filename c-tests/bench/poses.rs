@@ -14,7 +14,7 @@ use parry3d_f64::shape::Segment;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::lab::libraries::{CPenetration, Libraries, Truth, Warm};
+use crate::lab::libraries::{CPenetration, LIMIT, Libraries, Truth, WANT_ALL, Warm};
 use crate::lab::scene::{Body, Form, Pose, Scene, room};
 
 /// The unit vector `angle` degrees from `n`, turned about an axis across it
@@ -118,10 +118,10 @@ impl<'a> Oracle<'a> {
             for k in 0..2 {
                 self.bodies[k].place(callbacks, at[k], &poses[k]);
             }
-            ask(at[0], at[1], &settings, &mut state, &mut out)
+            ask(at[0], at[1], &settings, &mut state, WANT_ALL, &mut out)
         };
-        // At the cap (-4) the bound is as honest, only wider.
-        (code == 0 || code == -4).then(|| Proven {
+        // At the cap the bound is as honest, only wider.
+        (code == 0 || code == LIMIT).then(|| Proven {
             depth: out.depth,
             normal: out.dir.v.into(),
             gap: out.depth - out.depth_lower,

@@ -22,16 +22,18 @@ use harness::{Precision, Program};
 const NO_ARGS: [&str; 0] = [];
 
 /// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 12] = [
+const EXTENSION: [&str; 14] = [
     "ccdContacts",
     "ccdImplementation",
+    "ccdIntersect",
     "ccdMPRIntersectWarm",
     "ccdMPRPenetrationWarm",
+    "ccdPenetration",
     "ccdPenetrationAlong",
     "ccdPenetrationIncremental",
     "ccdPenetrationLocal",
-    "ccdPenetrationMinimum",
     "ccdPenetrationPlanar",
+    "ccdPenetrationProven",
     "ccdSignedDistance",
     "ccdWarmFlip",
     "ccdWarmGuess",

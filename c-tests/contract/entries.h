@@ -73,6 +73,15 @@ static inline int run_MPRIntersectWarm(const void *a, const void *b, const ccd_t
     return ccdMPRIntersectWarm(a, b, ccd, &warm);
 }
 
+static inline int run_Intersect(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    ccd_warm_t warm;
+    (void)out;
+    memset(&warm, 0, sizeof warm);
+    ccdIntersect(a, b, ccd, &warm);
+    return ccdIntersect(a, b, ccd, &warm);
+}
+
 static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
 {
     if (code == CCD_HIT || code == CCD_LIMIT) {
@@ -85,14 +94,20 @@ static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
 }
 
 /* Cold, then from the state that this left. */
-static inline int run_twice(int (*query)(const void *, const void *, const ccd_t *, ccd_warm_t *, ccd_penetration_t *),
+static inline int run_twice(int (*query)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned,
+                                         ccd_penetration_t *),
                             const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     ccd_warm_t warm;
     ccd_penetration_t p;
     memset(&warm, 0, sizeof warm);
-    query(a, b, ccd, &warm, &p);
-    return stored(query(a, b, ccd, &warm, &p), &p, out);
+    query(a, b, ccd, &warm, CCD_WANT_ALL, &p);
+    return stored(query(a, b, ccd, &warm, CCD_WANT_ALL, &p), &p, out);
+}
+
+static inline int run_Penetration(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    return run_twice(ccdPenetration, a, b, ccd, out);
 }
 
 static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
@@ -105,9 +120,9 @@ static inline int run_PenetrationIncremental(const void *a, const void *b, const
     return run_twice(ccdPenetrationIncremental, a, b, ccd, out);
 }
 
-static inline int run_PenetrationMinimum(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+static inline int run_PenetrationProven(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
-    return run_twice(ccdPenetrationMinimum, a, b, ccd, out);
+    return run_twice(ccdPenetrationProven, a, b, ccd, out);
 }
 
 static inline int run_PenetrationAlong(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
@@ -116,8 +131,8 @@ static inline int run_PenetrationAlong(const void *a, const void *b, const ccd_t
     ccd_warm_t warm;
     ccd_penetration_t p;
     memset(&warm, 0, sizeof warm);
-    ccdPenetrationAlong(a, b, ccd, &dir, &warm, &p);
-    return stored(ccdPenetrationAlong(a, b, ccd, &dir, &warm, &p), &p, out);
+    ccdPenetrationAlong(a, b, ccd, &dir, &warm, CCD_WANT_ALL, &p);
+    return stored(ccdPenetrationAlong(a, b, ccd, &dir, &warm, CCD_WANT_ALL, &p), &p, out);
 }
 
 static inline int run_PenetrationPlanar(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
@@ -126,8 +141,8 @@ static inline int run_PenetrationPlanar(const void *a, const void *b, const ccd_
     ccd_warm_t warm;
     ccd_penetration_t p;
     memset(&warm, 0, sizeof warm);
-    ccdPenetrationPlanar(a, b, ccd, &normal, &warm, &p);
-    return stored(ccdPenetrationPlanar(a, b, ccd, &normal, &warm, &p), &p, out);
+    ccdPenetrationPlanar(a, b, ccd, &normal, &warm, CCD_WANT_ALL, &p);
+    return stored(ccdPenetrationPlanar(a, b, ccd, &normal, &warm, CCD_WANT_ALL, &p), &p, out);
 }
 
 /* Contacts whatever the pose is; what it returns is whether the pair overlaps. */
@@ -145,8 +160,8 @@ static inline int run_SignedDistance(const void *a, const void *b, const ccd_t *
     ccd_distance_t d;
     int code;
     memset(&warm, 0, sizeof warm);
-    ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, &d);
-    code = ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, &d);
+    ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, CCD_WANT_ALL, &d);
+    code = ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, CCD_WANT_ALL, &d);
     /* Open bounds have a sign too. */
     if (code == CCD_LIMIT)
         code = d.distance < 0 ? CCD_HIT : CCD_MISS;
@@ -168,10 +183,12 @@ static const entry_t entries[] = {
     {"ccdMPRPenetration", run_MPRPenetration, 0, -1, FROM_CENTERS | STORES_DEPTH | STORES_DIR_POS},
     {"ccdMPRPenetrationWarm", run_MPRPenetrationWarm, 0, -1, FROM_CENTERS | STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdMPRIntersectWarm", run_MPRIntersectWarm, 1, 0, FROM_CENTERS | EXTENSION},
+    {"ccdIntersect", run_Intersect, 1, 0, EXTENSION},
+    {"ccdPenetration", run_Penetration, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdPenetrationLocal", run_PenetrationLocal, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdPenetrationIncremental", run_PenetrationIncremental, CCD_HIT, CCD_MISS,
      STORES_DEPTH | STORES_DIR_POS | EXTENSION},
-    {"ccdPenetrationMinimum", run_PenetrationMinimum, CCD_HIT, CCD_MISS,
+    {"ccdPenetrationProven", run_PenetrationProven, CCD_HIT, CCD_MISS,
      STORES_DEPTH | STORES_DIR_POS | MAY_ALLOCATE | EXTENSION},
     {"ccdPenetrationAlong", run_PenetrationAlong, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
     {"ccdContacts", run_Contacts, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION | ONE_BY_ONE},

@@ -66,7 +66,7 @@ int main(void)
                 garbage.center1 = ccd.center1;
                 garbage.center2 = ccd.center2;
             }
-            if (entry->traits & FROM_FIRST_DIR || entry->call == run_PenetrationMinimum)
+            if (entry->traits & FROM_FIRST_DIR || entry->call == run_PenetrationProven)
                 garbage.epa_tolerance = ccd.epa_tolerance;
             else if (entry->call == run_SignedDistance)
                 garbage.dist_tolerance = ccd.dist_tolerance;

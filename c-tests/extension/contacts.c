@@ -326,7 +326,7 @@ static void anywhere(void)
         place(&s, 1);
         shape_query(&ccd);
         ccd.epa_tolerance = CCD_REAL(0.0);
-        if (OURS(ccdPenetrationMinimum)(&s.a, &s.b, &ccd, NULL, &hit) != CCD_HIT)
+        if (OURS(ccdPenetrationProven)(&s.a, &s.b, &ccd, NULL, CCD_WANT_ALL, &hit) != CCD_HIT)
             continue;
         for (k = 0; k < 3; k++)
             s.n[k] = (double)hit.normal.v[k];

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* ccdSignedDistance: pairs of certified depth moved along their normal, from deep to apart,
- * where the signed distance is the way left; margins; beyond; states of every kind; bad
+ * where the signed distance is the way left; margins; max_distance; states of every kind; bad
  * input; objects without area; one continuous function for every category of pairs.
  *
  *   distance [pair set...] */
@@ -96,7 +96,7 @@ static void certified(const char *path, int poses)
                 tolerance = way > 0 && pass == 1 ? 0 : 1e-6;
                 ccd.dist_tolerance = (ccd_real_t)tolerance;
                 code = OURS(ccdSignedDistance)(&a, &moved, &ccd, (ccd_real_t)r1, (ccd_real_t)r2, INFINITY,
-                                               pass == 2 ? &warm : NULL, &d);
+                                               pass == 2 ? &warm : NULL, CCD_WANT_ALL, &d);
                 sprintf(what, "%.120s %d way %g pass %d", strrchr(path, '/') + 1, i, way, pass);
                 sound(code, &d, &ccd, &a, &moved, r1 + r2, error, what);
                 CHECK(fabs(d.distance - (way - r1 - r2)) <= tolerance + error, "%s: %.12g", what, (double)d.distance);
@@ -130,21 +130,21 @@ static void cores(void)
         rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
         shape_turn(&b, rot), shape_turn(&q, rot);
         shape_move(&b, to.v[0], to.v[1], to.v[2]), shape_move(&q, to.v[0], to.v[1], to.v[2]);
-        OURS(ccdSignedDistance)(&a, &b, &ccd, 0, 0, INFINITY, NULL, &full);
-        code = OURS(ccdSignedDistance)(&p, &q, &ccd, (ccd_real_t)r1, (ccd_real_t)r2, INFINITY, NULL, &core);
+        OURS(ccdSignedDistance)(&a, &b, &ccd, 0, 0, INFINITY, NULL, CCD_WANT_ALL, &full);
+        code = OURS(ccdSignedDistance)(&p, &q, &ccd, (ccd_real_t)r1, (ccd_real_t)r2, INFINITY, NULL, CCD_WANT_ALL, &core);
         sound(code, &core, &ccd, &p, &q, r1 + r2, error, "cores");
         CHECK(code == CCD_HIT || code == CCD_MISS, "cores: %d", code);
         CHECK(core.distance <= full.distance_upper + error && full.distance <= core.distance_upper + error,
               "cores %d: %g and %g", i, (double)core.distance, (double)full.distance);
-        supports += core.supports, count++;
+        supports += core.support_calls, count++;
     }
     printf("spheres and capsules as cores: %.2f supports\n", supports / count);
     CHECK(supports / count <= 3.5, "%g supports", supports / count);
 }
 
-/* --- beyond, states, swapped objects --------------------------------------------- */
+/* --- max_distance, states, swapped objects --------------------------------------- */
 
-static void beyond_and_states(void)
+static void max_distance_and_states(void)
 {
     int i, k;
     for (i = 0; i < 300; i++) {
@@ -159,12 +159,12 @@ static void beyond_and_states(void)
         shape_query(&ccd);
         ccd.max_iterations = 500;
         ccd.dist_tolerance = CCD_REAL(1e-6);
-        code = OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, INFINITY, NULL, &d);
-        OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, (ccd_real_t)limit, NULL, &far);
-        CHECK(far.supports <= d.supports, "beyond: %lu above %lu", far.supports, d.supports);
-        CHECK(far.distance <= d.distance_upper + error && far.distance_upper >= d.distance - error, "beyond: %g, %g",
+        code = OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, INFINITY, NULL, CCD_WANT_ALL, &d);
+        OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, (ccd_real_t)limit, NULL, CCD_WANT_ALL, &far);
+        CHECK(far.support_calls <= d.support_calls, "max_distance: %lu above %lu", far.support_calls, d.support_calls);
+        CHECK(far.distance <= d.distance_upper + error && far.distance_upper >= d.distance - error, "max_distance: %g, %g",
               (double)far.distance, (double)d.distance);
-        CHECK(d.distance <= limit + 1e-6 || far.distance > limit, "beyond %g: %g", limit, (double)far.distance);
+        CHECK(d.distance <= limit + 1e-6 || far.distance > limit, "max_distance %g: %g", limit, (double)far.distance);
         /* Zero, random, and the swapped pair's state. */
         for (k = 0; k < 3 && code != CCD_LIMIT; k++) {
             size_t byte;
@@ -172,8 +172,8 @@ static void beyond_and_states(void)
             for (byte = 0; k == 1 && byte < sizeof warm; byte++)
                 ((unsigned char *)&warm)[byte] = (unsigned char)random_below(256);
             if (k == 2)
-                OURS(ccdSignedDistance)(&p.b, &p.a, &ccd, 0, 0, INFINITY, &warm, &again);
-            OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, INFINITY, &warm, &again);
+                OURS(ccdSignedDistance)(&p.b, &p.a, &ccd, 0, 0, INFINITY, &warm, CCD_WANT_ALL, &again);
+            OURS(ccdSignedDistance)(&p.a, &p.b, &ccd, 0, 0, INFINITY, &warm, CCD_WANT_ALL, &again);
             CHECK(fabs(again.distance - d.distance) <= 2e-6 + error, "state %d: %g, %g", k, (double)again.distance,
                   (double)d.distance);
         }
@@ -219,7 +219,7 @@ static void continuous(void)
                 double error = size * (single ? 1e-4 : 1e-9) + reach * (single ? 1e-5 : 1e-14);
                 int code;
                 move_along(&b, u, way);
-                code = OURS(ccdSignedDistance)(&p.a, &b, &ccd, 0, 0, INFINITY, i < 2 ? NULL : &warm, &d);
+                code = OURS(ccdSignedDistance)(&p.a, &b, &ccd, 0, 0, INFINITY, i < 2 ? NULL : &warm, CCD_WANT_ALL, &d);
                 sprintf(what, "category %d pair %d step %d", category, i, k);
                 sound(code, &d, &ccd, &p.a, &b, 0, error, what);
                 /* Where minima form a curve or a surface the depth is right and the proof open. */
@@ -242,7 +242,7 @@ static double of_points(const ccd_real_t *p, int np, const ccd_real_t *q, int nq
     shape_query(&ccd);
     ccd.max_iterations = 500;
     ccd.dist_tolerance = 0;
-    *code = OURS(ccdSignedDistance)(&a, &b, &ccd, 0, 0, INFINITY, NULL, &d);
+    *code = OURS(ccdSignedDistance)(&a, &b, &ccd, 0, 0, INFINITY, NULL, CCD_WANT_ALL, &d);
     sound(*code, &d, &ccd, &a, &b, 0, 1e-6, "flat");
     return d.distance;
 }
@@ -269,7 +269,7 @@ static void flat(void)
 
 /* --- bad input --------------------------------------------------------------------- */
 
-static void refused(const ccd_t *ccd, double r1, double r2, double beyond, int no_out, const char *what)
+static void refused(const ccd_t *ccd, double r1, double r2, double max_distance, int no_out, const char *what)
 {
     shape_t a = shape_box(1, 1, 1), b = shape_sphere(1);
     ccd_distance_t out, before;
@@ -278,7 +278,7 @@ static void refused(const ccd_t *ccd, double r1, double r2, double beyond, int n
     memset(&before, 0x5a, sizeof before);
     memset(&warm_before, 0, sizeof warm_before);
     out = before, warm = warm_before;
-    code = OURS(ccdSignedDistance)(&a, &b, ccd, (ccd_real_t)r1, (ccd_real_t)r2, (ccd_real_t)beyond, &warm,
+    code = OURS(ccdSignedDistance)(&a, &b, ccd, (ccd_real_t)r1, (ccd_real_t)r2, (ccd_real_t)max_distance, &warm, CCD_WANT_ALL,
                                    no_out ? NULL : &out);
     CHECK(code == CCD_BAD_INPUT, "%s: %d", what, code);
     CHECK(same_bits(&out, &before, sizeof out) && same_bits(&warm, &warm_before, sizeof warm), "%s: written", what);
@@ -300,8 +300,8 @@ static void bad_input(void)
     refused(&good, -1, 0, 1, 0, "margin1 < 0");
     refused(&good, 0, NAN, 1, 0, "margin2 NaN");
     refused(&good, INFINITY, 0, 1, 0, "margin1 infinite");
-    refused(&good, 0, 0, -1, 0, "beyond < 0");
-    refused(&good, 0, 0, NAN, 0, "beyond NaN");
+    refused(&good, 0, 0, -1, 0, "max_distance < 0");
+    refused(&good, 0, 0, NAN, 0, "max_distance NaN");
     ccd = good, ccd.dist_tolerance = -1;
     refused(&ccd, 0, 0, 1, 0, "dist_tolerance < 0");
     ccd = good, ccd.dist_tolerance = (ccd_real_t)NAN;
@@ -318,7 +318,7 @@ int main(int argc, char **argv)
     bad_input();
     flat();
     cores();
-    beyond_and_states();
+    max_distance_and_states();
     continuous();
     for (i = 1; i < argc; i++)
         certified(argv[i], 12);

@@ -86,15 +86,15 @@ static void set_of(const char *path)
         ccd.max_iterations = 500;
         ccd.dist_tolerance = 1e-6;
         ccd_distance_t d;
-        int code = ccdSignedDistance(&a, &b, &ccd, 0, 0, INFINITY, nullptr, &d);
+        int code = ccdSignedDistance(&a, &b, &ccd, 0, 0, INFINITY, nullptr, CCD_WANT_ALL, &d);
         CHECK(code == CCD_MISS && d.distance <= away + truth.gap + 1e-12 && d.distance_upper >= away - truth.gap - 1e-12 &&
                   d.distance_upper - d.distance <= 1.001e-6,
               "%s %d: %d, %.12g to %.12g, truth %.12g", path, i, code, d.distance, d.distance_upper, away);
-        ours += double(d.supports);
-        code = ccdSignedDistance(&a, &b, &ccd, 0, 0, INFINITY, &state, &d);
+        ours += double(d.support_calls);
+        code = ccdSignedDistance(&a, &b, &ccd, 0, 0, INFINITY, &state, CCD_WANT_ALL, &d);
         CHECK(code == CCD_MISS && std::fabs(d.distance - away) <= 1e-6 + truth.gap + 1e-12, "%s %d, warm: %d, %.12g", path,
               i, code, d.distance);
-        warm += double(d.supports);
+        warm += double(d.support_calls);
         fcl += double(by_fcl(a, b));
     }
     printf("%-24s ours %.2f, FCL's GJK %.2f", strrchr(path, '/') + 1, ours / set.n, fcl / set.n);

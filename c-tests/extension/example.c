@@ -29,10 +29,10 @@ int main(void)
     ccd.mpr_tolerance = CCD_REAL(1e-5);
 
     for (int frame = 0; frame < 10; frame++) {
-        int code = ccdPenetrationLocal(&ball, &box, &ccd, &warm, &hit);
+        int code = ccdPenetrationLocal(&ball, &box, &ccd, &warm, CCD_WANT_ALL, &hit);
         if (code == CCD_HIT)
             printf("frame %d: depth %.4f along (%.3f %.3f %.3f), %lu supports\n", frame, (double)hit.depth,
-                   (double)hit.dir.v[0], (double)hit.dir.v[1], (double)hit.dir.v[2], hit.supports);
+                   (double)hit.dir.v[0], (double)hit.dir.v[1], (double)hit.dir.v[2], hit.support_calls);
         else
             printf("frame %d: %s\n", frame, code == CCD_MISS ? "apart" : "no answer");
         box.pos.v[2] -= CCD_REAL(0.01); /* the box sinks */

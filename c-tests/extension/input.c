@@ -17,11 +17,11 @@ static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const 
                ccd_penetration_t *out)
 {
     switch (query) {
-    case LOCAL: return OURS(ccdPenetrationLocal)(a, b, ccd, warm, out);
-    case INCREMENTAL: return OURS(ccdPenetrationIncremental)(a, b, ccd, warm, out);
-    case MINIMUM: return OURS(ccdPenetrationMinimum)(a, b, ccd, warm, out);
-    case ALONG: return OURS(ccdPenetrationAlong)(a, b, ccd, dir, warm, out);
-    default: return OURS(ccdPenetrationPlanar)(a, b, ccd, dir, warm, out);
+    case LOCAL: return OURS(ccdPenetrationLocal)(a, b, ccd, warm, CCD_WANT_ALL, out);
+    case INCREMENTAL: return OURS(ccdPenetrationIncremental)(a, b, ccd, warm, CCD_WANT_ALL, out);
+    case MINIMUM: return OURS(ccdPenetrationProven)(a, b, ccd, warm, CCD_WANT_ALL, out);
+    case ALONG: return OURS(ccdPenetrationAlong)(a, b, ccd, dir, warm, CCD_WANT_ALL, out);
+    default: return OURS(ccdPenetrationPlanar)(a, b, ccd, dir, warm, CCD_WANT_ALL, out);
     }
 }
 
@@ -29,7 +29,7 @@ static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const 
 static int same_answer(const ccd_penetration_t *a, const ccd_penetration_t *b)
 {
     size_t reals = offsetof(ccd_penetration_t, point2) + sizeof a->point2;
-    return same_bits(a, b, reals) && a->supports == b->supports && a->iterations == b->iterations;
+    return same_bits(a, b, reals) && a->support_calls == b->support_calls && a->iterations == b->iterations;
 }
 
 static const ccd_vec3_t *dir_of(int query) { return query == PLANAR ? &up : &way; }

@@ -45,7 +45,7 @@ int main(void)
         for (int i = 0; i < BODIES; i++)
             for (int j = i + 1; j < BODIES; j++) {
                 body_t *a = &body[i], *b = &body[j];
-                if (ccdSignedDistance(a, b, &ccd, a->radius, b->radius, INFINITY, &warm[i][j], &d) != CCD_HIT) {
+                if (ccdSignedDistance(a, b, &ccd, a->radius, b->radius, INFINITY, &warm[i][j], CCD_WANT_ALL, &d) != CCD_HIT) {
                     nearest = fmin(nearest, (double)d.distance); /* between d.point1 and d.point2 */
                     continue;
                 }

@@ -48,7 +48,7 @@ int main()
                     nearest = std::min(nearest, d.distance); /* between d.point1 and d.point2 */
                     continue;
                 }
-                std::array<ccd::ContactPoint, 4> contact; /* of the cores */
+                std::array<ccd::Contact, 4> contact; /* of the cores */
                 contacts += ccd::contacts(a, b, d.normal, CCD_REAL(1e-3), contact);
                 const Vec3 p = b.pos, n = d.normal; /* what a solver would do with the contacts */
                 b.pos = {p.x - d.distance * n.x, p.y - d.distance * n.y, p.z - d.distance * n.z};

@@ -83,7 +83,7 @@ static void check_same(const char *name, const ccd::Penetration &p, int code, co
         return;
     CHECK(p.depth == out.depth && p.depth_lower == out.depth_lower && same(p.dir, out.dir) &&
               same(p.normal, out.normal) && same(p.pos, out.pos) && same(p.point1, out.point1) &&
-              same(p.point2, out.point2) && p.supports == out.supports && p.iterations == out.iterations,
+              same(p.point2, out.point2) && p.support_calls == out.support_calls && p.iterations == out.iterations,
           "%s", name);
 }
 
@@ -121,43 +121,46 @@ static void same_as_c()
             ccd_penetration_t out;
             ccd_real_t depth;
             ccd_vec3_t d, pos;
-            int code = ccdPenetrationLocal(o1, o2, &c, &c_warm, &out);
+            int code = ccdPenetration(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
+            check_same("penetration", ccd::penetration(a, b, settings, &warm), code, out);
+            code = ccdPenetrationLocal(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
             check_same("local", ccd::penetration_local(a, b, settings, &warm), code, out);
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after a local query");
             (code == CCD_HIT ? hits : misses)++;
-            code = ccdPenetrationIncremental(o1, o2, &c, &c_warm, &out);
+            code = ccdPenetrationIncremental(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
             check_same("incremental", ccd::penetration_incremental(a, b, settings, &warm), code, out);
-            code = ccdPenetrationMinimum(o1, o2, &c, &c_warm, &out);
-            check_same("minimum", ccd::penetration_minimum(a, b, settings, &warm), code, out);
-            code = ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, &out);
+            code = ccdPenetrationProven(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
+            check_same("proven", ccd::penetration_proven(a, b, settings, &warm), code, out);
+            code = ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out);
             check_same("along", ccd::penetration_along(a, b, dir, settings, &warm), code, out);
-            code = ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, &out);
+            code = ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out);
             check_same("planar", ccd::penetration_planar(a, b, dir, settings, &warm), code, out);
 
             ccd_distance_t away;
-            code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), 0, CCD_REAL(0.5), &c_warm, &away);
+            code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), 0, CCD_REAL(0.5), &c_warm, CCD_WANT_ALL, &away);
             const ccd::Distance distance = ccd::signed_distance(a, b, settings, {CCD_REAL(0.1), 0, CCD_REAL(0.5)}, &warm);
             CHECK(int(distance.status) == code && distance, "distance");
             CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&
                       same(distance.normal, away.normal) && same(distance.point1, away.point1) &&
-                      same(distance.point2, away.point2) && distance.supports == away.supports &&
+                      same(distance.point2, away.point2) && distance.support_calls == away.support_calls &&
                       distance.iterations == away.iterations,
                   "distance");
 
             code = ccdMPRPenetrationWarm(o1, o2, &c, &c_warm, &depth, &d, &pos);
-            const ccd::Contact mpr = ccd::penetration_mpr(a, b, settings, &warm);
+            const ccd::Penetration mpr = ccd::mpr_penetration(a, b, settings, &warm);
             CHECK(int(mpr.status) == code, "mpr");
             CHECK(!mpr || (mpr.depth == depth && same(mpr.dir, d) && same(mpr.pos, pos)), "mpr");
-            CHECK(ccd::intersect(a, b, settings, &warm) == (ccdMPRIntersectWarm(o1, o2, &c, &c_warm) == 1), "intersect");
+            CHECK(ccd::intersect(a, b, &warm) == (ccdIntersect(o1, o2, &c, &c_warm) == 1), "intersect");
+            CHECK(ccd::mpr_intersect(a, b, &warm) == (ccdMPRIntersectWarm(o1, o2, &c, &c_warm) == 1), "mpr_intersect");
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after all queries");
         }
 
         ccd_contact_t c_contacts[4];
-        std::array<ccd::ContactPoint, 4> contacts;
+        std::array<ccd::Contact, 4> contacts;
         const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts);
         CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), c_contacts, 4) && count >= 1, "contacts");
         for (int k = 0; k < count; k++) {
-            const ccd::ContactPoint &p = contacts[static_cast<std::size_t>(k)];
+            const ccd::Contact &p = contacts[static_cast<std::size_t>(k)];
             CHECK(same(p.point1, c_contacts[k].point1) && same(p.point2, c_contacts[k].point2) &&
                       p.depth == c_contacts[k].depth,
                   "contact %d", k);
@@ -165,25 +168,29 @@ static void same_as_c()
 
         ccd_real_t depth;
         ccd_vec3_t d, pos;
-        const int code = ccdGJKPenetration(o1, o2, &c, &depth, &d, &pos);
-        const ccd::Contact gjk = ccd::penetration_gjk(a, b, settings);
+        int code = ccdGJKPenetration(o1, o2, &c, &depth, &d, &pos);
+        const ccd::Penetration gjk = ccd::gjk_penetration(a, b, settings);
         CHECK(int(gjk.status) == code, "gjk");
         CHECK(!gjk || (gjk.depth == depth && same(gjk.dir, d) && same(gjk.pos, pos)), "gjk");
-        CHECK(ccd::intersect_gjk(a, b, settings) == (ccdGJKIntersect(o1, o2, &c) == 1), "intersect_gjk");
+        code = ccdGJKSeparate(o1, o2, &c, &d);
+        const ccd::Separation separation = ccd::gjk_separate(a, b, settings);
+        CHECK(int(separation.status) == code && (!separation || same(separation.sep, d)), "gjk_separate");
+        CHECK(ccd::gjk_intersect(a, b) == (ccdGJKIntersect(o1, o2, &c) == 1), "gjk_intersect");
 
         c.center1 = c.center2 = nullptr;
         ccd_penetration_t out;
-        const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, &out);
+        const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
         check_same("without centres", ccd::penetration_local(NoCentre{a}, NoCentre{b}, settings), without, out);
         c.center1 = c.center2 = shape_center;
-        const int spelt = ccdPenetrationLocal(o1, o2, &c, nullptr, &out);
+        const int spelt = ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
         check_same("center", ccd::penetration_local(American{a}, American{b}, settings), spelt, out);
         check_same("center and centre", ccd::penetration_local(a, American{b}, settings), spelt, out);
-        CHECK(ccd::intersect(American{a}, b, settings) == ccd::intersect(a, b, settings), "center");
+        CHECK(ccd::mpr_intersect(American{a}, b) == ccd::mpr_intersect(a, b), "center");
         c.center1 = c.center2 = nullptr;
-        ccdPenetrationLocal(o1, o2, &c, nullptr, &out);
+        ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
         check_same("one centre", ccd::penetration_local(NoCentre{a}, b, settings), without, out);
-        CHECK(ccd::intersect_gjk(NoCentre{a}, NoCentre{b}) == ccd::intersect_gjk(a, b), "a foreign vector");
+        CHECK(ccd::gjk_intersect(NoCentre{a}, NoCentre{b}) == ccd::gjk_intersect(a, b), "a foreign vector");
+        CHECK(ccd::intersect(NoCentre{a}, b) == (ccdIntersect(o1, o2, &c, nullptr) == 1), "intersect without a centre");
     }
     CHECK(hits > 100 && misses > 100, "%d hits, %d misses", hits, misses);
 }
@@ -209,15 +216,18 @@ static void throws_through(const char *name, Query query)
 static void exceptions()
 {
     throws_through("intersect", [](auto &a, auto &b) { ccd::intersect(a, b); });
-    throws_through("intersect_gjk", [](auto &a, auto &b) { ccd::intersect_gjk(a, b); });
-    throws_through("mpr", [](auto &a, auto &b) { ccd::penetration_mpr(a, b); });
-    throws_through("gjk", [](auto &a, auto &b) { ccd::penetration_gjk(a, b); });
+    throws_through("penetration", [](auto &a, auto &b) { ccd::penetration(a, b); });
+    throws_through("mpr_intersect", [](auto &a, auto &b) { ccd::mpr_intersect(a, b); });
+    throws_through("gjk_intersect", [](auto &a, auto &b) { ccd::gjk_intersect(a, b); });
+    throws_through("mpr", [](auto &a, auto &b) { ccd::mpr_penetration(a, b); });
+    throws_through("gjk", [](auto &a, auto &b) { ccd::gjk_penetration(a, b); });
+    throws_through("gjk_separate", [](auto &a, auto &b) { ccd::gjk_separate(a, b); });
     throws_through("local", [](auto &a, auto &b) { ccd::penetration_local(a, b); });
     throws_through("incremental", [](auto &a, auto &b) { ccd::penetration_incremental(a, b); });
-    throws_through("minimum", [](auto &a, auto &b) { ccd::penetration_minimum(a, b); });
+    throws_through("proven", [](auto &a, auto &b) { ccd::penetration_proven(a, b); });
     throws_through("along", [](auto &a, auto &b) { ccd::penetration_along(a, b, {0, 1, 0}); });
     throws_through("contacts", [](auto &a, auto &b) {
-        std::array<ccd::ContactPoint, 2> out;
+        std::array<ccd::Contact, 2> out;
         ccd::contacts(a, b, {0, 0, 1}, 0, out);
     });
     throws_through("distance", [](auto &a, auto &b) { ccd::signed_distance(a, b); });
@@ -245,6 +255,14 @@ static void values()
     CHECK(ccd::penetration_local(a, b, {nan}).status == ccd::Status::bad_input, "NaN tolerance");
     CHECK(ccd::penetration_along(a, b, {0, 0, 0}).status == ccd::Status::bad_input, "no direction");
     CHECK(ccd::penetration_local(a, b, {CCD_REAL(1e-5), 0}).status == ccd::Status::limit, "no iterations");
+
+    /* What is not wanted is zero, and pos is the same alone. */
+    const auto all = ccd::penetration(a, b), none = ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, 0});
+    const auto pos = ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, ccd::want_pos});
+    const ccd_vec3_t zero3{{0, 0, 0}};
+    CHECK(none && none.depth == all.depth && same(none.pos, zero3) && same(none.point1, zero3), "nothing wanted");
+    CHECK(same(pos.pos, all.pos) && same(pos.point2, zero3) && !same(all.point2, zero3), "pos alone");
+    CHECK(std::string(ccd::implementation()).rfind("warmccd ", 0) == 0, "%s", ccd::implementation());
 
     /* The guess leads: between two shapes on one spot any way out is as good. */
     ccd::Warm warm = ccd::Warm::guess({0, -5, 0});

@@ -42,6 +42,11 @@ impl Warm {
     pub const COLD: Warm = Warm([0; 256]);
 }
 
+/// `CCD_WANT_ALL` of `<ccd/warm.h>`.
+pub const WANT_ALL: c_uint = 3;
+/// `CCD_LIMIT` of `<ccd/warm.h>`.
+pub const LIMIT: c_int = 1;
+
 /// `ccd_penetration_t` of `<ccd/warm.h>`.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
@@ -53,7 +58,7 @@ pub struct CPenetration {
     pub pos: ccd_vec3_t,
     pub point1: ccd_vec3_t,
     pub point2: ccd_vec3_t,
-    pub supports: c_ulong,
+    pub support_calls: c_ulong,
     pub iterations: c_ulong,
 }
 
@@ -66,7 +71,7 @@ pub struct CDistance {
     pub normal: ccd_vec3_t,
     pub point1: ccd_vec3_t,
     pub point2: ccd_vec3_t,
-    pub supports: c_ulong,
+    pub support_calls: c_ulong,
     pub iterations: c_ulong,
 }
 
@@ -78,6 +83,7 @@ type WarmDistance = unsafe extern "C-unwind" fn(
     f64,
     f64,
     *mut Warm,
+    c_uint,
     *mut CDistance,
 ) -> c_int;
 type WarmQuery = unsafe extern "C-unwind" fn(
@@ -85,6 +91,7 @@ type WarmQuery = unsafe extern "C-unwind" fn(
     *const c_void,
     *const ccd_t,
     *mut Warm,
+    c_uint,
     *mut CPenetration,
 ) -> c_int;
 type WarmMpr = unsafe extern "C-unwind" fn(
@@ -314,7 +321,7 @@ impl Libraries {
                     mpr: function(ours, "ccdMPRPenetrationWarm"),
                     mpr_intersect: function(ours, "ccdMPRIntersectWarm"),
                     local: function(ours, "ccdPenetrationLocal"),
-                    minimum: function(ours, "ccdPenetrationMinimum"),
+                    minimum: function(ours, "ccdPenetrationProven"),
                     distance: function(ours, "ccdSignedDistance"),
                 },
                 implementation,

@@ -12,7 +12,7 @@ use ccd::math::Vec3;
 use ccd::paper::incremental::{self, Shortcut};
 
 use super::deep::{Deep, Polytope};
-use super::libraries::{CDistance, CPenetration, Classic, Libraries, Truth, Warm};
+use super::libraries::{CDistance, CPenetration, Classic, LIMIT, Libraries, Truth, WANT_ALL, Warm};
 use super::scene::{Pair, Scene};
 
 /// What a query answered.
@@ -251,8 +251,12 @@ pub fn extension<'a>(
         // SAFETY: queries of <ccd/warm.h> over the callbacks' own shapes.
         let code = unsafe {
             match ask {
-                Ask::Local => (calls.local)(pair.a, pair.b, &settings, &mut state, &mut out),
-                Ask::Minimum => (calls.minimum)(pair.a, pair.b, &settings, &mut state, &mut out),
+                Ask::Local => {
+                    (calls.local)(pair.a, pair.b, &settings, &mut state, WANT_ALL, &mut out)
+                }
+                Ask::Minimum => {
+                    (calls.minimum)(pair.a, pair.b, &settings, &mut state, WANT_ALL, &mut out)
+                }
                 Ask::Mpr => (calls.mpr)(
                     pair.a,
                     pair.b,
@@ -265,7 +269,7 @@ pub fn extension<'a>(
             }
         };
         // CCD_HIT, or CCD_LIMIT: the best sound answer at the cap.
-        (code == 0 || code == -4).then_some(Answer {
+        (code == 0 || code == LIMIT).then_some(Answer {
             depth: out.depth,
             dir: out.dir.v,
             lower: out.depth_lower,
@@ -288,10 +292,10 @@ pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64)
             let far = f64::INFINITY;
             let query = libraries.extension.distance;
             query(
-                pair.a, pair.b, &settings, one, two, far, &mut state, &mut out,
+                pair.a, pair.b, &settings, one, two, far, &mut state, WANT_ALL, &mut out,
             )
         };
-        (code == 0 || code == -4).then_some(Answer {
+        (code == 0 || code == LIMIT).then_some(Answer {
             depth: -out.distance,
             dir: out.normal.v,
             lower: -out.distance_upper,

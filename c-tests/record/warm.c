@@ -29,12 +29,12 @@ static int mpr_warm(const recording_query_t *q, recording_answer_t *out)
     return OURS(ccdMPRPenetrationWarm)(q->obj1, q->obj2, q->ccd, &state[q->pair], &out->depth, &out->dir, &out->pos);
 }
 
-typedef int (*extended_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, ccd_penetration_t *);
+typedef int (*extended_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned, ccd_penetration_t *);
 
 static int extended(extended_fn method, const recording_query_t *q, ccd_warm_t *warm, recording_answer_t *out)
 {
     ccd_penetration_t p;
-    const int code = method(q->obj1, q->obj2, q->ccd, warm, &p);
+    const int code = method(q->obj1, q->obj2, q->ccd, warm, CCD_WANT_ALL, &p);
     if (code == CCD_HIT || code == CCD_LIMIT) {
         out->depth = p.depth;
         out->dir = p.dir;
@@ -56,12 +56,12 @@ static int local_warm(const recording_query_t *q, recording_answer_t *out)
 
 static int minimum(const recording_query_t *q, recording_answer_t *out)
 {
-    return extended(OURS(ccdPenetrationMinimum), q, NULL, out);
+    return extended(OURS(ccdPenetrationProven), q, NULL, out);
 }
 
 static int minimum_warm(const recording_query_t *q, recording_answer_t *out)
 {
-    return extended(OURS(ccdPenetrationMinimum), q, &state[q->pair], out);
+    return extended(OURS(ccdPenetrationProven), q, &state[q->pair], out);
 }
 
 int main(int argc, char **argv)

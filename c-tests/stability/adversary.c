@@ -193,11 +193,11 @@ int main(int argc, char **argv)
                         wrong = "too many calls, or endless";
                     else if (x.code == ANSWER_CRASH)
                         wrong = "crash";
-                    else if (x.code > 0 || x.code < CCD_LIMIT)
+                    else if (x.code > CCD_LIMIT || x.code < CCD_BAD_INPUT)
                         wrong = "undocumented code";
                     else if (x.touched)
                         wrong = "outputs written without an answer";
-                    else if (!x.has_proof && e->ask != ASK_LOCAL && e->ask != ASK_MINIMUM && e->ask != ASK_ALONG
+                    else if (!x.has_proof && e->ask < ASK_PENETRATION
                              && x.code != CCD_HIT && x.code != CCD_MISS && x.code != CCD_NO_MEMORY)
                         wrong = "a code of the extension from a compatible call";
                     else if (nonsense && e->state != STATE_AGAIN && x.code == CCD_HIT && e->ask != ASK_MPR_INTERSECT
@@ -218,8 +218,8 @@ int main(int argc, char **argv)
                     }
                     if (x.calls > worst[k])
                         worst[k] = x.calls;
-                    if (x.code <= 0 && x.code >= CCD_LIMIT)
-                        codes[k][-x.code]++;
+                    if (x.code <= CCD_LIMIT && x.code >= CCD_BAD_INPUT)
+                        codes[k][CCD_LIMIT - x.code]++;
                     if (wrong && failed++ < 20) {
                         printf("FAILED %s, %s against %s, round %d, tolerance %g: %s: ", e->name, adversary_text[kinds[0]],
                                kinds[1] < 0 ? "a shape" : adversary_text[kinds[1]], r, tols[r % 4], wrong);
@@ -230,7 +230,7 @@ int main(int argc, char **argv)
             }
     for (k = 0; k < (int)ENTRIES; k++)
         if (!entries[k].system)
-            printf("%-22s most calls %6lu  hit %d miss %d memory %d bad input %d limit %d\n", entries[k].name, worst[k],
+            printf("%-22s most calls %6lu  limit %d hit %d miss %d memory %d bad input %d\n", entries[k].name, worst[k],
                    codes[k][0], codes[k][1], codes[k][2], codes[k][3], codes[k][4]);
     printf("%lu questions, %d failures\n", asked, failed);
     return failed > 0;

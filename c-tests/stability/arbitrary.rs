@@ -16,6 +16,7 @@ use std::ffi::{c_int, c_void};
 use std::mem::MaybeUninit;
 
 use ccd::ffi::collide::*;
+use ccd::ffi::paper::*;
 use ccd::ffi::support::ccdFirstDirDefault;
 use ccd::ffi::types::{ccd_t, ccd_vec3_t};
 use ccd::ffi::warm::*;
@@ -168,9 +169,9 @@ fn ask(
             0 => ccdMPRPenetration(a, b, &ccd, &mut depth, &mut dir, &mut pos),
             1 => ccdMPRPenetrationWarm(a, b, &ccd, &mut warm, &mut depth, &mut dir, &mut pos),
             2 => ccdGJKPenetration(a, b, &ccd, &mut depth, &mut dir, &mut pos),
-            3 => ccdPenetrationLocal(a, b, &ccd, &mut warm, out.as_mut_ptr()),
-            MINIMUM => ccdPenetrationMinimum(a, b, &ccd, &mut warm, out.as_mut_ptr()),
-            _ => ccdPenetrationIncremental(a, b, &ccd, &mut warm, out.as_mut_ptr()),
+            3 => ccdPenetrationLocal(a, b, &ccd, &mut warm, CCD_WANT_ALL, out.as_mut_ptr()),
+            MINIMUM => ccdPenetrationProven(a, b, &ccd, &mut warm, CCD_WANT_ALL, out.as_mut_ptr()),
+            _ => ccdPenetrationIncremental(a, b, &ccd, &mut warm, CCD_WANT_ALL, out.as_mut_ptr()),
         };
         let out = out.assume_init();
         if query >= 3 {
@@ -191,7 +192,17 @@ fn distance(
     // SAFETY: every pointer is to a live object of its type; ccd_distance_t is plain
     // numbers, for which zero is a value.
     unsafe {
-        let code = ccdSignedDistance(a, b, ccd, 0.0, 0.0, Real::INFINITY, warm, out.as_mut_ptr());
+        let code = ccdSignedDistance(
+            a,
+            b,
+            ccd,
+            0.0,
+            0.0,
+            Real::INFINITY,
+            warm,
+            CCD_WANT_ALL,
+            out.as_mut_ptr(),
+        );
         (code, out.assume_init())
     }
 }
@@ -442,8 +453,12 @@ proptest! {
             a.calls.set(0);
             b.calls.set(0);
             let (code, depth, dir, proven) = ask(query, &a, &b, tolerance, &start);
-            let least = if query >= 3 { CCD_LIMIT } else { CCD_NO_MEMORY };
-            prop_assert!((least..=CCD_HIT).contains(&code), "query {query}: code {code}");
+            let (least, most) = if query >= 3 {
+                (CCD_BAD_INPUT, CCD_LIMIT)
+            } else {
+                (CCD_NO_MEMORY, CCD_HIT)
+            };
+            prop_assert!((least..=most).contains(&code), "query {query}: code {code}");
             if query == DISTANCE {
                 let told = code == CCD_HIT || code == CCD_LIMIT || code == CCD_MISS;
                 prop_assert!(!told || depth.is_finite() && proven.is_finite() && proven <= depth);

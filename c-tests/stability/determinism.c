@@ -51,7 +51,7 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
     int code, k;
     shape_query(&ccd);
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
-    for (k = 0; k < 11; k++) {
+    for (k = 0; k < 13; k++) {
         ccd_vec3_t along;
         memset(&distance, 0, sizeof distance);
         memset(contact, 0, sizeof contact);
@@ -65,14 +65,16 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         switch (k) {
         case 0: code = OURS(ccdMPRPenetration)(&a, &b, &ccd, &depth, &dir, &pos); break;
         case 1: code = OURS(ccdMPRPenetrationWarm)(&a, &b, &ccd, warm, &depth, &dir, &pos); break;
-        case 2: code = OURS(ccdPenetrationLocal)(&a, &b, &ccd, warm, &out); break;
-        case 3: code = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &along, warm, &out); break;
+        case 2: code = OURS(ccdPenetrationLocal)(&a, &b, &ccd, warm, CCD_WANT_ALL, &out); break;
+        case 3: code = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &along, warm, CCD_WANT_ALL, &out); break;
         case 4: code = OURS(ccdMPRIntersectWarm)(&a, &b, &ccd, warm) + 10 * OURS(ccdGJKIntersect)(&a, &b, &ccd); break;
         case 5: code = OURS(ccdGJKPenetration)(&a, &b, &ccd, &depth, &dir, &pos); break;
-        case 6: code = OURS(ccdPenetrationMinimum)(&a, &b, &ccd, warm, &out); break;
-        case 7: code = OURS(ccdPenetrationIncremental)(&a, &b, &ccd, warm, &out); break;
-        case 8: code = OURS(ccdSignedDistance)(&a, &b, &ccd, (ccd_real_t).01, 0, (ccd_real_t)INFINITY, warm, &distance); break;
+        case 6: code = OURS(ccdPenetrationProven)(&a, &b, &ccd, warm, CCD_WANT_ALL, &out); break;
+        case 7: code = OURS(ccdPenetrationIncremental)(&a, &b, &ccd, warm, CCD_WANT_ALL, &out); break;
+        case 8: code = OURS(ccdSignedDistance)(&a, &b, &ccd, (ccd_real_t).01, 0, (ccd_real_t)INFINITY, warm, CCD_WANT_ALL, &distance); break;
         case 9: code = OURS(ccdContacts)(&a, &b, &ccd, &along, (ccd_real_t)1e-3, contact, 4); break;
+        case 10: code = OURS(ccdPenetration)(&a, &b, &ccd, warm, CCD_WANT_ALL, &out); break;
+        case 11: code = OURS(ccdIntersect)(&a, &b, &ccd, warm); break;
         default: code = OURS(ccdMPRIntersect)(&a, &b, &ccd); break;
         }
         digest_bytes(digest, &code, sizeof code);
@@ -92,9 +94,9 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         digest_bytes(digest, &distance.point1, sizeof distance.point1);
         digest_bytes(digest, &distance.point2, sizeof distance.point2);
         digest_bytes(digest, contact, sizeof contact); /* no padding: all of it is ccd_real_t */
-        digest_count(digest, distance.supports);
+        digest_count(digest, distance.support_calls);
         digest_count(digest, distance.iterations);
-        digest_count(digest, out.supports);
+        digest_count(digest, out.support_calls);
         digest_count(digest, out.iterations);
     }
     digest_count(digest, (uint64_t)a.calls);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Is the minimum the minimum? ccdPenetrationMinimum and ccdGJKPenetration against the
+/* Is the minimum the minimum? ccdPenetrationProven and ccdGJKPenetration against the
  * exact truth, on random pairs of every kind of shapes, at a tolerance of 1e-6 and of
  * 1e-10 times the size (in single precision 1e-3 and what TOL_TIGHT says), at scales of
  * 1e-6 m to 1e6 m.

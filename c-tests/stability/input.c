@@ -23,7 +23,7 @@ static void fail(const char *what, const entry_t *e, const answer_t *x)
     }
 }
 
-static int is_extension(const entry_t *e) { return e->ask == ASK_LOCAL || e->ask == ASK_MINIMUM || e->ask == ASK_ALONG; }
+static int is_extension(const entry_t *e) { return e->ask >= ASK_PENETRATION; }
 
 static int is_verdict(const entry_t *e)
 {
@@ -36,7 +36,7 @@ static answer_t put(const entry_t *e, const shape_t *a, const shape_t *b, ccd_t 
     answer_t x;
     asked++;
     x = ask_objects(e, a, b, ccd, along, most_calls);
-    if (x.code == ANSWER_LOOP || x.code == ANSWER_CRASH || x.code > 0 || x.code < CCD_LIMIT)
+    if (x.code == ANSWER_LOOP || x.code == ANSWER_CRASH || x.code > CCD_LIMIT || x.code < CCD_BAD_INPUT)
         fail("loop, crash or undocumented code", e, &x);
     if (x.touched)
         fail("outputs written without an answer", e, &x);
@@ -262,17 +262,17 @@ static void missing_arguments(void)
     dirs[1].v[1] = (ccd_real_t)NAN;
     dirs[2].v[2] = (ccd_real_t)HUGE_VAL;
     p = before;
-    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, NULL, NULL, &p);
-    code[n++] = OURS(ccdPenetrationMinimum)(&a, &b, NULL, NULL, &p);
-    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, &no_support1, NULL, &p);
-    code[n++] = OURS(ccdPenetrationMinimum)(&a, &b, &no_support2, NULL, &p);
-    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, &ccd, NULL, NULL);
-    code[n++] = OURS(ccdPenetrationMinimum)(&a, &b, &ccd, NULL, NULL);
-    code[n++] = OURS(ccdPenetrationAlong)(&a, &b, &ccd, NULL, NULL, &p);
-    code[n++] = OURS(ccdPenetrationPlanar)(&a, &b, &ccd, NULL, NULL, &p);
+    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, NULL, NULL, CCD_WANT_ALL, &p);
+    code[n++] = OURS(ccdPenetrationProven)(&a, &b, NULL, NULL, CCD_WANT_ALL, &p);
+    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, &no_support1, NULL, CCD_WANT_ALL, &p);
+    code[n++] = OURS(ccdPenetrationProven)(&a, &b, &no_support2, NULL, CCD_WANT_ALL, &p);
+    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, &ccd, NULL, CCD_WANT_ALL, NULL);
+    code[n++] = OURS(ccdPenetrationProven)(&a, &b, &ccd, NULL, CCD_WANT_ALL, NULL);
+    code[n++] = OURS(ccdPenetrationAlong)(&a, &b, &ccd, NULL, NULL, CCD_WANT_ALL, &p);
+    code[n++] = OURS(ccdPenetrationPlanar)(&a, &b, &ccd, NULL, NULL, CCD_WANT_ALL, &p);
     for (i = 0; i < 3; i++) {
-        code[n++] = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &dirs[i], NULL, &p);
-        code[n++] = OURS(ccdPenetrationPlanar)(&a, &b, &ccd, &dirs[i], NULL, &p);
+        code[n++] = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &dirs[i], NULL, CCD_WANT_ALL, &p);
+        code[n++] = OURS(ccdPenetrationPlanar)(&a, &b, &ccd, &dirs[i], NULL, CCD_WANT_ALL, &p);
     }
     for (i = 0; i < n; i++) {
         asked++;
@@ -287,9 +287,9 @@ static void missing_arguments(void)
     }
     /* what is not required */
     dirs[0].v[2] = 3; /* not unit */
-    if (OURS(ccdPenetrationLocal)(&a, &b, &no_centers, NULL, &p) != CCD_HIT
-        || OURS(ccdPenetrationMinimum)(&a, &b, &no_centers, NULL, &p) != CCD_HIT
-        || OURS(ccdPenetrationAlong)(&a, &b, &no_centers, &dirs[0], NULL, &p) != CCD_HIT
+    if (OURS(ccdPenetrationLocal)(&a, &b, &no_centers, NULL, CCD_WANT_ALL, &p) != CCD_HIT
+        || OURS(ccdPenetrationProven)(&a, &b, &no_centers, NULL, CCD_WANT_ALL, &p) != CCD_HIT
+        || OURS(ccdPenetrationAlong)(&a, &b, &no_centers, &dirs[0], NULL, CCD_WANT_ALL, &p) != CCD_HIT
         || !(fabs((double)p.depth - .1) < 1e-3)) {
         printf("FAILED without centres\n");
         failed++;

@@ -4,7 +4,7 @@
 /* T25: local minima. Random overlapping boxes, asked cold and warm from guesses that
  * are wrong by 5 to 180 degrees. ccdMPRPenetration, cold or warm, is more than 1 %
  * above the global minimum in at most 1 % of them; ccdPenetrationLocal is the bare
- * method, whose rate is printed; ccdPenetrationMinimum never is.
+ * method, whose rate is printed; ccdPenetrationProven never is.
  *
  * And the planar query: polygons in a common plane. Its answer stays in the plane, is
  * sound there, and never below the least over all directions of the plane.
@@ -67,7 +67,7 @@ static int planar(int pairs)
         noise = pair_noise(&p.a, &p.b);
         shape_query(&ccd);
         ccd.mpr_tolerance = (ccd_real_t)tol;
-        code = OURS(ccdPenetrationPlanar)(&p.a, &p.b, &ccd, &plane, NULL, &x);
+        code = OURS(ccdPenetrationPlanar)(&p.a, &p.b, &ccd, &plane, NULL, CCD_WANT_ALL, &x);
         if (code == CCD_MISS ? truth > noise + 1e-12 : code != CCD_HIT || truth < -noise - 1e-12) {
             if (failed++ < 5)
                 printf("FAILED planar %d: code %d, truth %.17g\n", i, code, truth);

@@ -186,12 +186,12 @@ extern "C" int ccdMPRPenetrationWarm(const void *a, const void *b, const ccd_t *
 }
 
 extern "C" int ccdSignedDistance(const void *a, const void *b, const ccd_t *ccd, ccd_real_t margin1, ccd_real_t margin2,
-                                 ccd_real_t beyond, ccd_warm_t *warm, ccd_distance_t *out)
+                                 ccd_real_t max_distance, ccd_warm_t *warm, unsigned want, ccd_distance_t *out)
 {
     ccd_t behind;
     watched.queries++;
     return counted("ccdSignedDistance", ccd, &behind, [&](void *next) {
-        return ((decltype(&ccdSignedDistance))next)(a, b, &behind, margin1, margin2, beyond, warm, out);
+        return ((decltype(&ccdSignedDistance))next)(a, b, &behind, margin1, margin2, max_distance, warm, want, out);
     });
 }
 
@@ -254,7 +254,7 @@ static bool judge_pair(object *o1, object *o2, void *)
     ccd.center1 = ccd.center2 = NULL; /* the proof needs none */
     ccd.epa_tolerance = 1e-10;
     ccd.max_iterations = 5000;
-    const int code = OURS(ccdPenetrationMinimum)(&a.shape, &b.shape, &ccd, NULL, &least);
+    const int code = OURS(ccdPenetrationProven)(&a.shape, &b.shape, &ccd, NULL, CCD_WANT_ALL, &least);
     const bool overlap = code == CCD_HIT || code == CCD_LIMIT;
     judge(part, depth, overlap ? least.depth_lower : -HUGE_VAL, overlap ? least.depth : 0, size);
     if (judged.pairs++ % judged.every == 0) {

@@ -84,7 +84,7 @@ static double watch_support_value(const void *obj1, const void *obj2, const ccd_
     return (double)(ccdVec3Dot(&a, dir) - ccdVec3Dot(&b, dir));
 }
 
-typedef int (*watch_minimum_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, ccd_penetration_t *);
+typedef int (*watch_minimum_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned, ccd_penetration_t *);
 
 static int watch_minimum(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
@@ -93,12 +93,12 @@ static int watch_minimum(const void *obj1, const void *obj2, const ccd_t *ccd, c
     ccd_penetration_t out;
     int code;
     if (!next) {
-        void *symbol = watch_next("ccdPenetrationMinimum");
+        void *symbol = watch_next("ccdPenetrationProven");
         memcpy(&next, &symbol, sizeof next);
     }
     finer.epa_tolerance = ccd->mpr_tolerance;
     finer.max_iterations = 2000;
-    code = next(obj1, obj2, &finer, NULL, &out);
+    code = next(obj1, obj2, &finer, NULL, CCD_WANT_ALL, &out);
     if (code != CCD_HIT && code != CCD_LIMIT)
         return -1;
     *depth = out.depth;

@@ -51,7 +51,7 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
     /* The pair's state, whichever order the broad phase hands the two over in. */
     if (i > j)
         ccdWarmFlip(&warm[j][i]);
-    code = ccdPenetrationLocal(&a, &b, &ccd, i < j ? &warm[i][j] : &warm[j][i], &hit);
+    code = ccdPenetrationLocal(&a, &b, &ccd, i < j ? &warm[i][j] : &warm[j][i], CCD_WANT_ALL, &hit);
     if (i > j)
         ccdWarmFlip(&warm[j][i]);
     queries++;

@@ -9,6 +9,7 @@
 #![allow(unsafe_code)]
 
 use ccd::ffi::collide::*;
+use ccd::ffi::paper::*;
 use ccd::ffi::polytope::*;
 use ccd::ffi::support::{__ccdSupport, ccdFirstDirDefault};
 use ccd::ffi::types::*;
@@ -97,7 +98,7 @@ impl Settings {
         Settings(settings)
     }
 
-    /// What ccdPenetrationMinimum reads.
+    /// What ccdPenetrationProven reads.
     fn minimum() -> Settings {
         let mut settings = Settings::mpr();
         let ccd = settings.0.as_mut_ptr();
@@ -365,7 +366,19 @@ fn extended(call: Extended, settings: &Settings) {
 #[test]
 fn local() {
     extended(
-        |obj1, obj2, ccd, _, warm, out| unsafe { ccdPenetrationLocal(obj1, obj2, ccd, warm, out) },
+        |obj1, obj2, ccd, _, warm, out| unsafe {
+            ccdPenetrationLocal(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
+        },
+        &Settings::mpr(),
+    );
+}
+
+#[test]
+fn penetration() {
+    extended(
+        |obj1, obj2, ccd, _, warm, out| unsafe {
+            ccdPenetration(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
+        },
         &Settings::mpr(),
     );
 }
@@ -374,17 +387,17 @@ fn local() {
 fn incremental() {
     extended(
         |obj1, obj2, ccd, _, warm, out| unsafe {
-            ccdPenetrationIncremental(obj1, obj2, ccd, warm, out)
+            ccdPenetrationIncremental(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
         },
         &Settings::mpr(),
     );
 }
 
 #[test]
-fn minimum() {
+fn proven() {
     extended(
         |obj1, obj2, ccd, _, warm, out| unsafe {
-            ccdPenetrationMinimum(obj1, obj2, ccd, warm, out)
+            ccdPenetrationProven(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
         },
         &Settings::minimum(),
     );
@@ -404,7 +417,14 @@ fn memory_from_malloc() {
             Settings::minimum().at_most(110),
             Settings::gjk().at_most(110),
         );
-        let code = ccdPenetrationMinimum(obj1, obj2, minimum.get(), null_mut(), out.as_mut_ptr());
+        let code = ccdPenetrationProven(
+            obj1,
+            obj2,
+            minimum.get(),
+            null_mut(),
+            CCD_WANT_ALL,
+            out.as_mut_ptr(),
+        );
         assert_eq!(code, CCD_LIMIT);
         assert!((out.assume_init().depth - 1.5).abs() < TOLERANCE);
         let code = ccdGJKPenetration(obj1, obj2, gjk.get(), &mut depth, null_mut(), null_mut());
@@ -417,7 +437,7 @@ fn memory_from_malloc() {
 fn along() {
     extended(
         |obj1, obj2, ccd, dir, warm, out| unsafe {
-            ccdPenetrationAlong(obj1, obj2, ccd, dir, warm, out)
+            ccdPenetrationAlong(obj1, obj2, ccd, dir, warm, CCD_WANT_ALL, out)
         },
         &Settings::mpr(),
     );
@@ -427,7 +447,7 @@ fn along() {
 fn planar() {
     extended(
         |obj1, obj2, ccd, dir, warm, out| unsafe {
-            ccdPenetrationPlanar(obj1, obj2, ccd, dir, warm, out)
+            ccdPenetrationPlanar(obj1, obj2, ccd, dir, warm, CCD_WANT_ALL, out)
         },
         &Settings::mpr(),
     );
@@ -485,6 +505,7 @@ fn warm_forms() {
             unsafe {
                 let hit = c_int::from(truth.is_some());
                 assert_eq!(ccdMPRIntersectWarm(obj1, obj2, settings.get(), warm), hit);
+                assert_eq!(ccdIntersect(obj1, obj2, settings.get(), warm), hit);
                 ccdWarmGuess(warm, &guess);
                 // Twice is nothing.
                 ccdWarmFlip(warm);

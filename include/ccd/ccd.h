@@ -81,7 +81,7 @@ CCD_EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *
 /** Penetration by MPR: the least depth, within mpr_tolerance or 0.1 % of the depth, the
  * larger of the two. Where 160 support points or max_iterations iterations (one a support
  * point after the first four) were used up first, as for nearly concentric round objects,
- * the answer is the lowest that was met. Who must know asks ccdPenetrationMinimum.
+ * the answer is the lowest that was met. Who must know asks ccdPenetrationProven.
  * Relies on the centers lying in their objects: a center outside makes the answer wrong.
  * Returns 0 or -1 and stores as ccdGJKPenetration does. A touch within rounding is -1.
  * Uses the centers, not first_dir, and no heap: 12 KB of stack for up to 22 support points,

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The queries of ccd.h and warm.h for C++17: header only, no allocation, nothing to free.
+/* The queries of warm.h, paper.h and ccd.h for C++17, under the same names in C++'s case: header
+ * only, no allocation, nothing to free.
  *
  * A shape is any type with
  *
@@ -9,12 +10,11 @@
  *     V center() const;                        a point inside it, the deeper the better; or centre()
  *
  * where V is ccd::Vec3, ccd_vec3_t or anything with v[0], v[1], v[2] (std::array, the vectors
- * of the usual libraries). centre() is needed by the MPR queries; penetration_local,
- * _incremental, _minimum, _along and _planar use it where both shapes have it; the GJK queries
- * never do.
+ * of the usual libraries). center() may be missing, but for what has MPR in its name; where both
+ * shapes have it, it saves calls of support().
  *
  *     ccd::Warm warm;                               // one for each pair, kept between frames
- *     if (auto hit = ccd::penetration_local(box, ball, {1e-6}, &warm))
+ *     if (auto hit = ccd::penetration(box, ball, {1e-6}, &warm))
  *         push_apart(hit.depth, hit.dir);           // moving ball by depth * dir separates
  *
  * An exception thrown by a shape leaves through the query that asked it. Queries on different
@@ -24,6 +24,7 @@
 #define __CCD_CCD_HPP__
 
 #include <ccd/ccd.h>
+#include <ccd/paper.h>
 #include <ccd/warm.h>
 
 #include <array>
@@ -66,41 +67,45 @@ struct Vec3 {
 /** What came of a query. */
 enum class Status : int {
     hit = CCD_HIT,             /**< overlap: every field is valid */
+    limit = CCD_LIMIT,         /**< less exact than asked for: max_iterations or the library's cap came first */
     miss = CCD_MISS,           /**< apart */
     no_memory = CCD_NO_MEMORY, /**< memory was needed and not to be had */
-    bad_input = CCD_BAD_INPUT, /**< a tolerance, a direction or a shape's answer is no number */
-    limit = CCD_LIMIT          /**< max_iterations came first: the best sound answer is valid */
+    bad_input = CCD_BAD_INPUT  /**< a tolerance, a direction or a shape's answer is no number */
 };
 
-/** How exact, and with how much work. */
+/** What is wanted of an answer: depths, bounds and directions always, and any of these together. */
+enum Want : unsigned {
+    want_pos = CCD_WANT_POS,       /**< pos: costs calls of support() where faces or edges rest on each other */
+    want_points = CCD_WANT_POINTS, /**< point1 and point2 */
+    want_all = CCD_WANT_ALL        /**< everything */
+};
+
+/** How exact, with how much work, and what. */
 struct Settings {
-    Real tolerance = CCD_REAL(1e-4);                           /**< largest error of the depth, metres */
+    Real tolerance = CCD_REAL(1e-4);                               /**< largest error of the depth, metres */
     unsigned long max_iterations = static_cast<unsigned long>(-1); /**< cap on every loop */
+    unsigned want = want_all;                                      /**< what is not wanted is zero */
 };
 
-/** An overlap. Zero but for the status unless the status is hit or limit. */
-struct Contact {
+/** An overlap. Zero but for the status unless that is hit or limit. */
+struct Penetration {
     Status status = Status::miss; /**< hit and limit: there is an answer */
-    Real depth = 0; /**< metres, >= 0: moving the second shape by depth * dir separates them */
-    Vec3 dir;       /**< unit; the way the second shape moves */
-    Vec3 pos;       /**< contact position */
+    Real depth = 0;               /**< metres, >= 0: moving the second shape by depth * dir separates them */
+    Real depth_lower = 0;         /**< proven lower bound on the least depth, 0 where there is none */
+    Vec3 dir;                     /**< unit; the way the second shape moves */
+    Vec3 normal;                  /**< unit; of the separating plane; dir but in penetration_along */
+    Vec3 pos;                     /**< contact position */
+    Vec3 point1;                  /**< witness point of the first shape */
+    Vec3 point2;                  /**< witness point of the second shape */
+    unsigned long support_calls = 0; /**< of each shape */
+    unsigned long iterations = 0;    /**< of the solver */
 
-    /** Is there an answer? */
+    /** Do they overlap? */
     explicit operator bool() const { return status == Status::hit || status == Status::limit; }
 };
 
-/** An overlap with its bounds and its witness points. */
-struct Penetration : Contact {
-    Real depth_lower = 0;         /**< proven lower bound on the least depth, 0 where there is none */
-    Vec3 normal;                  /**< unit; of the separating plane; dir but in penetration_along */
-    Vec3 point1;                  /**< witness point of the first shape */
-    Vec3 point2;                  /**< witness point of the second shape; pos is their middle */
-    unsigned long supports = 0;   /**< calls of each shape's support() */
-    unsigned long iterations = 0; /**< of the solver */
-};
-
 /** One point of a contact manifold. */
-struct ContactPoint {
+struct Contact {
     Vec3 point1;    /**< of the first shape */
     Vec3 point2;    /**< of the second shape: point1 - depth * normal */
     Real depth = 0; /**< metres; negative where the shapes are apart */
@@ -114,18 +119,27 @@ struct Distance {
     Vec3 normal;                  /**< unit; from the first shape to the second */
     Vec3 point1;                  /**< witness point of the first shape, on its surface with its margin */
     Vec3 point2;                  /**< of the second shape */
-    unsigned long supports = 0;   /**< calls of each shape's support() */
-    unsigned long iterations = 0; /**< of the solver */
+    unsigned long support_calls = 0; /**< of each shape */
+    unsigned long iterations = 0;    /**< of the solver */
 
     /** Is there an answer? */
     explicit operator bool() const { return status != Status::bad_input && status != Status::no_memory; }
 };
 
-/** Balls added all around two shapes, and how far their distance matters, metres. */
-struct Margins {
-    Real margin1 = 0; /**< around the first shape */
-    Real margin2 = 0; /**< around the second shape */
-    Real beyond = std::numeric_limits<Real>::infinity(); /**< farther is not refined */
+/** What signed_distance takes besides the shapes, metres. */
+struct DistanceOptions {
+    Real margin1 = 0; /**< radius of a ball added all around the first shape */
+    Real margin2 = 0; /**< and around the second */
+    Real max_distance = std::numeric_limits<Real>::infinity(); /**< what is farther is not refined */
+};
+
+/** What gjk_separate answers. Zero but for the status unless that is hit. */
+struct Separation {
+    Status status = Status::miss; /**< hit: there is an answer */
+    Vec3 sep;                     /**< metres: moving the second shape by it separates them */
+
+    /** Do they overlap? */
+    explicit operator bool() const { return status == Status::hit; }
 };
 
 /** What one query of a pair leaves for the next: a value, cold at first, copied freely. */
@@ -212,75 +226,99 @@ constexpr void needs_centres()
 
 inline ccd_warm_t *state(Warm *warm) { return warm ? warm->get() : nullptr; }
 
-inline Contact contact(int code, Real depth, const ccd_vec3_t &dir, const ccd_vec3_t &pos)
-{
-    Contact c;
-    c.status = static_cast<Status>(code);
-    if (c) {
-        c.depth = depth;
-        c.dir = dir;
-        c.pos = pos;
-    }
-    return c;
-}
-
 inline Penetration penetration(int code, const ccd_penetration_t &out)
 {
     Penetration p;
-    static_cast<Contact &>(p) = contact(code, out.depth, out.dir, out.pos);
+    p.status = static_cast<Status>(code);
     if (p) {
+        p.depth = out.depth;
         p.depth_lower = out.depth_lower;
+        p.dir = out.dir;
         p.normal = out.normal;
+        p.pos = out.pos;
         p.point1 = out.point1;
         p.point2 = out.point2;
-        p.supports = out.supports;
+        p.support_calls = out.support_calls;
         p.iterations = out.iterations;
     }
     return p;
 }
 
+/* libccd's three outputs; pos where it is wanted. */
+template <class Query>
+Penetration libccd(const Settings &settings, Query query)
+{
+    ccd_penetration_t out{};
+    const int code = query(&out.depth, &out.dir, settings.want & want_pos ? &out.pos : nullptr);
+    out.normal = out.dir;
+    return penetration(code, out);
+}
+
 } // namespace detail
 
-/** Do the shapes overlap? (A touch is none.) ccdMPRIntersectWarm. A pair that stays apart costs one
- * call of each support() while its last separating direction still separates. */
+/** The penetration depth, the least within the larger of the tolerance and 0.1 % of it: the call
+ * to take unless one below says what is wanted better. ccdPenetration. */
 template <class A, class B>
-bool intersect(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
+Penetration penetration(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
-    detail::needs_centres<A, B>();
     const ccd_t c = detail::query<A, B>(settings);
-    return ccdMPRIntersectWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
+    ccd_penetration_t out{};
+    const int code =
+        ccdPenetration(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
+    return detail::penetration(code, out);
 }
 
-/** Do the shapes overlap? ccdGJKIntersect, without centres. */
+/** Do the shapes overlap? (A touch is none.) ccdIntersect. A pair that stays apart costs one call of
+ * each support() while its last separating direction still separates. */
 template <class A, class B>
-bool intersect_gjk(const A &a, const B &b, const Settings &settings = {})
+bool intersect(const A &a, const B &b, Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
-    return ccdGJKIntersect(std::addressof(a), std::addressof(b), &c) == 1;
+    const ccd_t c = detail::query<A, B>({});
+    return ccdIntersect(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
 }
 
-/** The depth at MPR's price: ccdMPRPenetrationWarm. */
+/** How far apart, or how deep, one continuous function through the touch: ccdSignedDistance. The
+ * shapes are meant with a ball of their margin added all around. */
 template <class A, class B>
-Contact penetration_mpr(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
+Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, const DistanceOptions &options = {},
+                         Warm *warm = nullptr)
 {
-    detail::needs_centres<A, B>();
     const ccd_t c = detail::query<A, B>(settings);
-    Real depth{};
-    ccd_vec3_t dir{}, pos{};
-    const int code = ccdMPRPenetrationWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm), &depth,
-                                           &dir, &pos);
-    return detail::contact(code, depth, dir, pos);
+    ccd_distance_t out{};
+    Distance d;
+    d.status = static_cast<Status>(ccdSignedDistance(std::addressof(a), std::addressof(b), &c, options.margin1,
+                                                     options.margin2, options.max_distance, detail::state(warm),
+                                                     settings.want, &out));
+    if (d) {
+        d.distance = out.distance;
+        d.distance_upper = out.distance_upper;
+        d.normal = out.normal;
+        d.point1 = out.point1;
+        d.point2 = out.point2;
+        d.support_calls = out.support_calls;
+        d.iterations = out.iterations;
+    }
+    return d;
 }
 
-/** The global minimum of the depth, without centres: ccdGJKPenetration. */
-template <class A, class B>
-Contact penetration_gjk(const A &a, const B &b, const Settings &settings = {})
+/** Where the shapes touch: up to N points of the region in which the faces that look along normal
+ * lie over each other, the deepest first; the number of them, or Status::bad_input's:
+ * ccdContacts. */
+template <std::size_t N, class A, class B>
+int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<Contact, N> &out)
 {
-    const ccd_t c = detail::query<A, B>(settings);
-    Real depth{};
-    ccd_vec3_t dir{}, pos{};
-    const int code = ccdGJKPenetration(std::addressof(a), std::addressof(b), &c, &depth, &dir, &pos);
-    return detail::contact(code, depth, dir, pos);
+    const ccd_t c = detail::query<A, B>({});
+    const ccd_vec3_t n = normal;
+    ccd_contact_t found[N > 0 ? N : 1];
+    const int count =
+        ccdContacts(std::addressof(a), std::addressof(b), &c, &n, slop, found, static_cast<int>(N));
+    for (int i = 0; i < count; i++) {
+        Contact &point = out[static_cast<std::size_t>(i)];
+        point.point1 = found[i].point1;
+        point.point2 = found[i].point2;
+        point.depth = found[i].depth;
+    }
+    return count;
 }
 
 /** A local minimum of the depth, from the state, else from the centres, by the fastest search
@@ -290,49 +328,20 @@ Penetration penetration_local(const A &a, const B &b, const Settings &settings =
 {
     const ccd_t c = detail::query<A, B>(settings);
     ccd_penetration_t out{};
-    const int code = ccdPenetrationLocal(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
+    const int code =
+        ccdPenetrationLocal(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
     return detail::penetration(code, out);
 }
 
-/** The same by the paper's method as published: ccdPenetrationIncremental. */
+/** The least depth with its proof, depth - depth_lower <= tolerance: ccdPenetrationProven. */
 template <class A, class B>
-Penetration penetration_incremental(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
+Penetration penetration_proven(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
     const ccd_t c = detail::query<A, B>(settings);
     ccd_penetration_t out{};
-    const int code = ccdPenetrationIncremental(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
+    const int code =
+        ccdPenetrationProven(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
     return detail::penetration(code, out);
-}
-
-/** The global minimum of the depth with its proof, depth - depth_lower <= tolerance:
- * ccdPenetrationMinimum. */
-template <class A, class B>
-Penetration penetration_minimum(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
-{
-    const ccd_t c = detail::query<A, B>(settings);
-    ccd_penetration_t out{};
-    const int code = ccdPenetrationMinimum(std::addressof(a), std::addressof(b), &c, detail::state(warm), &out);
-    return detail::penetration(code, out);
-}
-
-/** Where the shapes touch: up to N points of the region in which the faces that look along normal
- * lie over each other, the deepest first; the number of them, or Status::bad_input's:
- * ccdContacts. */
-template <std::size_t N, class A, class B>
-int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<ContactPoint, N> &out)
-{
-    const ccd_t c = detail::query<A, B>({});
-    const ccd_vec3_t n = normal;
-    ccd_contact_t found[N > 0 ? N : 1];
-    const int count =
-        ccdContacts(std::addressof(a), std::addressof(b), &c, &n, slop, found, static_cast<int>(N));
-    for (int i = 0; i < count; i++) {
-        ContactPoint &point = out[static_cast<std::size_t>(i)];
-        point.point1 = found[i].point1;
-        point.point2 = found[i].point2;
-        point.depth = found[i].depth;
-    }
-    return count;
 }
 
 /** How far b must move along dir (of any length): ccdPenetrationAlong. */
@@ -343,7 +352,8 @@ Penetration penetration_along(const A &a, const B &b, const Vec3 &dir, const Set
     const ccd_t c = detail::query<A, B>(settings);
     const ccd_vec3_t d = dir;
     ccd_penetration_t out{};
-    const int code = ccdPenetrationAlong(std::addressof(a), std::addressof(b), &c, &d, detail::state(warm), &out);
+    const int code =
+        ccdPenetrationAlong(std::addressof(a), std::addressof(b), &c, &d, detail::state(warm), settings.want, &out);
     return detail::penetration(code, out);
 }
 
@@ -356,32 +366,75 @@ Penetration penetration_planar(const A &a, const B &b, const Vec3 &plane_normal,
     const ccd_t c = detail::query<A, B>(settings);
     const ccd_vec3_t n = plane_normal;
     ccd_penetration_t out{};
-    const int code = ccdPenetrationPlanar(std::addressof(a), std::addressof(b), &c, &n, detail::state(warm), &out);
+    const int code =
+        ccdPenetrationPlanar(std::addressof(a), std::addressof(b), &c, &n, detail::state(warm), settings.want, &out);
     return detail::penetration(code, out);
 }
 
-/** How far apart, or how deep, one continuous function through the touch: ccdSignedDistance. The
- * shapes are meant with a ball of their margin added all around. */
+/** A local minimum by the paper's method as published: ccdPenetrationIncremental of paper.h. */
 template <class A, class B>
-Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, const Margins &margins = {},
-                         Warm *warm = nullptr)
+Penetration penetration_incremental(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
     const ccd_t c = detail::query<A, B>(settings);
-    ccd_distance_t out{};
-    Distance d;
-    d.status = static_cast<Status>(ccdSignedDistance(std::addressof(a), std::addressof(b), &c, margins.margin1,
-                                                     margins.margin2, margins.beyond, detail::state(warm), &out));
-    if (d) {
-        d.distance = out.distance;
-        d.distance_upper = out.distance_upper;
-        d.normal = out.normal;
-        d.point1 = out.point1;
-        d.point2 = out.point2;
-        d.supports = out.supports;
-        d.iterations = out.iterations;
-    }
-    return d;
+    ccd_penetration_t out{};
+    const int code =
+        ccdPenetrationIncremental(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
+    return detail::penetration(code, out);
 }
+
+/** libccd's MPR, with a state: ccdMPRPenetrationWarm, which answers depth, dir and pos. */
+template <class A, class B>
+Penetration mpr_penetration(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
+{
+    detail::needs_centres<A, B>();
+    const ccd_t c = detail::query<A, B>(settings);
+    return detail::libccd(settings, [&](Real *depth, ccd_vec3_t *dir, ccd_vec3_t *pos) {
+        return ccdMPRPenetrationWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm), depth, dir, pos);
+    });
+}
+
+/** libccd's yes or no by MPR, with a state: ccdMPRIntersectWarm. */
+template <class A, class B>
+bool mpr_intersect(const A &a, const B &b, Warm *warm = nullptr)
+{
+    detail::needs_centres<A, B>();
+    const ccd_t c = detail::query<A, B>({});
+    return ccdMPRIntersectWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
+}
+
+/** libccd's GJK and EPA, without centres: ccdGJKPenetration, which answers depth, dir and pos. */
+template <class A, class B>
+Penetration gjk_penetration(const A &a, const B &b, const Settings &settings = {})
+{
+    const ccd_t c = detail::query<A, B>(settings);
+    return detail::libccd(settings, [&](Real *depth, ccd_vec3_t *dir, ccd_vec3_t *pos) {
+        return ccdGJKPenetration(std::addressof(a), std::addressof(b), &c, depth, dir, pos);
+    });
+}
+
+/** The shortest translation of b that separates the shapes, without centres: ccdGJKSeparate. */
+template <class A, class B>
+Separation gjk_separate(const A &a, const B &b, const Settings &settings = {})
+{
+    const ccd_t c = detail::query<A, B>(settings);
+    ccd_vec3_t sep{};
+    Separation s;
+    s.status = static_cast<Status>(ccdGJKSeparate(std::addressof(a), std::addressof(b), &c, &sep));
+    if (s)
+        s.sep = sep;
+    return s;
+}
+
+/** libccd's yes or no by GJK, without centres: ccdGJKIntersect. */
+template <class A, class B>
+bool gjk_intersect(const A &a, const B &b)
+{
+    const ccd_t c = detail::query<A, B>({});
+    return ccdGJKIntersect(std::addressof(a), std::addressof(b), &c) == 1;
+}
+
+/** Which library runs, and in which precision: ccdImplementation. */
+inline const char *implementation() { return ccdImplementation(); }
 
 } // namespace ccd
 

@@ -342,7 +342,7 @@ bool overlap(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, bool cont
     }
     ccd_distance_t d;
     const int code = ccdSignedDistance(&a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
-                                       0, warm, &d);
+                                       0, warm, contact ? CCD_WANT_POINTS : 0, &d);
     must_be_answered(code);
     if (code == CCD_MISS || !(d.distance < 0))
         return false;
@@ -485,7 +485,8 @@ S distance(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, c
     detail::must_be_finite(a, b);
     detail::must_be_answered(ccdSignedDistance(
         &a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
-        first ? std::numeric_limits<ccd_real_t>::infinity() : static_cast<ccd_real_t>(result.min_distance), warm, &d));
+        first ? std::numeric_limits<ccd_real_t>::infinity() : static_cast<ccd_real_t>(result.min_distance), warm,
+        CCD_WANT_POINTS, &d));
     result.update(static_cast<S>(d.distance), g1, g2, fcl::DistanceResult<S>::NONE, fcl::DistanceResult<S>::NONE,
                   detail::to_fcl<S>(d.point1), detail::to_fcl<S>(d.point2));
     return result.min_distance;

@@ -1,19 +1,44 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What this library adds to libccd: penetration queries that start from the last answer,
- * along a direction and in a plane, with witness points and bounds. Made by cbindgen from
- * src/ffi/warm.rs; edit that.
+/* What this library adds to libccd's ccd.h: queries that start from a pair's last answer.
+ * Made by cbindgen from src/ffi/warm/; edit there.
  *
- * Tolerances are depths in metres; the library floors them at a few ulps of the objects'
- * size, so 0 asks for the best the precision can give. Object pointers are handed to the
- * callbacks and never looked at. A query is re-entrant and keeps nothing but the state that
- * the caller hands it. */
+ * To begin with: one ccd_warm_t a pair, kept between frames, all bytes zero at first, and
+ * ccdPenetration. Then, from here to the end:
+ *
+ *   codes      what every call that fills a struct returns
+ *   states     ccd_warm_t, ccdWarmGuess, ccdWarmFlip
+ *   the one    ccdPenetration: do they overlap, how deep, which way out, where
+ *   yes or no  ccdIntersect
+ *   distance   ccdSignedDistance
+ *   contacts   ccdContacts
+ *   special    ccdPenetrationLocal, ...Proven, ...Along, ...Planar
+ *   libccd's   ccdMPRPenetrationWarm, ccdMPRIntersectWarm
+ *
+ * Lengths and tolerances are metres; the library floors tolerances at a few ulps of the objects'
+ * size, so 0 asks for the best the precision can give. A call reads the one tolerance that it
+ * names. Object pointers are handed to the callbacks and never looked at. A query is re-entrant
+ * and keeps nothing but the state that the caller hands it. */
 
 #ifndef __CCD_WARM_H__
 #define __CCD_WARM_H__
 
 #include <ccd/ccd.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+
+/* Codes: what every call that fills a struct returns.
+ *
+ * 0 and above: *out is filled. Below 0: nothing is written, but that ccdSignedDistance fills
+ * *out on a CCD_MISS too, for it has an answer then. With CCD_BAD_INPUT and CCD_NO_MEMORY the
+ * state stays as it was; with every other code it is one for the next query.
+ *
+ * (ccdIntersect returns 1 or 0, ccdContacts how many contacts, or CCD_BAD_INPUT; what has MPR
+ * in its name returns what libccd returns.) */
 
 /**
  * The objects overlap, by more than rounding.
@@ -21,24 +46,30 @@
 #define CCD_HIT 0
 
 /**
+ * An answer, but a less exact one than was asked for: max_iterations or the library's own cap
+ * came first, or rounding. The depth or distance is sound, its bounds are honest; a penetration
+ * is an overlap, of a distance the sign tells.
+ */
+#define CCD_LIMIT 1
+
+/**
  * The objects are apart, or touch within rounding.
  */
-#define CCD_MISS -1
+#define CCD_MISS (-1)
 
 /**
  * Memory was needed and not to be had.
  */
-#define CCD_NO_MEMORY -2
+#define CCD_NO_MEMORY (-2)
 
 /**
- * An argument or a callback's answer that no query can work with; nothing was written.
+ * An argument, a field of ccd, or a callback's answer that no query can work with: NULL where
+ * something is needed, NaN, a length below 0, a direction of zero, an unknown flag.
  */
-#define CCD_BAD_INPUT -3
+#define CCD_BAD_INPUT (-3)
 
-/**
- * max_iterations came before the tolerance: the best sound answer was written.
- */
-#define CCD_LIMIT -4
+
+/* States: what one query of a pair leaves for the next. */
 
 /**
  * How many numbers a ccd_warm_t holds.
@@ -51,7 +82,8 @@
  *
  * One state is for one pair in one order: the state of (a, b) is a foreign one to a query of
  * (b, a), until ccdWarmFlip turns it round. Every call takes what any other call has left in
- * it. Two threads must not use one state at once.
+ * it. Two threads must not use one state at once. Wherever a call takes a state, NULL is cold,
+ * and saves what it costs to leave one.
  *
  * A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to
  * another local minimum; every answer stays sound. The fields are the library's own.
@@ -68,7 +100,42 @@ typedef struct ccd_warm_t {
 } ccd_warm_t;
 
 /**
- * What a query of the extension answers.
+ * Makes `warm` a fresh state that starts from `dir`, the caller's guess of the way obj2
+ * leaves.
+ *
+ * `dir` need not be unit; zero, not finite or NULL makes a cold state. `warm` NULL: nothing
+ * happens.
+ */
+CCD_EXPORT void ccdWarmGuess(ccd_warm_t *warm, const ccd_vec3_t *dir);
+
+/**
+ * Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
+ * state a pair and meets its objects in either order.
+ *
+ * Cold stays cold. `warm` NULL: nothing happens.
+ */
+CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
+
+
+/* The one call to begin with: do two objects overlap, how deep, which way out, where? */
+
+/**
+ * Wanted: pos. Where faces or edges rest on each other it costs support points.
+ */
+#define CCD_WANT_POS 1
+
+/**
+ * Wanted: point1 and point2.
+ */
+#define CCD_WANT_POINTS 2
+
+/**
+ * Everything.
+ */
+#define CCD_WANT_ALL 3
+
+/**
+ * What a penetration query answers. What was not wanted is zero.
  */
 typedef struct ccd_penetration_t {
   /**
@@ -90,28 +157,137 @@ typedef struct ccd_penetration_t {
    */
   ccd_vec3_t normal;
   /**
-   * Contact position: the middle of the witness points. Where a face rests on a face or
-   * an edge these are in the middle of where the two touch, and move as the objects do.
+   * Contact position, CCD_WANT_POS: the middle of the witness points. Where a face rests on
+   * a face or an edge it is the middle of where the two touch, and moves as the objects do.
    */
   ccd_vec3_t pos;
   /**
-   * Witness point of obj1, within the tolerance of its supporting plane.
+   * Witness point of obj1, CCD_WANT_POINTS: no farther from its supporting plane than the depth
+   * may be off.
    */
   ccd_vec3_t point1;
   /**
-   * Witness point of obj2, within the tolerance of its supporting plane.
+   * Witness point of obj2, the same.
    */
   ccd_vec3_t point2;
   /**
-   * Support points of the Minkowski difference evaluated; one is one call of support1
-   * and one of support2.
+   * How often support1 was called, and as often support2.
    */
-  unsigned long supports;
+  unsigned long support_calls;
   /**
    * Iterations of the solver.
    */
   unsigned long iterations;
 } ccd_penetration_t;
+
+/**
+ * The penetration depth: the least distance by which obj2 must move to separate the objects,
+ * within the larger of mpr_tolerance and 0.1 % of it, in CCD_LIMIT's case a sound one.
+ * The call to take unless one of those below says what is wanted better. From the state, else
+ * from the centres, else from first_dir.
+ *
+ * `warm`: NULL, or the pair's state: a pair that stays apart costs one call of each support
+ * function, and one that overlaps fewer than without. `want`: CCD_WANT_ flags; 0 for depth,
+ * bounds and directions alone. Reads mpr_tolerance. center1 and center2 may be NULL; where they
+ * are given they must lie in their objects, and save calls; depth_lower leans on them too.
+ * Allocates nothing.
+ *
+ * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
+ */
+CCD_EXPORT
+int ccdPenetration(const void *obj1,
+                   const void *obj2,
+                   const ccd_t *ccd,
+                   ccd_warm_t *warm,
+                   unsigned int want,
+                   ccd_penetration_t *out);
+
+
+/* Yes or no. */
+
+/**
+ * Do the objects overlap? A pair that stays apart costs one call of each support function while
+ * its last separating direction still separates. From the state, else from the centres, else
+ * from first_dir.
+ *
+ * Reads no tolerance and no max_iterations. center1 and center2 may be NULL; where they are
+ * given they must lie in their objects. `warm` may be NULL. Allocates nothing.
+ *
+ * Returns 1 when they overlap, 0 when they do not; a touch within rounding is no overlap, nor
+ * is what CCD_BAD_INPUT stands for.
+ */
+CCD_EXPORT int ccdIntersect(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
+
+
+/* Distance: how far apart, or how deep. */
+
+/**
+ * What ccdSignedDistance answers. What was not wanted is zero.
+ */
+typedef struct ccd_distance_t {
+  /**
+   * Metres: the gap along normal where the objects are apart, minus the depth where they
+   * overlap. Never more than the true signed distance: obj2 may come nearer by it.
+   */
+  ccd_real_t distance;
+  /**
+   * Metres, never less than the true signed distance: apart |point1 - point2|, overlapping
+   * minus the least depth proven. distance_upper - distance <= dist_tolerance unless
+   * CCD_LIMIT was returned or distance > max_distance.
+   */
+  ccd_real_t distance_upper;
+  /**
+   * Unit, from obj1 to obj2: the way obj2 moves to be farther.
+   */
+  ccd_vec3_t normal;
+  /**
+   * Witness point on the surface of obj1 with its margin; CCD_WANT_POINTS.
+   */
+  ccd_vec3_t point1;
+  /**
+   * Witness point on the surface of obj2 with its margin; CCD_WANT_POINTS.
+   */
+  ccd_vec3_t point2;
+  /**
+   * How often support1 was called, and as often support2.
+   */
+  unsigned long support_calls;
+  /**
+   * Iterations of the solver.
+   */
+  unsigned long iterations;
+} ccd_distance_t;
+
+/**
+ * How far apart, or how deep: one continuous function through the touch.
+ *
+ * margin1, margin2, metres, >= 0: the objects are meant with a ball of that radius added all
+ * around, and the support functions give the cores. (A sphere is a point with a margin, a
+ * capsule a segment, a rounded box a box.) The signed distance is the cores' minus both
+ * margins, overlapping cores included.
+ *
+ * `max_distance`, metres, >= 0: the search ends as soon as the distance is known to be greater.
+ * INFINITY: it is always refined. Reads dist_tolerance. center1, center2 and first_dir may
+ * be NULL. `warm` may be NULL. `want`: CCD_WANT_POINTS; 0 saves support points where objects
+ * overlap. Takes no memory from malloc while the cores are apart.
+ *
+ * Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding, whose distance is
+ * 0; *out is filled) or CCD_LIMIT (the bounds are still open); CCD_BAD_INPUT, or CCD_NO_MEMORY
+ * (cores that overlap only).
+ */
+CCD_EXPORT
+int ccdSignedDistance(const void *obj1,
+                      const void *obj2,
+                      const ccd_t *ccd,
+                      ccd_real_t margin1,
+                      ccd_real_t margin2,
+                      ccd_real_t max_distance,
+                      ccd_warm_t *warm,
+                      unsigned int want,
+                      ccd_distance_t *out);
+
+
+/* Contacts: where two objects touch. */
 
 /**
  * One point of a contact manifold.
@@ -131,178 +307,6 @@ typedef struct ccd_contact_t {
    */
   ccd_real_t depth;
 } ccd_contact_t;
-
-/**
- * What ccdSignedDistance answers.
- */
-typedef struct ccd_distance_t {
-  /**
-   * Metres: the gap along normal where the objects are apart, minus the depth where they
-   * overlap. Never more than the true signed distance: obj2 may come nearer by it.
-   */
-  ccd_real_t distance;
-  /**
-   * Metres, never less than the true signed distance: apart |point1 - point2|, overlapping
-   * minus the least depth proven. distance_upper - distance <= dist_tolerance unless
-   * CCD_LIMIT was returned or distance > beyond.
-   */
-  ccd_real_t distance_upper;
-  /**
-   * Unit, from obj1 to obj2: the way obj2 moves to be farther.
-   */
-  ccd_vec3_t normal;
-  /**
-   * Witness point on the surface of obj1 with its margin.
-   */
-  ccd_vec3_t point1;
-  /**
-   * Witness point on the surface of obj2 with its margin.
-   */
-  ccd_vec3_t point2;
-  /**
-   * Support points of the Minkowski difference evaluated; one is one call of support1
-   * and one of support2.
-   */
-  unsigned long supports;
-  /**
-   * Iterations of the solver.
-   */
-  unsigned long iterations;
-} ccd_distance_t;
-
-#ifdef __cplusplus
-extern "C" {
-#endif // __cplusplus
-
-/**
- * Makes `warm` a fresh state that starts from `dir`, the caller's guess of the way obj2
- * leaves.
- *
- * `dir` need not be unit; zero, not finite or NULL makes a cold state. `warm` NULL: nothing
- * happens.
- */
-CCD_EXPORT void ccdWarmGuess(struct ccd_warm_t *warm, const ccd_vec3_t *dir);
-
-/**
- * Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
- * state a pair and meets its objects in either order.
- *
- * Cold stays cold. `warm` NULL: nothing happens.
- */
-CCD_EXPORT void ccdWarmFlip(struct ccd_warm_t *warm);
-
-/**
- * ccdMPRPenetration with memory.
- *
- * `warm` may be NULL (cold). Returns and outputs as ccdMPRPenetration.
- */
-CCD_EXPORT
-int ccdMPRPenetrationWarm(const void *obj1,
-                          const void *obj2,
-                          const ccd_t *ccd,
-                          struct ccd_warm_t *warm,
-                          ccd_real_t *depth,
-                          ccd_vec3_t *dir,
-                          ccd_vec3_t *pos);
-
-/**
- * ccdMPRIntersect with memory: a pair that stays apart costs one support point while its
- * last separating direction still separates.
- *
- * `warm` may be NULL (cold). Returns as ccdMPRIntersect: 1 or 0.
- */
-CCD_EXPORT
-int ccdMPRIntersectWarm(const void *obj1,
-                        const void *obj2,
-                        const ccd_t *ccd,
-                        struct ccd_warm_t *warm);
-
-/**
- * A local minimum of the penetration depth, by the fastest search there is: cutting planes
- * with curvature, not the paper's method, which is ccdPenetrationIncremental. From the
- * state, else from the centres, else from first_dir.
- *
- * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
- *
- * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
- * alone.
- */
-CCD_EXPORT
-int ccdPenetrationLocal(const void *obj1,
-                        const void *obj2,
-                        const ccd_t *ccd,
-                        struct ccd_warm_t *warm,
-                        struct ccd_penetration_t *out);
-
-/**
- * A local minimum of the penetration depth by the paper's method as published (Algorithms
- * 4 and 5, the shortcut on), with a sound answer: the depth is that of the least support
- * plane met, and an overlap is proven. For comparisons; ccdPenetrationLocal answers the
- * same in fewer support points. From the state's direction, else from the centres, else
- * from first_dir.
- *
- * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
- *
- * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT and leaves it
- * alone.
- */
-CCD_EXPORT
-int ccdPenetrationIncremental(const void *obj1,
-                              const void *obj2,
-                              const ccd_t *ccd,
-                              struct ccd_warm_t *warm,
-                              struct ccd_penetration_t *out);
-
-/**
- * The global minimum of the penetration depth, proven: depth - depth_lower <=
- * epa_tolerance on CCD_HIT. From the state, else from the centres, else from first_dir.
- *
- * Reads epa_tolerance. center1 and center2 may be NULL. `warm` may be NULL (cold).
- * Takes memory from malloc only where the minima (nearly) form a curve or a surface.
- *
- * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY
- * and leaves it alone.
- */
-CCD_EXPORT
-int ccdPenetrationMinimum(const void *obj1,
-                          const void *obj2,
-                          const ccd_t *ccd,
-                          struct ccd_warm_t *warm,
-                          struct ccd_penetration_t *out);
-
-/**
- * How far obj2 must move along `dir` to separate: where the origin ray leaves the
- * Minkowski difference (the paper's Algorithm 1).
- *
- * `dir` need not be unit. mpr_tolerance is measured along `dir`. `warm` may be NULL (cold).
- *
- * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT (also for a `dir`
- * that is zero, not finite or NULL) and leaves it alone.
- */
-CCD_EXPORT
-int ccdPenetrationAlong(const void *obj1,
-                        const void *obj2,
-                        const ccd_t *ccd,
-                        const ccd_vec3_t *dir,
-                        struct ccd_warm_t *warm,
-                        struct ccd_penetration_t *out);
-
-/**
- * A local minimum of the penetration depth among the directions of a plane (the paper's
- * two-dimensional case), for shapes that lie in a common plane with this normal.
- *
- * `plane_normal` need not be unit. Reads mpr_tolerance. `warm` may be NULL (cold).
- *
- * Returns CCD_HIT or CCD_LIMIT and fills `out`; CCD_MISS or CCD_BAD_INPUT (also for a
- * `plane_normal` that is zero, not finite or NULL) and leaves it alone.
- */
-CCD_EXPORT
-int ccdPenetrationPlanar(const void *obj1,
-                         const void *obj2,
-                         const ccd_t *ccd,
-                         const ccd_vec3_t *plane_normal,
-                         struct ccd_warm_t *warm,
-                         struct ccd_penetration_t *out);
 
 /**
  * Where two objects touch, not only how deep: the region in which the faces that look along
@@ -326,7 +330,7 @@ int ccdPenetrationPlanar(const void *obj1,
  *
  * Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
  * that is zero, not finite or NULL, a slop that is negative or NaN, max < 1, no contacts, a
- * callback's point that is not finite), and nothing was written.
+ * callback's point that is not finite), and nothing is written.
  */
 CCD_EXPORT
 int ccdContacts(const void *obj1,
@@ -334,34 +338,118 @@ int ccdContacts(const void *obj1,
                 const ccd_t *ccd,
                 const ccd_vec3_t *normal,
                 ccd_real_t slop,
-                struct ccd_contact_t *contacts,
+                ccd_contact_t *contacts,
                 int max);
 
+
+/* For special wishes: one valley, a proof, a direction, a plane. */
+
 /**
- * How far apart, or how deep: one continuous function through the touch.
+ * A local minimum of the penetration depth, by the fastest search there is: cutting planes
+ * with curvature. For who has a direction that is roughly right, or follows one valley; from far
+ * off it may end in another. From the state, else from the centres, else from first_dir.
  *
- * margin1, margin2, metres, >= 0: the objects are meant with a ball of that radius added all
- * around, and the support functions give the cores. (A sphere is a point with a margin, a
- * capsule a segment, a rounded box a box.) The signed distance is the cores' minus both
- * margins, overlapping cores included.
+ * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
+ * flags. Allocates nothing.
  *
- * `beyond`, metres, >= 0: the search ends as soon as the distance is known to be greater.
- * INFINITY: it is always refined. Reads dist_tolerance. center1, center2 and first_dir may
- * be NULL. `warm` may be NULL (cold). Takes no memory from malloc while the cores are apart.
- *
- * Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding, whose distance is
- * 0) or CCD_LIMIT (the bounds are still open) and fills `out`; CCD_BAD_INPUT or
- * CCD_NO_MEMORY (cores that overlap only) and leaves it alone.
+ * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
  */
 CCD_EXPORT
-int ccdSignedDistance(const void *obj1,
-                      const void *obj2,
-                      const ccd_t *ccd,
-                      ccd_real_t margin1,
-                      ccd_real_t margin2,
-                      ccd_real_t beyond,
-                      struct ccd_warm_t *warm,
-                      struct ccd_distance_t *out);
+int ccdPenetrationLocal(const void *obj1,
+                        const void *obj2,
+                        const ccd_t *ccd,
+                        ccd_warm_t *warm,
+                        unsigned int want,
+                        ccd_penetration_t *out);
+
+/**
+ * The least penetration depth with its proof: depth - depth_lower <= epa_tolerance on CCD_HIT.
+ * From the state, else from the centres, else from first_dir.
+ *
+ * Reads epa_tolerance. center1 and center2 may be NULL, and are not trusted. `warm` may be NULL.
+ * `want`: CCD_WANT_ flags. Takes memory from malloc only where the minima (nearly) form a curve
+ * or a surface; there the bounds may stay open: CCD_LIMIT.
+ *
+ * Returns CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY.
+ */
+CCD_EXPORT
+int ccdPenetrationProven(const void *obj1,
+                         const void *obj2,
+                         const ccd_t *ccd,
+                         ccd_warm_t *warm,
+                         unsigned int want,
+                         ccd_penetration_t *out);
+
+/**
+ * How far obj2 must move along `dir` to separate (directional penetration depth).
+ *
+ * `dir` need not be unit; zero, not finite or NULL is CCD_BAD_INPUT. Reads mpr_tolerance,
+ * measured along `dir`. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
+ * flags. Allocates nothing.
+ *
+ * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
+ */
+CCD_EXPORT
+int ccdPenetrationAlong(const void *obj1,
+                        const void *obj2,
+                        const ccd_t *ccd,
+                        const ccd_vec3_t *dir,
+                        ccd_warm_t *warm,
+                        unsigned int want,
+                        ccd_penetration_t *out);
+
+/**
+ * A local minimum of the penetration depth among the directions of a plane, for shapes that lie
+ * in a common plane with this normal. From the state, else from the centres, else from first_dir.
+ *
+ * `plane_normal` need not be unit; zero, not finite or NULL is CCD_BAD_INPUT. Reads
+ * mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_ flags.
+ * Allocates nothing.
+ *
+ * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
+ */
+CCD_EXPORT
+int ccdPenetrationPlanar(const void *obj1,
+                         const void *obj2,
+                         const ccd_t *ccd,
+                         const ccd_vec3_t *plane_normal,
+                         ccd_warm_t *warm,
+                         unsigned int want,
+                         ccd_penetration_t *out);
+
+
+/* For programs that call libccd's MPR: the same calls with one argument more. What they return
+ * and what they need is what libccd says, so center1 and center2 must be given. */
+
+/**
+ * ccdMPRPenetration with memory: ccdPenetration with libccd's outputs and codes.
+ *
+ * `warm` may be NULL. Returns 0 and writes the outputs that are not NULL (a `pos` of NULL saves
+ * what CCD_WANT_POS costs), or -1: apart, or an argument or a callback's answer that no query can
+ * work with.
+ */
+CCD_EXPORT
+int ccdMPRPenetrationWarm(const void *obj1,
+                          const void *obj2,
+                          const ccd_t *ccd,
+                          ccd_warm_t *warm,
+                          ccd_real_t *depth,
+                          ccd_vec3_t *dir,
+                          ccd_vec3_t *pos);
+
+/**
+ * ccdMPRIntersect with memory: ccdIntersect where centres are given.
+ *
+ * `warm` may be NULL. Returns 1 or 0.
+ */
+CCD_EXPORT
+int ccdMPRIntersectWarm(const void *obj1,
+                        const void *obj2,
+                        const ccd_t *ccd,
+                        ccd_warm_t *warm);
+
+
+/* Which library this is. */
 
 /**
  * Which library a process really runs, and in which precision: "warmccd 0.2.0 double", a
@@ -370,7 +458,7 @@ int ccdSignedDistance(const void *obj1,
 CCD_EXPORT const char *ccdImplementation(void);
 
 #ifdef __cplusplus
-}  // extern "C"
-#endif  // __cplusplus
+}
+#endif
 
-#endif  /* __CCD_WARM_H__ */
+#endif /* __CCD_WARM_H__ */

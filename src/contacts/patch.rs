@@ -377,7 +377,7 @@ mod tests {
             tolerance: TOLERANCE,
             max_iterations: 500,
         };
-        match pair.local(&mut State::default(), &settings) {
+        match pair.local(&mut State::default(), &settings, true) {
             Ok(Answer::Hit(hit)) => hit,
             other => panic!("{other:?}"),
         }

@@ -49,11 +49,14 @@ pub struct Query {
 }
 
 impl Query {
-    /// The two objects; `None` when a support callback is NULL.
+    /// The two objects; `None` when `ccd` or a support callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     pub unsafe fn objects(&self) -> Option<(Object, Object)> {
+        if self.ccd.is_null() {
+            return None;
+        }
         // SAFETY: [inputs]; only the two fields are read.
         let (support1, support2) = unsafe { ((*self.ccd).support1?, (*self.ccd).support2?) };
         Some((
@@ -68,7 +71,7 @@ impl Query {
         ))
     }
 
-    /// The Minkowski difference; `None` when a support callback is NULL.
+    /// The Minkowski difference; `None` when `ccd` or a support callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
@@ -114,7 +117,7 @@ impl Query {
         Some(dir.into())
     }
 
-    /// Difference and centres; `None` when a callback for them is NULL or a centre is not
+    /// Difference and centres; `None` when `ccd` or a callback for them is NULL or a centre is not
     /// finite. `lasting`: whether the caller keeps a state.
     ///
     /// # Safety
@@ -132,7 +135,7 @@ impl Query {
     }
 
     /// The difference, and where to look first: from the centres, or where these are not
-    /// given from first_dir; `None` when a support callback is NULL or a centre not finite.
+    /// given from first_dir; `None` when `ccd` or a support callback is NULL or a centre not finite.
     /// `lasting`: whether the caller keeps a state.
     ///
     /// # Safety

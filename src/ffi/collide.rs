@@ -8,7 +8,7 @@ use core::ffi::{c_int, c_void};
 use super::arena;
 use super::callbacks::Query;
 use super::types::{ccd_t, ccd_vec3_t};
-use super::warm::ccdMPRPenetrationWarm;
+use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::gjk::overlap;
 use crate::known::support::Fault;
@@ -63,15 +63,8 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     obj2: *const c_void,
     ccd: *const ccd_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    let overlap = unsafe {
-        let (Some(md), Some(centre)) = (query.difference(), query.centre()) else {
-            return 0;
-        };
-        overlap::from_centre(&md, &centre)
-    };
-    c_int::from(overlap.is_ok())
+    unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, core::ptr::null_mut()) }
 }
 
 /// # Safety
@@ -110,7 +103,7 @@ pub unsafe fn mpr_penetration(
     query: Query,
     state: &mut State,
     lasting: bool,
-    placed: bool,
+    wants_witnesses: bool,
 ) -> Result<Answer, Fault> {
     // SAFETY: passed on.
     unsafe {
@@ -119,7 +112,7 @@ pub unsafe fn mpr_penetration(
             tolerance: or_default(query.mpr_tolerance()),
             max_iterations: query.max_iterations(),
         };
-        pair.mpr(state, &settings, placed)
+        pair.mpr(state, &settings, wants_witnesses)
     }
 }
 
@@ -146,12 +139,11 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
 }
 
-/// The global minimum, from first_dir; the centres are not asked for. `placed`: with
-/// witness points that are worth having.
+/// The global minimum, from first_dir; the centres are not asked for.
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_int> {
+unsafe fn gjk_penetration(query: Query, wants_witnesses: bool) -> Result<Penetration, c_int> {
     // SAFETY: passed on.
     unsafe {
         let (Some(md), Some(first)) = (query.difference(), query.first_dir()) else {
@@ -168,7 +160,8 @@ unsafe fn gjk_penetration(query: Query, placed: bool) -> Result<Penetration, c_i
             max_iterations: query.max_iterations(),
         };
         let mut cold = State::default();
-        let answer = arena::with(|arena| pair.minimum(&mut cold, &settings, arena, placed));
+        let answer =
+            arena::with(|arena| pair.minimum(&mut cold, &settings, arena, wants_witnesses));
         match answer {
             Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
             Ok(Answer::Miss(_)) | Err(Fault::NonFinite) => Err(-1),
@@ -195,7 +188,7 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
 ) -> c_int {
     // SAFETY: passed on; [outputs].
     unsafe {
-        match gjk_penetration(Query { obj1, obj2, ccd }, true) {
+        match gjk_penetration(Query { obj1, obj2, ccd }, !pos.is_null()) {
             Ok(hit) => {
                 write(&hit, depth, dir, pos);
                 0

@@ -19,27 +19,34 @@ use crate::state::State;
 /// Room for the points of a query: what the state's directions give, and a simplex.
 const ROOM: usize = 8;
 
-/// Do the objects overlap? `centre`, an interior point of D, is trusted.
+/// Do the objects overlap? `centre`, an interior point of D, is trusted. Where there is none, the
+/// search begins along `first`, unit.
 ///
 /// # Errors
 /// A callback's answer that is not finite.
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
-    centre: &SupportPoint,
+    centre: Option<&SupportPoint>,
+    first: impl FnOnce() -> Vec3,
     state: &mut State,
 ) -> Result<bool, Fault> {
     let mut inquiry = Inquiry::new(md);
     let mut set = SupportSet::<ROOM>::EMPTY;
-    let dir = unit(&-centre.v);
     // A centre at the origin is no corner to look from.
-    let inner = dir.map(|_| set.push(&Vec3::zeros(), centre));
-    inquiry.precision.note(centre);
+    let dir = centre.and_then(|c| unit(&-c.v));
+    let inner = match (centre, dir) {
+        (Some(centre), Some(_)) => Some(set.push(&Vec3::zeros(), centre)),
+        _ => None,
+    };
+    if let Some(centre) = centre {
+        inquiry.precision.note(centre);
+    }
     let was_apart = state.separating().is_some();
     if still_apart(&mut inquiry, &mut set, state)?.is_some() {
         return Ok(false);
     }
     let answer = match surround(&mut inquiry, &mut set, state) {
-        Ok(()) => overlap(&mut inquiry, &mut set, inner, &dir.unwrap_or(Vec3::x())),
+        Ok(()) => overlap(&mut inquiry, &mut set, inner, &dir.unwrap_or_else(first)),
         Err(stop) => Err(stop),
     };
     match answer {

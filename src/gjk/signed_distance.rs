@@ -32,7 +32,7 @@ pub struct Wanted {
     /// Radius of the ball around obj2, metres, not negative.
     pub margin2: Real,
     /// Distances greater than this need not be refined, metres.
-    pub beyond: Real,
+    pub max_distance: Real,
     /// The tolerance is the width of the bounds.
     pub settings: Settings,
 }
@@ -212,7 +212,7 @@ fn cores<A: SupportMap, B: SupportMap>(
             .precision
             .tolerance(wanted.settings.tolerance);
         // A plane between the objects is wanted even where the tolerance would not ask.
-        let far = search.lower - margin > wanted.beyond;
+        let far = search.lower - margin > wanted.max_distance;
         let told = |search: &Approach<'_, '_, A, B>| {
             (search.lower - margin > -touch || !(search.upper - margin > touch))
                 && search.upper - search.lower <= tolerance

@@ -66,7 +66,7 @@ pub struct Request<'a> {
     /// How far to go.
     pub limits: &'a Limits,
     /// Does anybody read the witness points? Else the width of the contact is not looked for.
-    pub placed: bool,
+    pub wants_witnesses: bool,
     /// The [`Basis::mark`] of a pair that rested face on face when it was asked last.
     pub mark: Option<u64>,
 }
@@ -475,7 +475,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         [a, b, c]: [&[Vec3; 2]; 3],
         tolerance: Real,
     ) -> Real {
-        if !self.request.placed {
+        if !self.request.wants_witnesses {
             return 0.0;
         }
         let dir = &self.inquiry.lowest.dir;
@@ -584,7 +584,7 @@ mod tests {
             first,
             others: &[],
             limits: &limits,
-            placed: true,
+            wants_witnesses: true,
             mark: None,
         };
         let mut hit = Penetration::default();

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Contacts: where two objects touch.
+
+use core::ffi::{c_int, c_void};
+
+use super::super::callbacks::Query;
+use super::super::types::{ccd_t, ccd_vec3_t};
+use super::codes::CCD_BAD_INPUT;
+use super::unit_of;
+use crate::contacts::manifold;
+use crate::math::Real;
+
+/// One point of a contact manifold.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ccd_contact_t {
+    /// Within slop of the surface of obj1.
+    pub point1: ccd_vec3_t,
+    /// point1 - depth * normal; within slop of the surface of obj2.
+    pub point2: ccd_vec3_t,
+    /// Metres: at least the support value of normal less 2 slop; negative where the objects
+    /// are apart.
+    pub depth: Real,
+}
+
+/// Where two objects touch, not only how deep: the region in which the faces that look along
+/// `normal` lie over each other, reduced to at most `max` points: the deepest first, the
+/// others in order around the normal, spread to the largest area.
+///
+/// `normal`: of an answer for this pose (dir where there is no other), not necessarily unit.
+/// `slop`, metres, >= 0: how far below its support plane a corner may lie and still belong to
+/// the face; a thousandth of the objects' size is good for contacts that rest. Corners
+/// between half the slop and the slop may be either. It is floored at a few ulps of the
+/// coordinates and is no more than the size of the face.
+///
+/// Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
+/// Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
+/// one point, midway between them. The region moves as the objects do. Points carry no names:
+/// match those of two frames by position. For objects that are meant with margins, move the
+/// points by them along the normal.
+///
+/// Reads no tolerance, centre or max_iterations; at most 24 support points of each object, 12
+/// of a box. Allocates nothing.
+///
+/// Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
+/// that is zero, not finite or NULL, a slop that is negative or NaN, max < 1, no contacts, a
+/// callback's point that is not finite), and nothing is written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdContacts(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    normal: *const ccd_vec3_t,
+    slop: Real,
+    contacts: *mut ccd_contact_t,
+    max: c_int,
+) -> c_int {
+    if ccd.is_null() || contacts.is_null() || max < 1 || !(slop >= 0.0) {
+        return CCD_BAD_INPUT;
+    }
+    // SAFETY: [inputs].
+    let (normal, objects) = unsafe { (unit_of(normal), Query { obj1, obj2, ccd }.objects()) };
+    let (Some(normal), Some((one, two))) = (normal, objects) else {
+        return CCD_BAD_INPUT;
+    };
+    let max = (max as usize).min(manifold::ROOM);
+    let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop, max) else {
+        return CCD_BAD_INPUT;
+    };
+    for (i, contact) in manifold.contacts().iter().enumerate() {
+        let out = ccd_contact_t {
+            point1: contact.point1.into(),
+            point2: contact.point2.into(),
+            depth: contact.depth,
+        };
+        // SAFETY: [outputs]; `contacts` has room for `max`.
+        unsafe { contacts.add(i).write(out) };
+    }
+    manifold.contacts().len() as c_int
+}

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The one call to begin with: do two objects overlap, how deep, which way out, where?
+
+use core::ffi::{c_int, c_uint, c_ulong, c_void};
+
+use super::super::callbacks::{Object, Query};
+use super::super::types::{ccd_t, ccd_vec3_t};
+use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
+use super::state::{ccd_warm_t, read, store};
+use crate::contact::{Answer, Penetration, Settings};
+use crate::known::support::Fault;
+use crate::math::Real;
+use crate::{query::Pair, state::State};
+
+/// Wanted: pos. Where faces or edges rest on each other it costs support points.
+pub const CCD_WANT_POS: c_uint = 1;
+/// Wanted: point1 and point2.
+pub const CCD_WANT_POINTS: c_uint = 2;
+/// Everything.
+pub const CCD_WANT_ALL: c_uint = 3;
+
+/// What a penetration query answers. What was not wanted is zero.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ccd_penetration_t {
+    /// Metres, >= 0: moving obj2 by depth * dir separates the objects. It is the support
+    /// value of normal, divided by dir . normal.
+    pub depth: Real,
+    /// Proven lower bound on the global minimum depth (in ccdPenetrationAlong: on the
+    /// depth along dir), metres; 0 where none was proven.
+    pub depth_lower: Real,
+    /// Unit; the way obj2 moves.
+    pub dir: ccd_vec3_t,
+    /// Unit; normal of the separating plane. Equal to dir except in ccdPenetrationAlong.
+    pub normal: ccd_vec3_t,
+    /// Contact position, CCD_WANT_POS: the middle of the witness points. Where a face rests on
+    /// a face or an edge it is the middle of where the two touch, and moves as the objects do.
+    pub pos: ccd_vec3_t,
+    /// Witness point of obj1, CCD_WANT_POINTS: no farther from its supporting plane than the depth
+    /// may be off.
+    pub point1: ccd_vec3_t,
+    /// Witness point of obj2, the same.
+    pub point2: ccd_vec3_t,
+    /// How often support1 was called, and as often support2.
+    pub support_calls: c_ulong,
+    /// Iterations of the solver.
+    pub iterations: c_ulong,
+}
+
+impl ccd_penetration_t {
+    fn new(hit: &Penetration, want: c_uint, supports: u64) -> Self {
+        let given = |flag, point: ccd_vec3_t| match want & flag {
+            0 => ccd_vec3_t::default(),
+            _ => point,
+        };
+        Self {
+            depth: hit.depth,
+            depth_lower: hit.depth_lower,
+            dir: hit.dir.into(),
+            normal: hit.normal.into(),
+            pos: given(CCD_WANT_POS, ((hit.point1 + hit.point2) * 0.5).into()),
+            point1: given(CCD_WANT_POINTS, hit.point1.into()),
+            point2: given(CCD_WANT_POINTS, hit.point2.into()),
+            support_calls: supports as c_ulong,
+            iterations: hit.iterations as c_ulong,
+        }
+    }
+}
+
+/// A penetration query of the extension: runs `solve` with the caller's state, or with a cold
+/// one where there is none, and writes what comes of it. `solve` is told whether witness points
+/// are wanted.
+///
+/// # Safety
+/// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
+/// with a destructor is alive here.
+pub(in crate::ffi) unsafe fn answer(
+    query: Query,
+    tolerance: unsafe fn(&Query) -> Real,
+    warm: *mut ccd_warm_t,
+    want: c_uint,
+    out: *mut ccd_penetration_t,
+    solve: impl FnOnce(&Pair<Object, Object>, &mut State, &Settings, bool) -> Result<Answer, Fault>,
+) -> c_int {
+    if query.ccd.is_null() || out.is_null() || want & !CCD_WANT_ALL != 0 {
+        return CCD_BAD_INPUT;
+    }
+    // SAFETY: [inputs], [outputs]; `solve` runs callbacks, [callbacks].
+    unsafe {
+        let tolerance = tolerance(&query);
+        // Negated for NaN.
+        if !(tolerance >= 0.0) {
+            return CCD_BAD_INPUT;
+        }
+        let Some(pair) = query.asked(!warm.is_null()) else {
+            return CCD_BAD_INPUT;
+        };
+        let settings = Settings {
+            tolerance,
+            max_iterations: query.max_iterations(),
+        };
+        let mut state = read(warm);
+        let result = solve(&pair, &mut state, &settings, want != 0);
+        let (code, hit) = match result {
+            Ok(Answer::Hit(hit)) => (CCD_HIT, Some(hit)),
+            Ok(Answer::Limit(hit)) => (CCD_LIMIT, Some(hit)),
+            Ok(Answer::Miss(_)) => (CCD_MISS, None),
+            Err(Fault::NoMemory) => return CCD_NO_MEMORY,
+            Err(Fault::NonFinite) => return CCD_BAD_INPUT,
+        };
+        if let Some(hit) = hit {
+            *out = ccd_penetration_t::new(&hit, want, pair.md.supports());
+        }
+        store(warm, &state);
+        code
+    }
+}
+
+/// The penetration depth: the least distance by which obj2 must move to separate the objects,
+/// within the larger of mpr_tolerance and 0.1 % of it, in CCD_LIMIT's case a sound one.
+/// The call to take unless one of those below says what is wanted better. From the state, else
+/// from the centres, else from first_dir.
+///
+/// `warm`: NULL, or the pair's state: a pair that stays apart costs one call of each support
+/// function, and one that overlaps fewer than without. `want`: CCD_WANT_ flags; 0 for depth,
+/// bounds and directions alone. Reads mpr_tolerance. center1 and center2 may be NULL; where they
+/// are given they must lie in their objects, and save calls; depth_lower leans on them too.
+/// Allocates nothing.
+///
+/// Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdPenetration(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+    want: c_uint,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    let query = Query { obj1, obj2, ccd };
+    // SAFETY: passed on.
+    unsafe {
+        answer(
+            query,
+            Query::mpr_tolerance,
+            warm,
+            want,
+            out,
+            |pair, state, settings, wants_witnesses| pair.mpr(state, settings, wants_witnesses),
+        )
+    }
+}

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! States: what one query of a pair leaves for the next.
+
+use core::ffi::c_uint;
+
+use super::super::types::ccd_vec3_t;
+use crate::math::Real;
+use crate::state::State;
+
+/// How many numbers a ccd_warm_t holds.
+pub const CCD_WARM_REALS: usize = 19;
+
+/// State of one pair between queries. Plain data, no pointers, nothing to free: all
+/// bytes zero is cold, and it may be copied and stored freely.
+///
+/// One state is for one pair in one order: the state of (a, b) is a foreign one to a query of
+/// (b, a), until ccdWarmFlip turns it round. Every call takes what any other call has left in
+/// it. Two threads must not use one state at once. Wherever a call takes a state, NULL is cold,
+/// and saves what it costs to leave one.
+///
+/// A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to
+/// another local minimum; every answer stays sound. The fields are the library's own.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ccd_warm_t {
+    /// Private.
+    pub reals: [Real; CCD_WARM_REALS],
+    /// Private.
+    pub words: [c_uint; 4],
+}
+
+const _: () = {
+    assert!(size_of::<ccd_warm_t>() == size_of::<State>());
+    assert!(align_of::<ccd_warm_t>() == align_of::<State>());
+    assert!(size_of::<ccd_warm_t>() <= 256);
+};
+
+/// The caller's state; cold where there is none.
+///
+/// # Safety
+/// \[inputs\] of the module contract.
+pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> State {
+    if warm.is_null() {
+        State::default()
+    } else {
+        // SAFETY: [inputs]; every bit pattern is a State of the same layout.
+        unsafe { *warm.cast::<State>() }
+    }
+}
+
+/// # Safety
+/// \[outputs\] of the module contract.
+pub(in crate::ffi) unsafe fn store(warm: *mut ccd_warm_t, state: &State) {
+    if !warm.is_null() {
+        // SAFETY: [outputs].
+        unsafe { *warm.cast::<State>() = *state };
+    }
+}
+
+/// Makes `warm` a fresh state that starts from `dir`, the caller's guess of the way obj2
+/// leaves.
+///
+/// `dir` need not be unit; zero, not finite or NULL makes a cold state. `warm` NULL: nothing
+/// happens.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const ccd_vec3_t) {
+    // SAFETY: [inputs], [outputs].
+    unsafe {
+        let guess = match dir.as_ref() {
+            Some(dir) => State::guess(&(*dir).into()),
+            None => State::default(),
+        };
+        store(warm, &guess);
+    }
+}
+
+/// Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
+/// state a pair and meets its objects in either order.
+///
+/// Cold stays cold. `warm` NULL: nothing happens.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn ccdWarmFlip(warm: *mut ccd_warm_t) {
+    // SAFETY: [inputs], [outputs].
+    unsafe {
+        let mut state = read(warm);
+        state.flip();
+        store(warm, &state);
+    }
+}
