@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The charts' page: the pictures and the tables behind them, with what a reader
-//! needs to judge them. `results.md` is its text, with a mark for each table.
+//! needs to judge them. The page is its own template: a table with a mark there is
+//! written between its marks, the others are printed.
 
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 
@@ -363,36 +364,49 @@ fn front(rows: &[Row]) -> String {
     markdown(["pair", "on the front of supports against error"], lines)
 }
 
+/// Writes the page's tables between their marks, and prints those that have none there.
 pub fn write(page: &Page, results: &Results) {
-    let text = include_str!("results.md");
+    let committed = crate::harness::root().join("c-tests/charts/README.md");
+    let mut text = std::fs::read_to_string(&committed).expect("the charts' page");
     let tables = [
         ("MACHINE", page.machine.clone()),
         ("FRONT", front(&results.accuracy)),
         (
-            "TABLE_1",
+            "TABLE I: mean |depth error|, µm, of answers within 1 mm",
             paper_table(&results.paper, &|r| r.mean_error_1mm * 1e6, &|p| p.depth),
         ),
         (
-            "TABLE_2",
+            "TABLE II: mean direction error, mrad",
             paper_table(&results.paper, &|r| r.direction, &|p| p.direction),
         ),
         (
-            "TABLE_3",
+            "TABLE III: µs a query",
             paper_table(&results.paper, &|r| r.ns.unwrap_or(f64::NAN) * 1e-3, &|p| {
                 p.time
             }),
         ),
         ("FASTER", times_faster(&results.paper)),
-        ("ABLATION", ablation(&results.vertices)),
+        ("SHORTCUT on and off", ablation(&results.vertices)),
         ("DEEP", deep(&results.vertices)),
         ("COHERENCE", coherent(&results.coherence)),
         ("RECORDED", recorded(&results.recorded)),
         ("MODELS", models(&results.models)),
         ("INSTRUCTIONS", instructions(&results.split)),
     ];
-    let filled = tables.iter().fold(text.to_owned(), |page, (mark, table)| {
-        page.replace(&format!("{{{{{mark}}}}}"), table)
-    });
+    for (name, table) in &tables {
+        match between_marks(&text, name) {
+            Some(place) => text.replace_range(place, &format!("{table}\n")),
+            None => println!("\n{name}\n\n{table}"),
+        }
+    }
     let path = page.file("README.md");
-    std::fs::write(&path, filled).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+}
+
+/// What stands between `<!-- table NAME -->` and the next `<!-- end -->`.
+fn between_marks(text: &str, name: &str) -> Option<std::ops::Range<usize>> {
+    let mark = format!("<!-- table {name} -->\n");
+    let start = text.find(&mark)? + mark.len();
+    let end = start + text[start..].find("<!-- end -->")?;
+    Some(start..end)
 }
