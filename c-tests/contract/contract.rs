@@ -134,6 +134,36 @@ fn archive_defines_no_other_ccd_symbol() {
     assert_eq!(names(output("nm", &args)), exported);
 }
 
+/// No function of the library can panic. With the first that could, Rust's messages and
+/// backtraces would be linked: 300 KB. Where a bound is not seen by the compiler, and which
+/// function it stands in, the test tells.
+#[test]
+fn no_panic_is_linked() {
+    let said = |command: &mut Command| harness::must_succeed(command, "binutils").stdout;
+    let symbols = said(harness::binutils("nm").arg(ours("libccd.so")));
+    assert!(symbols.contains(" t "), "no local symbols: nothing to see");
+    if !symbols.contains("panicking") {
+        return;
+    }
+    let code = said(
+        harness::binutils("objdump")
+            .args(["-drC"])
+            .arg(ours("libccd.a")),
+    );
+    let (mut function, mut found) = ("", BTreeSet::new());
+    for line in code.lines() {
+        if line.ends_with(">:") {
+            function = line.split_once(' ').map_or(line, |(_, name)| name);
+        } else if line.contains("R_") && (line.contains("core::panick") || line.contains("_fail")) {
+            let called = line.split_whitespace().last().unwrap_or_default();
+            if function.starts_with("<ccd") {
+                found.insert(format!("{function} {called}"));
+            }
+        }
+    }
+    panic!("Rust's panics are linked, or another linker than GNU ld is used: {found:#?}");
+}
+
 #[test]
 fn soname_is_libccd_s() {
     for library in [ours("libccd.so"), installed()] {

@@ -250,7 +250,7 @@ fn decide<A: SupportMap, B: SupportMap, const N: usize>(
     // side of D is well inside.
     let mut seen = SupportSet::<8>::EMPTY;
     let corners = simplex.ids().map(|i| set.point(i));
-    for corner in &corners[..simplex.len()] {
+    for corner in corners.iter().take(simplex.len()) {
         seen.push(&Vec3::zeros(), corner);
     }
     let last = seen.len();

@@ -142,7 +142,11 @@ fn open_side(c: &Vec3, [u, v, w]: [&Vec3; 3], reach2: Real) -> Option<usize> {
     if most < -64.0 * EPSILON * size2 * size2.sqrt() {
         return None;
     }
-    Some((0..2).find(|&i| outside[i] >= most).unwrap_or(2))
+    // No search over a range: where its bound is not seen, a panic is linked.
+    if outside[0] >= most {
+        return Some(0);
+    }
+    Some(if outside[1] >= most { 1 } else { 2 })
 }
 
 /// Of −c what is across `a`.
