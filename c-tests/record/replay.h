@@ -9,6 +9,7 @@
 #define RECORD_REPLAY_H
 
 #include "record/recording.h"
+#include "verdict.h"
 
 #include <time.h>
 
@@ -29,7 +30,8 @@ typedef int (*recording_method_fn)(const recording_query_t *, recording_answer_t
 typedef struct {
     const char *name;
     recording_method_fn method;
-    unsigned long queries, missed, spurious, deep, shallow, broken, supports, judged;
+    unsigned long queries, supports, judged;
+    unsigned long wrong[VERDICTS];
     double error_sum, error_max; /* metres, of those judged: hits that are hits */
     double nanoseconds;          /* of the fastest pass */
 } tally_t;
@@ -42,26 +44,13 @@ static const double REPLAY_TOUCH = 1e-9;
 /* One answer: hit or not, and where hit its depth and direction, against the truth. */
 static inline void tally_add(tally_t *t, const recording_answer_t *answer, double lower, double upper)
 {
-    const double depth = (double)answer->depth;
+    const verdict_truth_t truth = { lower, upper, REPLAY_TOLERANCE, REPLAY_TOUCH };
+    const verdict_answer_t judged = { answer->code == 0, 1, (double)answer->depth, (double)ccdVec3Len2(&answer->dir) };
+    const verdict_t v = verdict(&judged, &truth);
     t->queries++;
-    if (answer->code != 0) {
-        t->missed += lower > REPLAY_TOUCH;
-        return;
-    }
-    if (upper < -REPLAY_TOUCH) {
-        t->spurious++;
-        return;
-    }
-    /* negated: NaN is broken */
-    if (!(fabs((double)ccdVec3Len2(&answer->dir) - 1) < 1e-6) || !(depth >= 0 && depth < HUGE_VAL)) {
-        t->broken++;
-        return;
-    }
-    {
-        const double slack = 2 * REPLAY_TOLERANCE;
-        const double error = depth > upper ? depth - upper : depth < lower ? lower - depth : 0;
-        t->deep += depth > 1.01 * upper + slack;
-        t->shallow += depth < lower - slack;
+    t->wrong[v]++;
+    if (verdict_has_error(&judged, v)) {
+        const double error = verdict_error(&judged, &truth);
         t->error_sum += error;
         t->error_max = error > t->error_max ? error : t->error_max;
         t->judged++;
@@ -86,7 +75,8 @@ static inline void tally_head(const recording_t *r)
 static inline void tally_print(const tally_t *t)
 {
     const double judged = t->judged ? (double)t->judged : 1, queries = t->queries ? (double)t->queries : 1;
-    printf("%-13s %6lu %5lu %6lu %6lu %7lu %7.3g %7.0f %8.2f %5.0f\n", t->name, t->missed, t->spurious, t->broken, t->deep, t->shallow,
+    printf("%-13s %6lu %5lu %6lu %6lu %7lu %7.3g %7.0f %8.2f %5.0f\n", t->name, t->wrong[VERDICT_MISSED],
+           t->wrong[VERDICT_SPURIOUS], t->wrong[VERDICT_BROKEN], t->wrong[VERDICT_DEEP], t->wrong[VERDICT_UNSOUND],
            1e6 * t->error_sum / judged, 1e6 * t->error_max, (double)t->supports / queries, t->nanoseconds / queries);
 }
 

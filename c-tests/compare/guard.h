@@ -1,0 +1,25 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Runs what may throw or jump out of itself, and comes back. The questions that the tool asks
+ * beside the program's own must not leave into the program. */
+
+#ifndef COMPARE_GUARD_H
+#define COMPARE_GUARD_H
+
+typedef enum {
+    GUARD_RETURNED,
+    GUARD_THREW,  /* an exception left it; it is gone, destructors have run */
+    GUARD_JUMPED, /* longjmp or siglongjmp to a place outside */
+    GUARD_ENDED   /* guard_end */
+} guard_t;
+
+guard_t guard_run(void (*work)(void *), void *argument);
+
+/* Whether this thread is within guard_run. */
+int guard_active(void);
+
+/* Leaves the innermost guard_run. */
+void guard_end(void) __attribute__((noreturn));
+
+#endif

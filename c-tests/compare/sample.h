@@ -1,0 +1,50 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* One query of the program's, put to libccd, to this library and to the proven minimum, and
+ * judged; what is found is added to the counts. */
+
+#ifndef COMPARE_SAMPLE_H
+#define COMPARE_SAMPLE_H
+
+#include "compare/ask.h"
+
+typedef struct {
+    compare_counts_t *counts;
+    library_t library[COMPARE_SIDES];
+    int base;         /* whose answer the program got */
+    int timed;        /* whether times are taken */
+    const char *keep; /* where wrong answers are kept; NULL: nowhere */
+    const char *case_source; /* what a kept case ends with */
+} compare_t;
+
+/* How a judged query went, for whoever keeps it. */
+typedef struct {
+    const query_t *q;
+    seen_t *seen;
+    verdict_truth_t truth;
+    ccd_vec3_t truth_dir; /* of the upper bound */
+    double size;          /* of the smaller object */
+    answer_t answer[COMPARE_SIDES];
+    verdict_t verdict[COMPARE_SIDES];
+    asked_t asked[COMPARE_SIDES];
+} sample_t;
+
+/* Calls of the callbacks that a query may make before it counts as endless: a hundred times
+ * what either library needs on shapes that are hard. */
+enum { ENDLESS = 100000 };
+
+/* own: what the program got; fields that it did not ask for are NaN. */
+void sample_query(const compare_t *compare, const query_t *q, const answer_t *own);
+
+/* Bounds on the signed depth. Returns 0, or -1 where callbacks left or did not end. */
+int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t *s, uint64_t *supports);
+
+verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth);
+
+void seen_clear(seen_t *seen);
+
+/* Atomic; n of the counts' own unit. */
+void count_add(uint64_t *to, uint64_t n);
+
+#endif

@@ -1,0 +1,336 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The screen at the end: what the watched processes counted, added up.
+ *
+ * usage: screen DIR EVERY EXIT KEPT   for people; KEPT: where cases were kept, or empty
+ *        screen DIR fields            `watched key value key value ...`, for the tables of swap/ */
+
+#define _POSIX_C_SOURCE 200809L
+#include "compare/counts.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PICO = 1e-12;
+
+static compare_counts_t all;
+static int processes;
+
+/* Both are made of 64-bit numbers alone; the largest error alone is no sum. */
+static void add_call(compare_call_t *to, const compare_call_t *from)
+{
+    uint64_t most[COMPARE_SIDES];
+    size_t i;
+    for (i = 0; i < COMPARE_SIDES; i++)
+        most[i] = to->side[i].error_max > from->side[i].error_max ? to->side[i].error_max : from->side[i].error_max;
+    for (i = 0; i < sizeof *to / sizeof(uint64_t); i++)
+        ((uint64_t *)to)[i] += ((const uint64_t *)from)[i];
+    for (i = 0; i < COMPARE_SIDES; i++)
+        to->side[i].error_max = most[i];
+}
+
+/* A kept case, and the file that its process gave it. */
+typedef struct {
+    compare_kept_t kept;
+    char file[64];
+} kept_t;
+static kept_t kept[COMPARE_SIDES][1024];
+static int kept_count[COMPARE_SIDES];
+
+static void add_kept(const compare_counts_t *one)
+{
+    int side, i;
+    for (side = 0; side < COMPARE_SIDES; side++)
+        for (i = 0; i < COMPARE_KEPT && kept_count[side] < 1024; i++)
+            if (one->kept[side][i].used) {
+                kept_t *k = &kept[side][kept_count[side]++];
+                k->kept = one->kept[side][i];
+                snprintf(k->file, sizeof k->file, ".%llu-%d-%d.c", (unsigned long long)one->process, side, i);
+            }
+}
+
+static void add_process(const compare_counts_t *one)
+{
+    int i;
+    add_kept(one);
+    if (processes++ == 0) {
+        all = *one;
+        return;
+    }
+    for (i = 0; i < COMPARE_CALLS; i++)
+        add_call(&all.call[i], &one->call[i]);
+    all.raw_supports += one->raw_supports;
+    all.callback_pairs += one->callback_pairs;
+    all.callback_nanoseconds += one->callback_nanoseconds;
+    all.process_nanoseconds += one->process_nanoseconds;
+    all.watch_nanoseconds += one->watch_nanoseconds;
+}
+
+static void read_all(const char *dir)
+{
+    static compare_counts_t one;
+    DIR *d = opendir(dir);
+    const struct dirent *entry;
+    while (d && (entry = readdir(d))) {
+        char path[4096];
+        FILE *file;
+        if (!strstr(entry->d_name, ".counts"))
+            continue;
+        snprintf(path, sizeof path, "%s/%s", dir, entry->d_name);
+        file = fopen(path, "rb");
+        if (file && fread(&one, sizeof one, 1, file) == 1 && one.magic == COMPARE_MAGIC)
+            add_process(&one);
+        if (file)
+            fclose(file);
+    }
+    if (d)
+        closedir(d);
+}
+
+static double part(uint64_t n, uint64_t of) { return of ? (double)n / (double)of : 0; }
+
+static const char *thousands(uint64_t n)
+{
+    static char buffer[8][32];
+    static int next;
+    char *out = buffer[next++ % 8] + 31;
+    int digits = 0;
+    *out = '\0';
+    do {
+        if (digits && digits % 3 == 0)
+            *--out = ',';
+        *--out = (char)('0' + n % 10);
+        digits++;
+    } while (n /= 10);
+    return out;
+}
+
+/* --- the parts of the screen ---------------------------------------------------------- */
+
+static void print_calls(compare_call_t *sum)
+{
+    int i;
+    printf("%-20s %12s %8s %12s %10s\n", "call", "queries", "hits", "judged", "overlaps");
+    for (i = 0; i < COMPARE_CALLS; i++) {
+        const compare_call_t *c = &all.call[i];
+        if (!c->queries)
+            continue;
+        printf("%-20s %12s %6.1f %% %12s %10s\n", COMPARE_CALL_NAME[i], thousands(c->queries), 100 * part(c->hits, c->returned),
+               thousands(c->judged), thousands(c->overlaps));
+        add_call(sum, c);
+    }
+    if (all.raw_supports)
+        printf("%-20s %12s   support points of another algorithm, not judged (FCL's own GJK and EPA)\n", "__ccdSupport",
+               thousands(all.raw_supports));
+    if (sum->queries > sum->returned)
+        printf("%s did not return: an exception or a jump out of a callback\n", thousands(sum->queries - sum->returned));
+}
+
+static void print_side(const char *name, const compare_side_t *s, const compare_call_t *sum)
+{
+    printf("%-20s %7s %6s %7s %7s %8s %10.3g %8.3g %9.2f %7.0f\n", name, thousands(s->verdict[VERDICT_MISSED]),
+           thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_BROKEN]), thousands(s->verdict[VERDICT_DEEP]),
+           thousands(s->verdict[VERDICT_UNSOUND]), 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
+           part(s->supports, sum->judged), part(s->nanoseconds, sum->timed));
+}
+
+static void print_wrong(const compare_call_t *sum, const char *call)
+{
+    printf("\n%-20s %7s %6s %7s %7s %8s %10s %8s %9s %7s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um", "max um", "supports",
+           "ns");
+    print_side("libccd", &sum->side[COMPARE_THEIRS], sum);
+    print_side("this library", &sum->side[COMPARE_OURS], sum);
+    printf("%-20s %59s %9.2f %7.0f\n", "proven minimum", "", part(sum->minimum_supports, sum->judged),
+           part(sum->minimum_nanoseconds, sum->timed));
+}
+
+/* What kept queries from being judged, and what the program should know. */
+static void print_notes(const compare_call_t *sum)
+{
+    if (sum->no_shape)
+        printf("%s queries were about no convex shape (a callback answers a direction with a point that is not the farthest, or the\n"
+               "  centre lies outside): no answer can be right there, none was judged\n",
+               thousands(sum->no_shape));
+    if (sum->memory)
+        printf("%s queries were answered otherwise when asked again: callbacks with memory. The questions asked for this screen may\n"
+               "  have changed the program; `--every 0` asks none\n",
+               thousands(sum->memory));
+    if (sum->threw)
+        printf("%s queries were not judged: asked again, a callback threw or jumped, or answered with what is no number\n",
+               thousands(sum->threw));
+    if (sum->endless)
+        printf("%s queries were not judged: a library did not end within 100,000 calls of the callbacks\n", thousands(sum->endless));
+    if (sum->contradicted)
+        printf("%s proofs of this library were wrong: a support value lies below their bound. Please report them.\n",
+               thousands(sum->contradicted));
+}
+
+static void price(char *out, size_t size, double nanoseconds)
+{
+    if (nanoseconds < 1000)
+        snprintf(out, size, "%.0f ns", nanoseconds);
+    else
+        snprintf(out, size, "%.2f us", nanoseconds / 1000);
+}
+
+/* With q queries, each of s support points at p and arithmetic a: a + s p. The two libraries
+ * are even at the p where these are equal, which is as far from today's as their times are apart. */
+static void print_price(const compare_call_t *sum)
+{
+    const compare_side_t *theirs = &sum->side[COMPARE_THEIRS], *ours = &sum->side[COMPARE_OURS];
+    const double now = part(all.callback_nanoseconds, all.callback_pairs);
+    const double slower = part(ours->nanoseconds, sum->timed) - part(theirs->nanoseconds, sum->timed);
+    const double fewer = part(theirs->supports, sum->judged) - part(ours->supports, sum->judged);
+    const double even = now + slower / fewer;
+    char text[2][32];
+    if (!sum->timed || !all.callback_pairs)
+        return;
+    price(text[0], sizeof text[0], now);
+    price(text[1], sizeof text[1], even);
+    printf("A support point of both objects costs %s. ", text[0]);
+    if (fewer > 0 && even > 0)
+        printf("Break-even: %s; above it this library is the faster one.\n", text[1]);
+    else if (fewer > 0)
+        printf("This library is faster at any price: it asks for fewer.\n");
+    else
+        printf("This library asks for more of them here, and is %s.\n",
+               slower <= 0 ? "faster all the same, while they are as cheap" : "slower at any price");
+    printf("A query takes %.2f times libccd's time.", part(ours->nanoseconds, 1) / part(theirs->nanoseconds, 1));
+    if (all.process_nanoseconds > all.watch_nanoseconds) {
+        const double own = (double)(all.process_nanoseconds - all.watch_nanoseconds), queries = (double)sum->queries;
+        const double share = queries * part(sum->side[all.base].nanoseconds, sum->timed) / own;
+        const double other = queries * part(sum->side[1 - all.base].nanoseconds, sum->timed) / own;
+        printf(" They are %.1f %% of this program's %.2f s; on %s it would take %+.1f %%.", 100 * share, 1e-9 * own,
+               all.base == COMPARE_THEIRS ? "this library" : "libccd", 100 * (other - share));
+    }
+    printf("\n");
+}
+
+static double median_ratio(const compare_call_t *sum)
+{
+    uint64_t below = 0;
+    int bin;
+    for (bin = 0; bin < COMPARE_BINS - 1; bin++)
+        if (2 * (below += sum->ratio[bin]) >= sum->both)
+            break;
+    return bin ? exp2((bin - 0.5) / COMPARE_BINS_OCTAVE) : 1;
+}
+
+static void print_change(const compare_call_t *sum)
+{
+    const compare_side_t *theirs = &sum->side[COMPARE_THEIRS];
+    uint64_t deeper = 0;
+    int bin;
+    if (!sum->judged)
+        return;
+    /* 1 %, in bins of a hundredth of an octave (0.7 %) */
+    for (bin = 3; bin < COMPARE_BINS; bin++)
+        deeper += sum->ratio[bin];
+    printf("What the swap changes, of %s judged: %s hits more, %s fewer", thousands(sum->judged), thousands(sum->found), thousands(sum->gone));
+    if (sum->both)
+        printf("; of %s common hits %.1f %% of libccd's depths\n  are more than 1 %% deeper (the median one %.3f times as deep), %.1f %% of the "
+               "directions differ by more than 10 degrees",
+               thousands(sum->both), 100 * part(deeper, sum->both), median_ratio(sum), 100 * part(sum->turned, sum->both));
+    printf(".\n");
+    if (theirs->verdict[VERDICT_BROKEN])
+        printf("  %s hits of libccd have no direction (a touch); here they are misses, or hits with one.\n",
+               thousands(theirs->verdict[VERDICT_BROKEN]));
+}
+
+static int worse(const void *a, const void *b)
+{
+    const double x = ((const kept_t *)a)->kept.score, y = ((const kept_t *)b)->kept.score;
+    return (x < y) - (x > y);
+}
+
+/* The worst of all processes get their names, the others go. */
+static void name_kept(const char *dir)
+{
+    static const char *const name[COMPARE_SIDES] = { "libccd", "warmccd" };
+    int side, i;
+    for (side = 0; side < COMPARE_SIDES; side++) {
+        qsort(kept[side], (size_t)kept_count[side], sizeof kept[side][0], worse);
+        for (i = 0; i < kept_count[side]; i++) {
+            char from[4096], to[4096];
+            snprintf(from, sizeof from, "%s/%s", dir, kept[side][i].file);
+            snprintf(to, sizeof to, "%s/%s-%d.c", dir, name[side], i + 1);
+            if (i >= COMPARE_KEPT)
+                remove(from);
+            else if (rename(from, to) == 0)
+                printf("%s %s\n", to, kept[side][i].kept.title);
+        }
+    }
+    if (kept_count[0] + kept_count[1] == 0)
+        printf("No wrong answer to keep.\n");
+}
+
+static void print_screen(const char *every, const char *code)
+{
+    static compare_call_t sum;
+    int i;
+    const char *who = all.minimum ? "the proven minimum" : all.base == COMPARE_THEIRS ? "libccd" : "this library";
+    printf("\n== %s, exit code %s, on the answers of %s; one query in %s judged", all.program, code, who, every);
+    if (processes > 1)
+        printf("; %d processes", processes);
+    printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);
+    print_calls(&sum);
+    for (i = 0; i < COMPARE_CALLS; i++)
+        if (all.call[i].judged)
+            print_wrong(&all.call[i], COMPARE_CALL_NAME[i]);
+    printf("\n");
+    print_notes(&sum);
+    print_price(&sum);
+    print_change(&sum);
+}
+
+/* --- for programs --------------------------------------------------------------------- */
+
+static void print_fields(void)
+{
+    static compare_call_t sum;
+    static const char *const side_name[COMPARE_SIDES] = { "theirs", "ours" };
+    static const char *const verdict_name[VERDICTS] = { "right", "missed", "spurious", "broken", "deep", "unsound" };
+    int i, v;
+    for (i = 0; i < COMPARE_CALLS; i++)
+        add_call(&sum, &all.call[i]);
+    printf("watched processes %d queries %llu returned %llu hits %llu zero %llu not_finite %llu not_unit %llu raw_supports %llu", processes,
+           (unsigned long long)sum.queries, (unsigned long long)sum.returned, (unsigned long long)sum.hits, (unsigned long long)sum.zero,
+           (unsigned long long)sum.not_finite, (unsigned long long)sum.not_unit, (unsigned long long)all.raw_supports);
+    printf(" sampled %llu judged %llu overlaps %llu timed %llu threw %llu endless %llu memory %llu no_shape %llu contradicted %llu found %llu gone %llu both %llu turned %llu",
+           (unsigned long long)sum.sampled, (unsigned long long)sum.judged, (unsigned long long)sum.overlaps, (unsigned long long)sum.timed,
+           (unsigned long long)sum.threw, (unsigned long long)sum.endless, (unsigned long long)sum.memory, (unsigned long long)sum.no_shape,
+           (unsigned long long)sum.contradicted, (unsigned long long)sum.found, (unsigned long long)sum.gone, (unsigned long long)sum.both,
+           (unsigned long long)sum.turned);
+    for (i = 0; i < COMPARE_SIDES; i++) {
+        const compare_side_t *s = &sum.side[i];
+        for (v = 0; v < VERDICTS; v++)
+            printf(" %s_%s %llu", side_name[i], verdict_name[v], (unsigned long long)s->verdict[v]);
+        printf(" %s_hits %llu %s_supports %llu %s_slanted %llu %s_aside %llu %s_nanoseconds %llu", side_name[i], (unsigned long long)s->hits, side_name[i],
+               (unsigned long long)s->supports, side_name[i], (unsigned long long)s->slanted, side_name[i], (unsigned long long)s->aside, side_name[i], (unsigned long long)s->nanoseconds);
+        printf(" %s_error_mean %.9g %s_error_max %.9g", side_name[i], PICO * part(s->error_sum, s->with_error), side_name[i],
+               PICO * (double)s->error_max);
+    }
+    printf(" minimum_supports %llu callback_pairs %llu callback_nanoseconds %llu\n", (unsigned long long)sum.minimum_supports,
+           (unsigned long long)all.callback_pairs, (unsigned long long)all.callback_nanoseconds);
+}
+
+/* Exit code 3: nothing was asked. */
+int main(int argc, char **argv)
+{
+    if (argc != 3 && argc != 5) {
+        fprintf(stderr, "usage: screen DIR EVERY EXIT KEPT | screen DIR fields\n");
+        return 2;
+    }
+    read_all(argv[1]);
+    if (argc == 3)
+        print_fields();
+    else if (processes) {
+        print_screen(argv[2], argv[3]);
+        if (*argv[4])
+            name_kept(argv[4]);
+    }
+    return processes ? 0 : 3;
+}

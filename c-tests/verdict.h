@@ -1,0 +1,65 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* What is wrong with one answer about a pair, given bounds on its signed depth. The recorded
+ * contacts (record/replay.h), the tool (compare/) and the cases that it keeps judge by this. */
+
+#ifndef TESTS_VERDICT_H
+#define TESTS_VERDICT_H
+
+#include <math.h>
+
+typedef enum {
+    VERDICT_RIGHT,
+    VERDICT_MISSED,   /* they overlap, the answer is no */
+    VERDICT_SPURIOUS, /* they are apart, the answer is yes */
+    VERDICT_BROKEN,   /* a direction that is not unit, a depth that is negative or no number */
+    VERDICT_DEEP,     /* more than 1 % and two tolerances deeper than the least depth */
+    VERDICT_UNSOUND,  /* moving obj2 by depth * dir leaves them overlapping */
+    VERDICTS
+} verdict_t;
+
+/* Metres. The signed depth: positive overlapping, negative the gap. */
+typedef struct {
+    double lower, upper;
+    double tolerance; /* of the query */
+    double touch;     /* depths and gaps within this are neither hit nor miss */
+} verdict_truth_t;
+
+/* An answer; those of yes or no have neither depth nor direction. */
+typedef struct {
+    int hit, has_depth;
+    double depth, length2; /* square of the direction's length */
+} verdict_answer_t;
+
+static inline verdict_t verdict(const verdict_answer_t *answer, const verdict_truth_t *truth)
+{
+    if (!answer->hit)
+        return truth->lower > truth->touch ? VERDICT_MISSED : VERDICT_RIGHT;
+    if (truth->upper < -truth->touch)
+        return VERDICT_SPURIOUS;
+    if (!answer->has_depth)
+        return VERDICT_RIGHT;
+    /* negated: NaN is broken */
+    if (!(fabs(answer->length2 - 1) < 1e-6) || !(answer->depth >= 0 && answer->depth < HUGE_VAL))
+        return VERDICT_BROKEN;
+    if (answer->depth > 1.01 * truth->upper + 2 * truth->tolerance)
+        return VERDICT_DEEP;
+    return answer->depth < truth->lower - 2 * truth->tolerance ? VERDICT_UNSOUND : VERDICT_RIGHT;
+}
+
+/* Whether the depth can be held against the truth: a hit that is one, and a number. */
+static inline int verdict_has_error(const verdict_answer_t *answer, verdict_t v)
+{
+    return answer->hit && answer->has_depth && v != VERDICT_SPURIOUS && v != VERDICT_BROKEN;
+}
+
+/* How far the depth is off the bounds, metres. */
+static inline double verdict_error(const verdict_answer_t *answer, const verdict_truth_t *truth)
+{
+    if (answer->depth > truth->upper)
+        return answer->depth - truth->upper;
+    return answer->depth < truth->lower ? truth->lower - answer->depth : 0;
+}
+
+#endif
