@@ -10,6 +10,7 @@
 #     --minimum    or with the proven minimum's
 #     --keep DIR   write the worst wrong answers there, as C files for replay.sh
 #     --libccd F   the libccd to compare with (default: the one that the program gets)
+#     --library F  a libccd.so of this library's that is built already (default: built now)
 # The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART. Its exit code is
 # this command's; 125: nothing could be run. Sets itself up.
 
@@ -30,18 +31,20 @@ every=10
 base=theirs
 keep=
 theirs=
+ours=
 fields=
 while [ $# -gt 0 ]; do
     case $1 in
     --swap) base=ours ;;
     --minimum) base=minimum ;;
     --fields) fields=1 ;; # for the tables of swap/: one line on stdout
-    --every | --keep | --libccd)
+    --every | --keep | --libccd | --library)
         [ $# -ge 2 ] || usage
         case $1 in
         --every) every=$2 ;;
         --keep) keep=$2 ;;
         --libccd) theirs=$2 ;;
+        --library) ours=$2 ;;
         esac
         shift
         ;;
@@ -82,9 +85,13 @@ fi
 # --- what is built ---------------------------------------------------------------------
 
 sh "$here/setup.sh" main >&2
-cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
-release=$(cd "${CARGO_TARGET_DIR:-$here/../target}/release" && pwd)
-work=$release/compare
+target=${CARGO_TARGET_DIR:-$here/../target}
+if [ -z "$ours" ]; then
+    cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
+    ours=$target/release/libccd.so
+fi
+[ -r "$ours" ] || fail "$ours: no file"
+work=$target/compare
 mkdir -p "$work"
 
 # newest OUT IN...: whether OUT is there and no IN is newer
@@ -108,10 +115,6 @@ build() {
     build compare.so -std=gnu99 -shared -fPIC -fexceptions -fvisibility=hidden guard.c ask.c sample.c keep.c watch.c
     build screen -std=c99 screen.c
 )
-newest "$work/ours.so" "$release/libccd.so" || { cp "$release/libccd.so" "$work/ours.so.$$" && mv "$work/ours.so.$$" "$work/ours.so"; }
-mkdir -p "$work/swap"
-ln -sf "$release/libccd.so" "$work/swap/libccd.so.2"
-
 # --- the two libraries -----------------------------------------------------------------
 
 # The libccd.so.2 that a program gets, by what the dynamic linker says.
@@ -130,6 +133,8 @@ fi
 counts=$(mktemp -d)
 trap 'rm -rf "$counts"' EXIT
 cp -L "$theirs" "$counts/theirs.so"
+cp -L "$ours" "$counts/ours.so"
+cp "$counts/ours.so" "$counts/libccd.so.2" # for the program itself
 if [ -n "$keep" ]; then
     mkdir -p "$keep"
     keep=$(cd "$keep" && pwd)
@@ -140,18 +145,18 @@ fi
 
 preload=$work/compare.so
 # Its name is libccd.so.2: the program gets it for its own.
-[ "$base" = theirs ] || preload="$preload $work/swap/libccd.so.2"
+[ "$base" = theirs ] || preload="$preload $counts/libccd.so.2"
 shift
 code=0
 # Interrupted, the program ends and the screen comes.
 trap : INT
-env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$theirs" CCD_COMPARE_OURS="$work/ours.so" \
+env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$theirs" CCD_COMPARE_OURS="$counts/ours.so" \
     CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_KEEP="$keep" CCD_COMPARE_CASE="$here" \
     LD_PRELOAD="$preload${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@" || code=$?
 trap - INT
 
 if [ -n "$fields" ]; then
-    "$work/screen" "$counts" fields
+    "$work/screen" "$counts" fields || true
 elif ! "$work/screen" "$counts" "$every" "$code" "$keep" >&2; then
     case $linked in
     no) echo "compare.sh: $program asked libccd nothing: it is not linked to libccd.so.2 and did not load it" >&2 ;;

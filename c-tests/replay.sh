@@ -3,23 +3,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Asks a case that compare.sh kept again, of libccd and of this library.
-#   replay.sh FILE
+#   replay.sh [--library F] FILE     F: a libccd.so of this library's that is built already
 # Exit code 0: this library's answer is right; 1: wrong.
 
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 
+ours=
+if [ "${1:-}" = --library ] && [ $# -gt 1 ]; then
+    ours=$2
+    shift 2
+fi
 if [ $# -ne 1 ] || [ ! -r "$1" ]; then
     echo "usage: replay.sh FILE (a case that compare.sh --keep DIR wrote)" >&2
     exit 2
 fi
 
 sh "$here/setup.sh" main >&2
-cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
-release=$(cd "${CARGO_TARGET_DIR:-$here/../target}/release" && pwd)
+if [ -z "$ours" ]; then
+    cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
+    ours=$(cd "${CARGO_TARGET_DIR:-$here/../target}/release" && pwd)/libccd.so
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-ln -s "$release/libccd.so" "$work/libccd.so.2"
+ln -s "$ours" "$work/libccd.so.2"
 cc -std=c99 -O2 -ffp-contract=off -I"$here/../include" "$1" -o "$work/case" "$work/libccd.so.2" -lm
 
 unset LD_LIBRARY_PATH

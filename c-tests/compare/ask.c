@@ -149,6 +149,10 @@ static void watched_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *di
 {
     const watched_t *a = (const watched_t *)obj1, *b = (const watched_t *)obj2;
     a->q->ccd->first_dir(a->q->obj[a->which], b->q->obj[b->which], dir);
+    if (a->asked->seen) {
+        a->asked->seen->first_dir = *dir;
+        a->asked->seen->has_first_dir = 1;
+    }
 }
 
 static void along_x(const void *obj1, const void *obj2, ccd_vec3_t *dir)

@@ -52,8 +52,8 @@ typedef struct {
 typedef struct {
     seen_point_t point[2][SEEN];
     int count[2];
-    ccd_vec3_t centre[2];
-    int centred[2];
+    ccd_vec3_t centre[2], first_dir;
+    int centred[2], has_first_dir;
     double least;
     ccd_vec3_t least_dir;
 } seen_t;

@@ -21,7 +21,7 @@ typedef struct {
     int columns, rows[2];
     const double *numbers[2];
     int centred;
-    double centre[2][3];
+    double centre[2][3], first_dir[3];
     unsigned long max_iterations;
     double epa_tolerance, mpr_tolerance;
     verdict_truth_t truth;
@@ -92,9 +92,9 @@ static inline void case_center(const void *obj, ccd_vec3_t *center)
 
 static inline void case_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *dir)
 {
-    (void)obj1;
+    const double *d = ((const case_object_t *)obj1)->of->first_dir;
     (void)obj2;
-    ccdVec3Set(dir, 1, 0, 0);
+    ccdVec3Set(dir, (ccd_real_t)d[0], (ccd_real_t)d[1], (ccd_real_t)d[2]);
 }
 
 static inline void case_prepare(const case_t *c, case_object_t object[2], ccd_t *ccd)

@@ -190,6 +190,7 @@ static void settings_of(const sample_t *s, case_t *c)
     c->centred = s->seen->centred[0] && s->seen->centred[1];
     for (k = 0; k < 3; k++) {
         c->truth_dir[k] = (double)s->truth_dir.v[k];
+        c->first_dir[k] = s->seen->has_first_dir ? (double)s->seen->first_dir.v[k] : k == 0;
         for (which = 0; which < 2; which++)
             c->centre[which][k] = c->centred ? (double)s->seen->centre[which].v[k] : 0;
     }
@@ -250,7 +251,9 @@ static void put_case(FILE *f, const case_t *c)
     put_row(f, c->centre[0], 3);
     fputs("}, {", f);
     put_row(f, c->centre[1], 3);
-    fprintf(f, "}},\n    %luul, ", c->max_iterations & 0xffffffff);
+    fputs("}}, {", f);
+    put_row(f, c->first_dir, 3);
+    fprintf(f, "},\n    %luul, ", c->max_iterations & 0xffffffff);
     put_number(f, c->epa_tolerance);
     fputs(", ", f);
     put_number(f, c->mpr_tolerance);

@@ -43,7 +43,7 @@ static uint64_t clock_now(clockid_t id)
 void seen_clear(seen_t *seen)
 {
     seen->count[0] = seen->count[1] = 0;
-    seen->centred[0] = seen->centred[1] = 0;
+    seen->centred[0] = seen->centred[1] = seen->has_first_dir = 0;
     seen->least = HUGE_VAL;
 }
 
@@ -138,9 +138,9 @@ static int is_no_shape(const seen_t *seen, const sample_t *s)
         for (i = 0; i < n; i += step) {
             const double length = sqrt((double)ccdVec3Len2(&p[i].dir)), h = (double)ccdVec3Dot(&p[i].dir, &p[i].point) + slack * length;
             for (j = 0; j < n; j++)
-                if ((double)ccdVec3Dot(&p[i].dir, &p[j].point) > h)
+                if (!((double)ccdVec3Dot(&p[i].dir, &p[j].point) <= h)) /* negated: NaN is no point */
                     return 1;
-            if (seen->centred[which] && (double)ccdVec3Dot(&p[i].dir, &seen->centre[which]) > h)
+            if (seen->centred[which] && !((double)ccdVec3Dot(&p[i].dir, &seen->centre[which]) <= h))
                 return 1;
         }
     }

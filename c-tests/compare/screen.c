@@ -129,22 +129,53 @@ static void print_calls(compare_call_t *sum)
         printf("%s did not return: an exception or a jump out of a callback\n", thousands(sum->queries - sum->returned));
 }
 
-static void print_side(const char *name, const compare_side_t *s, const compare_call_t *sum)
+static void price(char *out, size_t size, double nanoseconds)
 {
-    printf("%-20s %7s %6s %7s %7s %8s %10.3g %8.3g %9.2f %7.0f\n", name, thousands(s->verdict[VERDICT_MISSED]),
-           thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_BROKEN]), thousands(s->verdict[VERDICT_DEEP]),
-           thousands(s->verdict[VERDICT_UNSOUND]), 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
-           part(s->supports, sum->judged), part(s->nanoseconds, sum->timed));
+    if (nanoseconds < 1000)
+        snprintf(out, size, "%.0f ns", nanoseconds);
+    else
+        snprintf(out, size, "%.2f us", nanoseconds / 1000);
 }
 
-static void print_wrong(const compare_call_t *sum, const char *call)
+/* A query of s support points at p and arithmetic a takes a + s p. The libraries are even at
+ * the p where theirs are equal, which is as far from today's as their times are apart: above it
+ * the one that asks for fewer is the faster. */
+static void break_even(const compare_call_t *c, char *out, size_t size)
 {
-    printf("\n%-20s %7s %6s %7s %7s %8s %10s %8s %9s %7s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um", "max um", "supports",
-           "ns");
-    print_side("libccd", &sum->side[COMPARE_THEIRS], sum);
-    print_side("this library", &sum->side[COMPARE_OURS], sum);
-    printf("%-20s %59s %9.2f %7.0f\n", "proven minimum", "", part(sum->minimum_supports, sum->judged),
-           part(sum->minimum_nanoseconds, sum->timed));
+    const compare_side_t *theirs = &c->side[COMPARE_THEIRS], *ours = &c->side[COMPARE_OURS];
+    const double now = part(all.callback_nanoseconds, all.callback_pairs);
+    const double slower = part(ours->nanoseconds, c->timed) - part(theirs->nanoseconds, c->timed);
+    const double fewer = part(theirs->supports, c->judged) - part(ours->supports, c->judged);
+    const double even = now + slower / fewer;
+    char text[32];
+    if (!c->timed)
+        *out = '\0';
+    else if (fewer != 0 && even > 0) {
+        price(text, sizeof text, even);
+        snprintf(out, size, "%s %s", fewer > 0 ? "above" : "below", text);
+    } else
+        snprintf(out, size, "%s", slower < 0 ? "always" : "never");
+}
+
+static void print_side(const char *name, const compare_side_t *s, const compare_call_t *c)
+{
+    printf("%-20s %7s %6s %7s %7s %8s %8.3g %8.3g %9.2f %7.0f", name, thousands(s->verdict[VERDICT_MISSED]),
+           thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_BROKEN]), thousands(s->verdict[VERDICT_DEEP]),
+           thousands(s->verdict[VERDICT_UNSOUND]), 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
+           part(s->supports, c->judged), part(s->nanoseconds, c->timed));
+}
+
+static void print_wrong(const compare_call_t *c, const char *call)
+{
+    char even[48];
+    printf("\n%-20s %7s %6s %7s %7s %8s %8s %8s %9s %7s  %s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um", "max um",
+           "supports", "ns", "faster");
+    print_side("libccd", &c->side[COMPARE_THEIRS], c);
+    printf("\n");
+    print_side("this library", &c->side[COMPARE_OURS], c);
+    break_even(c, even, sizeof even);
+    printf("  %s\n", even);
+    printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", part(c->minimum_supports, c->judged), part(c->minimum_nanoseconds, c->timed));
 }
 
 /* What kept queries from being judged, and what the program should know. */
@@ -168,45 +199,24 @@ static void print_notes(const compare_call_t *sum)
                thousands(sum->contradicted));
 }
 
-static void price(char *out, size_t size, double nanoseconds)
-{
-    if (nanoseconds < 1000)
-        snprintf(out, size, "%.0f ns", nanoseconds);
-    else
-        snprintf(out, size, "%.2f us", nanoseconds / 1000);
-}
-
-/* With q queries, each of s support points at p and arithmetic a: a + s p. The two libraries
- * are even at the p where these are equal, which is as far from today's as their times are apart. */
+/* Which side of the break-even the program is on, and what of its time that is about. */
 static void print_price(const compare_call_t *sum)
 {
     const compare_side_t *theirs = &sum->side[COMPARE_THEIRS], *ours = &sum->side[COMPARE_OURS];
-    const double now = part(all.callback_nanoseconds, all.callback_pairs);
-    const double slower = part(ours->nanoseconds, sum->timed) - part(theirs->nanoseconds, sum->timed);
-    const double fewer = part(theirs->supports, sum->judged) - part(ours->supports, sum->judged);
-    const double even = now + slower / fewer;
-    char text[2][32];
+    const double ratio = part(ours->nanoseconds, 1) / part(theirs->nanoseconds, 1);
+    char text[32];
     if (!sum->timed || !all.callback_pairs)
         return;
-    price(text[0], sizeof text[0], now);
-    price(text[1], sizeof text[1], even);
-    printf("A support point of both objects costs %s. ", text[0]);
-    if (fewer > 0 && even > 0)
-        printf("Break-even: %s; above it this library is the faster one.\n", text[1]);
-    else if (fewer > 0)
-        printf("This library is faster at any price: it asks for fewer.\n");
-    else
-        printf("This library asks for more of them here, and is %s.\n",
-               slower <= 0 ? "faster all the same, while they are as cheap" : "slower at any price");
-    printf("A query takes %.2f times libccd's time.", part(ours->nanoseconds, 1) / part(theirs->nanoseconds, 1));
+    price(text, sizeof text, part(all.callback_nanoseconds, all.callback_pairs));
+    printf("A support point of both your objects costs %s: this library is the %s one, a query takes %.2f times libccd's time.\n", text,
+           ratio < 1 ? "faster" : "slower", ratio);
     if (all.process_nanoseconds > all.watch_nanoseconds) {
         const double own = (double)(all.process_nanoseconds - all.watch_nanoseconds), queries = (double)sum->queries;
         const double share = queries * part(sum->side[all.base].nanoseconds, sum->timed) / own;
         const double other = queries * part(sum->side[1 - all.base].nanoseconds, sum->timed) / own;
-        printf(" They are %.1f %% of this program's %.2f s; on %s it would take %+.1f %%.", 100 * share, 1e-9 * own,
+        printf("  Queries are %.1f %% of this program's %.2f s; on %s the program would take %+.1f %%.\n", 100 * share, 1e-9 * own,
                all.base == COMPARE_THEIRS ? "this library" : "libccd", 100 * (other - share));
     }
-    printf("\n");
 }
 
 static double median_ratio(const compare_call_t *sum)

@@ -30,6 +30,7 @@
 // Every driver uses a part of this module.
 #![allow(dead_code)]
 
+use std::collections::BTreeMap;
 use std::collections::hash_map::DefaultHasher;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
@@ -549,6 +550,8 @@ impl Program {
 pub struct Executable {
     pub path: PathBuf,
     name: String,
+    /// The words of a command that runs it, in place of itself.
+    before: Vec<OsString>,
     library_path: Option<PathBuf>,
     environment: Vec<(String, String)>,
     timeout: Duration,
@@ -570,6 +573,7 @@ impl Executable {
         Executable {
             path: path.into(),
             name: name.to_owned(),
+            before: Vec::new(),
             library_path: None,
             environment: Vec::new(),
             timeout: Duration::from_secs(300),
@@ -584,6 +588,25 @@ impl Executable {
         swapped.library_path = Some(library(Precision::Double).dir.clone());
         swapped.assert_loads_ours();
         swapped
+    }
+
+    /// The same program watched by compare.sh, which adds a line `watched key value …` to
+    /// what it writes.
+    pub fn compared(&self, options: &[&str]) -> Executable {
+        let mut compared = self.clone();
+        let library = library(Precision::Double).dir.join("libccd.so");
+        compared.library_path = None;
+        compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
+        let words = ["--fields".into(), "--library".into(), library.into_os_string()];
+        compared.before.extend(words);
+        compared.before.extend(options.iter().map(OsString::from));
+        compared
+    }
+
+    /// With compare.sh's screen, on stderr, in place of that line.
+    pub fn with_screen(mut self) -> Executable {
+        self.before.retain(|word| word != "--fields");
+        self
     }
 
     pub fn env(mut self, name: &str, value: &str) -> Executable {
@@ -642,7 +665,9 @@ impl Executable {
 
     /// The command that runs the program, without arguments.
     pub fn command(&self) -> Command {
-        let mut command = run_by(&self.runner(), &self.path);
+        let mut runner = self.runner();
+        runner.extend(self.before.iter().map(|w| w.to_string_lossy().into_owned()));
+        let mut command = run_by(&runner, &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
         command.envs(self.environment.iter().map(|(name, value)| (name, value)));
         command
@@ -763,6 +788,22 @@ fn collect(pipe: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u
         }
         bytes
     })
+}
+
+/// The line `first key value key value …` of what a program wrote.
+pub fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
+    let line = lines
+        .iter()
+        .find(|line| line.split(' ').next() == Some(first))
+        .unwrap_or_else(|| panic!("no `{first}` line in {lines:?}"));
+    let words: Vec<&str> = line.split(' ').skip(1).collect();
+    words
+        .chunks(2)
+        .map(|pair| {
+            let value = pair[1].parse().unwrap_or_else(|e| panic!("{line}: {e}"));
+            (pair[0].to_owned(), value)
+        })
+        .collect()
 }
 
 /// How many inputs a program gets: all, or a tenth under a tool, which looks at memory and

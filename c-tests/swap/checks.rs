@@ -8,7 +8,7 @@
 // Each driver uses a part. Comparisons are negated so that NaN counts against.
 #![allow(dead_code, clippy::neg_cmp_op_on_partial_ord)]
 
-use crate::harness::{Executable, Program};
+use crate::harness::{Executable, Program, fields};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -461,22 +461,6 @@ pub fn static_table(rows: &[Static]) -> String {
 }
 
 // --- simulations ----------------------------------------------------------------
-
-/// `key value key value …`
-pub fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
-    let line = lines
-        .iter()
-        .find(|line| line.split(' ').next() == Some(first))
-        .unwrap_or_else(|| panic!("no `{first}` line in {lines:?}"));
-    let words: Vec<&str> = line.split(' ').skip(1).collect();
-    words
-        .chunks(2)
-        .map(|pair| {
-            let value = pair[1].parse().unwrap_or_else(|e| panic!("{line}: {e}"));
-            (pair[0].to_owned(), value)
-        })
-        .collect()
-}
 
 /// One simulation.
 #[derive(Clone, Debug)]

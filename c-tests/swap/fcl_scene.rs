@@ -7,8 +7,8 @@
 // Each driver uses a part.
 #![allow(dead_code)]
 
-use crate::checks::{cpp, fields};
-use crate::harness::{Executable, Program};
+use crate::checks::cpp;
+use crate::harness::{Executable, Program, fields};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
