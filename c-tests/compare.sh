@@ -9,6 +9,7 @@
 #     --swap       let the program go on with this library's answers, not libccd's
 #     --minimum    or with the proven minimum's
 #     --keep DIR   write the worst wrong answers there, as C files for replay.sh
+#     --no-times   take no times: less is asked of the callbacks
 #     --libccd F   the libccd to compare with (default: the one that the program gets)
 #     --library F  a libccd.so of this library's that is built already (default: built now)
 # The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART. Its exit code is
@@ -33,10 +34,12 @@ keep=
 theirs=
 ours=
 fields=
+times=1
 while [ $# -gt 0 ]; do
     case $1 in
     --swap) base=ours ;;
     --minimum) base=minimum ;;
+    --no-times) times=0 ;;
     --fields) fields=1 ;; # for the tables of swap/: one line on stdout
     --every | --keep | --libccd | --library)
         [ $# -ge 2 ] || usage
@@ -151,7 +154,7 @@ code=0
 # Interrupted, the program ends and the screen comes.
 trap : INT
 env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$theirs" CCD_COMPARE_OURS="$counts/ours.so" \
-    CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_KEEP="$keep" CCD_COMPARE_CASE="$here" \
+    CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" CCD_COMPARE_KEEP="$keep" CCD_COMPARE_CASE="$here" \
     LD_PRELOAD="$preload${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@" || code=$?
 trap - INT
 

@@ -88,7 +88,8 @@ double ask_value(const query_t *q, asked_t *asked, const ccd_vec3_t *dir);
 /* Of the call: metres; CCD_INIT's where it is none. */
 double query_tolerance(const query_t *q);
 
-/* A program of the tests may define this: it is shown every support point, and may change it. */
+/* A program of the tests may define this: it is shown every support point of its own queries, and
+ * may change it. */
 typedef void (*audit_fn)(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *point);
 extern audit_fn ask_audit;
 

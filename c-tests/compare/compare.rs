@@ -156,7 +156,11 @@ fn threads_children_and_nested_queries() {
     for (way, queries) in [("threads", 2000.0), ("fork", 1000.0)] {
         let w = Watched::run(way, EVERY);
         w.assert_unchanged();
-        w.assert(&[("queries", queries), ("returned", queries), ("judged", queries)]);
+        w.assert(&[
+            ("queries", queries),
+            ("returned", queries),
+            ("judged", queries),
+        ]);
         w.assert_ours_right();
     }
     let nested = Watched::run("nested", EVERY);
@@ -218,7 +222,11 @@ fn what_cannot_be_watched_is_said_in_one_line() {
         compile.arg("-static").arg(&file).arg("-o").arg(&program),
         "the compiler",
     );
-    one_line(screen_of(&program, &[], &[]), 125, "not a dynamically linked");
+    one_line(
+        screen_of(&program, &[], &[]),
+        125,
+        "not a dynamically linked",
+    );
 }
 
 /// The recorded contacts: the tool counts what the benchmark counts, by truth that neither
@@ -241,7 +249,9 @@ fn the_recorded_contacts_are_counted_as_the_benchmark_counts_them() {
     );
     // missed, false, broken, deep, unsound, mean and largest error, supports of both methods
     let column = |text: &str, column: usize| -> Vec<f64> {
-        let rows = text.lines().filter(|l| l.starts_with("MPR") || l.starts_with("GJK"));
+        let rows = text
+            .lines()
+            .filter(|l| l.starts_with("MPR") || l.starts_with("GJK"));
         rows.map(|row| {
             let words: Vec<&str> = row.split_whitespace().rev().collect();
             words[column].parse().expect("a number")
@@ -281,7 +291,9 @@ fn kept_cases_replay() {
         .filter(|path| path.exists())
         .collect();
     assert!(kept.len() >= 3, "{screen}");
-    let left = std::fs::read_dir(dir.path()).expect("the directory").count();
+    let left = std::fs::read_dir(dir.path())
+        .expect("the directory")
+        .count();
     assert_eq!(left, kept.len(), "nothing else is left there");
     for path in &kept {
         assert!(screen.contains(path.to_str().expect("a path")), "{screen}");
@@ -302,13 +314,20 @@ fn kept_cases_replay() {
     let said = Command::new("sh")
         .arg(root().join("c-tests/replay.sh"))
         .arg("--library")
-        .arg(harness::library(harness::Precision::Double).dir.join("libccd.so"))
+        .arg(
+            harness::library(harness::Precision::Double)
+                .dir
+                .join("libccd.so"),
+        )
         .arg(&kept[0])
         .output()
         .expect("sh");
     let text = String::from_utf8_lossy(&said.stdout);
     assert_eq!(said.status.code(), Some(0), "{text}");
-    assert!(text.contains("== libccd: ") && text.contains("== this library"), "{text}");
+    assert!(
+        text.contains("== libccd: ") && text.contains("== this library"),
+        "{text}"
+    );
 }
 
 /// Objects of which no hull can be had: the answers themselves are played back.

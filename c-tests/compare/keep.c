@@ -294,7 +294,7 @@ static int write_case(const compare_t *compare, const case_t *c, const char *pat
 /* Both libraries may be wrong; of each COMPARE_KEPT cases are kept. */
 static void make_case(const compare_t *compare, const sample_t *s, int side, compare_kept_t *place, double score)
 {
-    static const char *const wrong[VERDICTS] = { "", "overlap missed", "false hit", "no direction", "too deep", "unsound" };
+    static const char *const wrong[VERDICTS] = { "right", "overlap missed", "false hit", "no direction", "too deep", "unsound" };
     points_t *p = (points_t *)calloc(1, sizeof *p);
     char title[sizeof place->title], path[4096];
     case_t c;
@@ -305,9 +305,10 @@ static void make_case(const compare_t *compare, const sample_t *s, int side, com
     p->q = s->q;
     p->s = s;
     settings_of(s, &c);
-    snprintf(title, sizeof title, "%s: %s of %s: %s %.6g, the signed depth is at most %.6g", SIDE_NAME[side], wrong[s->verdict[side]],
-             COMPARE_CALL_NAME[s->q->call], s->answer[side].hit ? "hit, depth" : "miss, depth", s->answer[side].hit ? (double)s->answer[side].depth : 0,
-             s->truth.upper);
+    snprintf(title, sizeof title, "%s of %s, %s: ", COMPARE_CALL_NAME[s->q->call], SIDE_NAME[side], wrong[s->verdict[side]]);
+    if (s->answer[side].hit)
+        snprintf(title + strlen(title), sizeof title - strlen(title), "depth %.6g, ", (double)s->answer[side].depth);
+    snprintf(title + strlen(title), sizeof title - strlen(title), "the signed depth is at most %.6g", s->truth.upper);
     c.title = title;
     c.columns = 3;
     if (guard_run(work_points, p) != GUARD_RETURNED)

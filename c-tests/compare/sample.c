@@ -126,25 +126,27 @@ verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict
     return verdict(&a, truth);
 }
 
-/* Whether a point answered for one direction lies beyond what another was answered by more
- * than the query can tell: then they are of no convex shape. Likewise the centre. */
-static int is_no_shape(const seen_t *seen, const sample_t *s)
+/* By how much a point answered for one direction lies beyond what another was answered, or the
+ * centre does: of a convex shape nothing but rounding. Of many directions 64 are held against
+ * all points. */
+static double inconsistency(const seen_t *seen, int all)
 {
-    const double slack = fmax(s->truth.tolerance, 10 * s->truth.touch);
+    double most = 0;
     int which, i, j;
     for (which = 0; which < 2; which++) {
         const seen_point_t *p = seen->point[which];
-        const int n = seen->count[which], step = n / 64 + 1; /* at most 64 directions by all points */
+        const int n = seen->count[which], step = all ? 1 : n / 64 + 1;
         for (i = 0; i < n; i += step) {
-            const double length = sqrt((double)ccdVec3Len2(&p[i].dir)), h = (double)ccdVec3Dot(&p[i].dir, &p[i].point) + slack * length;
-            for (j = 0; j < n; j++)
-                if (!((double)ccdVec3Dot(&p[i].dir, &p[j].point) <= h)) /* negated: NaN is no point */
-                    return 1;
-            if (seen->centred[which] && !((double)ccdVec3Dot(&p[i].dir, &seen->centre[which]) <= h))
-                return 1;
+            const double length = sqrt((double)ccdVec3Len2(&p[i].dir)), h = (double)ccdVec3Dot(&p[i].dir, &p[i].point);
+            double beyond = seen->centred[which] ? (double)ccdVec3Dot(&p[i].dir, &seen->centre[which]) - h : 0;
+            for (j = 0; j < n && beyond < HUGE_VAL; j++) {
+                const double further = (double)ccdVec3Dot(&p[i].dir, &p[j].point) - h;
+                beyond = further <= beyond ? beyond : further == further ? further : HUGE_VAL; /* NaN is no point */
+            }
+            most = fmax(most, beyond / length);
         }
     }
-    return 0;
+    return most;
 }
 
 static int same_answer(int call, const answer_t *a, const answer_t *b)
@@ -361,13 +363,17 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
         count_add(&c->memory, 1);
     s->truth.upper = s->seen->least;
     s->truth_dir = s->seen->least_dir;
-    if (is_no_shape(s->seen, s)) {
+    /* what is within the tolerance changes no verdict */
+    if (!(inconsistency(s->seen, 0) <= fmax(s->truth.tolerance, 10 * s->truth.touch))) {
         count_add(&c->no_shape, 1);
         return -1;
     }
     if (s->truth.lower > s->truth.upper + s->truth.touch) {
-        count_add(&c->contradicted, 1);
-        return -1;
+        if (s->truth.lower > s->truth.upper + s->truth.touch + 2 * inconsistency(s->seen, 1)) {
+            count_add(&c->contradicted, 1);
+            return -1;
+        }
+        s->truth.lower = s->truth.upper;
     }
     count_add(&c->minimum_supports, supports);
     return 0;

@@ -9,6 +9,7 @@
 
 #include <dlfcn.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 static inline const char *running_ccd(void)
@@ -18,6 +19,13 @@ static inline const char *running_ccd(void)
     /* ISO C has no cast from an object pointer to a function pointer. */
     memcpy(&implementation, &symbol, sizeof symbol);
     return symbol == NULL ? NULL : implementation();
+}
+
+/* A program's first line, by which its driver knows what it ran on. */
+static inline void tell_library(void)
+{
+    const char *name = running_ccd();
+    printf("library %s\n", name ? name : "libccd");
 }
 
 #endif

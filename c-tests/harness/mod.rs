@@ -597,9 +597,20 @@ impl Executable {
         let library = library(Precision::Double).dir.join("libccd.so");
         compared.library_path = None;
         compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
-        let words = ["--fields".into(), "--library".into(), library.into_os_string()];
+        let words = [
+            "--fields".into(),
+            "--library".into(),
+            library.into_os_string(),
+        ];
         compared.before.extend(words);
         compared.before.extend(options.iter().map(OsString::from));
+        compared
+    }
+
+    /// With one more option of compare.sh's.
+    pub fn with_option(&self, option: &str) -> Executable {
+        let mut compared = self.clone();
+        compared.before.push(option.into());
         compared
     }
 

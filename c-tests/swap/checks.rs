@@ -39,34 +39,30 @@ pub struct Swapped {
     pub consumer: &'static str,
     /// What runs first: libccd, or what stands in for it.
     names: Both<&'static str>,
-    system: Executable,
-    ours: Executable,
+    runs: Both<Executable>,
 }
 
 /// What a program wrote on either library, system's first.
 type Both<T> = [T; 2];
 
 impl Swapped {
-    fn new(consumer: &'static str, program: Program) -> Swapped {
-        let system = program
-            .link_system()
-            .without_tools()
-            .build()
-            .env("LD_BIND_NOW", "1")
-            .quiet();
-        let ours = system.swapped();
+    /// Watched by compare.sh, which judges one query in `every`.
+    fn new(consumer: &'static str, program: Program, every: &str) -> Swapped {
+        let program = program.flag("-rdynamic").link_system().without_tools();
+        let program = program.build().quiet();
+        let options = ["--no-times", "--every", every];
         Swapped {
             consumer,
             names: ["libccd", "this library"],
-            system,
-            ours,
+            runs: [&options[..], &[&["--swap"], &options[..]].concat()]
+                .map(|options| program.compared(options)),
         }
     }
 
     /// The same, held against this library's proven minima instead of libccd.
     pub fn against_minimum(mut self) -> Swapped {
         self.names[0] = "proven minimum";
-        self.system = self.ours.clone().env("WATCH_MINIMUM", "1");
+        self.runs[0] = self.runs[1].with_option("--minimum");
         self
     }
 
@@ -82,7 +78,7 @@ impl Swapped {
 
     /// Runs on one library.
     fn lines(&self, library: usize, args: &[String]) -> Vec<String> {
-        let program = [&self.system, &self.ours][library];
+        let program = &self.runs[library];
         let expected = match self.names[library] {
             "libccd" => "library libccd",
             _ => "library warmccd ",
@@ -112,23 +108,23 @@ pub fn cpp(source: &str) -> Program {
 }
 
 pub fn fcl_static() -> Swapped {
-    Swapped::new("FCL", cpp("fcl_static").library("fcl"))
+    Swapped::new("FCL", cpp("fcl_static").library("fcl"), "0")
 }
 
 pub fn ode_static() -> Swapped {
-    Swapped::new("ODE", c("ode_static").library("ode"))
+    Swapped::new("ODE", c("ode_static").library("ode"), "0")
 }
 
 pub fn ode_pile() -> Swapped {
-    Swapped::new("ODE", c("ode_pile").library("ode"))
+    Swapped::new("ODE", c("ode_pile").library("ode"), "1")
 }
 
 pub fn mujoco_pile() -> Swapped {
-    Swapped::new("MuJoCo", c("mujoco_pile").library("mujoco"))
+    Swapped::new("MuJoCo", c("mujoco_pile").library("mujoco"), "1")
 }
 
 pub fn dart_pile() -> Swapped {
-    Swapped::new("DART", cpp("dart_pile").library("dart"))
+    Swapped::new("DART", cpp("dart_pile").library("dart"), "1")
 }
 
 // --- static queries -------------------------------------------------------------
@@ -470,12 +466,37 @@ struct Run {
 }
 
 impl Run {
-    fn of(lines: &[String]) -> Run {
+    /// `side`: whose answers the program went on with, in compare.sh's words.
+    fn of(lines: &[String], side: &str) -> Run {
+        let mut watched = fields(lines, "watched");
+        for key in SIDE {
+            let of_side = watched.get(&format!("{side}_{key}")).copied();
+            if let Some(count) = of_side {
+                watched.insert(key.to_owned(), count);
+            }
+        }
         Run {
             pile: fields(lines, "pile"),
-            watched: fields(lines, "watched"),
+            watched,
         }
     }
+
+    /// Support points a query, of those that were judged where not all were.
+    fn supports(&self) -> [f64; 2] {
+        let of = |key: &str| self.watched.get(key).copied();
+        let queries = of("judged").or_else(|| of("queries"));
+        [of("supports"), queries].map(Option::unwrap_or_default)
+    }
+}
+
+/// What compare.sh counts of each library.
+const SIDE: [&str; 5] = ["supports", "slanted", "missed", "spurious", "unsound"];
+
+/// Support points of all runs over their queries.
+fn supports_a_query<'a>(runs: impl IntoIterator<Item = &'a Run>) -> f64 {
+    let both = runs.into_iter().map(Run::supports);
+    let [supports, queries] = both.fold([0.0; 2], |[s, q], [t, r]| [s + t, q + r]);
+    supports / queries
 }
 
 /// The same scene from several slightly moved starts, on each library.
@@ -504,7 +525,7 @@ pub fn piles(
             .iter()
             .enumerate()
         {
-            p.runs[i].push(Run::of(lines));
+            p.runs[i].push(Run::of(lines, p.side(i)));
         }
         progress(seed);
     }
@@ -536,7 +557,8 @@ pub fn taken_over(
         for (library, way) in ["save", "load"].into_iter().enumerate() {
             let mut args = pile_args(seed, steps, after);
             args.extend([way.to_owned(), state.to_string()]);
-            p.runs[library].push(Run::of(&program.lines(library, &args)));
+            let lines = program.lines(library, &args);
+            p.runs[library].push(Run::of(&lines, p.side(library)));
         }
         progress(seed);
     }
@@ -565,6 +587,15 @@ impl Piles {
             steps,
             runs: [Vec::new(), Vec::new()],
             against: Vec::new(),
+        }
+    }
+
+    /// Whose answers a run goes on with.
+    fn side(&self, library: usize) -> &'static str {
+        match self.names[library] {
+            "libccd" => "theirs",
+            "this library" => "ours",
+            _ => "minimum",
         }
     }
 
@@ -606,6 +637,9 @@ impl Piles {
             "lost",
             "spurious",
             "wrong_lost",
+            "missed",
+            "unsound",
+            "contradicted",
         ] {
             if self.has(key) && self.sum(1, key) != 0.0 {
                 self.against.push(format!("{key}: {:?}", self.all(1, key)));
@@ -676,7 +710,7 @@ pub fn pile_table(rows: &[Piles]) -> String {
                 name,
                 queries,
                 100.0 * p.sum(library, "hits") / queries,
-                p.sum(library, "supports") / queries,
+                supports_a_query(&p.runs[library]),
                 bad,
                 p.sum(library, "escaped"),
                 spread("kinetic", 1.0),
@@ -781,12 +815,12 @@ pub fn worlds(
     let mut runs = [const { Vec::new() }; 3];
     for seed in 1..=starts {
         let args = pile_args(seed, steps, &[&bodies.to_string(), scene]);
-        runs[0].push(Run::of(&ode.lines(0, &args)));
+        runs[0].push(Run::of(&ode.lines(0, &args), "theirs"));
         for (way, contacts) in [(1, "one"), (2, "many")] {
             let mut args = args.clone();
             args.push(contacts.to_owned());
             let lines: Vec<String> = (world.run(&args).stdout.lines().map(String::from)).collect();
-            runs[way].push(Run::of(&lines));
+            runs[way].push(Run::of(&lines, "ours"));
         }
         progress(seed);
     }
@@ -847,7 +881,7 @@ pub fn world_table(rows: &[Worlds]) -> String {
                 1e3 * w.largest(way, "deepest"),
                 1e3 * median(w.all(way, "depth")),
                 median(w.all(way, "kinetic")),
-                sum("supports") / sum("queries"),
+                supports_a_query(&w.runs[way]),
                 sum("escaped"),
             );
         }

@@ -13,7 +13,7 @@
  * usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode */
 
 #include "swap/uniform.h"
-#include "swap/interpose.h"
+#include "harness/identity.h"
 
 #include <dart/collision/fcl/FCLCollisionDetector.hpp>
 #include <dart/config.hpp>
@@ -64,7 +64,7 @@ int main(int argc, char **argv)
     const int bodies = atoi(argv[3]);
     const std::string scene = argv[4];
     const double half_width = 0.55;
-    watch_library();
+    tell_library();
     auto world = simulation::World::create();
     world->setTimeStep(0.002);
     if (scene == "ode") {
@@ -155,6 +155,5 @@ int main(int argc, char **argv)
     }
     printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g\n", kinetic,
            contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, bad + threw, gained);
-    watch_report();
     return 0;
 }

@@ -11,7 +11,7 @@
  *
  *   timed pairs N contacts N nanoseconds N
  *   judged pairs N hits N contacts N missed N spurious N off N error M own_missed N
- *          own_spurious N own_off N own_error M exact N   (and interpose.h's "watched" line)
+ *          own_spurious N own_off N own_error M exact N   (and with BY_HEADER a "watched" line, as compare.sh adds one else)
  *
  * `missed`, `spurious`, `off` (beyond the promised depth) and `error` (largest, metres) are
  * those of pairs put to libccd or this library, `own_` of pairs that FCL has closed forms for.
@@ -19,18 +19,12 @@
  * usage: fcl_scene FRAMES BODIES CONTACTS EXACT   (CONTACTS: of a pair, with BY_HEADER) */
 
 #include "swap/fcl_shapes.h"
-#ifndef TIMED
-#include "swap/interpose.h"
-
-#include "ours.h"
-#else
 #include "harness/identity.h"
-
-static void watch_library()
-{
-    const char *name = running_ccd();
-    printf("library %s\n", name ? name : "libccd");
-}
+#ifndef TIMED
+#include "ours.h"
+#ifndef BY_HEADER
+#include "compare/hooks.h"
+#endif
 #endif
 #ifdef BY_HEADER
 #include <ccd/fcl.hpp>
@@ -165,21 +159,34 @@ static void run(scene_t &scene, long frames, long)
 #else
 
 #ifdef BY_HEADER
-/* The calls of the header, behind the same count as FCL's in interpose.h. */
+/* The calls of the header are the extension's, which compare.sh does not know: counted here. */
+static struct {
+    unsigned long queries, supports;
+} asked;
+
+static ccd_support_fn asked_support1;
+static void asked_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
+{
+    asked.supports++;
+    asked_support1(obj, dir, v);
+}
+
 template <typename Call> static int counted(const char *name, const ccd_t *ccd, ccd_t *behind, Call call)
 {
-    void *symbol = watch_next(name);
+    void *symbol = dlsym(RTLD_NEXT, name);
     *behind = *ccd;
-    watch_support1 = ccd->support1;
-    behind->support1 = watch_count;
+    asked_support1 = ccd->support1;
+    behind->support1 = asked_count;
     return call(symbol);
 }
+
+static unsigned long put_so_far() { return asked.queries; }
 
 extern "C" int ccdMPRPenetrationWarm(const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm, ccd_real_t *depth,
                                      ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
     ccd_t behind;
-    watched.queries++;
+    asked.queries++;
     return counted("ccdMPRPenetrationWarm", ccd, &behind, [&](void *next) {
         return ((decltype(&ccdMPRPenetrationWarm))next)(a, b, &behind, warm, depth, dir, pos);
     });
@@ -189,7 +196,7 @@ extern "C" int ccdSignedDistance(const void *a, const void *b, const ccd_t *ccd,
                                  ccd_real_t max_distance, ccd_warm_t *warm, unsigned want, ccd_distance_t *out)
 {
     ccd_t behind;
-    watched.queries++;
+    asked.queries++;
     return counted("ccdSignedDistance", ccd, &behind, [&](void *next) {
         return ((decltype(&ccdSignedDistance))next)(a, b, &behind, margin1, margin2, max_distance, warm, want, out);
     });
@@ -203,6 +210,8 @@ extern "C" int ccdContacts(const void *a, const void *b, const ccd_t *ccd, const
         return ((decltype(&ccdContacts))next)(a, b, &behind, normal, slop, contacts, max);
     });
 }
+#else
+static unsigned long put_so_far() { return compare_queries(); }
 #endif
 
 /* What was wrong with a part of the pairs. */
@@ -234,7 +243,7 @@ static bool judge_pair(object *o1, object *o2, void *)
 {
     body_t &a = *(body_t *)o1->getUserData(), &b = *(body_t *)o2->getUserData();
     const double size = pair_size(&a.shape, &b.shape);
-    const unsigned long before = watched.queries;
+    const unsigned long before = put_so_far();
     fcl::CollisionResultd result;
 #ifdef BY_HEADER
     ccd_fcl::collide(o1, o2, request(ALL), result, cache, settings);
@@ -246,7 +255,7 @@ static bool judge_pair(object *o1, object *o2, void *)
         depth = fmax(depth, result.getContact(i).penetration_depth);
     judged.contacts += (long)result.numContacts();
     judged.hits += result.isCollision();
-    part_t *part = watched.queries == before ? &judged.own : &judged.put;
+    part_t *part = put_so_far() == before ? &judged.own : &judged.put;
 
     ccd_t ccd;
     ccd_penetration_t least;
@@ -279,7 +288,9 @@ static void run(scene_t &scene, long frames, long every)
            "own_off %ld own_error %.9g exact %ld\n",
            judged.pairs, judged.hits, judged.contacts, judged.put.missed, judged.put.spurious, judged.put.off, judged.put.error,
            judged.own.missed, judged.own.spurious, judged.own.off, judged.own.error, judged.exact);
-    watch_report();
+#ifdef BY_HEADER
+    printf("watched queries %lu supports %lu\n", asked.queries, asked.supports);
+#endif
 }
 
 #endif
@@ -290,7 +301,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: fcl_scene FRAMES BODIES CONTACTS EXACT\n");
         return 2;
     }
-    watch_library();
+    tell_library();
 #ifdef BY_HEADER
     settings.contacts_per_pair = (size_t)atol(argv[3]);
 #endif

@@ -17,7 +17,8 @@
  * usage: fcl_static SEED POSES   (POSES placed pairs of each two kinds) */
 
 #include "swap/fcl_shapes.h"
-#include "swap/interpose.h"
+#include "compare/hooks.h"
+#include "harness/identity.h"
 
 #include <setjmp.h>
 #include <signal.h>
@@ -55,10 +56,10 @@ static void collide(const body_t &a, const body_t &b, const fcl::CollisionObject
 {
     fcl::CollisionRequestd request(1, true);
     fcl::CollisionResultd result;
-    const unsigned long before = watched.queries;
+    const unsigned long before = compare_queries();
     request.gjk_solver_type = fcl::GST_LIBCCD;
     const int outcome = outcome_of([&] { fcl::collide(&oa, &ob, request, result); });
-    if (watched.queries == before)
+    if (compare_queries() == before)
         return; /* FCL has a closed form for these two, or its boxes excluded them */
     put_known("collide", a, b, number, known);
     if (outcome != ANSWERED)
@@ -87,14 +88,14 @@ static void distance(const body_t &a, const body_t &b, const fcl::CollisionObjec
 {
     fcl::DistanceRequestd request(true, true);
     fcl::DistanceResultd result;
-    const unsigned long before = watched.raw_supports;
+    const uint64_t before = compare_counts()->raw_supports;
     static double value;
     value = 0;
     request.gjk_solver_type = fcl::GST_LIBCCD;
     const double start = now();
     const int outcome = outcome_of([&] { value = fcl::distance(&oa, &ob, request, result); });
     const double end = now();
-    if (watched.raw_supports == before)
+    if (compare_counts()->raw_supports == before)
         return;
     if (outcome == ANSWERED && value < 0) {
         timed.queries++;
@@ -113,7 +114,7 @@ int main(int argc, char **argv)
     const long poses = atol(argv[2]);
     long number = 0;
     signal(SIGABRT, on_abort);
-    watch_library();
+    tell_library();
     uniform_seed(strtoull(argv[1], NULL, 10));
     for (int i = 0; i < KINDS; i++)
         for (int j = i; j < KINDS; j++)
@@ -141,6 +142,5 @@ int main(int argc, char **argv)
                 }
             }
     printf("timed queries %ld nanoseconds %.0f\n", timed.queries, timed.nanoseconds);
-    watch_report();
     return 0;
 }

@@ -11,7 +11,7 @@
  *   save: the state in the middle of the run; load: run the second half from there */
 
 #include "swap/uniform.h"
-#include "swap/interpose.h"
+#include "harness/identity.h"
 
 #include <mujoco/mujoco.h>
 #include <stdarg.h>
@@ -125,7 +125,7 @@ int main(int argc, char **argv)
     steps = atol(argv[2]);
     multi = !strcmp(argv[4], "multi");
     field = !strcmp(argv[4], "field");
-    watch_library();
+    tell_library();
     uniform_seed(5);
     put_model(atoi(argv[3]), multi, field);
     mj_defaultVFS(&vfs);
@@ -179,7 +179,6 @@ int main(int argc, char **argv)
         warnings += d->warning[i].number;
     printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g\n", kinetic,
            contacts ? depth / (double)contacts : 0, deepest, contacts, out, bad + warnings, gained);
-    watch_report();
     mj_deleteData(d);
     mj_deleteModel(m);
     mj_deleteVFS(&vfs);

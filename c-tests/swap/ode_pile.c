@@ -16,9 +16,8 @@
 #include "swap/ode_shape.h"
 #include "swap/callback_errors.h"
 
-static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v);
-#define WATCH_ANSWER(obj, dir, v) audit(obj, dir, v)
-#include "swap/interpose.h"
+#include "compare/hooks.h"
+#include "harness/identity.h"
 
 /* Contacts of one step against the truth; only of pairs that ODE put to libccd. */
 typedef struct {
@@ -46,13 +45,13 @@ static shape_t shape_of(const scene_t *scene, int i)
 }
 
 /* The object's centre tells which body it is. */
-static void audit(const void *obj, const ccd_vec3_t *dir, const ccd_vec3_t *v)
+void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *v)
 {
     ccd_vec3_t centre;
     int i;
     if (!scene.on_pair)
         return;
-    watch_centre(obj, &centre);
+    center(obj, &centre);
     for (i = 0; i < scene.bodies; i++) {
         const dReal *p = dGeomGetPosition(scene.geom[i]);
         if (p[0] == centre.v[0] && p[1] == centre.v[1] && p[2] == centre.v[2]) {
@@ -72,9 +71,9 @@ static void judge(void *user, int a, int b, const dContact *contact, int contact
     truth_t t;
     double deepest = 0;
     int i;
-    if (watched.queries == all->queries)
+    if (compare_queries() == all->queries)
         return;
-    all->queries = watched.queries;
+    all->queries = compare_queries();
     all->callback_wrong = 0;
     sa = shape_of(all->scene, a);
     sb = shape_of(all->scene, b);
@@ -103,19 +102,18 @@ int main(int argc, char **argv)
     const long steps = atol(argv[2]);
     const int bodies = atoi(argv[3]);
     dInitODE2(0);
-    watch_library();
+    tell_library();
     run_scene(&scene, argv[4], bodies, seed);
     scene.user = &found;
     for (step = 0; step < steps; step++) {
         scene.on_pair = step % 20 ? NULL : judge;
-        found.queries = watched.queries;
+        found.queries = compare_queries();
         run_step(&run, &scene, step, steps);
     }
     run_report(&run, &scene);
     printf(" judged %ld lost %ld spurious %ld off %ld error %.9g wrong %ld wrong_lost %ld wrong_spurious %ld wrong_error %.9g\n",
            found.right.judged, found.right.lost, found.right.spurious, found.right.off, found.right.error, found.wrong.judged,
            found.wrong.lost, found.wrong.spurious, found.wrong.error);
-    watch_report();
     scene_free(&scene);
     dCloseODE();
     return 0;
