@@ -3,7 +3,7 @@
 
 /* The truth about a pair of which only support functions are known: every support value seen,
  * whoever asked, is an upper bound of the signed depth that needs no proof; the lower one is
- * that of ccdPenetrationMinimum, and a support value below it convicts the proof. An answer
+ * that of ccdPenetrationProven, and a support value below it convicts the proof. An answer
  * that is too deep, or a hit of objects that are apart, is thus told without trusting either
  * library; that one is missed or unsound, by the proof. */
 
@@ -68,7 +68,7 @@ static void work_watched(void *argument)
 static void work_minimum(void *argument)
 {
     work_t *w = (work_t *)argument;
-    w->code = ask_minimum(w->library, w->q, w->tolerance, w->asked, &w->least);
+    w->code = ask_minimum(w->library, w->q, w->tolerance, w->asked, 0, &w->least);
 }
 
 static double extent(const seen_t *seen, int which, double *largest)
@@ -232,7 +232,7 @@ static double timed_minimum(const library_t *ours, const query_t *q)
     uint64_t start;
     ccd.epa_tolerance = (ccd_real_t)query_tolerance(q);
     start = clock_now(CLOCK_MONOTONIC);
-    ours->minimum(q->obj[0], q->obj[1], &ccd, NULL, &out);
+    ours->minimum(q->obj[0], q->obj[1], &ccd, NULL, CCD_WANT_POS, &out);
     return (double)(clock_now(CLOCK_MONOTONIC) - start);
 }
 

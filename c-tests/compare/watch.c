@@ -213,7 +213,7 @@ static int answer_otherwise(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir
     memset(&asked, 0, sizeof asked);
     if (with_minimum && q->call == COMPARE_PENETRATION_MPR) {
         ccd_penetration_t out;
-        const int code = ask_minimum(base, q, query_tolerance(q), &asked, &out);
+        const int code = ask_minimum(base, q, query_tolerance(q), &asked, CCD_WANT_POS, &out);
         answer.code = code == CCD_HIT || code == CCD_LIMIT ? 0 : -1;
         answer.depth = out.depth;
         answer.dir = out.dir;
