@@ -127,6 +127,31 @@ pub fn dart_pile() -> Swapped {
     Swapped::new("DART", cpp("dart_pile").library("dart"), "1")
 }
 
+/// compare.sh's screen of a program of each consumer's, as it comes, for the README.
+pub fn screens() -> String {
+    let screen = |consumer: &str, program: Program, args: &str| {
+        let program = program.link_system().without_tools().build().quiet();
+        let told = program.compared(&[]).with_screen().run(args.split(' '));
+        let path = program.path.to_string_lossy();
+        let name = path.rsplit('/').next().unwrap_or_default();
+        let name = name.split('-').next().unwrap_or_default();
+        let told = told.stderr.replace(&*path, &format!("./{name} {args}"));
+        format!("{consumer}:\n\n```\n{}\n```\n\n", told.trim())
+    };
+    let scene = cpp("fcl_scene").library("fcl").flag("-DTIMED");
+    [
+        screen("ODE", c("ode_pile").library("ode"), "1 1500 32 pile"),
+        screen("FCL", scene, "300 200 0 0"),
+        screen("DART", cpp("dart_pile").library("dart"), "1 3000 15 fcl"),
+        screen(
+            "MuJoCo",
+            c("mujoco_pile").library("mujoco"),
+            "1 1500 30 pile",
+        ),
+    ]
+    .concat()
+}
+
 // --- static queries -------------------------------------------------------------
 
 /// One line of a static program.

@@ -7,6 +7,7 @@
 //! `cargo run --example swap` the checks of the test run, on more poses (2 minutes)
 //! `cargo run --example swap -- world` ODE worlds collided by this library alone (3 minutes)
 //! `cargo run --example swap -- scene` a scene through FCL's broad phase (half a minute)
+//! `cargo run --example swap -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --example swap -- long` whole simulations, longer and nastier (3 minutes)
 
 #[path = "../harness/mod.rs"]
@@ -147,9 +148,10 @@ fn main() {
         None => table(),
         Some("long") => long(),
         Some("scene") => scene(),
+        Some("screens") => print!("{}", checks::screens()),
         Some("world") => world(),
         Some(other) => {
-            eprintln!("unknown: {other}; nothing, `scene`, `world` or `long`");
+            eprintln!("unknown: {other}; nothing, `scene`, `screens`, `world` or `long`");
             std::process::exit(2);
         }
     }
