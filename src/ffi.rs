@@ -34,7 +34,7 @@
 
 use core::ffi::c_void;
 
-mod arena;
+pub mod arena;
 pub mod callbacks;
 pub mod collide;
 pub mod paper;

@@ -1,39 +1,45 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! libccd's penetration queries for convex objects given by support mappings:
-//! overlap, depth, direction, position; started warm from the last answer.
+//! Penetration and distance queries for convex shapes that are given by support functions:
+//! do they overlap, how deep, which way out, where; started warm from the last answer.
 //!
-//! An object is any function that answers a direction with the object's point farthest
-//! along it. A [`query::Pair`] of them is asked, and leaves what it learnt in a
-//! [`state::State`] for the next query of the same pair:
+//! (The package is called `warmccd`, the crate `ccd`, since it is also a `libccd.so`.)
+//!
+//! A [`Shape`] is a closure that answers a direction with the shape's point farthest along it, or
+//! a type of the caller's. [`penetration`] is the call to begin with. A [`Warm`] state for each
+//! pair, kept between frames, makes the next query cheap:
 //!
 //! ```
-//! use ccd::contact::{Answer, Settings};
-//! use ccd::math::Vec3;
-//! use ccd::query::Pair;
-//! use ccd::state::State;
-//! use ccd::known::support::MinkowskiDifference;
+//! use ccd::{Real, Settings, Warm};
 //!
-//! let ball = |at: Vec3| move |dir: &Vec3| at + dir; // of radius 1
-//! let pair = Pair {
-//!     md: MinkowskiDifference::new(ball(Vec3::zeros()), ball(Vec3::new(1.5, 0.0, 0.0))),
-//!     centre: None,
-//!     first_dir: Some(Vec3::new(1.0, 0.5, 0.0)),
-//!     lasting: true,
-//! };
-//! let settings = Settings { tolerance: 1e-5, max_iterations: 1000 };
-//! let mut state = State::default(); // cold
-//! match pair.local(&mut state, &settings, true) {
-//!     Ok(Answer::Hit(hit)) => assert!((hit.depth - 0.5).abs() < 1e-4),
-//!     other => panic!("the balls overlap by 0.5: {other:?}"),
+//! // A ball of radius 1, and a point inside it.
+//! let ball = |at: [Real; 3]| (move |d: [Real; 3]| [at[0] + d[0], at[1] + d[1], at[2] + d[2]], at);
+//! let mut warm = Warm::default(); // cold
+//! for frame in 0..3 {
+//!     let (a, b) = (ball([0.0; 3]), ball([0.3 + 0.01 * frame as Real, 0.2, 0.1]));
+//!     if let Some(hit) = ccd::penetration(&a, &b, &Settings::new(1e-6), Some(&mut warm))? {
+//!         println!("move b by {} along {:?}", hit.depth, hit.dir);
+//!     }
 //! }
+//! # Ok::<(), ccd::Error>(())
 //! ```
 //!
-//! The C interface is in `ffi`; everything else is safe Rust that never allocates and
-//! never sees C. The modules that are not shown here are the solvers: `src/README.md`
-//! says in which order to read them. They are public for this package's own tests and
-//! may change in any version.
+//! | you | call |
+//! |---|---|
+//! | want the depth | [`penetration`]: the least, within the larger of the tolerance and 0.1 % |
+//! | need yes or no | [`intersect`] |
+//! | need the distance, overlapping or not | [`signed_distance`] |
+//! | need more than one contact point | [`contacts`] |
+//! | follow one valley | [`penetration_local`] |
+//! | need the minimum with its proof | [`penetration_proven`] |
+//! | know the direction | [`penetration_along`] |
+//! | live in a plane | [`penetration_planar`] |
+//! | compare with the paper | [`penetration_incremental`] |
+//!
+//! Lengths are metres. The names are those of the C header `ccd/warm.h`, in Rust's case, and the
+//! answers the same bits; `include/README.md` says what each call guarantees. Nothing is global: a
+//! query may run on any thread, and a shape may ask queries of its own.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
@@ -42,27 +48,49 @@
     reason = "a negated comparison is how NaN ends a loop"
 )]
 #![allow(clippy::large_enum_variant, reason = "no heap")]
-#![allow(
-    rustdoc::private_intra_doc_links,
-    reason = "solvers are explained to who reads their source"
-)]
 
-pub mod contact;
-#[doc(hidden)]
-pub mod contacts;
-#[doc(hidden)]
-pub mod ffi;
-#[doc(hidden)]
-pub mod gjk;
-#[doc(hidden)]
-pub mod hull;
-pub mod known;
-#[doc(hidden)]
-pub mod local;
-pub mod math;
-#[doc(hidden)]
-pub mod paper;
-pub mod query;
+mod api;
+mod contact;
+mod contacts;
+mod ffi;
+mod gjk;
+mod hull;
+#[allow(
+    dead_code,
+    reason = "its callers move onto what is known of a pair one after the other"
+)]
+mod known;
+mod local;
+mod math;
+mod paper;
+mod query;
 #[cfg(test)]
 mod shapes;
-pub mod state;
+mod state;
+
+pub use api::{
+    Contact, Distance, DistanceOptions, Error, Penetration, Real, Settings, Shape, Want, Warm,
+    contacts, implementation, intersect, penetration, penetration_along, penetration_incremental,
+    penetration_local, penetration_planar, penetration_proven, signed_distance,
+};
+
+/// What this package's own tests and benchmarks ask besides; may change in any version.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::contact::{Answer, Settings};
+    pub use crate::known::support::MinkowskiDifference;
+    pub use crate::math::{EPSILON, Vec3};
+    pub use crate::paper::incremental::{Shortcut, penetration as incremental};
+
+    /// The exported functions, called as C calls them.
+    pub mod ffi {
+        pub use crate::ffi::{
+            collide::*, paper::*, polytope::*, support::*, types::*, vec3::*, warm::*,
+        };
+    }
+}
+
+/// The README's program in Rust is tested with the examples here.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

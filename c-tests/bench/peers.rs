@@ -6,7 +6,7 @@
 
 use std::ffi::c_void;
 
-use ccd::ffi::types::{ccd_support_fn, ccd_vec3_t};
+use ccd::internals::ffi::{ccd_support_fn, ccd_vec3_t};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::details::contact_support_map_support_map_with_params;
 use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};

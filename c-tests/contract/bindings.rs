@@ -19,7 +19,7 @@ mod libccd;
 #[cfg(not(feature = "single"))]
 #[test]
 fn types_are_laid_out_as_libccd_s() {
-    use ccd::ffi::types as ours;
+    use ccd::internals::ffi as ours;
     macro_rules! same {
         ($($name:ident { $($field:ident),* })*) => { $(
             assert_eq!(size_of::<ours::$name>(), size_of::<libccd::$name>());
@@ -39,10 +39,7 @@ fn types_are_laid_out_as_libccd_s() {
             max_iterations, epa_tolerance, mpr_tolerance, dist_tolerance
         }
     }
-    assert_eq!(
-        size_of::<ccd::math::Real>(),
-        size_of::<libccd::ccd_real_t>()
-    );
+    assert_eq!(size_of::<ccd::Real>(), size_of::<libccd::ccd_real_t>());
 }
 
 /// Renews libccd_bindings.rs from the system's headers with `UPDATE_BINDINGS=1`; else

@@ -15,7 +15,7 @@ use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_ulong, c_void};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use ccd::ffi::types::{ccd_center_fn, ccd_first_dir_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
+use ccd::internals::ffi::{ccd_center_fn, ccd_first_dir_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
 
 use crate::harness;

@@ -9,7 +9,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use ccd::ffi::types::ccd_vec3_t;
+use ccd::internals::ffi::ccd_vec3_t;
 use nalgebra::Vector3;
 
 use super::csv::table;

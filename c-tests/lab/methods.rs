@@ -5,11 +5,10 @@
 
 use std::ffi::{c_int, c_void};
 
-use ccd::contact::{Answer as Outcome, Settings};
-use ccd::ffi::types::{ccd_t, ccd_vec3_t};
-use ccd::known::support::MinkowskiDifference;
-use ccd::math::Vec3;
-use ccd::paper::incremental::{self, Shortcut};
+use ccd::internals::ffi::{ccd_t, ccd_vec3_t};
+use ccd::internals::{
+    Answer as Outcome, MinkowskiDifference, Settings, Shortcut, Vec3, incremental,
+};
 
 use super::deep::{Deep, Polytope};
 use super::libraries::{CDistance, CPenetration, Classic, LIMIT, Libraries, Truth, WANT_ALL, Warm};
@@ -338,7 +337,7 @@ pub fn paper<'a>(
         let memory = if pair.frame == 0 { None } else { last };
         let from = start.direction(&pair.truth).map(Vec3::from).or(memory);
         let from = from.unwrap_or_else(|| pair.truth.cold.into());
-        let answer = incremental::penetration(&md, from, shortcut, &settings, |_| ());
+        let answer = incremental(&md, from, shortcut, &settings, |_| ());
         let (Ok(Outcome::Hit(found)) | Ok(Outcome::Limit(found))) = answer else {
             return None;
         };

@@ -15,12 +15,9 @@ use std::cell::Cell;
 use std::ffi::{c_int, c_void};
 use std::mem::MaybeUninit;
 
-use ccd::ffi::collide::*;
-use ccd::ffi::paper::*;
-use ccd::ffi::support::ccdFirstDirDefault;
-use ccd::ffi::types::{ccd_t, ccd_vec3_t};
-use ccd::ffi::warm::*;
-use ccd::math::{EPSILON, Real};
+use ccd::Real;
+use ccd::internals::EPSILON;
+use ccd::internals::ffi::*;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

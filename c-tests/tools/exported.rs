@@ -8,14 +8,8 @@
 // C names, and calls into the C interface.
 #![allow(unsafe_code)]
 
-use ccd::ffi::collide::*;
-use ccd::ffi::paper::*;
-use ccd::ffi::polytope::*;
-use ccd::ffi::support::{__ccdSupport, ccdFirstDirDefault};
-use ccd::ffi::types::*;
-use ccd::ffi::vec3::{ccdVec3PointSegmentDist2, ccdVec3PointTriDist2};
-use ccd::ffi::warm::*;
-use ccd::math::Real;
+use ccd::Real;
+use ccd::internals::ffi::*;
 use std::ffi::{CStr, c_int, c_void};
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};

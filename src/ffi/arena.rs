@@ -3,8 +3,9 @@
 
 //! The memory of the largest polytopes: one block of C's heap, taken only when needed.
 //!
-//! A callback may throw or longjmp over this frame, so nothing here has a destructor:
-//! [`with`] frees the block when the query returns, and a callback that unwinds leaks it.
+//! A C callback may throw or longjmp over this frame, so nothing in [`with`] has a destructor: it
+//! frees the block when the query returns, and a callback that unwinds leaks it. [`Heap`] is for
+//! shapes in Rust, which only unwind.
 
 use core::ptr::NonNull;
 
@@ -12,7 +13,17 @@ use super::{calloc, free};
 use crate::hull::global::{Arena, Room};
 use crate::known::support::Fault;
 
+#[derive(Default)]
 struct Block(Option<NonNull<Room>>);
+
+impl Block {
+    fn free(&mut self) {
+        if let Some(block) = self.0.take() {
+            // SAFETY: [heap]; nobody uses the block any more.
+            unsafe { free(block.as_ptr().cast()) };
+        }
+    }
+}
 
 impl Arena for Block {
     fn room(&mut self) -> Result<&mut Room, Fault> {
@@ -32,11 +43,24 @@ impl Arena for Block {
 
 /// Runs `query` with an arena.
 pub fn with<R>(query: impl FnOnce(&mut dyn Arena) -> R) -> R {
-    let mut block = Block(None);
+    let mut block = Block::default();
     let result = query(&mut block);
-    if let Some(block) = block.0 {
-        // SAFETY: [heap]; nobody uses the block any more.
-        unsafe { free(block.as_ptr().cast()) };
-    }
+    block.free();
     result
+}
+
+/// An arena that frees its block when it is dropped.
+#[derive(Default)]
+pub struct Heap(Block);
+
+impl Arena for Heap {
+    fn room(&mut self) -> Result<&mut Room, Fault> {
+        self.0.room()
+    }
+}
+
+impl Drop for Heap {
+    fn drop(&mut self) {
+        self.0.free();
+    }
 }
