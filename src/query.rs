@@ -686,7 +686,7 @@ const PROOF: usize = 2 * Known::ROOM;
 /// Support points of an MPR query, at most.
 const MPR_SUPPORTS: u64 = 160;
 /// Of a proven minimum, which may take a local search more.
-const MOST_SUPPORTS: u64 = 1_400;
+const MOST_SUPPORTS: u64 = 360;
 /// Where an MPR query may stop: a gap of this share of the depth.
 const GAP: Real = 1e-3;
 

@@ -147,14 +147,14 @@ static inline void pair_grow(pair_t *p)
 /* May a proof to this tolerance need more support points than the library takes? At an
  * angle x from the minimum a face may be as wide as the square root of
  * (tol + growth x^2) / size: about size / growth times the logarithm of growth / tol in
- * all, which is within a fifth of what is counted where that is about the 2,000 that the
- * library takes. Half as many, because nearly concentric shapes have two minima. */
+ * all, which is within a fifth of what is counted. Half as many as the 360 that the library
+ * takes, because nearly concentric shapes have two minima. */
 static inline int pair_may_stop(const pair_t *p, double tol)
 {
     /* what the library makes of it */
     double size = pair_size(&p->a, &p->b), x = fmax(fmin(tol, 1e-3 * size), pair_noise(&p->a, &p->b) / 2);
     double both = sqrt((p->growth[0] + x) * (p->growth[1] + x));
-    return 1.2 * size / both * log(1 + 2 * both / x) > 1000;
+    return 1.2 * size / both * log(1 + 2 * both / x) > 180;
 }
 
 /* --- the categories --------------------------------------------------------------- */

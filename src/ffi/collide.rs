@@ -175,7 +175,7 @@ unsafe fn gjk_penetration(query: Query, wants_witnesses: bool) -> Result<Penetra
 ///
 /// Returns 0 and writes the outputs that are not NULL when they overlap, as
 /// [`ccdMPRPenetration`] does; -2 when memory cannot be had and -1 otherwise, and leaves
-/// the outputs alone. Where max_iterations or 1,400 support points came first, which is not
+/// the outputs alone. Where max_iterations or 360 support points came first, which is not
 /// told, the depth is only sound.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdGJKPenetration(

@@ -192,7 +192,8 @@ fn apart(gap: &Gap, wanted: &Wanted) -> Distance {
 const ONE_PART: Real = 0.02;
 
 /// The gap between the cores, from the state, else from the centres, else from the caller's
-/// first direction.
+/// first direction. A frame of its own, that is left before a minimum is looked for.
+#[inline(never)]
 fn cores<A: SupportMap, B: SupportMap>(
     pair: &Pair<A, B>,
     state: &mut State,

@@ -255,7 +255,7 @@ impl Progress {
         }
         if depth < self.upper {
             self.upper = depth;
-            self.aim_at(hull.error() + precision.grain());
+            self.aim_at(hull.error() + hull.untold(depth) + precision.grain());
         }
     }
 
@@ -274,15 +274,15 @@ impl Progress {
     }
 
     /// The nearest face has come to the target: is that still so with the error that planes
-    /// have by now? Else the target is moved outwards.
+    /// have by now? Else the target is moved outwards. And are all faces there for certain?
     #[inline(always)]
-    fn proven<const F: usize>(&mut self, hull: &Polytope<F>, grain: Real) -> bool {
-        let error = hull.error() + grain;
+    fn proven<const F: usize>(&mut self, hull: &mut Polytope<F>, grain: Real) -> bool {
+        let error = hull.error() + hull.untold(self.upper) + grain;
         let good = !(error > 1.1 * self.error) || 0.5 * self.allowed <= self.error;
         if !good {
             self.aim_at(error);
         }
-        good
+        good && !hull.is_nearer(self.target)
     }
 
     /// Has the nearest distance been the same for many steps? Of a thin D rounding can give

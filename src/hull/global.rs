@@ -34,8 +34,12 @@ const FIRST: (usize, usize) = (16, 32);
 const SECOND: (usize, usize) = (24, 48);
 /// Of the third, 31 KB: enough for the 160 support points of an MPR query.
 const THIRD: (usize, usize) = (162, 328);
-/// Of the one that is lent, 348 KB.
-const LENT: (usize, usize) = (1536, crate::hull::polytope::MOST_FACES);
+/// Of the one that is lent, 70 KB: enough for all that a query may ask.
+const LENT: (usize, usize) = (376, 760);
+/// Grains more than the tolerance that proven bounds may be apart, where rounding ended the search.
+/// Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
+/// much by which the face found there is nearer than the nearest.
+const ROUNDED: Real = 32.0;
 /// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
@@ -273,6 +277,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         progress: &Progress,
         end: End,
     ) -> Option<bool> {
+        // Where its planes do not show that it is around anything, nor is the origin inside.
+        let end = if hull.winds() { end } else { End::Open };
         let proven = self.conclude(set, hull, progress, end);
         let open = match end {
             End::Open => true,
@@ -422,7 +428,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if reach > depth + precision.tie() {
             depth = reach;
         }
-        let near = hull.distance(top.face);
+        let near = if end == End::Open {
+            0.0
+        } else {
+            hull.bound(&top)
+        };
         // What an earlier expansion has proven holds too; 0 before the first.
         let lower = larger(near - precision.grain(), self.hit.depth_lower).min(depth);
         let (face, nearest) = exit_face(set, hull, top.face, &dir, depth, progress.tolerance);
@@ -459,7 +469,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         // Where rounding or a cap ended the search: a tolerance that was asked for coarser
         // than the one in force is met all the same. (In this order NaN is none.)
         let asked = larger(self.request.limits.tolerance, progress.tolerance);
-        let close = asked + 16.0 * precision.grain();
+        let close = asked + ROUNDED * precision.grain();
         let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
         proven || depth - lower <= close
     }

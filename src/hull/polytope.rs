@@ -18,7 +18,8 @@
 //! good ones; and what holds of F and G on one side holds of F′: a point below both is
 //! below it. So
 //!
-//! - the *inner* point z, the middle of the first tetrahedron, stays below every plane, and
+//! - the *inner* point z, the middle of the first tetrahedron, stays below every plane, by the
+//!   least *margin* of the planes that were computed from corners, and
 //! - an origin below every plane (d > 0) stays there.
 //!
 //! A point hardly above G counts as on it (g is taken as 0, w = 1): the new face has G's
@@ -33,7 +34,10 @@
 //! both ends being below the plane and its corners not; so the surface winds around the
 //! origin once, and so around every point nearer than its nearest triangle. That ball is
 //! in the hull of the corners. The surface need not be convex for this: convexity decides
-//! how fast the bound grows.
+//! how fast the bound grows. That z is inside the first tetrahedron, and not beside a sliver, it
+//! shows itself: the middle of four points is inside to rounding, and no triangle is within
+//! rounding of it. Where the margin is no more than the error ([`Polytope::winds`]) nothing is
+//! proven.
 //!
 //! # Repairs, all under that invariant
 //!
@@ -70,6 +74,8 @@ const PREVIOUS: [i8; 4] = [2, -1, -1, 0];
 /// Low bits of a key that name its face. They move a distance by 5e-13 of itself, in the
 /// order of the faces alone.
 const NAME: u64 = 0xfff;
+/// The share of a distance that the name may stand for, and more.
+const UNTOLD: f64 = 1e-12;
 /// Most faces that fit the name.
 pub const MOST_FACES: usize = 4096;
 /// |N|² below which a plane has lost a digit to interpolation, and is computed anew.
@@ -80,10 +86,18 @@ const NOTHING: f64 = 1e-6;
 /// Ulps of the size that a plane's error may come to by being normalised. Free: far below the
 /// tolerances that interpolated planes serve.
 const WORN: f64 = 1e5;
-/// Ulps of the size within which a triangle or a tetrahedron has no extent. Derived: a
-/// quarter of it, by which z is below the planes of a tetrahedron, is more than the three
-/// products of a plane's height round by.
+/// Ulps of the size within which a triangle has no extent. Derived: twice what a plane through its
+/// corners is off by.
 const FLAT: f64 = 16.0;
+/// Ulps of the cube of a tetrahedron's longest edge that its volume's six-fold is at least. Derived:
+/// a face's normal is off by six ulps of the square of that edge, which is as much of its height
+/// as its area is smaller; z is a quarter of that height below the face, and half of the
+/// quarter is to remain.
+const SIGNED: f64 = 64.0;
+/// Ulps of the size that a plane computed from its corners is off by, and that z must be below it
+/// by. Derived: of two products of a unit vector with a point, three each and their sums, and of
+/// the unit vector's own length and z's coordinates.
+const FRESH: f64 = 8.0;
 /// The bit of a face that has its parent's plane.
 const BORROWED: u64 = 1 << 63;
 
@@ -104,11 +118,15 @@ pub struct Polytope<const F: usize> {
     free: usize,
     used: usize,
     inner: Wide3,
+    /// What every plane has z below it by, at least, in units of its |N|, metres.
+    margin: f64,
     error: f64,
     /// An ulp of the points' size, metres.
     ulp: f64,
     /// |N|² below which planes are computed from their corners.
     collapsed: f64,
+    /// [`UNTOLD`], or 0 where keys are made to tell ([`Polytope::is_nearer`]).
+    untold: f64,
 }
 
 /// The nearest face and its signed square distance, m².
@@ -140,10 +158,12 @@ impl<const F: usize> Polytope<F> {
         free: 0,
         used: 0,
         inner: Wide3::new(0.0, 0.0, 0.0),
+        margin: 0.0,
         error: 0.0,
         ulp: 0.0,
         // All zero, so that no pattern is copied.
         collapsed: 0.0,
+        untold: 0.0,
     };
 
     #[inline(always)]
@@ -278,8 +298,10 @@ impl<const F: usize> Polytope<F> {
         let volume = n.dot(&g);
         let long = larger(larger(e.norm_squared(), f.norm_squared()), g.norm_squared());
         let area2 = n.norm_squared();
-        // Flat in itself, or all in one plane. Also for NaN.
-        if !(area2 > flat2 * long && volume * volume > flat2 * area2) {
+        // Flat in itself, or so flat that of slivers the volume's sign is rounding, and with it
+        // what is outside. Also for NaN.
+        let least = SIGNED * f64::EPSILON * long;
+        if !(area2 > flat2 * long && volume * volume > least * least * long) {
             return false;
         }
         let [io, mut ia, mut ib, ic] = names.map(|i| i as u64);
@@ -299,12 +321,14 @@ impl<const F: usize> Polytope<F> {
             (three, [b, o, c], face(ib, io, ic), [0, 6, 9, 0]),
         ];
         self.clear();
+        let mut widest2 = 0.0;
         for (i, (n, [p, q, r], names, twins)) in faces.into_iter().enumerate() {
             let n2 = n.norm_squared();
             if !(n2 > flat2 * long) {
                 return false;
             }
             let n = n / n2.sqrt();
+            widest2 = larger(n2, widest2);
             let d = lesser(lesser(n.dot(&p), n.dot(&q)), n.dot(&r));
             self.planes[i] = Plane::new(&n, d).array();
             self.keys[i] = Self::key(i, d * d.abs());
@@ -313,10 +337,39 @@ impl<const F: usize> Polytope<F> {
         }
         (self.used, self.free) = (4, 4);
         self.inner = (o + a + b + c) * 0.25;
-        // Three products and their sums, and the normal's own.
-        self.error = 8.0 * self.ulp;
-        self.collapsed = if exact { f64::INFINITY } else { COLLAPSED };
-        true
+        // z is a quarter of the opposite corner's height below a face.
+        self.margin = 0.25 * volume.abs() / widest2.sqrt();
+        self.error = FRESH * self.ulp;
+        (self.collapsed, self.untold) = if exact {
+            (f64::INFINITY, 0.0)
+        } else {
+            (COLLAPSED, UNTOLD)
+        };
+        self.winds()
+    }
+
+    /// Is z below all planes for certain, so that the surface winds around it? (`false` for NaN.)
+    #[inline(always)]
+    pub fn winds(&self) -> bool {
+        self.margin >= self.error
+    }
+
+    /// What a face this far away, not behind the origin, may be farther away than the nearest,
+    /// metres, because keys did not tell them apart.
+    #[inline(always)]
+    pub fn untold(&self, distance: Real) -> Real {
+        self.untold as Real * distance
+    }
+
+    /// What is proven of the distance from the origin to all faces, metres.
+    pub fn bound(&self, top: &Top) -> Real {
+        if self.untold > 0.0 {
+            let near = self.distance(top.face);
+            return near - self.untold(near);
+        }
+        let most = top.key + 4.0 * UNTOLD * top.key.abs();
+        let tied = (0..self.used.min(F)).filter(|&f| self.keys[f] <= most);
+        tied.fold(Real::INFINITY, |least, f| lesser(self.distance(f), least))
     }
 
     /// Takes all faces out of use.
@@ -338,8 +391,9 @@ impl<const F: usize> Polytope<F> {
         to.corners[..used].copy_from_slice(&self.corners[..used]);
         to.next[..used].copy_from_slice(&self.next[..used]);
         (to.free, to.used) = (self.free, self.used);
-        (to.inner, to.error, to.ulp) = (self.inner, self.error, self.ulp);
-        to.collapsed = self.collapsed;
+        (to.inner, to.margin) = (self.inner, self.margin);
+        (to.error, to.ulp) = (self.error, self.ulp);
+        (to.collapsed, to.untold) = (self.collapsed, self.untold);
     }
 
     /// The nearest face: one sweep over the keys, whose low bits name their faces.
@@ -360,6 +414,27 @@ impl<const F: usize> Polytope<F> {
             face: (key.to_bits() & NAME) as usize,
             key,
         }
+    }
+
+    /// Is a face nearer than this key, where tolerances are finer than keys tell? It gets a key
+    /// that says so.
+    #[inline(always)]
+    pub fn is_nearer(&mut self, key: f64) -> bool {
+        !(self.untold > 0.0) && self.sharpen(key)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn sharpen(&mut self, key: f64) -> bool {
+        let mut nearer = false;
+        for f in 0..self.used.min(F) {
+            let (square, _) = self.plane(f).signed_square();
+            if self.keys[f] < f64::INFINITY && square < key {
+                self.keys[f] = Self::key(f, square * (1.0 - UNTOLD));
+                nearer = true;
+            }
+        }
+        nearer
     }
 
     /// Makes a point a corner: `first` is a face that it is above by more than `rounding`,
@@ -573,7 +648,10 @@ impl<const F: usize> Polytope<F> {
         // Of a vanished plane neither side nor sign is known: its parent's sign counts.
         let heir = if something { &old } else { &parent };
         let plane = match self.through_corners(f, heir, something, corner) {
-            Some(plane) => plane,
+            Some((plane, margin)) => {
+                self.margin = lesser(margin, self.margin);
+                plane
+            }
             None if n2 >= COLLAPSED => {
                 self.wear();
                 return square;
@@ -593,16 +671,16 @@ impl<const F: usize> Polytope<F> {
         plane.signed_square().0
     }
 
-    /// The plane through a face's corners, if the face has an area and the plane inherits
-    /// from `old` what the bound needs: z below it, the origin if that was so, and the side if
-    /// that is known.
+    /// The plane through a face's corners and what z is below it by, metres, if the face has an
+    /// area and the plane inherits from `old` what the bound needs: z below it, the origin if that
+    /// was so, and the side if that is known.
     fn through_corners(
         &self,
         f: usize,
         old: &Plane,
         sided: bool,
         corner: &impl Fn(usize) -> Vec3,
-    ) -> Option<Plane> {
+    ) -> Option<(Plane, f64)> {
         let [a, b, p] = self.corners(f).map(|i| wide3(&corner(i)));
         // Of a sliver's two long edges the product is mostly rounding: a short edge is one.
         let n = crate::math::normal(&p, &a, &b);
@@ -614,10 +692,11 @@ impl<const F: usize> Polytope<F> {
         }
         let n = n / n2.sqrt();
         let d = lesser(lesser(n.dot(&a), n.dot(&b)), n.dot(&p));
+        let margin = d - n.dot(&self.inner);
         let inherits = (!sided || n.dot(&old.normal()) > 0.0)
-            && n.dot(&self.inner) < d
+            && margin >= larger(FRESH * self.ulp, self.error)
             && (d > 0.0 || !(old.offset() > 0.0));
-        inherits.then(|| Plane::new(&n, d))
+        inherits.then(|| (Plane::new(&n, d), margin))
     }
 
     /// Computes the plane of a face from its corners. Is it farther away now, by more than
@@ -627,9 +706,10 @@ impl<const F: usize> Polytope<F> {
     pub fn refine(&mut self, f: usize, corner: &impl Fn(usize) -> Vec3) -> bool {
         let f = Self::at(f);
         let old = Plane::of(&self.planes[f]);
-        let Some(plane) = self.through_corners(f, &old, true, corner) else {
+        let Some((plane, margin)) = self.through_corners(f, &old, true, corner) else {
             return false;
         };
+        self.margin = lesser(margin, self.margin);
         let before = old.offset() / old.normal().norm();
         self.planes[f] = plane.array();
         self.keys[f] = Self::key(f, plane.signed_square().0);

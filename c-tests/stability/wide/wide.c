@@ -27,8 +27,10 @@ enum {
     CALL_SEPARATE,
     CALL_MPR_INTERSECT,
     CALL_GJK_INTERSECT,
+    CALL_PENETRATION,
+    CALL_PENETRATION_BARE, /* without centres */
     CALL_MINIMUM,
-    CALL_MINIMUM_BARE, /* without centres */
+    CALL_MINIMUM_BARE,
     CALL_LOCAL,
     CALL_LOCAL_BARE,
     CALL_INCREMENTAL,
@@ -38,8 +40,8 @@ enum {
 };
 
 static const char *const call_names[CALLS] = {
-    "MPR", "MPR warm", "GJK", "GJK separate", "MPR yes or no", "GJK yes or no", "minimum", "minimum, no centres",
-    "local", "local, no centres", "incremental", "along", "distance"};
+    "MPR", "MPR warm", "GJK", "GJK separate", "MPR yes or no", "GJK yes or no", "penetration", "penetration, no centres",
+    "proven", "proven, no centres", "local", "local, no centres", "incremental", "along", "distance"};
 
 typedef struct {
     int code, call, points; /* points: witness points are given */
@@ -47,6 +49,8 @@ typedef struct {
     unsigned long supports, stack;
     int moved; /* asked with a state, after a motion */
 } said_t;
+
+static int is_bare(int call) { return call == CALL_PENETRATION_BARE || call == CALL_MINIMUM_BARE || call == CALL_LOCAL_BARE; }
 
 static void take(const ccd_vec3_t *v, double o[3])
 {
@@ -80,7 +84,7 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
     memset(&dir, 0, sizeof dir);
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = body_support;
-    ccd.center1 = ccd.center2 = call == CALL_MINIMUM_BARE || call == CALL_LOCAL_BARE ? NULL : body_centre;
+    ccd.center1 = ccd.center2 = is_bare(call) ? NULL : body_centre;
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     ccd.max_iterations = (unsigned long)-1;
     x.call = call;
@@ -94,17 +98,19 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
     case CALL_SEPARATE: x.code = OURS(ccdGJKSeparate)(a, b, &ccd, &dir); break;
     case CALL_MPR_INTERSECT: x.code = OURS(ccdMPRIntersect)(a, b, &ccd) ? CCD_HIT : CCD_MISS; break;
     case CALL_GJK_INTERSECT: x.code = OURS(ccdGJKIntersect)(a, b, &ccd) ? CCD_HIT : CCD_MISS; break;
+    case CALL_PENETRATION:
+    case CALL_PENETRATION_BARE: x.code = OURS(ccdPenetration)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
     case CALL_MINIMUM:
-    case CALL_MINIMUM_BARE: x.code = OURS(ccdPenetrationMinimum)(a, b, &ccd, warm, &o); break;
+    case CALL_MINIMUM_BARE: x.code = OURS(ccdPenetrationProven)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
     case CALL_LOCAL:
-    case CALL_LOCAL_BARE: x.code = OURS(ccdPenetrationLocal)(a, b, &ccd, warm, &o); break;
-    case CALL_INCREMENTAL: x.code = OURS(ccdPenetrationIncremental)(a, b, &ccd, warm, &o); break;
+    case CALL_LOCAL_BARE: x.code = OURS(ccdPenetrationLocal)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
+    case CALL_INCREMENTAL: x.code = OURS(ccdPenetrationIncremental)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
     case CALL_ALONG:
         for (i = 0; i < 3; i++)
             dir.v[i] = (ccd_real_t)along[i];
-        x.code = OURS(ccdPenetrationAlong)(a, b, &ccd, &dir, warm, &o);
+        x.code = OURS(ccdPenetrationAlong)(a, b, &ccd, &dir, warm, CCD_WANT_ALL, &o);
         break;
-    default: x.code = OURS(ccdSignedDistance)(a, b, &ccd, 0, 0, (ccd_real_t)HUGE_VAL, warm, &q); break;
+    default: x.code = OURS(ccdSignedDistance)(a, b, &ccd, 0, 0, (ccd_real_t)HUGE_VAL, warm, CCD_WANT_POINTS, &q); break;
     }
     x.stack = (unsigned long)((const char *)__builtin_frame_address(0) - body_stack_lowest);
     x.supports = body_calls / 2;
@@ -120,7 +126,7 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
             take(&q.point2, x.at[1]);
         }
     } else if (x.code == CCD_HIT || x.code == CCD_LIMIT) {
-        if (call >= CALL_MINIMUM) {
+        if (call >= CALL_PENETRATION) {
             take_penetration(&x, &o);
         } else if (call != CALL_MPR_INTERSECT && call != CALL_GJK_INTERSECT) {
             x.depth = (double)depth;
@@ -181,17 +187,14 @@ enum { TOLERANCES = 5, DEFAULT_TOLERANCE = 1 };
 
 /* What is known to be broken: by call, the faults. Taken out as it is mended. */
 static const int marked[CALLS] = {
-    [CALL_MPR] = FAULT_TOO_DEEP,
-    [CALL_MPR_WARM] = FAULT_TOO_DEEP,
-    [CALL_GJK] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_TAIL,
-    [CALL_SEPARATE] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_TAIL,
-    [CALL_MINIMUM] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_FALSE_PROOF | FAULT_OUTSIDE | FAULT_TAIL,
-    [CALL_MINIMUM_BARE] = FAULT_FALSE_HIT | FAULT_TOO_DEEP | FAULT_FALSE_PROOF | FAULT_OUTSIDE | FAULT_TAIL,
-    [CALL_LOCAL] = FAULT_OUTSIDE | FAULT_NO_MINIMUM | FAULT_TAIL,
-    [CALL_LOCAL_BARE] = FAULT_OUTSIDE | FAULT_NO_MINIMUM | FAULT_TAIL,
-    [CALL_INCREMENTAL] = FAULT_OUTSIDE | FAULT_TAIL,
-    [CALL_ALONG] = FAULT_TAIL,
-    [CALL_DISTANCE] = FAULT_TOO_DEEP | FAULT_FALSE_PROOF | FAULT_OPEN | FAULT_OUTSIDE | FAULT_STACK | FAULT_TAIL,
+    [CALL_PENETRATION] = FAULT_OUTSIDE,
+    [CALL_PENETRATION_BARE] = FAULT_OUTSIDE,
+    [CALL_MINIMUM] = FAULT_OUTSIDE,
+    [CALL_MINIMUM_BARE] = FAULT_OUTSIDE,
+    [CALL_LOCAL] = FAULT_OUTSIDE | FAULT_NO_MINIMUM,
+    [CALL_LOCAL_BARE] = FAULT_OUTSIDE | FAULT_NO_MINIMUM,
+    [CALL_INCREMENTAL] = FAULT_OUTSIDE,
+    [CALL_DISTANCE] = FAULT_OUTSIDE,
 };
 
 /* What rounding may do to a support value of such bodies, metres: some ulps of the largest
@@ -251,6 +254,11 @@ static int is_proven(int call)
     return call == CALL_GJK || call == CALL_SEPARATE || call == CALL_MINIMUM || call == CALL_MINIMUM_BARE || call == CALL_DISTANCE;
 }
 
+static int is_mpr(int call)
+{
+    return call == CALL_MPR || call == CALL_MPR_WARM || call == CALL_PENETRATION || call == CALL_PENETRATION_BARE;
+}
+
 static int judge_points(const said_t *x, const wide_pair_t *p, double within, dice_t *d)
 {
     const double bound = fmax(within, tolerance(TOL_INSIDE) * p->size) + tolerance(TOL_ULPS) * real_ulp() * p->largest;
@@ -304,7 +312,7 @@ static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, in
     if (is_proven(x->call) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
         && x->code == CCD_HIT)
         faults |= FAULT_TOO_DEEP;
-    if ((x->call == CALL_MPR || x->call == CALL_MPR_WARM) && x->supports < MPR_POINTS
+    if (is_mpr(x->call) && x->code == CCD_HIT && x->supports < MPR_POINTS
         && x->depth > fmax(c->least, 0) + fmax(within, tolerance(TOL_PROMISED) * c->least) + c->noise)
         faults |= FAULT_TOO_DEEP;
     if (x->points && dice_below(d, 8) == 0)
@@ -315,7 +323,7 @@ static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, in
 /* --- the table ---------------------------------------------------------------------- */
 
 static unsigned long judged, wrong[ROWS][CALLS][FAULT_BITS], limits[ROWS], minima[ROWS], pairs_of[ROWS];
-static unsigned long most_supports[CALLS], most_stack[CALLS], limits_of[CALLS];
+static unsigned long most_supports[CALLS], most_stack[CALLS], limits_of[CALLS], limits_at[TOLERANCES];
 
 static void print_body(const char *name, const body_t *s)
 {
@@ -328,7 +336,7 @@ static void print_body(const char *name, const body_t *s)
     printf("\n");
 }
 
-static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c, const said_t *x, int faults)
+static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c, const said_t *x, int t, int faults)
 {
     int bit, new = 0;
     judged++;
@@ -336,6 +344,7 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
     if (x->call == CALL_MINIMUM) {
         minima[row] += x->code == CCD_HIT || x->code == CCD_LIMIT;
         limits[row] += x->code == CCD_LIMIT;
+        limits_at[t] += x->code == CCD_LIMIT;
     }
     for (bit = 0; bit < FAULT_BITS; bit++)
         if (faults >> bit & 1)
@@ -402,7 +411,7 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
     c = known(&p, said, TOLERANCES * CALLS);
     for (t = 0; t < TOLERANCES; t++)
         for (k = 0; k < CALLS; k++)
-            tally(row, index, &p, &c, &said[t * CALLS + k], judge_said(&said[t * CALLS + k], &p, &c, t, &d));
+            tally(row, index, &p, &c, &said[t * CALLS + k], t, judge_said(&said[t * CALLS + k], &p, &c, t, &d));
     for (frame = 0; frame < 2; frame++) {
         wide_move(&d, &p, dice_log(&d, 1e-9, 1e-2));
         for (k = 0; k < CALLS; k++) {
@@ -412,7 +421,7 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
         c = known(&p, said, CALLS);
         c.may_be_deep[kept] = c.may_be_deep[0];
         for (k = 0; k < CALLS; k++)
-            tally(row, index, &p, &c, &said[k], judge_said(&said[k], &p, &c, kept, &d));
+            tally(row, index, &p, &c, &said[k], kept, judge_said(&said[k], &p, &c, kept, &d));
     }
 }
 
@@ -465,6 +474,9 @@ int main(int argc, char **argv)
         }
         printf("\n");
     }
+    printf("\nCCD_LIMIT of the minimum by tolerance:");
+    for (i = 0; i < TOLERANCES; i++)
+        printf(" %lu (%g)%s", limits_at[i], shares[i], i + 1 < TOLERANCES ? "," : "\n");
     printf("\n%lu calls judged, %lu faults, %lu of them not known\n", judged, all, unmarked);
     return unmarked > 0;
 }
