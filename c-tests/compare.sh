@@ -79,6 +79,8 @@ if [ "$(head -c 2 "$program" | tr -d '\0')" != '#!' ]; then
     case $libraries in
     *"not a dynamic executable"* | *"statically linked"*)
         fail "$1: not a dynamically linked program of this machine's; libccd within it cannot be watched" ;;
+    *libasan.so* | *libtsan.so* | *libmsan.so*)
+        fail "$1: compiled with a sanitizer, which forbids to keep two libraries of one name apart" ;;
     *libccd.so.2*"not found"*) fail "$1: its libccd.so.2 is not found; is libccd2 installed?" ;;
     *libccd.so.2*) linked=yes ;;
     *) linked=no ;;
@@ -94,8 +96,8 @@ if [ -z "$ours" ]; then
     ours=$target/release/libccd.so
 fi
 [ -r "$ours" ] || fail "$ours: no file"
-work=$target/compare
-mkdir -p "$work"
+mkdir -p "$target/compare"
+work=$(cd "$target/compare" && pwd)
 
 # newest OUT IN...: whether OUT is there and no IN is newer
 newest() {
@@ -118,6 +120,7 @@ build() {
     build compare.so -std=gnu99 -shared -fPIC -fexceptions -fvisibility=hidden guard.c ask.c sample.c keep.c watch.c
     build screen -std=c99 screen.c
 )
+
 # --- the two libraries -----------------------------------------------------------------
 
 # The libccd.so.2 that a program gets, by what the dynamic linker says.
@@ -133,7 +136,8 @@ fi
 [ -n "$theirs" ] && [ -r "$theirs" ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
 ! grep -q ccdImplementation "$theirs" || fail "$theirs is this library, installed: name a libccd with --libccd FILE"
 
-counts=$(mktemp -d)
+# Not in /tmp, where nothing may be allowed to run.
+counts=$(mktemp -d "$work/run.XXXXXX")
 trap 'rm -rf "$counts"' EXIT
 cp -L "$theirs" "$counts/theirs.so"
 cp -L "$ours" "$counts/ours.so"

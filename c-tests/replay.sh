@@ -11,7 +11,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 
 ours=
 if [ "${1:-}" = --library ] && [ $# -gt 1 ]; then
-    ours=$2
+    ours=$(cd "$(dirname "$2")" && pwd)/$(basename "$2")
     shift 2
 fi
 if [ $# -ne 1 ] || [ ! -r "$1" ]; then
@@ -24,7 +24,10 @@ if [ -z "$ours" ]; then
     cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
     ours=$(cd "${CARGO_TARGET_DIR:-$here/../target}/release" && pwd)/libccd.so
 fi
-work=$(mktemp -d)
+mkdir -p "${CARGO_TARGET_DIR:-$here/../target}/compare"
+# Not in /tmp, where nothing may be allowed to run.
+work=$(mktemp -d "${CARGO_TARGET_DIR:-$here/../target}/compare/run.XXXXXX")
+work=$(cd "$work" && pwd)
 trap 'rm -rf "$work"' EXIT
 ln -s "$ours" "$work/libccd.so.2"
 cc -std=c99 -O2 -ffp-contract=off -I"$here/../include" "$1" -o "$work/case" "$work/libccd.so.2" -lm

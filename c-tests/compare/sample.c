@@ -371,9 +371,9 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
     if (s->truth.lower > s->truth.upper + s->truth.touch) {
         if (s->truth.lower > s->truth.upper + s->truth.touch + 2 * inconsistency(s->seen, 1)) {
             count_add(&c->contradicted, 1);
-            return -1;
-        }
-        s->truth.lower = s->truth.upper;
+            s->truth.lower = -HUGE_VAL; /* what rests on the upper bound alone is judged all the same */
+        } else
+            s->truth.lower = s->truth.upper;
     }
     count_add(&c->minimum_supports, supports);
     return 0;

@@ -282,7 +282,11 @@ static void print_screen(const char *every, const char *code)
     static compare_call_t sum;
     int i;
     const char *who = all.minimum ? "the proven minimum" : all.base == COMPARE_THEIRS ? "libccd" : "this library";
-    printf("\n== %s, exit code %s, on the answers of %s; one query in %s judged", all.program, code, who, every);
+    printf("\n== %s, exit code %s, on the answers of %s; ", all.program, code, who);
+    if (strcmp(every, "0") != 0)
+        printf("one query in %s judged", every);
+    else
+        printf("none was judged");
     if (processes > 1)
         printf("; %d processes", processes);
     printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);

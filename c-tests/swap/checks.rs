@@ -127,7 +127,7 @@ pub fn dart_pile() -> Swapped {
     Swapped::new("DART", cpp("dart_pile").library("dart"), "1")
 }
 
-/// compare.sh's screen of a program of each consumer's, as it comes, for the README.
+/// compare.sh's screen of a program of each consumer's, as it comes.
 pub fn screens() -> String {
     let screen = |consumer: &str, program: Program, args: &str| {
         let program = program.link_system().without_tools().build().quiet();
@@ -136,7 +136,9 @@ pub fn screens() -> String {
         let name = path.rsplit('/').next().unwrap_or_default();
         let name = name.split('-').next().unwrap_or_default();
         let told = told.stderr.replace(&*path, &format!("./{name} {args}"));
-        format!("{consumer}:\n\n```\n{}\n```\n\n", told.trim())
+        // What the program says itself comes before.
+        let screen = told.find("== ").map_or("", |at| &told[at..]);
+        format!("{consumer}:\n\n```\n{}\n```\n\n", screen.trim())
     };
     let scene = cpp("fcl_scene").library("fcl").flag("-DTIMED");
     [

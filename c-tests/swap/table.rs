@@ -121,6 +121,18 @@ fn long() {
     println!("{}", checks::long_table(&rows));
 }
 
+/// Into the README too: between the two marks stands what this command says.
+fn screens() {
+    let path = harness::root().join("c-tests/swap/README.md");
+    let page = std::fs::read_to_string(&path).expect("the README");
+    let (before, rest) = page.split_once("<!-- screens -->").expect("a mark");
+    let (_, after) = rest.split_once("<!-- end -->").expect("a mark");
+    let screens = checks::screens();
+    print!("{screens}");
+    let page = format!("{before}<!-- screens -->\n\n{screens}<!-- end -->{after}");
+    std::fs::write(&path, page).expect("the README");
+}
+
 fn world() {
     let rows = [("stack", 20), ("hulls", 32), ("roll", 12)].map(|(scene, bodies)| {
         let steps = if scene == "stack" { 10_000 } else { 3000 };
@@ -148,7 +160,7 @@ fn main() {
         None => table(),
         Some("long") => long(),
         Some("scene") => scene(),
-        Some("screens") => print!("{}", checks::screens()),
+        Some("screens") => screens(),
         Some("world") => world(),
         Some(other) => {
             eprintln!("unknown: {other}; nothing, `scene`, `screens`, `world` or `long`");
