@@ -53,8 +53,14 @@ apt_install() {
 }
 
 case $job in
-main) oldest=$(rust_version Cargo.toml) ;;
-tests | check) oldest=$(rust_version c-tests/setup/Cargo.toml) ;;
+main)
+    oldest=$(rust_version Cargo.toml)
+    from="Debian 12's rustc-web and cargo-web, Debian 13's rustc and cargo, or https://rustup.rs"
+    ;;
+tests | check)
+    oldest=$(rust_version c-tests/setup/Cargo.toml)
+    from="https://rustup.rs"
+    ;;
 *)
     echo "usage: setup.sh [tests|main|check]" >&2
     exit 2
@@ -63,13 +69,13 @@ esac
 for tool in cargo rustc; do
     # A shim of rustup's is there and fails where no toolchain is.
     if ! found=$($tool --version 2>/dev/null); then
-        echo "setup.sh: $tool is missing: install Rust $oldest or later first (https://rustup.rs)" >&2
+        echo "setup.sh: $tool is missing: install Rust $oldest or later first ($from)" >&2
         exit 1
     fi
     found=${found#* }
     found=${found%%[ -]*}
     if [ "$(printf '%s\n' "$oldest" "$found" | sort -V | head -n 1)" != "$oldest" ]; then
-        echo "setup.sh: $tool is $found, too old: Rust $oldest or later is needed (rustup update, or https://rustup.rs)" >&2
+        echo "setup.sh: $tool is $found, too old: Rust $oldest or later is needed ($from)" >&2
         exit 1
     fi
 done
