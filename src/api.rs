@@ -111,7 +111,7 @@ fn direction(dir: [Real; 3]) -> Result<Vec3, Error> {
 pub struct Want {
     /// The contact position. Where faces or edges rest on each other it costs support points.
     pub pos: bool,
-    /// The witness points.
+    /// The witness points: the same, and nothing more beside it.
     pub points: bool,
 }
 

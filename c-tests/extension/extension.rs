@@ -34,6 +34,7 @@ fn program(name: &str) -> Program {
         .link_ours_shared()
 }
 
+/// Every call with every argument that none can work with; and what is wanted.
 #[test]
 fn bad_input_and_what_may_be_null() {
     program("input").build().run(NO_ARGS);
@@ -126,6 +127,26 @@ fn example() {
         let expected = format!("frame {frame}: depth {depth:.4} along (");
         assert!(line.starts_with(&expected), "{line}");
         assert!(supports(line) <= supports(lines[2]), "{line}");
+    }
+}
+
+/// What the hash table of states prints: no more room than the pairs that meet need, and a tenth of
+/// the callbacks saved for these pairs, fast as they turn.
+#[test]
+fn states_in_a_hash_table() {
+    let lines = program("states").build().run(NO_ARGS).stdout;
+    let lines: Vec<&str> = lines.lines().collect();
+    assert_eq!(lines.len(), 6);
+    let number = |line: &str, before: &str| -> f64 {
+        let words = line.split(before).next().expect("a line").split(' ');
+        words.last().unwrap().parse().expect("a number")
+    };
+    for line in lines {
+        let warm = number(line, " callbacks a pair");
+        let cold = number(line, " without states");
+        assert!(warm <= 0.9 * cold, "{line}");
+        assert!(number(line, " pairs near") > 150.0, "{line}");
+        assert!(number(line, " places") <= 1024.0, "{line}");
     }
 }
 

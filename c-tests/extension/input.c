@@ -1,28 +1,36 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What the extension answers to input that no query can work with, and that it writes
- * nothing then; what may be NULL; max_iterations; queries asked from inside of a query. */
+/* Every call with every argument that no query can work with: the code is the documented one, and
+ * nothing is written then. What may be NULL; what is wanted; max_iterations; queries asked from
+ * inside of a query. */
 
 #include "contract/check.h"
 #include "ours.h"
 #include "shapes.h"
 
-enum { LOCAL, INCREMENTAL, MINIMUM, ALONG, PLANAR, QUERIES };
+enum { PENETRATION, LOCAL, INCREMENTAL, PROVEN, ALONG, PLANAR, QUERIES };
 
-static const char *const name[QUERIES] = {"local", "incremental", "minimum", "along", "planar"};
-static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}};
+static const char *const name[QUERIES] = {"penetration", "local", "incremental", "proven", "along", "planar"};
+static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}}, across = {{2, 0, 0}};
+
+static int ask_for(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm,
+                   unsigned want, ccd_penetration_t *out)
+{
+    switch (query) {
+    case PENETRATION: return OURS(ccdPenetration)(a, b, ccd, warm, want, out);
+    case LOCAL: return OURS(ccdPenetrationLocal)(a, b, ccd, warm, want, out);
+    case INCREMENTAL: return OURS(ccdPenetrationIncremental)(a, b, ccd, warm, want, out);
+    case PROVEN: return OURS(ccdPenetrationProven)(a, b, ccd, warm, want, out);
+    case ALONG: return OURS(ccdPenetrationAlong)(a, b, ccd, dir, warm, want, out);
+    default: return OURS(ccdPenetrationPlanar)(a, b, ccd, dir, warm, want, out);
+    }
+}
 
 static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm,
                ccd_penetration_t *out)
 {
-    switch (query) {
-    case LOCAL: return OURS(ccdPenetrationLocal)(a, b, ccd, warm, CCD_WANT_ALL, out);
-    case INCREMENTAL: return OURS(ccdPenetrationIncremental)(a, b, ccd, warm, CCD_WANT_ALL, out);
-    case MINIMUM: return OURS(ccdPenetrationProven)(a, b, ccd, warm, CCD_WANT_ALL, out);
-    case ALONG: return OURS(ccdPenetrationAlong)(a, b, ccd, dir, warm, CCD_WANT_ALL, out);
-    default: return OURS(ccdPenetrationPlanar)(a, b, ccd, dir, warm, CCD_WANT_ALL, out);
-    }
+    return ask_for(query, a, b, ccd, dir, warm, CCD_WANT_ALL, out);
 }
 
 /* Bit by bit but for what a compiler puts between the fields. */
@@ -45,36 +53,167 @@ static void setup(void)
     one = other = shape_polytope(slab, 8);
     shape_move(&other, 1.75, 0.25, 0);
     shape_query(&good);
-    good.mpr_tolerance = good.epa_tolerance = CCD_REAL(1e-6);
+    good.mpr_tolerance = good.epa_tolerance = good.dist_tolerance = CCD_REAL(1e-6);
 }
 
-/* Expects a code, nothing written to out, and the state as it was. */
-static void refused(int query, const ccd_t *ccd, const ccd_vec3_t *dir, int code, const char *why)
+/* --- the walk --------------------------------------------------------------------- */
+
+/* What a call takes besides objects, ccd_t and state. */
+typedef struct {
+    ccd_vec3_t dir;
+    const ccd_vec3_t *dir_at;
+    ccd_real_t margin1, margin2, max_distance, slop;
+    int max;
+    unsigned want;
+    int no_out;
+} rest_t;
+
+/* What a call may write. */
+typedef struct {
+    ccd_penetration_t penetration;
+    ccd_distance_t distance;
+    ccd_contact_t contact[4];
+    ccd_real_t depth;
+    ccd_vec3_t dir, pos;
+} outputs_t;
+
+typedef int (*asking_t)(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out);
+
+#define PENETRATES(call, query) \
+    static int call(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out) \
+    { \
+        return ask_for(query, a, b, ccd, rest->dir_at, warm, rest->want, rest->no_out ? NULL : &out->penetration); \
+    }
+PENETRATES(penetration, PENETRATION)
+PENETRATES(local, LOCAL)
+PENETRATES(incremental, INCREMENTAL)
+PENETRATES(proven, PROVEN)
+PENETRATES(along, ALONG)
+PENETRATES(planar, PLANAR)
+
+static int distance(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
 {
-    ccd_penetration_t out, before;
+    return OURS(ccdSignedDistance)(a, b, ccd, rest->margin1, rest->margin2, rest->max_distance, warm, rest->want,
+                                   rest->no_out ? NULL : &out->distance);
+}
+
+static int contacts(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    (void)warm;
+    return OURS(ccdContacts)(a, b, ccd, rest->dir_at, rest->slop, rest->no_out ? NULL : out->contact, rest->max);
+}
+
+static int intersect(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    (void)rest, (void)out;
+    return OURS(ccdIntersect)(a, b, ccd, warm);
+}
+
+static int mpr_intersect_warm(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm,
+                              outputs_t *out)
+{
+    (void)rest, (void)out;
+    return OURS(ccdMPRIntersectWarm)(a, b, ccd, warm);
+}
+
+static int mpr_intersect(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    (void)rest, (void)out, (void)warm;
+    return OURS(ccdMPRIntersect)(a, b, ccd);
+}
+
+static int gjk_intersect(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    (void)rest, (void)out, (void)warm;
+    return OURS(ccdGJKIntersect)(a, b, ccd);
+}
+
+static int mpr_warm(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    return rest->no_out ? OURS(ccdMPRPenetrationWarm)(a, b, ccd, warm, NULL, NULL, NULL)
+                        : OURS(ccdMPRPenetrationWarm)(a, b, ccd, warm, &out->depth, &out->dir, &out->pos);
+}
+
+static int mpr(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    (void)warm;
+    return rest->no_out ? OURS(ccdMPRPenetration)(a, b, ccd, NULL, NULL, NULL)
+                        : OURS(ccdMPRPenetration)(a, b, ccd, &out->depth, &out->dir, &out->pos);
+}
+
+static int gjk(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    (void)warm;
+    return rest->no_out ? OURS(ccdGJKPenetration)(a, b, ccd, NULL, NULL, NULL)
+                        : OURS(ccdGJKPenetration)(a, b, ccd, &out->depth, &out->dir, &out->pos);
+}
+
+static int separate(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    (void)warm;
+    return OURS(ccdGJKSeparate)(a, b, ccd, rest->no_out ? NULL : &out->dir);
+}
+
+enum { MPR_TOLERANCE = 1, EPA_TOLERANCE = 2, DIST_TOLERANCE = 4, CHECKS_TOLERANCE = 8, TAKES_DIR = 16, TAKES_WANT = 32,
+       NEEDS_OUT = 64, NEEDS_CENTRES = 128, NO_CENTRES = 256, NEEDS_FIRST_DIR = 512, TAKES_MARGINS = 1024,
+       TAKES_SLOP = 2048, FILLS = CHECKS_TOLERANCE | TAKES_WANT | NEEDS_OUT };
+
+/* Every call that asks the callbacks: what it returns for the good question, and for a bad one. */
+static const struct {
+    const char *name;
+    asking_t ask;
+    int good, bad, traits;
+} calls[] = {
+    {"ccdPenetration", penetration, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
+    {"ccdPenetrationLocal", local, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
+    {"ccdPenetrationIncremental", incremental, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
+    {"ccdPenetrationProven", proven, CCD_HIT, CCD_BAD_INPUT, FILLS | EPA_TOLERANCE},
+    {"ccdPenetrationAlong", along, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
+    {"ccdPenetrationPlanar", planar, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
+    {"ccdSignedDistance", distance, CCD_HIT, CCD_BAD_INPUT, FILLS | DIST_TOLERANCE | TAKES_MARGINS},
+    {"ccdContacts", contacts, 4, CCD_BAD_INPUT, NEEDS_OUT | TAKES_DIR | TAKES_SLOP | NO_CENTRES},
+    {"ccdIntersect", intersect, 1, 0, 0},
+    {"ccdMPRPenetrationWarm", mpr_warm, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
+    {"ccdMPRIntersectWarm", mpr_intersect_warm, 1, 0, NEEDS_CENTRES},
+    {"ccdMPRPenetration", mpr, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
+    {"ccdMPRIntersect", mpr_intersect, 1, 0, NEEDS_CENTRES},
+    {"ccdGJKPenetration", gjk, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
+    {"ccdGJKSeparate", separate, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
+    {"ccdGJKIntersect", gjk_intersect, 1, 0, NO_CENTRES | NEEDS_FIRST_DIR},
+};
+enum { CALLS = sizeof calls / sizeof calls[0] };
+
+/* Asks, with a state and without: the code, and nothing written where that is the bad one. */
+static void expect(int call, const ccd_t *ccd, const rest_t *rest, int code, const char *why)
+{
+    static outputs_t out, before; /* static: no padding differs */
     ccd_warm_t warm, warm_before;
-    int answer;
+    rest_t r = *rest;
+    int answer, i;
     memset(&before, 0x5a, sizeof before);
-    out = before;
-    OURS(ccdWarmGuess)(&warm, &way);
-    warm_before = warm;
-    answer = ask(query, &one, &other, ccd, dir, &warm, &out);
-    CHECK(answer == code, "%s, %s: %d", name[query], why, answer);
-    CHECK(same_bits(&out, &before, sizeof out), "%s, %s: out was written", name[query], why);
-    CHECK(code == CCD_MISS || same_bits(&warm, &warm_before, sizeof warm), "%s, %s: the state was written",
-          name[query], why);
-    answer = ask(query, &one, &other, ccd, dir, NULL, &out);
-    CHECK(answer == code, "%s, %s, without a state: %d", name[query], why, answer);
+    OURS(ccdWarmGuess)(&warm_before, &way);
+    if (r.dir_at == &rest->dir)
+        r.dir_at = &r.dir;
+    for (i = 0; i < 2; i++) {
+        memcpy(&out, &before, sizeof out);
+        warm = warm_before;
+        answer = calls[call].ask(&one, &other, ccd, &r, i ? NULL : &warm, &out);
+        CHECK(answer == code, "%s, %s%s: %d", calls[call].name, why, i ? ", without a state" : "", answer);
+        if (code == calls[call].bad) {
+            CHECK(same_bits(&out, &before, sizeof out), "%s, %s: an output was written", calls[call].name, why);
+            CHECK(same_bits(&warm, &warm_before, sizeof warm), "%s, %s: the state was written", calls[call].name, why);
+        }
+    }
 }
 
 static ccd_real_t bad_value;
-static int bad_call, calls;
+static int bad_call, asked;
 
 static void bad_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     shape_support(obj, dir, out);
-    if (calls++ >= bad_call)
-        out->v[calls % 3] = bad_value;
+    if (asked++ >= bad_call)
+        out->v[asked % 3] = bad_value;
 }
 
 static void bad_center(const void *obj, ccd_vec3_t *out)
@@ -83,90 +222,208 @@ static void bad_center(const void *obj, ccd_vec3_t *out)
     out->v[1] = bad_value;
 }
 
-static void bad_input(void)
+/* Points that are no number: from the first call on, from the second on, ... */
+static void bad_points(int call, const rest_t *rest)
 {
-    const ccd_real_t inf = CCD_REAL_MAX * 2, nan = inf - inf, negative = CCD_REAL(-1e-9);
-    const ccd_real_t strange[3] = {nan, inf, -inf};
-    int query, i;
-    for (query = 0; query < QUERIES; query++) {
-        const ccd_vec3_t *dir = dir_of(query);
-        ccd_penetration_t out, before;
-        ccd_warm_t warm, good_state;
-        ccd_t ccd;
-        OURS(ccdWarmGuess)(&good_state, &way);
-        CHECK(ask(query, &one, &other, &good, dir, NULL, &out) == CCD_HIT, "%s: the good query", name[query]);
-
-        for (i = 0; i < 2; i++) {
-            ccd = good;
-            *(query == MINIMUM ? &ccd.epa_tolerance : &ccd.mpr_tolerance) = i ? nan : negative;
-            refused(query, &ccd, dir, CCD_BAD_INPUT, i ? "NaN tolerance" : "negative tolerance");
-            /* the other tolerance is not looked at */
-            ccd = good;
-            *(query == MINIMUM ? &ccd.mpr_tolerance : &ccd.epa_tolerance) = i ? nan : negative;
-            ccd.dist_tolerance = nan;
-            CHECK(ask(query, &one, &other, &ccd, dir, NULL, &out) == CCD_HIT, "%s: other tolerances", name[query]);
+    static outputs_t out, before;
+    ccd_warm_t warm, good_state;
+    ccd_t ccd = good;
+    int answer;
+    ccd.support1 = bad_support;
+    OURS(ccdWarmGuess)(&good_state, &way);
+    memset(&before, 0x5a, sizeof before);
+    for (bad_call = 0; bad_call < 1000; bad_call++) {
+        memcpy(&out, &before, sizeof out);
+        warm = good_state;
+        asked = 0;
+        answer = calls[call].ask(&one, &other, &ccd, rest, &warm, &out);
+        if (asked <= bad_call) {
+            CHECK(answer == calls[call].good, "%s: %d of good points", calls[call].name, answer);
+            return;
         }
-        /* zero asks for the best there is */
-        ccd = good;
-        ccd.epa_tolerance = ccd.mpr_tolerance = 0;
-        CHECK(ask(query, &one, &other, &ccd, dir, NULL, &out) == CCD_HIT, "%s: tolerance 0", name[query]);
+        CHECK(answer == calls[call].bad, "%s: point %d is no number: %d", calls[call].name, bad_call, answer);
+        CHECK(same_bits(&out, &before, sizeof out) && same_bits(&warm, &good_state, sizeof warm),
+              "%s: point %d is no number, and something was written", calls[call].name, bad_call);
+    }
+    CHECK(0, "%s: no end", calls[call].name);
+}
 
-        CHECK(ask(query, &one, &other, &good, dir, NULL, NULL) == CCD_BAD_INPUT, "%s: no out", name[query]);
-        refused(query, NULL, dir, CCD_BAD_INPUT, "no ccd");
+static void bad_objects(int call, const rest_t *rest, const ccd_real_t strange[3])
+{
+    const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
+    ccd_t ccd;
+    int i;
+    expect(call, NULL, rest, bad, "no ccd");
+    ccd = good;
+    ccd.support1 = NULL;
+    expect(call, &ccd, rest, bad, "no support1");
+    ccd = good;
+    ccd.support2 = NULL;
+    expect(call, &ccd, rest, bad, "no support2");
+    for (i = 1; i < 4; i++) {
         ccd = good;
-        ccd.support1 = NULL;
-        refused(query, &ccd, dir, CCD_BAD_INPUT, "no support1");
+        if (i & 1)
+            ccd.center1 = NULL;
+        if (i & 2)
+            ccd.center2 = NULL;
+        expect(call, &ccd, rest, traits & NEEDS_CENTRES ? bad : good_code, "no centre");
+        ccd.first_dir = NULL;
+        expect(call, &ccd, rest, traits & (NEEDS_CENTRES | NEEDS_FIRST_DIR) ? bad : good_code, "no centre, no first_dir");
+    }
+    for (i = 0; i < 3; i++) {
+        bad_value = strange[i];
         ccd = good;
-        ccd.support2 = NULL;
-        refused(query, &ccd, dir, CCD_BAD_INPUT, "no support2");
-
-        for (i = 0; i < 3; i++) {
-            ccd = good;
-            bad_value = strange[i];
-            ccd.center2 = bad_center;
-            refused(query, &ccd, dir, CCD_BAD_INPUT, "a centre that is no number");
-            ccd = good;
-            ccd.support1 = bad_support;
-            /* from the first call on, from the second on, ... */
-            for (bad_call = 0;; bad_call++) {
-                calls = 0;
-                if (ask(query, &one, &other, &ccd, dir, NULL, &out) == CCD_HIT && calls <= bad_call)
-                    break;
-                CHECK(bad_call < 1000, "%s: no end", name[query]);
-                if (bad_call >= 1000)
-                    break;
-                calls = 0;
-                memset(&out, 0x5a, sizeof out);
-                before = out;
-                warm = good_state;
-                CHECK(ask(query, &one, &other, &ccd, dir, &warm, &out) == CCD_BAD_INPUT || calls <= bad_call,
-                      "%s: call %d is no number", name[query], bad_call);
-                CHECK(calls <= bad_call || (same_bits(&out, &before, sizeof out) &&
-                                            same_bits(&warm, &good_state, sizeof warm)),
-                      "%s: call %d is no number, and something was written", name[query], bad_call);
-            }
-        }
-
-        if (query == ALONG || query == PLANAR) {
-            const ccd_vec3_t zero = {{0, 0, 0}};
-            refused(query, &good, NULL, CCD_BAD_INPUT, "no direction");
-            refused(query, &good, &zero, CCD_BAD_INPUT, "zero direction");
-            for (i = 0; i < 9; i++) {
-                ccd_vec3_t d = *dir;
-                d.v[i % 3] = strange[i / 3];
-                refused(query, &good, &d, CCD_BAD_INPUT, "a direction that is no number");
-            }
-        }
+        ccd.center2 = bad_center;
+        expect(call, &ccd, rest, traits & NO_CENTRES ? good_code : bad, "a centre that is no number");
+        bad_points(call, rest);
     }
 }
 
-/* A miss writes nothing but the state. */
+static void bad_tolerances(int call, const rest_t *rest, ccd_real_t inf)
+{
+    const ccd_real_t none[3] = {inf - inf, CCD_REAL(-1e-9), -inf};
+    const int traits = calls[call].traits;
+    int i, k;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) {
+            ccd_t ccd = good;
+            *(k == 0 ? &ccd.mpr_tolerance : k == 1 ? &ccd.epa_tolerance : &ccd.dist_tolerance) = none[i];
+            /* libccd's calls take their default, and what a call does not read is not looked at */
+            expect(call, &ccd, rest, traits & CHECKS_TOLERANCE && traits >> k & 1 ? calls[call].bad : calls[call].good,
+                   "a tolerance that is none");
+        }
+    for (i = 0; i < 2; i++) {
+        ccd_t ccd = good;
+        ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = i ? inf : 0;
+        expect(call, &ccd, rest, calls[call].good, i ? "an infinite tolerance" : "tolerance 0");
+    }
+}
+
+static void bad_arguments(int call, const rest_t *good_rest, const ccd_real_t strange[3])
+{
+    const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
+    rest_t rest = *good_rest;
+    int i;
+    rest.no_out = 1;
+    expect(call, &good, &rest, traits & NEEDS_OUT ? bad : good_code, "no out");
+    for (i = 0; i < 32; i++) {
+        rest = *good_rest;
+        rest.dir_at = &rest.dir;
+        rest.want = 1u << i;
+        expect(call, &good, &rest, traits & TAKES_WANT && i > 1 ? bad : good_code, "a flag");
+    }
+    rest = *good_rest;
+    rest.dir_at = NULL;
+    expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "no direction");
+    rest.dir_at = &rest.dir;
+    memset(&rest.dir, 0, sizeof rest.dir);
+    expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "zero direction");
+    for (i = 0; i < 9; i++) {
+        rest.dir = good_rest->dir;
+        rest.dir.v[i % 3] = strange[i / 3];
+        expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "a direction that is no number");
+    }
+    for (i = 0; i < 3; i++) {
+        const ccd_real_t none = i ? i == 1 ? CCD_REAL(-1e-9) : strange[2] : strange[0];
+        rest_t margin1 = *good_rest, margin2 = *good_rest, max_distance = *good_rest, slop = *good_rest;
+        margin1.margin1 = margin2.margin2 = max_distance.max_distance = slop.slop = none;
+        expect(call, &good, &margin1, traits & TAKES_MARGINS ? bad : good_code, "margin1 that is none");
+        expect(call, &good, &margin2, traits & TAKES_MARGINS ? bad : good_code, "margin2 that is none");
+        expect(call, &good, &max_distance, traits & TAKES_MARGINS ? bad : good_code, "max_distance that is none");
+        expect(call, &good, &slop, traits & TAKES_SLOP ? bad : good_code, "slop that is none");
+    }
+    rest = *good_rest;
+    rest.margin2 = strange[1];
+    expect(call, &good, &rest, traits & TAKES_MARGINS ? bad : good_code, "an infinite margin");
+    for (i = -1; i < 1; i++) {
+        rest = *good_rest;
+        rest.max = i;
+        expect(call, &good, &rest, traits & TAKES_SLOP ? bad : good_code, "no room");
+    }
+}
+
+static void bad_input(void)
+{
+    const ccd_real_t inf = CCD_REAL_MAX * 2, strange[3] = {inf - inf, inf, -inf};
+    static rest_t rest;
+    int call;
+    rest.max_distance = inf;
+    rest.slop = CCD_REAL(1e-3);
+    rest.max = 4;
+    rest.want = CCD_WANT_ALL;
+    rest.dir_at = &rest.dir;
+    for (call = 0; call < CALLS; call++) {
+        rest.dir = calls[call].ask == along ? way : calls[call].ask == planar ? up : across;
+        expect(call, &good, &rest, calls[call].good, "the good question");
+        bad_objects(call, &rest, strange);
+        bad_tolerances(call, &rest, inf);
+        bad_arguments(call, &rest, strange);
+    }
+}
+
+/* --- what is wanted --------------------------------------------------------------- */
+
+/* Face on face, sliding: where pos is wanted it is asked for; else it costs nothing. */
+static void wanted(void)
+{
+    int query, k;
+    for (query = 0; query < ALONG; query++) {
+        unsigned long cost[CCD_WANT_ALL + 1] = {0};
+        ccd_penetration_t all, out;
+        unsigned want;
+        for (want = 0; want <= CCD_WANT_ALL; want++) {
+            ccd_warm_t warm[2];
+            ccd_t ccd = good;
+            int frame;
+            memset(warm, 0, sizeof warm);
+            setup();
+            for (frame = 0; frame < 20; frame++) {
+                const ccd_vec3_t zero = {{0, 0, 0}};
+                shape_move(&other, 1.75, 0.25 + 0.002 * frame, 0.001 * frame);
+                CHECK(ask_for(query, &one, &other, &ccd, NULL, &warm[0], CCD_WANT_ALL, &all) == CCD_HIT, "%s", name[query]);
+                CHECK(ask_for(query, &one, &other, &ccd, NULL, &warm[1], want, &out) == CCD_HIT, "%s", name[query]);
+                cost[want] += frame ? out.support_calls : 0;
+                CHECK(fabs((double)(out.depth - all.depth)) <= 1e-6, "%s: depth %g", name[query], (double)out.depth);
+                for (k = 0; k < 3; k++) {
+                    const ccd_vec3_t *points[3] = {&out.pos, &out.point1, &out.point2};
+                    const unsigned flag = k ? CCD_WANT_POINTS : CCD_WANT_POS;
+                    CHECK((want & flag) != 0 || same_bits(points[k], &zero, sizeof zero), "%s: not wanted, and not zero",
+                          name[query]);
+                    CHECK((want & flag) == 0 || !same_bits(points[k], &zero, sizeof zero), "%s: wanted, and zero", name[query]);
+                }
+            }
+        }
+        printf("%s, face on face, 19 frames: %lu calls of each support function, %lu with pos\n", name[query], cost[0],
+               cost[CCD_WANT_POS]);
+        CHECK(cost[0] < cost[CCD_WANT_POS], "%s: pos for nothing: %lu, %lu", name[query], cost[0], cost[CCD_WANT_POS]);
+    }
+    setup();
+}
+
+/* A miss writes nothing but the state; a distance is an answer. */
 static void misses(void)
 {
+    const ccd_real_t inf = CCD_REAL_MAX * 2;
     int query;
     shape_move(&other, 5, 0.25, 0);
-    for (query = 0; query < QUERIES; query++)
-        refused(query, &good, dir_of(query), CCD_MISS, "apart");
+    for (query = 0; query < QUERIES; query++) {
+        ccd_penetration_t out, before;
+        ccd_warm_t warm;
+        memset(&before, 0x5a, sizeof before);
+        memset(&warm, 0, sizeof warm);
+        out = before;
+        CHECK(ask(query, &one, &other, &good, dir_of(query), &warm, &out) == CCD_MISS, "%s, apart", name[query]);
+        CHECK(ask(query, &one, &other, &good, dir_of(query), NULL, &out) == CCD_MISS, "%s, apart", name[query]);
+        CHECK(same_bits(&out, &before, sizeof out), "%s, apart: out was written", name[query]);
+    }
+    {
+        ccd_distance_t d;
+        memset(&d, 0, sizeof d);
+        CHECK(OURS(ccdSignedDistance)(&one, &other, &good, 0, 0, inf, NULL, 0, &d) == CCD_MISS, "apart");
+        CHECK(fabs((double)d.distance - 3) < 1e-5 && d.point1.v[0] == 0, "%g apart", (double)d.distance);
+        CHECK(OURS(ccdSignedDistance)(&one, &other, &good, 0, 0, inf, NULL, CCD_WANT_POINTS, &d) == CCD_MISS, "apart");
+        CHECK(fabs((double)d.point1.v[0] - 1) < 1e-5, "point1 at %g", (double)d.point1.v[0]);
+    }
     setup();
 }
 
@@ -342,6 +599,7 @@ int main(void)
 {
     setup();
     bad_input();
+    wanted();
     misses();
     freedoms();
     iterations();

@@ -243,59 +243,6 @@ static void missing_outputs(void)
         }
 }
 
-/* What the extension requires and does not get. */
-static void missing_arguments(void)
-{
-    shape_t a = shape_box(1, 1, 1), b = shape_box(1, 1, 1);
-    ccd_penetration_t p, before;
-    ccd_vec3_t dirs[5];
-    ccd_t ccd, no_support1, no_support2, no_centers;
-    int i, code[16], n = 0;
-    shape_move(&b, .3, .2, 1.9);
-    shape_query(&ccd);
-    no_support1 = no_support2 = no_centers = ccd;
-    no_support1.support1 = NULL;
-    no_support2.support2 = NULL;
-    no_centers.center1 = no_centers.center2 = NULL;
-    memset(&before, judge_blank, sizeof before);
-    memset(dirs, 0, sizeof dirs);
-    dirs[1].v[1] = (ccd_real_t)NAN;
-    dirs[2].v[2] = (ccd_real_t)HUGE_VAL;
-    p = before;
-    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, NULL, NULL, CCD_WANT_ALL, &p);
-    code[n++] = OURS(ccdPenetrationProven)(&a, &b, NULL, NULL, CCD_WANT_ALL, &p);
-    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, &no_support1, NULL, CCD_WANT_ALL, &p);
-    code[n++] = OURS(ccdPenetrationProven)(&a, &b, &no_support2, NULL, CCD_WANT_ALL, &p);
-    code[n++] = OURS(ccdPenetrationLocal)(&a, &b, &ccd, NULL, CCD_WANT_ALL, NULL);
-    code[n++] = OURS(ccdPenetrationProven)(&a, &b, &ccd, NULL, CCD_WANT_ALL, NULL);
-    code[n++] = OURS(ccdPenetrationAlong)(&a, &b, &ccd, NULL, NULL, CCD_WANT_ALL, &p);
-    code[n++] = OURS(ccdPenetrationPlanar)(&a, &b, &ccd, NULL, NULL, CCD_WANT_ALL, &p);
-    for (i = 0; i < 3; i++) {
-        code[n++] = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &dirs[i], NULL, CCD_WANT_ALL, &p);
-        code[n++] = OURS(ccdPenetrationPlanar)(&a, &b, &ccd, &dirs[i], NULL, CCD_WANT_ALL, &p);
-    }
-    for (i = 0; i < n; i++) {
-        asked++;
-        if (code[i] != CCD_BAD_INPUT) {
-            printf("FAILED missing argument %d: code %d\n", i, code[i]);
-            failed++;
-        }
-    }
-    if (!judge_is_blank(&p, sizeof p)) {
-        printf("FAILED outputs written on bad input\n");
-        failed++;
-    }
-    /* what is not required */
-    dirs[0].v[2] = 3; /* not unit */
-    if (OURS(ccdPenetrationLocal)(&a, &b, &no_centers, NULL, CCD_WANT_ALL, &p) != CCD_HIT
-        || OURS(ccdPenetrationProven)(&a, &b, &no_centers, NULL, CCD_WANT_ALL, &p) != CCD_HIT
-        || OURS(ccdPenetrationAlong)(&a, &b, &no_centers, &dirs[0], NULL, CCD_WANT_ALL, &p) != CCD_HIT
-        || !(fabs((double)p.depth - .1) < 1e-3)) {
-        printf("FAILED without centres\n");
-        failed++;
-    }
-}
-
 int main(void)
 {
     int k, i;
@@ -314,7 +261,6 @@ int main(void)
         degenerate(e);
     }
     missing_outputs();
-    missing_arguments();
     printf("%d questions, %d failures\n", asked, failed);
     return failed > 0;
 }

@@ -120,12 +120,13 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* The one call to begin with: do two objects overlap, how deep, which way out, where? */
 
 /**
- * Wanted: pos. Where faces or edges rest on each other it costs support points.
+ * Wanted: pos. Where faces or edges rest on each other and move it costs support points: boxes
+ * that slide, with a state, 9 a query in place of 3.
  */
 #define CCD_WANT_POS 1
 
 /**
- * Wanted: point1 and point2.
+ * Wanted: point1 and point2; as dear as pos, and nothing more beside it.
  */
 #define CCD_WANT_POINTS 2
 

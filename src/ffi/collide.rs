@@ -146,7 +146,10 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
 unsafe fn gjk_penetration(query: Query, wants_witnesses: bool) -> Result<Penetration, c_int> {
     // SAFETY: passed on.
     unsafe {
-        let (Some(md), Some(first)) = (query.difference(), query.first_dir()) else {
+        let Some(md) = query.difference() else {
+            return Err(-1);
+        };
+        let Some(first) = query.first_dir() else {
             return Err(-1);
         };
         let pair = Pair {

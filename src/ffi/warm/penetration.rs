@@ -14,9 +14,10 @@ use crate::known::support::Fault;
 use crate::math::Real;
 use crate::{query::Pair, state::State};
 
-/// Wanted: pos. Where faces or edges rest on each other it costs support points.
+/// Wanted: pos. Where faces or edges rest on each other and move it costs support points: boxes
+/// that slide, with a state, 9 a query in place of 3.
 pub const CCD_WANT_POS: c_uint = 1;
-/// Wanted: point1 and point2.
+/// Wanted: point1 and point2; as dear as pos, and nothing more beside it.
 pub const CCD_WANT_POINTS: c_uint = 2;
 /// Everything.
 pub const CCD_WANT_ALL: c_uint = 3;

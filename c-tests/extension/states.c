@@ -1,0 +1,124 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* How to keep the states of pairs in C: a small hash table, to be copied. Bodies have numbers; a
+ * pair is asked in the order of these, the lower first, so that its state always fits. The world
+ * around it: boxes on circles, of which now these and now those meet. */
+
+#include <ccd/warm.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct {
+    unsigned first, second;
+    unsigned long frame; /* when it was asked for last; 0: an empty place */
+    ccd_warm_t warm;
+} entry_t;
+
+typedef struct { /* all zeros: empty */
+    entry_t *entry;
+    size_t size, used; /* a power of two, at least twice the used ones */
+    unsigned long frame;
+} states_t;
+
+/* The place of a pair, or the empty one where it belongs. */
+static entry_t *place(entry_t *entry, size_t size, unsigned first, unsigned second)
+{
+    size_t i = (first * 2654435761u ^ second * 2246822519u) >> 7;
+    for (i &= size - 1; entry[i].frame; i = (i + 1) & (size - 1))
+        if (entry[i].first == first && entry[i].second == second)
+            break;
+    return &entry[i];
+}
+
+/* Lets go of pairs that were asked for neither in this frame nor in the last, and makes room. */
+static int make_room(states_t *s)
+{
+    size_t i, kept = 0, size = 64;
+    entry_t *entry;
+    for (i = 0; i < s->size; i++)
+        kept += s->entry[i].frame && s->entry[i].frame + 1 >= s->frame;
+    while (size < 4 * (kept + 1))
+        size *= 2;
+    entry = calloc(size, sizeof *entry); /* zeros: empty places, cold states */
+    if (!entry)
+        return 0;
+    for (i = 0; i < s->size; i++)
+        if (s->entry[i].frame && s->entry[i].frame + 1 >= s->frame)
+            *place(entry, size, s->entry[i].first, s->entry[i].second) = s->entry[i];
+    free(s->entry);
+    s->entry = entry;
+    s->size = size;
+    s->used = kept;
+    return 1;
+}
+
+/* The state of a pair, first < second, good until the next call; cold where it is new. NULL where
+ * there is no memory, which is cold too. */
+static ccd_warm_t *state_of(states_t *s, unsigned first, unsigned second)
+{
+    entry_t *e;
+    if (2 * (s->used + 1) > s->size && !make_room(s))
+        return NULL;
+    e = place(s->entry, s->size, first, second);
+    s->used += !e->frame;
+    e->first = first;
+    e->second = second;
+    e->frame = s->frame;
+    return &e->warm;
+}
+
+/* --- the world ---------------------------------------------------------------------- */
+
+enum { BODIES = 60, FRAMES = 120 };
+typedef struct { ccd_vec3_t pos, half; } body_t;
+static unsigned long calls;
+
+static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    const body_t *b = obj;
+    calls++;
+    for (int i = 0; i < 3; i++)
+        out->v[i] = b->pos.v[i] + (dir->v[i] < 0 ? -b->half.v[i] : b->half.v[i]);
+}
+
+static void center(const void *obj, ccd_vec3_t *out) { *out = ((const body_t *)obj)->pos; }
+
+int main(void)
+{
+    static body_t body[BODIES];
+    states_t states = {0};
+    ccd_t ccd;
+    CCD_INIT(&ccd);
+    ccd.support1 = ccd.support2 = support;
+    ccd.center1 = ccd.center2 = center;
+    for (states.frame = 1; states.frame <= FRAMES; states.frame++) {
+        unsigned long asked = 0, overlap = 0, cold = 0;
+        calls = 0;
+        for (unsigned i = 0; i < BODIES; i++) {
+            const double turn = 0.7 * i + 0.0002 * (i % 9 + 1) * states.frame, radius = 0.5 + 0.4 * (i % 7);
+            const ccd_vec3_t pos = {{(ccd_real_t)(radius * cos(turn)), (ccd_real_t)(radius * sin(turn)), CCD_REAL(0.05) * (ccd_real_t)(i % 5)}};
+            const ccd_vec3_t half = {{CCD_REAL(0.4), CCD_REAL(0.35), CCD_REAL(0.3)}};
+            body[i].pos = pos;
+            body[i].half = half;
+        }
+        for (unsigned i = 0; i < BODIES; i++)
+            for (unsigned j = i + 1; j < BODIES; j++) {
+                ccd_penetration_t hit;
+                if (ccdVec3Dist2(&body[i].pos, &body[j].pos) > 1) /* a broad phase's part */
+                    continue;
+                asked++;
+                overlap += ccdPenetration(&body[i], &body[j], &ccd, state_of(&states, i, j), 0, &hit) >= 0;
+                cold -= calls; /* what the same would cost without states */
+                ccdPenetration(&body[i], &body[j], &ccd, NULL, 0, &hit);
+                cold += calls;
+            }
+        if (states.frame % 20 == 0)
+            printf("frame %lu: %lu pairs near, %lu overlap, %.1f callbacks a pair, %.1f without states, %lu places\n",
+                   states.frame, asked, overlap, (double)(calls - cold) / (double)asked, (double)cold / (double)asked,
+                   (unsigned long)states.size);
+    }
+    free(states.entry);
+    return 0;
+}
