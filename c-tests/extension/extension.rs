@@ -138,8 +138,9 @@ fn states_in_a_hash_table() {
     let lines: Vec<&str> = lines.lines().collect();
     assert_eq!(lines.len(), 6);
     let number = |line: &str, before: &str| -> f64 {
-        let words = line.split(before).next().expect("a line").split(' ');
-        words.last().unwrap().parse().expect("a number")
+        let told = line.split(before).next().expect("a line");
+        let word = told.rsplit(' ').next().expect("a word");
+        word.parse().expect("a number")
     };
     for line in lines {
         let warm = number(line, " callbacks a pair");
