@@ -30,29 +30,33 @@ mkdir "$tree"
 (cd "$here/../.." && git ls-files -z | tar -c --null -T -) | tar -x -C "$tree"
 
 upper=$(echo "$rust" | tr a-z- A-Z_)
-# there ARGUMENT...: cargo test for the other processor; here ARGUMENT...: for this one
+# there VERB ARGUMENT...: cargo for the other processor; here VERB ARGUMENT...: for this one
 # C_TESTS_PARTLY: what other tests need is not installed here.
 there() {
+    verb=$1
+    shift
     in_chroot cross env -C /tree C_TESTS_PARTLY=1 CARGO_TARGET_DIR=/target \
         "CARGO_TARGET_${upper}_LINKER=$tools-gcc" "CARGO_TARGET_${upper}_RUNNER=$qemu" \
         NM="$tools-nm" OBJCOPY="$tools-objcopy" READELF="$tools-readelf" \
-        cargo test --locked --target "$rust" "$@"
+        cargo "$verb" --locked --target "$rust" "$@"
 }
 # shellcheck disable=SC2317  # called by name
 here() {
-    in_chroot cross env -C /tree C_TESTS_PARTLY=1 CARGO_TARGET_DIR=/target cargo test --locked "$@"
+    verb=$1
+    shift
+    in_chroot cross env -C /tree C_TESTS_PARTLY=1 CARGO_TARGET_DIR=/target cargo "$verb" --locked "$@"
 }
 # answers WHERE: of every entry point to pairs of all categories, one digest a pair
 answers() {
-    "$1" --test stability determinism_listed -- --ignored --nocapture | grep '^pair ' | sort
+    "$1" run --example campaigns -- determinism | grep '^pair ' | sort
 }
 
 # All are run, so that one failure does not hide another.
 failed=0
 echo "== $1: contract, configurations, recorded support counts"
-there --no-fail-fast --test harness --test contract || failed=1
-there --test stability configurations || failed=1
-there --test support_counts no_set_needs_more || failed=1
+there test --no-fail-fast --test harness --test contract || failed=1
+there test --test stability configurations || failed=1
+there test --test support_counts no_set_needs_more || failed=1
 echo "== $1: the same bits as on this machine"
 # The same question must have the same answers; the C library's sine and logarithm, which
 # the questions are made with, are not the same everywhere.
