@@ -60,6 +60,7 @@ int OURS(ccdSignedDistance)(const void *obj1, const void *obj2, const ccd_t *ccd
                             ccd_real_t margin2, ccd_real_t max_distance, ccd_warm_t *warm, unsigned want, ccd_distance_t *out);
 int OURS(ccdContacts)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
                       ccd_contact_t *contacts, int max);
+int OURS(ccdCheck)(const void *obj, ccd_support_fn support, ccd_center_fn center, ccd_check_t *out);
 const char *OURS(ccdImplementation)(void);
 
 #ifdef __cplusplus

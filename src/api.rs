@@ -15,6 +15,8 @@ use crate::contacts::manifold;
 use crate::ffi::arena::Heap;
 use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::{self, Wanted};
+use crate::known::check;
+pub use crate::known::check::Check;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, unit};
@@ -636,6 +638,23 @@ pub fn penetration_incremental<A: Shape + ?Sized, B: Shape + ?Sized>(
     answer(a, b, settings, warm, |pair, state, settings, wants| {
         pair.incremental(state, settings, wants)
     })
+}
+
+/// What is wrong with a shape, as far as 192 directions tell, each asked twice: for when an answer
+/// is odd, and for tests. What is found is wrong for certain; a fault that shows in few directions
+/// may be missed.
+///
+/// ```
+/// use ccd::Real;
+///
+/// let ball = |d: [Real; 3]| d.map(|x| x * 0.5);
+/// assert!(ccd::check(&ball).is_fine());
+/// let wrong = ccd::check(&(ball, [1.0, 0.0, 0.0]));
+/// assert!(wrong.center_outside && wrong.outside > 0.4);
+/// assert!(ccd::check(&|d: [Real; 3]| d.map(|x| x * -0.5)).opposite);
+/// ```
+pub fn check<S: Shape + ?Sized>(shape: &S) -> Check {
+    check::check(&Asked(shape), shape.center().map(Vec3::from).as_ref())
 }
 
 /// Which library this is, and in which precision: "warmccd 0.2.0 double".

@@ -8,7 +8,7 @@
 //! each object, and D holds the difference of any two: k calls are worth k² points
 //! ([`support_set::SupportSet::extreme`]).
 
-#[doc(hidden)]
+pub mod check;
 pub mod precision;
 #[doc(hidden)]
 pub mod round;

@@ -36,6 +36,7 @@
 //! | know the direction | [`penetration_along`] |
 //! | live in a plane | [`penetration_planar`] |
 //! | compare with the paper | [`penetration_incremental`] |
+//! | wonder what is wrong with a shape | [`check`] |
 //!
 //! Lengths are metres. The names are those of the C header `ccd/warm.h`, in Rust's case, and the
 //! answers the same bits; `include/README.md` says what each call guarantees. Nothing is global: a
@@ -69,9 +70,10 @@ mod shapes;
 mod state;
 
 pub use api::{
-    Contact, Distance, DistanceOptions, Error, Penetration, Real, Settings, Shape, Want, Warm,
-    contacts, implementation, intersect, penetration, penetration_along, penetration_incremental,
-    penetration_local, penetration_planar, penetration_proven, signed_distance,
+    Check, Contact, Distance, DistanceOptions, Error, Penetration, Real, Settings, Shape, Want,
+    Warm, check, contacts, implementation, intersect, penetration, penetration_along,
+    penetration_incremental, penetration_local, penetration_planar, penetration_proven,
+    signed_distance,
 };
 
 /// What this package's own tests and benchmarks ask besides; may change in any version.

@@ -22,7 +22,8 @@ use harness::{Precision, Program};
 const NO_ARGS: [&str; 0] = [];
 
 /// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 14] = [
+const EXTENSION: [&str; 15] = [
+    "ccdCheck",
     "ccdContacts",
     "ccdImplementation",
     "ccdIntersect",

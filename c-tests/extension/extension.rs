@@ -40,6 +40,12 @@ fn bad_input_and_what_may_be_null() {
     program("input").build().run(NO_ARGS);
 }
 
+/// What ccdCheck finds wrong with a support function, and that it finds nothing wrong with others.
+#[test]
+fn odd_support_functions_are_told() {
+    program("odd").build().run(NO_ARGS);
+}
+
 #[test]
 fn answers_from_every_kind_of_state() {
     program("answers").build().run(NO_ARGS);

@@ -348,11 +348,30 @@ static void values()
     CHECK(same_bits(zero.get(), cold.get(), sizeof(ccd_warm_t)), "a guess of zero is cold");
 }
 
+/* A wrong sign, a centre in another frame; and nothing wrong. */
+struct Against {
+    ccd::Vec3 support(const ccd::Vec3 &d) const { return {-d.x, -d.y, -d.z}; }
+};
+struct Elsewhere : Against {
+    ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x + 5, d.y, d.z}; }
+    ccd::Vec3 center() const { return {}; }
+};
+
+static void checked()
+{
+    const auto against = ccd::check(Against{}), elsewhere = ccd::check(Elsewhere{}), fine = ccd::check(Tired{3, -1});
+    CHECK(against.faults == CCD_CHECK_OPPOSITE, "%u", against.faults);
+    CHECK(elsewhere && elsewhere.faults == CCD_CHECK_CENTER_OUTSIDE && elsewhere.center_outside > 3.9, "%u %g",
+          elsewhere.faults, double(elsewhere.center_outside));
+    CHECK(!fine && fine.size > 1.9 && fine.center_outside < 0, "%u %g", fine.faults, double(fine.size));
+}
+
 int main()
 {
     same_as_c();
     exceptions();
     bad_input();
     values();
+    checked();
     return checks_end();
 }

@@ -35,6 +35,7 @@ const HEADERS: [Header; 2] = [
             "warm/contacts.rs",
             "warm/special.rs",
             "warm/libccd.rs",
+            "warm/check.rs",
             "warm/identity.rs",
         ],
     },
@@ -86,6 +87,14 @@ fn section(path: &Path) -> String {
         .replace(" struct ccd_", " ccd_")
         .replace("(struct ccd_", "(ccd_");
     let made = made.replace("typedef ccd_", "typedef struct ccd_");
+    // A pointer to a function of a type of ccd.h's may be NULL, as every such one in C.
+    let (made, mut declared) = (made.replace("struct Option_ccd_", "ccd_"), false);
+    let made = made.lines().filter(|line| {
+        let skip = line.contains(" Option_ccd_") || declared && line.is_empty();
+        declared = skip;
+        !skip
+    });
+    let made = made.collect::<Vec<_>>().join("\n");
     let lines = made.trim().lines().map(|line| {
         let macro_value = line
             .strip_prefix("#define ")

@@ -168,6 +168,19 @@ private:
     ccd_warm_t state_{};
 };
 
+/** What check found wrong with a shape. Lengths are metres. */
+struct Check {
+    unsigned faults = 0;     /**< CCD_CHECK_ flags of warm.h; 0: nothing */
+    Real size = 0;           /**< the greatest width of the shape, about */
+    Real noise = 0;          /**< how far a point lies beyond another's support plane, at most */
+    Real change = 0;         /**< how far an answer moved when asked for again, at most */
+    Real center_outside = 0; /**< how far the center lies outside; negative: how deep inside */
+    Vec3 dir;                /**< unit: the direction in which the worst was found */
+
+    /** Was a fault found? */
+    explicit operator bool() const { return faults != 0; }
+};
+
 namespace detail {
 
 /** center() and centre() are one to the library; a shape that has both is asked the first. */
@@ -431,6 +444,23 @@ bool gjk_intersect(const A &a, const B &b)
 {
     const ccd_t c = detail::query<A, B>({});
     return ccdGJKIntersect(std::addressof(a), std::addressof(b), &c) == 1;
+}
+
+/** What is wrong with a shape, as far as 192 directions tell, each asked twice: for when an answer is
+ * odd, and for tests. A shape without center() is no fault. ccdCheck. */
+template <class S>
+Check check(const S &shape)
+{
+    ccd_check_t found{};
+    const int faults = ccdCheck(std::addressof(shape), detail::support<S>, detail::centre_of<S>(), &found);
+    Check c;
+    c.faults = static_cast<unsigned>(faults) & ~static_cast<unsigned>(CCD_CHECK_CENTER_MISSING);
+    c.size = found.size;
+    c.noise = found.noise;
+    c.change = found.change;
+    c.center_outside = found.center_outside;
+    c.dir = found.dir;
+    return c;
 }
 
 /** Which library runs, and in which precision: ccdImplementation. */

@@ -15,6 +15,7 @@
  *   contacts   ccdContacts
  *   special    ccdPenetrationLocal, ...Proven, ...Along, ...Planar
  *   libccd's   ccdMPRPenetrationWarm, ccdMPRIntersectWarm
+ *   is it odd? ccdCheck: what is wrong with a support function
  *
  * Lengths and tolerances are metres; the library floors tolerances at a few ulps of the objects'
  * size, so 0 asks for the best the precision can give. A call reads the one tolerance that it
@@ -448,6 +449,90 @@ int ccdMPRIntersectWarm(const void *obj1,
                         const void *obj2,
                         const ccd_t *ccd,
                         ccd_warm_t *warm);
+
+
+/* Something is odd? What is wrong with an object's support function and centre. */
+
+/**
+ * A point, or the centre, is NaN or infinite. Nothing else is told.
+ */
+#define CCD_CHECK_NOT_FINITE 1
+
+/**
+ * The points are the farthest *against* the direction: a sign is wrong.
+ */
+#define CCD_CHECK_OPPOSITE 2
+
+/**
+ * Points contradict each other by `noise`, more than rounding: one answered along one direction
+ * is farther along another than that one's own. By as little as single precision: ask for no
+ * tolerance finer than some times the noise. By more: a wrong frame (the direction is to be
+ * turned into the body's, the point back), points of another object, or a search over the
+ * vertices that stops too early.
+ */
+#define CCD_CHECK_CONTRADICTS 4
+
+/**
+ * The same direction asked again is answered otherwise: the answer depends on earlier calls.
+ */
+#define CCD_CHECK_CHANGES 8
+
+/**
+ * The centre lies outside of the object. The MPR calls and ccdPenetration then miss overlaps, and
+ * answer what is apart as deep.
+ */
+#define CCD_CHECK_CENTER_OUTSIDE 16
+
+/**
+ * There is no centre: `center` is NULL. libccd's MPR calls need one; the extension's others do
+ * not.
+ */
+#define CCD_CHECK_CENTER_MISSING 32
+
+/**
+ * What ccdCheck found. Lengths are metres.
+ */
+typedef struct ccd_check_t {
+  /**
+   * The greatest width of the object, about: is it what you think it is?
+   */
+  ccd_real_t size;
+  /**
+   * How far a point lies beyond the support plane of another at most.
+   */
+  ccd_real_t noise;
+  /**
+   * How far the answer along one direction moved along it when asked again at most.
+   */
+  ccd_real_t change;
+  /**
+   * How far the centre lies outside; negative: how deep inside, the deeper the better. 0 without
+   * one.
+   */
+  ccd_real_t center_outside;
+  /**
+   * Unit: the direction in which the worst was found; of no meaning where nothing is wrong.
+   */
+  ccd_vec3_t dir;
+} ccd_check_t;
+
+/**
+ * What is wrong with an object's support function and centre, as far as 192 directions tell,
+ * each asked twice. For when an answer is odd, and for tests; not for every frame.
+ *
+ * It finds what the queries cannot tell from another object: a forgotten centre, a wrong sign, a
+ * frame mixed up. What is found is wrong for certain; a fault that shows in few directions may
+ * be missed. `obj` is handed to the callbacks. `center` may be NULL. `out` may be NULL; else it is
+ * filled unless CCD_BAD_INPUT is returned.
+ *
+ * Returns 0 where nothing is wrong, CCD_CHECK_ flags where something is, or CCD_BAD_INPUT: `support`
+ * is NULL.
+ */
+CCD_EXPORT
+int ccdCheck(const void *obj,
+             ccd_support_fn support,
+             ccd_center_fn center,
+             ccd_check_t *out);
 
 
 /* Which library this is. */

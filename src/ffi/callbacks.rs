@@ -17,6 +17,13 @@ pub struct Object {
     support: ccd_support_fn,
 }
 
+impl Object {
+    /// An object and its support function.
+    pub fn new(obj: *const c_void, support: ccd_support_fn) -> Self {
+        Self { obj, support }
+    }
+}
+
 impl SupportMap for Object {
     #[inline]
     fn support(&self, dir: &Vec3) -> Vec3 {
@@ -200,9 +207,11 @@ impl Query {
     }
 }
 
+/// An object's centre, finite or not.
+///
 /// # Safety
 /// \[callbacks\] of the module contract.
-unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
+pub unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
     let mut c = ccd_vec3_t::default();
     // SAFETY: [callbacks].
     unsafe { center(obj, &mut c) };

@@ -15,6 +15,7 @@
 //!   contacts   ccdContacts
 //!   special    ccdPenetrationLocal, ...Proven, ...Along, ...Planar
 //!   libccd's   ccdMPRPenetrationWarm, ccdMPRIntersectWarm
+//!   is it odd? ccdCheck: what is wrong with a support function
 //!
 //! Lengths and tolerances are metres; the library floors tolerances at a few ulps of the objects'
 //! size, so 0 asks for the best the precision can give. A call reads the one tolerance that it
@@ -24,6 +25,7 @@
 use super::types::ccd_vec3_t;
 use crate::math::{Vec3, unit};
 
+pub mod check;
 pub mod codes;
 pub mod contacts;
 pub mod distance;
@@ -35,8 +37,8 @@ pub mod special;
 pub mod state;
 
 pub use {
-    codes::*, contacts::*, distance::*, identity::*, intersect::*, libccd::*, penetration::*,
-    special::*, state::*,
+    check::*, codes::*, contacts::*, distance::*, identity::*, intersect::*, libccd::*,
+    penetration::*, special::*, state::*,
 };
 
 /// # Safety
