@@ -172,7 +172,7 @@ int main(int argc, char **argv)
         for (k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
             int t;
-            if (e->system || (e->ask != ASK_MPR && e->ask != ASK_MPR_WARM))
+            if (e->system || !entry_is_mpr(e))
                 continue;
             for (t = 0; t < 2; t++) {
                 const row_t *r = t ? &fine[k][category] : &table[k][category];

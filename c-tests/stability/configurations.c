@@ -68,7 +68,7 @@ static void check(const configuration_t *c, void *context)
             continue;
         }
         /* MPR, cold or warm, is no proof, but finds the minimum in all of these */
-        faults &= e->ask == ASK_MPR || e->ask == ASK_MPR_WARM ? FAULTS_NEVER | FAULT_DEEPER : FAULTS_NEVER;
+        faults &= entry_is_mpr(e) ? FAULTS_NEVER | FAULT_DEEPER : FAULTS_NEVER;
         if (faults && ledger) {
             bad++;
         } else if (faults) {

@@ -215,7 +215,7 @@ int main(int argc, char **argv)
                     double step = 0, turn = angle_between(x.dir, last.dir);
                     /* the truth turns, or the old direction ties with the new one: as far as
                      * the method tells minima apart */
-                    int mpr = e->ask == ASK_MPR || e->ask == ASK_MPR_WARM;
+                    int mpr = entry_is_mpr(e);
                     double tie = mpr ? tolerance(TOL_MPR_DEEP) * t.depth : 0;
                     /* nor can MPR keep a near tie that is none any more */
                     int true_turn = angle_between(t.n, before.n) > 1

@@ -349,7 +349,7 @@ enum { FEW = 22 };
 
 static int stack_asks(int class, const entry_t *e)
 {
-    const int mpr = e->ask == ASK_MPR || e->ask == ASK_MPR_WARM || e->ask == ASK_PENETRATION;
+    const int mpr = entry_is_mpr(e);
     const int verdict = e->ask == ASK_MPR_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM;
     switch (class) {
     case STACK_ANY: return 1;

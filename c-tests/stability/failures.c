@@ -544,7 +544,7 @@ static int ball_and_tip(int which)
         if (!answered(&x)) {
             wrong++;
         } else if (e->ask != ASK_MPR_INTERSECT && e->ask != ASK_GJK_INTERSECT && e->ask != ASK_MPR_INTERSECT_WARM) {
-            const int is_mpr = e->ask == ASK_MPR || e->ask == ASK_MPR_WARM;
+            const int is_mpr = entry_is_mpr(e);
             wrong += !(x.depth >= truth - noise) || (x.has_proof && !(x.lower <= truth + noise))
                 || !(is_mpr ? mpr_within(x.depth, truth, tol, noise, answer_supports(&x)) : x.depth <= truth + tol + noise);
             worst = fmax(worst, x.depth);

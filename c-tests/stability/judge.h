@@ -103,6 +103,12 @@ static inline int entry_is_minimum(const entry_t *e)
     return !e->system && (e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_MINIMUM);
 }
 
+/* Does it promise the global minimum within the larger of the tolerance and 0.1 % of the depth? */
+static inline int entry_is_mpr(const entry_t *e)
+{
+    return e->ask == ASK_MPR || e->ask == ASK_MPR_WARM || e->ask == ASK_PENETRATION;
+}
+
 static sigjmp_buf judge_back;
 static volatile unsigned long judge_calls, judge_limit;
 
@@ -402,10 +408,11 @@ static inline double judge_reach(const shape_t *s, const double origin[3], const
 
 /* Witness points: each in its shape and at its supporting plane, their difference
  * the depth, pos their middle. */
-static inline int judge_witness(const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
-    /* at the cap they are as far off as the gap that is left */
-    double reached = x->code == CCD_LIMIT ? fmax(q->tol, x->depth - x->lower) : q->tol;
+    /* at the cap they are as far off as the gap that is left, and else as the depth may be */
+    double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) : q->tol;
+    double reached = x->code == CCD_LIMIT ? fmax(promised, x->depth - x->lower) : promised;
     double bound = reached + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p1[3], p2[3], value, l2;
     int faults = 0, i, j, k;
     for (i = 0; i < 3; i++) {
@@ -515,7 +522,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         if (!(fabs(sqrt(n2) - 1) <= tolerance(TOL_UNIT)) || !(along > 0))
             faults |= FAULT_NOT_UNIT;
         value = truth_value(a, b, x->normal) / along;
-        faults |= judge_witness(x, a, b, q);
+        faults |= judge_witness(e, x, a, b, q);
         if (x->lower > t->depth + q->noise + gap)
             faults |= FAULT_FALSE_PROOF;
         /* supports counts pairs of calls; the callbacks of one pair may be a first sample each */

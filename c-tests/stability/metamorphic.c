@@ -90,7 +90,7 @@ int main(int argc, char **argv)
                 y = ask(e, &a, &b, tol * scale, t.n, 100000);
                 bound = 4 * (pair_noise(&p.a, &p.b) + pair_noise(&a, &b) / scale);
                 bound += exact ? 0 : 2 * tol;
-                if (e->ask == ASK_MPR)
+                if (entry_is_mpr(e))
                     bound += tolerance(TOL_PROMISED) * p.truth.depth;
                 if (x.code != y.code) {
                     wrong = 1;
