@@ -258,6 +258,7 @@ mod tests {
     use super::*;
     use crate::math::{Real, perpendicular};
     use crate::paper::incremental::{self, Shortcut};
+    use crate::shapes::Random;
     use nalgebra::Rotation3;
 
     /// A support function, placed.
@@ -265,6 +266,10 @@ mod tests {
 
     fn at(c: Vec3, f: impl Fn(&Vec3) -> Vec3 + 'static) -> Shape {
         Box::new(move |d| c + f(d))
+    }
+
+    fn at_turned(c: Vec3, turn: Rotation3<Real>, f: impl Fn(&Vec3) -> Vec3 + 'static) -> Shape {
+        Box::new(move |d| c + turn * f(&(turn.inverse() * d)))
     }
 
     fn ball(c: Vec3, r: Real) -> Shape {
@@ -410,6 +415,28 @@ mod tests {
                     "{} lower at {step} rad",
                     p.depth - there
                 );
+            }
+        }
+    }
+
+    /// Half discs, tilted to each other: round on one side of each, and a corner is a minimum.
+    #[test]
+    fn half_discs() {
+        let mut r = Random::new(12);
+        let half_disc = |r: &mut Random, at: Vec3| -> Shape {
+            let (turn, radius) = (r.rotation(), r.within(0.5, 1.0));
+            at_turned(at, turn, move |d| {
+                let arc = Vec3::new(d.x, d.y, 0.0) * (radius / d.x.hypot(d.y));
+                let end = Vec3::x() * radius.copysign(d.x);
+                if d.y > 0.0 { arc } else { end }
+            })
+        };
+        for _ in 0..300 {
+            let at = r.vector(0.4);
+            let (a, b) = (half_disc(&mut r, Vec3::zeros()), half_disc(&mut r, at));
+            let start = r.direction();
+            if let (Answer::Hit(p), _) = solve(&a, &b, start, &mut Memory::default(), TOLERANCE) {
+                check(&a, &b, &p, TOLERANCE, 2.0);
             }
         }
     }

@@ -343,6 +343,16 @@ impl Discs {
         sum
     }
 
+    /// Is a sample beside the axis along `n` where its disc says?
+    #[cold]
+    pub fn is_on_rim(&self, n: &Vec3, sample: &Sample) -> bool {
+        self.of.iter().enumerate().all(|(o, own)| {
+            let disc = &own.at.disc;
+            let carrier = vertex(sample, o) - disc.point(&sample.n) - own.at.carrier;
+            !disc.is_along(n) || disc.across(&carrier).norm() <= ALIKE * disc.radius
+        })
+    }
+
     /// Keeps the latest sample's in lane `i`.
     #[inline]
     pub fn put(&mut self, i: usize) {
@@ -496,18 +506,20 @@ impl Discs {
     }
 
     /// Notes the samples that show a vertex again from another direction than the latest, `new`,
-    /// as bits, and returns whose vertex does, a bit for each object. Nothing was seen before a
-    /// disc is confirmed: by a sample that is not of the pair that it was found by.
+    /// as bits, and the `span` of the directions, squared. Returns whose vertex does, a bit for each
+    /// object, and how wide apart at most. Nothing was seen before a disc is confirmed: by a sample
+    /// that is not of the pair that it was found by.
     #[inline(never)]
     pub fn see(
         &mut self,
         new: &Sample,
         kept: &[Sample],
         seen: &mut [u32; 2],
+        span: &mut Lanes,
         same: Real,
         asked: usize,
-    ) -> u32 {
-        let mut whose = 0;
+    ) -> (u32, Real) {
+        let (mut whose, mut widest) = (0, 0.0);
         for (o, own) in self.of.iter_mut().enumerate() {
             if !(own.latest.carries > 0.0) {
                 continue;
@@ -538,9 +550,21 @@ impl Discs {
             if own.confirmed {
                 seen[o % 2] |= shown | seen_by_pair;
                 whose |= u32::from(shown != 0) << o;
+                let [a, b] = own.at.pair;
+                let pair = (a - b).norm_squared();
+                for (i, old) in kept.iter().enumerate() {
+                    let turned = (new.n - old.n).norm_squared();
+                    if shown >> i & 1 != 0 {
+                        span[i] = larger(turned, span[i]);
+                        widest = larger(turned, widest);
+                    }
+                    if seen_by_pair >> i & 1 != 0 {
+                        span[i] = larger(pair, span[i]);
+                    }
+                }
             }
         }
-        whose
+        (whose, widest)
     }
 
     /// The samples whose vertices carry a disc and were not seen, of those not `seen`, as bits.
@@ -742,17 +766,18 @@ mod tests {
         let [found, none] = discs.discs();
         assert!((found.radius - 0.5).abs() < SAME && !none.is_there());
         assert!(found.axis.cross(&Vec3::z()).norm() < SAME);
+        let mut span = Lanes::default();
         let mut seen = [0; 2];
         // The pair itself.
         discs.look_at(&a, SAME);
         discs.put(0);
         discs.look_at(&b, SAME);
-        assert_eq!(discs.see(&b, &[a], &mut seen, SAME, 2), 0);
+        assert_eq!(discs.see(&b, &[a], &mut seen, &mut span, SAME, 2).0, 0);
         assert_eq!((seen, discs.is_doubted()), ([0; 2], true));
         discs.put(1);
         let left = c.p.v - discs.look_at(&c, SAME);
         assert!((left - Vec3::z() * 0.4).norm() < SAME);
-        assert_eq!(discs.see(&c, &[a, b], &mut seen, SAME, 3), 1);
+        assert_eq!(discs.see(&c, &[a, b], &mut seen, &mut span, SAME, 3).0, 1);
         assert_eq!((seen, discs.is_doubted()), ([3, 0], false));
     }
 
@@ -824,13 +849,14 @@ mod tests {
             assert!((found.radius - 0.5).abs() < 1e-6 && !none.is_there());
             assert!(found.axis.cross(&Vec3::z()).norm() < 1e-4, "{found:?}");
             at_once += usize::from(!discs.is_doubted());
+            let mut span = Lanes::default();
             let mut seen = [0; 2];
             for (i, sample) in [a, b].iter().enumerate() {
                 discs.look_at(sample, same);
                 discs.put(i);
             }
             discs.look_at(&c, same);
-            discs.see(&c, &[a, b], &mut seen, same, 3);
+            discs.see(&c, &[a, b], &mut seen, &mut span, same, 3);
             assert!(discs.is_doubted() == (seen[0] == 0));
             confirmed += usize::from(!discs.is_doubted());
         }

@@ -33,7 +33,7 @@
 //!
 //! Polytopes and balls need none of what discs need: `BENT` is false until one is met.
 
-use super::curvature::{ALIKE, BALL, CLOSE, smooth};
+use super::curvature::{ALIKE, BALL, CLOSE, FAR, smooth};
 use super::cuts::{Cuts, Step};
 use super::discs::{Discs, Shown, fits, moves, shows};
 use super::lanes::{CUTS, Lanes, Vectors};
@@ -53,6 +53,9 @@ const SAME: Real = 0.06;
 /// Share of the tolerance by which a depth may differ for what a round part is not: it leaves room
 /// for rounding, the radius and the model. Free.
 const HAIR: Real = 0.25;
+/// How far beside a disc's axis its rim is asked for, radians: enough to tell it from the others'
+/// points by five digits.
+const BESIDE: Real = 1e-4;
 /// Support points that show a vertex again and nothing else, after which the search has lost
 /// its way, or the balls do not fit: as many as are kept.
 const DOUBTS: u32 = CUTS as u32;
@@ -116,6 +119,10 @@ pub struct Flat {
     samples: [Sample; CUTS],
     /// The samples whose vertex of that object was seen along two directions, as bits.
     seen: [u32; 2],
+    /// How far apart the directions are that showed it, squared.
+    span: Lanes,
+    /// The same of the latest sample.
+    widest: Real,
     newest: usize,
     /// The best sample, …
     best: Sample,
@@ -168,6 +175,8 @@ impl Flat {
             h: Lanes::default(),
             samples: [Sample::default(); CUTS],
             seen: [0; 2],
+            span: Lanes::default(),
+            widest: 0.0,
             newest: 0,
             best: Sample::default(),
             best_h: 0.0,
@@ -288,7 +297,8 @@ impl Flat {
                         }
                     };
                 }
-                if self.came_true::<BENT>(&new, known) {
+                let found = self.came_true::<BENT>(&new, known);
+                if found && !(axial && self.is_cut_short(md, &n)?) {
                     return Ok(Outcome::Found);
                 }
                 if axial {
@@ -308,6 +318,26 @@ impl Flat {
                 }
             }
         }
+    }
+
+    /// Does the disc whose axis is along `n` lack the rim above which the origin is, as a part of a
+    /// disc does? Asked beside the axis. The answer's slopes are three points of the disc, the
+    /// first one there.
+    #[cold]
+    fn is_cut_short<A: SupportMap, B: SupportMap>(
+        &mut self,
+        md: &MinkowskiDifference<A, B>,
+        n: &Vec3,
+    ) -> Result<bool, Fault> {
+        let [rim, side, other] = self.minimum.slopes;
+        let (Some(discs), Some(way)) = (self.discs, unit(&(rim * 2.0 - side - other))) else {
+            return Ok(false);
+        };
+        let d = n + way * BESIDE;
+        let d = d * (1.0 / d.norm());
+        self.asked += 1;
+        self.minimum.hit.iterations += 1;
+        Ok(!discs.is_on_rim(n, &Sample::new(&d, md.support(&d)?)))
     }
 
     /// What was asked, after a search that found no minimum.
@@ -577,6 +607,7 @@ impl Flat {
         }
         // Nothing is to be seen of what is not round.
         if self.is_round::<BENT>() {
+            self.span[i] = self.widest;
             for (o, bits) in self.seen.iter_mut().enumerate() {
                 *bits = *bits & !(1 << i) | (seen >> o & 1) << i;
             }
@@ -600,6 +631,7 @@ impl Flat {
     /// Notes that a vertex kept in another sample was seen.
     #[inline(always)]
     fn see_again(&mut self, i: usize, seen: u32) {
+        self.span[i] = larger(self.widest, self.span[i]);
         for (o, bits) in self.seen.iter_mut().enumerate() {
             *bits |= (seen >> o & 1) << i;
         }
@@ -700,6 +732,7 @@ impl Flat {
         let same = self.same::<BENT>();
         let kept = &self.samples[..self.cuts.len.min(CUTS)];
         let mut seen = 0;
+        self.widest = 0.0;
         if self.rho() > 0.0 {
             for (i, old) in kept.iter().enumerate() {
                 let dn = new.n - old.n;
@@ -708,21 +741,28 @@ impl Flat {
                     if shows(radius, &(dn * radius), &d, same) {
                         self.seen[o] |= 1 << i;
                         seen |= 1 << o;
+                        let turned = dn.norm_squared();
+                        self.span[i] = larger(turned, self.span[i]);
+                        self.widest = larger(turned, self.widest);
                     }
                 }
             }
         }
         if let (true, Some(discs)) = (BENT, &mut self.discs) {
-            seen |= discs.see(new, kept, &mut self.seen, same, self.asked);
+            let (whose, widest) =
+                discs.see(new, kept, &mut self.seen, &mut self.span, same, self.asked);
+            seen |= whose;
+            self.widest = larger(widest, self.widest);
         }
         seen
     }
 
     /// The samples of which a ball's vertex was not seen twice, as bits; but for those so near
     /// to unit `n` that their cuts are right without the ball, within a quarter of the
-    /// tolerance.
+    /// tolerance. Where n is to be the direction that `answers`, also those that were seen too far
+    /// from it.
     #[inline(always)]
-    fn unseen<const BENT: bool>(&self, n: &Vec3) -> u32 {
+    fn unseen<const BENT: bool>(&self, n: &Vec3, answers: bool) -> u32 {
         let mut unseen = 0;
         for (radius, seen) in self.radius.iter().zip(self.seen) {
             if *radius > 0.0 {
@@ -732,10 +772,14 @@ impl Flat {
         if let Some(discs) = self.discs::<BENT>() {
             unseen |= discs.unseen(&self.seen);
         }
+        let dn2 = (Lanes::all(1.0) - self.n.dot(n)) * 2.0;
+        if answers && self.is_round::<BENT>() {
+            unseen |= (dn2 - self.span * (FAR * FAR)).mask(|beyond| beyond > 0.0);
+        }
         if unseen == 0 {
             return 0;
         }
-        let mut lift = (Lanes::all(1.0) - self.n.dot(n)) * self.rho();
+        let mut lift = dn2 * (0.5 * self.rho());
         if let Some(discs) = self.discs::<BENT>() {
             lift = lift + discs.lifts(n);
         }
@@ -752,7 +796,7 @@ impl Flat {
         let k = new.h - self.rho();
         let came = self.trust.came_true(new.h, self.tolerance);
         if !came
-            || self.unseen::<BENT>(&new.n) & step.bits() != 0
+            || self.unseen::<BENT>(&new.n, true) & step.bits() != 0
             || !self.is_lowest::<BENT>(&new.n, k, &step)
         {
             return false;
@@ -814,7 +858,7 @@ impl Flat {
         let mut n = self.direction(&step);
         let close = gain.abs() <= self.tolerance;
         if step.inside || close && self.is_round::<BENT>() && self.trust.radius >= FIRST {
-            let doubtful = self.doubtful::<BENT>(&step, &n);
+            let doubtful = self.doubtful::<BENT>(&step, &n, close);
             if doubtful != 0 {
                 self.doubts += 1;
                 if self.doubts > DOUBTS {
@@ -992,12 +1036,12 @@ impl Flat {
     /// The active cuts whose balls must be seen, as bits. Of three cuts the best one's own
     /// point is as good as any.
     #[inline(always)]
-    fn doubtful<const BENT: bool>(&self, step: &Step, n: &Vec3) -> u32 {
+    fn doubtful<const BENT: bool>(&self, step: &Step, n: &Vec3, close: bool) -> u32 {
         if self.asked == 1 {
             // A remembered ball is no more than a guess.
             return step.bits();
         }
-        let unseen = self.unseen::<BENT>(n);
+        let unseen = self.unseen::<BENT>(n, close);
         if unseen == 0 {
             return 0;
         }
