@@ -120,20 +120,12 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
         Some(c) => Simplex::around(c, &set.v(c)),
         None => Simplex::new(),
     };
-    let held = if set.len() > simplex.len() {
-        search(
-            inquiry,
-            set,
-            simplex,
-            *dir,
-            Proof::Solid,
-            |inquiry, set, _, dir| Ok(set.farther(dir, inquiry.precision.touch())),
-        )?
-    } else {
-        search(inquiry, set, simplex, *dir, Proof::Solid, |_, _, _, _| {
-            Ok(None)
-        })?
+    let known = set.len() > simplex.len();
+    let stand_in = |inquiry: &mut Inquiry<'_, A, B>, set: &mut SupportSet<N>, _: &_, dir: &Vec3| {
+        let touch = inquiry.precision.touch();
+        Ok(if known { set.farther(dir, touch) } else { None })
     };
+    let held = search(inquiry, set, simplex, *dir, Proof::Solid, stand_in)?;
     Ok(held.corners)
 }
 
