@@ -139,7 +139,7 @@ pub struct Curvature {
     /// Measured along a second direction too.
     pub spread: bool,
     /// The square of the widest angle of a smooth pair.
-    span2: Real,
+    pub span2: Real,
     /// Every smooth pair so far was exactly parallel: a ball, which is part of every
     /// piece of D.
     round: bool,

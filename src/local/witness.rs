@@ -309,7 +309,8 @@ mod tests {
         let dirs = [(0.0, 0.0), (-0.05, 0.02)].map(|(x, y)| Vec3::new(x, y, 1.0).normalize());
         let (guess, ..) = found(&mut known, &shape, &dirs, &curvature);
         assert!(!guess.own && !guess.believed);
-        curvature.error = BALL;
+        // As a pair tells that is wider apart.
+        (curvature.error, curvature.span2) = (BALL, 0.01);
         let mut known = Known::default();
         let (witnesses, answer, next) = found(&mut known, &shape, &dirs, &curvature);
         assert!(!witnesses.own && witnesses.believed);
