@@ -28,6 +28,8 @@ mkdir "$tree"
 
 # Cargo wants every crate of the manifest at hand, those of the tests too.
 awk '/^\[/ { drop = /^\[(workspace|dev-dependencies|\[(test|bench|example)\])/ } !drop' Cargo.toml >"$tree/Cargo.toml"
+# A workspace of its own, wherever it is unpacked.
+printf '\n[workspace]\n' >>"$tree/Cargo.toml"
 mkdir "$tree/.cargo"
 (cd "$tree" && cargo vendor --quiet)
 cat >"$tree/.cargo/config.toml" <<'END'
