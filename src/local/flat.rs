@@ -1256,9 +1256,11 @@ impl Flat {
         }
         let at = core::array::from_fn(|i| self.with_discs::<BENT>(i, discs) - to);
         let weights = hull(&at, self.cuts.len).1;
-        let less = |i: &usize, j: &usize| weights[*i].total_cmp(&weights[*j]);
-        let [i, j, k, _] = OTHERS[(0..CUTS).min_by(less)?];
-        Some(([i, j, k], [i, j, k].map(|i| weights[i]), 3))
+        // Rust 1.85 does not see that these are in range.
+        let weight = |i: usize| weights[i % CUTS];
+        let least = (0..CUTS).min_by(|i, j| weight(*i).total_cmp(&weight(*j)))?;
+        let [i, j, k, _] = OTHERS[least % CUTS];
+        Some(([i, j, k], [i, j, k].map(weight), 3))
     }
 }
 
