@@ -136,7 +136,9 @@ impl<const N: usize> SupportSet<N> {
     /// The points of obj1 and obj2 that the point with this index is the difference of.
     #[inline(always)]
     pub fn witnesses(&self, i: usize) -> [Vec3; 2] {
-        self.points.each_ref().map(|points| points[Self::at(i)])
+        // Spelt out: in a map that is not inlined the bounds are checked.
+        let i = Self::at(i);
+        [self.points[0][i], self.points[1][i]]
     }
 
     /// The unit direction that the point was asked along; zero for one that was not.
