@@ -39,6 +39,7 @@ const MODULES: &[(&str, Option<Phase>)] = &[
     ("paper", Some(Phase::Search)),
     ("hull", Some(Phase::Proof)),
     ("contacts", Some(Phase::Patch)),
+    ("api", Some(Phase::Rest)),
     ("contact", Some(Phase::Rest)),
     ("ffi", Some(Phase::Rest)),
     ("query", Some(Phase::Rest)),
