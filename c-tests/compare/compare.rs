@@ -330,6 +330,20 @@ fn kept_cases_replay() {
     );
 }
 
+/// A depth that would do, along a direction that does not, is told wrong by the file too.
+#[test]
+fn a_move_aside_is_told() {
+    let aside = Program::c("aside")
+        .source("compare/aside.c")
+        .system_headers()
+        .link_system()
+        .without_tools()
+        .build()
+        .quiet();
+    aside.run([""; 0]);
+    aside.swapped().run([""; 0]);
+}
+
 /// Objects of which no hull can be had: the answers themselves are played back.
 #[test]
 fn answers_are_played_back_where_points_do_not_do() {

@@ -150,6 +150,7 @@ static int shows(const compare_t *compare, const sample_t *s, int side, case_t *
 {
     case_object_t object[2];
     shown_t w;
+    verdict_t v;
     ccd_t ccd;
     case_prepare(c, object, &ccd);
     memset(&w, 0, sizeof w);
@@ -177,7 +178,11 @@ static int shows(const compare_t *compare, const sample_t *s, int side, case_t *
         for (k = 0; k < 3; k++)
             c->truth_dir[k] = (double)again.truth_dir.v[k];
     }
-    return sample_verdict(&w.q, &w.answer, &c->truth) == s->verdict[side];
+    v = sample_verdict(&w.q, &w.answer, &c->truth);
+    if (v == VERDICT_RIGHT && sample_has_depth(&w.q, &w.answer)
+        && case_moved_overlap(c, compare->library[side].mpr_intersect, (double)w.answer.depth, &w.answer.dir))
+        v = VERDICT_UNSOUND;
+    return v == s->verdict[side];
 }
 
 static void settings_of(const sample_t *s, case_t *c)

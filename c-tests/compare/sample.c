@@ -161,7 +161,7 @@ static int same_answer(int call, const answer_t *a, const answer_t *b)
                || b->dir.v[0] != b->dir.v[0]);
 }
 
-static int has_depth(const query_t *q, const answer_t *a)
+int sample_has_depth(const query_t *q, const answer_t *a)
 {
     return a->hit && a->depth > 0 && q->call != COMPARE_INTERSECT_MPR && q->call != COMPARE_INTERSECT_GJK;
 }
@@ -293,7 +293,7 @@ static const double PICO = 1e12;
 static void count_side(compare_side_t *to, const sample_t *s, int side)
 {
     const answer_t *a = &s->answer[side];
-    const verdict_answer_t judged = { a->hit, has_depth(s->q, a), (double)a->depth, 1 };
+    const verdict_answer_t judged = { a->hit, sample_has_depth(s->q, a), (double)a->depth, 1 };
     count_add(&to->verdict[s->verdict[side]], 1);
     count_add(&to->hits, (uint64_t)a->hit);
     count_add(&to->supports, s->asked[side].supports);
@@ -310,7 +310,7 @@ static void count_change(compare_call_t *to, const sample_t *s)
     const answer_t *theirs = &s->answer[COMPARE_THEIRS], *ours = &s->answer[COMPARE_OURS];
     count_add(&to->found, ours->hit && !theirs->hit);
     count_add(&to->gone, theirs->hit && !ours->hit);
-    if (has_depth(s->q, theirs) && has_depth(s->q, ours)) {
+    if (sample_has_depth(s->q, theirs) && sample_has_depth(s->q, ours)) {
         const double octaves = log2((double)theirs->depth / (double)ours->depth);
         const int bin = octaves > 0 ? 1 + (int)fmin(octaves * COMPARE_BINS_OCTAVE, COMPARE_BINS - 2) : 0;
         count_add(&to->both, 1);
@@ -394,7 +394,7 @@ void sample_query(const compare_t *compare, const query_t *q, const answer_t *ow
     if (ask_all(compare, &s, own) == 0) {
         for (side = 0; side < COMPARE_SIDES; side++) {
             s.verdict[side] = sample_verdict(q, &s.answer[side], &s.truth);
-            if (s.verdict[side] == VERDICT_RIGHT && has_depth(q, &s.answer[side]))
+            if (s.verdict[side] == VERDICT_RIGHT && sample_has_depth(q, &s.answer[side]))
                 check_move(compare, &s, side);
         }
         count_add(&c->judged, 1);

@@ -42,6 +42,9 @@ int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t
 
 verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth);
 
+/* A hit by a call that answers how deep. */
+int sample_has_depth(const query_t *q, const answer_t *a);
+
 void seen_clear(seen_t *seen);
 
 /* Atomic; n of the counts' own unit. */
