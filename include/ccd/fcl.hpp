@@ -318,10 +318,12 @@ inline void must_be_answered(int code)
         throw std::invalid_argument("ccd/fcl.hpp: a pose, a shape or a tolerance is no number");
 }
 
+/* The sum tells in a few additions; each number is looked at where that overflows. */
 template <typename S>
 void must_be_finite(const Placed<S> &a, const Placed<S> &b)
 {
-    if (!a.pose->matrix().allFinite() || !b.pose->matrix().allFinite())
+    if (!std::isfinite((a.pose->matrix() + b.pose->matrix()).sum())
+        && !(a.pose->matrix().allFinite() && b.pose->matrix().allFinite()))
         must_be_answered(CCD_BAD_INPUT);
 }
 
@@ -428,6 +430,40 @@ bool is_ours(const fcl::CollisionGeometry<S> *a, const fcl::CollisionGeometry<S>
     return detail::is_ours(a) && detail::is_ours(b);
 }
 
+/** @cond */
+namespace detail {
+
+/* Of two geometries that this library answers for. */
+template <typename S>
+std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, const fcl::CollisionGeometry<S> *g2,
+                    const fcl::Transform3<S> &tf2, const fcl::CollisionRequest<S> &request,
+                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings)
+{
+    if (request.isSatisfied(result))
+        return result.numContacts();
+    const Placed<S> a(g1, tf1), b(g2, tf2);
+    must_be_finite(a, b);
+    const ccd_t ccd = query<S>(request.gjk_tolerance);
+    Overlap hit = Overlap();
+    if (!overlap(a, b, ccd, request.enable_contact, warm, &hit))
+        return result.numContacts();
+    if (request.enable_contact)
+        Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings);
+    else
+        result.addContact(fcl::Contact<S>(g1, g2, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
+    return result.numContacts();
+}
+
+/* Does this library answer for the pair and the request? */
+template <typename S>
+bool answers(const fcl::CollisionGeometry<S> *g1, const fcl::CollisionGeometry<S> *g2, const fcl::CollisionRequest<S> &request)
+{
+    return !request.enable_cost && request.num_max_contacts > 0 && ccd_fcl::is_ours(g1, g2);
+}
+
+} // namespace detail
+/** @endcond */
+
 /** fcl::collide of two geometries in their poses, with a state (NULL: cold). Depths within the
  * larger of request.gjk_tolerance (metres) and a thousandth of the depth. Returns the number
  * of contacts in result. Throws std::invalid_argument where a pose is not finite. */
@@ -436,21 +472,8 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
                     const fcl::Transform3<S> &tf2, const fcl::CollisionRequest<S> &request,
                     fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings = Settings())
 {
-    if (request.enable_cost || request.num_max_contacts == 0 || !is_ours(g1, g2))
-        return fcl::collide(g1, tf1, g2, tf2, request, result);
-    if (request.isSatisfied(result))
-        return result.numContacts();
-    const detail::Placed<S> a(g1, tf1), b(g2, tf2);
-    detail::must_be_finite(a, b);
-    const ccd_t ccd = detail::query<S>(request.gjk_tolerance);
-    detail::Overlap hit = detail::Overlap();
-    if (!detail::overlap(a, b, ccd, request.enable_contact, warm, &hit))
-        return result.numContacts();
-    if (request.enable_contact)
-        detail::Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings);
-    else
-        result.addContact(fcl::Contact<S>(g1, g2, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
-    return result.numContacts();
+    return detail::answers(g1, g2, request) ? detail::collide(g1, tf1, g2, tf2, request, result, warm, settings)
+                                            : fcl::collide(g1, tf1, g2, tf2, request, result);
 }
 
 /** fcl::collide of two objects, with their state. */
@@ -460,8 +483,9 @@ std::size_t collide(const fcl::CollisionObject<S> *o1, const fcl::CollisionObjec
                     const Settings &settings = Settings())
 {
     const fcl::CollisionGeometry<S> *g1 = o1->collisionGeometry().get(), *g2 = o2->collisionGeometry().get();
-    ccd_warm_t *warm = is_ours(g1, g2) ? cache.state(o1, o2) : nullptr;
-    return collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result, warm, settings);
+    return detail::answers(g1, g2, request)
+               ? detail::collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result, cache.state(o1, o2), settings)
+               : fcl::collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result);
 }
 
 /** fcl::distance of two geometries in their poses, with a state (NULL: cold): min_distance is
