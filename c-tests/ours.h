@@ -12,6 +12,8 @@
 #ifndef TESTS_OURS_H
 #define TESTS_OURS_H
 
+#include "calls.h"
+
 #include <ccd/paper.h>
 #include <ccd/warm.h>
 
@@ -19,52 +21,63 @@
 #define OURS(name) name
 #else
 #define OURS(name) rs_##name
-#endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-int OURS(ccdGJKIntersect)(const void *obj1, const void *obj2, const ccd_t *ccd);
-int OURS(ccdGJKSeparate)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_vec3_t *sep);
-int OURS(ccdGJKPenetration)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
-                            ccd_vec3_t *dir, ccd_vec3_t *pos);
-int OURS(ccdMPRIntersect)(const void *obj1, const void *obj2, const ccd_t *ccd);
-int OURS(ccdMPRPenetration)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
-                            ccd_vec3_t *dir, ccd_vec3_t *pos);
-void OURS(ccdFirstDirDefault)(const void *obj1, const void *obj2, ccd_vec3_t *dir);
-ccd_real_t OURS(ccdVec3PointSegmentDist2)(const ccd_vec3_t *p, const ccd_vec3_t *x0, const ccd_vec3_t *b,
-                                          ccd_vec3_t *witness);
-ccd_real_t OURS(ccdVec3PointTriDist2)(const ccd_vec3_t *p, const ccd_vec3_t *x0, const ccd_vec3_t *b,
-                                      const ccd_vec3_t *c, ccd_vec3_t *witness);
-
-int OURS(ccdMPRPenetrationWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm,
-                                ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
-int OURS(ccdMPRIntersectWarm)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
-void OURS(ccdWarmGuess)(ccd_warm_t *warm, const ccd_vec3_t *dir);
-void OURS(ccdWarmFlip)(ccd_warm_t *warm);
-int OURS(ccdPenetration)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
-                         ccd_penetration_t *out);
-int OURS(ccdIntersect)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
-int OURS(ccdPenetrationLocal)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
-                              ccd_penetration_t *out);
-int OURS(ccdPenetrationIncremental)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
-                                    ccd_penetration_t *out);
-int OURS(ccdPenetrationProven)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm, unsigned want,
-                                ccd_penetration_t *out);
-int OURS(ccdPenetrationAlong)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *dir,
-                              ccd_warm_t *warm, unsigned want, ccd_penetration_t *out);
-int OURS(ccdPenetrationPlanar)(const void *obj1, const void *obj2, const ccd_t *ccd,
-                               const ccd_vec3_t *plane_normal, ccd_warm_t *warm, unsigned want, ccd_penetration_t *out);
-int OURS(ccdSignedDistance)(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t margin1,
-                            ccd_real_t margin2, ccd_real_t max_distance, ccd_warm_t *warm, unsigned want, ccd_distance_t *out);
-int OURS(ccdContacts)(const void *obj1, const void *obj2, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
-                      ccd_contact_t *contacts, int max);
-int OURS(ccdCheck)(const void *obj, ccd_support_fn support, ccd_center_fn center, ccd_check_t *out);
-const char *OURS(ccdImplementation)(void);
-
+/* Each of its plain name's type. */
+#define DECLARE(name, traits) extern __typeof__(name) rs_##name;
+#define DECLARE_PAIR_CALL(name, word, kind, traits) DECLARE(name, traits)
+PAIR_CALLS(DECLARE_PAIR_CALL)
+OTHER_CALLS(DECLARE)
+#undef DECLARE_PAIR_CALL
+#undef DECLARE
 #ifdef __cplusplus
 }
 #endif
+#endif
+
+/* The calls by number. */
+enum {
+#define CALL_NUMBER(name, word, kind, traits) ASK_##word,
+    PAIR_CALLS(CALL_NUMBER)
+#undef CALL_NUMBER
+        ASKS
+};
+
+/* What a call takes and fills besides the objects and their ccd_t; each uses its part. */
+typedef struct {
+    ccd_warm_t *warm;
+    const ccd_vec3_t *along; /* or the plane's, the contacts' normal */
+    ccd_real_t margin1, margin2, max_distance, slop;
+    unsigned want;
+    int max;
+    ccd_real_t *depth;
+    ccd_vec3_t *dir, *pos; /* dir: of ccdGJKSeparate too */
+    ccd_penetration_t *full;
+    ccd_distance_t *distance;
+    ccd_contact_t *contacts;
+} call_rest_t;
+
+#define KIND_YES(f) f(a, b, ccd)
+#define KIND_YES_WARM(f) f(a, b, ccd, x->warm)
+#define KIND_SEPARATION(f) f(a, b, ccd, x->dir)
+#define KIND_DEPTH(f) f(a, b, ccd, x->depth, x->dir, x->pos)
+#define KIND_DEPTH_WARM(f) f(a, b, ccd, x->warm, x->depth, x->dir, x->pos)
+#define KIND_FULL(f) f(a, b, ccd, x->warm, x->want, x->full)
+#define KIND_FULL_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->full)
+#define KIND_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->contacts, x->max)
+#define KIND_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
+
+static inline int call_by_number(int number, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
+{
+    switch (number) {
+#define CALL_CASE(name, word, kind, traits) \
+    case ASK_##word: return KIND_##kind(OURS(name));
+        PAIR_CALLS(CALL_CASE)
+#undef CALL_CASE
+    default: return CCD_BAD_INPUT;
+    }
+}
 
 #endif

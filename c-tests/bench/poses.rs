@@ -14,7 +14,9 @@ use parry3d_f64::shape::Segment;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::lab::libraries::{CPenetration, LIMIT, Libraries, Truth, WANT_ALL, Warm};
+use ccd::internals::ffi::{CCD_LIMIT, CCD_WANT_ALL, ccd_penetration_t};
+
+use crate::lab::libraries::{COLD, Libraries, Truth, zeroed};
 use crate::lab::scene::{Body, Form, Pose, Scene, room};
 
 /// The unit vector `angle` degrees from `n`, turned about an axis across it
@@ -109,8 +111,9 @@ impl<'a> Oracle<'a> {
         let callbacks = &self.libraries.callbacks;
         let settings = self.libraries.ours.settings(callbacks, 1e-10);
         let (mut shapes, words) = room(callbacks, 2);
-        let mut out = CPenetration::default();
-        let mut state = Warm::COLD;
+        // SAFETY: numbers.
+        let mut out: ccd_penetration_t = unsafe { zeroed() };
+        let mut state = COLD;
         let ask = self.libraries.extension.minimum;
         // SAFETY: room for two shapes, placed before they are asked about.
         let code = unsafe {
@@ -118,10 +121,10 @@ impl<'a> Oracle<'a> {
             for k in 0..2 {
                 self.bodies[k].place(callbacks, at[k], &poses[k]);
             }
-            ask(at[0], at[1], &settings, &mut state, WANT_ALL, &mut out)
+            ask(at[0], at[1], &settings, &mut state, CCD_WANT_ALL, &mut out)
         };
         // At the cap the bound is as honest, only wider.
-        (code == 0 || code == LIMIT).then(|| Proven {
+        (code == 0 || code == CCD_LIMIT).then(|| Proven {
             depth: out.depth,
             normal: out.dir.v.into(),
             gap: out.depth - out.depth_lower,

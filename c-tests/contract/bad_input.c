@@ -23,7 +23,7 @@ static void bad_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
     }
 }
 
-static int may_return(const entry_t *entry, int code)
+static int may_return(const call_t *entry, int code)
 {
     if (code == entry->hit || code == entry->miss)
         return 1;
@@ -42,7 +42,7 @@ static double value_along(const shape_t *a, const shape_t *b, const ccd_vec3_t *
 }
 
 /* Runs the query and checks what must hold whatever goes in. */
-static int ask(const entry_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, double size, const char *what)
+static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, double size, const char *what)
 {
     /* 10 ms of a primitive's callbacks. */
     const unsigned long most = 20000;
@@ -54,7 +54,7 @@ static int ask(const entry_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, d
     a->calls = b->calls = 0;
     bad_seen = 0;
     supports = 0;
-    code = entry->call(a, b, ccd, &out);
+    code = run(entry, a, b, ccd, &out);
     CHECK(may_return(entry, code), "%s, %s: returned %d", entry->name, what, code);
     CHECK(a->calls + b->calls <= most, "%s, %s: %lu supports, %.3f s", entry->name, what, a->calls + b->calls,
           (double)(clock() - start) / CLOCKS_PER_SEC);
@@ -65,14 +65,14 @@ static int ask(const entry_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, d
         CHECK(out.depth >= 0 && out.depth <= CCD_REAL_MAX, "%s, %s: depth %g", entry->name, what, (double)out.depth);
         for (i = 0; i < 3; i++)
             CHECK(fabs((double)out.pos.v[i]) <= (double)CCD_REAL_MAX, "%s, %s: pos", entry->name, what);
-        if (entry->call != run_PenetrationAlong)
+        if (entry->number != ASK_ALONG)
             CHECK(value_along(a, b, &out.dir) <= (double)out.depth + 64 * (double)CCD_EPS * size,
                   "%s, %s: depth %g, but it takes %g", entry->name, what, (double)out.depth, value_along(a, b, &out.dir));
     }
     return code;
 }
 
-static void not_numbers(const entry_t *entry)
+static void not_numbers(const call_t *entry)
 {
     const ccd_real_t values[] = {(ccd_real_t)NAN, (ccd_real_t)HUGE_VAL, -(ccd_real_t)HUGE_VAL};
     int round;
@@ -85,7 +85,7 @@ static void not_numbers(const entry_t *entry)
         ccd.support2 = round % 4 < 2 ? shape_support : bad_support;
         bad_from = 1 + (unsigned long)random_below(6);
         bad_value = values[round % 3];
-        bad_axis = random_below(entry->call == run_PenetrationPlanar ? 2 : 3);
+        bad_axis = random_below(entry->number == ASK_PLANAR ? 2 : 3);
         code = ask(entry, &a, &b, &ccd, 10, "a point that is not a number");
         if (bad_seen)
             CHECK(code == (entry->hit == CCD_HIT && (entry->traits & EXTENSION) && !(entry->traits & FROM_CENTERS)
@@ -95,7 +95,7 @@ static void not_numbers(const entry_t *entry)
     }
 }
 
-static void tolerances(const entry_t *entry)
+static void tolerances(const call_t *entry)
 {
     const ccd_real_t values[] = {0, -1, -0.0f, (ccd_real_t)NAN, (ccd_real_t)1e-30, (ccd_real_t)1e-12, 1, (ccd_real_t)HUGE_VAL};
     int round;
@@ -115,7 +115,7 @@ static void tolerances(const entry_t *entry)
     }
 }
 
-static void iterations(const entry_t *entry)
+static void iterations(const call_t *entry)
 {
     int round;
     for (round = 0; round < 200; round++) {
@@ -131,7 +131,7 @@ static void iterations(const entry_t *entry)
     }
 }
 
-static void degenerate(const entry_t *entry)
+static void degenerate(const call_t *entry)
 {
     static const ccd_real_t point[] = {0, 0, 0}, segment[] = {-1, -1, 0, 1, 1, 0},
                             square[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
@@ -166,9 +166,9 @@ static void degenerate(const entry_t *entry)
                     shape_query(&ccd);
                     ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)(1e-4 * sizes[size]);
                     code = ask(entry, &s[0], &s[1], &ccd, 10 * sizes[size], "a degenerate pair");
-                    if (at == 2 && entry->call != run_PenetrationPlanar)
+                    if (at == 2 && entry->number != ASK_PLANAR)
                         CHECK(code == entry->miss, "%s: shapes %d and %d apart, size %g: %d", entry->name, i, k, sizes[size], code);
-                    if (at == 0 && i >= 7 && k >= 7 && entry->call != run_PenetrationPlanar)
+                    if (at == 0 && i >= 7 && k >= 7 && entry->number != ASK_PLANAR)
                         CHECK(code == entry->hit, "%s: solids %d and %d in one place, size %g: %d", entry->name, i, k,
                               sizes[size], code);
                 }
@@ -181,7 +181,7 @@ static void degenerate(const entry_t *entry)
 }
 
 /* Ordinary pairs, of every size, place and tolerance, aligned with the axes or not. */
-static void anywhere(const entry_t *entry)
+static void anywhere(const call_t *entry)
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     int round;
@@ -208,7 +208,7 @@ static void anywhere(const entry_t *entry)
                 s[n].verts = scaled[n];
         }
         shape_move(&s[1], aligned == 1 ? 0 : random_in(-1.2, 1.2) * size, aligned == 2 ? 0 : random_in(-1.2, 1.2) * size,
-                   aligned == 3 || entry->call == run_PenetrationPlanar ? 0 : random_in(-1.2, 1.2) * size);
+                   aligned == 3 || entry->number == ASK_PLANAR ? 0 : random_in(-1.2, 1.2) * size);
         ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)(size * pow(10, random_in(-9, -2)));
         c = ask(entry, &s[0], &s[1], &ccd, 10 * size, "a pair anywhere");
         CHECK(c == entry->hit || c == entry->miss, "%s: good input, returned %d", entry->name, c);

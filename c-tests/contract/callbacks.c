@@ -116,7 +116,7 @@ int main(void)
             }
             if (ccd.first_dir != NULL)
                 ccd.first_dir = first_dir;
-            code = entries[i].call(&a, &b, &ccd, &out);
+            code = run(&entries[i], &a, &b, &ccd, &out);
             CHECK(code == (hit ? entries[i].hit : entries[i].miss), "%s returned %d", entries[i].name, code);
             /* Equal centers alone prove an overlap. */
             CHECK((seen.pairs > 0 || round % 5 == 0) && !seen.expect_second, "%s: both supports every time",

@@ -21,24 +21,16 @@ use harness::{Precision, Program};
 
 const NO_ARGS: [&str; 0] = [];
 
-/// What the extension adds to libccd's symbols.
-const EXTENSION: [&str; 15] = [
-    "ccdCheck",
-    "ccdContacts",
-    "ccdImplementation",
-    "ccdIntersect",
-    "ccdMPRIntersectWarm",
-    "ccdMPRPenetrationWarm",
-    "ccdPenetration",
-    "ccdPenetrationAlong",
-    "ccdPenetrationIncremental",
-    "ccdPenetrationLocal",
-    "ccdPenetrationPlanar",
-    "ccdPenetrationProven",
-    "ccdSignedDistance",
-    "ccdWarmFlip",
-    "ccdWarmGuess",
-];
+/// The functions of the table in calls.h, and whether they are the extension's.
+fn calls() -> Vec<(&'static str, bool)> {
+    let rows = include_str!("../calls.h").lines();
+    let rows = rows.filter_map(|line| line.trim_start().strip_prefix("X("));
+    rows.map(|row| {
+        let name = row.split([',', ')']).next().unwrap_or_default();
+        (name, row.contains("EXTENSION"))
+    })
+    .collect()
+}
 
 /// A program that includes everything it needs from this directory.
 fn program(name: &str) -> Program {
@@ -106,11 +98,43 @@ fn dynamic_symbols(library: &Path) -> BTreeSet<String> {
 
 #[test]
 fn shared_library_exports_libccd_s_symbols_and_the_extension() {
-    let extension = EXTENSION.map(|name| format!("{name} FUNC DEFAULT "));
     let mut expected: BTreeSet<String> = dynamic_symbols(&installed());
     assert_eq!(expected.len(), 18 + 3);
-    expected.extend(extension);
+    let function = |name: &str| format!("{name} FUNC DEFAULT ");
+    for (name, is_extension) in calls() {
+        assert_eq!(expected.contains(&function(name)), !is_extension, "{name}");
+        expected.insert(function(name));
+    }
     assert_eq!(dynamic_symbols(&ours("libccd.so")), expected);
+}
+
+/// Every call of the table is in C++ too, and called from Rust under Miri; those of the extension
+/// are declared by its headers.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn every_call_is_everywhere() {
+    let read = |file: &str| std::fs::read_to_string(harness::root().join(file)).expect(file);
+    let headers = read("include/ccd/warm.h") + &read("include/ccd/paper.h");
+    let places = [
+        ("exported.rs", read("c-tests/tools/exported.rs")),
+        ("ccd.hpp", read("include/ccd/ccd.hpp")),
+    ];
+    assert!(calls().len() > 20);
+    for (name, is_extension) in calls() {
+        let call = format!("{name}(");
+        assert_eq!(headers.contains(&call), is_extension, "{name}");
+        for (place, text) in &places {
+            // In C++ MPR's calls are their warm forms, with or without a state.
+            let is_c_alone = !is_extension && !name.starts_with("ccdGJK");
+            // Called, or handed over to be called.
+            let ways = [call.clone(), format!("({name})"), format!("({name},")];
+            let named = ways.iter().any(|way| text.contains(way));
+            assert!(
+                named || *place == "ccd.hpp" && is_c_alone,
+                "{place}: {name}"
+            );
+        }
+    }
 }
 
 #[test]

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Every entry point that runs callbacks, under one signature, so that a test can go
- * through all of them. Compiled with -DOURS_ALONE. */
+/* Every entry point that runs callbacks, asked in one way, so that a test can go through all
+ * of them. Compiled with -DOURS_ALONE. */
 
 #ifndef TESTS_ENTRIES_H
 #define TESTS_ENTRIES_H
@@ -18,69 +18,30 @@ typedef struct {
     support_t support;
 } outputs_t;
 
-enum { FROM_FIRST_DIR = 1, FROM_CENTERS = 2, STORES_DEPTH = 4, STORES_DIR_POS = 8, MAY_ALLOCATE = 16, EXTENSION = 32,
-       ONE_BY_ONE = 64 /* asks the objects one by one */ };
-
 typedef struct {
     const char *name;
-    int (*call)(const void *obj1, const void *obj2, const ccd_t *ccd, outputs_t *out);
+    int number;    /* of call_by_number */
     int hit, miss; /* what it returns */
     int traits;
-} entry_t;
+} call_t;
 
-static inline int run_GJKIntersect(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    (void)out;
-    return ccdGJKIntersect(a, b, ccd);
-}
+/* What the kinds return. */
+enum {
+    HIT_YES = 1, HIT_YES_WARM = 1, HIT_SEPARATION = 0, HIT_DEPTH = 0, HIT_DEPTH_WARM = 0, HIT_FULL = CCD_HIT,
+    HIT_FULL_ALONG = CCD_HIT, HIT_MANIFOLD = CCD_HIT, HIT_DISTANCE = CCD_HIT,
+    MISS_YES = 0, MISS_YES_WARM = 0, MISS_SEPARATION = -1, MISS_DEPTH = -1, MISS_DEPTH_WARM = -1, MISS_FULL = CCD_MISS,
+    MISS_FULL_ALONG = CCD_MISS, MISS_MANIFOLD = CCD_MISS, MISS_DISTANCE = CCD_MISS
+};
 
-static inline int run_GJKSeparate(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    return ccdGJKSeparate(a, b, ccd, &out->dir);
-}
+static const call_t entries[] = {
+#define ENTRY(name, word, kind, traits) {#name, ASK_##word, HIT_##kind, MISS_##kind, traits},
+    PAIR_CALLS(ENTRY)
+#undef ENTRY
+};
+enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
-static inline int run_GJKPenetration(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    return ccdGJKPenetration(a, b, ccd, &out->depth, &out->dir, &out->pos);
-}
-
-static inline int run_MPRIntersect(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    (void)out;
-    return ccdMPRIntersect(a, b, ccd);
-}
-
-static inline int run_MPRPenetration(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    return ccdMPRPenetration(a, b, ccd, &out->depth, &out->dir, &out->pos);
-}
-
-/* The extension, from a cold state and with that state again; out is the second answer. */
-static inline int run_MPRPenetrationWarm(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    ccd_warm_t warm;
-    memset(&warm, 0, sizeof warm);
-    ccdMPRPenetrationWarm(a, b, ccd, &warm, NULL, NULL, NULL);
-    return ccdMPRPenetrationWarm(a, b, ccd, &warm, &out->depth, &out->dir, &out->pos);
-}
-
-static inline int run_MPRIntersectWarm(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    ccd_warm_t warm;
-    (void)out;
-    memset(&warm, 0, sizeof warm);
-    ccdMPRIntersectWarm(a, b, ccd, &warm);
-    return ccdMPRIntersectWarm(a, b, ccd, &warm);
-}
-
-static inline int run_Intersect(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    ccd_warm_t warm;
-    (void)out;
-    memset(&warm, 0, sizeof warm);
-    ccdIntersect(a, b, ccd, &warm);
-    return ccdIntersect(a, b, ccd, &warm);
-}
+/* __ccdSupport as an entry like the others. */
+static const call_t support_entry = {"__ccdSupport", ASKS, 0, 0, 0};
 
 static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
 {
@@ -93,111 +54,65 @@ static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
     return code;
 }
 
-/* Cold, then from the state that this left. */
-static inline int run_twice(int (*query)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned,
-                                         ccd_penetration_t *),
-                            const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+static inline int stored_distance(int code, const ccd_distance_t *d, outputs_t *out)
 {
-    ccd_warm_t warm;
-    ccd_penetration_t p;
-    memset(&warm, 0, sizeof warm);
-    query(a, b, ccd, &warm, CCD_WANT_ALL, &p);
-    return stored(query(a, b, ccd, &warm, CCD_WANT_ALL, &p), &p, out);
-}
-
-static inline int run_Penetration(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    return run_twice(ccdPenetration, a, b, ccd, out);
-}
-
-static inline int run_PenetrationLocal(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    return run_twice(ccdPenetrationLocal, a, b, ccd, out);
-}
-
-static inline int run_PenetrationIncremental(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    return run_twice(ccdPenetrationIncremental, a, b, ccd, out);
-}
-
-static inline int run_PenetrationProven(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    return run_twice(ccdPenetrationProven, a, b, ccd, out);
-}
-
-static inline int run_PenetrationAlong(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    ccd_vec3_t dir = {{1, 2, -2}};
-    ccd_warm_t warm;
-    ccd_penetration_t p;
-    memset(&warm, 0, sizeof warm);
-    ccdPenetrationAlong(a, b, ccd, &dir, &warm, CCD_WANT_ALL, &p);
-    return stored(ccdPenetrationAlong(a, b, ccd, &dir, &warm, CCD_WANT_ALL, &p), &p, out);
-}
-
-static inline int run_PenetrationPlanar(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    ccd_vec3_t normal = {{0, 0, 3}};
-    ccd_warm_t warm;
-    ccd_penetration_t p;
-    memset(&warm, 0, sizeof warm);
-    ccdPenetrationPlanar(a, b, ccd, &normal, &warm, CCD_WANT_ALL, &p);
-    return stored(ccdPenetrationPlanar(a, b, ccd, &normal, &warm, CCD_WANT_ALL, &p), &p, out);
-}
-
-/* Contacts whatever the pose is; what it returns is whether the pair overlaps. */
-static inline int run_Contacts(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    const ccd_vec3_t normal = {{1, 2, -2}};
-    ccd_contact_t contacts[4];
-    int n = ccdContacts(a, b, ccd, &normal, CCD_REAL(0.01), contacts, 4);
-    return n < 1 ? n : run_PenetrationLocal(a, b, ccd, out);
-}
-
-static inline int run_SignedDistance(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    ccd_warm_t warm;
-    ccd_distance_t d;
-    int code;
-    memset(&warm, 0, sizeof warm);
-    ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, CCD_WANT_ALL, &d);
-    code = ccdSignedDistance(a, b, ccd, 0, 0, INFINITY, &warm, CCD_WANT_ALL, &d);
+    int i;
     /* Open bounds have a sign too. */
     if (code == CCD_LIMIT)
-        code = d.distance < 0 ? CCD_HIT : CCD_MISS;
+        code = d->distance < 0 ? CCD_HIT : CCD_MISS;
     if (code == CCD_HIT) {
-        out->depth = -d.distance;
-        out->dir = d.normal;
-        for (code = 0; code < 3; code++)
-            out->pos.v[code] = (d.point1.v[code] + d.point2.v[code]) / 2;
-        return CCD_HIT;
+        out->depth = -d->distance;
+        out->dir = d->normal;
+        for (i = 0; i < 3; i++)
+            out->pos.v[i] = (d->point1.v[i] + d->point2.v[i]) / 2;
     }
     return code;
 }
 
-static const entry_t entries[] = {
-    {"ccdGJKIntersect", run_GJKIntersect, 1, 0, FROM_FIRST_DIR},
-    {"ccdGJKSeparate", run_GJKSeparate, 0, -1, FROM_FIRST_DIR | MAY_ALLOCATE},
-    {"ccdGJKPenetration", run_GJKPenetration, 0, -1, FROM_FIRST_DIR | STORES_DEPTH | STORES_DIR_POS | MAY_ALLOCATE},
-    {"ccdMPRIntersect", run_MPRIntersect, 1, 0, FROM_CENTERS},
-    {"ccdMPRPenetration", run_MPRPenetration, 0, -1, FROM_CENTERS | STORES_DEPTH | STORES_DIR_POS},
-    {"ccdMPRPenetrationWarm", run_MPRPenetrationWarm, 0, -1, FROM_CENTERS | STORES_DEPTH | STORES_DIR_POS | EXTENSION},
-    {"ccdMPRIntersectWarm", run_MPRIntersectWarm, 1, 0, FROM_CENTERS | EXTENSION},
-    {"ccdIntersect", run_Intersect, 1, 0, EXTENSION},
-    {"ccdPenetration", run_Penetration, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
-    {"ccdPenetrationLocal", run_PenetrationLocal, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
-    {"ccdPenetrationIncremental", run_PenetrationIncremental, CCD_HIT, CCD_MISS,
-     STORES_DEPTH | STORES_DIR_POS | EXTENSION},
-    {"ccdPenetrationProven", run_PenetrationProven, CCD_HIT, CCD_MISS,
-     STORES_DEPTH | STORES_DIR_POS | MAY_ALLOCATE | EXTENSION},
-    {"ccdPenetrationAlong", run_PenetrationAlong, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
-    {"ccdContacts", run_Contacts, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION | ONE_BY_ONE},
-    {"ccdPenetrationPlanar", run_PenetrationPlanar, CCD_HIT, CCD_MISS, STORES_DEPTH | STORES_DIR_POS | EXTENSION},
-    {"ccdSignedDistance", run_SignedDistance, CCD_HIT, CCD_MISS,
-     STORES_DEPTH | STORES_DIR_POS | MAY_ALLOCATE | EXTENSION},
-};
-
-enum { ENTRIES = sizeof entries / sizeof entries[0] };
+/* Asks an entry. The extension's are asked from a cold state, and with that state again; out is
+ * the second answer. */
+static inline int run(const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    const ccd_vec3_t along = {{1, 2, -2}}, plane = {{0, 0, 3}}, up = {{0, 1, 0}};
+    ccd_contact_t contacts[4];
+    ccd_penetration_t full;
+    ccd_distance_t distance;
+    ccd_warm_t warm;
+    call_rest_t rest;
+    int number = entry->number, code;
+    if (number == ASKS) {
+        __ccdSupport(a, b, &up, ccd, &out->support);
+        return 0;
+    }
+    memset(&warm, 0, sizeof warm);
+    memset(&rest, 0, sizeof rest);
+    rest.warm = &warm;
+    rest.along = number == ASK_PLANAR ? &plane : &along;
+    rest.max_distance = INFINITY;
+    rest.slop = CCD_REAL(0.01);
+    rest.want = CCD_WANT_ALL;
+    rest.max = 4;
+    rest.full = &full;
+    rest.distance = &distance;
+    rest.contacts = contacts;
+    if (number == ASK_CONTACTS) {
+        code = call_by_number(number, a, b, ccd, &rest);
+        if (code < 1)
+            return code;
+        /* Contacts whatever the pose is; what it returns is whether the pair overlaps. */
+        number = ASK_LOCAL;
+    }
+    if (entry->traits & EXTENSION)
+        call_by_number(number, a, b, ccd, &rest);
+    rest.depth = &out->depth;
+    rest.dir = &out->dir;
+    rest.pos = &out->pos;
+    code = call_by_number(number, a, b, ccd, &rest);
+    if (number == ASK_DISTANCE)
+        return stored_distance(code, &distance, out);
+    /* The others of the extension fill a struct, and libccd's the outputs themselves. */
+    return (entry->traits & EXTENSION) && (entry->traits & STORES) && number != ASK_MPR_WARM ? stored(code, &full, out) : code;
+}
 
 /* --- pairs ------------------------------------------------------------------ */
 
@@ -226,9 +141,9 @@ static inline shape_t random_polygon(void)
 
 /* A pair that certainly overlaps (deep) or certainly does not, and its query. What the
  * entry does not use is NULL. */
-static inline void random_pair(const entry_t *entry, int overlapping, shape_t *a, shape_t *b, ccd_t *ccd)
+static inline void random_pair(const call_t *entry, int overlapping, shape_t *a, shape_t *b, ccd_t *ccd)
 {
-    const int planar = entry->call == run_PenetrationPlanar;
+    const int planar = entry->number == ASK_PLANAR;
     double angle = random_in(0, 6.28), z = planar ? 0 : random_in(-1, 1), across = sqrt(1 - z * z);
     double distance = overlapping ? random_in(0, 0.1) : random_in(4, 6);
     *a = planar ? random_polygon() : random_shape();

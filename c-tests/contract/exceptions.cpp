@@ -20,7 +20,7 @@ static void leave()
     throw std::runtime_error("out of here");
 }
 
-static void test(const entry_t *entry)
+static void test(const call_t *entry)
 {
     int caught = 0;
     for (int round = 0; round < 20; round++) {
@@ -30,14 +30,14 @@ static void test(const entry_t *entry)
         leaving_pair(entry, round % 2, &a, &b, &ccd);
         calls_left = 0;
         memset(&expected, 0, sizeof expected);
-        const int expected_code = entry->call(&a, &b, &ccd, &expected);
+        const int expected_code = run(entry, &a, &b, &ccd, &expected);
         int last = 1;
         for (; last <= 50; last++) {
             destroyed = 0;
             calls_left = last;
             try {
                 Watcher watcher;
-                entry->call(&a, &b, &ccd, &out);
+                run(entry, &a, &b, &ccd, &out);
                 break;
             } catch (const std::runtime_error &e) {
                 CHECK(e.what() == std::string("out of here"), "%s: the exception thrown", entry->name);
@@ -46,7 +46,7 @@ static void test(const entry_t *entry)
             }
             calls_left = 0;
             memset(&out, 0, sizeof out);
-            const int code = entry->call(&a, &b, &ccd, &out);
+            const int code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == expected_code && same_bits(&out, &expected, sizeof out), "%s after an exception", entry->name);
         }
         CHECK(last > 1, "%s runs callbacks", entry->name);

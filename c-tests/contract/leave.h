@@ -38,7 +38,7 @@ static void leaving_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *di
 }
 
 /* A pair whose query will be left. */
-static inline void leaving_pair(const entry_t *entry, int overlapping, shape_t *a, shape_t *b, ccd_t *ccd)
+static inline void leaving_pair(const call_t *entry, int overlapping, shape_t *a, shape_t *b, ccd_t *ccd)
 {
     random_pair(entry, overlapping, a, b, ccd);
     ccd->support1 = ccd->support2 = leaving_support;
@@ -48,18 +48,8 @@ static inline void leaving_pair(const entry_t *entry, int overlapping, shape_t *
         ccd->first_dir = leaving_first_dir;
 }
 
-/* __ccdSupport as an entry like the others. */
-static inline int run_Support(const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
-{
-    ccd_vec3_t dir = {{0, 1, 0}};
-    __ccdSupport(a, b, &dir, ccd, &out->support);
-    return 0;
-}
-
-static const entry_t support_entry = {"__ccdSupport", run_Support, 0, 0, 0};
-
 /* Runs test(entry) for every entry point that runs callbacks. */
-static inline void for_each_entry(void (*test)(const entry_t *entry))
+static inline void for_each_entry(void (*test)(const call_t *entry))
 {
     int i;
     for (i = 0; i < ENTRIES; i++)

@@ -14,7 +14,7 @@ static void leave(void)
     longjmp(home, 7);
 }
 
-static void test(const entry_t *entry)
+static void test(const call_t *entry)
 {
     static int left;
     static int round;
@@ -27,17 +27,17 @@ static void test(const entry_t *entry)
         leaving_pair(entry, round % 2, &a, &b, &ccd);
         calls_left = 0;
         memset(&expected, 0, sizeof expected);
-        expected_code = entry->call(&a, &b, &ccd, &expected);
+        expected_code = run(entry, &a, &b, &ccd, &expected);
         for (last = 1; last <= 50; last++) {
             calls_left = last;
             if (setjmp(home) == 0) {
-                entry->call(&a, &b, &ccd, &out);
+                run(entry, &a, &b, &ccd, &out);
                 break;
             }
             left++;
             calls_left = 0;
             memset(&out, 0, sizeof out);
-            code = entry->call(&a, &b, &ccd, &out);
+            code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == expected_code && same_bits(&out, &expected, sizeof out), "%s after a longjmp", entry->name);
         }
         CHECK(last > 1, "%s runs callbacks", entry->name);

@@ -174,7 +174,7 @@ static void check_queries(void)
 {
     int i, round;
     for (i = 0; i < ENTRIES; i++) {
-        const entry_t *entry = &entries[i];
+        const call_t *entry = &entries[i];
         unsigned long most = 0;
         for (round = 0; round < 100; round++) {
             const int overlapping = round % 4 != 0;
@@ -186,11 +186,11 @@ static void check_queries(void)
             random_pair(entry, overlapping, &a, &b, &ccd);
             ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)1e-5;
             watch(0);
-            code = entry->call(&a, &b, &ccd, &out);
+            code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s returned %d", entry->name, code);
             CHECK(live_count == 0, "%s left %d blocks behind", entry->name, live_count);
             /* A distance takes none while the objects are apart. */
-            if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->call == run_SignedDistance))
+            if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->number == ASK_DISTANCE))
                 CHECK(taken == 0, "%s took %lu blocks", entry->name, taken);
             most = taken > most ? taken : most;
             for (fail = 1; fail <= (taken < 40 ? taken : 40); fail++) {
@@ -198,7 +198,7 @@ static void check_queries(void)
                 memset(&out, 0x5a, sizeof out);
                 before = out;
                 watch(fail);
-                code = entry->call(&a, &b, &ccd, &out);
+                code = run(entry, &a, &b, &ccd, &out);
                 CHECK(live_count == 0, "%s without memory left %d blocks behind", entry->name, live_count);
                 if (!(entry->traits & EXTENSION)) {
                     CHECK(code == -2, "%s without block %lu returned %d", entry->name, fail, code);

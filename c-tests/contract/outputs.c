@@ -13,7 +13,7 @@ static void fill(void *memory, int byte, size_t size)
     memset(memory, byte, size);
 }
 
-static void check_hit(const entry_t *entry, const outputs_t *out)
+static void check_hit(const call_t *entry, const outputs_t *out)
 {
     int i;
     if (entry->traits & STORES_DEPTH)
@@ -29,7 +29,7 @@ int main(void)
 {
     int i, round;
     for (i = 0; i < ENTRIES; i++) {
-        const entry_t *entry = &entries[i];
+        const call_t *entry = &entries[i];
         for (round = 0; round < 300; round++) {
             const int overlapping = round % 2;
             shape_t a, b, a2, b2;
@@ -41,7 +41,7 @@ int main(void)
             b2 = b;
             fill(&out, 0x5a, sizeof out);
             before = out;
-            code = entry->call(&a, &b, &ccd, &out);
+            code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s returned %d", entry->name, code);
             if (overlapping)
                 check_hit(entry, &out);
@@ -50,7 +50,7 @@ int main(void)
 
             /* The same objects, the same bits. */
             again = before;
-            code = entry->call(&a2, &b2, &ccd, &again);
+            code = run(entry, &a2, &b2, &ccd, &again);
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s returned %d", entry->name, code);
             CHECK(same_bits(&out, &again, sizeof out), "%s: other bits the second time", entry->name);
             CHECK(a.calls == a2.calls && b.calls == b2.calls, "%s: other supports the second time", entry->name);
@@ -66,14 +66,14 @@ int main(void)
                 garbage.center1 = ccd.center1;
                 garbage.center2 = ccd.center2;
             }
-            if (entry->traits & FROM_FIRST_DIR || entry->call == run_PenetrationProven)
+            if (entry->traits & FROM_FIRST_DIR || entry->number == ASK_PROVEN)
                 garbage.epa_tolerance = ccd.epa_tolerance;
-            else if (entry->call == run_SignedDistance)
+            else if (entry->number == ASK_DISTANCE)
                 garbage.dist_tolerance = ccd.dist_tolerance;
             else
                 garbage.mpr_tolerance = ccd.mpr_tolerance;
             again = before;
-            code = entry->call(&a2, &b2, &garbage, &again);
+            code = run(entry, &a2, &b2, &garbage, &again);
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s with garbage: %d", entry->name, code);
             CHECK(same_bits(&out, &again, sizeof out), "%s reads what it should not", entry->name);
         }

@@ -17,14 +17,14 @@ static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}}, across = {{2, 0, 0
 static int ask_for(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm,
                    unsigned want, ccd_penetration_t *out)
 {
-    switch (query) {
-    case PENETRATION: return OURS(ccdPenetration)(a, b, ccd, warm, want, out);
-    case LOCAL: return OURS(ccdPenetrationLocal)(a, b, ccd, warm, want, out);
-    case INCREMENTAL: return OURS(ccdPenetrationIncremental)(a, b, ccd, warm, want, out);
-    case PROVEN: return OURS(ccdPenetrationProven)(a, b, ccd, warm, want, out);
-    case ALONG: return OURS(ccdPenetrationAlong)(a, b, ccd, dir, warm, want, out);
-    default: return OURS(ccdPenetrationPlanar)(a, b, ccd, dir, warm, want, out);
-    }
+    static const int number[QUERIES] = {ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_ALONG, ASK_PLANAR};
+    call_rest_t rest;
+    memset(&rest, 0, sizeof rest);
+    rest.warm = warm;
+    rest.along = dir;
+    rest.want = want;
+    rest.full = out;
+    return call_by_number(number[query], a, b, ccd, &rest);
 }
 
 static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm,
@@ -77,83 +77,6 @@ typedef struct {
     ccd_vec3_t dir, pos;
 } outputs_t;
 
-typedef int (*asking_t)(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out);
-
-#define PENETRATES(call, query) \
-    static int call(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out) \
-    { \
-        return ask_for(query, a, b, ccd, rest->dir_at, warm, rest->want, rest->no_out ? NULL : &out->penetration); \
-    }
-PENETRATES(penetration, PENETRATION)
-PENETRATES(local, LOCAL)
-PENETRATES(incremental, INCREMENTAL)
-PENETRATES(proven, PROVEN)
-PENETRATES(along, ALONG)
-PENETRATES(planar, PLANAR)
-
-static int distance(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    return OURS(ccdSignedDistance)(a, b, ccd, rest->margin1, rest->margin2, rest->max_distance, warm, rest->want,
-                                   rest->no_out ? NULL : &out->distance);
-}
-
-static int contacts(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    (void)warm;
-    return OURS(ccdContacts)(a, b, ccd, rest->dir_at, rest->slop, rest->no_out ? NULL : out->contact, rest->max);
-}
-
-static int intersect(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    (void)rest, (void)out;
-    return OURS(ccdIntersect)(a, b, ccd, warm);
-}
-
-static int mpr_intersect_warm(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm,
-                              outputs_t *out)
-{
-    (void)rest, (void)out;
-    return OURS(ccdMPRIntersectWarm)(a, b, ccd, warm);
-}
-
-static int mpr_intersect(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    (void)rest, (void)out, (void)warm;
-    return OURS(ccdMPRIntersect)(a, b, ccd);
-}
-
-static int gjk_intersect(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    (void)rest, (void)out, (void)warm;
-    return OURS(ccdGJKIntersect)(a, b, ccd);
-}
-
-static int mpr_warm(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    return rest->no_out ? OURS(ccdMPRPenetrationWarm)(a, b, ccd, warm, NULL, NULL, NULL)
-                        : OURS(ccdMPRPenetrationWarm)(a, b, ccd, warm, &out->depth, &out->dir, &out->pos);
-}
-
-static int mpr(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    (void)warm;
-    return rest->no_out ? OURS(ccdMPRPenetration)(a, b, ccd, NULL, NULL, NULL)
-                        : OURS(ccdMPRPenetration)(a, b, ccd, &out->depth, &out->dir, &out->pos);
-}
-
-static int gjk(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    (void)warm;
-    return rest->no_out ? OURS(ccdGJKPenetration)(a, b, ccd, NULL, NULL, NULL)
-                        : OURS(ccdGJKPenetration)(a, b, ccd, &out->depth, &out->dir, &out->pos);
-}
-
-static int separate(const void *a, const void *b, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
-{
-    (void)warm;
-    return OURS(ccdGJKSeparate)(a, b, ccd, rest->no_out ? NULL : &out->dir);
-}
-
 enum { MPR_TOLERANCE = 1, EPA_TOLERANCE = 2, DIST_TOLERANCE = 4, CHECKS_TOLERANCE = 8, TAKES_DIR = 16, TAKES_WANT = 32,
        NEEDS_OUT = 64, NEEDS_CENTRES = 128, NO_CENTRES = 256, NEEDS_FIRST_DIR = 512, TAKES_MARGINS = 1024,
        TAKES_SLOP = 2048, FILLS = CHECKS_TOLERANCE | TAKES_WANT | NEEDS_OUT };
@@ -161,27 +84,50 @@ enum { MPR_TOLERANCE = 1, EPA_TOLERANCE = 2, DIST_TOLERANCE = 4, CHECKS_TOLERANC
 /* Every call that asks the callbacks: what it returns for the good question, and for a bad one. */
 static const struct {
     const char *name;
-    asking_t ask;
-    int good, bad, traits;
+    int ask, good, bad, traits;
 } calls[] = {
-    {"ccdPenetration", penetration, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
-    {"ccdPenetrationLocal", local, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
-    {"ccdPenetrationIncremental", incremental, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
-    {"ccdPenetrationProven", proven, CCD_HIT, CCD_BAD_INPUT, FILLS | EPA_TOLERANCE},
-    {"ccdPenetrationAlong", along, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
-    {"ccdPenetrationPlanar", planar, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
-    {"ccdSignedDistance", distance, CCD_HIT, CCD_BAD_INPUT, FILLS | DIST_TOLERANCE | TAKES_MARGINS},
-    {"ccdContacts", contacts, 4, CCD_BAD_INPUT, NEEDS_OUT | TAKES_DIR | TAKES_SLOP | NO_CENTRES},
-    {"ccdIntersect", intersect, 1, 0, 0},
-    {"ccdMPRPenetrationWarm", mpr_warm, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
-    {"ccdMPRIntersectWarm", mpr_intersect_warm, 1, 0, NEEDS_CENTRES},
-    {"ccdMPRPenetration", mpr, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
-    {"ccdMPRIntersect", mpr_intersect, 1, 0, NEEDS_CENTRES},
-    {"ccdGJKPenetration", gjk, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
-    {"ccdGJKSeparate", separate, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
-    {"ccdGJKIntersect", gjk_intersect, 1, 0, NO_CENTRES | NEEDS_FIRST_DIR},
+    {"ccdPenetration", ASK_PENETRATION, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
+    {"ccdPenetrationLocal", ASK_LOCAL, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
+    {"ccdPenetrationIncremental", ASK_INCREMENTAL, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
+    {"ccdPenetrationProven", ASK_PROVEN, CCD_HIT, CCD_BAD_INPUT, FILLS | EPA_TOLERANCE},
+    {"ccdPenetrationAlong", ASK_ALONG, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
+    {"ccdPenetrationPlanar", ASK_PLANAR, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
+    {"ccdSignedDistance", ASK_DISTANCE, CCD_HIT, CCD_BAD_INPUT, FILLS | DIST_TOLERANCE | TAKES_MARGINS},
+    {"ccdContacts", ASK_CONTACTS, 4, CCD_BAD_INPUT, NEEDS_OUT | TAKES_DIR | TAKES_SLOP | NO_CENTRES},
+    {"ccdIntersect", ASK_INTERSECT, 1, 0, 0},
+    {"ccdMPRPenetrationWarm", ASK_MPR_WARM, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
+    {"ccdMPRIntersectWarm", ASK_MPR_INTERSECT_WARM, 1, 0, NEEDS_CENTRES},
+    {"ccdMPRPenetration", ASK_MPR, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
+    {"ccdMPRIntersect", ASK_MPR_INTERSECT, 1, 0, NEEDS_CENTRES},
+    {"ccdGJKPenetration", ASK_GJK, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
+    {"ccdGJKSeparate", ASK_SEPARATE, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
+    {"ccdGJKIntersect", ASK_GJK_INTERSECT, 1, 0, NO_CENTRES | NEEDS_FIRST_DIR},
 };
 enum { CALLS = sizeof calls / sizeof calls[0] };
+typedef char every_call_is_there[(int)CALLS == (int)ASKS ? 1 : -1];
+
+static int ask_number(int number, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+{
+    call_rest_t x;
+    memset(&x, 0, sizeof x);
+    x.warm = warm;
+    x.along = rest->dir_at;
+    x.margin1 = rest->margin1;
+    x.margin2 = rest->margin2;
+    x.max_distance = rest->max_distance;
+    x.slop = rest->slop;
+    x.want = rest->want;
+    x.max = rest->max;
+    if (!rest->no_out) {
+        x.depth = &out->depth;
+        x.dir = &out->dir;
+        x.pos = &out->pos;
+        x.full = &out->penetration;
+        x.distance = &out->distance;
+        x.contacts = out->contact;
+    }
+    return call_by_number(number, &one, &other, ccd, &x);
+}
 
 /* Asks, with a state and without: the code, and nothing written where that is the bad one. */
 static void expect(int call, const ccd_t *ccd, const rest_t *rest, int code, const char *why)
@@ -197,7 +143,7 @@ static void expect(int call, const ccd_t *ccd, const rest_t *rest, int code, con
     for (i = 0; i < 2; i++) {
         memcpy(&out, &before, sizeof out);
         warm = warm_before;
-        answer = calls[call].ask(&one, &other, ccd, &r, i ? NULL : &warm, &out);
+        answer = ask_number(calls[call].ask, ccd, &r, i ? NULL : &warm, &out);
         CHECK(answer == code, "%s, %s%s: %d", calls[call].name, why, i ? ", without a state" : "", answer);
         if (code == calls[call].bad) {
             CHECK(same_bits(&out, &before, sizeof out), "%s, %s: an output was written", calls[call].name, why);
@@ -236,7 +182,7 @@ static void bad_points(int call, const rest_t *rest)
         memcpy(&out, &before, sizeof out);
         warm = good_state;
         asked = 0;
-        answer = calls[call].ask(&one, &other, &ccd, rest, &warm, &out);
+        answer = ask_number(calls[call].ask, &ccd, rest, &warm, &out);
         if (asked <= bad_call) {
             CHECK(answer == calls[call].good, "%s: %d of good points", calls[call].name, answer);
             return;
@@ -353,7 +299,7 @@ static void bad_input(void)
     rest.want = CCD_WANT_ALL;
     rest.dir_at = &rest.dir;
     for (call = 0; call < CALLS; call++) {
-        rest.dir = calls[call].ask == along ? way : calls[call].ask == planar ? up : across;
+        rest.dir = calls[call].ask == ASK_ALONG ? way : calls[call].ask == ASK_PLANAR ? up : across;
         expect(call, &good, &rest, calls[call].good, "the good question");
         bad_objects(call, &rest, strange);
         bad_tolerances(call, &rest, inf);

@@ -14,16 +14,16 @@ typedef struct {
     unsigned first, second;
     unsigned long frame; /* when it was asked for last; 0: an empty place */
     ccd_warm_t warm;
-} entry_t;
+} slot_t;
 
 typedef struct { /* all zeros: empty */
-    entry_t *entry;
+    slot_t *entry;
     size_t size, used; /* a power of two, at least twice the used ones */
     unsigned long frame;
 } states_t;
 
 /* The place of a pair, or the empty one where it belongs. */
-static entry_t *place(entry_t *entry, size_t size, unsigned first, unsigned second)
+static slot_t *place(slot_t *entry, size_t size, unsigned first, unsigned second)
 {
     size_t i = (first * 2654435761u ^ second * 2246822519u) >> 7;
     for (i &= size - 1; entry[i].frame; i = (i + 1) & (size - 1))
@@ -36,7 +36,7 @@ static entry_t *place(entry_t *entry, size_t size, unsigned first, unsigned seco
 static int make_room(states_t *s)
 {
     size_t i, kept = 0, size = 64;
-    entry_t *entry;
+    slot_t *entry;
     for (i = 0; i < s->size; i++)
         kept += s->entry[i].frame && s->entry[i].frame + 1 >= s->frame;
     while (size < 4 * (kept + 1))
@@ -58,7 +58,7 @@ static int make_room(states_t *s)
  * there is no memory, which is cold too. */
 static ccd_warm_t *state_of(states_t *s, unsigned first, unsigned second)
 {
-    entry_t *e;
+    slot_t *e;
     if (2 * (s->used + 1) > s->size && !make_room(s))
         return NULL;
     e = place(s->entry, s->size, first, second);

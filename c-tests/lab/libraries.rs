@@ -12,10 +12,14 @@
 //! method pays the same for them.
 
 use std::ffi::{CStr, CString, c_char, c_int, c_uint, c_ulong, c_void};
+use std::mem::MaybeUninit;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use ccd::internals::ffi::{ccd_center_fn, ccd_first_dir_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
+use ccd::internals::ffi::{
+    CCD_WARM_REALS, ccd_center_fn, ccd_distance_t, ccd_first_dir_fn, ccd_penetration_t,
+    ccd_support_fn, ccd_t, ccd_vec3_t, ccd_warm_t,
+};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
 
 use crate::harness;
@@ -33,46 +37,19 @@ type Query = unsafe extern "C-unwind" fn(
 ) -> c_int;
 type Yes = unsafe extern "C-unwind" fn(*const c_void, *const c_void, *const ccd_t) -> c_int;
 
-/// `ccd_warm_t`: the benchmark only stores it.
-#[repr(C, align(16))]
-#[derive(Clone, Copy)]
-pub struct Warm(pub [u8; 256]);
+/// A state that is cold.
+pub const COLD: ccd_warm_t = ccd_warm_t {
+    reals: [0.0; CCD_WARM_REALS],
+    words: [0; 4],
+};
 
-impl Warm {
-    pub const COLD: Warm = Warm([0; 256]);
-}
-
-/// `CCD_WANT_ALL` of `<ccd/warm.h>`.
-pub const WANT_ALL: c_uint = 3;
-/// `CCD_LIMIT` of `<ccd/warm.h>`.
-pub const LIMIT: c_int = 1;
-
-/// `ccd_penetration_t` of `<ccd/warm.h>`.
-#[repr(C)]
-#[derive(Clone, Copy, Default)]
-pub struct CPenetration {
-    pub depth: f64,
-    pub depth_lower: f64,
-    pub dir: ccd_vec3_t,
-    pub normal: ccd_vec3_t,
-    pub pos: ccd_vec3_t,
-    pub point1: ccd_vec3_t,
-    pub point2: ccd_vec3_t,
-    pub support_calls: c_ulong,
-    pub iterations: c_ulong,
-}
-
-/// `ccd_distance_t` of `<ccd/warm.h>`.
-#[repr(C)]
-#[derive(Clone, Copy, Default)]
-pub struct CDistance {
-    pub distance: f64,
-    pub distance_upper: f64,
-    pub normal: ccd_vec3_t,
-    pub point1: ccd_vec3_t,
-    pub point2: ccd_vec3_t,
-    pub support_calls: c_ulong,
-    pub iterations: c_ulong,
+/// An answer of the extension's, to be filled.
+///
+/// # Safety
+/// All bytes zero must be a `T`.
+pub unsafe fn zeroed<T>() -> T {
+    // SAFETY: the caller's contract.
+    unsafe { MaybeUninit::zeroed().assume_init() }
 }
 
 type WarmDistance = unsafe extern "C-unwind" fn(
@@ -82,30 +59,34 @@ type WarmDistance = unsafe extern "C-unwind" fn(
     f64,
     f64,
     f64,
-    *mut Warm,
+    *mut ccd_warm_t,
     c_uint,
-    *mut CDistance,
+    *mut ccd_distance_t,
 ) -> c_int;
 type WarmQuery = unsafe extern "C-unwind" fn(
     *const c_void,
     *const c_void,
     *const ccd_t,
-    *mut Warm,
+    *mut ccd_warm_t,
     c_uint,
-    *mut CPenetration,
+    *mut ccd_penetration_t,
 ) -> c_int;
 type WarmMpr = unsafe extern "C-unwind" fn(
     *const c_void,
     *const c_void,
     *const ccd_t,
-    *mut Warm,
+    *mut ccd_warm_t,
     *mut f64,
     *mut ccd_vec3_t,
     *mut ccd_vec3_t,
 ) -> c_int;
 
-type WarmYes =
-    unsafe extern "C-unwind" fn(*const c_void, *const c_void, *const ccd_t, *mut Warm) -> c_int;
+type WarmYes = unsafe extern "C-unwind" fn(
+    *const c_void,
+    *const c_void,
+    *const ccd_t,
+    *mut ccd_warm_t,
+) -> c_int;
 
 /// What libccd's API offers, of either library.
 #[derive(Clone, Copy)]
@@ -119,7 +100,7 @@ pub struct Classic {
 /// What `<ccd/warm.h>` adds.
 #[derive(Clone, Copy)]
 pub struct Extension {
-    pub guess: unsafe extern "C-unwind" fn(*mut Warm, *const ccd_vec3_t),
+    pub guess: unsafe extern "C-unwind" fn(*mut ccd_warm_t, *const ccd_vec3_t),
     pub mpr: WarmMpr,
     pub mpr_intersect: WarmYes,
     pub local: WarmQuery,

@@ -5,13 +5,15 @@
 
 use std::ffi::{c_int, c_void};
 
-use ccd::internals::ffi::{ccd_t, ccd_vec3_t};
+use ccd::internals::ffi::{
+    CCD_LIMIT, CCD_WANT_ALL, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
+};
 use ccd::internals::{
     Answer as Outcome, MinkowskiDifference, Settings, Shortcut, Vec3, incremental,
 };
 
 use super::deep::{Deep, Polytope};
-use super::libraries::{CDistance, CPenetration, Classic, LIMIT, Libraries, Truth, WANT_ALL, Warm};
+use super::libraries::{COLD, Classic, Libraries, Truth, zeroed};
 use super::scene::{Pair, Scene};
 
 /// What a query answered.
@@ -197,10 +199,10 @@ pub fn intersect<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Met
 pub fn intersect_warm<'a>(libraries: &'a Libraries, tolerance: f64) -> Method<'a> {
     let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
     let query = libraries.extension.mpr_intersect;
-    let mut state = Warm::COLD;
+    let mut state = COLD;
     Method::new("MPR intersect", move |_, pair| {
         if pair.frame == 0 {
-            state = Warm::COLD;
+            state = COLD;
         }
         // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
         let yes = unsafe { query(pair.a, pair.b, &settings, &mut state) };
@@ -228,7 +230,7 @@ pub fn extension<'a>(
 ) -> Method<'a> {
     let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
     let calls = libraries.extension;
-    let mut state = Warm::COLD;
+    let mut state = COLD;
     let name = match ask {
         Ask::Local => "local",
         Ask::Minimum => "minimum",
@@ -237,25 +239,36 @@ pub fn extension<'a>(
     Method::new(name, move |_, pair| {
         if let Some(guess) = start.direction(&pair.truth) {
             if start == Start::Centres {
-                state = Warm::COLD;
+                state = COLD;
             } else {
                 let guess = ccd_vec3_t { v: guess };
                 // SAFETY: a state and a direction.
                 unsafe { (calls.guess)(&mut state, &guess) };
             }
         } else if start == Start::None || pair.frame == 0 {
-            state = Warm::COLD;
+            state = COLD;
         }
-        let mut out = CPenetration::default();
+        // SAFETY: numbers.
+        let mut out: ccd_penetration_t = unsafe { zeroed() };
         // SAFETY: queries of <ccd/warm.h> over the callbacks' own shapes.
         let code = unsafe {
             match ask {
-                Ask::Local => {
-                    (calls.local)(pair.a, pair.b, &settings, &mut state, WANT_ALL, &mut out)
-                }
-                Ask::Minimum => {
-                    (calls.minimum)(pair.a, pair.b, &settings, &mut state, WANT_ALL, &mut out)
-                }
+                Ask::Local => (calls.local)(
+                    pair.a,
+                    pair.b,
+                    &settings,
+                    &mut state,
+                    CCD_WANT_ALL,
+                    &mut out,
+                ),
+                Ask::Minimum => (calls.minimum)(
+                    pair.a,
+                    pair.b,
+                    &settings,
+                    &mut state,
+                    CCD_WANT_ALL,
+                    &mut out,
+                ),
                 Ask::Mpr => (calls.mpr)(
                     pair.a,
                     pair.b,
@@ -268,7 +281,7 @@ pub fn extension<'a>(
             }
         };
         // CCD_HIT, or CCD_LIMIT: the best sound answer at the cap.
-        (code == 0 || code == LIMIT).then_some(Answer {
+        (code == 0 || code == CCD_LIMIT).then_some(Answer {
             depth: out.depth,
             dir: out.dir.v,
             lower: out.depth_lower,
@@ -284,17 +297,26 @@ pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64)
     let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
     let [one, two] = margins;
     Method::new("distance", move |_, pair| {
-        let mut state = Warm::COLD;
-        let mut out = CDistance::default();
+        let mut state = COLD;
+        // SAFETY: numbers.
+        let mut out: ccd_distance_t = unsafe { zeroed() };
         // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
         let code = unsafe {
             let far = f64::INFINITY;
             let query = libraries.extension.distance;
             query(
-                pair.a, pair.b, &settings, one, two, far, &mut state, WANT_ALL, &mut out,
+                pair.a,
+                pair.b,
+                &settings,
+                one,
+                two,
+                far,
+                &mut state,
+                CCD_WANT_ALL,
+                &mut out,
             )
         };
-        (code == 0 || code == LIMIT).then_some(Answer {
+        (code == 0 || code == CCD_LIMIT).then_some(Answer {
             depth: -out.distance,
             dir: out.normal.v,
             lower: -out.distance_upper,

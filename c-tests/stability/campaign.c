@@ -174,7 +174,7 @@ int main(int argc, char **argv)
     for (category = 0; category < CATEGORY_COUNT; category++)
         for (k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
-            int rated = e->ask == ASK_MPR || e->ask == ASK_GJK || (e->ask == ASK_MINIMUM && e->state == STATE_NONE);
+            int rated = e->ask == ASK_MPR || e->ask == ASK_GJK || (e->ask == ASK_PROVEN && e->state == STATE_NONE);
             if (!rated || !table[k][category].asked)
                 continue;
             report(e->system ? e->name : e->ask == ASK_MPR ? "**our MPR**" : e->ask == ASK_GJK ? "**our GJK**" : "**minimum**",

@@ -159,8 +159,8 @@ int main(int argc, char **argv)
         {"MPR, warm", 0, ASK_MPR_WARM, STATE_ZERO},
         {"local, warm", 0, ASK_LOCAL, STATE_ZERO},
         {"GJK", 0, ASK_GJK, STATE_NONE},
-        {"minimum", 0, ASK_MINIMUM, STATE_NONE},
-        {"minimum, warm", 0, ASK_MINIMUM, STATE_ZERO},
+        {"minimum", 0, ASK_PROVEN, STATE_NONE},
+        {"minimum, warm", 0, ASK_PROVEN, STATE_ZERO},
     };
     /* where the first method, a cold one, has the contact in each frame */
     static double place[FRAMES][3];

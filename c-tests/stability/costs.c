@@ -243,7 +243,7 @@ static int slowest_minimum(int which)
         {"coaxial cone and capsule", SHAPE_CONE, SHAPE_CAPSULE, {.4, 1, 0}, {.2, .3, 0}, {0, 0, -.3}},
         {"a spheroid around a sphere", SHAPE_ELLIPSOID, SHAPE_SPHERE, {.3, .3, 1}, {.2, 0, 0}, {0, 0, 0}},
     };
-    static const int asks[] = {ASK_GJK, ASK_MINIMUM};
+    static const int asks[] = {ASK_GJK, ASK_PROVEN};
     unsigned long most = 0;
     int i, k, slow = 0, wrong = 0;
     (void)which;
@@ -353,7 +353,7 @@ static int stack_asks(int class, const entry_t *e)
     const int verdict = e->ask == ASK_MPR_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM;
     switch (class) {
     case STACK_ANY: return 1;
-    case STACK_FEW: return mpr || e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_MINIMUM;
+    case STACK_FEW: return mpr || e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_PROVEN;
     case STACK_VERDICT: return verdict || e->ask == ASK_GJK_INTERSECT;
     case STACK_LOCAL: return e->ask == ASK_LOCAL;
     default: return mpr || verdict;
@@ -363,7 +363,7 @@ static int stack_asks(int class, const entry_t *e)
 static int stack_class(const mix_t *p)
 {
     static const double none[3] = {0, 0, 0};
-    entry_t least = {"", 0, ASK_MINIMUM, STATE_NONE};
+    entry_t least = {"", 0, ASK_PROVEN, STATE_NONE};
     const answer_t x = ask(&least, &p->a, &p->b, tol, none, no_end);
     const int flat = (p->a.type == SHAPE_BOX || p->a.type == SHAPE_POLYTOPE) && (p->b.type == SHAPE_BOX || p->b.type == SHAPE_POLYTOPE);
     return x.code == CCD_MISS ? STACK_MISS
@@ -479,7 +479,7 @@ static int small_fiber(int which)
 static int long_mix(unsigned long count)
 {
     static const char *const names[] = {"random", "near", "corners", "grid", "coincident", "resting"};
-    static const int asks[] = {ASK_MPR, ASK_GJK, ASK_MINIMUM};
+    static const int asks[] = {ASK_MPR, ASK_GJK, ASK_PROVEN};
     static mix_t p;
     unsigned long most[MIX_PLACEMENTS][3] = {{0}}, at[MIX_PLACEMENTS][3] = {{0}}, over[MIX_PLACEMENTS][3] = {{0}}, i, all = 0;
     int k;
@@ -527,7 +527,7 @@ int main(int argc, char **argv)
         {"U04", "the slowest MPR, resting", slowest_mpr, MIX_RESTING, HOLDS},
         {"U04", "minima that form a curve or surface", slowest_minimum, 0, HOLDS},
         {"U04", "the slowest GJK, nearly coincident", slowest_minimum_mix, ASK_GJK, HOLDS},
-        {"U04", "the slowest minimum, nearly coincident", slowest_minimum_mix, ASK_MINIMUM, HOLDS},
+        {"U04", "the slowest minimum, nearly coincident", slowest_minimum_mix, ASK_PROVEN, HOLDS},
         {"U07", "yes or no after having been apart", having_been_apart, ASK_MPR_INTERSECT_WARM, HOLDS},
         {"U07", "MPR after having been apart", having_been_apart, ASK_MPR_WARM, HOLDS},
         {"U08", "local with a guess, a little apart", asked_once, 0, HOLDS},

@@ -148,7 +148,7 @@ int main(int argc, char **argv)
             }
             for (k = 0; k < (int)ENTRIES; k++) {
                 const entry_t *e = &entries[k];
-                if (e->system || e->state != STATE_NONE || (e->ask != ASK_MINIMUM && e->ask != ASK_GJK))
+                if (e->system || e->state != STATE_NONE || (e->ask != ASK_PROVEN && e->ask != ASK_GJK))
                     continue;
                 for (t = 0; t < 2; t++) {
                     double tol = tols[t] * pair_size(&p.a, &p.b), noise = pair_noise(&p.a, &p.b);

@@ -15,7 +15,7 @@ static const entry_t libccd_gjk = {"libccd GJK", 1, ASK_GJK, STATE_NONE};
 static const entry_t mpr = {"MPR", 0, ASK_MPR, STATE_NONE};
 static const entry_t mpr_again = {"MPR, again", 0, ASK_MPR_WARM, STATE_AGAIN};
 static const entry_t mpr_against = {"MPR, wrong guess", 0, ASK_MPR_WARM, STATE_AGAINST};
-static const entry_t minimum = {"minimum", 0, ASK_MINIMUM, STATE_NONE};
+static const entry_t minimum = {"minimum", 0, ASK_PROVEN, STATE_NONE};
 
 static int missed(const answer_t *x) { return x->code == CCD_MISS; }
 

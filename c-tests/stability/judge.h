@@ -22,20 +22,6 @@
 
 /* --- asking ------------------------------------------------------------------ */
 
-enum { /* which function */
-    ASK_MPR,
-    ASK_GJK,
-    ASK_SEPARATE,
-    ASK_MPR_INTERSECT,
-    ASK_GJK_INTERSECT,
-    ASK_MPR_WARM,
-    ASK_MPR_INTERSECT_WARM,
-    ASK_PENETRATION,
-    ASK_LOCAL,
-    ASK_MINIMUM,
-    ASK_ALONG
-};
-
 enum { /* what the warm state holds */
     STATE_NONE,  /* NULL */
     STATE_ZERO,  /* all bytes 0 */
@@ -46,7 +32,7 @@ enum { /* what the warm state holds */
 typedef struct {
     const char *name;
     int system; /* libccd's, else ours */
-    int ask, state;
+    int ask, state; /* which call, of ours.h */
 } entry_t;
 
 /* codes beside those of the libraries */
@@ -74,7 +60,7 @@ static const entry_t entries[] = {
     {"GJK intersect", 0, ASK_GJK_INTERSECT, STATE_NONE},
     {"penetration", 0, ASK_PENETRATION, STATE_NONE},
     {"local", 0, ASK_LOCAL, STATE_NONE},
-    {"minimum", 0, ASK_MINIMUM, STATE_NONE},
+    {"minimum", 0, ASK_PROVEN, STATE_NONE},
     {"along", 0, ASK_ALONG, STATE_NONE},
     {"MPR, zero state", 0, ASK_MPR_WARM, STATE_ZERO},
     {"MPR, again", 0, ASK_MPR_WARM, STATE_AGAIN},
@@ -83,8 +69,8 @@ static const entry_t entries[] = {
     {"penetration, again", 0, ASK_PENETRATION, STATE_AGAIN},
     {"local, again", 0, ASK_LOCAL, STATE_AGAIN},
     {"local, wrong guess", 0, ASK_LOCAL, STATE_AGAINST},
-    {"minimum, again", 0, ASK_MINIMUM, STATE_AGAIN},
-    {"minimum, wrong guess", 0, ASK_MINIMUM, STATE_AGAINST},
+    {"minimum, again", 0, ASK_PROVEN, STATE_AGAIN},
+    {"minimum, wrong guess", 0, ASK_PROVEN, STATE_AGAINST},
     {"along, again", 0, ASK_ALONG, STATE_AGAIN},
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
@@ -93,14 +79,14 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
  * the extension's own "local", or "proven", which have a lower bound that closes? NULL: any. */
 static inline int entry_in(const entry_t *e, const char *group)
 {
-    int local = e->ask == ASK_LOCAL, proven = e->ask == ASK_MINIMUM || e->ask == ASK_ALONG;
+    int local = e->ask == ASK_LOCAL, proven = e->ask == ASK_PROVEN || e->ask == ASK_ALONG;
     return !group || strcmp(group, local ? "local" : proven ? "proven" : "compatible") == 0;
 }
 
 /* Does the answer claim to be the global minimum within the tolerance? */
 static inline int entry_is_minimum(const entry_t *e)
 {
-    return !e->system && (e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_MINIMUM);
+    return !e->system && (e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_PROVEN);
 }
 
 /* Does it promise the global minimum within the larger of the tolerance and 0.1 % of the depth? */
@@ -163,6 +149,16 @@ static inline void judge_vec(const ccd_vec3_t *v, double out[3])
         out[i] = (double)v->v[i];
 }
 
+static inline int judge_libccd(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
+{
+#ifdef OURS_ALONE
+    return call_by_number(e->ask, a, b, ccd, x); /* no entry asks for it */
+#else
+    return e->ask == ASK_MPR ? ccdMPRPenetration(a, b, ccd, x->depth, x->dir, x->pos)
+                             : ccdGJKPenetration(a, b, ccd, x->depth, x->dir, x->pos);
+#endif
+}
+
 /* One call of the function itself. */
 static inline void ask_once(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
                             const ccd_vec3_t *along, answer_t *out)
@@ -170,72 +166,32 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     ccd_penetration_t p;
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
-    int code, i, full = 0;
+    call_rest_t rest;
+    const int full = e->ask >= ASK_PENETRATION;
+    int code, i;
     memset(&p, judge_blank, sizeof p);
     memset(&depth, judge_blank, sizeof depth);
     memset(&dir, judge_blank, sizeof dir);
     memset(&pos, judge_blank, sizeof pos);
-    switch (e->ask) {
-    case ASK_MPR:
-#ifndef OURS_ALONE
-        if (e->system) {
-            code = ccdMPRPenetration(a, b, ccd, &depth, &dir, &pos);
-            break;
-        }
-#endif
-        code = OURS(ccdMPRPenetration)(a, b, ccd, &depth, &dir, &pos);
-        break;
-    case ASK_GJK:
-#ifndef OURS_ALONE
-        if (e->system) {
-            code = ccdGJKPenetration(a, b, ccd, &depth, &dir, &pos);
-            break;
-        }
-#endif
-        code = OURS(ccdGJKPenetration)(a, b, ccd, &depth, &dir, &pos);
-        break;
-    case ASK_SEPARATE:
-        code = OURS(ccdGJKSeparate)(a, b, ccd, &pos);
-        if (code == 0) {
-            /* a zero vector keeps no direction: give it the answer's own */
-            double v[3], l;
-            judge_vec(&pos, v);
-            l = sqrt(truth_dot3(v, v));
-            depth = (ccd_real_t)l;
-            for (i = 0; i < 3; i++)
-                dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
-        } else {
-            dir = pos;
-        }
-        break;
-    case ASK_MPR_INTERSECT:
-        code = OURS(ccdMPRIntersect)(a, b, ccd) ? CCD_HIT : CCD_MISS;
-        break;
-    case ASK_GJK_INTERSECT:
-        code = OURS(ccdGJKIntersect)(a, b, ccd) ? CCD_HIT : CCD_MISS;
-        break;
-    case ASK_MPR_INTERSECT_WARM:
-        code = OURS(ccdMPRIntersectWarm)(a, b, ccd, warm) ? CCD_HIT : CCD_MISS;
-        break;
-    case ASK_MPR_WARM:
-        code = OURS(ccdMPRPenetrationWarm)(a, b, ccd, warm, &depth, &dir, &pos);
-        break;
-    case ASK_PENETRATION:
-        code = OURS(ccdPenetration)(a, b, ccd, warm, CCD_WANT_ALL, &p);
-        full = 1;
-        break;
-    case ASK_LOCAL:
-        code = OURS(ccdPenetrationLocal)(a, b, ccd, warm, CCD_WANT_ALL, &p);
-        full = 1;
-        break;
-    case ASK_MINIMUM:
-        code = OURS(ccdPenetrationProven)(a, b, ccd, warm, CCD_WANT_ALL, &p);
-        full = 1;
-        break;
-    default:
-        code = OURS(ccdPenetrationAlong)(a, b, ccd, along, warm, CCD_WANT_ALL, &p);
-        full = 1;
-        break;
+    memset(&rest, 0, sizeof rest);
+    rest.warm = warm;
+    rest.along = along;
+    rest.want = CCD_WANT_ALL;
+    rest.depth = &depth;
+    rest.dir = &dir;
+    rest.pos = &pos;
+    rest.full = &p;
+    code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
+    if (e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM)
+        code = code ? CCD_HIT : CCD_MISS;
+    if (e->ask == ASK_SEPARATE && code == 0) {
+        /* a zero vector keeps no direction: give it the answer's own */
+        double v[3], l;
+        judge_vec(&dir, v);
+        l = sqrt(truth_dot3(v, v));
+        depth = (ccd_real_t)l;
+        for (i = 0; i < 3; i++)
+            dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
     }
     out->code = code;
     if (code != CCD_HIT && code != CCD_LIMIT) {
@@ -537,7 +493,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
             faults |= FAULT_NOT_MINIMUM;
         if (!(x->depth <= fmax(t->depth, 0) + q->tol + gap + 2 * q->noise))
             faults |= FAULT_NOT_MINIMUM;
-        if (e->ask == ASK_MINIMUM && x->code == CCD_HIT
+        if (e->ask == ASK_PROVEN && x->code == CCD_HIT
             && !(x->depth - x->lower <= q->tol + tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b) + 2 * q->noise))
             faults |= FAULT_NO_PROOF;
     }

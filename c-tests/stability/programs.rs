@@ -3,7 +3,7 @@
 
 //! The C programs of this folder: how each is built.
 
-use crate::harness::{self, Executable, Precision, Program};
+use crate::harness::{Executable, Precision, Program};
 
 pub const NO_ARGS: [&str; 0] = [];
 
@@ -32,7 +32,7 @@ fn strict(name: &str) -> Program {
 /// Every pair set under c-tests/pairs.
 #[cfg(not(feature = "single"))]
 pub fn pair_sets() -> Vec<String> {
-    let dir = harness::root().join("c-tests/pairs");
+    let dir = crate::harness::root().join("c-tests/pairs");
     let mut sets: Vec<String> = std::fs::read_dir(&dir)
         .unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
         .map(|entry| entry.expect("a directory entry").path())

@@ -98,7 +98,7 @@ int main(int argc, char **argv)
     static const double degrees[] = {-1, 5, 25, 45, 80, 120, 180}; /* -1: cold */
     enum { STARTS = sizeof degrees / sizeof degrees[0] };
     static const entry_t methods[] = {
-        {"MPR", 0, ASK_MPR_WARM, STATE_ZERO}, {"local", 0, ASK_LOCAL, STATE_ZERO}, {"minimum", 0, ASK_MINIMUM, STATE_ZERO}};
+        {"MPR", 0, ASK_MPR_WARM, STATE_ZERO}, {"local", 0, ASK_LOCAL, STATE_ZERO}, {"minimum", 0, ASK_PROVEN, STATE_ZERO}};
     const int local = argc > 2 && strcmp(argv[2], "local") == 0;
     int pairs = argc > 1 ? atoi(argv[1]) : 1500, i, k, s, failed = 0, deep[3][STARTS];
     double calls[3][STARTS];

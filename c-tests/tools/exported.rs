@@ -10,7 +10,7 @@
 
 use ccd::Real;
 use ccd::internals::ffi::*;
-use std::ffi::{CStr, c_int, c_void};
+use std::ffi::{CStr, c_int, c_uint, c_void};
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
@@ -105,6 +105,22 @@ impl Settings {
         settings
     }
 
+    /// What ccdSignedDistance reads.
+    fn distance() -> Settings {
+        let mut settings = MaybeUninit::<ccd_t>::uninit();
+        let ccd = settings.as_mut_ptr();
+        unsafe {
+            (&raw mut (*ccd).first_dir).write(None);
+            (&raw mut (*ccd).support1).write(Some(support));
+            (&raw mut (*ccd).support2).write(Some(support));
+            (&raw mut (*ccd).center1).write(Some(center));
+            (&raw mut (*ccd).center2).write(Some(center));
+            (&raw mut (*ccd).max_iterations).write(100);
+            (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
+        }
+        Settings(settings)
+    }
+
     /// What GJK's calls read.
     fn gjk() -> Settings {
         let mut settings = MaybeUninit::<ccd_t>::uninit();
@@ -162,6 +178,16 @@ fn pairs() -> Vec<(Shape, Shape, [Real; 3], Option<Real>)> {
     ]
 }
 
+fn without_outputs(
+    call: Penetration,
+    obj1: *const c_void,
+    obj2: *const c_void,
+    settings: &Settings,
+) -> c_int {
+    let none = null_mut();
+    unsafe { call(obj1, obj2, settings.get(), none, null_mut(), null_mut()) }
+}
+
 fn penetrates(call: Penetration, settings: &Settings) {
     for (shape1, shape2, center2, truth) in pairs() {
         let mut obj1 = object(shape1, [0.0; 3]);
@@ -181,17 +207,7 @@ fn penetrates(call: Penetration, settings: &Settings) {
                 assert_eq!((depth, dir, pos), (7.0, untouched, untouched));
             }
         }
-        let without_outputs = unsafe {
-            call(
-                obj1,
-                obj2,
-                settings.get(),
-                null_mut(),
-                null_mut(),
-                null_mut(),
-            )
-        };
-        assert_eq!(without_outputs, code);
+        assert_eq!(without_outputs(call, obj1, obj2, settings), code);
         assert!(unsafe { (*obj1.cast::<Object>()).calls } > 0);
     }
 }
@@ -218,16 +234,7 @@ fn unwinds(call: Penetration, settings: &Settings) {
     let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
     let mut obj2 = object(Shape::Panics, [0.5; 3]);
     let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-    let caught = std::panic::catch_unwind(|| unsafe {
-        call(
-            obj1,
-            obj2,
-            settings.get(),
-            null_mut(),
-            null_mut(),
-            null_mut(),
-        )
-    });
+    let caught = std::panic::catch_unwind(|| without_outputs(call, obj1, obj2, settings));
     assert!(caught.is_err());
 }
 
@@ -281,15 +288,48 @@ fn overlap() {
     }
 }
 
-/// A call of the extension; `dir` goes to those that take one.
-type Extended = unsafe fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    &ccd_vec3_t,
-    *mut ccd_warm_t,
-    *mut ccd_penetration_t,
-) -> c_int;
+/// A call of the extension that fills a struct, by itself or along a direction.
+#[derive(Clone, Copy)]
+enum Extended {
+    Free(
+        unsafe extern "C-unwind" fn(
+            *const c_void,
+            *const c_void,
+            *const ccd_t,
+            *mut ccd_warm_t,
+            c_uint,
+            *mut ccd_penetration_t,
+        ) -> c_int,
+    ),
+    Along(
+        unsafe extern "C-unwind" fn(
+            *const c_void,
+            *const c_void,
+            *const ccd_t,
+            *const ccd_vec3_t,
+            *mut ccd_warm_t,
+            c_uint,
+            *mut ccd_penetration_t,
+        ) -> c_int,
+    ),
+}
+
+impl Extended {
+    unsafe fn call(
+        self,
+        obj1: *const c_void,
+        obj2: *const c_void,
+        settings: &Settings,
+        warm: *mut ccd_warm_t,
+        out: *mut ccd_penetration_t,
+    ) -> c_int {
+        let (ccd, x) = (settings.get(), ccd_vec3_t { v: [1.0, 0.0, 0.0] });
+        match self {
+            Self::Free(call) => unsafe { call(obj1, obj2, ccd, warm, CCD_WANT_ALL, out) },
+            Self::Along(call) => unsafe { call(obj1, obj2, ccd, &x, warm, CCD_WANT_ALL, out) },
+        }
+    }
+}
 
 /// Every state that C can hand over: none, cold, any bytes at all, the last answer's.
 fn states() -> Vec<Option<ccd_warm_t>> {
@@ -314,7 +354,6 @@ fn states() -> Vec<Option<ccd_warm_t>> {
 
 /// Whatever the state holds, hits are hits, misses misses, and the depth separates.
 fn extended(call: Extended, settings: &Settings) {
-    let dir = ccd_vec3_t { v: [1.0, 0.0, 0.0] };
     for (shape1, shape2, center2, truth) in pairs() {
         for mut state in states() {
             let mut obj1 = object(shape1, [0.0; 3]);
@@ -324,8 +363,7 @@ fn extended(call: Extended, settings: &Settings) {
             // The second call starts from what the first one left.
             for _ in 0..2 {
                 let mut out = MaybeUninit::uninit();
-                let code =
-                    unsafe { call(obj1, obj2, settings.get(), &dir, warm, out.as_mut_ptr()) };
+                let code = unsafe { call.call(obj1, obj2, settings, warm, out.as_mut_ptr()) };
                 let Some(truth) = truth else {
                     assert_eq!(code, CCD_MISS);
                     continue;
@@ -344,57 +382,29 @@ fn extended(call: Extended, settings: &Settings) {
         object(Shape::NotANumber, [0.5; 3]),
     );
     let mut out = MaybeUninit::uninit();
-    let code = unsafe {
-        call(
-            pointer(&mut obj1),
-            pointer(&mut obj2),
-            settings.get(),
-            &dir,
-            null_mut(),
-            out.as_mut_ptr(),
-        )
-    };
+    let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
+    let code = unsafe { call.call(obj1, obj2, settings, null_mut(), out.as_mut_ptr()) };
     assert_eq!(code, CCD_BAD_INPUT);
 }
 
 #[test]
 fn local() {
-    extended(
-        |obj1, obj2, ccd, _, warm, out| unsafe {
-            ccdPenetrationLocal(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
-        },
-        &Settings::mpr(),
-    );
+    extended(Extended::Free(ccdPenetrationLocal), &Settings::mpr());
 }
 
 #[test]
 fn penetration() {
-    extended(
-        |obj1, obj2, ccd, _, warm, out| unsafe {
-            ccdPenetration(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
-        },
-        &Settings::mpr(),
-    );
+    extended(Extended::Free(ccdPenetration), &Settings::mpr());
 }
 
 #[test]
 fn incremental() {
-    extended(
-        |obj1, obj2, ccd, _, warm, out| unsafe {
-            ccdPenetrationIncremental(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
-        },
-        &Settings::mpr(),
-    );
+    extended(Extended::Free(ccdPenetrationIncremental), &Settings::mpr());
 }
 
 #[test]
 fn proven() {
-    extended(
-        |obj1, obj2, ccd, _, warm, out| unsafe {
-            ccdPenetrationProven(obj1, obj2, ccd, warm, CCD_WANT_ALL, out)
-        },
-        &Settings::minimum(),
-    );
+    extended(Extended::Free(ccdPenetrationProven), &Settings::minimum());
 }
 
 /// Concentric spheres: every direction is a minimum, and the proof outgrows the
@@ -429,22 +439,59 @@ fn memory_from_malloc() {
 
 #[test]
 fn along() {
-    extended(
-        |obj1, obj2, ccd, dir, warm, out| unsafe {
-            ccdPenetrationAlong(obj1, obj2, ccd, dir, warm, CCD_WANT_ALL, out)
-        },
-        &Settings::mpr(),
-    );
+    extended(Extended::Along(ccdPenetrationAlong), &Settings::mpr());
 }
 
 #[test]
 fn planar() {
-    extended(
-        |obj1, obj2, ccd, dir, warm, out| unsafe {
-            ccdPenetrationPlanar(obj1, obj2, ccd, dir, warm, CCD_WANT_ALL, out)
-        },
-        &Settings::mpr(),
-    );
+    extended(Extended::Along(ccdPenetrationPlanar), &Settings::mpr());
+}
+
+/// Balls: the distance of the centres less radii and margin, from every state; a point that is no
+/// number and a margin below 0 are bad input.
+#[test]
+fn distance() {
+    let settings = Settings::distance();
+    for mut state in states() {
+        let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
+        let mut strange = object(Shape::NotANumber, [0.5; 3]);
+        let (obj1, strange) = (pointer(&mut obj1), pointer(&mut strange));
+        let warm = state.as_mut().map_or(null_mut(), |state| &raw mut *state);
+        for (apart, expected) in [(2.0, CCD_MISS), (1.2, CCD_HIT)] {
+            let mut obj2 = object(Shape::Ball(0.5), [apart, 0.0, 0.0]);
+            let obj2 = pointer(&mut obj2);
+            let mut out = MaybeUninit::<ccd_distance_t>::uninit();
+            let mut ask = |obj2, margin: Real| unsafe {
+                let (ccd, far, out) = (settings.get(), Real::INFINITY, out.as_mut_ptr());
+                ccdSignedDistance(obj1, obj2, ccd, 0.0, margin, far, warm, CCD_WANT_ALL, out)
+            };
+            assert_eq!(ask(obj2, 0.1), expected);
+            assert_eq!(ask(strange, 0.1), CCD_BAD_INPUT);
+            assert_eq!(ask(obj2, -0.1), CCD_BAD_INPUT);
+            let out = unsafe { out.assume_init() };
+            assert!((out.distance - (apart - 1.6)).abs() <= TOLERANCE);
+        }
+    }
+}
+
+/// A ball is right, one whose points are no numbers is not, and nothing need be written.
+#[test]
+fn check() {
+    for (shape, right) in [(Shape::Ball(1.0), true), (Shape::NotANumber, false)] {
+        let mut object = object(shape, [0.5; 3]);
+        let object = pointer(&mut object);
+        let mut out = MaybeUninit::<ccd_check_t>::uninit();
+        let found = unsafe { ccdCheck(object, Some(support), Some(center), out.as_mut_ptr()) };
+        let silent = unsafe { ccdCheck(object, Some(support), Some(center), null_mut()) };
+        assert_eq!((found == 0, found == silent), (right, true));
+        if right {
+            assert!((unsafe { out.assume_init() }.size - 2.0).abs() < 0.1);
+        }
+        assert_eq!(
+            unsafe { ccdCheck(object, None, None, null_mut()) },
+            CCD_BAD_INPUT
+        );
+    }
 }
 
 /// A box on a box: four corners, and no more room than was asked for.

@@ -219,7 +219,8 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
             distance2,
             weights,
         };
-        // No face can be better than by rounding. (Free: it saves the look at the faces.)
+        // No face can be better than by rounding; this saves the look at the faces. (The factor is
+        // insensitive: 8 to 512 tried on the recorded contacts.)
         if distance2 <= (64.0 * EPSILON) * (64.0 * EPSILON) * size2 {
             return mixed;
         }

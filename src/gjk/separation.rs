@@ -12,10 +12,11 @@ use crate::state::State;
 
 /// Directions tried before a pair that was apart is asked about as if it were new.
 pub const TRIES: usize = 2;
-/// The share of the last aim that is aimed at next, where the margin is less. Free: a pair
-/// that comes closer loses its margin in any case.
+/// The share of the last aim that is aimed at next, where the margin is less. Insensitive: 0.8
+/// to 0.99 tried, at most 0.3 % of the recorded contacts' support points.
 const KEEP: Real = 0.95;
-/// The share of the aim below which a margin has the direction turned. Free.
+/// The share of the aim below which a margin has the direction turned. Insensitive: 0.5 to 0.8 tried
+/// on the recorded contacts, at most 0.3 %.
 const ENOUGH: Real = 0.7;
 /// The share of the size that is aimed at, at least, where a direction has failed. Measured on
 /// pairs that stay apart: with none 1.117 support points a query, 0.01 costs as much for a
