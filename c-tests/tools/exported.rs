@@ -24,6 +24,8 @@ struct Object {
 #[derive(Clone, Copy)]
 enum Shape {
     Ball(Real),
+    /// Its half axes.
+    Ellipsoid([Real; 3]),
     Box([Real; 3]),
     Tetrahedron(Real),
     NotANumber,
@@ -51,6 +53,11 @@ unsafe extern "C-unwind" fn support(
             Shape::Ball(radius) => {
                 let length = d.iter().map(|x| x * x).sum::<Real>().sqrt();
                 d.map(|x| x / length * radius)
+            }
+            Shape::Ellipsoid(half) => {
+                let a: [Real; 3] = std::array::from_fn(|i| half[i] * d[i]);
+                let length = a.iter().map(|x| x * x).sum::<Real>().sqrt();
+                std::array::from_fn(|i| half[i] * a[i] / length)
             }
             Shape::Box(half) => std::array::from_fn(|i| half[i].copysign(d[i])),
             Shape::Tetrahedron(size) => {
@@ -407,19 +414,19 @@ fn proven() {
     extended(Extended::Free(ccdPenetrationProven), &Settings::minimum());
 }
 
-/// Concentric spheres: every direction is a minimum, and the proof outgrows the
-/// stack.
+/// A ball in the middle of another that is a hundredth too long: minima on a circle, and nearly
+/// everywhere, and the proof outgrows the stack.
 #[test]
 fn memory_from_malloc() {
-    let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
+    let mut obj1 = object(Shape::Ellipsoid([1.0, 1.0, 1.01]), [0.0; 3]);
     let mut obj2 = object(Shape::Ball(0.5), [0.0; 3]);
     let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
     let mut out = MaybeUninit::uninit();
     let mut depth = 0.0;
     unsafe {
         let (minimum, gjk) = (
-            Settings::minimum().at_most(110),
-            Settings::gjk().at_most(110),
+            Settings::minimum().at_most(200),
+            Settings::gjk().at_most(200),
         );
         let code = ccdPenetrationProven(
             obj1,
