@@ -19,7 +19,7 @@
 //! difference for a first corner where they are given and trusted; on a million pairs of the
 //! kinds in use that is a sixth fewer support points than libccd's portal asks for.
 
-use crate::gjk::simplex::{Simplex, direction, room};
+use crate::gjk::simplex::{Added, Simplex, direction, room};
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Beyond, Inquiry, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, unit};
@@ -84,6 +84,7 @@ fn beyond_first<A: SupportMap, B: SupportMap>(
         simplex,
         next,
         Proof::Solid,
+        Simplex::add,
         |_, _, _, _| Ok(None),
     )?;
     Ok(())
@@ -125,7 +126,8 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
         let touch = inquiry.precision.touch();
         Ok(if known { set.farther(dir, touch) } else { None })
     };
-    let held = search(inquiry, set, simplex, *dir, Proof::Solid, stand_in)?;
+    let add = Simplex::add_called;
+    let held = search(inquiry, set, simplex, *dir, Proof::Solid, add, stand_in)?;
     Ok(held.corners)
 }
 
@@ -159,7 +161,8 @@ impl Held {
 }
 
 /// [`overlap`], from a simplex and a direction to ask. `stand_in` may give the index of a point
-/// of the set that lies beyond the origin along a direction, by more than a touch.
+/// of the set that lies beyond the origin along a direction, by more than a touch. `add`:
+/// [`Simplex::add`], or its form that is called.
 #[inline(always)]
 pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
     inquiry: &mut Inquiry<'q, A, B>,
@@ -167,6 +170,7 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
     mut simplex: Simplex,
     mut dir: Vec3,
     kind: Proof,
+    add: impl Fn(&mut Simplex, usize, Vec3, Real, Real) -> Option<Added>,
     mut stand_in: impl FnMut(
         &mut Inquiry<'q, A, B>,
         &mut SupportSet<N>,
@@ -193,7 +197,8 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
             }
         };
         let solid = simplex.len() == 3;
-        let Some((way, distance2)) = simplex.add(w, at, touch, inquiry.precision.size2()) else {
+        let size2 = inquiry.precision.size2();
+        let Some((way, distance2)) = add(&mut simplex, w, at, touch, size2) else {
             let inside = simplex.has_inner();
             if !(nearest > touch * touch || backed || inside) {
                 // The origin is in the base's plane, within rounding: in one of the two

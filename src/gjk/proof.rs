@@ -217,6 +217,7 @@ pub fn proof<A: SupportMap, B: SupportMap, const N: usize>(
         simplex,
         dir,
         kind,
+        Simplex::add_called,
         |inquiry, set, simplex, n| {
             let touch = inquiry.precision.touch();
             if let Some(i) = recombined(set, simplex, n, touch) {
