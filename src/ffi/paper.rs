@@ -12,6 +12,7 @@ use super::callbacks::Query;
 use super::types::ccd_t;
 use super::warm::penetration::{answer, ccd_penetration_t};
 use super::warm::state::ccd_warm_t;
+use crate::query::Pair;
 
 /// A local minimum of the penetration depth by the paper's Algorithms 4 and 5, the shortcut on,
 /// with a sound answer: the depth is that of the least support plane met, and an overlap is
@@ -30,18 +31,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
+    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
     // SAFETY: passed on.
-    unsafe {
-        answer(
-            query,
-            Query::mpr_tolerance,
-            warm,
-            want,
-            out,
-            |pair, state, settings, wants_witnesses| {
-                pair.incremental(state, settings, wants_witnesses)
-            },
-        )
-    }
+    unsafe { answer(query, tolerance, warm, want, out, Pair::incremental) }
 }

@@ -140,16 +140,7 @@ pub unsafe extern "C-unwind" fn ccdPenetration(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
+    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
     // SAFETY: passed on.
-    unsafe {
-        answer(
-            query,
-            Query::mpr_tolerance,
-            warm,
-            want,
-            out,
-            |pair, state, settings, wants_witnesses| pair.mpr(state, settings, wants_witnesses),
-        )
-    }
+    unsafe { answer(query, tolerance, warm, want, out, Pair::mpr) }
 }

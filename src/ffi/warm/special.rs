@@ -12,6 +12,7 @@ use super::codes::CCD_BAD_INPUT;
 use super::penetration::{answer, ccd_penetration_t};
 use super::state::ccd_warm_t;
 use super::unit_of;
+use crate::query::Pair;
 
 /// A local minimum of the penetration depth, by the fastest search there is: cutting planes
 /// with curvature. For who has a direction that is roughly right, or follows one valley; from far
@@ -30,18 +31,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
+    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
     // SAFETY: passed on.
-    unsafe {
-        answer(
-            query,
-            Query::mpr_tolerance,
-            warm,
-            want,
-            out,
-            |pair, state, settings, wants_witnesses| pair.local(state, settings, wants_witnesses),
-        )
-    }
+    unsafe { answer(query, tolerance, warm, want, out, Pair::local) }
 }
 
 /// The least penetration depth with its proof: depth - depth_lower <= epa_tolerance on CCD_HIT.
@@ -63,17 +55,17 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
+    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::epa_tolerance);
     // SAFETY: passed on.
     unsafe {
         answer(
             query,
-            Query::epa_tolerance,
+            tolerance,
             warm,
             want,
             out,
-            |pair, state, settings, wants_witnesses| {
-                arena::with(|arena| pair.minimum(state, settings, arena, wants_witnesses))
+            |pair, state, settings, wants| {
+                arena::with(|arena| pair.minimum(state, settings, arena, wants))
             },
         )
     }
@@ -101,9 +93,10 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
         let Some(dir) = unit_of(dir) else {
             return CCD_BAD_INPUT;
         };
+        let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
         answer(
-            Query { obj1, obj2, ccd },
-            Query::mpr_tolerance,
+            query,
+            tolerance,
             warm,
             want,
             out,
@@ -135,9 +128,10 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
         let Some(m) = unit_of(plane_normal) else {
             return CCD_BAD_INPUT;
         };
+        let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
         answer(
-            Query { obj1, obj2, ccd },
-            Query::mpr_tolerance,
+            query,
+            tolerance,
             warm,
             want,
             out,
