@@ -115,7 +115,7 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
 }
 
 /// The library's own cap on the iterations of a query, whatever the caller allows. A search
-/// that comes this far has lost its way: with what is asked before and after, 400 support
+/// that comes this far makes no progress: with what is asked before and after, 400 support
 /// points are the most that a query takes. Measured (`wide_campaign`): of the minima that 360
 /// support points do not prove, most are not proven by 1,400.
 pub const ITERATION_CAP: u64 = 380;

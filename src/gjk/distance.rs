@@ -26,10 +26,11 @@ use crate::math::{Real, Vec3, larger};
 /// random sets moved apart: a fifth of it costs ellipsoids one support point more, six times
 /// it boxes 0.3 and cylinders 0.7.)
 const ALIKE: Real = 0.05;
-/// The share of what a ball promises that makes it believed again. (Insensitive.)
+/// The share of what a ball promises that makes it believed again. Insensitive: 0.25 to 0.75 tried
+/// on the distances of the recorded contacts, at most 0.3 %.
 const KEPT: Real = 0.5;
 /// The share of the tolerance that a promise must be worth: less does not pay for a support
-/// point, and rounding is less. (Insensitive.)
+/// point, and rounding is less. Insensitive: 0.1 to 1 tried there.
 const WORTH: Real = 0.3;
 /// Steps that bring the simplex no nearer before rounding is all that is left.
 const STALLS: u32 = 3;

@@ -188,7 +188,7 @@ fn apart(gap: &Gap, wanted: &Wanted) -> Distance {
 }
 
 /// Corners nearer to each other than this share of the size, once the ball is off, are one
-/// round part. (Insensitive.)
+/// round part. Insensitive: 0.01 to 0.04 tried on the distances of the recorded contacts.
 const ONE_PART: Real = 0.02;
 
 /// The gap between the cores, from the state, else from the centres, else from the caller's
