@@ -92,7 +92,7 @@ pub mod internals {
     }
 }
 
-/// The README's program in Rust is tested with the examples here.
+/// The program of a page is tested with the examples here.
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
+#[doc = include_str!("../include/README.md")]
 mod readme {}

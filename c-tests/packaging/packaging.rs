@@ -198,7 +198,7 @@ fn generators() {
     }
 }
 
-/// By FetchContent from a repository with a tag, as cmake/README.md says it.
+/// By FetchContent from a repository, of its branch as cmake/README.md says it.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn git_tag() {
@@ -211,12 +211,12 @@ fn git_tag() {
         git.arg("-C").arg(dir).args(args);
         must_succeed(&mut git, "git").stdout.trim().to_owned()
     };
-    let readme = fs::read_to_string(root().join("cmake/README.md")).expect("cmake/README.md");
-    let tag = readme
+    let page = page("cmake/README.md");
+    let tag = page
         .split_once("GIT_TAG ")
         .and_then(|(_, rest)| rest.split([' ', ')']).next())
-        .expect("the README names a tag");
-    assert_eq!(tag, format!("v{}", env!("CARGO_PKG_VERSION")));
+        .expect("the page names a branch");
+    assert_eq!(tag, "main");
     // The files as they are now; HEAD where git knows no change.
     let mut commit = git(root(), &["stash", "create"]);
     if commit.is_empty() {
@@ -224,7 +224,7 @@ fn git_tag() {
     }
     let upstream = fresh("upstream");
     git(&upstream, &["init", "--quiet", "--bare"]);
-    let to = format!("{commit}:refs/tags/{tag}");
+    let to = format!("{commit}:refs/heads/{tag}");
     git(
         root(),
         &["push", "--quiet", &upstream.to_string_lossy(), &to],
@@ -648,53 +648,99 @@ fn oldest_rust() {
     );
 }
 
-/// The README's program in a language, in a file of its own.
-fn readme_program(language: &str) -> PathBuf {
-    let readme = fs::read_to_string(root().join("README.md")).expect("README.md");
-    let program = readme
+fn page(name: &str) -> String {
+    fs::read_to_string(root().join(name)).expect("a page")
+}
+
+/// A page's program in a language, in a file of its own.
+fn program_of(name: &str, language: &str) -> PathBuf {
+    let page = page(name);
+    let program = page
         .split_once(&format!("```{language}\n"))
         .and_then(|(_, rest)| rest.split_once("```"))
         .expect("a program")
         .0;
-    let source = fresh(&format!("readme-{language}")).join(format!("readme.{language}"));
+    let source = fresh(&format!("readme-{language}")).join(format!("program.{language}"));
     fs::write(&source, program).expect("a file can be written");
     source
 }
 
-/// Unit spheres, (0.3, 0.2, 0.1) apart: the sum of the radii less the distance. `said`: "move b by
-/// DEPTH along ...".
-fn assert_depth_of_the_readme_s_spheres(said: &str, within: f64) {
-    let depth = said.split(' ').nth(3).expect("move b by DEPTH");
-    let truth = 2.0 - 0.14_f64.sqrt();
-    let depth: f64 = depth.parse().expect("a number");
-    assert!((depth - truth).abs() < within, "{depth}");
+/// The README's box is 1 cm deep in its slab, face on face, in each of three frames.
+fn assert_depth_of_the_readme_s_box(said: &str) {
+    assert_eq!(said.lines().count(), 3, "{said}");
+    for line in said.lines() {
+        let depth = line.strip_prefix("move box by ").expect("a depth");
+        let (depth, rest) = depth.split_once(" along (").expect("a direction");
+        let (dir, contacts) = rest.split_once("), ").expect("contacts");
+        let depth: f64 = depth.parse().expect("a number");
+        assert!((depth - 0.01).abs() < 1e-5, "{line}");
+        let dir: Vec<f64> = dir
+            .split(", ")
+            .map(|x| x.parse().expect("a number"))
+            .collect();
+        assert!(dir.len() == 3 && dir[2] > 0.999_999, "{line}");
+        assert_eq!(contacts, "4 contacts", "{line}");
+    }
 }
 
 /// The README's C program compiles without a warning and answers rightly.
 #[test]
 fn readme_c_program() {
     let written = Program::c("readme")
-        .source(readme_program("c"))
+        .source(program_of("README.md", "c"))
         .flag("-pedantic")
         .flag("-Werror")
         .link_ours_shared()
         .build()
         .run([""; 0]);
-    assert_depth_of_the_readme_s_spheres(&written.stdout, 1e-5);
+    assert_depth_of_the_readme_s_box(&written.stdout);
 }
 
-/// The same of its C++ program; in single precision its double radius is narrowed.
+/// The README's two lines that link it, as they stand there, in a folder with its files.
+#[test]
+#[cfg(not(feature = "single"))]
+fn readme_links_its_program() {
+    let library = harness::library(Precision::CURRENT);
+    let here = fresh("readme-links");
+    fs::create_dir_all(here.join("target/swap")).expect("a directory");
+    let link = |from: &Path, to: &str| {
+        std::os::unix::fs::symlink(from, here.join(to)).expect("a link can be made");
+    };
+    link(&root().join("include"), "include");
+    link(&library.dir, "target/release");
+    link(&library.dir.join("libccd.so"), "target/swap/libccd.so.2");
+    fs::copy(program_of("README.md", "c"), here.join("program.c")).expect("a copy");
+    let page = page("README.md");
+    let lines: Vec<&str> = (page.split('`'))
+        .filter(|code| code.starts_with("cc program.c "))
+        .collect();
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    for line in lines {
+        let mut shell = Command::new("sh");
+        shell
+            .arg("-c")
+            .arg(format!("{line} && ./a.out"))
+            .current_dir(&here);
+        assert_depth_of_the_readme_s_box(&must_succeed(&mut shell, line).stdout);
+    }
+}
+
+/// The C++ program, of unit spheres (0.3, 0.2, 0.1) apart: the sum of the radii less the distance.
+/// In single precision its double radius would be narrowed.
 #[test]
 #[cfg(not(feature = "single"))]
 fn readme_cpp_program() {
     let written = Program::cpp("readme")
-        .source(readme_program("cpp"))
+        .source(program_of("include/README.md", "cpp"))
         .flag("-pedantic")
         .flag("-Werror")
         .link_ours_shared()
         .build()
         .run([""; 0]);
-    assert_depth_of_the_readme_s_spheres(&written.stdout, 1e-5);
+    let depth = written.stdout.split(' ').nth(3).expect("move b by DEPTH");
+    let truth = 2.0 - 0.14_f64.sqrt();
+    let depth: f64 = depth.parse().expect("a number");
+    assert!((depth - truth).abs() < 1e-5, "{depth}");
 }
 
 /// The one file of this name below a directory.

@@ -127,9 +127,15 @@ pub fn dart_pile() -> Swapped {
     Swapped::new("DART", cpp("dart_pile").library("dart"), "1")
 }
 
-/// compare.sh's screen of a program of each consumer's, as it comes.
-pub fn screens() -> String {
-    let screen = |consumer: &str, program: Program, args: &str| {
+/// A program of a consumer's, and what compare.sh shows of it.
+pub struct Screen {
+    pub program: &'static str,
+    pub text: String,
+}
+
+/// compare.sh's screens of a program of each consumer's, as they come.
+pub fn screens() -> [Screen; 4] {
+    let screen = |title: &'static str, program: Program, args: &str| {
         let program = program.link_system().without_tools().build().quiet();
         let told = program.compared(&[]).with_screen().run(args.split(' '));
         let path = program.path.to_string_lossy();
@@ -137,21 +143,63 @@ pub fn screens() -> String {
         let name = name.split('-').next().unwrap_or_default();
         let told = told.stderr.replace(&*path, &format!("./{name} {args}"));
         // What the program says itself comes before.
-        let screen = told.find("== ").map_or("", |at| &told[at..]);
-        format!("{consumer}:\n\n```\n{}\n```\n\n", screen.trim())
+        let text = told.find("== ").map_or("", |at| &told[at..]).trim();
+        Screen {
+            program: title,
+            text: text.to_owned(),
+        }
     };
     let scene = cpp("fcl_scene").library("fcl").flag("-DTIMED");
+    let dart = cpp("dart_pile").library("dart");
+    let mujoco = c("mujoco_pile").library("mujoco");
     [
-        screen("ODE", c("ode_pile").library("ode"), "1 1500 32 pile"),
-        screen("FCL", scene, "300 200 0 0"),
-        screen("DART", cpp("dart_pile").library("dart"), "1 3000 15 fcl"),
         screen(
-            "MuJoCo",
-            c("mujoco_pile").library("mujoco"),
-            "1 1500 30 pile",
+            "ODE, a pile",
+            c("ode_pile").library("ode"),
+            "1 1500 32 pile",
         ),
+        screen("MuJoCo, a pile", mujoco, "1 1500 30 pile"),
+        screen("DART over FCL, a pile", dart, "1 3000 15 fcl"),
+        screen("FCL, bodies adrift", scene, "300 200 0 0"),
     ]
-    .concat()
+}
+
+/// For the front page: the last lines of the first screen, and a row for each.
+pub fn front_table(screens: &[Screen]) -> String {
+    let first = &screens[0].text;
+    let price = first.find("A support point of both").expect("a price");
+    let mut out = format!(
+        "```text\n{}\n```\n\n\
+         | program | wrong of judged, libccd | here | support points a query, libccd | here | time a query | the whole program |\n\
+         |---|---|---|---|---|---|---|\n",
+        &first[price..]
+    );
+    for Screen { program, text } in screens {
+        // The words behind a start of a line, and what stands between two texts.
+        let row = |start: &str| -> Vec<f64> {
+            let line = text.lines().filter_map(|line| line.strip_prefix(start));
+            line.flat_map(|line| line.split_whitespace().map_while(|word| word.parse().ok()))
+                .collect()
+        };
+        let between = |before: &str, after: &str| {
+            let rest = text.split_once(before).map_or("", |(_, rest)| rest);
+            rest.split_once(after).map_or("?", |(word, _)| word)
+        };
+        let sides = ["libccd ", "this library "].map(row);
+        let wrong = |side: &[f64]| -> f64 { side[..5].iter().sum() };
+        let _ = writeln!(
+            out,
+            "| {program} | {} of {} | {} | {:.1} | {:.1} | {} | {} |",
+            wrong(&sides[0]),
+            between("What the swap changes, of ", " judged"),
+            wrong(&sides[1]),
+            sides[0][7],
+            sides[1][7],
+            between("a query takes ", " times"),
+            between("the program would take ", ".\n"),
+        );
+    }
+    out
 }
 
 // --- static queries -------------------------------------------------------------

@@ -121,16 +121,25 @@ fn long() {
     println!("{}", checks::long_table(&rows));
 }
 
-/// Into the README too: between the two marks stands what this command says.
+/// Into the pages too: the first screen into this folder's, a row of each into the front page.
 fn screens() {
-    let path = harness::root().join("c-tests/swap/README.md");
-    let page = std::fs::read_to_string(&path).expect("the README");
-    let (before, rest) = page.split_once("<!-- screens -->").expect("a mark");
-    let (_, after) = rest.split_once("<!-- end -->").expect("a mark");
     let screens = checks::screens();
-    print!("{screens}");
-    let page = format!("{before}<!-- screens -->\n\n{screens}<!-- end -->{after}");
-    std::fs::write(&path, page).expect("the README");
+    for screen in &screens {
+        println!("{}\n", screen.text);
+    }
+    let first = format!("\n```text\n{}\n```\n\n", screens[0].text);
+    between_marks("c-tests/swap/README.md", &first);
+    between_marks("README.md", &checks::front_table(&screens));
+}
+
+/// What stands in a page between the marks of `screens`.
+fn between_marks(page: &str, text: &str) {
+    let path = harness::root().join(page);
+    let page = std::fs::read_to_string(&path).expect("a page");
+    let (before, rest) = page.split_once("<!-- screens -->\n").expect("a mark");
+    let (_, after) = rest.split_once("<!-- end -->").expect("a mark");
+    let page = format!("{before}<!-- screens -->\n{text}<!-- end -->{after}");
+    std::fs::write(&path, page).expect("a page");
 }
 
 fn world() {
