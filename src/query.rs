@@ -461,7 +461,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// not be theirs to the tolerance. But its direction is near them, and a local search from
     /// there finds one: to a hundredth of the tolerance, since what falls so little over the
     /// first trust radius falls thirty times as much over the sphere.
-    /// It takes what is left of the iterations, and no more than one search's.
+    /// It takes what is left of the iterations, and no more than one search's. The witness points
+    /// stay the polytope's, which lie in their objects: as far off the plane as the bounds are apart.
     #[cold]
     #[inline(never)]
     fn floor(&self, hit: &mut Penetration, limits: &Limits) -> Result<(), Fault> {
@@ -485,9 +486,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         ) {
             Ok(_) if floor.depth < hit.depth => {
                 *hit = Penetration {
+                    depth: floor.depth,
+                    dir: floor.dir,
+                    normal: floor.normal,
                     depth_lower: hit.depth_lower.min(floor.depth),
                     iterations: hit.iterations + floor.iterations,
-                    ..floor
+                    ..*hit
                 };
                 Ok(())
             }
