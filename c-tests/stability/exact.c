@@ -177,7 +177,7 @@ int main(int argc, char **argv)
                         show("unsound", kind, first + i, tols[t], e, &p, &x);
                     }
                     if (x.has_proof
-                        && !((x.code == CCD_LIMIT || x.depth - x.lower <= 1.1 * tol + noise) && x.lower <= p.truth.depth + noise)) {
+                        && !((x.code == CCD_LIMIT || x.depth - x.lower <= tol + noise) && x.lower <= p.truth.depth + noise)) {
                         r->unproven++;
                         show("no proof", kind, first + i, tols[t], e, &p, &x);
                     }

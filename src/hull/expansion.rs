@@ -136,7 +136,7 @@ pub struct Progress {
     same: (f64, u32),
     /// The least depth met, metres, as far as the target knows.
     upper: Real,
-    /// What planes were off by when the target was set, metres; at most half of `allowed`.
+    /// What planes may be off by for the target, metres; at most half of `allowed`.
     error: Real,
     /// Has the search left the first room? From then on [`Limits::gap`] counts too.
     coarse: bool,
@@ -263,7 +263,7 @@ impl Progress {
         }
     }
 
-    /// The target for planes that are off by up to `error`, metres.
+    /// The target for planes that are off by up to `error`, metres, or a tenth more later.
     fn aim_at(&mut self, error: Real) {
         // A share of the least depth, not of this one.
         let gap = self.limits.gap / (1.0 + self.limits.gap);
@@ -272,7 +272,7 @@ impl Progress {
         } else {
             self.tolerance
         };
-        self.error = lesser(error, 0.5 * self.allowed);
+        self.error = lesser(1.1 * error, 0.5 * self.allowed);
         let target = wide(self.upper - self.allowed + self.error);
         self.target = target * target.abs();
     }
@@ -282,7 +282,7 @@ impl Progress {
     #[inline(always)]
     fn proven<const F: usize>(&mut self, hull: &mut Polytope<F>, grain: Real) -> bool {
         let error = hull.error() + hull.untold(self.upper) + grain;
-        let good = !(error > 1.1 * self.error) || 0.5 * self.allowed <= self.error;
+        let good = !(error > self.error) || 0.5 * self.allowed <= self.error;
         if !good {
             self.aim_at(error);
         }

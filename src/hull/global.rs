@@ -468,18 +468,17 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
             }
         }
-        // Where rounding or a cap ended the search: a tolerance that was asked for coarser
-        // than the one in force is met all the same, and so is a share of the depth. (In this
-        // order NaN is none.)
+        // The bound as it is rounded down must meet the tolerance, why ever the search ended; one
+        // that was asked for coarser than the one in force counts, and a share of the depth. (In
+        // this order NaN is none.)
         let Limits { tolerance, gap, .. } = *self.request.limits;
         let asked = larger(tolerance, progress.tolerance);
         let close = larger(
             gap / (1.0 + gap) * depth,
             asked + ROUNDED * precision.grain(),
         );
-        let proven = end == End::Proven && !(hull.error() > 0.5 * progress.tolerance);
         let round = set.len() >= balls::FEWEST && end != End::Open;
-        proven || depth - lower <= close || round && self.balls(set, near, close)
+        depth - lower <= close || round && self.balls(set, near, close)
     }
 
     /// Do the balls of the two objects prove the answer, where the polytope's bound is `near`?
