@@ -34,7 +34,7 @@ use crate::hull::global::{self, Arena, Basis, Request};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::local::{self, Memory};
-use crate::math::{Real, Vec3, larger, perpendicular, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
 use crate::paper::along;
 use crate::paper::incremental::{self, Shortcut};
 use crate::paper::planar;
@@ -461,8 +461,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// not be theirs to the tolerance. But its direction is near them, and a local search from
     /// there finds one: to a hundredth of the tolerance, since what falls so little over the
     /// first trust radius falls thirty times as much over the sphere.
-    /// It takes what is left of the iterations, and no more than one search's. The witness points
-    /// stay the polytope's, which lie in their objects: as far off the plane as the bounds are apart.
+    /// It takes what is left of the iterations, and no more than one search's.
     #[cold]
     #[inline(never)]
     fn floor(&self, hit: &mut Penetration, limits: &Limits) -> Result<(), Fault> {
@@ -485,13 +484,18 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             &mut floor,
         ) {
             Ok(_) if floor.depth < hit.depth => {
+                // The polytope's witness points are points of the objects, the local search's lie on
+                // the planes, and beside their objects where these are not as round as they seemed.
+                let reach = larger(floor.point1.norm(), floor.point2.norm());
+                let near = larger(limits.tolerance, INSIDE * reach);
+                let [one, two] = [hit.point1 - floor.point1, hit.point2 - floor.point2];
+                if one.dot(&floor.normal).abs() <= near && two.dot(&floor.normal).abs() <= near {
+                    (floor.point1, floor.point2) = (hit.point1, hit.point2);
+                }
                 *hit = Penetration {
-                    depth: floor.depth,
-                    dir: floor.dir,
-                    normal: floor.normal,
                     depth_lower: hit.depth_lower.min(floor.depth),
                     iterations: hit.iterations + floor.iterations,
-                    ..*hit
+                    ..floor
                 };
                 Ok(())
             }
@@ -665,6 +669,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 }
 
+/// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
+/// 1e-12 in double precision.
+const INSIDE: Real = 4500.0 * EPSILON;
+
 /// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty.
 const BUDGET: u64 = 64;
 
@@ -697,7 +705,6 @@ const GAP: Real = 1e-3;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::EPSILON;
     use crate::shapes::{Random, capsule, corners, hull, placed};
 
     const SETTINGS: Settings = Settings {
