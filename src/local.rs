@@ -16,6 +16,7 @@
 //!
 //! | file | part |
 //! |---|---|
+//! | `known/round.rs` | balls, discs and R: what a pair of points shows |
 //! | `flat.rs` | the search as long as all cuts are exact: polytopes, and balls and discs around them |
 //! | `discs.rs` | those discs: found, confirmed, and where they are |
 //! | `cuts.rs` | those cuts, and where they are least within the trust radius |
@@ -150,7 +151,7 @@
 //! recorded contacts, and of hulls of meshes from 10° and cold; and how many of the 2,600
 //! answers that are no global minimum become more or fewer (a dozen is chance).
 //!
-//! [`ALIKE`]: curvature::ALIKE
+//! [`ALIKE`]: crate::known::round::ALIKE
 //! [`Model::minimise`]: model::Model::minimise
 //! [`TRUST_CURVATURE`]: search::TRUST_CURVATURE
 //! [`WITNESS_QUERIES`]: search::WITNESS_QUERIES

@@ -93,24 +93,33 @@ impl Pair {
         if aside2 <= PARALLEL * PARALLEL * moved * turned && fits(along / turned, extent.size2) {
             return Self::Ball(along / turned);
         }
-        let (ahead, behind) = (d.dot(&new.n), -d.dot(&old.n));
-        // Their sum is `along`.
-        let limit = ALIKE * along;
-        let (gap2, limit2) = ((ahead - behind) * (ahead - behind), limit * limit);
-        let room2 = extent.size2 * turned;
-        let smooth = along > extent.error
-            && gap2 <= limit2
-            && moved <= BLUNT * BLUNT * room2
-            && gap2 * moved <= limit2 * STEEP * STEEP * room2;
-        if smooth { Self::Smooth } else { Self::Kink }
+        let excess = [d.dot(&new.n), -d.dot(&old.n)];
+        if along > extent.error && is_smooth(excess, moved, extent.size2 * turned, ALIKE) {
+            Self::Smooth
+        } else {
+            Self::Kink
+        }
     }
+}
+
+/// Does a pair look smooth ([`Pair::of`]), whose points exceed each other's support plane by
+/// `excess`, within this relative difference, and are apart by a length whose square is `moved`?
+/// `room2`: the square of the angle between the directions times the size of the object.
+#[inline(always)]
+pub fn is_smooth([ahead, behind]: [Real; 2], moved: Real, room2: Real, alike: Real) -> bool {
+    let limit = alike * (ahead + behind);
+    let (gap2, limit2) = ((ahead - behind) * (ahead - behind), limit * limit);
+    moved <= BLUNT * BLUNT * room2
+        && gap2 <= limit2
+        && gap2 * moved <= limit2 * STEEP * STEEP * room2
 }
 
 /// A pair whose slope is larger than this share of the object must be more alike. Measured: ×2 no
 /// change, +4 %; ÷2 +0.9 %, +82 % (ellipsoids in motion).
 const STEEP: Real = 0.7;
-/// A slope larger than so many times the object is a kink's. Measured: ×2 +0.2 %, +4 %; ÷2 −0.1 %.
-const BLUNT: Real = 50.0;
+/// A slope larger than so many times the object is a kink's, and a remembered R another object's.
+/// Measured: ×2 +0.2 %, +4 %; ÷2 −0.1 %.
+pub const BLUNT: Real = 50.0;
 
 /// May a round part of this radius, metres, be one of an object of that squared extent, m², of
 /// which a little may not have been seen?
@@ -119,7 +128,7 @@ pub fn fits(radius: Real, size2: Real) -> bool {
     radius > 0.0 && radius * radius <= (1.0 + ALIKE) * size2
 }
 
-/// A disc around a vertex.
+/// A disc around a vertex; none with the radius 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Disc {
     /// Metres.
@@ -129,6 +138,11 @@ pub struct Disc {
 }
 
 impl Disc {
+    #[inline(always)]
+    pub fn is_there(&self) -> bool {
+        self.radius > 0.0
+    }
+
     /// What a vector has across the axis.
     #[inline(always)]
     pub fn across(&self, v: &Vec3) -> Vec3 {
@@ -236,16 +250,17 @@ impl Symmetric {
         )
     }
 
-    /// Adds v w′ + w v′.
+    /// Adds a w w′.
     #[inline(always)]
-    pub fn add(&mut self, v: &Vec3, w: &Vec3) {
+    pub fn add_square(&mut self, a: Real, w: &Vec3) {
+        let aw = w * a;
         let m = &mut self.0;
-        m[0] += 2.0 * v.x * w.x;
-        m[1] += v.x * w.y + v.y * w.x;
-        m[2] += v.x * w.z + v.z * w.x;
-        m[3] += 2.0 * v.y * w.y;
-        m[4] += v.y * w.z + v.z * w.y;
-        m[5] += 2.0 * v.z * w.z;
+        m[0] += aw.x * w.x;
+        m[1] += aw.x * w.y;
+        m[2] += aw.x * w.z;
+        m[3] += aw.y * w.y;
+        m[4] += aw.y * w.z;
+        m[5] += aw.z * w.z;
     }
 
     /// The matrix of the first smooth pair: as large along n′ − n as d is long.
@@ -268,9 +283,34 @@ impl Symmetric {
     #[inline]
     pub fn correct(&mut self, d: &Vec3, dn: &Vec3) -> Real {
         let w = d - self.times(dn);
-        let f = 1.0 / dn.norm_squared();
-        self.add(&((w - dn * (0.5 * f * w.dot(dn))) * f), dn);
+        self.add_least(&w, dn);
         (w.norm_squared() / d.norm_squared()).sqrt()
+    }
+
+    /// Makes R (n′ − n) more by `w`, by the least change in the sense of Powell's formula.
+    #[inline]
+    pub fn add_least(&mut self, w: &Vec3, dn: &Vec3) {
+        let across = 1.0 / dn.norm_squared();
+        self.add_square(across, &(w + dn));
+        self.add_square(-across, w);
+        self.add_square(-across - w.dot(dn) * across * across, dn);
+    }
+
+    /// In the chart of two unit vectors across each other, as ρ I + A, tr A = 0: ρ, A's first entry,
+    /// and the one across. Positive semidefinite, as what is convex: a negative eigenvalue becomes
+    /// zero.
+    #[inline]
+    pub fn within(&self, e1: &Vec3, e2: &Vec3) -> (Real, Real, Real) {
+        let (r1, r2) = (self.times(e1), self.times(e2));
+        let (rxx, rxy, ryy) = (r1.dot(e1), r1.dot(e2), r2.dot(e2));
+        let (rho, axx) = (0.5 * (rxx + ryy), 0.5 * (rxx - ryy));
+        let m = (axx * axx + rxy * rxy).sqrt();
+        if m > rho {
+            let half = 0.5 * larger(rho + m, 0.0);
+            (half, axx * (half / m), rxy * (half / m))
+        } else {
+            (rho, axx, rxy)
+        }
     }
 
     /// Reduces n′ − n's share of it so that it bends by no more than `room` along it.
@@ -280,7 +320,7 @@ impl Symmetric {
         let bend = rd.dot(dn);
         let room = larger(room, 0.0);
         if bend > room {
-            self.add(&(rd * (0.5 * (room - bend) / (bend * bend))), &rd);
+            self.add_square((room - bend) / (bend * bend), &rd);
         }
     }
 }
@@ -359,18 +399,8 @@ impl Round {
                 [f * x * x, f * x * y, f * y * y]
             }
             Self::Curved(r) => {
-                let (r1, r2) = (r.times(e1), r.times(e2));
-                let (k, l, m) = (r1.dot(e1), r1.dot(e2), r2.dot(e2));
-                // Positive semidefinite, as what is convex: a negative eigenvalue becomes zero.
-                let (half, mean) = (0.5 * (k - m), 0.5 * (k + m));
-                let spread = (half * half + l * l).sqrt();
-                if spread > mean {
-                    let top = 0.5 * larger(mean + spread, 0.0);
-                    let f = top / spread;
-                    [top + half * f, l * f, top - half * f]
-                } else {
-                    [k, l, m]
-                }
+                let (rho, axx, axy) = r.within(e1, e2);
+                [rho + axx, axy, rho - axx]
             }
         }
     }
@@ -643,5 +673,23 @@ mod tests {
         r.reduce(&Vec3::x(), 0.25);
         assert!((r.times(&Vec3::x()) - Vec3::x() * 0.25).norm() < 4.0 * EPSILON);
         assert_eq!((Round::None.ball(), Round::Ball(2.0).ball()), (0.0, 2.0));
+    }
+
+    #[test]
+    fn no_disc_moves_so() {
+        let two = |n: Vec3, other: Vec3, d: Vec3| {
+            let old = Seen {
+                n,
+                p: Vec3::zeros(),
+            };
+            Disc::of(&old, &Seen { n: other, p: d })
+        };
+        let (x, y) = (Vec3::x(), Vec3::new(1.0, 0.1, 0.0).normalize());
+        assert!(two(x, y, Vec3::zeros()).is_none());
+        assert!(two(x, y, Vec3::repeat(Real::NAN)).is_none());
+        assert!(two(x, x, Vec3::y()).is_none());
+        // The ends of a line.
+        let z = Vec3::new(1.0, -0.1, 0.0).normalize();
+        assert!(two(z, y, Vec3::y()).is_none());
     }
 }

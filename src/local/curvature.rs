@@ -4,16 +4,13 @@
 //! The curvature R of the smooth part of D, learned from pairs of samples.
 
 use super::samples::{CUTS, Sample, Samples};
+use crate::known::round::{ALIKE, BLUNT, Symmetric, TOLD, fits, is_smooth};
 use crate::math::{EPSILON, Real, Vec3, larger, lesser};
 
 /// How many times as far from where it was seen as the directions are apart that showed it what is
 /// round is believed: the body may be cut off beyond. Measured: 1 +1.1 %, +8 % (cylinders); 2 −0.1 %,
 /// and half a disc is taken for a disc half a radian beyond its end.
 pub const FAR: Real = 1.4;
-/// Squared angle below which a pair tells nothing above the rounding errors: the difference of
-/// numbers of about one, it has five digits there, in single precision three. Measured: ×2, ÷2
-/// nothing.
-pub const CLOSE: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-10 };
 /// Relative residual of a pair that is parallel, a ball's. Measured: ×2, ÷2 nothing; 1e-9
 /// +0.1 %, +3 %.
 pub const BALL: Real = if EPSILON > 1e-10 { 3e-5 } else { 1e-6 };
@@ -21,20 +18,9 @@ pub const BALL: Real = if EPSILON > 1e-10 { 3e-5 } else { 1e-6 };
 /// to which the first pair that confirms a remembered R confirms all of it. Measured: ×2 −0.1 %,
 /// 3 more; ÷2 +0.1 %, +3 % (ellipsoids), 25 fewer.
 pub const FORETOLD: Real = 0.1;
-/// Relative difference of the two excesses of a smooth pair; and what counts as none
-/// elsewhere: of a support point from where R takes another, of a ball's radius from the
-/// extent of the object. Measured: ×2 +0.1 %, +7 % (hulls), 16 more; ÷2 +1.1 %, +82 %
-/// (ellipsoids in motion).
-pub const ALIKE: Real = 0.03;
 /// How much more alike once a vertex was seen twice (a polytope, it seems). Measured: ×2, ÷2
 /// nothing; 1 +0.1 %, +1.5 %; 0 one more of shallow hulls from 25°.
 const FLAT: Real = 0.05;
-/// A pair whose slope is larger than this share of the object must be more alike.
-/// Measured: ×2 no change, +4 %, 8 more; ÷2 +0.9 %, +82 % (ellipsoids in motion).
-const STEEP: Real = 0.7;
-/// A slope larger than so many times the object is a kink's, and a remembered R another
-/// object's. Measured: ×2 +0.2 %, +4 %; ÷2 −0.1 %; none at all +0.4 %, +13 %.
-const BLUNT: Real = 50.0;
 /// Relative error up to which R moves cuts, and is only reduced when it is refuted; also that
 /// of a remembered R, until a pair tells. Measured: ×2 +1.2 %, +19 % (hulls); ÷2 +0.2 %, +6 %.
 pub const BELIEVED: Real = 0.5;
@@ -50,75 +36,10 @@ const ALONG: Real = 0.0025;
 /// of the cones from 5°.
 const SQUARE: Real = 0.9;
 
-/// Does a pair look smooth, whose points exceed each other's cut by `ahead` and `behind` and
-/// are apart by a length whose square is `ds2`? `turned2`: the square of the angle between
-/// the directions times the size of the object. `flat`: a vertex was seen twice.
+/// How alike the excesses of a smooth pair must be. `flat`: a vertex was seen twice.
 #[inline(always)]
-pub fn smooth(flat: bool, ahead: Real, behind: Real, ds2: Real, turned2: Real) -> bool {
-    let (sum, gap) = (ahead + behind, (ahead - behind) * (ahead - behind));
-    let limit = if flat { ALIKE * FLAT } else { ALIKE } * sum;
-    let limit2 = limit * limit;
-    ds2 <= BLUNT * BLUNT * turned2 && gap <= limit2 && gap * ds2 <= limit2 * STEEP * STEEP * turned2
-}
-
-/// A symmetric matrix.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Symmetric {
-    xx: Real,
-    xy: Real,
-    xz: Real,
-    yy: Real,
-    yz: Real,
-    zz: Real,
-}
-
-impl Symmetric {
-    fn scaled_identity(a: Real) -> Self {
-        Self {
-            xx: a,
-            yy: a,
-            zz: a,
-            ..Self::default()
-        }
-    }
-
-    /// xx, xy, xz, yy, yz, zz.
-    pub fn of([xx, xy, xz, yy, yz, zz]: [Real; 6]) -> Self {
-        Self {
-            xx,
-            xy,
-            xz,
-            yy,
-            yz,
-            zz,
-        }
-    }
-
-    /// xx, xy, xz, yy, yz, zz.
-    pub fn entries(&self) -> [Real; 6] {
-        [self.xx, self.xy, self.xz, self.yy, self.yz, self.zz]
-    }
-
-    #[inline]
-    pub fn times(&self, v: &Vec3) -> Vec3 {
-        Vec3::new(
-            self.xx * v.x + self.xy * v.y + self.xz * v.z,
-            self.xy * v.x + self.yy * v.y + self.yz * v.z,
-            self.xz * v.x + self.yz * v.y + self.zz * v.z,
-        )
-    }
-
-    /// Adds a · w w'.
-    #[inline]
-    fn add(&mut self, a: Real, w: &Vec3) {
-        let aw = w * a;
-        self.xx += aw.x * w.x;
-        self.xy += aw.x * w.y;
-        self.xz += aw.x * w.z;
-        self.yy += aw.y * w.y;
-        self.yz += aw.y * w.z;
-        self.zz += aw.z * w.z;
-    }
+pub fn alike(flat: bool) -> Real {
+    if flat { ALIKE * FLAT } else { ALIKE }
 }
 
 /// R and what is known of it.
@@ -199,25 +120,14 @@ impl Curvature {
     /// A remembered R beyond any object of that extent was another's.
     #[inline]
     pub fn forget_unless_fits(&mut self, size: Real) {
-        let r = &self.r;
-        let largest = r.xx.abs() + r.yy.abs() + r.zz.abs() + r.xy.abs() + r.xz.abs() + r.yz.abs();
+        let largest: Real = self.r.0.iter().map(|entry| entry.abs()).sum();
         self.known &= largest <= BLUNT * size;
     }
 
     /// R in the chart of the unit vectors e1 and e2: ρ, A's first entry, and the one across.
     #[inline]
     pub fn within(&self, e1: &Vec3, e2: &Vec3) -> (Real, Real, Real) {
-        let (r1, r2) = (self.r.times(e1), self.r.times(e2));
-        let (rxx, rxy, ryy) = (r1.dot(e1), r1.dot(e2), r2.dot(e2));
-        let (rho, axx) = (0.5 * (rxx + ryy), 0.5 * (rxx - ryy));
-        // R is positive semidefinite: a negative eigenvalue becomes zero.
-        let m = (axx * axx + rxy * rxy).sqrt();
-        if m > rho {
-            let half = 0.5 * (rho + m).max(0.0);
-            (half, axx * (half / m), rxy * (half / m))
-        } else {
-            (rho, axx, rxy)
-        }
+        self.r.within(e1, e2)
     }
 
     /// Relative error of R between sample `i` and the centre: of R as a whole and, but for a
@@ -290,16 +200,16 @@ impl Curvature {
             let (dn2, ds2) = (dn.norm_squared(), ds.norm_squared());
             let (ahead, behind) = (ds.dot(&new.n), -ds.dot(&n));
             // Also NaN.
-            if !(dn2 > CLOSE) {
+            if !(dn2 > TOLD * TOLD) {
                 continue;
             }
             let repeated = ds2 <= rounding * rounding;
             self.flat |= repeated;
             seen.contradicted |= ahead < -rounding || behind < -rounding;
-            let alike = !self.given_up
+            let smooth = !self.given_up
                 && ahead + behind > rounding
-                && smooth(self.flat, ahead, behind, ds2, size2 * dn2);
-            if repeated || alike {
+                && is_smooth([ahead, behind], ds2, size2 * dn2, alike(self.flat));
+            if repeated || smooth {
                 if dn2 < seen.angle2 {
                     seen.twin = Some(i);
                     seen.angle2 = dn2;
@@ -314,14 +224,13 @@ impl Curvature {
     /// A kink between the centre and a sample `dn` away leaves R no more than this `room`.
     #[inline]
     fn refute(&mut self, dn: &Vec3, room: Real) {
-        let rd = self.r.times(dn);
-        let bend = rd.dot(dn);
+        let bend = self.r.times(dn).dot(dn);
         let room = room.max(0.0);
         if bend > room && self.error > BELIEVED {
             // Refuted before a second pair confirmed it.
             self.known = false;
         } else if bend > room {
-            self.r.add((room - bend) / (bend * bend), &rd);
+            self.r.reduce(dn, room);
             self.round &= bend - room <= BALL * bend;
         }
     }
@@ -369,9 +278,7 @@ impl Curvature {
         self.spread |= remembered && self.error < FORETOLD;
         // Exactly parallel: a ball, if the object has room for it.
         let size2 = samples.size * samples.size;
-        if (ds - dn * slope).norm_squared() <= BALL * BALL * ds2
-            && slope * slope <= (1.0 + ALIKE) * size2
-        {
+        if (ds - dn * slope).norm_squared() <= BALL * BALL * ds2 && fits(slope, size2) {
             self.spread = true;
             if self.error > BALL {
                 self.r = Symmetric::scaled_identity(slope);
@@ -386,12 +293,10 @@ impl Curvature {
     /// A vertex of P seen along n and n + dn: no curvature between them.
     #[inline]
     fn flatten(&mut self, dn: &Vec3) {
-        let rd = self.r.times(dn);
-        let bend = rd.dot(dn);
         if self.error > BELIEVED {
             self.known = false;
-        } else if bend > 0.0 {
-            self.r.add(-1.0 / bend, &rd);
+        } else {
+            self.r.reduce(dn, 0.0);
         }
     }
 
@@ -401,14 +306,10 @@ impl Curvature {
         let along = w.dot(dn);
         if along * along > ALONG * w.norm_squared() * dn2 {
             // Symmetric rank-one.
-            self.r.add(1.0 / along, w);
+            self.r.add_square(1.0 / along, w);
         } else {
             // Across: the least symmetric change (Powell's).
-            let sum = w + dn;
-            let across = 1.0 / dn2;
-            self.r.add(across, &sum);
-            self.r.add(-across, w);
-            self.r.add(-across - along * across * across, dn);
+            self.r.add_least(w, dn);
         }
     }
 }

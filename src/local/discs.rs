@@ -3,140 +3,31 @@
 
 //! Discs that are part of the objects, found from their own points and taken off.
 //!
-//! A disc of radius r across the unit axis a has its farthest point along the unit n at r m(n),
-//! m = n⊥ / |n⊥|, n⊥ = n − (n·a) a. Its support function is r |n⊥|, whose second derivative is
-//! (r / |n⊥|) t t' with t = a × m.
-//!
-//! *Unknown*: axis and radius of the disc whose point moves by d from the direction n to n′.
-//! *Condition*: d is across the axis, and m, m′ lie symmetric to the middle of the chord: with
-//! f₀ = d/|d|, p = n·f₀, p′ = n′·f₀, m·f₀ = −m′·f₀, or p² |n′⊥|² = p′² |n⊥|².
-//! *Solution*: with f₁ along what n has across f₀, of length α, f₂ = f₀ × f₁, and
-//! a = c f₁ + s f₂, n·a = c α, n′·a = c β₁ + s β₂ that is A c² + B c s + C s² = 0 with
-//! A = p² (1 − β₁²) − p′² (1 − α²), B = −2 p² β₁ β₂, C = p² (1 − β₂²) − p′². One of the two
-//! roots has a nearly along n, where any move is some disc's; the other one is taken.
+//! What a disc is, and how two of its points tell it, stands in `known/round.rs` ([`Disc::of`]). Its
+//! support function is r |n⊥|, n⊥ = n − (n·a) a, whose second derivative is (r / |n⊥|) t t' with
+//! t = a × n⊥ / |n⊥|.
 //!
 //! *What is believed*: any two points of a smooth object could be a disc's. A third one confirms
 //! it. Before that a pair of the one object that moved is enough to look by; where both moved,
 //! the next sample tells.
 //!
 //! *Remembered*: the radius stays, the axis turns with its object, and one pair finds it again.
-//! The solution above confirms itself where it has the radius remembered. Where the pair is too
-//! narrow for that, d = r (m′ − m) alone tells |n⊥| = −2 r p / |d| without a difference of nearly
-//! equal squares; that is believed as above.
+//! [`Disc::of`] confirms itself where it has the radius remembered. Where the pair is too narrow for
+//! that, the radius helps ([`Disc::turned`]); that is believed as above.
 //!
 //! *Where it is*: a vertex carries the disc if it is above or below the one that did where the
 //! disc was found. Any other, a cone's tip, has a cut of its own without it, and bends nothing.
 
-use super::curvature::{ALIKE, BALL, CLOSE};
+use super::curvature::BALL;
 use super::lanes::{Lanes, Vectors};
 use super::samples::Sample;
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
+use crate::known::round::{ALIKE, Disc, Seen, TOLD, fits};
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
 
 /// Relative difference of the two excesses of one object's points up to which they are taken for
 /// those of another smooth surface, before a disc is confirmed; a kink's are what they like.
 /// Measured: ×2 nothing, ÷3 ellipsoids beside a ball two support points more.
 const OWN: Real = 0.1;
-
-/// A disc; none with the radius 0.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Disc {
-    /// Metres.
-    pub radius: Real,
-    /// Unit.
-    pub axis: Vec3,
-}
-
-impl Disc {
-    #[inline(always)]
-    pub fn is_there(&self) -> bool {
-        self.radius > 0.0
-    }
-
-    /// What a vector has across the axis.
-    #[inline(always)]
-    pub fn across(&self, v: &Vec3) -> Vec3 {
-        v - self.axis * self.axis.dot(v)
-    }
-
-    /// Is the unit vector `n` along the axis, within rounding?
-    #[inline]
-    fn is_along(&self, n: &Vec3) -> bool {
-        self.is_there() && !(self.across(n).norm_squared() > EPSILON)
-    }
-
-    /// The farthest point along the unit vector `n`, from the middle. Not a number along the
-    /// axis.
-    #[inline(always)]
-    fn point(&self, n: &Vec3) -> Vec3 {
-        let across = self.across(n);
-        across * (self.radius / across.norm())
-    }
-
-    /// How far the farthest point moves from one unit direction to another.
-    #[inline(always)]
-    fn turned(&self, from: &Vec3, to: &Vec3) -> Vec3 {
-        self.point(to) - self.point(from)
-    }
-
-    /// The disc whose farthest point moves by `d` from the unit direction `n` to the unit
-    /// direction `other`. `None`: no disc does.
-    fn of(n: &Vec3, other: &Vec3, d: &Vec3) -> Option<Self> {
-        let f0 = d * (1.0 / d.norm());
-        let (p, q) = (n.dot(&f0), other.dot(&f0));
-        let f1 = n - f0 * p;
-        let alpha2 = f1.norm_squared();
-        let f1 = f1 * (1.0 / alpha2.sqrt());
-        let f2 = f0.cross(&f1);
-        let (p2, q2) = (p * p, q * q);
-        let (b1, b2) = (other.dot(&f1), other.dot(&f2));
-        let a = p2 * (1.0 - b1 * b1) - q2 * (1.0 - alpha2);
-        let b = -2.0 * p2 * b1 * b2;
-        let c = p2 * (1.0 - b2 * b2) - q2;
-        let root = (b * b - 4.0 * a * c).sqrt();
-        let w = -0.5 * (b + root.copysign(b));
-        let axis = f1 * c + f2 * w;
-        let axis = axis * (1.0 / axis.norm());
-        let unit = Self { radius: 1.0, axis };
-        let moved = unit.turned(n, other);
-        let moved2 = moved.norm_squared();
-        let radius = d.dot(&moved) / moved2;
-        // By no more than a quarter of a turn: the two ends of anything are opposite on a disc
-        // whose axis lies between the directions. False for NaN.
-        (moved2 < 2.0 && radius > 0.0 && radius < Real::INFINITY).then_some(Self { radius, axis })
-    }
-
-    /// The disc of this radius, turned by as little as may be, whose farthest point moves by `d`
-    /// from the unit direction `n` to the unit direction `other`, but for `same`. `None`: no such
-    /// disc does.
-    ///
-    /// As in [`Disc::of`], but from d = r (m′ − m) alone |n⊥| = −2 r p / |d|, which needs no
-    /// difference of nearly equal squares.
-    fn turned_by(&self, n: &Vec3, other: &Vec3, d: &Vec3, same: Real) -> Option<Self> {
-        let length = d.norm();
-        let f0 = d * (1.0 / length);
-        let p = n.dot(&f0);
-        let f1 = n - f0 * p;
-        let alpha2 = f1.norm_squared();
-        let f1 = f1 * (1.0 / alpha2.sqrt());
-        let f2 = f0.cross(&f1);
-        let across = 2.0 * self.radius * p / length;
-        let c2 = larger(1.0 - across * across, 0.0) / alpha2;
-        let s2 = larger(1.0 - c2, 0.0);
-        let (c, s) = (c2.sqrt(), s2.sqrt());
-        let (c, s) = (
-            c.copysign(self.axis.dot(&f1)),
-            s.copysign(self.axis.dot(&f2)),
-        );
-        let axis = f1 * c + f2 * s;
-        let turned = Self {
-            axis: axis * (1.0 / axis.norm()),
-            ..*self
-        };
-        // False for NaN.
-        let fits = (d - turned.turned(n, other)).norm_squared() <= same * same;
-        (fits && length > 4.0 * same).then_some(turned)
-    }
-}
 
 /// How far the objects' points moved between two samples, as points of D.
 #[inline(always)]
@@ -144,19 +35,12 @@ pub fn moves(old: &Sample, new: &Sample) -> [Vec3; 2] {
     [new.p.v1 - old.p.v1, old.p.v2 - new.p.v2]
 }
 
-/// May a round part of this radius be one of an object of that squared extent, of which a little
-/// may not have been seen?
-#[inline(always)]
-pub fn fits(radius: Real, extent2: Real) -> bool {
-    radius * radius <= (1.0 + ALIKE) * extent2
-}
-
 /// Did a vertex move by `d` because its ball or disc of this radius moved so? That must be more
 /// than a vertex without it would need to pass for one with it: the difference of two points,
 /// each off by as much twice, where it was taken and where it is compared.
 #[inline(always)]
 pub fn shows(radius: Real, moved: &Vec3, d: &Vec3, same: Real) -> bool {
-    let least = larger(CLOSE * radius * radius, 16.0 * same * same);
+    let least = larger(TOLD * TOLD * radius * radius, 16.0 * same * same);
     moved.norm_squared() > least && (d - moved).norm_squared() <= same * same
 }
 
@@ -168,6 +52,15 @@ pub enum Shown {
     /// Discs of both objects, maybe.
     Maybe,
     Nothing,
+}
+
+/// The same, and the direction it was asked along.
+#[inline(always)]
+fn seen(sample: &Sample, o: usize) -> Seen {
+    Seen {
+        n: sample.n,
+        p: vertex(sample, o),
+    }
 }
 
 /// One object's disc in a sample.
@@ -398,13 +291,14 @@ impl Discs {
             if !disc.is_there() || own.found > 0 || own.confirmed {
                 continue;
             }
-            let moved = disc.turned(&old.n, &new.n);
+            let (from, to) = (seen(old, o), seen(new, o));
+            let moved = disc.point(&new.n) - disc.point(&old.n);
             if (d - moved).norm_squared() <= same * same {
                 continue;
             }
-            let anew = Disc::of(&old.n, &new.n, &d)
+            let anew = Disc::of(&from, &to)
                 .filter(|anew| (anew.radius - disc.radius).abs() <= BALL * disc.radius);
-            if let Some(disc) = anew.or_else(|| disc.turned_by(&old.n, &new.n, &d, same)) {
+            if let Some(disc) = anew.or_else(|| disc.turned(&from, &to, same)) {
                 own.confirmed = anew.is_some();
                 let carrier = vertex(new, o) - disc.point(&new.n);
                 let pair = [old.n, new.n];
@@ -622,7 +516,8 @@ impl Discs {
         let moved = [0, 1].map(|o| {
             let mut own = dn * balls[o];
             if self.of[o].at.disc.is_there() {
-                own += self.of[o].at.disc.turned(&old.n, &new.n);
+                let disc = &self.of[o].at.disc;
+                own += disc.point(&new.n) - disc.point(&old.n);
             }
             (d[o] - own).norm_squared() > same * same
         });
@@ -643,7 +538,7 @@ impl Discs {
             if balls[o] > 0.0 || before.found > 0 {
                 return Shown::Nothing;
             }
-            let disc = Disc::of(&old.n, &new.n, &d[o]);
+            let disc = Disc::of(&seen(old, o), &seen(new, o));
             let Some(disc) = disc.filter(|d| fits(d.radius, extent2)) else {
                 return Shown::Nothing;
             };
@@ -688,6 +583,7 @@ impl Discs {
 mod tests {
     use super::*;
     use crate::known::support::SupportPoint;
+    use crate::math::EPSILON;
     use crate::shapes::Random;
 
     const SAME: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-9 };
@@ -719,42 +615,6 @@ mod tests {
 
     fn look(discs: &mut Discs, kept: &[Sample], new: &Sample, asked: usize) -> Shown {
         discs.look([&kept[0], new], kept, &[0.0; 2], SAME, 4.0, asked)
-    }
-
-    /// Discs of any radius, axis and direction but one near the axis.
-    #[test]
-    fn a_disc_from_two_of_its_points() {
-        let mut random = Random::new(1);
-        let slack = if EPSILON > 1e-10 { 0.1 } else { 1e-7 };
-        let mut met = 0;
-        for _ in 0..2000 {
-            let disc = Disc {
-                radius: random.within(0.1, 2.0),
-                axis: random.direction(),
-            };
-            let n = random.direction();
-            let other = (n + random.vector(0.1)).normalize();
-            let d = disc.turned(&n, &other);
-            let turn = d.norm() / disc.radius;
-            if disc.across(&n).norm() < 0.1 || !(0.02..1.4).contains(&turn) {
-                continue;
-            }
-            met += 1;
-            let found = Disc::of(&n, &other, &d).unwrap();
-            assert!((found.radius - disc.radius).abs() < slack * disc.radius);
-            assert!(
-                found.axis.cross(&disc.axis).norm() < slack,
-                "{disc:?} {found:?}"
-            );
-        }
-        assert!(met > 1000, "{met}");
-        let (x, y) = (Vec3::x(), Vec3::new(1.0, 0.1, 0.0).normalize());
-        assert!(Disc::of(&x, &y, &Vec3::zeros()).is_none());
-        assert!(Disc::of(&x, &y, &Vec3::repeat(Real::NAN)).is_none());
-        assert!(Disc::of(&x, &x, &Vec3::y()).is_none());
-        // The ends of a line.
-        let z = Vec3::new(1.0, -0.1, 0.0).normalize();
-        assert!(Disc::of(&z, &y, &Vec3::y()).is_none());
     }
 
     #[test]

@@ -33,9 +33,9 @@
 //!
 //! Polytopes and balls need none of what discs need: `BENT` is false until one is met.
 
-use super::curvature::{ALIKE, BALL, CLOSE, FAR, smooth};
+use super::curvature::{BALL, FAR, alike};
 use super::cuts::{Cuts, Step};
-use super::discs::{Discs, Shown, fits, moves, shows};
+use super::discs::{Discs, Shown, moves, shows};
 use super::lanes::{CUTS, Lanes, Vectors};
 use super::memory::{Memory, Queue, Smooth};
 use super::model::basis;
@@ -44,6 +44,7 @@ use super::trust_region::{FIRST, TrustRegion};
 use super::witness::hull;
 use crate::contact::{Penetration, Settings};
 use crate::contacts::patch;
+use crate::known::round::{ALIKE, TOLD, fits, is_smooth};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use crate::math::{self, Real, Vec3, larger, perpendicular, unit};
 
@@ -509,7 +510,7 @@ impl Flat {
             let dn2 = (n - self.n.get(i)).norm_squared();
             let ds2 = (u - self.u.get(i)).norm_squared();
             if ds2 <= same2 {
-                self.flat |= dn2 > CLOSE;
+                self.flat |= dn2 > TOLD * TOLD;
                 if dn2 < nearest {
                     (twin, nearest) = (Some(i), dn2);
                 }
@@ -545,9 +546,9 @@ impl Flat {
     /// Does a pair with these excesses, this far apart, look smooth?
     #[inline(always)]
     fn smooth(&self, ahead: Real, behind: Real, ds2: Real, dn2: Real) -> bool {
-        dn2 > CLOSE
+        dn2 > TOLD * TOLD
             && ahead + behind > self.cuts.rounding
-            && smooth(self.flat, ahead, behind, ds2, self.extent2 * dn2)
+            && is_smooth([ahead, behind], ds2, self.extent2 * dn2, alike(self.flat))
     }
 
     /// Keeps the sample: in the place of its `twin`, of the same vertex, if it is nearer to
@@ -643,7 +644,7 @@ impl Flat {
     fn look(&mut self, old: &Sample, new: &Sample) -> bool {
         let dn = new.n - old.n;
         let turned = dn.norm_squared();
-        if !(turned > CLOSE) {
+        if !(turned > TOLD * TOLD) {
             return false;
         }
         let moves = moves(old, new);
@@ -1074,7 +1075,7 @@ impl Flat {
         }
         let tilt = if step.count == 1 {
             // Enough, and to spare, for [`shows`].
-            larger(10.0 * CLOSE.sqrt(), 8.0 * self.same_round() / radius)
+            larger(10.0 * TOLD, 8.0 * self.same_round() / radius)
         } else {
             HAIR * self.tolerance / self.extent2.sqrt()
         };

@@ -3,11 +3,10 @@
 
 //! What a search leaves behind for the next one of the pair.
 
-use super::curvature::Symmetric;
-use super::discs::Disc;
 use super::model::basis;
 use super::trust_region::ASIDE;
 use crate::contacts::polygon::{Flat, dot, length, side};
+use crate::known::round::{Disc, Symmetric};
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
 
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
@@ -100,7 +99,7 @@ impl Memory {
         };
         let (curved, curvature) = match smooth {
             Smooth::Unknown => (0, [0.0; 6]),
-            Smooth::Curved(r) => (CURVED, r.entries()),
+            Smooth::Curved(r) => (CURVED, r.0),
             Smooth::Round { balls, discs } => {
                 let mut curved = ROUND;
                 let mut of = [0, 1].map(|o| Vec3::new(balls[o], 0.0, 0.0));
@@ -136,7 +135,7 @@ impl Memory {
             return Smooth::Unknown;
         }
         match self.curved {
-            CURVED => Smooth::Curved(Symmetric::of(self.curvature)),
+            CURVED => Smooth::Curved(Symmetric(self.curvature)),
             _ if self.curved & ROUND != 0 => {
                 let [x, y, z, p, q, r] = self.curvature;
                 let of = [Vec3::new(x, y, z), Vec3::new(p, q, r)];

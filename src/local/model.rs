@@ -3,8 +3,9 @@
 
 //! The model of the depth around the bundle's centre, and its minimum within the trust radius.
 
-use super::curvature::{ALIKE, BELIEVED, Curvature};
+use super::curvature::{BELIEVED, Curvature};
 use super::samples::{Lanes, OTHERS, Samples, lane};
+use crate::known::round::ALIKE;
 use crate::math::{Real, Vec3};
 
 /// The chart around the bundle's centre and the cuts α + β·x in it.
@@ -333,10 +334,10 @@ impl Model {
 
 #[cfg(test)]
 mod tests {
-    use super::super::curvature::Symmetric;
     use super::super::samples::CUTS;
     use super::super::samples::tests::{around, samples};
     use super::*;
+    use crate::known::round::Symmetric;
     use crate::known::support::Known;
     use crate::math::EPSILON;
     use crate::shapes::{Random, Shape, capsule, corners, hull, placed};
@@ -416,7 +417,7 @@ mod tests {
         for _ in 0..40 {
             let shape = capsule(r.vector(0.5), r.vector(0.5), 0.6);
             let mut curvature = Curvature::new();
-            curvature.recall(Symmetric::of([0.6, 0.0, 0.0, 0.6, 0.0, 0.6]));
+            curvature.recall(Symmetric([0.6, 0.0, 0.0, 0.6, 0.0, 0.6]));
             compare_with_grid(&shape, &curvature, &mut r);
         }
     }
@@ -427,7 +428,7 @@ mod tests {
         let (p, q) = (Vec3::new(0.1, 0.0, 0.3), Vec3::new(-0.1, 0.05, -0.3));
         let shape = capsule(p, q, 0.5);
         let mut curvature = Curvature::new();
-        curvature.recall(Symmetric::of([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]));
+        curvature.recall(Symmetric([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]));
         for _ in 0..200 {
             let dirs = around(&mut r, 2, 0.3);
             let mut known = Known::default();

@@ -3,7 +3,7 @@
 
 //! The trust region: how far around the bundle's centre the model is believed.
 
-use super::curvature::CLOSE;
+use crate::known::round::TOLD;
 use crate::math::{EPSILON, Real, Vec3, larger, lesser, perpendicular};
 
 /// First trust radius, radians: the error of a good guess. Measured: ×2 −2.5 %, 34 more, and 63
@@ -22,7 +22,7 @@ const SHRINK: Real = 0.6;
 const HALFWAY: Real = 0.25;
 /// Largest radius, in the chart: tan 45°. Derived: farther off it stretches more than it shows.
 const LARGEST: Real = 1.0;
-/// Least radius, as a share of the angle below which samples tell nothing ([`CLOSE`]): the search
+/// Least radius, as a share of the angle below which samples tell nothing ([`TOLD`]): the search
 /// has lost its way. Derived: nothing is left to be told.
 const STUCK: Real = 0.1;
 
@@ -138,7 +138,7 @@ impl TrustRegion {
     /// Has the search lost its way?
     #[inline]
     pub fn is_stuck(&self) -> bool {
-        self.radius * self.radius < STUCK * STUCK * CLOSE
+        self.radius * self.radius < STUCK * STUCK * TOLD * TOLD
     }
 }
 

@@ -3,10 +3,11 @@
 
 //! Is the centre of the bundle the answer, and where to ask if it is not?
 
-use super::curvature::{CLOSE, Curvature};
+use super::curvature::Curvature;
 use super::model::{Model, Step};
 use super::samples::Samples;
 use super::trust_region::{self, TrustRegion};
+use crate::known::round::TOLD;
 use crate::math::{Real, Vec3, larger};
 
 /// Where to ask next.
@@ -71,7 +72,7 @@ fn open_error(
         }
     }
     // So near to b another point would tell nothing.
-    if step.count < 3 && step.inside && step.length2() > CLOSE {
+    if step.count < 3 && step.inside && step.length2() > TOLD * TOLD {
         open = open.max(free_direction_error(
             samples, curvature, model, step, radius,
         ));
@@ -202,7 +203,7 @@ mod tests {
         let dirs = [-Vec3::z()];
         let mut curvature = Curvature::new();
         let r = [0.5, 0.0, 0.0, 0.5, 0.0, 0.5];
-        curvature.recall(super::super::curvature::Symmetric::of(r));
+        curvature.recall(crate::known::round::Symmetric(r));
         curvature.line = Some(Vec3::x());
         assert!(matches!(
             verdict(&shape, &dirs, &curvature),

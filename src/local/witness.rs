@@ -212,9 +212,9 @@ fn allowed_across(samples: &Samples, tolerance: Real) -> Real {
 
 #[cfg(test)]
 mod tests {
-    use super::super::curvature::Symmetric;
     use super::super::samples::tests::{around, samples};
     use super::*;
+    use crate::known::round::Symmetric;
     use crate::known::support::Known;
     use crate::math::EPSILON;
     use crate::shapes::{Random, Rotation, Shape, capsule, corners, hull, placed};
@@ -303,7 +303,7 @@ mod tests {
         let (p, q) = (Vec3::new(0.1, 0.0, -0.4), Vec3::new(-0.15, 0.0, -0.4));
         let shape = capsule(p, q, 0.5);
         let mut curvature = Curvature::new();
-        curvature.recall(Symmetric::of([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]));
+        curvature.recall(Symmetric([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]));
         let mut known = Known::default();
         // One end each, where the least depth of 0.1 is between.
         let dirs = [(0.0, 0.0), (-0.05, 0.02)].map(|(x, y)| Vec3::new(x, y, 1.0).normalize());
