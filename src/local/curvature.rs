@@ -293,10 +293,12 @@ impl Curvature {
     /// A vertex of P seen along n and n + dn: no curvature between them.
     #[inline]
     fn flatten(&mut self, dn: &Vec3) {
+        let rd = self.r.times(dn);
+        let bend = rd.dot(dn);
         if self.error > BELIEVED {
             self.known = false;
-        } else {
-            self.r.reduce(dn, 0.0);
+        } else if bend > 0.0 {
+            self.r.add_square(-1.0 / bend, &rd);
         }
     }
 
