@@ -670,8 +670,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 }
 
 /// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
-/// 1e-12 in double precision.
-const INSIDE: Real = 4500.0 * EPSILON;
+/// 1e-12, or what single precision tells.
+const INSIDE: Real = if EPSILON > 1e-10 {
+    32.0 * EPSILON
+} else {
+    1e-12
+};
 
 /// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty.
 const BUDGET: u64 = 64;

@@ -177,7 +177,7 @@ int main(int argc, char **argv)
                         show("unsound", kind, first + i, tols[t], e, &p, &x);
                     }
                     if (x.has_proof
-                        && !((x.code == CCD_LIMIT || x.depth - x.lower <= tol + noise) && x.lower <= p.truth.depth + noise)) {
+                        && !((x.code == CCD_LIMIT || x.depth - x.lower <= tol + tolerance(TOL_PROOF_FLOOR) * pair_largest(&p.a, &p.b) + noise) && x.lower <= p.truth.depth + noise)) {
                         r->unproven++;
                         show("no proof", kind, first + i, tols[t], e, &p, &x);
                     }
