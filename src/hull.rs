@@ -5,10 +5,9 @@
 //! nearest to the origin, until the bounds meet.
 //!
 //! [`global`] is the query, and its head has the steps in order; [`start`] makes the first
-//! tetrahedron, [`expansion`] chooses where to ask, [`balls`] is what ends between balls, [`polytope`] and [`plane`] are the
+//! tetrahedron, [`expansion`] chooses where to ask, [`polytope`] and [`plane`] are the
 //! polytope.
 
-pub mod balls;
 pub mod expansion;
 pub mod global;
 pub mod plane;

@@ -492,6 +492,74 @@ static void drop_center(const void *obj, ccd_vec3_t *out)
     ccdVec3Set(out, 0, 0, 0);
 }
 
+/* --- a ball and a flat ------------------------------------------------------------------------ */
+
+/* A ball about the origin, cut off across the axis: h is the height of what is missing. */
+typedef struct {
+    double axis[3], radius, h;
+} cut_t;
+
+static void cut_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    const cut_t *c = obj;
+    const double flat = c->radius - c->h, rim = sqrt(fmax(c->radius * c->radius - flat * flat, 0));
+    double n[3], across[3], l = sqrt((double)ccdVec3Len2(dir)), along, aside;
+    int i, twice;
+    judge_count();
+    for (i = 0; i < 3; i++)
+        across[i] = n[i] = l > 0 ? (double)dir->v[i] / l : 0;
+    along = truth_dot3(n, c->axis);
+    for (twice = 0; twice < 2; twice++) { /* what is left of a short vector is rounding: taken off again */
+        const double off = truth_dot3(across, c->axis);
+        for (i = 0; i < 3; i++)
+            across[i] -= off * c->axis[i];
+        aside = sqrt(truth_dot3(across, across));
+        for (i = 0; i < 3; i++)
+            across[i] = aside > 0 ? across[i] / aside : 0;
+    }
+    for (i = 0; i < 3; i++)
+        out->v[i] = (ccd_real_t)(along * c->radius <= flat ? c->radius * n[i]
+                                                           : flat * c->axis[i] + rim * across[i]);
+}
+
+/* What is round wherever it was asked may be flat between: the least depth is across the flat, and
+ * no query may take all for a ball and its proof for true. */
+static int ball_and_flat(int which)
+{
+    const entry_t *e = &entries[which];
+    double worst = 0;
+    int i, wrong = 0;
+    for (i = 0; i < 60; i++) {
+        dice_t d = dice(2700, (uint64_t)i);
+        cut_t a, b;
+        ccd_t ccd;
+        answer_t x;
+        double side[3], truth;
+        dice_unit(&d, a.axis);
+        dice_unit(&d, side);
+        a.radius = 1;
+        a.h = dice_log(&d, 1e-3, .1);
+        b = a;
+        b.radius = dice_in(&d, .3, 1);
+        b.h = 0;
+        truth = a.radius + b.radius - a.h;
+        CCD_INIT(&ccd);
+        ccd.support1 = ccd.support2 = cut_support;
+        ccd.center1 = ccd.center2 = drop_center;
+        ccd.mpr_tolerance = ccd.epa_tolerance = 1e-4;
+        x = ask_objects(e, &a, &b, &ccd, side, no_end);
+        if (!answered(&x)) {
+            wrong++;
+        } else if (x.has_proof) {
+            const double noise = 64 * (double)CCD_EPS;
+            wrong += !(x.lower <= truth + noise) || !(x.depth >= truth - noise);
+            worst = fmax(worst, x.lower - truth);
+        }
+    }
+    printf("%d of %d wrong, proven beyond the truth %.3g", wrong, i, worst);
+    return wrong == 0;
+}
+
 static void point_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     (void)dir;
@@ -583,8 +651,8 @@ int main(int argc, char **argv)
         {"U12", "the minimum of two cones 11 um apart", cones_apart, 0, HOLDS},
         {"U12", "the minimum of cylinders and cones on each other", discs_resting, 0, HOLDS},
     };
-    /* and two for every entry point, by its name */
-    promise_t all[sizeof listed / sizeof listed[0] + 2 * ENTRIES];
+    /* and three for every entry point, by its name */
+    promise_t all[sizeof listed / sizeof listed[0] + 3 * ENTRIES];
     int n = (int)(sizeof listed / sizeof listed[0]), i;
     memcpy(all, listed, sizeof listed);
     for (i = 0; i < (int)ENTRIES; i++) {
@@ -597,6 +665,9 @@ int main(int argc, char **argv)
         }
         p.id = "tip";
         p.holds = ball_and_tip;
+        all[n++] = p;
+        p.id = "flat";
+        p.holds = ball_and_flat;
         all[n++] = p;
     }
     return promises_run(all, n, argc > 1 ? argv[1] : NULL) > 0;

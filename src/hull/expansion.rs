@@ -47,7 +47,6 @@
 //! origin is outside of it, by rounding then, yes or no is left to the caller.
 
 use crate::gjk::barycentric;
-use crate::hull::balls;
 use crate::hull::plane::Plane;
 use crate::hull::polytope::{Inserted, Polytope, Top};
 use crate::known::precision::Precision;
@@ -84,9 +83,6 @@ const ASIDE: Real = 4.0;
 /// Every so many steps the plain normal is asked. Insensitive: 16 to 64 tried on the recorded
 /// contacts.
 const LOWER: u64 = 32;
-/// Every so many steps it is asked whether the balls of two objects prove what is left to prove.
-/// Free: two balls about one centre take some sixty.
-const BALLS: u64 = 16;
 /// Steps without a change of the nearest distance. Insensitive, 12 to 48 tried on the recorded
 /// contacts: more than the faces of a symmetric object that tie.
 const CIRCLES: u32 = 24;
@@ -427,10 +423,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         if inside && progress.is_spent(inquiry.md.supports()) {
             return Ok(End::Inside);
         }
-        let due = inside && set.len() >= balls::FEWEST && progress.iterations % BALLS == BALLS - 1;
-        if due && end_between_balls(inquiry, set, top.key, progress.upper - progress.allowed) {
-            return Ok(End::Inside);
-        }
         let level = progress.level(inside);
         if progress.spare != 0 {
             match progress.spend(set, hull, top.face, level) {
@@ -474,26 +466,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
                 progress.was_in_vain(aim, &top);
             }
         }
-    }
-}
-
-/// Do the balls of the two objects prove a depth of `least`, metres, which the polytope with this
-/// nearest key has not yet?
-#[cold]
-#[inline(never)]
-fn end_between_balls<A: SupportMap, B: SupportMap, const P: usize>(
-    inquiry: &Inquiry<'_, A, B>,
-    set: &SupportSet<P>,
-    key: f64,
-    least: Real,
-) -> bool {
-    let Lowest { depth, dir } = inquiry.lowest;
-    let near = wide((1.0 - balls::SHARE) * depth);
-    key > near * near && {
-        let (points, directions) = set.parts();
-        let noise = inquiry.precision.touch();
-        let bound = balls::bound(points, directions, &dir, noise);
-        bound.is_some_and(|bound| bound.lower >= least - 6.0 * noise)
     }
 }
 

@@ -18,7 +18,6 @@ use crate::contact::Penetration;
 use crate::contacts::patch::{self, Rest};
 use crate::gjk::barycentric;
 use crate::gjk::overlap;
-use crate::hull::balls;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
 use crate::hull::polytope::Polytope;
 use crate::hull::start;
@@ -477,29 +476,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             gap / (1.0 + gap) * depth,
             asked + ROUNDED * precision.grain(),
         );
-        let round = set.len() >= balls::FEWEST && end != End::Open;
-        depth - lower <= close || round && self.balls(set, near, close)
-    }
-
-    /// Do the balls of the two objects prove the answer, where the polytope's bound is `near`?
-    /// Then that bound is the answer's, and the points are the balls'.
-    #[cold]
-    #[inline(never)]
-    fn balls<const P: usize>(&mut self, set: &SupportSet<P>, near: Real, close: Real) -> bool {
-        let Lowest { depth, dir } = self.inquiry.lowest;
-        if !(near > (1.0 - balls::SHARE) * depth) {
-            return false;
-        }
-        let (points, directions) = set.parts();
-        let noise = self.inquiry.precision.touch();
-        match balls::bound(points, directions, &dir, noise) {
-            Some(bound) if depth - bound.lower <= close => {
-                self.hit.depth_lower = larger(bound.lower, self.hit.depth_lower).min(depth);
-                [self.hit.point1, self.hit.point2] = bound.points;
-                true
-            }
-            _ => false,
-        }
+        depth - lower <= close
     }
 
     /// The length, metres, along which the objects touch, as far as the points tell; 0 where
@@ -655,33 +632,6 @@ mod tests {
                     "{round} {hit:?} {}",
                     exact + 1.0
                 );
-            }
-        }
-    }
-
-    /// Minima that form a sphere, and a circle: no polytope proves them.
-    #[test]
-    fn balls_about_one_centre_and_rods_along_one_line_are_proven() {
-        let mut r = Random::new(4);
-        let touch = if Real::EPSILON > 1e-10 { 1e-5 } else { 1e-13 };
-        for _ in 0..300 {
-            let (a, by) = (r.direction(), r.vector(1e-3));
-            let (p, q) = (r.within(0.2, 1.0), r.within(0.2, 1.0));
-            for half in [0.0, 0.5] {
-                let by = if half > 0.0 { a * by.x } else { by };
-                let rod = |at: Vec3, radius| capsule(at - a * half, at + a * half, radius);
-                let md = MinkowskiDifference::new(rod(Vec3::zeros(), p), rod(by, q));
-                let (proven, hit) = ask(&md, r.direction()).unwrap();
-                let exact = p + q - if half > 0.0 { 0.0 } else { by.norm() };
-                assert!(proven, "{hit:?}");
-                assert!(
-                    (hit.depth - exact).abs() <= larger(1e-6, touch),
-                    "{hit:?} {exact}"
-                );
-                assert!(hit.depth_lower <= exact + touch, "{hit:?} {exact}");
-                assert!(md.supports() < 140, "{} support points", md.supports());
-                let meet = hit.point1 - hit.point2 - hit.dir * hit.depth;
-                assert!(meet.norm() < 2e-3, "{hit:?}");
             }
         }
     }

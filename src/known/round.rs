@@ -16,8 +16,7 @@
 //! A vertex with its ball or disc is exact wherever the support point stays on that piece; R is so
 //! to second order. Nothing tells how far a piece goes: the hull of a ball and a tip is a ball on
 //! one side, half a disc is a disc on one side. So a round part chooses where to ask, and *proves
-//! nothing*; what is told by it holds between the directions that showed it. (Of balls all around:
-//! [`crate::hull::balls`].)
+//! nothing*; what is told by it holds between the directions that showed it.
 //!
 //! Source: own derivation. R is learned by Powell's symmetric Broyden formula (Nocedal and Wright,
 //! Numerical Optimization, ch. 6).

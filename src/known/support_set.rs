@@ -82,13 +82,6 @@ impl<const N: usize> SupportSet<N> {
         }
     }
 
-    /// obj1's points and obj2's, and the directions they were asked along.
-    pub fn parts(&self) -> ([&[Vec3]; 2], &[Vec3]) {
-        let len = self.len.min(N);
-        let [one, two] = self.points.each_ref().map(|points| &points[..len]);
-        ([one, two], &self.directions[..len])
-    }
-
     /// How many points there are.
     #[inline(always)]
     pub fn len(&self) -> usize {

@@ -41,9 +41,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
 ///
 /// Reads epa_tolerance. center1 and center2 may be NULL, and are not trusted. `warm` may be NULL.
 /// `want`: CCD_WANT_ flags. Takes memory from malloc only where the minima (nearly) form a curve
-/// or a surface; there the bounds may stay open: CCD_LIMIT. Not of balls and capsules: an object
-/// of which support points all around lie on a ball, and none short of it, counts as holding that
-/// ball where the polytope has proven all but a sixteenth of the depth.
+/// or a surface; there the bounds may stay open: CCD_LIMIT.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY.
 #[unsafe(no_mangle)]
