@@ -70,7 +70,19 @@ impl State {
     /// this one's mirror image in the origin: points, directions and slopes change sign,
     /// lengths and curvatures stay, and the balls of the objects change places.
     pub fn flip(&mut self) {
+        let before = self.memory;
         self.memory.flip();
+        if self.rested() {
+            // A position and a mark, which no order matters to.
+            let Memory {
+                curvature,
+                count,
+                curved,
+                ..
+            } = before;
+            self.memory.curvature = curvature;
+            (self.memory.count, self.memory.curved) = (count, curved);
+        }
         if let Some(centre) = self.facing() {
             self.face(&-centre);
         }
@@ -290,6 +302,18 @@ mod tests {
         assert_eq!(state.memory.dir, -dir);
         state.flip();
         assert_eq!(state.memory.dir, dir);
+    }
+
+    /// Whatever bits the mark has.
+    #[test]
+    fn a_rested_pair_flipped_keeps_its_position() {
+        let middle = Vec3::new(1.0, 2.0, 3.0);
+        for bit in 0..64 {
+            let mut state = State::of(PROVEN, Vec3::x());
+            state.rest(middle, 1 << bit);
+            state.flip();
+            assert_eq!((state.mark(), state.middle()), (Some(1 << bit), middle));
+        }
     }
 
     #[test]
