@@ -111,9 +111,10 @@ fn direction(dir: [Real; 3]) -> Result<Vec3, Error> {
 /// and costs no support point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Want {
-    /// The contact position. Where faces or edges rest on each other it costs support points.
+    /// The contact position: 4 support points, 8 where a face has more than four corners, none where
+    /// a state shows that nothing has moved.
     pub pos: bool,
-    /// The witness points: the same, and nothing more beside it.
+    /// The witness points, which cost nothing.
     pub points: bool,
 }
 
@@ -210,7 +211,10 @@ pub struct Penetration {
     pub dir: [Real; 3],
     /// Unit; normal of the separating plane. Equal to `dir` but in [`penetration_along`].
     pub normal: [Real; 3],
-    /// Contact position, [`Want::pos`].
+    /// Contact position, [`Want::pos`]: the centre of pressure, which is the centroid of the volume
+    /// that the shapes share, but for its height along `normal`. It moves as the shapes do. Where
+    /// `limit` is set, and of [`penetration_along`] and [`penetration_planar`], the middle of the
+    /// witness points.
     pub pos: [Real; 3],
     /// Witness point of the first shape, [`Want::points`].
     pub point1: [Real; 3],
@@ -331,7 +335,7 @@ fn with_state<R>(
     Ok(answer)
 }
 
-/// Runs a solver, which is told whether witness points are wanted.
+/// Runs a solver, which is told whether the position is wanted.
 fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
@@ -342,9 +346,7 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     let checked = settings.checked()?;
     let want = settings.want;
     let pair = pair(a, b, warm.is_some())?;
-    let answer = with_state(warm, |state| {
-        Ok(solve(&pair, state, &checked, want.pos || want.points)?)
-    })?;
+    let answer = with_state(warm, |state| Ok(solve(&pair, state, &checked, want.pos)?))?;
     let (hit, limit) = match answer {
         Answer::Hit(hit) => (hit, false),
         Answer::Limit(hit) => (hit, true),
@@ -356,7 +358,7 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
         depth_lower: hit.depth_lower,
         dir: hit.dir.into(),
         normal: hit.normal.into(),
-        pos: given(want.pos, (hit.point1 + hit.point2) * 0.5),
+        pos: given(want.pos, hit.pos),
         point1: given(want.points, hit.point1),
         point2: given(want.points, hit.point2),
         support_calls: pair.md.supports(),

@@ -28,15 +28,23 @@ pub struct Penetration {
     /// Unit; normal of the separating plane (equal to `dir` but in a query along
     /// a given direction).
     pub normal: Vec3,
+    /// The squares of how far the objects are known to reach from their witness points, m².
+    pub extent: [Real; 2],
+    /// Contact position; zero where nobody asked for it.
+    pub pos: Vec3,
     /// Witness point on obj1.
     pub point1: Vec3,
     /// Witness point on obj2.
     pub point2: Vec3,
-    /// The length seen, metres, of the region in which the objects touch; 0 where that is one
-    /// pair of points, or nobody looked.
-    pub width: Real,
     /// Iterations of the solver.
     pub iterations: u64,
+}
+
+impl Penetration {
+    /// The middle of the witness points.
+    pub fn middle(&self) -> Vec3 {
+        (self.point1 + self.point2) * 0.5
+    }
 }
 
 /// The outcome of a query whose input was good.
@@ -53,6 +61,15 @@ pub enum Answer {
 }
 
 impl Answer {
+    /// The same with its contact position: the middle of the witness points.
+    #[must_use]
+    pub fn in_the_middle(mut self) -> Self {
+        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut self {
+            hit.pos = hit.middle();
+        }
+        self
+    }
+
     /// Writes an overlap to `hit`: `true` where the cap did not come before the tolerance.
     ///
     /// # Errors

@@ -3,9 +3,10 @@
 
 //! Where the objects touch, once depth and direction are known.
 //!
-//! [`patch`] finds the position of one contact, [`manifold`] several contacts; [`polygon`]
-//! clips and measures the faces.
+//! [`pressure`] finds the position of one contact, [`manifold`] several contacts; [`polygon`]
+//! clips and measures the faces of these.
 
+pub mod fan;
 pub mod manifold;
-pub mod patch;
 pub mod polygon;
+pub mod pressure;

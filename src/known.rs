@@ -9,6 +9,7 @@
 //! ([`support_set::SupportSet::extreme`]).
 
 pub mod check;
+pub mod mark;
 pub mod precision;
 #[doc(hidden)]
 pub mod round;

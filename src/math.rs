@@ -114,6 +114,23 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
     p / p.norm()
 }
 
+/// A unit vector that nothing stands along.
+pub const POLE: Vec3 = Vec3::new(0.36, 0.48, 0.8);
+
+/// Two unit vectors across the unit vector `n`, and each other, that turn as little as it does: those
+/// of a fixed frame, turned the shortest way from [`POLE`].
+pub fn axes(n: &Vec3) -> [Vec3; 2] {
+    let axis = Vec3::new(0.8, -0.6, 0.0);
+    let cosine = 1.0 + POLE.dot(n);
+    let e1 = if cosine > 1e-3 {
+        axis - (POLE + n) * (axis.dot(n) / cosine)
+    } else {
+        perpendicular(n)
+    };
+    let e1 = e1 / e1.norm();
+    [e1, n.cross(&e1)]
+}
+
 /// The library's own cap on the iterations of a query, whatever the caller allows. A search
 /// that comes this far makes no progress: with what is asked before and after, 400 support
 /// points are the most that a query takes. Measured (`wide_campaign`): of the minima that 360

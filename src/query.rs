@@ -17,13 +17,13 @@
 //!    [`proof`]. Both put the points the solver saw together anew, and ask for more only
 //!    where these leave a side open. The global search (`mpr`, `minimum`) proves its
 //!    overlaps itself.
-//! 4. Witness points of a face that rests on another, or on an edge, are moved to the
-//!    middle of where they touch ([`patch`]); not in `along` and `planar`.
+//! 4. Where the contact position is wanted, it is the centre of pressure ([`pressure`]); the middle
+//!    of the witness points in `along` and `planar`, and where a cap came first.
 //! 5. What was learned stays behind in the [`State`]; where the caller keeps none, nothing
 //!    is spent on it.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::contacts::patch;
+use crate::contacts::pressure;
 use crate::gjk::barycentric;
 use crate::gjk::intersect;
 use crate::gjk::overlap::{self, Proof};
@@ -261,7 +261,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         state: &mut State,
         settings: &Settings,
-        wants_witnesses: bool,
+        wants_pos: bool,
     ) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
@@ -282,10 +282,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state.overlap();
         self.face(state);
         if !minimum {
+            hit.pos = hit.middle();
             return Ok(Answer::Limit(hit));
         }
-        if wants_witnesses {
-            patch::settle(&self.md, &mut hit, settings.tolerance)?;
+        if wants_pos {
+            hit.pos = pressure::centre(&self.md, &hit, self.centre.as_ref(), settings.tolerance)?;
         }
         Ok(Answer::Hit(hit))
     }
@@ -296,7 +297,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         state: &mut State,
         settings: &Settings,
-        wants_witnesses: bool,
+        wants_pos: bool,
     ) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
@@ -306,11 +307,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let answer = self.proven(found, &mut Known::default(), settings, false)?;
         self.remember(state, &answer)?;
         match answer {
-            Answer::Hit(mut hit) if wants_witnesses => {
-                patch::settle(&self.md, &mut hit, settings.tolerance)?;
+            Answer::Hit(mut hit) if wants_pos => {
+                hit.pos =
+                    pressure::centre(&self.md, &hit, self.centre.as_ref(), settings.tolerance)?;
                 Ok(Answer::Hit(hit))
             }
-            other => Ok(other),
+            other => Ok(other.in_the_middle()),
         }
     }
 
@@ -321,7 +323,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         state: &mut State,
         settings: &Settings,
-        wants_witnesses: bool,
+        wants_pos: bool,
     ) -> Result<Answer, Fault> {
         let limits = Limits {
             tolerance: settings.tolerance,
@@ -329,7 +331,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             supports: MPR_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(self.centre.as_ref(), state, &limits, None, wants_witnesses)
+        self.global(self.centre.as_ref(), state, &limits, None, wants_pos)
     }
 
     /// The global minimum of the depth, proven by support points alone: from the state,
@@ -339,7 +341,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         settings: &Settings,
         arena: &mut dyn Arena,
-        wants_witnesses: bool,
+        wants_pos: bool,
     ) -> Result<Answer, Fault> {
         let limits = Limits {
             tolerance: settings.tolerance,
@@ -347,7 +349,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             supports: MOST_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(None, state, &limits, Some(arena), wants_witnesses)
+        self.global(None, state, &limits, Some(arena), wants_pos)
     }
 
     /// The global search, from the state; `apex` is a point that is trusted to be in D.
@@ -358,7 +360,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         limits: &Limits,
         arena: Option<&mut dyn Arena>,
-        wants_witnesses: bool,
+        wants_pos: bool,
     ) -> Result<Answer, Fault> {
         let mut asked = None;
         if state.was_apart() {
@@ -385,7 +387,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             first,
             others: state.others(),
             limits,
-            wants_witnesses,
+            wants_pos,
             mark: state.mark(),
         };
         let mut basis = Basis::default();
@@ -405,19 +407,24 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         });
         match found {
             Ok(true) => {
-                let alone = hit.point1;
                 let asked = self.md.supports();
-                if basis.unmoved {
-                    patch::move_to(&mut hit, &state.middle());
-                } else {
-                    patch::settle(&self.md, &mut hit, limits.tolerance)?;
+                if wants_pos {
+                    hit.pos = match state.position().filter(|_| basis.unmoved) {
+                        Some(pos) => pos,
+                        None => pressure::centre(
+                            &self.md,
+                            &hit,
+                            self.centre.as_ref(),
+                            limits.tolerance,
+                        )?,
+                    };
                 }
-                let middle = (hit.point1 != alone).then_some(hit.point1);
-                self.keep(state, &basis, middle, asked);
+                self.keep(state, &basis, wants_pos.then_some(hit.pos), asked);
                 Ok(Answer::Hit(hit))
             }
             Ok(false) => {
                 self.floor(&mut hit, limits)?;
+                hit.pos = hit.middle();
                 self.keep(state, &basis, None, 0);
                 Ok(Answer::Limit(hit))
             }
@@ -648,7 +655,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let (Some(portal), Answer::Hit(_) | Answer::Limit(_)) = (way.portal, &answer) {
             state.keep_portal(portal.planes.map(|plane| plane.normal));
         }
-        Ok(answer)
+        Ok(answer.in_the_middle())
     }
 
     /// A local minimum among the directions perpendicular to the unit vector `m`.
@@ -665,7 +672,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let found = planar::penetration(&self.md, &m, start, settings)?;
         let answer = self.proven(found, &mut Known::default(), settings, true)?;
         self.remember(state, &answer)?;
-        Ok(answer)
+        Ok(answer.in_the_middle())
     }
 }
 

@@ -231,10 +231,10 @@ impl State {
         self.rested().then_some(high << 32 | low)
     }
 
-    /// The middle of where it did: obj1's witness point.
-    pub fn middle(&self) -> Vec3 {
+    /// Its contact position, if it did.
+    pub fn position(&self) -> Option<Vec3> {
         let [x, y, z, ..] = self.memory.curvature;
-        Vec3::new(x, y, z)
+        self.rested().then_some(Vec3::new(x, y, z))
     }
 
     /// Keeps the directions of a portal besides.
@@ -312,7 +312,10 @@ mod tests {
             let mut state = State::of(PROVEN, Vec3::x());
             state.rest(middle, 1 << bit);
             state.flip();
-            assert_eq!((state.mark(), state.middle()), (Some(1 << bit), middle));
+            assert_eq!(
+                (state.mark(), state.position()),
+                (Some(1 << bit), Some(middle))
+            );
         }
     }
 

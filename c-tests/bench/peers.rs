@@ -97,7 +97,7 @@ pub fn bullet<'a>(libraries: &Libraries) -> Result<Method<'a>, String> {
 fn bullet_of<'a>(libraries: &Libraries, of: Classic) -> Method<'a> {
     Method::new(
         "Bullet EPA",
-        classic(of.gjk, of.settings(&libraries.callbacks, 1e-4)),
+        classic(of.gjk, of.settings(&libraries.callbacks, 1e-4), true),
     )
 }
 
@@ -141,13 +141,13 @@ impl Compiled {
     pub fn fcl<'a>(&self, libraries: &Libraries, tolerance: f64) -> Option<Method<'a>> {
         let of = self.fcl?;
         let settings = of.settings(&libraries.callbacks, tolerance);
-        Some(Method::new("FCL EPA", classic(of.gjk, settings)).within(tolerance))
+        Some(Method::new("FCL EPA", classic(of.gjk, settings, true)).within(tolerance))
     }
 
     /// Coal's EPA.
     pub fn coal<'a>(&self, libraries: &Libraries, tolerance: f64) -> Option<Method<'a>> {
         let of = self.coal?;
         let settings = of.settings(&libraries.callbacks, tolerance);
-        Some(Method::new("Coal EPA", classic(of.gjk, settings)).within(tolerance))
+        Some(Method::new("Coal EPA", classic(of.gjk, settings, true)).within(tolerance))
     }
 }

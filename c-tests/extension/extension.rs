@@ -51,6 +51,12 @@ fn answers_from_every_kind_of_state() {
     program("answers").build().run(NO_ARGS);
 }
 
+/// pos against an integral, along bodies that tilt, tip, slide and roll.
+#[test]
+fn pos_is_the_centre_of_pressure() {
+    program("pressure").build().run(NO_ARGS);
+}
+
 #[test]
 fn contacts_are_the_exact_ones() {
     program("contacts").build().run(NO_ARGS);

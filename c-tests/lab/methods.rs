@@ -6,7 +6,7 @@
 use std::ffi::{c_int, c_void};
 
 use ccd::internals::ffi::{
-    CCD_LIMIT, CCD_WANT_ALL, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
+    CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
 };
 use ccd::internals::{
     Answer as Outcome, MinkowskiDifference, Settings, Shortcut, Vec3, incremental,
@@ -132,11 +132,22 @@ type Query = unsafe extern "C-unwind" fn(
     *mut ccd_vec3_t,
 ) -> c_int;
 
-pub fn classic(query: Query, settings: ccd_t) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
+/// A call of libccd's, without its position where it need not have one: `pos` of this library is
+/// charted beside libccd's by the recorded contacts and the worlds.
+pub fn classic(
+    query: Query,
+    settings: ccd_t,
+    needs_pos: bool,
+) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
     move |_, pair| {
         let (mut depth, mut dir, mut pos) = (0.0, ccd_vec3_t::default(), ccd_vec3_t::default());
+        let pos = if needs_pos {
+            &raw mut pos
+        } else {
+            std::ptr::null_mut()
+        };
         // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
-        let code = unsafe { query(pair.a, pair.b, &settings, &mut depth, &mut dir, &mut pos) };
+        let code = unsafe { query(pair.a, pair.b, &settings, &mut depth, &mut dir, pos) };
         (code == 0).then_some(Answer {
             depth,
             dir: dir.v,
@@ -147,20 +158,12 @@ pub fn classic(query: Query, settings: ccd_t) -> impl FnMut(&Scene, &Pair) -> Op
 
 /// libccd's MPR, of either library.
 pub fn mpr<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
-    let name = if std::ptr::eq(of, &libraries.ours) {
-        "MPR"
+    let settings = of.settings(&libraries.callbacks, tolerance);
+    if std::ptr::eq(of, &libraries.ours) {
+        let method = Method::new("MPR", classic(of.mpr, settings, false));
+        method.within(tolerance).of_ours()
     } else {
-        "libccd MPR"
-    };
-    let method = Method::new(
-        name,
-        classic(of.mpr, of.settings(&libraries.callbacks, tolerance)),
-    )
-    .within(tolerance);
-    if name == "MPR" {
-        method.of_ours()
-    } else {
-        method
+        Method::new("libccd MPR", classic(of.mpr, settings, true)).within(tolerance)
     }
 }
 
@@ -171,11 +174,12 @@ pub fn libccd_epa<'a>(libraries: &Libraries, tolerance: f64) -> Method<'a> {
 
 /// libccd's GJK and EPA, or what takes their place in this library.
 pub fn gjk<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
-    let query = classic(of.gjk, of.settings(&libraries.callbacks, tolerance));
+    let settings = of.settings(&libraries.callbacks, tolerance);
     if std::ptr::eq(of, &libraries.ours) {
-        Method::new("GJK", query).within(tolerance).of_ours()
+        let method = Method::new("GJK", classic(of.gjk, settings, false));
+        method.within(tolerance).of_ours()
     } else {
-        Method::new("libccd EPA", query).within(tolerance)
+        Method::new("libccd EPA", classic(of.gjk, settings, true)).within(tolerance)
     }
 }
 
@@ -258,7 +262,7 @@ pub fn extension<'a>(
                     pair.b,
                     &settings,
                     &mut state,
-                    CCD_WANT_ALL,
+                    CCD_WANT_POINTS,
                     &mut out,
                 ),
                 Ask::Minimum => (calls.minimum)(
@@ -266,7 +270,7 @@ pub fn extension<'a>(
                     pair.b,
                     &settings,
                     &mut state,
-                    CCD_WANT_ALL,
+                    CCD_WANT_POINTS,
                     &mut out,
                 ),
                 Ask::Mpr => (calls.mpr)(
@@ -276,7 +280,7 @@ pub fn extension<'a>(
                     &mut state,
                     &mut out.depth,
                     &mut out.dir,
-                    &mut out.pos,
+                    std::ptr::null_mut(),
                 ),
             }
         };
@@ -312,7 +316,7 @@ pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64)
                 two,
                 far,
                 &mut state,
-                CCD_WANT_ALL,
+                CCD_WANT_POINTS,
                 &mut out,
             )
         };

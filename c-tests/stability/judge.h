@@ -363,13 +363,17 @@ static inline double judge_reach(const shape_t *s, const double origin[3], const
 }
 
 /* Witness points: each in its shape and at its supporting plane, their difference
- * the depth, pos their middle. */
+ * the depth. pos within half the depth of both shapes, and where no centre of pressure is
+ * promised their middle. */
 static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
     /* at the cap they are as far off as the gap that is left, and else as the depth may be */
     double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) : q->tol;
     double reached = x->code == CCD_LIMIT ? fmax(promised, x->depth - x->lower) : promised;
-    double bound = reached + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p1[3], p2[3], value, l2;
+    double bound = reached + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p[3], p1[3], p2[3], value, l2;
+    const int has_centre = x->code == CCD_HIT && e->ask != ASK_ALONG && e->ask != ASK_PLANAR;
+    /* deeper than an object is thick the middle of the chord is beyond it; and a hair */
+    const double inside = bound + (0.5 + 1.0 / 256) * x->depth;
     int faults = 0, i, j, k;
     for (i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
@@ -377,7 +381,8 @@ static inline int judge_witness(const entry_t *e, const answer_t *x, const shape
         p1[i] = x->point1[i] - origin[i];
         p2[i] = x->point2[i] - origin[i];
         d[i] = p1[i] - p2[i];
-        if (!(fabs((p1[i] + p2[i]) / 2 + origin[i] - x->pos[i]) <= q->noise))
+        p[i] = x->pos[i] - origin[i];
+        if (!has_centre && !(fabs((p1[i] + p2[i]) / 2 - p[i]) <= q->noise))
             faults |= FAULT_POSITION;
     }
     value = x->depth * truth_dot3(x->dir, x->normal);
@@ -406,6 +411,10 @@ static inline int judge_witness(const entry_t *e, const answer_t *x, const shape
                 if (!(truth_dot3(p1, n) - judge_reach(a, origin, n) <= bound)
                     || !(truth_dot3(p2, n) - judge_reach(b, origin, n) <= bound))
                     faults |= FAULT_WITNESS_INSIDE;
+                if (has_centre
+                    && (!(truth_dot3(p, n) - judge_reach(a, origin, n) <= inside)
+                        || !(truth_dot3(p, n) - judge_reach(b, origin, n) <= inside)))
+                    faults |= FAULT_POSITION;
             }
     return faults;
 }

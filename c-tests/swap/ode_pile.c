@@ -9,8 +9,9 @@
  *   hulls  convex hulls alone
  *   stack  towers of flat boxes, ODE's own and hulls by turns
  *   roll   cylinders roll to and fro on the floor
+ *   tower  one tower of flat hulls, stacked exactly; not moved
  *
- * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll */
+ * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower */
 
 #include "swap/ode_run.h"
 #include "swap/ode_shape.h"
@@ -95,7 +96,7 @@ int main(int argc, char **argv)
     run_t run = { 0, 0, 0, 0, 0, 0, 0 };
     long step;
     if (argc != 5) {
-        fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll\n");
+        fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower\n");
         return 2;
     }
     const unsigned long seed = strtoul(argv[1], NULL, 10);

@@ -24,6 +24,10 @@ static inline void run_scene(scene_t *scene, const char *name, int bodies, unsig
     const int stack = !strcmp(name, "stack"), roll = !strcmp(name, "roll");
     int i;
     scene_world(scene, 11);
+    if (!strcmp(name, "tower")) {
+        scene_tower(scene, bodies);
+        return;
+    }
     if (stack) {
         scene_stack(scene, (bodies + 4) / 5, 0.8);
     } else if (roll) {

@@ -212,6 +212,24 @@ static inline void scene_stack(scene_t *scene, int towers, double half_width)
     }
 }
 
+/* One tower of flat boxes, all hulls, each exactly where the one below ends: every contact is a
+ * touch at first. */
+static inline void scene_tower(scene_t *scene, int count)
+{
+    scene_shape_t *s;
+    int i;
+    scene_pen(scene, 0.8);
+    s = &scene->shape[scene->shapes++];
+    memset(s, 0, sizeof *s);
+    s->kind = SCENE_HULL;
+    hull_box(&s->hull, 0.125, 0.125, 0.0625);
+    for (i = 0; i < count; i++) {
+        const int b = scene_add(scene, scene->shapes - 1);
+        scene_make_dynamic(scene, b);
+        dBodySetPosition(scene->body[b], 0, 0, 0.0625 + 0.125 * i);
+    }
+}
+
 /* Cylinders that lie on a plate and roll, to and fro between the walls of a pen. The
  * plate is a hull: for a cylinder on a box of its own ODE does not ask libccd. */
 static inline void scene_roll(scene_t *scene, int count, double half_width)

@@ -130,6 +130,17 @@ fn towers_stand() {
     assert!(towers.against().is_empty(), "{:?}", towers.against());
 }
 
+/// Towers on the one contact a pair that ODE takes from libccd, and a tower whose hulls just touch.
+#[test]
+fn towers_stand_on_one_contact_a_pair() {
+    let program = checks::ode_pile();
+    for (scene, bodies) in [("stack", "20"), ("tower", "6")] {
+        let towers = checks::piles(&program, scene, 2, 3000, &[bodies, scene], |_| ());
+        let against = towers.restless(1.0, 5e-3);
+        assert!(against.is_empty(), "{scene}: {against:?}");
+    }
+}
+
 /// What a simulation needs most: a contact where the bodies touch.
 #[test]
 fn contacts_are_where_the_bodies_are() {

@@ -121,13 +121,13 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* The one call to begin with: do two objects overlap, how deep, which way out, where? */
 
 /**
- * Wanted: pos. Where faces or edges rest on each other and move it costs support points: boxes
- * that slide, with a state, 9 a query in place of 3.
+ * Wanted: pos. It costs 4 support points, 8 where a face has more than four corners, none where a
+ * state shows that nothing has moved (ccdPenetration, ccdPenetrationProven).
  */
 #define CCD_WANT_POS 1
 
 /**
- * Wanted: point1 and point2; as dear as pos, and nothing more beside it.
+ * Wanted: point1 and point2. They cost nothing.
  */
 #define CCD_WANT_POINTS 2
 
@@ -159,13 +159,16 @@ typedef struct ccd_penetration_t {
    */
   ccd_vec3_t normal;
   /**
-   * Contact position, CCD_WANT_POS: the middle of the witness points. Where a face rests on
-   * a face or an edge it is the middle of where the two touch, and moves as the objects do.
+   * Contact position, CCD_WANT_POS: the centre of pressure, which is the centroid of the volume
+   * that the objects share, but for its height along normal. It moves as the objects do, where
+   * a deepest point jumps from corner to corner. For objects of a quarter metre it is mostly
+   * within 1 mm (boxes) to 6 mm (round faces). Of CCD_LIMIT, and of ccdPenetrationAlong and
+   * ccdPenetrationPlanar, the middle of the witness points.
    */
   ccd_vec3_t pos;
   /**
-   * Witness point of obj1, CCD_WANT_POINTS: no farther from its supporting plane than the depth
-   * may be off.
+   * Witness point of obj1, CCD_WANT_POINTS, at the deepest place: no farther from its supporting
+   * plane than the depth may be off.
    */
   ccd_vec3_t point1;
   /**

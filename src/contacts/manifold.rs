@@ -42,7 +42,7 @@ use crate::contacts::polygon::{
     Corner, Flat, Polygon, between, cross, dot, length, nearest_to, side,
 };
 use crate::known::support::{Fault, SupportMap};
-use crate::math::{EPSILON, Real, Vec3, larger, largest, perpendicular};
+use crate::math::{EPSILON, Real, Vec3, axes, larger, largest};
 use core::mem::swap;
 
 /// One point of a contact manifold.
@@ -93,22 +93,13 @@ struct Plane {
 }
 
 impl Plane {
-    /// With axes that turn as little as `n` does: those of a fixed frame, turned the shortest
-    /// way from its pole to `n`. The pole is a direction that nothing stands along.
+    /// With axes that turn as little as `n` does.
     fn of(n: Vec3) -> Self {
-        let pole = Vec3::new(0.36, 0.48, 0.8);
-        let axis = Vec3::new(0.8, -0.6, 0.0);
-        let cosine = 1.0 + pole.dot(&n);
-        let e1 = if cosine > 1e-3 {
-            axis - (pole + n) * (axis.dot(&n) / cosine)
-        } else {
-            perpendicular(&n)
-        };
-        let e1 = e1 / e1.norm();
+        let [e1, e2] = axes(&n);
         Self {
             n,
             e1,
-            e2: n.cross(&e1),
+            e2,
             origin: Vec3::zeros(),
         }
     }

@@ -76,15 +76,6 @@ impl<const ROOM: usize> Default for Polygon<ROOM> {
 }
 
 impl<const ROOM: usize> Polygon<ROOM> {
-    /// A polygon of these corners, all in the plane.
-    pub fn of(points: impl IntoIterator<Item = Flat>) -> Self {
-        let mut polygon = Self::default();
-        for at in points {
-            polygon.push(Corner { at, low: 0.0 });
-        }
-        polygon
-    }
-
     /// The corners.
     #[inline]
     pub fn corners(&self) -> &[Corner] {
@@ -204,40 +195,6 @@ impl<const ROOM: usize> Polygon<ROOM> {
             }
         }
         rest
-    }
-
-    /// The two corners that are farthest apart.
-    pub fn edge(&self) -> [Flat; 2] {
-        let mut edge = [[0.0; 2]; 2];
-        let mut longest2 = -1.0;
-        for (i, p) in self.corners().iter().enumerate() {
-            for q in self.corners().iter().take(i) {
-                let way = side(&p.at, &q.at);
-                if dot(&way, &way) > longest2 {
-                    (edge, longest2) = ([p.at, q.at], dot(&way, &way));
-                }
-            }
-        }
-        edge
-    }
-
-    /// The centre of its outline, which is also that of a segment or a point.
-    pub fn middle(&self) -> Option<Flat> {
-        let mut sum = [0.0; 2];
-        let mut outline = 0.0;
-        for (p, q) in self.sides() {
-            let length = length(&side(&p.at, &q.at));
-            sum[0] += 0.5 * (p.at[0] + q.at[0]) * length;
-            sum[1] += 0.5 * (p.at[1] + q.at[1]) * length;
-            outline += length;
-        }
-        let middle = sum.map(|s| s / outline);
-        // Not NaN: of no corner, or of one alone.
-        if middle.iter().all(|m| m.is_finite()) {
-            Some(middle)
-        } else {
-            self.corners().first().map(|c| c.at)
-        }
     }
 
     /// How far below the plane it is at a point of it: between its corners, as triangles
@@ -516,42 +473,5 @@ mod tests {
                 .fold(0.0, Real::max);
             assert_eq!(far, longest);
         }
-    }
-
-    #[test]
-    fn the_middle_of_what_is_inside() {
-        let square = |x: Real, y: Real, h: Real| {
-            let c = |s: Real, t: Real| [x + s * h, y + t * h];
-            Polygon::<10>::of([
-                c(-1.0, -1.0),
-                c(1.0, -1.0),
-                c(1.0, 1.0),
-                c(1.0, 1.0),
-                c(-1.0, 1.0),
-            ])
-        };
-        let near = |p: Option<Flat>, q: Flat| {
-            let p = p.expect("a middle");
-            assert!(
-                (p[0] - q[0]).abs() + (p[1] - q[1]).abs() < 16.0 * EPSILON,
-                "{p:?}"
-            );
-        };
-        let whole = square(0.0, 0.0, 1.0);
-        assert_eq!(whole.area(), 8.0);
-        near(
-            whole.inside(&square(1.0, 1.0, 1.0), 0.0).middle(),
-            [0.5, 0.5],
-        );
-        near(
-            square(0.1, 0.2, 0.25).inside(&whole, 0.0).middle(),
-            [0.1, 0.2],
-        );
-        assert!(whole.inside(&square(3.0, 0.0, 1.0), 0.0).middle().is_none());
-        let segment =
-            Polygon::<10>::of([[-3.0, 0.5], [-3.0, 0.5], [0.5, 0.5], [0.5, 0.5], [0.5, 0.5]]);
-        near(segment.inside(&whole, 0.0).middle(), [-0.25, 0.5]);
-        let point = Polygon::<10>::of([[0.3, 0.4]; 5]);
-        near(point.inside(&whole, 0.0).middle(), [0.3, 0.4]);
     }
 }

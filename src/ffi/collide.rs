@@ -48,7 +48,7 @@ pub unsafe fn write(
             *dir = hit.dir.into();
         }
         if let Some(pos) = pos.as_mut() {
-            *pos = ((hit.point1 + hit.point2) * 0.5).into();
+            *pos = hit.pos.into();
         }
     }
 }
@@ -103,7 +103,7 @@ pub unsafe fn mpr_penetration(
     query: Query,
     state: &mut State,
     lasting: bool,
-    wants_witnesses: bool,
+    wants_pos: bool,
 ) -> Result<Answer, Fault> {
     // SAFETY: passed on.
     unsafe {
@@ -112,15 +112,15 @@ pub unsafe fn mpr_penetration(
             tolerance: or_default(query.mpr_tolerance()),
             max_iterations: query.max_iterations(),
         };
-        pair.mpr(state, &settings, wants_witnesses)
+        pair.mpr(state, &settings, wants_pos)
     }
 }
 
 /// How deep do the objects overlap, which way out, where? Starts from the centres.
 ///
 /// Returns 0 and writes the outputs that are not NULL when they overlap:
-/// `depth` in metres, `dir` unit, the way obj2 moves, `pos` the middle of two
-/// witness points. Returns -1 and leaves the outputs alone when they do not, when a
+/// `depth` in metres, `dir` unit, the way obj2 moves, `pos` the centre of pressure, which is the
+/// centroid of the volume that the objects share, but for its height along dir. Returns -1 and leaves the outputs alone when they do not, when a
 /// callback is NULL or a point not finite.
 ///
 /// Of a support function, depth exceeds the least depth by no more than mpr_tolerance or 0.1 %
@@ -143,7 +143,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn gjk_penetration(query: Query, wants_witnesses: bool) -> Result<Penetration, c_int> {
+unsafe fn gjk_penetration(query: Query, wants_pos: bool) -> Result<Penetration, c_int> {
     // SAFETY: passed on.
     unsafe {
         let Some(md) = query.difference() else {
@@ -163,8 +163,7 @@ unsafe fn gjk_penetration(query: Query, wants_witnesses: bool) -> Result<Penetra
             max_iterations: query.max_iterations(),
         };
         let mut cold = State::default();
-        let answer =
-            arena::with(|arena| pair.minimum(&mut cold, &settings, arena, wants_witnesses));
+        let answer = arena::with(|arena| pair.minimum(&mut cold, &settings, arena, wants_pos));
         match answer {
             Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
             Ok(Answer::Miss(_)) | Err(Fault::NonFinite) => Err(-1),

@@ -15,15 +15,16 @@
 //! only then, and at last to a block that the caller lends ([`Arena`]), if it does.
 
 use crate::contact::Penetration;
-use crate::contacts::patch::{self, Rest};
+use crate::contacts::pressure;
 use crate::gjk::barycentric;
 use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
 use crate::hull::polytope::Polytope;
 use crate::hull::start;
+use crate::known::mark;
 use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, unit};
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
 
 /// Points and faces of the first room, 3 KB: enough for shallow contacts.
 ///
@@ -41,6 +42,11 @@ const LENT: (usize, usize) = (376, 760);
 /// Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
 /// much by which the face found there is nearer than the nearest.
 const ROUNDED: Real = 32.0;
+/// Points beyond the answer's plane that are asked about, at most. Insensitive: mostly there is one.
+const DOUBTS: usize = 4;
+/// How far beside a point's direction it is asked for again, radians. Measured on ODE's cylinder,
+/// which errs within 1e-3 of its axis.
+const BESIDE: Real = 0.02;
 /// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
@@ -70,9 +76,9 @@ pub struct Request<'a> {
     pub others: &'a [Vec3],
     /// How far to go.
     pub limits: &'a Limits,
-    /// Does anybody read the witness points? Else the width of the contact is not looked for.
-    pub wants_witnesses: bool,
-    /// The [`Basis::mark`] of a pair that rested face on face when it was asked last.
+    /// Does anybody read the contact position?
+    pub wants_pos: bool,
+    /// The [`Basis::mark`] of when the pair's position was asked for last.
     pub mark: Option<u64>,
 }
 
@@ -89,9 +95,9 @@ impl Request<'_> {
 pub struct Basis {
     directions: [Vec3; Basis::ROOM],
     len: usize,
-    /// The [`patch::mark`] of the points known, where a face rests on a face or an edge.
+    /// The [`mark::of`] the points known, where the position was asked for.
     pub mark: u64,
-    /// Has such a pair not moved since the state was left?
+    /// Has the pair not moved since the state was left?
     pub unmoved: bool,
 }
 
@@ -235,7 +241,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             // Where an expansion stays open or is stuck, rounding had the last word: from another
             // tetrahedron it may not.
             if end != End::NoRoom {
-                if let Some(proven) = self.answer(&set, &hull, &progress, end) {
+                if let Some(proven) = self.answer(&set, &hull, &progress, end)? {
                     return Ok(proven);
                 }
                 continue;
@@ -277,10 +283,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
-    ) -> Option<bool> {
+    ) -> Result<Option<bool>, Stop> {
         // Where its planes do not show that it is around anything, nor is the origin inside.
         let end = if hull.winds() { end } else { End::Open };
-        let proven = self.conclude(set, hull, progress, end);
+        let proven = self.conclude(set, hull, progress, end)?;
         let open = match end {
             End::Open => true,
             End::NoRoom => !(hull.nearest().key >= 0.0),
@@ -293,9 +299,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if open {
             self.open = Some(proven);
             self.stuck = end == End::Stuck;
-            return None;
+            return Ok(None);
         }
-        Some(proven)
+        Ok(Some(proven))
     }
 
     fn tolerance(&self) -> Real {
@@ -375,7 +381,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
             return self.lent(arena.room()?, &set, &hull, progress);
         }
-        Ok(self.answer(&set, &hull, progress, end))
+        self.answer(&set, &hull, progress, end)
     }
 
     /// The expansion goes on in the room that is lent.
@@ -391,7 +397,45 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         set.take(small);
         polytope.moved_to(hull);
         let end = expand(&mut self.inquiry, set, hull, progress)?;
-        Ok(self.answer(set, hull, progress, end))
+        self.answer(set, hull, progress, end)
+    }
+
+    /// How far along `dir` D reaches, where known points lie beyond `depth`, the support value there.
+    ///
+    /// Either the callback stopped short along `dir`, and they are right; or it erred where it
+    /// found them, as one does that divides by how far the direction is off an axis. The first
+    /// are found again from beside, and the others are not.
+    #[cold]
+    #[inline(never)]
+    fn confirmed<const P: usize>(
+        &mut self,
+        set: &SupportSet<P>,
+        dir: &Vec3,
+        depth: Real,
+    ) -> Result<Real, Fault> {
+        let beyond = depth + self.inquiry.precision.tie();
+        let mut doubted = [0; DOUBTS];
+        for place in 0..DOUBTS {
+            let mut farthest = (beyond, 0);
+            for i in 1..set.len() {
+                let reach = dir.dot(&set.v(i));
+                if reach > farthest.0 && !doubted.contains(&i) && set.direction(i) != Vec3::zeros()
+                {
+                    farthest = (reach, i);
+                }
+            }
+            let (reach, i) = farthest;
+            if i == 0 {
+                break;
+            }
+            let n = set.direction(i);
+            let point = self.inquiry.point(&unit_beside(&n))?;
+            if dir.dot(&point.v) > beyond {
+                return Ok(reach);
+            }
+            doubted[place] = i;
+        }
+        Ok(depth)
     }
 
     /// The answer where nothing is known but the upper bound.
@@ -404,7 +448,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             normal: dir,
             point1: witness.v1,
             point2: witness.v2,
-            width: 0.0,
+            pos: Vec3::zeros(),
+            extent: [0.0; 2],
             iterations: 0,
         }
     }
@@ -418,17 +463,16 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         hull: &Polytope<F>,
         progress: &Progress,
         end: End,
-    ) -> bool {
+    ) -> Result<bool, Stop> {
         let Lowest { mut depth, dir } = self.inquiry.lowest;
         let top = hull.nearest();
-        let precision = &self.inquiry.precision;
         // The point that was asked for along dir; or a farther one, where a callback
-        // contradicts itself: D reaches as far as all its known points.
+        // contradicts itself.
         let lowest = set.farther(&dir, Real::NEG_INFINITY).unwrap_or(1);
-        let reach = dir.dot(&set.v(lowest));
-        if reach > depth + precision.tie() {
-            depth = reach;
+        if dir.dot(&set.v(lowest)) > depth + self.inquiry.precision.tie() {
+            depth = self.confirmed(set, &dir, depth)?;
         }
+        let precision = &self.inquiry.precision;
         let near = if end == End::Open {
             0.0
         } else {
@@ -440,7 +484,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
-        let width = self.width(set, lowest, [&a, &b, &c], progress.tolerance);
+        let points = (1..set.len()).map(|i| set.witnesses(i));
+        let extent = pressure::extent(points, [&point1, &point2]);
         *self.hit = Penetration {
             depth,
             depth_lower: lower,
@@ -448,14 +493,16 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             normal: dir,
             point1,
             point2,
-            width,
+            pos: Vec3::zeros(),
+            extent,
             iterations: progress.iterations,
         };
         if let Some(basis) = &mut self.basis {
-            if width > 0.0 {
+            if self.request.wants_pos {
                 let points = (0..set.len()).map(|i| set.witnesses(i));
-                basis.mark = patch::mark(points.clone());
-                basis.unmoved = self.request.mark == Some(basis.mark) && patch::pins(points);
+                basis.mark = mark::of(points.clone());
+                basis.unmoved = self.request.mark == Some(basis.mark)
+                    && mark::pins(points, self.request.centre.is_some());
             }
             basis.add(&dir);
             // What asking along dir has found it finds again: one of several that are as far.
@@ -476,45 +523,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             gap / (1.0 + gap) * depth,
             asked + ROUNDED * precision.grain(),
         );
-        depth - lower <= close
+        Ok(depth - lower <= close)
     }
+}
 
-    /// The length, metres, along which the objects touch, as far as the points tell; 0 where
-    /// that is a point, or nobody asks. Point `lowest` is the farthest along the answer's
-    /// direction; the corners are those of the face that the witness points lie in.
-    #[inline(always)]
-    fn width<const P: usize>(
-        &self,
-        set: &SupportSet<P>,
-        lowest: usize,
-        [a, b, c]: [&[Vec3; 2]; 3],
-        tolerance: Real,
-    ) -> Real {
-        if !self.request.wants_witnesses {
-            return 0.0;
-        }
-        let dir = &self.inquiry.lowest.dir;
-        let precision = &self.inquiry.precision;
-        let size = precision.size();
-        let error = tolerance + precision.rounding();
-        // Asked along the normal of two resting faces, a support mapping picks one corner of
-        // each: where little else was asked, the points do not show that they rest.
-        let tied = (dir - set.direction(1)).norm() * size <= error;
-        let blind = self.request.mark.is_some() || self.request.cold() && tied;
-        // Mostly one of the two touches with a corner, which needs no look.
-        let corner = (0..2).any(|k| a[k] == b[k] && b[k] == c[k]);
-        if corner && !blind {
-            return 0.0;
-        }
-        let witnesses = |i| set.witnesses(i + 1);
-        let (count, above) = (set.len() - 1, set.witnesses(lowest));
-        match patch::rest(witnesses, count, dir, &above, error, size) {
-            Rest::Along(length) => length,
-            Rest::Corner(side) if blind => side.norm(),
-            Rest::Crossing(length) if blind => length,
-            _ => 0.0,
-        }
-    }
+/// A unit vector that far beside one.
+fn unit_beside(n: &Vec3) -> Vec3 {
+    let aside = n + perpendicular(n) * BESIDE;
+    aside / aside.norm()
 }
 
 /// Makes room for another start where a larger room was stuck. Returns `skip`, if that point
@@ -599,7 +615,7 @@ mod tests {
             first,
             others: &[],
             limits: &limits,
-            wants_witnesses: true,
+            wants_pos: true,
             mark: None,
         };
         let mut hit = Penetration::default();

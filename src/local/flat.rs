@@ -43,7 +43,7 @@ use super::samples::{OTHERS, Sample};
 use super::trust_region::{FIRST, TrustRegion};
 use super::witness::hull;
 use crate::contact::{Penetration, Settings};
-use crate::contacts::patch;
+use crate::contacts::pressure;
 use crate::known::round::{ALIKE, TOLD, fits, is_smooth};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use crate::math::{self, Real, Vec3, larger, perpendicular, unit};
@@ -1163,32 +1163,17 @@ impl Flat {
                 normal: *n,
                 point1,
                 point2,
-                width: self.width::<BENT>(at, &discs, known),
+                pos: Vec3::zeros(),
+                extent: pressure::extent(
+                    known.points().iter().map(|p| [p.v1, p.v2]),
+                    [&point1, &point2],
+                ),
                 iterations: self.asked as u64,
             },
             slopes,
             count,
         };
         true
-    }
-
-    /// The length along which the objects touch at a sample, as far as the points known tell, the
-    /// discs where they are there.
-    #[inline(always)]
-    fn width<const BENT: bool>(&self, at: &Sample, discs: &[Vec3; 2], known: &Known) -> Real {
-        let (n, size) = (&at.n, self.extent2.sqrt());
-        let Some(taken) = self.discs::<BENT>() else {
-            return patch::width(known.points(), &at.p, n, self.tolerance, size);
-        };
-        let mut points = [at.p; CUTS + 1];
-        for (i, point) in points.iter_mut().take(self.cuts.len.min(CUTS)).enumerate() {
-            let moved = |o| taken.carried(i, o, discs, &self.seen) - taken.kept(i, o);
-            *point = self.samples[i].p;
-            point.v1 += moved(0);
-            point.v2 -= moved(1);
-            point.v = point.v1 - point.v2;
-        }
-        patch::width(&points, &at.p, n, self.tolerance, size)
     }
 
     /// The mean of obj1's points, below the origin along `n`.

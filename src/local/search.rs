@@ -333,7 +333,7 @@ impl<'a> Search<'a> {
             false => Smooth::Unknown,
         };
         memory.keep(&model.b, &step.set.map(gradient), step.count, smooth);
-        let answer = witnesses.answer(samples, model, fine, self.iterations);
+        let answer = witnesses.answer(samples, model, self.iterations);
         self.samples.lead();
         ControlFlow::Break(if met {
             Answer::Hit(answer)

@@ -15,7 +15,7 @@ use super::model::{Model, Step};
 use super::samples::{CUTS, Lanes, Samples};
 use super::verdict::Next;
 use crate::contact::Penetration;
-use crate::contacts::patch;
+use crate::contacts::pressure;
 use crate::gjk::barycentric;
 use crate::math::{Real, Vec3, larger, unit};
 
@@ -106,13 +106,7 @@ impl Witnesses {
     }
 
     /// The answer: the bundle's centre, with these witness points.
-    pub fn answer(
-        &self,
-        samples: &Samples,
-        model: &Model,
-        tolerance: Real,
-        iterations: u64,
-    ) -> Penetration {
+    pub fn answer(&self, samples: &Samples, model: &Model, iterations: u64) -> Penetration {
         let dir = model.b;
         let centre = samples.point(samples.centre);
         let seen: [_; CUTS] = core::array::from_fn(|i| samples.point(i));
@@ -136,12 +130,10 @@ impl Witnesses {
             normal: dir,
             point1,
             point2,
-            width: patch::width(
-                samples.known(),
-                samples.point(samples.centre),
-                &dir,
-                tolerance,
-                samples.size,
+            pos: Vec3::zeros(),
+            extent: pressure::extent(
+                samples.known().iter().map(|p| [p.v1, p.v2]),
+                [&point1, &point2],
             ),
             iterations,
         }
@@ -232,7 +224,7 @@ mod tests {
         let model = Model::new(&samples, curvature);
         let step = model.minimise(dirs.len() - 1, 0.1, samples.rounding);
         let witnesses = Witnesses::of(&samples, curvature, &model, &step, TOLERANCE);
-        let answer = witnesses.answer(&samples, &model, TOLERANCE, 1);
+        let answer = witnesses.answer(&samples, &model, 1);
         let next = witnesses.query(&samples, &model, TOLERANCE);
         (witnesses, answer, next)
     }

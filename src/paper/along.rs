@@ -63,7 +63,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         normal: plane.normal,
         point1,
         point2,
-        width: 0.0,
+        pos: Vec3::zeros(),
+        extent: [0.0; 2],
         iterations: settings.max_iterations - budget,
     };
     Ok(Ok(Way {

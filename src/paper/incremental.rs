@@ -23,9 +23,9 @@
 //! one, met on the way in another valley, are searched as well.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::contacts::patch;
+use crate::contacts::pressure;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
-use crate::math::{Real, Vec3, larger, perpendicular};
+use crate::math::{Real, Vec3, perpendicular};
 use crate::paper::portal::{self, Exit, Portal, SupportPlane, rounding};
 
 /// When a ray may be left before its end.
@@ -98,17 +98,17 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
                 let stationary = plane.depth / along - plane.depth <= floor;
                 let lower_elsewhere = best.depth < plane.depth - floor;
                 if stationary && !lower_elsewhere {
-                    let face = last.planes.map(|plane| plane.point);
-                    let size = face.iter().fold(0.0, |m, p| larger(m, p.v.norm()));
                     let (lowest, portal) = match aside {
                         Some(first) if first.depth <= plane.depth => (first, None),
                         _ => (plane, Some(last)),
                     };
-                    let (top, n) = (&lowest.point, &lowest.normal);
-                    return Ok(Answer::Hit(Penetration {
-                        width: patch::width(&face, top, n, floor, size),
-                        ..answer(lowest, portal, used(budget))
-                    }));
+                    let mut hit = answer(lowest, portal, used(budget));
+                    let points = last
+                        .planes
+                        .iter()
+                        .map(|plane| [plane.point.v1, plane.point.v2]);
+                    hit.extent = pressure::extent(points, [&hit.point1, &hit.point2]);
+                    return Ok(Answer::Hit(hit));
                 }
                 if lower_elsewhere { best } else { plane }
             }
@@ -136,7 +136,8 @@ fn answer(plane: SupportPlane, portal: Option<Portal>, iterations: u64) -> Penet
         normal: plane.normal,
         point1,
         point2,
-        width: 0.0,
+        pos: Vec3::zeros(),
+        extent: [0.0; 2],
         iterations,
     }
 }

@@ -202,7 +202,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, A, B> {
             normal: plane.normal,
             point1: plane.point.v1,
             point2: plane.point.v2,
-            width: 0.0,
+            pos: Vec3::zeros(),
+            extent: [0.0; 2],
             iterations: self.settings.max_iterations - self.budget,
         }
     }

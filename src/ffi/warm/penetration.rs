@@ -14,10 +14,10 @@ use crate::known::support::Fault;
 use crate::math::Real;
 use crate::{query::Pair, state::State};
 
-/// Wanted: pos. Where faces or edges rest on each other and move it costs support points: boxes
-/// that slide, with a state, 9 a query in place of 3.
+/// Wanted: pos. It costs 4 support points, 8 where a face has more than four corners, none where a
+/// state shows that nothing has moved (ccdPenetration, ccdPenetrationProven).
 pub const CCD_WANT_POS: c_uint = 1;
-/// Wanted: point1 and point2; as dear as pos, and nothing more beside it.
+/// Wanted: point1 and point2. They cost nothing.
 pub const CCD_WANT_POINTS: c_uint = 2;
 /// Everything.
 pub const CCD_WANT_ALL: c_uint = 3;
@@ -36,11 +36,14 @@ pub struct ccd_penetration_t {
     pub dir: ccd_vec3_t,
     /// Unit; normal of the separating plane. Equal to dir except in ccdPenetrationAlong.
     pub normal: ccd_vec3_t,
-    /// Contact position, CCD_WANT_POS: the middle of the witness points. Where a face rests on
-    /// a face or an edge it is the middle of where the two touch, and moves as the objects do.
+    /// Contact position, CCD_WANT_POS: the centre of pressure, which is the centroid of the volume
+    /// that the objects share, but for its height along normal. It moves as the objects do, where
+    /// a deepest point jumps from corner to corner. For objects of a quarter metre it is mostly
+    /// within 1 mm (boxes) to 6 mm (round faces). Of CCD_LIMIT, and of ccdPenetrationAlong and
+    /// ccdPenetrationPlanar, the middle of the witness points.
     pub pos: ccd_vec3_t,
-    /// Witness point of obj1, CCD_WANT_POINTS: no farther from its supporting plane than the depth
-    /// may be off.
+    /// Witness point of obj1, CCD_WANT_POINTS, at the deepest place: no farther from its supporting
+    /// plane than the depth may be off.
     pub point1: ccd_vec3_t,
     /// Witness point of obj2, the same.
     pub point2: ccd_vec3_t,
@@ -61,7 +64,7 @@ impl ccd_penetration_t {
             depth_lower: hit.depth_lower,
             dir: hit.dir.into(),
             normal: hit.normal.into(),
-            pos: given(CCD_WANT_POS, ((hit.point1 + hit.point2) * 0.5).into()),
+            pos: given(CCD_WANT_POS, hit.pos.into()),
             point1: given(CCD_WANT_POINTS, hit.point1.into()),
             point2: given(CCD_WANT_POINTS, hit.point2.into()),
             support_calls: supports as c_ulong,
@@ -103,7 +106,7 @@ pub(in crate::ffi) unsafe fn answer(
             max_iterations: query.max_iterations(),
         };
         let mut state = read(warm);
-        let result = solve(&pair, &mut state, &settings, want != 0);
+        let result = solve(&pair, &mut state, &settings, want & CCD_WANT_POS != 0);
         let (code, hit) = match result {
             Ok(Answer::Hit(hit)) => (CCD_HIT, Some(hit)),
             Ok(Answer::Limit(hit)) => (CCD_LIMIT, Some(hit)),

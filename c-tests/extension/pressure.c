@@ -1,0 +1,245 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* `pos` against the centre of pressure by integration: bodies of a quarter metre that tilt, slide,
+ * stand, tip and roll on a floor, a millimetre and a hundredth of one deep, in steps so small
+ * that what jumps shows.
+ *
+ *   pressure [csv]   a line a pose: sweep, depth, angle, and along the sweep's axis the pos of
+ *                    this library and the truth */
+
+#include "extension/pressure.h"
+
+#include "contract/check.h"
+#include "ours.h"
+
+#include <float.h>
+
+static const int single = sizeof(ccd_real_t) == sizeof(float);
+enum { STEPS = 64, COARSE = 24 };
+static const double HALF = 0.125;
+
+/* How a body stands at an angle: turned about `axis` by `before` (a quarter, an eighth of a turn),
+ * then by the angle about `about`. */
+typedef struct {
+    const char *name;
+    shape_t body;
+    double axis[3], before;
+    double about[3];
+    int rolls;    /* the angle is in its symmetry: steps of a degree */
+    double slide; /* over the floor's edge by so much along x, in place of the angle */
+    double rms, step; /* at most: metres, and metres beyond twice the truth's step */
+} sweep_t;
+
+static double deg(double x) { return x * atan(1.0) / 45; }
+
+static void rotate(const double rot[9], const double v[3], double out[3])
+{
+    int i;
+    for (i = 0; i < 3; i++)
+        out[i] = rot[3 * i] * v[0] + rot[3 * i + 1] * v[1] + rot[3 * i + 2] * v[2];
+}
+
+/* The shape and the whole world turned. */
+static shape_t turned(const shape_t *s, const double world[9])
+{
+    shape_t t = *s;
+    double rot[9], pos[3], all[9], moved[3];
+    int i;
+    for (i = 0; i < 9; i++)
+        rot[i] = (double)s->rot[i];
+    for (i = 0; i < 3; i++)
+        pos[i] = (double)s->pos[i];
+    rotation_times(world, rot, all);
+    rotate(world, pos, moved);
+    shape_turn(&t, all);
+    shape_move(&t, moved[0], moved[1], moved[2]);
+    return t;
+}
+
+/* Body and floor at an angle, `depth` deep. */
+static void pose(const sweep_t *s, double angle, double depth, shape_t *body, shape_t *floor)
+{
+    const ccd_vec3_t down = {{0, 0, -1}};
+    ccd_vec3_t low;
+    double first[9], then[9], all[9];
+    *floor = shape_box(1, 1, 0.5);
+    shape_move(floor, s->slide != 0 ? -0.9 : 0.05, 0.03, -0.5);
+    *body = s->body;
+    rotation_about(s->axis[0], s->axis[1], s->axis[2], s->before, first);
+    rotation_about(s->about[0], s->about[1], s->about[2], s->slide != 0 ? deg(-0.2) : angle, then);
+    rotation_times(then, first, all);
+    shape_turn(body, all);
+    shape_support(body, &down, &low);
+    shape_move(body, s->slide != 0 ? angle : 0, 0, -depth - (double)low.v[2]);
+}
+
+static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    ccd_t ccd;
+    ccd_real_t depth;
+    ccd_penetration_t p;
+    call_rest_t x;
+    int code;
+    shape_query(&ccd);
+    ccd.max_iterations = 500;
+    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-7);
+    memset(&x, 0, sizeof x);
+    x.warm = warm;
+    x.want = CCD_WANT_POS;
+    x.depth = &depth;
+    x.dir = dir;
+    x.pos = pos;
+    x.full = &p;
+    code = call_by_number(call, a, b, &ccd, &x);
+    if (code >= 0 && call != ASK_MPR && call != ASK_GJK && call != ASK_MPR_WARM) {
+        *dir = p.dir;
+        *pos = p.pos;
+    }
+    return code;
+}
+
+typedef struct { double square, worst, jump, truth; int poses; } errors_t;
+
+static double apart(const double p[3], const double q[3])
+{
+    return sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
+}
+
+static const int CALLS[] = {ASK_MPR, ASK_MPR_WARM, ASK_GJK, ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN};
+enum { CALL_COUNT = sizeof CALLS / sizeof *CALLS };
+
+/* The angles: fine ones around the special place, then coarse ones. */
+static double angle_at(const sweep_t *s, double depth, int k)
+{
+    const double width = 2 * HALF, step = depth / (8 * width);
+    if (s->slide != 0)
+        return k < STEPS ? s->slide * k / STEPS : -1;
+    if (s->rolls)
+        return k < STEPS ? deg(k) : -1;
+    if (k < STEPS)
+        return (k - STEPS / 2 + 0.5) * step;
+    return deg(0.05 * (k - STEPS) * (k - STEPS) + 0.05);
+}
+
+static void sweep(const sweep_t *s, double depth, int call, const double world[9], errors_t *e, int csv)
+{
+    double last[3] = {0, 0, 0}, last_truth[3] = {0, 0, 0};
+    ccd_warm_t warm;
+    int k;
+    memset(&warm, 0, sizeof warm);
+    memset(e, 0, sizeof *e);
+    for (k = 0; k < STEPS + COARSE; k++) {
+        const double angle = angle_at(s, depth, k);
+        shape_t body, floor, a, b;
+        double place[3], truth[3], up[3] = {0, 0, 1}, n[3], p[3], t[3];
+        ccd_vec3_t dir, pos;
+        ccd_vec3_t low;
+        int i, code;
+        const ccd_vec3_t down = {{0, 0, -1}};
+        if (angle < 0 && (s->slide != 0 || s->rolls))
+            break;
+        pose(s, angle, depth, &body, &floor);
+        shape_support(&body, &down, &low);
+        for (i = 0; i < 3; i++)
+            place[i] = (double)low.v[i];
+        if (s->slide != 0) {
+            /* The deepest place may be beyond the edge. */
+            place[0] = fmin(place[0], 0.1 - 1e-9);
+        }
+        if (!(pressure_centre(&body, &floor, up, place, truth) > 0))
+            continue;
+        a = turned(k % 2 ? &body : &floor, world);
+        b = turned(k % 2 ? &floor : &body, world);
+        code = ask(call, &a, &b, call == ASK_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
+        if (code != 0 && code != CCD_LIMIT) {
+            CHECK(0, "%s at %g: code %d", s->name, angle, code);
+            continue;
+        }
+        rotate(world, truth, t);
+        for (i = 0; i < 3; i++) {
+            n[i] = (double)dir.v[i];
+            p[i] = (double)pos.v[i];
+        }
+        {
+            /* across dir */
+            double off = 0, along = 0;
+            for (i = 0; i < 3; i++)
+                along += n[i] * (p[i] - t[i]);
+            for (i = 0; i < 3; i++)
+                p[i] -= along * n[i];
+            CHECK(fabs(along) <= 1.5 * depth, "%s at %g: %g along dir", s->name, angle, along);
+            off = apart(p, t);
+            e->square += off * off;
+            e->worst = fmax(e->worst, off);
+            e->poses++;
+        }
+        if (k > 0 && k < STEPS) {
+            e->jump = fmax(e->jump, apart(p, last) - 2 * apart(t, last_truth));
+            e->truth = fmax(e->truth, apart(t, last_truth));
+        }
+        memcpy(last, p, sizeof last);
+        memcpy(last_truth, t, sizeof last_truth);
+        if (csv)
+            printf("%s,%g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", s->name, depth, angle, p[0], p[1], p[2], t[0], t[1], t[2]);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const double q = deg(90);
+    const double corner[3] = {1, -1, 0};
+    static const double X[3] = {1, 0, 0}, Y[3] = {0, 1, 0}, Z[3] = {0, 0, 1}, XY[3] = {1, 0.6, 0};
+#define FLAT 3e-3, 1e-3
+#define ROUND 7e-3, 5e-3
+/* Its radius falls along the line that it lies on, and so does what is taken off for it: where the
+ * deepest place jumps along the line, pos follows by a part. */
+#define TAPERED 15e-3, 50e-3
+#define SWEEP(name, body, axis, before, about, rolls, slide, ...) \
+    {name, body, {axis[0], axis[1], axis[2]}, before, {about[0], about[1], about[2]}, rolls, slide, __VA_ARGS__}
+    const shape_t box = shape_box(HALF, HALF, HALF), brick = shape_box(HALF, 0.08, 0.06);
+    const shape_t can = shape_cylinder(0.09, HALF), rod = shape_capsule(0.05, HALF), hat = shape_cone(HALF, HALF);
+    const shape_t egg = shape_ellipsoid(0.1, 0.07, HALF), ball = shape_sphere(HALF);
+    const sweep_t all[] = {
+        SWEEP("box", box, Z, 0, Y, 0, 0, FLAT),
+        SWEEP("box yawed", box, Z, 0.3, Y, 0, 0, FLAT),
+        SWEEP("brick, two axes", brick, Z, 0.1, XY, 0, 0, FLAT),
+        SWEEP("box over the edge", box, Z, 0, Y, 0, 0.2, FLAT),
+        SWEEP("yawed box over the edge", box, Z, 0.5, Y, 0, 0.2, FLAT),
+        SWEEP("brick on an edge", brick, X, deg(40), Y, 0, 0, FLAT),
+        SWEEP("box on a corner", box, corner, 0.9, Y, 1, 0, FLAT),
+        SWEEP("cylinder standing", can, Z, 0, Y, 0, 0, ROUND),
+        SWEEP("cylinder lying", can, X, q, X, 0, 0, ROUND),
+        SWEEP("cylinder rolling", can, X, q, Y, 1, 0, ROUND),
+        SWEEP("capsule lying", rod, X, q, X, 0, 0, ROUND),
+        SWEEP("cone on its base", hat, Z, 0, Y, 0, 0, ROUND),
+        SWEEP("cone on its side", hat, X, q + atan(0.5), X, 0, 0, TAPERED),
+        SWEEP("ellipsoid", egg, X, 0.7, Y, 1, 0, ROUND),
+        SWEEP("sphere", ball, X, 0.7, Y, 1, 0, ROUND),
+    };
+    double world[2][9];
+    unsigned i;
+    int csv = argc > 1 && strcmp(argv[1], "csv") == 0;
+    rotation_about(0, 0, 1, 0, world[0]);
+    rotation_quaternion(0.3, -0.5, 0.7, 0.2, world[1]);
+    for (i = 0; i < sizeof all / sizeof *all; i++) {
+        int d, c, w;
+        for (d = 0; d < (single ? 1 : 2); d++)
+            for (w = 0; w < 2; w++)
+                for (c = 0; c < (csv ? 1 : CALL_COUNT); c++) {
+                    const double depth = d ? 1e-5 : 1e-3;
+                    errors_t e;
+                    double rms;
+                    sweep(&all[i], depth, CALLS[c], world[w], &e, csv);
+                    rms = sqrt(e.square / e.poses);
+                    if (csv)
+                        continue;
+                    if (c == 0)
+                        printf("%-24s %g m deep, world %d: rms %6.3f mm, worst %7.3f, step beyond twice the truth's %7.3f (%.3f)\n",
+                               all[i].name, depth, w, 1e3 * rms, 1e3 * e.worst, 1e3 * e.jump, 1e3 * e.truth);
+                    CHECK(rms <= all[i].rms, "%s, %g deep, world %d, call %d: rms %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * rms);
+                    CHECK(e.jump <= all[i].step, "%s, %g deep, world %d, call %d: a step of %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * e.jump);
+                }
+    }
+    return csv ? 0 : checks_end();
+}

@@ -1,0 +1,497 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Two fans of triangles about one place, and the centroid of what they share.
+//!
+//! # Derivation
+//!
+//! *A fan.* The points of an object, seen from the deepest place r*, are the corners of a fan of
+//! triangles. In each of them low, how far the object is below its support plane, is linear, and so is w, which is 0 at r* and 1 along the outer side, beyond which there
+//! is nothing. Where r* is itself a corner of the face a corner a hair beyond it closes the fan. The
+//! rays of the corners of both fans part the plane into cones, in which w1, w2 and f = low1 + low2
+//! are linear, and the shared region is where all three are at most 1 (low in units of d).
+//!
+//! *A cone.* The region's outline in a cone is the upper envelope of the three: two to four corners
+//! v_i. With δ_i = 1 − f(v_i), in units of d, the triangle 0 v_i v_j, of twice the area a, has
+//!
+//! ```text
+//! ∫ δ dA = a (1 + δ_i + δ_j) / 6,
+//! ∫ δ r dA = a (v_i (1 + 2 δ_i + δ_j) + v_j (1 + δ_i + 2 δ_j)) / 24.
+//! ```
+//!
+//! *A rim.* An edge, or a corner, has no area. What its flanks share with the other object has: they
+//! fall away with some slope s, so that beyond a piece of outline of length L lies a prism as wide as
+//! δ d / s:
+//!
+//! ```text
+//! ∫ δ dA = k (δ_i² + δ_i δ_j + δ_j²) / 3,   k = L d / 2 s,
+//! ∫ δ r dA = k (v_i (3 δ_i² + 2 δ_i δ_j + δ_j²) + v_j (δ_i² + 2 δ_i δ_j + 3 δ_j²)) / 12.
+//! ```
+//!
+//! Where there is area it counts for little; where there is none it is all there is, and which slope
+//! it is cancels out. Where the outline is at depth 0 it is nothing. So faces, edges and corners are
+//! one case, and what is between them is between them.
+//!
+
+use crate::contacts::polygon::{Flat, between, cross, dot, length, side};
+use crate::math::{Real, larger, lesser};
+use core::mem::swap;
+
+/// Corners of a fan, at most: eight that are asked for, and those that close it.
+const ROOM: usize = 11;
+/// Part of a hair by which directions must differ, at the farther corner. Insensitive.
+const PART: Real = 0.25;
+
+/// A corner of a fan.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Corner {
+    /// Seen from the deepest place, metres.
+    pub at: Flat,
+    /// How far it is below the object's support plane, in units of the depth.
+    pub low: Real,
+}
+
+/// What is seen of one object from the deepest place: corners around it, in order.
+#[derive(Clone, Debug)]
+pub struct Fan {
+    corners: [Corner; ROOM],
+    len: usize,
+    /// What is taken off all lows.
+    level: Real,
+}
+
+impl Default for Fan {
+    #[inline(always)]
+    fn default() -> Self {
+        let corner = Corner {
+            at: [0.0; 2],
+            low: 0.0,
+        };
+        Self {
+            corners: [corner; ROOM],
+            len: 0,
+            level: 0.0,
+        }
+    }
+}
+
+impl Fan {
+    /// The corners.
+    #[inline(always)]
+    pub fn corners(&self) -> &[Corner] {
+        self.corners.get(..self.len).unwrap_or(&[])
+    }
+
+    /// Puts a corner in its place.
+    #[inline(always)]
+    pub fn put(&mut self, i: usize, corner: Corner) {
+        let i = i.min(ROOM - 1);
+        self.corners[i] = corner;
+        self.len = larger(self.len, i + 1);
+    }
+
+    #[inline(always)]
+    fn push(&mut self, corner: Corner) {
+        self.put(self.len, corner);
+    }
+
+    /// A corner, counted around.
+    #[inline(always)]
+    fn corner(&self, i: usize) -> &Corner {
+        let i = if i < self.len { i } else { i - self.len };
+        &self.corners[i.min(ROOM - 1)]
+    }
+
+    /// Does the object end within `far`, metres, around the deepest place, as far as the depth goes?
+    #[inline(always)]
+    pub fn is_point(&self, far: Real) -> bool {
+        self.corners().iter().all(|c| {
+            let most = far * larger(c.low, 1.0);
+            dot(&c.at, &c.at) <= most * most
+        })
+    }
+
+    /// Does the deepest place lie beyond a side of four corners by this share of their area?
+    #[inline(always)]
+    pub fn is_beyond(&self, share: Real) -> bool {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.corners[i].at);
+        let areas = [cross(&a, &b), cross(&b, &c), cross(&c, &d), cross(&d, &a)];
+        let least = areas.into_iter().fold(0.0, lesser);
+        least < -share * areas.into_iter().sum::<Real>()
+    }
+
+    /// Puts these between its corners, of which there are as many.
+    pub fn interleave(&mut self, between: &[Corner]) {
+        let own = self.corners;
+        let both = own.iter().zip(between).flat_map(|(p, q)| [*p, *q]);
+        for (i, corner) in both.enumerate() {
+            self.put(i, corner);
+        }
+    }
+
+    /// Takes this share of what all corners are lower by off them, and puts them in order. `hair`,
+    /// metres: what is nearer is the same.
+    #[inline(always)]
+    pub fn settle(&mut self, share: Real, hair: Real) {
+        let low = self.corners().iter().map(|corner| corner.low);
+        let level = low.fold(1.0, lesser) * share;
+        for corner in &mut self.corners {
+            corner.low -= level;
+        }
+        // Mostly they lie around the deepest place, in the order in which they were asked for.
+        let part2 = PART * PART * hair * hair;
+        let is_around = |i| {
+            let (p, q) = (&self.corner(i).at, &self.corner(i + 1).at);
+            let (area, way) = (cross(p, q), side(p, q));
+            area > 0.0 && area * area > part2 * dot(&way, &way)
+        };
+        if !(0..self.len).all(is_around) {
+            *self = self.in_order(part2).closed(hair);
+        }
+        self.level = level;
+    }
+
+    /// Its corners in order around the deepest place, of those in one direction the farthest.
+    /// `part2`, m²: what is aside by less than its root is not.
+    #[cold]
+    #[inline(never)]
+    fn in_order(&self, part2: Real) -> Self {
+        let mut fan = Self::default();
+        for corner in self.corners() {
+            let mut last = *corner;
+            for place in fan.corners.iter_mut().take(fan.len) {
+                if is_before(&last.at, &place.at) {
+                    swap(place, &mut last);
+                }
+            }
+            fan.push(last);
+        }
+        // From the start after each, for the last may be in the direction of the first.
+        let mut i = 0;
+        while i < fan.len && fan.len > 1 {
+            let (p, q) = (fan.corner(i).at, fan.corner(i + 1).at);
+            let (one2, two2, aside) = (dot(&p, &p), dot(&q, &q), cross(&p, &q));
+            if dot(&p, &q) > 0.0 && !(aside * aside > part2 * larger(one2, two2)) {
+                let nearer = if one2 < two2 { i } else { i + 1 };
+                fan.remove(if nearer < fan.len { nearer } else { 0 });
+                i = 0;
+            } else {
+                i += 1;
+            }
+        }
+        fan
+    }
+
+    /// The same where the corners leave out half a turn or more, because the deepest place is a
+    /// corner itself: others a hair beyond it close the fan.
+    #[cold]
+    #[inline(never)]
+    fn closed(&self, hair: Real) -> Self {
+        let mut fan = Self::default();
+        for i in 0..self.len {
+            let (p, q) = (self.corner(i).at, self.corner(i + 1).at);
+            fan.push(*self.corner(i));
+            let aside = cross(&p, &q);
+            if aside > 0.0 {
+                continue;
+            }
+            // A quarter of a turn from p, a half, three quarters, as far as q is.
+            let [x, y] = p.map(|x| x * hair / length(&p));
+            let ways = [[-y, x], [-x, -y], [y, -x]];
+            let alone = self.len == 1;
+            let half = alone || aside < 0.0;
+            let is_left_out = [true, half, alone || half && dot(&p, &q) > 0.0];
+            for (at, _) in ways.into_iter().zip(is_left_out).filter(|(_, is)| *is) {
+                fan.push(Corner { at, low: 0.0 });
+            }
+        }
+        fan
+    }
+
+    fn remove(&mut self, i: usize) {
+        let mut last = Corner::default();
+        for place in self.corners.iter_mut().take(self.len).skip(i).rev() {
+            swap(place, &mut last);
+        }
+        self.len -= 1;
+    }
+
+    /// Of a place in the sector from corner `i` to the next: w and low.
+    #[inline(always)]
+    fn within(&self, i: usize, r: &Flat) -> [Real; 2] {
+        let (p, q) = (self.corner(i), self.corner(i + 1));
+        let share = 1.0 / cross(&p.at, &q.at);
+        let (one, two) = (cross(r, &q.at) * share, cross(&p.at, r) * share);
+        [one + two, one * p.low + two * q.low]
+    }
+
+    /// The sector that a ray is in.
+    #[inline(always)]
+    fn sector(&self, r: &Flat) -> Option<usize> {
+        (0..self.len).find(|i| {
+            let (p, q) = (self.corner(*i), self.corner(i + 1));
+            cross(&p.at, r) >= 0.0 && cross(r, &q.at) > 0.0
+        })
+    }
+
+    /// How far the object is below its plane at a place inside, in units of the depth.
+    #[inline(always)]
+    pub fn low(&self, r: &Flat) -> Real {
+        let low = |i| {
+            let [wall, low] = self.within(i, r);
+            lesser(low + self.level * wall, 1.0)
+        };
+        self.sector(r).map_or(0.0, low)
+    }
+}
+
+/// Does a direction come before another, around from the first axis?
+fn is_before(p: &Flat, q: &Flat) -> bool {
+    let is_below = |r: &Flat| r[1] < 0.0 || r[1] == 0.0 && r[0] < 0.0;
+    match (is_below(p), is_below(q)) {
+        (false, true) => true,
+        (true, false) => false,
+        _ => cross(p, q) > 0.0,
+    }
+}
+
+/// The ray to a corner of either fan, and what is at most 1 in the region there: w of both, and f.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ray {
+    at: Flat,
+    most: [Real; 3],
+}
+
+impl Ray {
+    /// Which of the three is the largest.
+    #[inline(always)]
+    fn top(&self) -> usize {
+        let [a, b, f] = self.most;
+        let k = usize::from(b > a);
+        if f > larger(a, b) { 2 } else { k }
+    }
+
+    /// Where the `k`th is 1.
+    #[inline(always)]
+    fn outer(&self, k: usize) -> Outer {
+        let share = 1.0 / self.most[k.min(2)];
+        Outer {
+            at: self.at.map(|x| x * share),
+            depth: larger(1.0 - self.most[2] * share, 0.0),
+        }
+    }
+
+    /// The ray between two, on which the `i`th and the `j`th are equal, the `i`th being larger on the
+    /// first and the `j`th on the second.
+    #[inline(always)]
+    fn between(&self, other: &Self, i: usize, j: usize) -> Self {
+        let (i, j) = (i.min(2), j.min(2));
+        let more = |ray: &Self| ray.most[i] - ray.most[j];
+        let (a, b) = (more(self), more(other));
+        let t = a / (a - b);
+        let (s, e) = (&self.most, &other.most);
+        Self {
+            at: between(&self.at, &other.at, t),
+            most: [
+                s[0] + (e[0] - s[0]) * t,
+                s[1] + (e[1] - s[1]) * t,
+                s[2] + (e[2] - s[2]) * t,
+            ],
+        }
+    }
+}
+
+/// A corner of the region's outline, and the local depth there in units of the depth.
+#[derive(Clone, Copy, Debug, Default)]
+struct Outer {
+    at: Flat,
+    depth: Real,
+}
+
+/// Volume and moment of the local depth, along the outline.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    volume: Real,
+    moment: Flat,
+    /// d / 2 s.
+    rim: Real,
+    /// Where the outline has come to.
+    last: Outer,
+}
+
+impl Sum {
+    /// The triangle from the deepest place to the next piece of outline, and the rim beyond that.
+    #[inline(always)]
+    fn to(&mut self, w: Outer) {
+        let v = self.last;
+        let (a, b) = (v.depth, w.depth);
+        let area = cross(&v.at, &w.at);
+        // How long the piece is, to 4 %: the rim's width is not known better.
+        let [x, y] = side(&v.at, &w.at).map(Real::abs);
+        let k = 2.0 * self.rim * (larger(x, y) + 0.4 * lesser(x, y));
+        let (aa, ab, bb) = (a * a, a * b, b * b);
+        self.volume += 4.0 * (area * (1.0 + a + b) + k * (aa + ab + bb));
+        let one = area * (1.0 + 2.0 * a + b) + k * (3.0 * aa + 2.0 * ab + bb);
+        let two = area * (1.0 + a + 2.0 * b) + k * (aa + 2.0 * ab + 3.0 * bb);
+        self.moment[0] += one * v.at[0] + two * w.at[0];
+        self.moment[1] += one * v.at[1] + two * w.at[1];
+        self.last = w;
+    }
+
+    /// The outline from one ray, whose largest is the `i`th, to the next, whose largest is the `j`th.
+    #[inline(always)]
+    fn cone(&mut self, s: &Ray, i: usize, e: &Ray, j: usize) {
+        if i != j {
+            let cut = s.between(e, i, j);
+            let k = 3_usize.wrapping_sub(i + j).min(2);
+            if cut.most[k] > cut.most[i.min(2)] {
+                self.to(s.between(e, i, k).outer(k));
+                self.to(s.between(e, k, j).outer(k));
+            } else {
+                self.to(cut.outer(i));
+            }
+        }
+        self.to(e.outer(j));
+    }
+}
+
+/// The centre of pressure of two fans, from the deepest place; `rim`: d / 2 s. `None` where one does
+/// not close.
+#[inline(always)]
+pub fn pressed(one: &Fan, two: &Fan, rim: Real) -> Option<Flat> {
+    let ray = |corner: &Corner, other: &Fan, sector: usize, is_first: bool| {
+        let [wall, low] = other.within(sector, &corner.at);
+        let (a, b) = if is_first { (1.0, wall) } else { (wall, 1.0) };
+        Ray {
+            at: corner.at,
+            most: [a, b, corner.low + low],
+        }
+    };
+    // The sectors that the last ray is in; the second fan's are counted from the first ray's, and
+    // left in order until that comes again.
+    let first = two.sector(&one.corner(0).at)?;
+    let sector = |j: usize| {
+        let j = first + j;
+        if j < two.len { j } else { j - two.len }
+    };
+    let start = ray(one.corner(0), two, first, true);
+    let (mut last, mut top, mut i, mut j) = (start, start.top(), 0, 0);
+    let mut sum = Sum {
+        rim,
+        last: start.outer(top),
+        ..Sum::default()
+    };
+    // Ends: each round takes a corner.
+    while i < one.len {
+        let (p, q) = (one.corner(i + 1), two.corner(sector(j) + 1));
+        let next = if cross(&p.at, &q.at) > 0.0 || j == two.len {
+            i += 1;
+            if i < one.len {
+                ray(p, two, sector(j), true)
+            } else {
+                start
+            }
+        } else {
+            j += 1;
+            ray(q, one, i, false)
+        };
+        let next_top = next.top();
+        sum.cone(&last, top, &next, next_top);
+        (last, top) = (next, next_top);
+    }
+    let share = 1.0 / sum.volume;
+    Some(sum.moment.map(|m| m * share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::Random;
+
+    const HAIR: Real = 2e-6;
+
+    fn fan(corners: &[(Real, Real, Real)]) -> Fan {
+        let corner = |c: &(Real, Real, Real)| Corner {
+            at: [c.0, c.1],
+            low: c.2,
+        };
+        let mut fan = Fan::default();
+        for (i, c) in corners.iter().enumerate() {
+            fan.put(i, corner(c));
+        }
+        fan.settle(0.0, HAIR);
+        fan
+    }
+
+    /// By sums over a grid: where w of both and the sum of lows are at most 1.
+    fn by_grid(one: &Fan, two: &Fan) -> Flat {
+        let mut sum = [0.0; 3];
+        const N: i32 = 400;
+        for x in -N..N {
+            for y in -N..N {
+                let r = [x, y].map(|x| (x as Real + 0.5) * 1.5 / N as Real);
+                let of = |f: &Fan| f.sector(&r).map_or([9.0; 2], |i| f.within(i, &r));
+                let ([w1, l1], [w2, l2]) = (of(one), of(two));
+                let depth = 1.0 - l1 - l2;
+                if w1 <= 1.0 && w2 <= 1.0 && depth > 0.0 {
+                    sum[0] += depth;
+                    sum[1] += depth * r[0];
+                    sum[2] += depth * r[1];
+                }
+            }
+        }
+        [sum[1] / sum[0], sum[2] / sum[0]]
+    }
+
+    #[test]
+    fn as_by_a_grid() {
+        let mut r = Random::new(1);
+        for round in 0..40 {
+            let fans = [0, 1].map(|_| {
+                let n = 3 + round % 4;
+                let corners: Vec<_> = (0..n)
+                    .map(|k| {
+                        let angle = (k as Real + r.within(0.0, 0.4))
+                            * core::f64::consts::TAU as Real
+                            / n as Real;
+                        let far = r.within(0.5, 1.0);
+                        (far * angle.cos(), far * angle.sin(), r.within(0.0, 1.2))
+                    })
+                    .collect();
+                fan(&corners)
+            });
+            let [one, two] = &fans;
+            let found = pressed(one, two, 1e-9).unwrap();
+            let truth = by_grid(one, two);
+            let off = length(&side(&found, &truth));
+            assert!(off < 3e-3, "{round}: {found:?} {truth:?} {one:?} {two:?}");
+        }
+    }
+
+    #[test]
+    fn an_edge_and_a_corner() {
+        let plate = fan(&[
+            (1.0, 1.0, 0.0),
+            (-1.0, 1.0, 0.0),
+            (-1.0, -1.0, 0.0),
+            (1.0, -1.0, 0.0),
+        ]);
+        let h = HAIR;
+        let edge = fan(&[
+            (0.5, h, 0.0),
+            (0.5, h * 1.1, 0.0),
+            (-0.5, -h, 0.0),
+            (-0.5, -h * 0.5, 0.0),
+        ]);
+        let c = pressed(&edge, &plate, 1e-3).unwrap();
+        assert!(length(&c) < 1e-3, "{c:?} {edge:?}");
+        let edge = fan(&[
+            (1.0, h, 1.0),
+            (1.0, h * 1.1, 1.0),
+            (0.0, -h, 0.0),
+            (0.0, -h * 0.5, 0.0),
+        ]);
+        let c = pressed(&edge, &plate, 1e-3).unwrap();
+        assert!((c[0] - 0.25).abs() < 1e-2, "{c:?} {edge:?}");
+    }
+}
