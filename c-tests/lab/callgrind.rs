@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn callgrind_self_cost_by_phase() {
         let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/src/hull/expansion.rs\n\
-            fn=ccd::hull::expansion::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/contacts/patch.rs\n3 100\n\
+            fn=ccd::hull::expansion::minimum\n1 5\nfi=/rustc/core/arith.rs\n2 7\nfi=/w/src/contacts/fan.rs\n3 100\n\
             fi=/w/src/math.rs\n4 200\nfe=/w/src/hull/expansion.rs\n5 1\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
             fl=/rustc/core/zip.rs\nfn=<core::Zip<ccd::paper::incremental::M> as X>::next\n7 1000\n\
             ob=/bin/charts\nfl=/w/c-tests/lab.rs\nfn=run\n1 77\nob=/l/libccd.so\n\

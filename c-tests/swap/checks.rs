@@ -468,19 +468,6 @@ pub fn epa_time(program: &Swapped, args: &[String]) -> String {
 }
 
 impl Static {
-    /// What speaks against a scene that is to stay as it is: gained, J, and the deepest contact,
-    /// metres, of this library's runs, at most so much.
-    pub fn restless(&self, gained: f64, deepest: f64) -> Vec<String> {
-        let mut against = self.against.clone();
-        for (key, bound) in [("gained", gained), ("deepest", deepest)] {
-            let most = self.range(1, key).1;
-            if !(most <= bound) {
-                against.push(format!("{key} {most}, {bound} asked"));
-            }
-        }
-        against
-    }
-
     pub fn verdict(&self) -> String {
         if self.against.is_empty() {
             "passes".to_owned()

@@ -10,6 +10,7 @@ pub mod figure;
 pub mod models;
 pub mod paper;
 pub mod phases;
+pub mod position;
 pub mod results;
 pub mod split;
 
@@ -170,6 +171,7 @@ fn draw(page: &Page, results: &results::Results) {
     };
     models::draw(&page_of_models, &results.models);
     split::draw(page, &results.split);
+    position::draw(page, &results.position);
     results::write(page, results);
 }
 
@@ -188,6 +190,7 @@ pub fn redraw(options: &Options) {
         recorded: page.read("recorded.csv"),
         models: page.read("models.csv"),
         split: page.read("instructions.csv"),
+        position: page.read("position.csv"),
     };
     draw(&page, &results);
 }
@@ -228,6 +231,8 @@ pub fn run(options: &Options) {
     page.write("recorded.csv", &recorded);
     let models = models::measure_all(&bench);
     page.write("models.csv", &models);
+    let position = position::measure(&bench);
+    page.write("position.csv", &position);
     let split = if options.no_instructions {
         Vec::new()
     } else {
@@ -244,6 +249,7 @@ pub fn run(options: &Options) {
         recorded,
         models,
         split,
+        position,
     };
     draw(&page, &results);
 }

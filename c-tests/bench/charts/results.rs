@@ -11,6 +11,7 @@ use super::Page;
 use super::coherence;
 use super::models::Model;
 use super::paper::{AS_PUBLISHED, PAPER};
+use super::position::Position;
 use super::split::Split;
 use crate::lab::measure::Row;
 
@@ -23,6 +24,7 @@ pub struct Results {
     pub recorded: Vec<Row>,
     pub models: Vec<Model>,
     pub split: Vec<Split>,
+    pub position: Vec<Position>,
 }
 
 fn markdown<const N: usize>(
