@@ -624,6 +624,64 @@ mod tests {
         Some((proven.ok()?, hit))
     }
 
+    /// A box on a box, 1 cm deep along z, asked from a state whose second direction is `aside`.
+    fn resting(upper: impl Fn(&Vec3) -> Vec3, aside: Vec3) -> (bool, Penetration) {
+        let corner = |d: &Vec3, h: Vec3| Vec3::from_fn(|i, _| h[i].copysign(d[i]));
+        let lower = move |d: &Vec3| corner(d, Vec3::new(1.0, 1.0, 0.5)) - Vec3::z() * 0.49;
+        let md = MinkowskiDifference::new(lower, upper);
+        let mut inquiry = Inquiry::new(&md);
+        let first = Vec3::z();
+        let point = inquiry.first(&first, None).unwrap();
+        let limits = Limits {
+            tolerance: 1e-6,
+            gap: 1e-3,
+            supports: 160,
+            iterations: 500,
+        };
+        let v1 = -Vec3::z() * 0.49;
+        let v2 = Vec3::z() * 0.25;
+        let request = Request {
+            centre: Some(&SupportPoint { v: v1 - v2, v1, v2 }),
+            first,
+            others: &[aside],
+            limits: &limits,
+            wants_pos: false,
+            mark: None,
+        };
+        let mut hit = Penetration::default();
+        let proven = minimum(inquiry, &point, &request, None, None, &mut hit);
+        (proven.unwrap(), hit)
+    }
+
+    fn small(d: &Vec3) -> Vec3 {
+        let h = Vec3::new(0.25, 0.25, 0.25);
+        Vec3::from_fn(|i, _| h[i].copysign(d[i])) + Vec3::z() * 0.25
+    }
+
+    /// As ODE's cylinder does, which errs within 1e-3 of its axis.
+    #[test]
+    fn a_point_that_is_not_found_again_from_beside_makes_nothing_deeper() {
+        let aside = Vec3::new(0.3, 0.2, 1.0).normalize();
+        let lies = |d: &Vec3| {
+            let near = (d + aside).norm() < 1e-3;
+            small(d) - Vec3::z() * if near { 0.05 } else { 0.0 }
+        };
+        let (_, hit) = resting(lies, aside);
+        assert!((hit.depth - 0.01).abs() < 1e-6, "{hit:?}");
+    }
+
+    /// A hill climb that ends too early where the answer lies: what it found elsewhere holds.
+    #[test]
+    fn a_point_that_is_found_again_from_beside_does() {
+        let aside = Vec3::new(0.3, 0.2, 1.0).normalize();
+        let stops = |d: &Vec3| {
+            let near = (d + Vec3::z()).norm() < 1e-3;
+            small(d) + Vec3::z() * if near { 0.005 } else { 0.0 }
+        };
+        let (_, hit) = resting(stops, aside);
+        assert!(hit.depth > 0.01 - 1e-6, "{hit:?}");
+    }
+
     #[test]
     fn capsules_are_no_deeper_than_their_cores_tell() {
         let mut r = Random::new(1);
