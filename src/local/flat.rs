@@ -162,6 +162,8 @@ pub struct Flat {
     asked: usize,
     doubts: u32,
     levelled: bool,
+    /// Was the model's minimum asked because the best direction showed no witness points?
+    asked_there: bool,
     /// Was a vertex seen twice: a polytope, it seems?
     flat: bool,
 }
@@ -200,6 +202,7 @@ impl Flat {
             asked: 0,
             doubts: 0,
             levelled: false,
+            asked_there: false,
             flat: false,
         }
     }
@@ -871,11 +874,15 @@ impl Flat {
                 n *= 1.0 / n.norm();
             } else if close {
                 let best = self.best;
-                return if self.conclude::<BENT>(&best, h, &step, &n, known) {
-                    Next::Found
-                } else {
-                    Next::Open
-                };
+                if self.conclude::<BENT>(&best, h, &step, &n, known) {
+                    return Next::Found;
+                }
+                // Shallow, the best direction is near enough for the depth and not for witness
+                // points: the minimum itself is, if the model is right.
+                if self.step.is_none() || self.asked_there {
+                    return Next::Open;
+                }
+                self.asked_there = true;
             }
         }
         if self.cuts.len == CUTS {

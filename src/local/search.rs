@@ -12,7 +12,7 @@ use super::model::{Model, Step};
 use super::samples::{CUTS, Sample, Samples};
 use super::trust_region::{self, ASIDE, TrustRegion};
 use super::verdict::{Next, Verdict, judge};
-use super::witness::Witnesses;
+use super::witness::{INSIDE, Witnesses};
 use crate::contact::{Answer, Settings};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, tolerance, unit};
@@ -307,8 +307,9 @@ impl<'a> Search<'a> {
         memory: &mut Memory,
     ) -> ControlFlow<Answer, Option<Next>> {
         let (samples, curvature) = (&self.samples, &self.curvature);
-        // As asked for, also where rounding allows the depth less.
+        // As asked for, also where rounding allows the depth less; but no finer than is promised.
         let fine = self.tolerance.min(self.settings.tolerance);
+        let fine = larger(fine, INSIDE * samples.size);
         let witnesses = Witnesses::of(samples, curvature, model, step, fine);
         // A minimum is where the support plane touches D below the origin: witness points
         // farther apart across the normal than a curve of the object's size may be within the

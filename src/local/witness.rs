@@ -17,7 +17,15 @@ use super::verdict::Next;
 use crate::contact::Penetration;
 use crate::contacts::pressure;
 use crate::gjk::barycentric;
-use crate::math::{Real, Vec3, larger, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, unit};
+
+/// What a witness point may be outside its object by where the tolerance is finer, as a share of the
+/// objects' size: a quarter of what is promised.
+pub const INSIDE: Real = if EPSILON > 1e-10 {
+    16.0 * EPSILON
+} else {
+    2.5e-13
+};
 
 /// Witness points of the bundle's centre.
 pub struct Witnesses {
@@ -62,7 +70,8 @@ impl Witnesses {
         // is a little aside, but not on an edge: that bends another way.
         let little = step.count == 1 && curvature.even;
         let most = if little { FORETOLD } else { BALL };
-        let certain = |(i, w): (usize, &Real)| w * curvature.error_of(samples, i) <= most;
+        let error = |i: usize| larger(curvature.error_of(samples, i), samples.error[i]);
+        let certain = |(i, w): (usize, &Real)| w * error(i) <= most;
         let mut weights = led.weights.iter().enumerate().take(samples.len);
         let certain = weights.all(certain);
         led.share = own.share;
@@ -213,20 +222,33 @@ mod tests {
 
     const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
 
-    /// The witnesses that samples along these directions show, with this curvature.
-    fn found(
+    /// The witnesses that samples along these directions show, with this curvature, of which their
+    /// own pairs told `own` relative error.
+    fn told(
         known: &mut Known,
         shape: &Shape,
         dirs: &[Vec3],
         curvature: &Curvature,
+        own: Real,
     ) -> (Witnesses, Penetration, Next) {
-        let samples = samples(known, shape, dirs);
+        let mut samples = samples(known, shape, dirs);
+        samples.error = Lanes::all(own);
         let model = Model::new(&samples, curvature);
         let step = model.minimise(dirs.len() - 1, 0.1, samples.rounding);
         let witnesses = Witnesses::of(&samples, curvature, &model, &step, TOLERANCE);
         let answer = witnesses.answer(&samples, &model, 1);
         let next = witnesses.query(&samples, &model, TOLERANCE);
         (witnesses, answer, next)
+    }
+
+    /// The same of samples no pair of which has told.
+    fn found(
+        known: &mut Known,
+        shape: &Shape,
+        dirs: &[Vec3],
+        curvature: &Curvature,
+    ) -> (Witnesses, Penetration, Next) {
+        told(known, shape, dirs, curvature, 1.0)
     }
 
     /// A box whose face z = 0.6 is the nearest, the origin below it aside of the middle.
@@ -303,8 +325,12 @@ mod tests {
         assert!(!guess.own && !guess.believed);
         // As a pair tells that is wider apart.
         (curvature.error, curvature.span2) = (BALL, 0.01);
+        // Of another piece.
         let mut known = Known::default();
-        let (witnesses, answer, next) = found(&mut known, &shape, &dirs, &curvature);
+        let (other, ..) = found(&mut known, &shape, &dirs, &curvature);
+        assert!(!other.own && !other.believed);
+        let mut known = Known::default();
+        let (witnesses, answer, next) = told(&mut known, &shape, &dirs, &curvature, BALL);
         assert!(!witnesses.own && witnesses.believed);
         let off = (2.0 * 0.1 * TOLERANCE).sqrt();
         assert!((answer.point1 - answer.point2 - Vec3::z() * 0.1).norm() <= off);
