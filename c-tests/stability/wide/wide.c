@@ -210,16 +210,17 @@ static int is_outside(const body_t *s, const double at[3], double bound)
     return wide_bounds(s, &point, bound / 4, -bound, -bound / 2, 120).upper < -bound;
 }
 
-/* How far h falls within a fiftieth of a rad around n: less than four times that far in
- * directions chosen at random, nearer and nearer to the lowest. */
+/* How far h falls on a way from n, of steps that none goes up, within a fiftieth of a rad: each
+ * is taken at random, up to a tenth of that long, and shorter after each that went up. What lies
+ * behind a ridge is another minimum. */
 static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
 {
     const double reach = .02;
     const double first = wide_value(&p->body[0], &p->body[1], n);
-    double best[3], least = first, step = reach / 2;
+    double best[3], least = first, step = reach / 10;
     int i, k;
     memcpy(best, n, sizeof best);
-    for (i = 0; i < 120; i++) {
+    for (i = 0; i < 200; i++) {
         double m[3], l = 0, far = 0, h;
         for (k = 0; k < 3; k++) {
             m[k] = best[k] + step * dice_in(d, -1, 1);
@@ -235,8 +236,9 @@ static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
         if (h < least) {
             least = h;
             memcpy(best, m, sizeof best);
+            step = fmin(step * 1.5, reach / 10);
         } else {
-            step *= .95;
+            step *= .9;
         }
     }
     return first - least;
