@@ -490,13 +490,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             &mut known,
             &mut floor,
         ) {
-            Ok(_) if floor.depth < hit.depth => {
+            Ok(minimum) if floor.depth < hit.depth => {
                 // The polytope's witness points are points of the objects, the local search's lie on
-                // the planes, and beside their objects where these are not as round as they seemed.
+                // the planes, and beside their objects where it found no minimum.
                 let reach = larger(floor.point1.norm(), floor.point2.norm());
                 let near = larger(limits.tolerance, INSIDE * reach);
                 let [one, two] = [hit.point1 - floor.point1, hit.point2 - floor.point2];
-                if one.dot(&floor.normal).abs() <= near && two.dot(&floor.normal).abs() <= near {
+                let on_planes =
+                    one.dot(&floor.normal).abs() <= near && two.dot(&floor.normal).abs() <= near;
+                if !minimum || on_planes {
                     (floor.point1, floor.point2) = (hit.point1, hit.point2);
                 }
                 *hit = Penetration {
