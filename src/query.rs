@@ -124,12 +124,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
             return Err(Stop::Apart(hit.normal));
         }
-        if let (Some(c), true) = (&self.centre, !planar && hit.depth > settings.tolerance) {
+        // A depth of a few times a touch's tells nothing of where.
+        let tolerance = larger(settings.tolerance, 4.0 * inquiry.precision.touch());
+        if let (Some(c), true) = (&self.centre, !planar && hit.depth > tolerance) {
             if is_around(&mut inquiry, c, known, &(hit.normal * hit.depth))? {
                 return Ok(());
             }
         }
-        let tolerance = settings.tolerance;
         self.surround(&mut inquiry, self.centre, hit, known, tolerance, planar)
     }
 
