@@ -216,9 +216,11 @@ pub struct Penetration {
     /// `limit` is set, and of [`penetration_along`] and [`penetration_planar`], the middle of the
     /// witness points.
     pub pos: [Real; 3],
-    /// Witness point of the first shape, [`Want::points`].
+    /// Witness point of the first shape, [`Want::points`]: a point of it, and of its supporting
+    /// plane, each to within what the depth may be off, or 1e-12 of the size (in single precision
+    /// 1e-5).
     pub point1: [Real; 3],
-    /// Witness point of the second shape, [`Want::points`].
+    /// Witness point of the second shape, [`Want::points`]; the same.
     pub point2: [Real; 3],
     /// Calls of each shape's [`Shape::support`].
     pub support_calls: u64,

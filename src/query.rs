@@ -124,12 +124,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
             return Err(Stop::Apart(hit.normal));
         }
-        if let (Some(c), true) = (&self.centre, !planar && hit.depth > settings.tolerance) {
+        // A depth of a few times a touch's tells nothing of where.
+        let tolerance = larger(settings.tolerance, 4.0 * inquiry.precision.touch());
+        if let (Some(c), true) = (&self.centre, !planar && hit.depth > tolerance) {
             if is_around(&mut inquiry, c, known, &(hit.normal * hit.depth))? {
                 return Ok(());
             }
         }
-        let tolerance = settings.tolerance;
         self.surround(&mut inquiry, self.centre, hit, known, tolerance, planar)
     }
 
@@ -490,14 +491,21 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             &mut known,
             &mut floor,
         ) {
-            Ok(_) if floor.depth < hit.depth => {
+            Ok(minimum) if floor.depth < hit.depth => {
                 // The polytope's witness points are points of the objects, the local search's lie on
-                // the planes, and beside their objects where these are not as round as they seemed.
+                // the planes, and beside their objects where it found no minimum: there means of the
+                // objects' own points, if they meet as well as the bounds do.
                 let reach = larger(floor.point1.norm(), floor.point2.norm());
                 let near = larger(limits.tolerance, INSIDE * reach);
                 let [one, two] = [hit.point1 - floor.point1, hit.point2 - floor.point2];
-                if one.dot(&floor.normal).abs() <= near && two.dot(&floor.normal).abs() <= near {
+                let n = &floor.normal;
+                if one.dot(n).abs() <= near && two.dot(n).abs() <= near {
                     (floor.point1, floor.point2) = (hit.point1, hit.point2);
+                } else if !minimum {
+                    let open = larger(floor.depth - hit.depth_lower, near);
+                    if let Some(own) = own_witnesses(known.points(), &floor, open) {
+                        (floor.point1, floor.point2) = own;
+                    }
                 }
                 *hit = Penetration {
                     depth_lower: hit.depth_lower.min(floor.depth),
@@ -674,6 +682,30 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.remember(state, &answer)?;
         Ok(answer.in_the_middle())
     }
+}
+
+/// Means of the objects' own points, of those known, that are the depth apart along an answer's
+/// direction to within `open`, metres.
+#[cold]
+fn own_witnesses(known: &[SupportPoint], hit: &Penetration, open: Real) -> Option<(Vec3, Vec3)> {
+    let to = hit.normal * hit.depth;
+    let (first, rest) = known.split_first()?;
+    let mut best = None;
+    let mut least2 = 2.0 * hit.depth * open;
+    for (i, a) in rest.iter().enumerate() {
+        for (j, b) in rest.iter().enumerate().skip(i) {
+            for c in rest.iter().skip(j) {
+                let points = [first, a, b, c];
+                let nearest = barycentric::tetrahedron(&to, points.map(|p| &p.v));
+                let low = hit.depth - nearest.point.dot(&hit.normal);
+                if nearest.distance2 < least2 && low <= open {
+                    least2 = nearest.distance2;
+                    best = Some(barycentric::witnesses(&nearest.weights, points));
+                }
+            }
+        }
+    }
+    best
 }
 
 /// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:

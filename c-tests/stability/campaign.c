@@ -95,9 +95,6 @@ static void report(const char *name, const char *category, row_t *r)
 static int is_known(const char *category, const char *entry, const char *fault)
 {
     static const char *const known[][3] = {
-        {"near-coincident centres 1e-8 to 1e-18", "minimum, wrong guess", "witness points outside the shapes"},
-        {"far from the origin 1e6", "minimum, again", "witness points not the depth apart"},
-        {"far from the origin 1e6", "minimum, again", "witness points off the supporting planes"},
         {"segment or point and solid", "local, wrong guess", "stopped at the cap"},
     };
     size_t i;

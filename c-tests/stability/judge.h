@@ -367,9 +367,10 @@ static inline double judge_reach(const shape_t *s, const double origin[3], const
  * promised their middle. */
 static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
-    /* at the cap they are as far off as the gap that is left, and else as the depth may be */
+    /* as far off as the depth may be: where a bound is given, and the cap or rounding, by no
+       more than FAULT_NO_PROOF allows, left it open, by that */
     double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) : q->tol;
-    double reached = x->code == CCD_LIMIT ? fmax(promised, x->depth - x->lower) : promised;
+    double reached = x->code == CCD_LIMIT || e->ask == ASK_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
     double bound = reached + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p[3], p1[3], p2[3], value, l2;
     const int has_centre = x->code == CCD_HIT && e->ask != ASK_ALONG && e->ask != ASK_PLANAR;
     /* deeper than an object is thick the middle of the chord is beyond it; and a hair */

@@ -39,7 +39,6 @@ fn configurations_of_the_extension() {
 
 /// The same on the local query.
 #[test]
-#[cfg_attr(feature = "single", ignore = "witness points of the local query")]
 fn configurations_of_the_local_query() {
     program("configurations").run(["local"]);
 }

@@ -167,8 +167,9 @@ typedef struct ccd_penetration_t {
    */
   ccd_vec3_t pos;
   /**
-   * Witness point of obj1, CCD_WANT_POINTS, at the deepest place: no farther from its supporting
-   * plane than the depth may be off.
+   * Witness point of obj1, CCD_WANT_POINTS, at the deepest place: a point of obj1, and of its
+   * supporting plane, each to within what the depth may be off, or 1e-12 of the size (in single
+   * precision 1e-5).
    */
   ccd_vec3_t point1;
   /**

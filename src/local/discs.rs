@@ -179,6 +179,13 @@ impl Discs {
         self.of.iter().any(|own| own.at.disc.is_along(n))
     }
 
+    /// Of which object is unit `n` along the axis of the disc?
+    #[inline]
+    pub fn along(&self, n: &Vec3) -> [bool; 2] {
+        self.of
+            .map(|own| own.at.disc.is_there() && own.at.disc.is_along(n))
+    }
+
     /// The farthest points along unit `n`; along an axis, where all of a disc is, the one that is
     /// nearest to a `vertex`'s opposite.
     #[inline(never)]
@@ -236,13 +243,13 @@ impl Discs {
         sum
     }
 
-    /// Is a sample beside the axis along `n` where its disc says?
+    /// Is a sample beside the axis along `n` where its disc says? `same`: as in [`Self::look_at`].
     #[cold]
-    pub fn is_on_rim(&self, n: &Vec3, sample: &Sample) -> bool {
+    pub fn is_on_rim(&self, n: &Vec3, sample: &Sample, same: Real) -> bool {
         self.of.iter().enumerate().all(|(o, own)| {
             let disc = &own.at.disc;
             let carrier = vertex(sample, o) - disc.point(&sample.n) - own.at.carrier;
-            !disc.is_along(n) || disc.across(&carrier).norm() <= ALIKE * disc.radius
+            !disc.is_along(n) || disc.across(&carrier).norm() <= same
         })
     }
 

@@ -162,6 +162,8 @@ pub struct Flat {
     asked: usize,
     doubts: u32,
     levelled: bool,
+    /// Was the model's minimum asked because the best direction showed no witness points?
+    asked_there: bool,
     /// Was a vertex seen twice: a polytope, it seems?
     flat: bool,
 }
@@ -200,6 +202,7 @@ impl Flat {
             asked: 0,
             doubts: 0,
             levelled: false,
+            asked_there: false,
             flat: false,
         }
     }
@@ -245,7 +248,7 @@ impl Flat {
         } else {
             match memory.smooth() {
                 // Not needed this time.
-                curved @ Smooth::Curved(_) => curved,
+                curved @ Smooth::Curved(..) => curved,
                 _ => Smooth::Unknown,
             }
         };
@@ -338,7 +341,8 @@ impl Flat {
         let d = d * (1.0 / d.norm());
         self.asked += 1;
         self.minimum.hit.iterations += 1;
-        Ok(!discs.is_on_rim(n, &Sample::new(&d, md.support(&d)?)))
+        let same = larger(self.same_round(), self.tolerance);
+        Ok(!discs.is_on_rim(n, &Sample::new(&d, md.support(&d)?), same))
     }
 
     /// What was asked, after a search that found no minimum.
@@ -871,11 +875,15 @@ impl Flat {
                 n *= 1.0 / n.norm();
             } else if close {
                 let best = self.best;
-                return if self.conclude::<BENT>(&best, h, &step, &n, known) {
-                    Next::Found
-                } else {
-                    Next::Open
-                };
+                if self.conclude::<BENT>(&best, h, &step, &n, known) {
+                    return Next::Found;
+                }
+                // Shallow, the best direction is near enough for the depth and not for witness
+                // points: the minimum itself is, if the model is right.
+                if self.step.is_none() || self.asked_there {
+                    return Next::Open;
+                }
+                self.asked_there = true;
             }
         }
         if self.cuts.len == CUTS {
@@ -1127,12 +1135,35 @@ impl Flat {
         let serves =
             |(set, weights, count): Active| Some((own(&set, &weights)?, set, weights, count));
         let active = serves((step.set, self.weights::<BENT>(step, n, &discs), step.count));
-        let of_any = || serves(self.nearest::<BENT>(&(n * k), &discs)?);
+        let of_any = || {
+            let any = self.nearest::<BENT>(&(n * k), &discs)?;
+            // A ball holds for the points that showed it.
+            let unseen = self.unseen::<BENT>(n, true);
+            let shown = |(i, w): (&usize, &Real)| *w == 0.0 || unseen >> (i % CUTS) & 1 == 0;
+            let all = any.0.iter().zip(&any.1).all(shown);
+            all.then(|| serves(any)).flatten()
+        };
         let Some((foot, set, weights, mut count)) = active.or_else(of_any) else {
             return false;
         };
         let mut point1 = self.point1::<BENT>(n, &set, &weights, &discs);
         let mut point2 = point1 - foot - n * self.rho();
+        // Of one cut the point here is the witness; but of a disc along its axis, all of which is
+        // as far.
+        if count == 1 {
+            let along = self
+                .discs::<BENT>()
+                .map_or([false; 2], |discs| discs.along(n));
+            let same2 = self.same_round() * self.same_round();
+            for (along, point, own) in [
+                (along[0], &mut point1, &at.p.v1),
+                (along[1], &mut point2, &at.p.v2),
+            ] {
+                if !along && (*point - own).norm_squared() > same2 {
+                    return false;
+                }
+            }
+        }
         // Onto the support planes of both objects.
         point1 += n * n.dot(&(at.p.v1 - point1));
         point2 += n * n.dot(&(at.p.v2 - point2));

@@ -16,7 +16,8 @@ use crate::math::{EPSILON, Real, Vec3, larger, unit};
 pub struct Memory {
     /// The direction of the answer, or a guess of it.
     pub dir: Vec3,
-    /// The gradients of the active cuts there, metres.
+    /// The gradients of the active cuts there, metres. Of one cut, if `curved` says so, obj1's part
+    /// of R, six numbers.
     pub slopes: [Vec3; 3],
     /// R, metres: xx, xy, xz, yy, yz, zz. Or three numbers for each object: its ball's radius and
     /// zeros, or its disc's axis times its radius.
@@ -25,13 +26,16 @@ pub struct Memory {
     pub drift: Real,
     /// How many of `slopes` are in use.
     pub count: u32,
-    /// 1 if `curvature` is R; 2 if it is balls and discs, and 4 more for a disc of obj1, 8 more for
-    /// one of obj2; else nothing is known of it.
+    /// 1 if `curvature` is R, and 16 more if obj1's part of it is known; 2 if it is balls and discs,
+    /// and 4 more for a disc of obj1, 8 more for one of obj2; else nothing is known of it.
     pub curved: u32,
 }
 
 /// [`Memory::curved`] where R was known.
 const CURVED: u32 = 1;
+/// … and obj1's part of it.
+const PARTED: u32 = 16;
+const PARTED_R: u32 = CURVED + PARTED;
 /// Where balls and discs were, …
 const ROUND: u32 = 2;
 /// … and whose these discs were.
@@ -42,8 +46,8 @@ const DISC: [u32; 2] = [4, 8];
 pub enum Smooth {
     /// Nothing.
     Unknown,
-    /// R, metres.
-    Curved(Symmetric),
+    /// R, metres, and, where it is known, obj1's part of it.
+    Curved(Symmetric, Option<Symmetric>),
     /// The two objects' balls and discs.
     Round {
         /// Radii, metres; 0 for none.
@@ -97,9 +101,16 @@ impl Memory {
         } else {
             0.0
         };
+        // One cut has no others to be found again.
+        let several = count > 1;
+        let mut slopes = if several { *slopes } else { [Vec3::zeros(); 3] };
         let (curved, curvature) = match smooth {
             Smooth::Unknown => (0, [0.0; 6]),
-            Smooth::Curved(r) => (CURVED, r.0),
+            Smooth::Curved(r, Some(Symmetric([a, b, c, d, e, f]))) if !several => {
+                slopes = [Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::zeros()];
+                (PARTED_R, r.0)
+            }
+            Smooth::Curved(r, _) => (CURVED, r.0),
             Smooth::Round { balls, discs } => {
                 let mut curved = ROUND;
                 let mut of = [0, 1].map(|o| Vec3::new(balls[o], 0.0, 0.0));
@@ -115,11 +126,9 @@ impl Memory {
                 )
             }
         };
-        // One cut has no others to be found again.
-        let several = count > 1;
         *self = Self {
             dir: *dir,
-            slopes: if several { *slopes } else { [Vec3::zeros(); 3] },
+            slopes,
             curvature,
             drift,
             count: if several { count as u32 } else { 0 },
@@ -135,7 +144,13 @@ impl Memory {
             return Smooth::Unknown;
         }
         match self.curved {
-            CURVED => Smooth::Curved(Symmetric(self.curvature)),
+            CURVED => Smooth::Curved(Symmetric(self.curvature), None),
+            PARTED_R => {
+                let [a, b, _] = self.slopes;
+                let part = [a.x, a.y, a.z, b.x, b.y, b.z];
+                let known = part.iter().all(|x| x.is_finite());
+                Smooth::Curved(Symmetric(self.curvature), known.then_some(Symmetric(part)))
+            }
             _ if self.curved & ROUND != 0 => {
                 let [x, y, z, p, q, r] = self.curvature;
                 let of = [Vec3::new(x, y, z), Vec3::new(p, q, r)];
@@ -158,7 +173,7 @@ impl Memory {
     /// Does the search begin with curvature? Three active cuts are mostly exact ones.
     #[inline]
     pub fn is_curved(&self) -> bool {
-        self.count < 3 && matches!(self.smooth(), Smooth::Curved(_))
+        self.count < 3 && matches!(self.smooth(), Smooth::Curved(..))
     }
 
     /// The memory of the same objects in the other order, whose D is this one's mirror image
@@ -167,6 +182,13 @@ impl Memory {
         for v in self.slopes.iter_mut().chain([&mut self.dir]) {
             // Not -v: a cold memory is one of plain zeros.
             *v = Vec3::zeros() - *v;
+        }
+        if self.curved == PARTED_R {
+            // The other part of it.
+            let [a, b, _] = &mut self.slopes;
+            for (x, r) in a.iter_mut().chain(b).zip(self.curvature) {
+                *x += r;
+            }
         }
         if self.curved & ROUND != 0 {
             self.curvature.rotate_left(3);
@@ -181,9 +203,11 @@ impl Memory {
     pub fn recall(&self, dir: &Vec3) -> (Queue, Real) {
         // Farther aside than the pair moved, and not as far where R or balls alone are known, which
         // serve the better the nearer the samples are (in double precision); a disc's axis is told
-        // by samples that are not as near. NaN becomes the least angle. Measured in motion: ×2, ÷2 of the factors up to 12 % and 4 % of one set, of the
-        // least angles 5 % and 2 %; the same two numbers for both 10 to 23 %.
-        let (times, least) = if (self.curved == CURVED || self.curved == ROUND) && EPSILON < 1e-10 {
+        // by samples that are not as near. NaN becomes the least angle. Measured in motion: ×2, ÷2
+        // of the factors up to 12 % and 4 % of one set, of the least angles 5 % and 2 %; the same
+        // two numbers for both 10 to 23 %.
+        let alone = self.curved & !PARTED == CURVED || self.curved == ROUND;
+        let (times, least) = if alone && EPSILON < 1e-10 {
             (2.0, 0.0005)
         } else {
             (5.0, 0.004)
@@ -300,6 +324,33 @@ mod tests {
         assert_eq!((memory.dir, memory.slopes[1]), (-Vec3::z(), -Vec3::x()));
         memory.curvature[0] = Real::NAN;
         assert!(matches!(memory.smooth(), Smooth::Unknown));
+    }
+
+    #[test]
+    fn the_other_part_of_r_is_obj2s() {
+        let (r, part) = (
+            Symmetric::scaled_identity(0.5),
+            Symmetric::scaled_identity(0.125),
+        );
+        let mut memory = Memory::default();
+        memory.keep(
+            &Vec3::z(),
+            &[Vec3::x(); 3],
+            1,
+            Smooth::Curved(r, Some(part)),
+        );
+        assert!(memory.is_curved());
+        memory.flip();
+        let other = Symmetric::scaled_identity(0.375);
+        assert!(matches!(memory.smooth(), Smooth::Curved(s, Some(t)) if s == r && t == other));
+        // Several cuts need the room.
+        memory.keep(
+            &Vec3::z(),
+            &[Vec3::x(); 3],
+            2,
+            Smooth::Curved(r, Some(part)),
+        );
+        assert!(matches!(memory.smooth(), Smooth::Curved(_, None)));
     }
 
     #[test]

@@ -417,7 +417,7 @@ mod tests {
         for _ in 0..40 {
             let shape = capsule(r.vector(0.5), r.vector(0.5), 0.6);
             let mut curvature = Curvature::new();
-            curvature.recall(Symmetric([0.6, 0.0, 0.0, 0.6, 0.0, 0.6]));
+            curvature.recall(Symmetric([0.6, 0.0, 0.0, 0.6, 0.0, 0.6]), None);
             compare_with_grid(&shape, &curvature, &mut r);
         }
     }
@@ -428,7 +428,7 @@ mod tests {
         let (p, q) = (Vec3::new(0.1, 0.0, 0.3), Vec3::new(-0.1, 0.05, -0.3));
         let shape = capsule(p, q, 0.5);
         let mut curvature = Curvature::new();
-        curvature.recall(Symmetric([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]));
+        curvature.recall(Symmetric([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]), None);
         for _ in 0..200 {
             let dirs = around(&mut r, 2, 0.3);
             let mut known = Known::default();

@@ -12,7 +12,7 @@ use super::model::{Model, Step};
 use super::samples::{CUTS, Sample, Samples};
 use super::trust_region::{self, ASIDE, TrustRegion};
 use super::verdict::{Next, Verdict, judge};
-use super::witness::Witnesses;
+use super::witness::{INSIDE, Witnesses};
 use crate::contact::{Answer, Settings};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, tolerance, unit};
@@ -72,8 +72,8 @@ impl<'a> Search<'a> {
         let Some(dir) = unit(&memory.dir) else {
             return *start;
         };
-        if let Smooth::Curved(r) = memory.smooth() {
-            self.curvature.recall(r);
+        if let Smooth::Curved(r, part) = memory.smooth() {
+            self.curvature.recall(r, part);
         }
         let (queue, angle) = memory.recall(&dir);
         self.queue = queue;
@@ -90,8 +90,8 @@ impl<'a> Search<'a> {
     #[inline]
     pub fn resume(&mut self, asked: &'a [Sample], trust: Real, memory: &Memory) -> Option<Vec3> {
         let first = asked.first()?;
-        if let Smooth::Curved(r) = memory.smooth() {
-            self.curvature.recall(r);
+        if let Smooth::Curved(r, part) = memory.smooth() {
+            self.curvature.recall(r, part);
         }
         self.asked = asked;
         self.trust.radius = trust;
@@ -307,8 +307,9 @@ impl<'a> Search<'a> {
         memory: &mut Memory,
     ) -> ControlFlow<Answer, Option<Next>> {
         let (samples, curvature) = (&self.samples, &self.curvature);
-        // As asked for, also where rounding allows the depth less.
+        // As asked for, also where rounding allows the depth less; but no finer than is promised.
         let fine = self.tolerance.min(self.settings.tolerance);
+        let fine = larger(fine, INSIDE * samples.size);
         let witnesses = Witnesses::of(samples, curvature, model, step, fine);
         // A minimum is where the support plane touches D below the origin: witness points
         // farther apart across the normal than a curve of the object's size may be within the
@@ -322,14 +323,14 @@ impl<'a> Search<'a> {
             self.witness_queries -= 1;
             return ControlFlow::Continue(Some(witnesses.query(samples, model, fine)));
         }
-        // Exact cuts of a minimum have points of the objects' own for witnesses.
-        let met = met && (samples.touch() || curvature.known || witnesses.own);
+        // The queries are used up, or R is not known: own points, or none.
+        let met = met && (samples.touch() || witnesses.believed);
         if !met && !self.last() && curvature.known {
             return ControlFlow::Continue(None);
         }
         let gradient = |i: usize| model.e1 * model.x[i] + model.e2 * model.y[i];
         let smooth = match curvature.known {
-            true => Smooth::Curved(curvature.r),
+            true => Smooth::Curved(curvature.r, curvature.part()),
             false => Smooth::Unknown,
         };
         memory.keep(&model.b, &step.set.map(gradient), step.count, smooth);

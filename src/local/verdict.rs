@@ -203,7 +203,7 @@ mod tests {
         let dirs = [-Vec3::z()];
         let mut curvature = Curvature::new();
         let r = [0.5, 0.0, 0.0, 0.5, 0.0, 0.5];
-        curvature.recall(crate::known::round::Symmetric(r));
+        curvature.recall(crate::known::round::Symmetric(r), None);
         curvature.line = Some(Vec3::x());
         assert!(matches!(
             verdict(&shape, &dirs, &curvature),

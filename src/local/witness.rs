@@ -17,7 +17,20 @@ use super::verdict::Next;
 use crate::contact::Penetration;
 use crate::contacts::pressure;
 use crate::gjk::barycentric;
-use crate::math::{Real, Vec3, larger, unit};
+use crate::known::round::Symmetric;
+use crate::math::{EPSILON, Real, Vec3, larger, unit};
+
+/// What a witness point may be outside its object by where the tolerance is finer, as a share of the
+/// objects' size: a quarter of what is promised.
+pub const INSIDE: Real = if EPSILON > 1e-10 {
+    16.0 * EPSILON
+} else {
+    2.5e-13
+};
+
+/// What bends by less than this share of what it bends by across is taken for an edge. Measured:
+/// without it half as many again are outside (half balls, frusta).
+const EDGE: Real = 0.05;
 
 /// Witness points of the bundle's centre.
 pub struct Witnesses {
@@ -25,8 +38,10 @@ pub struct Witnesses {
     weights: [Real; CUTS],
     /// How far R moves these across b, in the chart.
     moved: [Lanes; 2],
-    /// How much of that is obj1's part.
+    /// How much of that is obj1's part, about; …
     share: Real,
+    /// … and how far each object's point moves, in the chart, where that is known.
+    parts: Option<[[Real; 2]; 2]>,
     /// The way across b that is left to the point below the origin, in the chart.
     gap: [Real; 2],
     /// Little enough of the objects' own points is left, …
@@ -58,14 +73,22 @@ impl Witnesses {
             model.turned[1] + Lanes::all(y),
         ];
         let mut led = Self::nearest(samples, model, moved, model.lift, tolerance);
-        // A ball's points are as good as seen, wherever they are; of other round objects one that
-        // is a little aside, but not on an edge: that bends another way.
-        let little = step.count == 1 && curvature.even;
-        let most = if little { FORETOLD } else { BALL };
+        led.share = own.share;
+        let parts = parts(samples, curvature, model, step);
+        // Balls, where the samples showed them; of other round objects one piece, a little aside,
+        // and each object's part of it: an edge bends along itself alone.
+        let most = match parts {
+            Some(_) => FORETOLD,
+            None if curvature.round => BALL,
+            None => 0.0,
+        };
         let certain = |(i, w): (usize, &Real)| w * curvature.error_of(samples, i) <= most;
+        if parts.is_some() {
+            led.weights = core::array::from_fn(|i| Real::from(u8::from(i == samples.centre)));
+            led.parts = parts;
+        }
         let mut weights = led.weights.iter().enumerate().take(samples.len);
         let certain = weights.all(certain);
-        led.share = own.share;
         led.believed = led.own && certain;
         led.own = false;
         led
@@ -93,6 +116,7 @@ impl Witnesses {
             weights,
             moved,
             share: 0.5,
+            parts: None,
             gap: [-nearest.x, -nearest.y],
             own: near,
             believed: near,
@@ -115,10 +139,15 @@ impl Witnesses {
             // The proof of the overlap knows points that meet.
             (point1, point2) = (centre.v1, centre.v2);
         } else if !self.own {
-            let [x, y] = self.moved.map(|moved| mean(&moved, &self.weights));
-            let moved = model.e1 * (x + self.gap[0]) + model.e2 * (y + self.gap[1]);
-            point1 += moved * self.share;
-            point2 -= moved * (1.0 - self.share);
+            if let Some([one, two]) = &self.parts {
+                point1 += model.e1 * one[0] + model.e2 * one[1];
+                point2 += model.e1 * two[0] + model.e2 * two[1];
+            } else {
+                let [x, y] = self.moved.map(|moved| mean(&moved, &self.weights));
+                let moved = model.e1 * (x + self.gap[0]) + model.e2 * (y + self.gap[1]);
+                point1 += moved * self.share;
+                point2 -= moved * (1.0 - self.share);
+            }
             // Onto the support planes of both objects.
             point1 += dir * (centre.v1 - point1).dot(&dir);
             point2 += dir * (centre.v2 - point2).dot(&dir);
@@ -169,6 +198,36 @@ impl Witnesses {
     }
 }
 
+/// How far each object's point moves across b to where one cut is least, in the chart. `None`: not
+/// known well enough.
+fn parts(
+    samples: &Samples,
+    curvature: &Curvature,
+    model: &Model,
+    step: &Step,
+) -> Option<[[Real; 2]; 2]> {
+    let here = step.count == 1 && step.set[0] == samples.centre && step.inside;
+    let r1 = curvature
+        .part()
+        .filter(|_| here && curvature.known && curvature.even)?;
+    let within = |r: &Symmetric| r.within(&model.e1, &model.e2);
+    let (one, both) = (within(&r1), within(&curvature.r));
+    let bends = |rho: Real, xx: Real, xy: Real| {
+        let m = (xx * xx + xy * xy).sqrt();
+        // All around, or not at all: a vertex.
+        rho - m >= EDGE * (rho + m) || rho + m <= BALL * both.0
+    };
+    let bend = bends(one.0, one.1, one.2) && bends(both.0 - one.0, both.1 - one.1, both.2 - one.2);
+    // The point below the origin moves, too, by so little that they still meet.
+    let way = model.e1 * step.x + model.e2 * step.y;
+    let moved = |r: &Symmetric| {
+        let moved = r.times(&way);
+        [moved.dot(&model.e1), moved.dot(&model.e2)]
+    };
+    let [one, both] = [moved(&r1), moved(&curvature.r)];
+    bend.then(|| [one, [one[0] - both[0], one[1] - both[1]]])
+}
+
 /// The point of the hull of the first `len` that is nearest to the origin, and its weights.
 pub fn hull(at: &[Vec3; CUTS], len: usize) -> (Vec3, [Real; CUTS]) {
     let origin = Vec3::zeros();
@@ -206,27 +265,39 @@ fn allowed_across(samples: &Samples, tolerance: Real) -> Real {
 mod tests {
     use super::super::samples::tests::{around, samples};
     use super::*;
-    use crate::known::round::Symmetric;
     use crate::known::support::Known;
     use crate::math::EPSILON;
     use crate::shapes::{Random, Rotation, Shape, capsule, corners, hull, placed};
 
     const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
 
-    /// The witnesses that samples along these directions show, with this curvature.
-    fn found(
+    /// The witnesses that samples along these directions show, with this curvature, of which their
+    /// own pairs told `own` relative error.
+    fn told(
         known: &mut Known,
         shape: &Shape,
         dirs: &[Vec3],
         curvature: &Curvature,
+        own: Real,
     ) -> (Witnesses, Penetration, Next) {
-        let samples = samples(known, shape, dirs);
+        let mut samples = samples(known, shape, dirs);
+        samples.error = Lanes::all(own);
         let model = Model::new(&samples, curvature);
         let step = model.minimise(dirs.len() - 1, 0.1, samples.rounding);
         let witnesses = Witnesses::of(&samples, curvature, &model, &step, TOLERANCE);
         let answer = witnesses.answer(&samples, &model, 1);
         let next = witnesses.query(&samples, &model, TOLERANCE);
         (witnesses, answer, next)
+    }
+
+    /// The same of samples no pair of which has told.
+    fn found(
+        known: &mut Known,
+        shape: &Shape,
+        dirs: &[Vec3],
+        curvature: &Curvature,
+    ) -> (Witnesses, Penetration, Next) {
+        told(known, shape, dirs, curvature, 1.0)
     }
 
     /// A box whose face z = 0.6 is the nearest, the origin below it aside of the middle.
@@ -295,7 +366,7 @@ mod tests {
         let (p, q) = (Vec3::new(0.1, 0.0, -0.4), Vec3::new(-0.15, 0.0, -0.4));
         let shape = capsule(p, q, 0.5);
         let mut curvature = Curvature::new();
-        curvature.recall(Symmetric([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]));
+        curvature.recall(Symmetric([0.5, 0.0, 0.0, 0.5, 0.0, 0.5]), None);
         let mut known = Known::default();
         // One end each, where the least depth of 0.1 is between.
         let dirs = [(0.0, 0.0), (-0.05, 0.02)].map(|(x, y)| Vec3::new(x, y, 1.0).normalize());
@@ -303,8 +374,12 @@ mod tests {
         assert!(!guess.own && !guess.believed);
         // As a pair tells that is wider apart.
         (curvature.error, curvature.span2) = (BALL, 0.01);
+        // Of another piece.
         let mut known = Known::default();
-        let (witnesses, answer, next) = found(&mut known, &shape, &dirs, &curvature);
+        let (other, ..) = found(&mut known, &shape, &dirs, &curvature);
+        assert!(!other.own && !other.believed);
+        let mut known = Known::default();
+        let (witnesses, answer, next) = told(&mut known, &shape, &dirs, &curvature, BALL);
         assert!(!witnesses.own && witnesses.believed);
         let off = (2.0 * 0.1 * TOLERANCE).sqrt();
         assert!((answer.point1 - answer.point2 - Vec3::z() * 0.1).norm() <= off);

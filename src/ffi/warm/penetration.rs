@@ -42,8 +42,9 @@ pub struct ccd_penetration_t {
     /// within 1 mm (boxes) to 6 mm (round faces). Of CCD_LIMIT, and of ccdPenetrationAlong and
     /// ccdPenetrationPlanar, the middle of the witness points.
     pub pos: ccd_vec3_t,
-    /// Witness point of obj1, CCD_WANT_POINTS, at the deepest place: no farther from its supporting
-    /// plane than the depth may be off.
+    /// Witness point of obj1, CCD_WANT_POINTS, at the deepest place: a point of obj1, and of its
+    /// supporting plane, each to within what the depth may be off, or 1e-12 of the size (in single
+    /// precision 1e-5).
     pub point1: ccd_vec3_t,
     /// Witness point of obj2, the same.
     pub point2: ccd_vec3_t,
