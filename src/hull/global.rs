@@ -23,8 +23,8 @@ use crate::hull::polytope::Polytope;
 use crate::hull::start;
 use crate::known::mark;
 use crate::known::support::{Fault, SupportMap, SupportPoint};
-use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, perpendicular, unit};
+use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
+use crate::math::{Real, Vec3, larger, unit};
 
 /// Points and faces of the first room, 3 KB: enough for shallow contacts.
 ///
@@ -44,9 +44,6 @@ const LENT: (usize, usize) = (376, 760);
 const ROUNDED: Real = 32.0;
 /// Points beyond the answer's plane that are asked about, at most. Insensitive: mostly there is one.
 const DOUBTS: usize = 4;
-/// How far beside a point's direction it is asked for again, radians. Measured on ODE's cylinder,
-/// which errs within 1e-3 of its axis.
-const BESIDE: Real = 0.02;
 /// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
@@ -429,7 +426,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 break;
             }
             let n = set.direction(i);
-            let point = self.inquiry.point(&unit_beside(&n))?;
+            let point = self.inquiry.point(&beside(&n))?;
             if dir.dot(&point.v) > beyond {
                 return Ok(reach);
             }
@@ -525,12 +522,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         );
         Ok(depth - lower <= close)
     }
-}
-
-/// A unit vector that far beside one.
-fn unit_beside(n: &Vec3) -> Vec3 {
-    let aside = n + perpendicular(n) * BESIDE;
-    aside / aside.norm()
 }
 
 /// Makes room for another start where a larger room was stuck. Returns `skip`, if that point

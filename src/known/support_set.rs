@@ -17,7 +17,7 @@
 
 use crate::known::precision::Precision;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Real, Vec3, larger, perpendicular};
 
 /// What is known of each object: room for `N` points of it with the directions they were asked
 /// along.
@@ -347,7 +347,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         // NaN is no depth.
         if !self.precision.is_depth(h) {
             // Taken apart: what is returned by way of memory would come from there always.
-            let Asked { i, h, v } = self.apart(set, *dir, h)?;
+            let Asked { i, h, v } = self.apart(set, *dir, &point)?;
             return Ok(Asked { i, h, v });
         }
         self.lower(dir, h);
@@ -387,25 +387,80 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         known.map(Beyond::Known).ok_or(Stop::Apart(*dir))
     }
 
-    /// The answer along `dir`, of value `h`, separates, or touches within rounding: unless the
-    /// callback contradicts itself, and a known point is farther along `dir`.
+    /// The answer along `dir` separates, or touches within rounding: unless the callback
+    /// contradicts itself, and a known point is farther along `dir`, or one that known points of
+    /// the two objects make.
     #[cold]
     #[inline(never)]
     fn apart<const N: usize>(
         &mut self,
-        set: &SupportSet<N>,
+        set: &mut SupportSet<N>,
         dir: Vec3,
-        h: Real,
+        answer: &SupportPoint,
     ) -> Result<Asked, Stop> {
-        let touch = self.precision.touch();
-        let Some(i) = set.farther(&dir, larger(h + self.precision.grain(), touch)) else {
-            return Err(Stop::Apart(dir));
+        let least = larger(
+            dir.dot(&answer.v) + self.precision.grain(),
+            self.precision.touch(),
+        );
+        let i = match set.farther(&dir, least) {
+            Some(i) => i,
+            None => {
+                let made = self.made_beyond(set, &dir, answer, least)?;
+                set.push(&Vec3::zeros(), &made)
+            }
         };
         let v = set.v(i);
         let h = dir.dot(&v);
         self.lower(&dir, h);
         Ok(Asked { i, h, v })
     }
+
+    /// A point farther along `dir` than `least`, made of obj1's point and obj2's that are farthest,
+    /// of the answer there and of the known ones. A known one that is farther than the answer is
+    /// asked for again from beside its direction: one that a callback erred in is not found there.
+    fn made_beyond<const N: usize>(
+        &mut self,
+        set: &SupportSet<N>,
+        dir: &Vec3,
+        answer: &SupportPoint,
+        least: Real,
+    ) -> Result<SupportPoint, Stop> {
+        let Extreme { names, .. } = set.extreme(dir, 1);
+        let [mut v1, mut v2] = [answer.v1, answer.v2];
+        for (o, name) in names.into_iter().enumerate() {
+            let n = set.direction(name);
+            let [p, q] = set.witnesses(name);
+            let farther = if o == 0 { p - v1 } else { v2 - q };
+            if dir.dot(&farther) > self.precision.grain() && n != Vec3::zeros() {
+                let again = self.point(&beside(&n))?;
+                let nearer = |a: &Vec3, b: &Vec3| if dir.dot(a) < dir.dot(b) { *a } else { *b };
+                if o == 0 {
+                    let found = nearer(&p, &again.v1);
+                    v1 = -nearer(&-found, &-v1);
+                } else {
+                    let found = -nearer(&-q, &-again.v2);
+                    v2 = nearer(&found, &v2);
+                }
+            }
+        }
+        let v = v1 - v2;
+        if dir.dot(&v) > least {
+            Ok(SupportPoint { v, v1, v2 })
+        } else {
+            Err(Stop::Apart(*dir))
+        }
+    }
+}
+
+/// How far beside a point's direction it is asked for again, radians. Measured on ODE's cylinder,
+/// which errs within 1e-3 of its axis.
+const BESIDE: Real = 0.02;
+
+/// A unit vector that far beside one: what a callback gave along that, and does not give here, it
+/// erred in.
+pub fn beside(n: &Vec3) -> Vec3 {
+    let aside = n + perpendicular(n) * BESIDE;
+    aside / aside.norm()
 }
 
 #[cfg(test)]
