@@ -24,6 +24,7 @@ fn quick_charts_are_whole_and_ours_on_the_front() {
     let out = tempfile::tempdir().expect("a temporary directory");
     charts::run(&charts::Options {
         models: false,
+        position: false,
         quick: true,
         no_instructions: true,
         out: out.path().to_owned(),

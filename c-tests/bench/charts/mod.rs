@@ -37,6 +37,9 @@ pub struct Options {
     /// The models alone; the other figures stay as they are.
     #[arg(long)]
     pub models: bool,
+    /// The contact positions alone, likewise.
+    #[arg(long)]
+    pub position: bool,
     /// Where CSV and pictures go.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../charts"))]
     pub out: PathBuf,
@@ -165,13 +168,13 @@ fn draw(page: &Page, results: &results::Results) {
     paper::draw(page, &results.vertices);
     coherence::draw(page, &results.coherence);
     // Measured at another time, perhaps.
-    let page_of_models = Page {
+    let page_of = |file| Page {
         out: page.out.clone(),
-        machine: csv::origin(&page.file("models.csv")),
+        machine: csv::origin(&page.file(file)),
     };
-    models::draw(&page_of_models, &results.models);
+    models::draw(&page_of("models.csv"), &results.models);
+    position::draw(&page_of("position.csv"), &results.position);
     split::draw(page, &results.split);
-    position::draw(page, &results.position);
     results::write(page, results);
 }
 
@@ -217,6 +220,10 @@ pub fn run(options: &Options) {
     }
     if options.models {
         page.write("models.csv", &models::measure_all(&bench));
+        return redraw(options);
+    }
+    if options.position {
+        page.write("position.csv", &position::measure(&bench));
         return redraw(options);
     }
     let accuracy = accuracy::measure(&bench);
