@@ -143,6 +143,8 @@ readme_table() {
             row("`ccdMPRPenetration`", ours, "MPR", "0.1 %")
             row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
             row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
+            row("`ccdMPRPenetration`, `pos` NULL", warm, "no pos, cold", "0.1 %")
+            row("`ccdMPRPenetrationWarm`, `pos` NULL", warm, "no pos, warm", "0.1 %")
             row("`ccdPenetrationLocal`, warm", warm, "local, warm", "no")
             row("`ccdPenetrationProven`, warm", warm, "minimum, warm", "tolerance")
         }' theirs.txt ours.txt warm.txt

@@ -29,6 +29,17 @@ static int mpr_warm(const recording_query_t *q, recording_answer_t *out)
     return OURS(ccdMPRPenetrationWarm)(q->obj1, q->obj2, q->ccd, &state[q->pair], &out->depth, &out->dir, &out->pos);
 }
 
+/* For who moves bodies apart, or asks ccdContacts. */
+static int mpr_bare(const recording_query_t *q, recording_answer_t *out)
+{
+    return OURS(ccdMPRPenetration)(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, NULL);
+}
+
+static int mpr_warm_bare(const recording_query_t *q, recording_answer_t *out)
+{
+    return OURS(ccdMPRPenetrationWarm)(q->obj1, q->obj2, q->ccd, &state[q->pair], &out->depth, &out->dir, NULL);
+}
+
 typedef int (*extended_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned, ccd_penetration_t *);
 
 static int extended(extended_fn method, const recording_query_t *q, ccd_warm_t *warm, recording_answer_t *out)
@@ -68,6 +79,7 @@ int main(int argc, char **argv)
 {
     static tally_t tally[] = {
         { .name = "MPR, cold", .method = mpr },         { .name = "MPR, warm", .method = mpr_warm },
+        { .name = "no pos, cold", .method = mpr_bare }, { .name = "no pos, warm", .method = mpr_warm_bare },
         { .name = "local, cold", .method = local },     { .name = "local, warm", .method = local_warm },
         { .name = "minimum, cold", .method = minimum }, { .name = "minimum, warm", .method = minimum_warm },
     };
