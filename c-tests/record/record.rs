@@ -131,7 +131,7 @@ fn the_extension_cold_and_warm() {
         .link_ours_shared()
         .build();
     let (overlaps, rows) = table(&warm.run([recording()]).stdout);
-    assert_eq!(rows.len(), 6);
+    assert_eq!(rows.len(), 8);
     for row in rows {
         row.assert_sound();
         // The bare local method may end in a local minimum.
