@@ -234,14 +234,12 @@ impl Fan {
         })
     }
 
-    /// How far the object is below its plane at a place inside, in units of the depth.
+    /// How far the object is below its plane at a place, in units of the depth; `None` where that is
+    /// no place of the fan, but for a hundredth.
     #[inline(always)]
-    pub fn low(&self, r: &Flat) -> Real {
-        let low = |i| {
-            let [wall, low] = self.within(i, r);
-            lesser(low + self.level * wall, 1.0)
-        };
-        self.sector(r).map_or(0.0, low)
+    pub fn low(&self, r: &Flat) -> Option<Real> {
+        let [wall, low] = self.within(self.sector(r)?, r);
+        (wall <= 1.01).then_some(low + self.level * wall)
     }
 }
 

@@ -190,7 +190,11 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     let Some(c) = pressed(&one, &two, depth * 0.5 / FLANK) else {
         return Ok(middle);
     };
-    let rise = 0.5 * depth * (two.low(&c) - one.low(&c));
+    // Rounding may have it elsewhere, where a fan is a line.
+    let (Some(low1), Some(low2)) = (one.low(&c), two.low(&c)) else {
+        return Ok(middle);
+    };
+    let rise = 0.5 * depth * (lesser(low2, 1.0) - lesser(low1, 1.0));
     let [e1, e2] = &view.axes;
     let centre = middle + e1 * c[0] + e2 * c[1] + n * rise;
     // NaN where nothing is shared.
