@@ -104,6 +104,7 @@ fn long() {
             10_000,
             &["20", "stack"],
         ),
+        piles(&ode, "a tower that touches", 1, 3000, &["6", "tower"]),
         piles(&ode, "rolling cylinders", 2, 10_000, &["12", "roll"]),
         piles(&mujoco, "pile", 2, 5000, &["30", "pile"]),
         piles(

@@ -12,7 +12,8 @@
 //!
 //! A callback that is no support function can contradict itself: what it answers along n
 //! is less far along n than a point it gave before. D reaches as far as all its known
-//! points. So where an answer would separate, the farther point stands in; and whoever
+//! points, and as those that points of the two objects make, where these are found again from
+//! [`beside`]. So where an answer would separate, the farther point stands in; and whoever
 //! gives the lowest plane for an answer looks through the points first.
 
 use crate::known::precision::Precision;
