@@ -4,7 +4,8 @@
 //! The global minimum of the depth: a polytope inscribed in D is expanded where it is
 //! nearest to the origin, until the bounds meet.
 //!
-//! [`global`] is the query, and its head has the steps in order; [`start`] makes the first
+//! [`global`] is the query, and its head has the steps in order; [`shallow`] proves a shallow contact
+//! without a polytope, from what is known of each object; [`start`] makes the first
 //! tetrahedron, [`expansion`] chooses where to ask, [`polytope`] and [`plane`] are the
 //! polytope.
 
@@ -12,4 +13,6 @@ pub mod expansion;
 pub mod global;
 pub mod plane;
 pub mod polytope;
+pub mod portal;
+pub mod shallow;
 pub mod start;

@@ -10,6 +10,7 @@
 
 pub mod check;
 pub mod mark;
+pub mod points;
 pub mod precision;
 #[doc(hidden)]
 pub mod round;

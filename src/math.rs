@@ -45,6 +45,17 @@ pub fn normalised(v: &Vec3) -> Option<Vec3> {
     (n2 > Real::MIN_POSITIVE && n2 < Real::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
+/// A vector that is to be unit: as it is where it is to a few ulps, else [`unit()`].
+#[inline(always)]
+pub fn as_unit(v: &Vec3) -> Option<Vec3> {
+    // False for NaN.
+    if (v.norm_squared() - 1.0).abs() <= 2.0 * EPSILON {
+        Some(*v)
+    } else {
+        unit(v)
+    }
+}
+
 /// The larger of two numbers, the second where one is NaN: one instruction, where `max`
 /// takes several to pass over a NaN on either side.
 #[inline(always)]

@@ -387,6 +387,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             centre: apex,
             first,
             others: state.others(),
+            hint: state.hint(),
             limits,
             wants_pos,
             mark: state.mark(),

@@ -14,7 +14,7 @@
 //! | `OVERLAP` | the local search: its [`Memory`] | the minimum's | slopes of the active cuts | what is known of the smooth part |
 //! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::middle`] and [`State::mark`] |
+//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::middle`] and [`State::mark`]; in `drift` [`State::hint`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none. What a query for the depth of an overlap leaves
@@ -23,7 +23,7 @@
 use crate::contact::Answer;
 use crate::hull::global::Basis;
 use crate::local::Memory;
-use crate::math::{Real, Vec3, normalised, unit};
+use crate::math::{Real, Vec3, as_unit, normalised, unit};
 
 /// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1 << 31;
@@ -83,6 +83,7 @@ impl State {
             self.memory.curvature = curvature;
             (self.memory.count, self.memory.curved) = (count, curved);
         }
+        self.memory.drift = flipped(self.hint()).map_or(self.memory.drift, |hint| hint as Real);
         if let Some(centre) = self.facing() {
             self.face(&-centre);
         }
@@ -189,7 +190,7 @@ impl State {
     /// was apart and is no longer has just met there.
     pub fn leaving(&self) -> Option<Vec3> {
         match self.kind {
-            APART | OVERLAP | ALONG | PROVEN => unit(&self.memory.dir),
+            APART | OVERLAP | ALONG | PROVEN => as_unit(&self.memory.dir),
             _ => None,
         }
     }
@@ -251,6 +252,16 @@ impl State {
         }
     }
 
+    /// The [`Basis::hint`] beside them; 0 for none.
+    #[inline]
+    pub fn hint(&self) -> u32 {
+        match self.kind {
+            // Of any number a whole one.
+            PROVEN => self.memory.drift as u32,
+            _ => 0,
+        }
+    }
+
     /// How many support points the directions of the last proof are worth.
     pub fn asks(&self) -> u64 {
         1 + self.others().iter().filter(|n| n.norm() > 0.0).count() as u64
@@ -264,6 +275,7 @@ impl State {
             for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
                 *slope = *n;
             }
+            state.memory.drift = basis.hint as Real;
         }
         state
     }
@@ -284,6 +296,16 @@ impl State {
             Answer::Hit(hit) | Answer::Limit(hit) => *self = Self::of(OVERLAP, hit.normal),
         }
     }
+}
+
+/// A [`Basis::hint`] of the pair in the other order: the portal's first two corners change places, and
+/// at each corner the objects. `None` where there is none.
+fn flipped(hint: u32) -> Option<u32> {
+    let corner = |i: u32| {
+        let both = hint >> (4 * i) & 15;
+        both >> 2 | (both & 3) << 2
+    };
+    (hint != 0).then(|| hint & !0xfff | corner(1) | corner(0) << 4 | corner(2) << 8)
 }
 
 #[cfg(test)]

@@ -5,6 +5,8 @@
 //!
 //! 1. The first direction. Where its support point separates, that is the answer.
 //! 2. The apex, and the points that the last query's proof stood on ([`Search::begin`]).
+//!    From a trusted centre a shallow contact is mostly proven without a hull then
+//!    ([`crate::hull::shallow`]).
 //! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::hull::start`].
 //! 4. The expansion ([`crate::hull::expansion`]), in rooms that grow. Where it does not show the
 //!    origin inside, 3 and 4 are tried again in the next way.
@@ -20,7 +22,8 @@ use crate::gjk::barycentric;
 use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
 use crate::hull::polytope::Polytope;
-use crate::hull::start;
+use crate::hull::shallow::{Handed, Try};
+use crate::hull::start::{self, Ball};
 use crate::known::mark;
 use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
@@ -44,6 +47,9 @@ const LENT: (usize, usize) = (376, 760);
 const ROUNDED: Real = 32.0;
 /// Points beyond the answer's plane that are asked about, at most. Insensitive: mostly there is one.
 const DOUBTS: usize = 4;
+/// The share of the centres' distance that the first depth of a shallow contact is, at most. Measured: 0.5
+/// changes no recorded contact by 0.1 %, and leaves deep pairs alone.
+const FAR: Real = 0.5;
 /// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
@@ -71,6 +77,8 @@ pub struct Request<'a> {
     pub first: Vec3,
     /// Directions besides `first` that the last proof stood on; zero for none. Empty: cold.
     pub others: &'a [Vec3],
+    /// The [`Basis::hint`] beside them; 0 for none.
+    pub hint: u32,
     /// How far to go.
     pub limits: &'a Limits,
     /// Does anybody read the contact position?
@@ -90,8 +98,13 @@ impl Request<'_> {
 /// first, then those that found the corners of the polytope's nearest face.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Basis {
-    directions: [Vec3; Basis::ROOM],
-    len: usize,
+    /// The first so many of them.
+    pub directions: [Vec3; Basis::ROOM],
+    /// How many there are.
+    pub len: usize,
+    /// Of the portal of a proof without a hull, of each corner the numbers of the directions that find
+    /// obj1's point and obj2's, two bits each, below a bit that is set; 0 for none.
+    pub hint: u32,
     /// The [`mark::of`] the points known, where the position was asked for.
     pub mark: u64,
     /// Has the pair not moved since the state was left?
@@ -191,11 +204,125 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// All that comes after the first support point.
     #[inline(never)]
     fn run(&mut self, first: &SupportPoint) -> Result<bool, Stop> {
-        let mut set = SupportSet::<{ FIRST.0 }>::EMPTY;
-        let mut opposite = self.begin(&mut set, first)?;
+        let mut start = Handed::<{ FIRST.0 }>::EMPTY;
+        if let Some(centre) = self.request.centre {
+            // Where the first plane is as far as that the contact is a deep one.
+            let depth = self.inquiry.lowest.depth;
+            if depth * depth < FAR * FAR * centre.v.norm_squared()
+                && self.at_once(centre, first, &mut start)?
+            {
+                return Ok(true);
+            }
+        }
+        loop {
+            let known = !start.set.is_empty();
+            let mut opposite = None;
+            if !known {
+                opposite = self.begin(&mut start.set, first)?;
+            }
+            let proven = self.expanded(&mut start, known, opposite)?;
+            if !known || self.is_deepest(&start.set) {
+                return Ok(proven);
+            }
+            // A callback contradicts itself: the pair is asked anew, once.
+            self.forget(first);
+            start.clear();
+        }
+    }
+
+    /// Does no point that known ones make lie beyond the lowest plane?
+    #[inline(never)]
+    fn is_deepest<const P: usize>(&self, set: &SupportSet<P>) -> bool {
+        let Lowest { depth, dir } = self.inquiry.lowest;
+        set.extreme(&dir, 1).reach <= depth + self.inquiry.precision.tie()
+    }
+
+    /// All is as after the first support point.
+    #[cold]
+    #[inline(never)]
+    fn forget(&mut self, first: &SupportPoint) {
+        let dir = self.request.first;
+        let depth = dir.dot(&first.v);
+        self.inquiry.lowest = Lowest { depth, dir };
+        (*self.hit, self.open, self.stuck) = (Penetration::default(), None, false);
+        if let Some(basis) = &mut self.basis {
+            **basis = Basis::default();
+        }
+    }
+
+    /// Is there an answer of a proof without a hull ([`shallow`](crate::hull::shallow))? Else `start`
+    /// takes what is known, if no callback contradicts itself.
+    #[inline(never)]
+    fn at_once(
+        &mut self,
+        centre: &SupportPoint,
+        first: &SupportPoint,
+        start: &mut Handed<{ FIRST.0 }>,
+    ) -> Result<bool, Stop> {
+        let Request {
+            first: dir,
+            others,
+            hint,
+            limits,
+            ..
+        } = self.request;
+        self.inquiry.precision.note(centre);
+        let mut attempt = Try::new(&centre.v, dir, first);
+        if let Some(least) = attempt.run(&mut self.inquiry, limits, others, *hint)? {
+            self.conclude_at_once(&attempt, centre, least);
+            return Ok(true);
+        }
+        if !attempt.lies && attempt.is_honest(self.inquiry.precision.tie()) {
+            attempt.hand_over(centre, start);
+        } else {
+            self.forget(first);
+        }
+        Ok(false)
+    }
+
+    /// The first tetrahedron, in one of the ways; `known`: with what a try has come to know.
+    #[inline(always)]
+    fn first_tetrahedron<const P: usize>(
+        &mut self,
+        way: Way,
+        start: &mut Handed<P>,
+        known: bool,
+        skip: usize,
+    ) -> Result<Option<[usize; 4]>, Stop> {
+        let Handed {
+            set, names, ball, ..
+        } = start;
         let tolerance = self.tolerance();
         let gap = self.request.limits.gap;
         let within = |depth: Real| larger(gap * depth, tolerance);
+        Ok(match way {
+            Way::Known if names[1] > 0 => Some(names.map(usize::from)),
+            Way::Known => start::known(set),
+            Way::Ring if ball.0 > 0 => {
+                let ball = Ball::known(set, usize::from(ball.0), ball.1);
+                let within = within(self.inquiry.lowest.depth);
+                Some(start::ring(&mut self.inquiry, set, &ball, within)?)
+            }
+            Way::Ring if known => None,
+            Way::Ring => {
+                let warm = !self.request.cold();
+                start::ring_of_ball(&mut self.inquiry, set, warm, within)?
+            }
+            Way::Portal => start::portal(&mut self.inquiry, set, skip)?,
+            Way::Solid => start::solid(&mut self.inquiry, set)?,
+            Way::Surround => Some(self.surround(set)?),
+        })
+    }
+
+    /// The answer of the hulls that begin in the ways there are; `known`: with those that a
+    /// try without one has come to know first.
+    #[inline(always)]
+    fn expanded<const P: usize>(
+        &mut self,
+        start: &mut Handed<P>,
+        known: bool,
+        mut opposite: Option<SupportPoint>,
+    ) -> Result<bool, Stop> {
         let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
         // The index of `opposite`, once it is in the set.
         let mut skip = usize::MAX;
@@ -205,21 +332,13 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if large && way != Way::Surround {
                 continue;
             }
-            skip = begin_again(&mut set, skip);
-            let names = match way {
-                Way::Known => start::known(&set),
-                Way::Ring => {
-                    let warm = !self.request.cold();
-                    start::ring_of_ball(&mut self.inquiry, &mut set, warm, within)?
-                }
-                Way::Portal => start::portal(&mut self.inquiry, &mut set, skip)?,
-                Way::Solid => start::solid(&mut self.inquiry, &mut set)?,
-                Way::Surround => Some(self.surround(&mut set)?),
-            };
+            skip = begin_again(&mut start.set, skip);
+            let names = self.first_tetrahedron(way, start, known, skip)?;
+            let Handed { set, rounds, .. } = &mut *start;
             // A point of the polytope like others from here on, but no corner of a portal.
             if names.is_some() || way == Way::Ring {
-                if let Some((n, point)) = opposite.take() {
-                    skip = set.push(&n, &point);
+                if let Some(point) = opposite.take() {
+                    skip = set.push(&-self.request.first, &point);
                 }
             }
             let Some(names) = names else {
@@ -227,6 +346,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             };
             let precision = &self.inquiry.precision;
             let mut progress = Progress::new(self.request.limits, precision, set.len(), names);
+            progress.iterations = u64::from(*rounds);
             let fine = expansion::exact(progress.tolerance, precision);
             let [i, j, k, l] = names;
             let points = [set.v(i), set.v(j), set.v(k), set.v(l)];
@@ -234,17 +354,17 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if !hull.tetrahedron(names, points, precision.size(), fine) {
                 continue;
             }
-            let end = expand(&mut self.inquiry, &mut set, &mut hull, &mut progress)?;
+            let end = expand(&mut self.inquiry, set, &mut hull, &mut progress)?;
             // Where an expansion stays open or is stuck, rounding had the last word: from another
             // tetrahedron it may not.
             if end != End::NoRoom {
-                if let Some(proven) = self.answer(&set, &hull, &progress, end)? {
+                if let Some(proven) = self.answer(set, &hull, &progress, end)? {
                     return Ok(proven);
                 }
                 continue;
             }
-            let answer = self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
-                &set,
+            let answer = self.widened::<P, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
+                set,
                 &hull,
                 &mut progress,
             )?;
@@ -254,10 +374,48 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             large = !self.stuck;
         }
         Ok(self.open.unwrap_or_else(|| {
+            let set = &start.set;
             let lowest = set.farther(&self.inquiry.lowest.dir, Real::NEG_INFINITY);
             *self.hit = self.bare(&set.point(lowest.unwrap_or(1)));
             false
         }))
+    }
+
+    /// The answer of a proof without a hull.
+    #[inline(always)]
+    fn conclude_at_once(&mut self, known: &Try, centre: &SupportPoint, lower: Real) {
+        let Lowest { depth, dir } = self.inquiry.lowest;
+        let Some(portal) = &known.portal else {
+            return;
+        };
+        let points = &known.points;
+        let Some((names, weights)) = known.exit else {
+            return;
+        };
+        let [a, b, c] = names.map(|names| points.witnesses(names));
+        let point1 = barycentric::mix(&weights, [&a[0], &b[0], &c[0]]);
+        let point2 = barycentric::mix(&weights, [&a[1], &b[1], &c[1]]);
+        let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
+        let extent = pressure::extent(asked.clone(), [&point1, &point2]);
+        *self.hit = Penetration {
+            depth,
+            depth_lower: lower,
+            dir,
+            normal: dir,
+            point1,
+            point2,
+            extent,
+            pos: Vec3::zeros(),
+            iterations: known.rounds,
+        };
+        if let Some(basis) = &mut self.basis {
+            known.basis(portal, basis);
+            if self.request.wants_pos {
+                let all = asked.chain([[centre.v1, centre.v2]]);
+                basis.mark = mark::of(all.clone());
+                basis.unmoved = self.request.mark == Some(basis.mark) && mark::pins(all, true);
+            }
+        }
     }
 
     /// No polytope has come to hold the origin, by rounding or by callbacks that contradict
@@ -309,14 +467,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
 
     /// Puts the apex into the set as point 0, `first` as point 1, and the points that the last
     /// proof stood on. Where no centre is given the apex is the middle of `first` and the
-    /// support point opposite, which is returned with its direction. It is not in the set yet:
+    /// support point opposite, which is returned. It is not in the set yet:
     /// on a line with the apex and `first`, it makes no tetrahedron with them.
     #[inline(always)]
     fn begin<const P: usize>(
         &mut self,
         set: &mut SupportSet<P>,
         first: &SupportPoint,
-    ) -> Result<Option<(Vec3, SupportPoint)>, Stop> {
+    ) -> Result<Option<SupportPoint>, Stop> {
         let Request {
             centre,
             first: dir,
@@ -335,7 +493,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             let point = set.point(i);
             set.truncate(2);
             set.put(0, &Vec3::zeros(), &first.middle(&point));
-            opposite = Some((n, point));
+            opposite = Some(point);
             // A cold query's first direction may have nothing to do with where the objects
             // are. Then it is only good for an apex, and the support point along the way from
             // there through the origin takes its place as point 1.
@@ -605,6 +763,7 @@ mod tests {
             centre: None,
             first,
             others: &[],
+            hint: 0,
             limits: &limits,
             wants_pos: true,
             mark: None,
@@ -635,6 +794,7 @@ mod tests {
             centre: Some(&SupportPoint { v: v1 - v2, v1, v2 }),
             first,
             others: &[aside],
+            hint: 0,
             limits: &limits,
             wants_pos: false,
             mark: None,

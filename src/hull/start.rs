@@ -59,7 +59,7 @@ const BROAD: Real = 0.1;
 /// The share of the size below which known points are no good measure of an extent. Free.
 const LITTLE: Real = 0.05;
 /// Directions tried for a portal. Free.
-const TRIES: usize = 12;
+pub const TRIES: usize = 12;
 /// What a tilt grows by each time that it was in vain; from then on the direction lies in the
 /// plane. Measured: without the second and third misses take 4.6 % more, with a fourth the same.
 const GROWTH: [Real; 3] = [1.0, 1.5, 2.25];
@@ -96,39 +96,158 @@ pub fn known<const P: usize>(set: &SupportSet<P>) -> Option<[usize; 4]> {
     None
 }
 
+/// The radius that two samples tell, from their directions and the way from one to the other, if they
+/// are of one ball.
+#[inline(always)]
+pub fn radius([n, n_]: [&Vec3; 2], between: &Vec3, rounding: Real) -> Option<Real> {
+    let (e, e_) = (n_.dot(between), -n.dot(between));
+    let sum = e + e_;
+    let alike = (e - e_).abs() <= ALIKE * sum && sum > rounding;
+    alike.then(|| sum / (n_ - n).norm_squared())
+}
+
+/// A support point, the unit direction that found it, and its support value.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// The direction.
+    pub n: Vec3,
+    /// The point.
+    pub s: Vec3,
+    /// n·s, metres.
+    pub h: Real,
+}
+
+impl Sample {
+    /// Of a point that `n` found.
+    #[inline(always)]
+    pub fn of(n: Vec3, s: Vec3) -> Self {
+        Self { n, s, h: n.dot(&s) }
+    }
+}
+
 /// A ball that D looks like: its centre is s − radius · n.
-struct Ball {
-    /// The lowest sample: its direction, support point and support value.
-    n: Vec3,
-    s: Vec3,
-    h: Real,
+#[derive(Clone, Copy, Debug)]
+pub struct Ball {
+    /// The lowest sample.
+    low: Sample,
     /// What the last two samples tell, metres.
     radius: Real,
 }
 
 impl Ball {
-    /// The radius that another sample tells, if the two are of one ball.
-    #[inline(always)]
-    fn with(&self, n: &Vec3, s: &Vec3, rounding: Real) -> Option<Real> {
-        let between = s - self.s;
-        let (e, e_) = (n.dot(&between), -self.n.dot(&between));
-        let sum = e + e_;
-        let alike = (e - e_).abs() <= ALIKE * sum && sum > rounding;
-        alike.then(|| sum / (n - self.n).norm_squared())
+    /// With this lowest sample.
+    pub fn known<const P: usize>(set: &SupportSet<P>, low: usize, radius: Real) -> Self {
+        let low = Sample::of(set.direction(low), set.v(low));
+        Self { low, radius }
     }
 
-    /// Do the known points from index 2 on tell of a ball too? Not where they lie on a line with
-    /// the first one: a capsule or an edge over an edge is round in one direction alone.
+    /// The lowest sample.
+    pub fn low(&self) -> &Sample {
+        &self.low
+    }
+
+    /// The radius, metres.
+    pub fn radius(&self) -> Real {
+        self.radius
+    }
+
+    /// Around the apex.
     #[inline(always)]
-    fn is_known<const P: usize>(&mut self, set: &SupportSet<P>, rounding: Real) -> bool {
-        for i in 2..set.len() {
-            match self.with(&set.direction(i), &set.v(i), rounding) {
+    pub fn around(apex: &Vec3, low: Sample) -> Self {
+        let radius = low.n.dot(&(low.s - apex));
+        Self { low, radius }
+    }
+
+    /// Do these samples tell of a ball too, as one does with the lowest? Not where they lie on a line with
+    /// that: a capsule or an edge over an edge is round in one direction alone.
+    #[inline(always)]
+    pub fn is_known(&mut self, samples: impl Iterator<Item = Sample>, rounding: Real) -> bool {
+        let mut first = None;
+        let mut last = Vec3::zeros();
+        for Sample { n, s, .. } in samples {
+            last = s - self.low.s;
+            first = first.or(Some(last));
+            match radius([&self.low.n, &n], &last, rounding) {
                 Some(radius) => self.radius = radius,
                 None => return false,
             }
         }
-        let [a, b] = [2, set.len() - 1].map(|i| set.v(i) - self.s);
-        a.cross(&b).norm_squared() > BROAD * (a.norm_squared() * b.norm_squared())
+        first.is_some_and(|a| {
+            a.cross(&last).norm_squared() > BROAD * (a.norm_squared() * last.norm_squared())
+        })
+    }
+
+    /// Is this sample of one ball with the lowest?
+    #[inline(always)]
+    pub fn is_of(&self, n: &Vec3, s: &Vec3, rounding: Real) -> bool {
+        radius([&self.low.n, n], &(s - self.low.s), rounding).is_some()
+    }
+
+    /// Across the direction of the lowest sample, from the origin; and how far the origin is from the
+    /// centre along it.
+    #[inline(always)]
+    fn aside(&self) -> (Vec3, Real) {
+        let Self { low, radius } = self;
+        (low.s - low.n * low.h, radius - low.h)
+    }
+
+    /// Is the ball's minimum no lower? It is by off² / 2 ahead, about.
+    #[inline(always)]
+    pub fn is_lowest(&self, within: Real) -> bool {
+        let (across, ahead) = self.aside();
+        !(across.norm_squared() > 0.5 * within * ahead)
+    }
+
+    /// Where to ask for the ball's minimum, in step number `step`; not unit.
+    #[inline(always)]
+    pub fn aim(&self, step: usize) -> Option<Vec3> {
+        let (across, ahead) = self.aside();
+        let off2 = across.norm_squared();
+        // Samples 45 degrees apart are no neighbours.
+        if step == 0 && off2 > ahead * ahead {
+            return None;
+        }
+        // From the ball's centre through the origin; the first steps, which may tell a miss, as
+        // far as the depth allows. (All: contacts of a micrometre take 20 % more.)
+        let least = if step < ALLOWED {
+            off2 / (TILT * self.low.h)
+        } else {
+            0.0
+        };
+        Some(self.low.n * larger(ahead, least) - across)
+    }
+
+    /// Goes to the minimum of the ball, and learns from where it is. `ask` answers along a direction,
+    /// or beside it, with the rounding there. The ball, if D is one.
+    #[inline(always)]
+    pub fn followed(
+        mut self,
+        within: impl Fn(Real) -> Real,
+        mut ask: impl FnMut(&Vec3) -> Result<Option<(Sample, Real)>, Stop>,
+    ) -> Result<Option<Self>, Stop> {
+        let mut smooth = false;
+        for step in 0..STEPS {
+            if self.is_lowest(within(self.low.h)) {
+                smooth = true;
+                break;
+            }
+            let Some(n) = self.aim(step).and_then(|way| normalised(&way)) else {
+                break;
+            };
+            let Some((new, rounding)) = ask(&n)? else {
+                return Ok(None);
+            };
+            let radius = radius([&self.low.n, &new.n], &(new.s - self.low.s), rounding);
+            smooth = radius.is_some();
+            self.radius = radius.unwrap_or(self.radius);
+            if new.h < self.low.h {
+                self.low = new;
+            }
+            if !(smooth && self.radius > 1.05 * self.low.h) {
+                break;
+            }
+        }
+        Ok(smooth.then_some(self))
     }
 }
 
@@ -142,74 +261,40 @@ pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
     warm: bool,
     within: impl Fn(Real) -> Real,
 ) -> Result<Option<[usize; 4]>, Stop> {
-    let (n, s) = (set.direction(1), set.v(1));
-    let mut ball = Ball {
-        n,
-        s,
-        h: n.dot(&s),
-        radius: n.dot(&(s - set.v(0))),
+    let sample = |i| Sample::of(set.direction(i), set.v(i));
+    let mut ball = Ball::around(&set.v(0), sample(1));
+    if warm && !ball.is_known((2..set.len()).map(sample), inquiry.precision.rounding()) {
+        return Ok(None);
+    }
+    let ball = ball.followed(&within, |n| {
+        let Asked { h, v: s, .. } = inquiry.ask(set, n)?;
+        let n = *n;
+        Ok(Some((Sample { n, s, h }, inquiry.precision.rounding())))
+    })?;
+    let Some(ball) = ball else {
+        return Ok(None);
     };
-    if warm && !ball.is_known(set, inquiry.precision.rounding()) {
-        return Ok(None);
-    }
-    let mut smooth = false;
-    for step in 0..STEPS {
-        let across = ball.s - ball.n * ball.h;
-        let off2 = across.norm_squared();
-        let ahead = ball.radius - ball.h;
-        // The ball's minimum is lower by off² / 2 ahead, about.
-        if !(off2 > 0.5 * within(ball.h) * ahead) {
-            smooth = true;
-            break;
-        }
-        // Samples 45 degrees apart are no neighbours.
-        if step == 0 && off2 > ahead * ahead {
-            break;
-        }
-        // From the ball's centre through the origin; the first steps, which may tell a miss, as
-        // far as the depth allows. (All: contacts of a micrometre take 20 % more.)
-        let least = if step < ALLOWED {
-            off2 / (TILT * ball.h)
-        } else {
-            0.0
-        };
-        let way = ball.n * larger(ahead, least) - across;
-        let Some(n) = normalised(&way) else { break };
-        let Asked { h, v: s, .. } = inquiry.ask(set, &n)?;
-        let radius = ball.with(&n, &s, inquiry.precision.rounding());
-        smooth = radius.is_some();
-        ball.radius = radius.unwrap_or(ball.radius);
-        if h < ball.h {
-            (ball.n, ball.s, ball.h) = (n, s, h);
-        }
-        if !(smooth && ball.radius > 1.05 * ball.h) {
-            break;
-        }
-    }
-    if !smooth {
-        return Ok(None);
-    }
-    ring(inquiry, set, &ball, within(ball.h)).map(Some)
+    ring(inquiry, set, &ball, within(ball.low.h)).map(Some)
 }
 
 /// The apex and three points around the ball's direction: the known point farthest aside,
 /// and two asked for; all three where none is known.
 #[inline(always)]
-fn ring<A: SupportMap, B: SupportMap, const P: usize>(
+pub fn ring<A: SupportMap, B: SupportMap, const P: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<P>,
     ball: &Ball,
     tolerance: Real,
 ) -> Result<[usize; 4], Stop> {
     // The middle of a triangle with corners at this angle lies a tolerance below the ball.
-    let tilt = (2.0 * tolerance / (ball.h + tolerance)).sqrt();
+    let tilt = (2.0 * tolerance / (ball.low.h + tolerance)).sqrt();
     let tilt = tilt.clamp(2e-4, 0.3);
     let (mut aside, mut farthest, mut old) = (Vec3::zeros(), 0.0, 0);
     for i in 1..set.len() {
         let v = set.v(i);
-        let across = v - ball.n * ball.n.dot(&v);
+        let across = v - ball.low.n * ball.low.n.dot(&v);
         let far2 = across.norm_squared();
-        if far2 > farthest && v != ball.s {
+        if far2 > farthest && v != ball.low.s {
             (aside, farthest, old) = (across, far2, i);
         }
     }
@@ -218,11 +303,11 @@ fn ring<A: SupportMap, B: SupportMap, const P: usize>(
         old = 0;
     }
     // A short way aside is only across to rounding: once more.
-    let a = match unit(&(aside - ball.n * ball.n.dot(&aside))) {
+    let a = match unit(&(aside - ball.low.n * ball.low.n.dot(&aside))) {
         Some(a) if old > 0 => a,
-        _ => perpendicular(&ball.n),
+        _ => perpendicular(&ball.low.n),
     };
-    let b = ball.n.cross(&a);
+    let b = ball.low.n.cross(&a);
     // A third of a turn apart.
     let (cos, sin) = (-0.5, 0.75_f64.sqrt() as Real);
     let by = 1.0 / (1.0 + tilt * tilt).sqrt();
@@ -232,11 +317,44 @@ fn ring<A: SupportMap, B: SupportMap, const P: usize>(
         .zip([(cos, sin), (cos, -sin), (1.0, 0.0)])
     {
         if *name == 0 {
-            let n = (ball.n + (a * x + b * y) * tilt) * by;
+            let n = (ball.low.n + (a * x + b * y) * tilt) * by;
             *name = inquiry.ask(set, &n)?.i;
         }
     }
     Ok(names)
+}
+
+/// How far the direction of the lowest support plane, of this depth, is tilted towards an origin that
+/// is `off` the known points or an edge, as seen along the axis; `off` and `span` of the edge; `length`: from
+/// the apex to where the axis leaves D, about.
+#[inline(always)]
+pub fn tilt(depth: Real, off: Real, wide: Real, span: Real, length: Real) -> Real {
+    let wide = larger(WIDE[0] * wide, WIDE[1] * span);
+    lesser(TILT * depth / off, wide / length)
+}
+
+/// What a tilt grows by after so many in vain; `None`: there is nothing wider to try but the plane.
+#[inline(always)]
+pub fn growth(vain: usize) -> Option<Real> {
+    GROWTH.get(vain).copied()
+}
+
+/// The direction to ask: `from` tilted sideways, farther the more often that was in vain,
+/// and at last all the way.
+#[inline(always)]
+pub fn tilted(from: &Vec3, sideways: &Vec3, tilt: Real, vain: usize) -> Vec3 {
+    let way = match GROWTH.get(vain) {
+        Some(by) if tilt > 0.0 => from + sideways * (tilt * by),
+        // Unit but where the point that tells it is hardly beside the axis.
+        _ => *sideways,
+    };
+    unit(&way).unwrap_or(*from)
+}
+
+/// Is there nothing wider to try, after so many tilts in vain?
+#[inline(always)]
+pub fn is_widest(vain: usize) -> bool {
+    vain >= GROWTH.len()
 }
 
 /// D as it is seen along the axis, in a plane whose origin is the axis.
@@ -285,18 +403,6 @@ impl View {
         };
         let y = axis.cross(&x);
         (Self { x, y }, width)
-    }
-
-    /// The direction to ask: `from` tilted sideways, farther the more often that was in vain,
-    /// and at last all the way.
-    #[inline(always)]
-    fn tilted(from: &Vec3, sideways: &Vec3, tilt: Real, vain: usize) -> Vec3 {
-        let way = match GROWTH.get(vain) {
-            Some(by) if tilt > 0.0 => from + sideways * (tilt * by),
-            // Unit but where the point that tells it is hardly beside the axis.
-            _ => *sideways,
-        };
-        unit(&way).unwrap_or(*from)
     }
 
     /// Where a point is seen.
@@ -360,18 +466,17 @@ pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
             Some(i) => (i, set.v(i)),
             None => {
                 let Lowest { depth, dir } = inquiry.lowest;
-                let wide = larger(WIDE[0] * off, WIDE[1] * span);
-                let tilt = lesser(TILT * depth / off, wide / length);
-                let n = View::tilted(&dir, &sideways, tilt, vain);
+                let tilt = tilt(depth, off, off, span, length);
+                let n = tilted(&dir, &sideways, tilt, vain);
                 let Asked { i, v, .. } = inquiry.ask(set, &n)?;
                 (i, v)
             }
         };
         let seen = view.see(&v);
         let gain = dot(&towards, &seen);
-        if !(gain > rounding - off) || gain <= 0.0 && vain >= GROWTH.len() {
+        if !(gain > rounding - off) || gain <= 0.0 && is_widest(vain) {
             // No nearer to the origin than before. In the plane itself that is the end.
-            if vain >= GROWTH.len() {
+            if is_widest(vain) {
                 return Ok(None);
             }
             vain += 1;

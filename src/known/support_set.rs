@@ -388,21 +388,25 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         known.map(Beyond::Known).ok_or(Stop::Apart(*dir))
     }
 
+    /// How far along `dir` a point is that contradicts an answer which separates, at least.
+    #[inline(always)]
+    pub fn beyond(&self, dir: &Vec3, answer: &SupportPoint) -> Real {
+        let h = dir.dot(&answer.v);
+        larger(h + self.precision.grain(), self.precision.touch())
+    }
+
     /// The answer along `dir` separates, or touches within rounding: unless the callback
     /// contradicts itself, and a known point is farther along `dir`, or one that known points of
     /// the two objects make.
     #[cold]
     #[inline(never)]
-    fn apart<const N: usize>(
+    pub fn apart<const N: usize>(
         &mut self,
         set: &mut SupportSet<N>,
         dir: Vec3,
         answer: &SupportPoint,
     ) -> Result<Asked, Stop> {
-        let least = larger(
-            dir.dot(&answer.v) + self.precision.grain(),
-            self.precision.touch(),
-        );
+        let least = self.beyond(&dir, answer);
         let i = match set.farther(&dir, least) {
             Some(i) => i,
             None => {

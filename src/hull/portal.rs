@@ -1,0 +1,386 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! A portal of the polytope P that known points make ([`Points`]), and the closed surface that it is
+//! part of.
+//!
+//! The portal, a triangle of P that the ray from the apex c through the origin passes, is found in P
+//! ([`View`]), and moved outwards until it lies in P's surface, which is MPR's refinement
+//! ([`Portal::refine`]). Of a flat face its normal comes from the face's own corners, to
+//! rounding, whatever the other object is.
+//!
+//! Where its plane, and the three planes through c and two of its corners, are at least r from the
+//! origin, each with the origin on its inner side, the ball of radius r is in the tetrahedron of c and
+//! the portal. Where a side is not, the surface goes on beyond that edge with faces of P, each as far
+//! away: the solid angles of a closed surface's faces, all positive, add up to a whole number of
+//! spheres, at least one ([`Portal::holds`]).
+
+use crate::gjk::barycentric;
+use crate::hull::start;
+use crate::known::points::Points;
+use crate::known::support_set::Lowest;
+use crate::math::{Real, Vec3};
+
+/// Steps of a portal between two questions. Measured on the recorded contacts: with 2 of them 1.6 % more
+/// support points, with more than 3 no fewer.
+const STEPS: usize = 3;
+/// Steps of a portal that is looked for. Free.
+const FOUND: usize = 8;
+/// The share of a distance that a point must leave, or it is no nearer. Free: a guard against
+/// rounding.
+const NEARER: Real = 0.999;
+/// Faces beyond each other on one side of the portal, at most. Free.
+const DEEP: usize = 4;
+/// The share of the size up to which a depth is shallow. Measured in the prototype: deep pairs take a
+/// quarter more time where these are tried too.
+const SHALLOW: Real = 0.05;
+
+/// A triangle of points of P, counter-clockwise as seen from outside.
+#[derive(Clone, Copy)]
+pub struct Portal {
+    /// Of each corner, the places of obj1's and of obj2's point.
+    pub names: [[usize; 2]; 3],
+    /// The corners.
+    pub points: [Vec3; 3],
+}
+
+/// A corner of a portal that is looked for: a point of P.
+#[derive(Clone, Copy)]
+struct Seen {
+    names: [usize; 2],
+    p: Vec3,
+    /// c × p: times another point, what both span as seen along the ray, times |c|.
+    across: Vec3,
+}
+
+impl Seen {
+    #[inline(always)]
+    fn of(names: [usize; 2], p: Vec3, c: &Vec3) -> Self {
+        let across = c.cross(&p);
+        Self { names, p, across }
+    }
+}
+
+/// What a step came to.
+pub enum Step {
+    /// Nearer to the ray.
+    On,
+    /// The portal.
+    Portal(Portal),
+    /// No nearer.
+    End,
+}
+
+/// As seen along the ray, what has been found of a portal.
+pub struct View {
+    a: Seen,
+    /// Another corner, and what the two span; the ray passes beyond the edge between them, or
+    /// through it.
+    b: Option<(Seen, Real)>,
+    /// Across the ray, from the corner or the edge towards it; of any length.
+    pub way: Vec3,
+    /// How far along it corner or edge are: not positive.
+    from: Real,
+}
+
+impl View {
+    /// From the point of P of these places.
+    #[inline(always)]
+    pub fn of(points: &Points, c: &Vec3) -> Self {
+        let names = [0; 2];
+        let p = points.point(names);
+        let way = c * c.dot(&p) - p * c.norm_squared();
+        Self {
+            a: Seen::of(names, p, c),
+            b: None,
+            way,
+            from: way.dot(&p),
+        }
+    }
+
+    /// The way that the lowest direction is to be tilted by, as [`start::tilt`] has it, and
+    /// whether there is any. `far`: |c|; `length`: from there to where the ray leaves D, about.
+    #[inline(always)]
+    pub fn tilt(&self, depth: Real, far: Real, length: Real, vain: usize) -> Option<Vec3> {
+        let way2 = self.way.norm_squared();
+        let span = if self.b.is_some() { 1.0 / far } else { 0.0 };
+        let tilt = start::tilt(depth, -self.from, -self.from / way2, span, length);
+        start::growth(vain)
+            .filter(|_| tilt > 0.0)
+            .map(|by| self.way * (tilt * by))
+    }
+
+    /// Goes on in P. The portal, if there is one; `None` where P ends this side of the ray.
+    #[inline(never)]
+    pub fn portal(&mut self, points: &Points, c: &Vec3) -> Option<Portal> {
+        for _ in 0..FOUND {
+            let names = points.extreme(&self.way);
+            let p = points.point(names);
+            match self.step(names, &p, c) {
+                Step::On => {}
+                Step::Portal(portal) => return Some(portal),
+                Step::End => return None,
+            }
+        }
+        None
+    }
+
+    /// Goes on to the point of P of these places.
+    #[inline(always)]
+    pub fn step(&mut self, names: [usize; 2], p: &Vec3, c: &Vec3) -> Step {
+        let beyond = self.way.dot(p);
+        if !(beyond > NEARER * self.from) {
+            return Step::End;
+        }
+        let Some((b, ab)) = self.b else {
+            self.turn(Seen::of(names, *p, c), self.a.across.dot(p));
+            return Step::On;
+        };
+        // Of the same sign as the edge's, if the ray is this side of the new edges.
+        let sign = (1.0 as Real).copysign(ab);
+        let (bp, pa) = (b.across.dot(p), -self.a.across.dot(p));
+        if sign * bp < 0.0 {
+            self.a = Seen::of(names, *p, c);
+            self.turn(b, -bp);
+        } else if sign * pa < 0.0 {
+            self.turn(Seen::of(names, *p, c), -pa);
+        } else if !(beyond > 0.0) {
+            return Step::End;
+        } else {
+            let (x, y) = if sign < 0.0 {
+                (&self.a, &b)
+            } else {
+                (&b, &self.a)
+            };
+            return Step::Portal(Portal {
+                names: [x.names, y.names, names],
+                points: [x.p, y.p, *p],
+            });
+        }
+        Step::On
+    }
+
+    /// The edge leads from `a` to this corner now, and the two span so much.
+    #[inline(always)]
+    fn turn(&mut self, b: Seen, ab: Real) {
+        let sign = (1.0 as Real).copysign(ab);
+        self.way = (b.across - self.a.across) * sign;
+        self.from = -ab.abs();
+        self.b = Some((b, ab));
+    }
+}
+
+impl Portal {
+    /// The portal that a [`Basis::hint`](crate::hull::global::Basis::hint) tells of.
+    #[inline(always)]
+    pub fn hinted(points: &Points, hint: u32) -> Self {
+        let corner = |i: u32| {
+            let [a, b] = [2 * i, 2 * i + 1].map(|i| points.names((hint >> (2 * i)) as usize % 4));
+            [a[0], b[1]]
+        };
+        let names = [corner(0), corner(1), corner(2)];
+        Self {
+            names,
+            points: names.map(|names| points.point(names)),
+        }
+    }
+
+    /// Its normal, outwards, twice as long as its area.
+    #[inline(always)]
+    pub fn normal(&self) -> Vec3 {
+        // From the last corner: in the swapped pair the first two change places, and this is minus
+        // the same to the bit.
+        let [u, v, w] = &self.points;
+        (u - w).cross(&(v - w))
+    }
+
+    /// Moves it outwards to the surface of P, and returns its normal there. What is less than `level`,
+    /// metres, counts for nothing.
+    #[inline(always)]
+    pub fn refine(&mut self, points: &Points, c: &Vec3, level: Real) -> Vec3 {
+        let mut n = self.normal();
+        for _ in 0..STEPS {
+            let names = points.extreme(&n);
+            let p = points.point(names);
+            if !self.is_above(&p, &n, level) {
+                break;
+            }
+            self.replace(names, &p, c);
+            n = self.normal();
+        }
+        n
+    }
+
+    /// Is a point above its plane, of the normal `n`, by more than `level`, metres?
+    #[inline(always)]
+    pub fn is_above(&self, p: &Vec3, n: &Vec3, level: Real) -> bool {
+        let gain = n.dot(&(p - self.points[2]));
+        gain > 0.0 && gain * gain > level * level * n.norm_squared()
+    }
+
+    /// A point above takes the place of a corner: the ray passes the triangle with the other two.
+    #[inline(always)]
+    pub fn replace(&mut self, names: [usize; 2], p: &Vec3, c: &Vec3) {
+        // The side of the plane through c, the origin and p that a corner is on.
+        let m = p.cross(c);
+        // Places that are no numbers: the corners stay in registers.
+        let [first, second, third] = &mut self.names;
+        let [a, b, c] = &mut self.points;
+        let (name, corner) = if m.dot(a) > 0.0 {
+            if m.dot(b) > 0.0 {
+                (first, a)
+            } else {
+                (third, c)
+            }
+        } else if m.dot(c) > 0.0 {
+            (second, b)
+        } else {
+            (first, a)
+        };
+        (*name, *corner) = (names, *p);
+    }
+
+    /// Is its plane, of the normal `n`, too far from the origin for a shallow contact?
+    #[inline(always)]
+    pub fn is_deep(&self, n: &Vec3, size2: Real) -> bool {
+        let d = n.dot(&self.points[2]);
+        d > 0.0 && d * d > SHALLOW * SHALLOW * size2 * n.norm_squared()
+    }
+
+    /// Is its plane, of the normal `n`, this far from the origin, metres?
+    #[inline(always)]
+    pub fn reaches(&self, n: &Vec3, least: Real) -> bool {
+        let d = n.dot(&self.points[2]);
+        d > 0.0 && d * d >= least * least * n.norm_squared()
+    }
+
+    /// Is the ball of this radius, metres, inside, if the portal's plane reaches so far?
+    #[inline(always)]
+    pub fn holds(&self, points: &Points, c: &Vec3, least: Real, tiny: Real) -> bool {
+        let [u, v, w] = &self.points;
+        let inner = Inner {
+            c,
+            least2: least * least,
+            tiny,
+        };
+        // Spelt out: a loop would go by way of memory.
+        let side = |a, b| inner.is_beside(a, b) || inner.is_within(points, [a, b], DEEP);
+        side(u, v) && side(v, w) && side(w, u)
+    }
+
+    /// The weights of the corners in the point where the ray along the lowest direction leaves,
+    /// about: `least` or more along it. `None`: that is elsewhere, another minimum is as low within
+    /// the tolerance.
+    #[inline(always)]
+    pub fn touches(
+        &self,
+        n: &Vec3,
+        lowest: &Lowest,
+        least: Real,
+        tolerance: Real,
+    ) -> Option<[Real; 3]> {
+        let [u, v, w] = &self.points;
+        let Lowest { depth, dir } = lowest;
+        let (along, n2) = (n.dot(dir), n.norm_squared());
+        // How far the foot of the origin is from the lowest plane's, squared, at most: what a ball falls
+        // back by half the tolerance in.
+        let most = depth * tolerance;
+        if n.dot(w) * along >= least * n2 && (n2 - along * along) * depth * depth <= most * n2 {
+            let n = n / n2;
+            let (x, y) = (n.dot(&v.cross(w)), n.dot(&w.cross(u)));
+            let z = 1.0 - (x + y);
+            if x >= 0.0 && y >= 0.0 && z >= 0.0 {
+                return Some([x, y, z]);
+            }
+        }
+        let barycentric::Nearest {
+            weights, distance2, ..
+        } = barycentric::triangle(&(dir * *depth), u, v, w);
+        let height = dir.dot(&barycentric::mix(&weights, [u, v, w]));
+        (distance2 <= most && height >= least).then_some(weights)
+    }
+}
+
+/// The ball that is to be in the surface.
+struct Inner<'c> {
+    c: &'c Vec3,
+    least2: Real,
+    /// What three products of lengths round by.
+    tiny: Real,
+}
+
+impl Inner<'_> {
+    /// Is the triangle of c and an edge from `a` to `b`, with the surface on its left, as far?
+    #[inline(always)]
+    fn is_beside(&self, a: &Vec3, b: &Vec3) -> bool {
+        self.is_behind(&(a - self.c).cross(&(b - self.c)), self.c)
+    }
+
+    /// Is the plane of this normal through this point as far, with the origin on its inner side?
+    /// The normal of the sides points inwards.
+    #[inline(always)]
+    fn is_behind(&self, n: &Vec3, p: &Vec3) -> bool {
+        let d = -n.dot(p);
+        d > self.tiny && d * d >= self.least2 * n.norm_squared()
+    }
+
+    /// The surface goes on beyond the edge from `a` to `b` with the face to the point of P farthest
+    /// out there.
+    #[cold]
+    #[inline(never)]
+    fn is_within(&self, points: &Points, [a, b]: [&Vec3; 2], deep: usize) -> bool {
+        let c = self.c;
+        let mut p = points.point(points.extreme(&(b - c).cross(&(a - c))));
+        for _ in 0..DEEP {
+            let f = (a - b).cross(&(p - b));
+            if self.is_behind(&-f, a) {
+                return [[a, &p], [&p, b]].into_iter().all(|[a, b]| {
+                    self.is_beside(a, b) || deep > 0 && self.is_within(points, [a, b], deep - 1)
+                });
+            }
+            // A point above that face is nearer by, and the next one goes on from there.
+            let q = points.point(points.extreme(&f));
+            if !(f.dot(&(q - a)) > self.tiny) {
+                break;
+            }
+            p = q;
+        }
+        false
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::known::points::tests::random_points;
+    use crate::math::EPSILON;
+    use crate::shapes::Random;
+
+    const TOLERANCE: Real = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
+
+    /// The ray passes the portal, and nothing of P is above it.
+    #[test]
+    fn a_portal_is_refined_to_the_surface() {
+        let mut r = Random::new(5);
+        let mut found = 0;
+        for _ in 0..500 {
+            let points = random_points(&mut r, 8);
+            let c = r.vector(0.2);
+            let Some(mut portal) = View::of(&points, &c).portal(&points, &c) else {
+                continue;
+            };
+            found += 1;
+            for _ in 0..8 {
+                portal.refine(&points, &c, 0.0);
+            }
+            let n = portal.refine(&points, &c, 1e-3 * TOLERANCE);
+            assert!(n.dot(&c) < 0.0);
+            let top = n.dot(&points.point(points.extreme(&n))) - n.dot(&portal.points[2]);
+            assert!(top <= 1e-2 * TOLERANCE * n.norm() + 64.0 * EPSILON);
+            let [u, v, w] = &portal.points;
+            for (a, b) in [(u, v), (v, w), (w, u)] {
+                assert!(c.dot(&a.cross(b)) <= 64.0 * EPSILON);
+            }
+        }
+        assert!(found > 300);
+    }
+}

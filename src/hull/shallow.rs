@@ -1,0 +1,567 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! A proof of a shallow contact without a hull.
+//!
+//! What is known of each object makes a polytope P in D ([`crate::known::points`]): a corner over a face
+//! needs three corners of the face, and of the other object the one point that the face's normal
+//! finds; an edge across an edge two points of each. The portal is refined in P for no callback
+//! ([`crate::hull::portal`]), and its normal is asked.
+//!
+//! *The proof.* Let h be the least depth met, and r = h − the gap allowed. Where the portal's plane
+//! is at least r from the origin, and what closes the surface behind it too, the ball of radius r is in
+//! P, and the depth proven. Mostly that takes one question beyond the portal, along its normal; what
+//! is not proven after a few goes to a hull, with all that is known.
+
+use crate::hull::expansion::Limits;
+use crate::hull::global::Basis;
+use crate::hull::portal::{Portal, Step, View};
+use crate::hull::start::{self, Ball, Sample, TRIES};
+use crate::known::points::{Points, ROOM};
+use crate::known::precision::Precision;
+use crate::known::support::{SupportMap, SupportPoint};
+use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet};
+use crate::math::{EPSILON, Real, Vec3, as_unit, larger, normalised};
+
+/// A portal is where it belongs within this share of the tolerance. Free: far above rounding.
+const LEVEL: Real = 0.05;
+/// Directions besides the first that a state may have ([`Basis::ROOM`]).
+const START: usize = Basis::ROOM - 1;
+/// Directions asked beyond the portal for a proof, warm and cold: a face takes one, an edge over a round
+/// part is halved. Measured on the recorded contacts, cold: with 2 they take 11 % more
+/// instructions; warm: with 3 2 % fewer support points and as many instructions.
+const ROUNDS: [u64; 2] = [2, 5];
+
+/// What counts for nothing.
+struct Sizes {
+    /// The gap allowed, metres.
+    tolerance: Real,
+    /// [`Limits::gap`].
+    gap: Real,
+    /// [`Precision::tie`].
+    tie: Real,
+    /// What three products of lengths round by.
+    tiny: Real,
+}
+
+impl Sizes {
+    /// What a ring is as wide as.
+    #[inline(always)]
+    fn within(&self, depth: Real) -> Real {
+        larger(self.gap * depth, self.tolerance)
+    }
+
+    #[inline(always)]
+    fn of(precision: &Precision, limits: &Limits) -> Self {
+        Self {
+            tolerance: precision.tolerance(limits.tolerance),
+            gap: limits.gap,
+            tie: precision.tie(),
+            tiny: 64.0 * EPSILON * (precision.size2() * precision.size()),
+        }
+    }
+}
+
+/// The depth that a portal has to prove, metres; `None` where it is no more than rounding, or where
+/// c is no farther inside than the origin.
+#[inline(always)]
+fn least(lowest: &Lowest, c: &Vec3, sizes: &Sizes) -> Option<Real> {
+    let Lowest { depth, dir } = lowest;
+    let Sizes { tolerance, tie, .. } = *sizes;
+    let least = larger(depth - tolerance + tie, 0.5 * depth);
+    (dir.dot(c) < -tie && least > 2.0 * tie).then_some(least)
+}
+
+/// A try at a proof: what is known of the pair.
+pub struct Try {
+    c: Vec3,
+    /// What is known.
+    pub points: Points,
+    /// The number of the lowest direction.
+    pub lowest: usize,
+    /// The places of the corners of the portal that was found first: what a hull begins with.
+    first: Option<[[usize; 2]; 3]>,
+    /// The portal, once there is one.
+    pub portal: Option<Portal>,
+    /// The places of the corners of the face that the objects touch in, and the weights of these.
+    pub exit: Option<([[usize; 2]; 3], [Real; 3])>,
+    /// Support points beyond the portal.
+    pub rounds: u64,
+    /// The ball that D looks like, if it does: a hull has a ring for it.
+    ball: Option<Ball>,
+    /// Does a callback contradict itself?
+    pub lies: bool,
+}
+
+impl Try {
+    /// From the apex `c` and the first support point, which `dir` found.
+    #[inline(always)]
+    pub fn new(c: &Vec3, dir: &Vec3, first: &SupportPoint) -> Self {
+        Self {
+            c: *c,
+            points: Points::of(dir, first),
+            lowest: 0,
+            portal: None,
+            exit: None,
+            first: None,
+            rounds: 0,
+            ball: None,
+            lies: false,
+        }
+    }
+
+    /// What is proven of the depth, if anything; else the points and the portal, if there is one,
+    /// are for a hull. `others`: directions to ask first, zero for none; empty: cold.
+    ///
+    /// # Errors
+    /// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not
+    /// finite.
+    #[inline(always)]
+    pub fn run<A: SupportMap, B: SupportMap>(
+        &mut self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        limits: &Limits,
+        others: &[Vec3],
+        hint: u32,
+    ) -> Result<Option<Real>, Stop> {
+        for n in others.iter().filter_map(as_unit) {
+            if self.points.asked() <= START && self.ask(inquiry, &n)?.is_none() {
+                return Ok(None);
+            }
+        }
+        let sizes = Sizes::of(&inquiry.precision, limits);
+        if hint != 0 {
+            let portal = Portal::hinted(&self.points, hint);
+            let n = portal.normal();
+            let lowest = &inquiry.lowest;
+            let least = least(lowest, &self.c, &sizes);
+            if let Some(least) = least.filter(|least| portal.reaches(&n, *least)) {
+                if self.touch(&portal, &n, lowest, least, sizes.tolerance) {
+                    self.portal = Some(portal);
+                    if self.holds(&portal, least, &sizes) {
+                        return Ok(Some(least));
+                    }
+                }
+            }
+        }
+        if !self.find(inquiry, others.is_empty(), &sizes)? {
+            return Ok(None);
+        }
+        self.prove(inquiry, limits, others.is_empty(), &sizes)
+    }
+
+    /// Asks along `n`: the point of D, and its support value. `None`: the callback contradicts
+    /// itself.
+    #[inline(always)]
+    fn ask<A: SupportMap, B: SupportMap>(
+        &mut self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        n: &Vec3,
+    ) -> Result<Option<(Vec3, Real)>, Stop> {
+        let point = inquiry.point(n)?;
+        let h = n.dot(&point.v);
+        // NaN is no depth.
+        if !inquiry.precision.is_depth(h) {
+            self.apart(inquiry, n, &point)?;
+            self.lies = true;
+            return Ok(None);
+        }
+        if h < inquiry.lowest.depth {
+            inquiry.lowest = Lowest { depth: h, dir: *n };
+            self.lowest = self.points.asked();
+        }
+        self.points.add(n, &point);
+        Ok(Some((point.v, h)))
+    }
+
+    /// The answer along `n` separates, unless [`Inquiry::apart`] finds a point farther: then that
+    /// answer is none.
+    #[cold]
+    #[inline(never)]
+    fn apart<A: SupportMap, B: SupportMap>(
+        &self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        n: &Vec3,
+        answer: &SupportPoint,
+    ) -> Result<(), Stop> {
+        let points = &self.points;
+        let [one, two] = points.witnesses(points.extreme(n));
+        let far = larger(n.dot(&one), n.dot(&answer.v1)) + larger(-n.dot(&two), -n.dot(&answer.v2));
+        if !(far > inquiry.beyond(n, answer)) {
+            return Err(Stop::Apart(*n));
+        }
+        let mut set = SupportSet::<{ ROOM + 2 }>::EMPTY;
+        set.push(&Vec3::zeros(), answer);
+        for k in 0..points.asked() {
+            let [v1, v2] = points.witnesses(points.names(k));
+            set.push(&points.direction(k), &SupportPoint { v: v1 - v2, v1, v2 });
+        }
+        inquiry.apart(&mut set, *n, answer)?;
+        Ok(())
+    }
+
+    /// Finds the portal: in P, else by support points along the lowest direction tilted to where P
+    /// ends. Not where D looks like a ball, which a hull has a ring for.
+    #[inline(always)]
+    fn find<A: SupportMap, B: SupportMap>(
+        &mut self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        cold: bool,
+        sizes: &Sizes,
+    ) -> Result<bool, Stop> {
+        let c = self.c;
+        let mut view = View::of(&self.points, &c);
+        let mut vain = 0;
+        if !cold {
+            self.portal = view.portal(&self.points, &c);
+            if self.portal.is_some() {
+                return Ok(true);
+            }
+        }
+        let mut ball = Ball::around(&c, self.sample(0));
+        let mut first = None;
+        if cold {
+            if ball.is_lowest(sizes.within(inquiry.lowest.depth)) {
+                self.ball = Some(ball);
+                return Ok(false);
+            }
+            first = ball.aim(0);
+        } else if ball.is_known((1..self.points.asked()).map(|k| self.sample(k)), sizes.tie)
+            && self.follow(inquiry, ball, None, sizes)?
+        {
+            return Ok(false);
+        }
+        let far = c.norm();
+        let length = far - c.dot(&self.points.point([0, 0])) / far;
+        for _ in 0..TRIES {
+            if self.points.is_full() {
+                break;
+            }
+            let Lowest { depth, dir } = inquiry.lowest;
+            let ring = first.is_some();
+            let n = match first.take() {
+                Some(n) => n,
+                None => match view.tilt(depth, far, length, vain) {
+                    Some(way) => dir + way,
+                    None if start::is_widest(vain) => view.way,
+                    None => break,
+                },
+            };
+            let Some(n) = normalised(&n) else { break };
+            let Some((p, h)) = self.ask(inquiry, &n)? else {
+                break;
+            };
+            let names = self.points.names(self.points.asked() - 1);
+            if ring && ball.is_of(&n, &p, sizes.tie) {
+                let sample = Sample { n, s: p, h };
+                if self.follow(inquiry, ball, Some(sample), sizes)? {
+                    return Ok(false);
+                }
+            }
+            if !(view.way.dot(&p) > 0.0) {
+                if start::is_widest(vain) {
+                    break;
+                }
+                vain += 1;
+            }
+            if let Step::Portal(portal) = view.step(names, &p, &c) {
+                self.portal = Some(portal);
+                return Ok(true);
+            }
+            if !cold {
+                self.portal = view.portal(&self.points, &c);
+                if self.portal.is_some() {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// What direction number `k` found.
+    #[inline(always)]
+    fn sample(&self, k: usize) -> Sample {
+        Sample::of(
+            self.points.direction(k),
+            self.points.point(self.points.names(k)),
+        )
+    }
+
+    /// Is D a ball, which a hull has a ring for? `known`: the first step on it.
+    #[cold]
+    #[inline(never)]
+    fn follow<A: SupportMap, B: SupportMap>(
+        &mut self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        ball: Ball,
+        mut known: Option<Sample>,
+        sizes: &Sizes,
+    ) -> Result<bool, Stop> {
+        self.ball = ball.followed(
+            |depth| sizes.within(depth),
+            |n| {
+                if let Some(known) = known.take() {
+                    return Ok(Some((known, sizes.tie)));
+                }
+                if self.points.is_full() {
+                    return Ok(None);
+                }
+                let asked = self.ask(inquiry, n)?;
+                Ok(asked.map(|(s, h)| (Sample { n: *n, s, h }, sizes.tie)))
+            },
+        )?;
+        Ok(self.ball.is_some())
+    }
+
+    /// Asks along the portal's normal until it proves the depth: what it proves.
+    #[inline(always)]
+    fn prove<A: SupportMap, B: SupportMap>(
+        &mut self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        limits: &Limits,
+        cold: bool,
+        sizes: &Sizes,
+    ) -> Result<Option<Real>, Stop> {
+        let c = self.c;
+        let Some(mut portal) = self.portal else {
+            return Ok(None);
+        };
+        self.first = Some(portal.names);
+        let level = LEVEL * sizes.tolerance;
+        let rounds = ROUNDS[usize::from(cold)].min(limits.iterations);
+        let mut n = portal.normal();
+        if portal.is_deep(&n, inquiry.precision.size2()) {
+            return Ok(None);
+        }
+        n = portal.refine(&self.points, &c, level);
+        loop {
+            let lowest = &inquiry.lowest;
+            let Some(least) = least(lowest, &c, sizes) else {
+                break;
+            };
+            if portal.reaches(&n, least) && self.touch(&portal, &n, lowest, least, sizes.tolerance)
+            {
+                self.portal = Some(portal);
+                let held = self.holds(&portal, least, sizes);
+                return Ok(held.then_some(least));
+            }
+            let deep = portal.is_deep(&n, inquiry.precision.size2());
+            if deep || self.rounds >= rounds || self.points.is_full() {
+                break;
+            }
+            let Some(m) = normalised(&n) else { break };
+            let before = lowest.depth;
+            let Some((p, h)) = self.ask(inquiry, &m)? else {
+                break;
+            };
+            self.rounds += 1;
+            let above = h - m.dot(&portal.points[2]);
+            if above > level {
+                let last = self.points.names(self.points.asked() - 1);
+                portal.replace(last, &p, &c);
+                n = portal.refine(&self.points, &c, level);
+            } else if above < -sizes.tie {
+                self.lies = true;
+                break;
+            } else {
+                // The portal's own plane, where it is as low within the tolerance.
+                if h < before + (1.0 - LEVEL) * sizes.tolerance {
+                    inquiry.lowest = Lowest { depth: h, dir: m };
+                    self.lowest = self.points.asked() - 1;
+                }
+            }
+        }
+        self.portal = Some(portal);
+        Ok(None)
+    }
+
+    /// Do the objects touch in the portal, or in another face of P? Keeps where.
+    #[inline(always)]
+    fn touch(
+        &mut self,
+        portal: &Portal,
+        n: &Vec3,
+        lowest: &Lowest,
+        least: Real,
+        tolerance: Real,
+    ) -> bool {
+        self.exit = match portal.touches(n, lowest, least, tolerance) {
+            Some(weights) => Some((portal.names, weights)),
+            None => self.elsewhere(lowest, least, tolerance),
+        };
+        self.exit.is_some()
+    }
+
+    /// The face of P that the ray along the lowest direction leaves through, and the weights there.
+    #[cold]
+    #[inline(never)]
+    fn elsewhere(
+        &self,
+        lowest: &Lowest,
+        least: Real,
+        tolerance: Real,
+    ) -> Option<([[usize; 2]; 3], [Real; 3])> {
+        // As seen from far behind the origin.
+        let c = -lowest.dir;
+        let mut portal = View::of(&self.points, &c).portal(&self.points, &c)?;
+        portal.refine(&self.points, &c, LEVEL * tolerance);
+        let n = portal.refine(&self.points, &c, LEVEL * tolerance);
+        let weights = portal.touches(&n, lowest, least, tolerance)?;
+        Some((portal.names, weights))
+    }
+
+    /// Is the depth proven by a portal that reaches far enough, and that the objects touch in?
+    #[inline(always)]
+    fn holds(&mut self, portal: &Portal, least: Real, sizes: &Sizes) -> bool {
+        self.is_honest(sizes.tie) && portal.holds(&self.points, &self.c, least, sizes.tiny)
+    }
+
+    /// Does no known point of an object lie beyond a plane that was asked of it? One does that a
+    /// callback erred in, or that it stopped short of.
+    #[inline(always)]
+    pub fn is_honest(&mut self, tie: Real) -> bool {
+        self.lies = !(self.points.beyond() <= tie);
+        !self.lies
+    }
+
+    /// What the proof stands on.
+    #[inline(always)]
+    pub fn basis(&self, portal: &Portal, basis: &mut Basis) {
+        let (points, lowest) = (&self.points, self.lowest);
+        // What asking along the minimum's has found it finds again.
+        let first = points.names(lowest);
+        let by = portal.names.map(|names| {
+            [0, 1].map(|object| match names[object] == first[object] {
+                true => lowest as u32,
+                false => points.found(object, names[object]),
+            })
+        });
+        let mut left = by.as_flattened().iter().fold(0, |all, k| all | 1_u32 << k);
+        left &= !(1 << lowest);
+        (basis.directions[0], basis.len) = (points.direction(lowest), 1);
+        // Of each direction, two bits, the number that it has now. In the order in which they were
+        // asked: the swapped pair's is the same.
+        let mut numbers = 0_u32;
+        while left != 0 && basis.len < Basis::ROOM {
+            let k = left.trailing_zeros();
+            basis.directions[basis.len] = points.direction(k as usize);
+            numbers |= (basis.len as u32) << (2 * k);
+            basis.len += 1;
+            left &= left - 1;
+        }
+        // Where no room is left a portal of fewer is looked for.
+        if basis.len < Basis::ROOM {
+            let all = by.as_flattened().iter().rev();
+            basis.hint = all.fold(1, |hint, k| hint << 2 | numbers >> (2 * k) & 3);
+        }
+    }
+
+    /// What a hull may begin with.
+    #[inline(always)]
+    pub fn hand_over<const P: usize>(&self, apex: &SupportPoint, to: &mut Handed<P>) {
+        let points = &self.points;
+        let put = |set: &mut SupportSet<P>, n: &Vec3, names| {
+            let [v1, v2] = points.witnesses(names);
+            set.push(n, &SupportPoint { v: v1 - v2, v1, v2 })
+        };
+        to.set.push(&Vec3::zeros(), apex);
+        for k in 0..points.asked() {
+            put(&mut to.set, &points.direction(k), points.names(k));
+        }
+        if let Some(corners) = self.first {
+            let [a, b, c] = corners.map(|corner| {
+                match (0..points.asked()).find(|&k| points.names(k) == corner) {
+                    Some(k) => k + 1,
+                    None => put(&mut to.set, &Vec3::zeros(), corner),
+                }
+            });
+            to.names = [0, a, b, c].map(|i| i as u16);
+        }
+        if let Some(ball) = &self.ball {
+            let low = ball.low().n;
+            let by = (0..points.asked()).find(|&k| points.direction(k) == low);
+            to.ball = (1 + by.unwrap_or(0) as u16, ball.radius());
+        }
+        to.rounds = self.rounds as u16;
+    }
+}
+
+/// What a try leaves to a hull.
+pub struct Handed<const P: usize> {
+    /// The apex, and the points asked for; and those of the portal's corners that are none.
+    pub set: SupportSet<P>,
+    /// The corners of a tetrahedron to begin with; all 0 for none.
+    pub names: [u16; 4],
+    /// A ball that D looks like: the index of its lowest sample, 0 for none, and its radius.
+    pub ball: (u16, Real),
+    /// Support points beyond the first tetrahedron.
+    pub rounds: u16,
+}
+
+impl<const P: usize> Handed<P> {
+    /// Nothing.
+    pub const EMPTY: Self = Self {
+        set: SupportSet::EMPTY,
+        names: [0; 4],
+        ball: (0, 0.0),
+        rounds: 0,
+    };
+
+    /// Nothing again.
+    pub fn clear(&mut self) {
+        self.set.truncate(0);
+        (self.names, self.ball, self.rounds) = ([0; 4], (0, 0.0), 0);
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::known::support::MinkowskiDifference;
+    use crate::shapes::{Random, corners, hull, placed};
+
+    const TOLERANCE: Real = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
+
+    /// The corner of a box below the face of a plate: proven by four or five support points, and what is
+    /// proven is no more than the depth.
+    #[test]
+    fn a_corner_in_a_face_needs_no_hull() {
+        let mut r = Random::new(6);
+        let plate = corners(Vec3::new(2.0, 2.0, 0.5));
+        let (mut proven, mut asked) = (0, 0);
+        for _ in 0..200 {
+            let rotation = r.rotation();
+            let turned = placed(&corners(Vec3::new(0.5, 0.6, 0.7)), &rotation, Vec3::zeros());
+            let low = turned
+                .iter()
+                .fold(0.0, |low, p: &Vec3| crate::math::lesser(low, p.z));
+            let depth = 0.01;
+            let at = Vec3::new(0.3, -0.2, 0.5 - low - depth);
+            let b = placed(&turned, &crate::shapes::Rotation::identity(), at);
+            let md = MinkowskiDifference::new(hull(&plate), hull(&b));
+            let c = SupportPoint {
+                v: -at,
+                v1: Vec3::zeros(),
+                v2: at,
+            };
+            let dir = at / at.norm();
+            let mut inquiry = Inquiry::new(&md);
+            let first = inquiry.first(&dir, None).unwrap();
+            inquiry.precision.note(&c);
+            let limits = Limits {
+                tolerance: TOLERANCE,
+                gap: 1e-3,
+                supports: 160,
+                iterations: 100,
+            };
+            let mut attempt = Try::new(&c.v, &dir, &first);
+            let lower = attempt.run(&mut inquiry, &limits, &[], 0).unwrap();
+            if let Some(lower) = lower {
+                proven += 1;
+                asked += md.supports();
+                assert!(lower <= depth && inquiry.lowest.depth <= depth + TOLERANCE);
+                assert!(inquiry.lowest.depth >= depth - 64.0 * EPSILON);
+            }
+        }
+        assert!(proven > 190 && asked <= 5 * proven, "{proven} {asked}");
+    }
+}
