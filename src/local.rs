@@ -1,40 +1,49 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! A local minimum of the penetration depth in few support points: a bundle method with a
-//! trust region, whose curved cuts are a VU decomposition (Mifflin and Sagastizábal; Noll;
-//! Lukšan and Vlček): the vertices of D are V, where h has kinks, and the curvature that the
-//! support points themselves reveal is U.
+//! A local minimum of the penetration depth in few support points: bundle methods with a trust
+//! region, on what is known of each object.
 //!
 //! The question is the paper's (Sec. III): the unit n with the least support value
 //! h(n) = max over D of n·p, near a start. The paper walks there by rays and
 //! portals, whose update is the dual simplex step of a cutting-plane method and
 //! knows nothing of curvature; a sphere costs it fifty support points. Here every
-//! support point seen near the centre of the bundle, the best direction so far, stays in use.
+//! support point seen near the best direction so far stays in use.
 //!
 //! # Parts
 //!
 //! | file | part |
 //! |---|---|
 //! | `known/round.rs` | balls, discs and R: what a pair of points shows |
-//! | `flat.rs` | the search as long as all cuts are exact: polytopes, and balls and discs around them |
-//! | `discs.rs` | those discs: found, confirmed, and where they are |
-//! | `cuts.rs` | those cuts, and where they are least within the trust radius |
-//! | `search.rs` | the search with curvature, the loop: ask, learn, serious or null step, model, verdict, eviction |
+//! | `exact.rs` | the search on each object's points: ask where the model is least, until that comes true |
+//! | `object.rs` | what is known of one object: its points, and the ball or disc that is taken off them |
+//! | `walk.rs` | where the model of both is least, for no support point |
+//! | `search.rs` | the search with curvature, of what is smooth and no ball or disc: the loop |
 //! | `lanes.rs` | a number or vector for each sample, side by side |
 //! | `samples.rs` | the samples kept |
 //! | `curvature.rs` | R, learned from pairs of samples, refuted by kinks |
 //! | `model.rs` | the chart, the cuts, where they are least within the trust radius |
-//! | `trust_region.rs` | the trust radius, by actual and predicted reduction |
+//! | `trust_region.rs` | the trust radius, by actual and predicted reduction: of both searches |
 //! | `verdict.rs` | the errors of the model: an answer, or where to ask |
 //! | `witness.rs` | witness points, and the queries for them |
 //! | `memory.rs` | what one search leaves behind for the next |
 //!
-//! # Derivation
+//! # The search on what is known of each object
 //!
-//! *Model.* Near the centre b, take D = P ⊕ Q: P a polytope, Q smooth. Most
-//! pairs are of this form: a box has P alone, an ellipsoid Q alone, a capsule a
-//! segment and a ball, a cylinder a segment and a disc. A support point is then
+//! h is the sum of the two objects' support functions, and each of these is at least the maximum
+//! over the points of its object seen so far. So k support points of D are k² cuts, and an edge
+//! across an edge is known from two samples. Most round objects are a polytope and a ball or a
+//! disc: with these taken off, the cuts are exact. Derivations: `walk.rs`, `object.rs`; what ends
+//! it: `exact.rs`. A model whose least value came true at its minimum is a proof of a local
+//! minimum: the support function is convex, and nowhere below its cuts.
+//!
+//! # The search with curvature
+//!
+//! goes on where points look smooth that are no ball's or disc's: a VU decomposition (Mifflin and
+//! Sagastizábal; Noll; Lukšan and Vlček): the vertices of D are V, where h has kinks, and the
+//! curvature that the support points themselves reveal is U.
+//!
+//! *Model.* Near the centre b, take D = P ⊕ Q: P a polytope, Q smooth. A support point is then
 //! s(n) = p(n) + R n with a vertex p of P and the symmetric R, the second derivative
 //! of Q's support function: R n changes slowly while p jumps.
 //!
@@ -53,11 +62,6 @@
 //! h(x) = max over cuts of (α + β·x + ½ x'Ax) / sqrt(1 + x²) + ρ; to second order
 //! that is max (α + β·x) + ½ x'Kx + ρ with K = A − (h(b) − ρ) I, the same K for all
 //! cuts. Its minimum within the trust radius |x| ≤ Δ is where to look next.
-//!
-//! *Balls and discs.* Most round objects are a polytope and a ball or a disc: with these taken
-//! off the samples, the cuts of P are exact, and K is known: −h' I without a ball, where h' is
-//! h less the balls' radii, plus (r/|b⊥|) t t' for each disc (`discs.rs`). That is where the
-//! search begins, and only what is neither is left to R.
 //!
 //! *Subproblem.* One cut: x = −K⁻¹β. Two cuts meet in a line, along which the
 //! quadratic has its minimum; three meet in a point. Where K is not positive along
@@ -133,12 +137,12 @@
 //! own points serve: a tenth of a support point on ellipsoids. Without what R leads to, and with
 //! it for balls alone, it is three tenths, and in motion 0.8 more.
 //!
-//! Balls and discs choose where to ask, and prove nothing: an answer stands on vertices that
-//! were seen with them along two directions, or so near that the cut is right without.
+//! # Memory
 //!
-//! *Memory.* A face that is still there is found again by three directions aside of
-//! the last answer, each towards one active cut and farther than the pair moved, and
-//! proven by a fourth; a smooth contact by the last direction and one step with R. The radii of
+//! A face that is still there is found again by three directions aside of
+//! the last answer, each towards one active cut and farther than the pair moved, two edges by two
+//! directions, and both proven by one more; a smooth contact by the last direction and one step with
+//! R. The radii of
 //! balls and discs stay; a disc's axis turns with its object, and is found anew by two samples
 //! beside each other. Three active cuts are mostly exact ones: there R is kept for later, and the
 //! search begins as one without.
@@ -157,17 +161,17 @@
 //! [`WITNESS_QUERIES`]: search::WITNESS_QUERIES
 
 mod curvature;
-mod cuts;
-mod discs;
-mod flat;
+mod exact;
 mod lanes;
 mod memory;
 mod model;
+mod object;
 
 mod samples;
 mod search;
 mod trust_region;
 mod verdict;
+mod walk;
 mod witness;
 
 pub use memory::Memory;
@@ -175,14 +179,9 @@ pub use memory::Memory;
 use crate::contact::{Answer, Penetration, Settings};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap};
 use crate::known::support_set::Stop;
-use crate::math::{EPSILON, Vec3};
-use flat::{Asked, Flat, Outcome};
+use crate::math::Vec3;
+use exact::{Asked, Exact, Outcome};
 use search::Search;
-
-/// Does the search begin with exact cuts? Not in single precision: there it ends up to the
-/// tolerance beside a resting face's normal, which then shows fewer of its corners (a box that
-/// slides off a box jumps by 7 cm once, by the continuity test).
-const EXACT: bool = EPSILON < 1e-10;
 
 /// A local minimum of the depth near the remembered direction, else near the unit
 /// vector that `start` gives.
@@ -203,26 +202,21 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     known: &mut Known,
     hit: &mut Penetration,
 ) -> Result<bool, Stop> {
-    if !EXACT || memory.is_curved() {
+    if memory.is_curved() {
         return curved(md, inner, start, memory, settings, known, None)?.put(hit);
     }
-    let mut flat = Flat::new();
-    let (first, mut queue) = flat.recall(memory, &start);
+    let mut exact = Exact::new();
+    let (first, mut queue) = exact.recall(memory, &start);
     let centre = inner.copied().unwrap_or_default();
-    let first = Some(first);
-    let outcome = if flat.bends() {
-        flat.run::<true, A, B>(md, &centre, first, &mut queue, settings, known)
-    } else {
-        flat.run::<false, A, B>(md, &centre, first, &mut queue, settings, known)
-    };
+    let outcome = exact.run(md, &centre, first, &mut queue, settings, known);
     match outcome? {
         Outcome::Found => {
-            *hit = *flat.minimum(memory);
+            *hit = *exact.minimum(memory);
             Ok(true)
         }
         Outcome::Apart(n) => Err(Stop::Apart(n)),
         Outcome::Open => {
-            let asked = flat.asked();
+            let asked = exact.asked();
             curved(md, inner, start, memory, settings, known, Some(&asked))?.put(hit)
         }
     }
@@ -257,7 +251,7 @@ fn curved<A: SupportMap, B: SupportMap>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Real, perpendicular};
+    use crate::math::{EPSILON, Real, perpendicular};
     use crate::paper::incremental::{self, Shortcut};
     use crate::shapes::Random;
     use nalgebra::Rotation3;
@@ -733,7 +727,7 @@ mod tests {
 
     /// A cylinder that rolls on its rim: the disc is found again where its axis has turned.
     #[test]
-    #[cfg(not(feature = "single"))] // It begins with curvature.
+    #[cfg(not(feature = "single"))] // A disc is not told there: the rim rolls too little.
     fn a_rim_that_rolls_is_found_again_cheaply() {
         let floor = block(Vec3::zeros(), Vec3::new(2.0, 2.0, 0.5));
         let mut memory = Memory::default();

@@ -92,7 +92,8 @@ impl Pair {
         if aside2 <= PARALLEL * PARALLEL * moved * turned && fits(along / turned, extent.size2) {
             return Self::Ball(along / turned);
         }
-        let excess = [d.dot(&new.n), -d.dot(&old.n)];
+        let ahead = d.dot(&new.n);
+        let excess = [ahead, along - ahead];
         if along > extent.error && is_smooth(excess, moved, extent.size2 * turned, ALIKE) {
             Self::Smooth
         } else {
@@ -108,8 +109,8 @@ impl Pair {
 pub fn is_smooth([ahead, behind]: [Real; 2], moved: Real, room2: Real, alike: Real) -> bool {
     let limit = alike * (ahead + behind);
     let (gap2, limit2) = ((ahead - behind) * (ahead - behind), limit * limit);
-    moved <= BLUNT * BLUNT * room2
-        && gap2 <= limit2
+    gap2 <= limit2
+        && moved <= BLUNT * BLUNT * room2
         && gap2 * moved <= limit2 * STEEP * STEEP * room2
 }
 

@@ -7,7 +7,7 @@
 use core::array::from_fn;
 use core::ops::{Add, Div, Index, IndexMut, Mul, Sub};
 
-use crate::math::{self, Real, Vec3};
+use crate::math::{Real, Vec3};
 
 /// Samples kept: three active cuts and the newest.
 pub const CUTS: usize = 4;
@@ -45,33 +45,6 @@ impl Lanes {
     #[inline(always)]
     fn zip(self, o: Self, f: impl Fn(Real, Real) -> Real) -> Self {
         Self(from_fn(|i| f(self.0[i], o.0[i])))
-    }
-
-    /// The lanes in which `f` holds, as bits.
-    #[inline(always)]
-    pub fn mask(&self, f: impl Fn(Real) -> bool) -> u32 {
-        let bit = |i: usize| u32::from(f(self[i])) << i;
-        bit(0) | bit(1) | bit(2) | bit(3)
-    }
-
-    /// The lesser of each two.
-    #[inline(always)]
-    pub fn lesser(&self, o: &Self) -> Self {
-        self.zip(*o, math::lesser)
-    }
-
-    /// The least.
-    #[inline(always)]
-    pub fn least(&self) -> Real {
-        let [a, b, c, d] = self.0;
-        math::lesser(math::lesser(a, b), math::lesser(c, d))
-    }
-
-    /// The largest.
-    #[inline(always)]
-    pub fn most(&self) -> Real {
-        let [a, b, c, d] = self.0;
-        math::larger(math::larger(a, b), math::larger(c, d))
     }
 
     /// The least of those lanes that are `free`; `None` where there is none, or none of them
@@ -174,14 +147,6 @@ impl Vectors {
     pub fn dot(&self, v: &Vec3) -> Lanes {
         self.x * v.x + self.y * v.y + self.z * v.z
     }
-
-    /// Adds multiples of other vectors.
-    #[inline]
-    pub fn add(&mut self, o: &Self, f: Real) {
-        self.x = self.x + o.x * f;
-        self.y = self.y + o.y * f;
-        self.z = self.z + o.z * f;
-    }
 }
 
 #[cfg(test)]
@@ -195,8 +160,6 @@ mod tests {
         let b = a * 2.0 - Lanes::all(1.0) + a * a;
         assert_eq!(core::array::from_fn(|i| b[i]), [7.0, 2.0, 7.0, 34.0]);
         assert_eq!(a.map(Real::abs)[1], 3.0);
-        assert_eq!((a.least(), a.most()), (-3.0, 5.0));
-        assert_eq!(a.lesser(&Lanes::all(1.0)).most(), 1.0);
         assert_eq!(a.lowest(|i| i != 1), Some(0));
         assert_eq!(a.lowest(|_| false), None);
         let mut v = Vectors::default();

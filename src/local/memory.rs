@@ -41,6 +41,14 @@ const ROUND: u32 = 2;
 /// … and whose these discs were.
 const DISC: [u32; 2] = [4, 8];
 
+/// [`Memory::count`] where an edge of each object crosses the other's: the slopes at one end of both,
+/// at the other end of the one, and of the other.
+pub const EDGES: u32 = 4;
+/// How much farther aside edges are asked for than corners, …
+const WIDER: Real = 1.4;
+/// … and the second of the two directions, to the other side.
+const OPPOSITE: Real = -0.7;
+
 /// What is known of the smooth part of D.
 #[derive(Clone, Copy, Debug)]
 pub enum Smooth {
@@ -221,12 +229,33 @@ impl Memory {
         (self.towards_cuts(dir, angle), angle)
     }
 
+    /// Two directions that show both ends of the two edges: in the middle between their ways, and
+    /// opposite.
+    #[inline(never)]
+    fn towards_edges(&self, dir: &Vec3, angle: Real) -> Queue {
+        let mut queue = Queue::EMPTY;
+        let [a, b, c] = self.slopes;
+        if let (Some(e), Some(f)) = (unit(&(b - a)), unit(&(c - a))) {
+            let way = if e.dot(&f) > 0.0 { e + f } else { e - f };
+            if let Some(way) = unit(&(way - dir * dir.dot(&way))) {
+                for share in [OPPOSITE, 1.0] {
+                    let n = dir + way * (share * WIDER * angle);
+                    queue.push(n * (1.0 / n.norm()));
+                }
+            }
+        }
+        queue
+    }
+
     /// A direction for each remembered cut, where it is above the others by as much as it
     /// can, this far aside.
     fn towards_cuts(&self, dir: &Vec3, angle: Real) -> Queue {
         let mut queue = Queue::EMPTY;
         if self.count < 2 {
             return queue;
+        }
+        if self.count == EDGES {
+            return self.towards_edges(dir, angle);
         }
         let (e1, e2) = basis(dir);
         let [a, b, c] = self.slopes.map(|g| [e1.dot(&g), e2.dot(&g)]);

@@ -1,0 +1,675 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! A local minimum of the model of both objects, for no support point: a walk.
+//!
+//! *Chart.* Around a unit direction b directions are d(x) = b + E x, E = (e1 e2) across b, not
+//! normalised. There the known points c of an object are cuts, and its support value is at least
+//! max over them of α + β·x, α = c·b, β = E'c. The model of D is the sum of the two objects'
+//! maxima, so k support points make up to k² cuts of D, and its depth
+//!
+//!   φ(x) = L(x) / √(1 + x²),   L(x) = α₁ + α₂ + (β₁ + β₂)·x + ½ x'Gx,
+//!
+//! with the highest cut of each object, and G the bend of their discs (0 where there are none: then
+//! φ is exact). Balls add their radii to φ, and are left to the caller.
+//!
+//! *Slope.* √(1+x²) ∇φ = M = g − x L/(1+x²), g = β₁ + β₂ + Gx.
+//!
+//! *Walk.* On one cut of each object: to where φ is least on these, if it has a minimum there, else
+//! down its slope. Where another point of an object takes over (a *kink*): if the slope turns
+//! round, along the kink, e·x constant, e = β′ − β; there φ is least at the root of its derivative,
+//! which is linear in the way for exact cuts. Where a second kink is met, or the least point is
+//! found, the weights of the points decide: M + S e₀ + T e₁ = 0 with weights that are none negative
+//! is a minimum; else the point of negative weight is left, and the walk goes on.
+//!
+//! The walk ends at a minimum, on the border of the trust region, or, by rounding, nowhere.
+
+use crate::contacts::polygon::{Flat, cross, dot};
+use crate::math::{Real, larger};
+
+/// Points of an object that a search keeps.
+pub const ROOM: usize = 8;
+/// Lanes that are computed together.
+pub const LANES: usize = 4;
+/// A number for each of them.
+pub type Row = [Real; ROOM];
+/// Steps of a walk: more than any takes that has an end.
+const STEPS: usize = 32;
+/// A weight as negative as this is rounding.
+const NEGATIVE: Real = -1e-12;
+/// The squared slope of a cut, as a share of its height, that is rounding.
+const LEVEL: Real = 1e-28;
+/// The squared sine between two kinks that are one by rounding.
+const PARALLEL: Real = 1e-20;
+
+/// The cuts of one object in the chart.
+#[derive(Clone, Copy, Debug)]
+pub struct Cuts {
+    pub a: Row,
+    pub x: Row,
+    pub y: Row,
+    /// How many there are, at least one.
+    pub len: usize,
+    /// The points that carry a disc, as bits, …
+    pub carried: u32,
+    /// … and how these bend: xx, xy, yy, metres.
+    pub bend: [Real; 3],
+}
+
+impl Cuts {
+    pub const NONE: Self = Self {
+        a: [0.0; ROOM],
+        x: [0.0; ROOM],
+        y: [0.0; ROOM],
+        len: 0,
+        carried: 0,
+        bend: [0.0; 3],
+    };
+
+    #[inline(always)]
+    fn slope(&self, k: usize) -> Flat {
+        [self.x[k % ROOM], self.y[k % ROOM]]
+    }
+
+    #[inline(always)]
+    fn levels(&self, x: &Flat) -> Row {
+        let mut levels = [0.0; ROOM];
+        let mut of = |k: usize| levels[k] = self.a[k] + self.x[k] * x[0] + self.y[k] * x[1];
+        (0..LANES).for_each(&mut of);
+        if self.len > LANES {
+            (LANES..ROOM).for_each(of);
+        }
+        levels
+    }
+
+    /// How fast each rises along u.
+    #[inline(always)]
+    fn rises(&self, u: &Flat, rises: &mut Row) {
+        let mut of = |k: usize| rises[k] = self.x[k] * u[0] + self.y[k] * u[1];
+        (0..LANES).for_each(&mut of);
+        if self.len > LANES {
+            (LANES..ROOM).for_each(of);
+        }
+    }
+
+    #[inline(always)]
+    fn highest(&self, levels: &Row) -> usize {
+        let (mut best, mut top) = (0, levels[0]);
+        for (k, &level) in levels.iter().enumerate().take(self.len).skip(1) {
+            if level > top {
+                (best, top) = (k, level);
+            }
+        }
+        best
+    }
+
+    #[inline(always)]
+    fn carries(&self, k: usize) -> Real {
+        (self.carried >> k & 1) as Real
+    }
+}
+
+/// A point of one object as high as that object's active one.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Kink {
+    /// Of obj1 (0) or of obj2 (1).
+    pub object: usize,
+    pub point: usize,
+    /// Its slope less the active one's.
+    e: Flat,
+}
+
+/// Where a walk ended.
+#[derive(Clone, Copy, Debug)]
+pub struct End {
+    pub x: Flat,
+    /// φ there, metres.
+    pub value: Real,
+    /// On the border of the trust region, where φ goes on falling.
+    pub on_border: bool,
+    /// It found no end.
+    pub lost: bool,
+    /// The highest point of each object.
+    pub active: [usize; 2],
+    /// Other points as high, …
+    pub kinks: [Kink; 2],
+    /// … how many of them, …
+    pub count: usize,
+    /// … and their weights.
+    pub weights: [Real; 2],
+}
+
+impl End {
+    pub const NONE: Self = Self {
+        x: [0.0; 2],
+        value: 0.0,
+        on_border: false,
+        lost: true,
+        active: [0; 2],
+        kinks: [Kink {
+            object: 0,
+            point: 0,
+            e: [0.0; 2],
+        }; 2],
+        count: 0,
+        weights: [0.0; 2],
+    };
+
+    /// Of two kinks: is φ nowhere lower within the radius, as far as the active points tell? Around
+    /// it φ is φ₀ + max g·x − ½ φ₀ x² with the slopes g of the active points: max g·x is
+    /// at least |x| times the distance from the origin to the nearest side of their hull, which
+    /// must be ½ φ₀ times the radius.
+    #[inline]
+    pub fn is_lowest(&self, radius: Real) -> bool {
+        if !(self.value > 0.0) {
+            return true;
+        }
+        let least = 0.5 * self.value * radius;
+        let least2 = least * least;
+        let [p, q] = &self.kinks;
+        let area = cross(&p.e, &q.e).abs();
+        let far = |share: Real, side: &Flat| {
+            let height = share * area;
+            height * height >= least2 * dot(side, side)
+        };
+        let [s, t] = self.weights;
+        if p.object == q.object {
+            far(s, &q.e) && far(t, &p.e) && far(1.0 - s - t, &[p.e[0] - q.e[0], p.e[1] - q.e[1]])
+        } else {
+            far(s, &q.e) && far(1.0 - s, &q.e) && far(t, &p.e) && far(1.0 - t, &p.e)
+        }
+    }
+}
+
+/// The model of both objects in one chart.
+#[derive(Debug)]
+pub struct Model {
+    pub cuts: [Cuts; 2],
+}
+
+/// A way from x: so many times `u`, or without an end.
+struct Way {
+    u: Flat,
+    full: Option<Real>,
+}
+
+impl Model {
+    #[inline(always)]
+    fn bend(&self, of: [Real; 2]) -> [Real; 3] {
+        let [p, q] = [&self.cuts[0].bend, &self.cuts[1].bend];
+        [0, 1, 2].map(|i| p[i] * of[0] + q[i] * of[1])
+    }
+
+    /// From x within `radius` of `middle`, down.
+    #[inline(never)]
+    pub fn walk<const BENT: bool>(&self, from: &Flat, middle: &Flat, radius: Real, end: &mut End) {
+        let cuts = &self.cuts;
+        let mut x = *from;
+        let mut levels = [cuts[0].levels(&x), cuts[1].levels(&x)];
+        (end.on_border, end.lost, end.count) = (false, true, 0);
+        end.active = [0, 1].map(|o| cuts[o].highest(&levels[o]));
+        let mut rises = [[0.0; ROOM]; 2];
+        // The point just left, of which object.
+        let mut left = (2, 0);
+        // Points whose kink is along the first one, as bits.
+        let mut alike = [0; 2];
+        for _ in 0..STEPS {
+            let [i, j] = end.active;
+            let linear = levels[0][i % ROOM] + levels[1][j % ROOM];
+            let (g, h) = (cuts[0].slope(i), cuts[1].slope(j));
+            let beta = [g[0] + h[0], g[1] + h[1]];
+            let (mut bend, mut value, mut slope) = ([0.0; 3], linear, beta);
+            if BENT {
+                let carry = [cuts[0].carries(i), cuts[1].carries(j)];
+                bend = if end.count == 1 {
+                    self.shared(end, carry, &x, &beta, linear)
+                } else {
+                    self.bend(carry)
+                };
+                let gx = times(&bend, &x);
+                value += 0.5 * dot(&gx, &x);
+                slope = [beta[0] + gx[0], beta[1] + gx[1]];
+            }
+            let one = 1.0 + dot(&x, &x);
+            end.value = value;
+            // (1 + x²) M.
+            let down = [slope[0] * one - value * x[0], slope[1] * one - value * x[1]];
+            let way = match end.count {
+                0 => Self::on_one::<BENT>(&x, &beta, &bend, linear, &down, middle, radius),
+                1 => along::<BENT>(&end.kinks[0].e, &x, &slope, &bend, value, &down),
+                _ => match self.weigh(end, &down, one, &mut left) {
+                    true => break,
+                    false => continue,
+                },
+            };
+            let Way { mut u, mut full } = way;
+            if BENT && end.count == 0 && left.0 < 2 {
+                let (there, here) = (
+                    cuts[left.0].slope(left.1),
+                    cuts[left.0].slope(end.active[left.0]),
+                );
+                let e = [there[0] - here[0], there[1] - here[1]];
+                if dot(&e, &u) > 0.0 {
+                    // The valley is across the kink that was just left: straight down first.
+                    u = [-down[0], -down[1]];
+                    let rise = dot(&times(&bend, &u), &u) - value * dot(&u, &u);
+                    full = (rise > 0.0).then(|| dot(&u, &u) / rise);
+                }
+            }
+            cuts[0].rises(&u, &mut rises[0]);
+            cuts[1].rises(&u, &mut rises[1]);
+            let (mut num, mut den, mut met) = match full {
+                Some(full) => (full, 1.0, None),
+                None => (Real::INFINITY, 1.0, None),
+            };
+            for o in 0..2 {
+                let a = end.active[o] % ROOM;
+                let mut skip = 1 << a | alike[o];
+                if end.count == 1 && end.kinks[0].object == o {
+                    skip |= 1 << end.kinks[0].point;
+                }
+                if left.0 == o {
+                    skip |= 1 << left.1;
+                }
+                let (top, fast) = (levels[o][a], rises[o][a]);
+                for k in 0..cuts[o].len.min(ROOM) {
+                    let rise = rises[o][k] - fast;
+                    let below = larger(top - levels[o][k], 0.0);
+                    if rise > 0.0 && below * den < num * rise && skip >> k & 1 == 0 {
+                        (num, den, met) = (below, rise, Some((o, k)));
+                    }
+                }
+            }
+            left = (2, 0);
+            let t = num / den;
+            let to = [x[0] + t * u[0], x[1] + t * u[1]];
+            let off = [to[0] - middle[0], to[1] - middle[1]];
+            // Also where there is no end at all.
+            if !(dot(&off, &off) <= radius * radius) {
+                let off = [x[0] - middle[0], x[1] - middle[1]];
+                let (uu, xu) = (dot(&u, &u), dot(&off, &u));
+                let room = larger(radius * radius - dot(&off, &off), 0.0);
+                let t = ((xu * xu + uu * room).sqrt() - xu) / uu;
+                if uu > 0.0 {
+                    x = [x[0] + t * u[0], x[1] + t * u[1]];
+                    end.value = linear + t * dot(&beta, &u);
+                    if BENT {
+                        end.value += 0.5 * dot(&times(&bend, &x), &x);
+                    }
+                }
+                (end.on_border, end.lost) = (true, false);
+                break;
+            }
+            if t > 0.0 {
+                x = to;
+                for (o, cuts) in cuts.iter().enumerate() {
+                    let (levels, rises) = (&mut levels[o], &rises[o]);
+                    for k in 0..LANES {
+                        levels[k] += t * rises[k];
+                    }
+                    if cuts.len > LANES {
+                        for k in LANES..ROOM {
+                            levels[k] += t * rises[k];
+                        }
+                    }
+                }
+            }
+            // M there.
+            let mut value = levels[0][i % ROOM] + levels[1][j % ROOM];
+            let mut slope = beta;
+            if BENT {
+                let gx = times(&bend, &x);
+                value += 0.5 * dot(&gx, &x);
+                slope = [beta[0] + gx[0], beta[1] + gx[1]];
+            }
+            end.value = value;
+            let f = value / (1.0 + dot(&x, &x));
+            let m = [slope[0] - f * x[0], slope[1] - f * x[1]];
+            let Some((o, k)) = met else {
+                // Least on one cut, or on a kink: of which both points must hold.
+                if end.count == 0 {
+                    end.lost = false;
+                    break;
+                }
+                let kink = end.kinks[0];
+                let (share, e2) = (-dot(&m, &kink.e), dot(&kink.e, &kink.e));
+                if share >= 0.0 && share <= e2 {
+                    end.weights[0] = share / e2;
+                    end.lost = false;
+                    break;
+                }
+                let active = &mut end.active[kink.object % 2];
+                left = (kink.object, kink.point);
+                if share > e2 {
+                    left.1 = core::mem::replace(active, kink.point);
+                }
+                end.count = 0;
+                continue;
+            };
+            let (new, old) = (cuts[o].slope(k), cuts[o].slope(end.active[o]));
+            let e = [new[0] - old[0], new[1] - old[1]];
+            let kink = Kink {
+                object: o,
+                point: k,
+                e,
+            };
+            if end.count == 1 {
+                let first = &end.kinks[0].e;
+                let area = cross(first, &e);
+                if area * area <= PARALLEL * dot(first, first) * dot(&e, &e) {
+                    alike[o] |= 1 << k;
+                } else {
+                    end.kinks[1] = kink;
+                    end.count = 2;
+                    alike = [0; 2];
+                }
+            } else if -dot(&m, &e) >= dot(&e, &e) {
+                // It goes down on the other side as well.
+                left = (o, core::mem::replace(&mut end.active[o % 2], k));
+            } else {
+                (end.kinks[0], end.count) = (kink, 1);
+            }
+        }
+        end.x = x;
+        end.value /= (1.0 + dot(&x, &x)).sqrt();
+    }
+
+    /// On one cut of each object: where φ is least, else down.
+    #[inline(always)]
+    fn on_one<const BENT: bool>(
+        x: &Flat,
+        beta: &Flat,
+        bend: &[Real; 3],
+        linear: Real,
+        down: &Flat,
+        middle: &Flat,
+        radius: Real,
+    ) -> Way {
+        let base = linear - dot(beta, x);
+        if !BENT || *bend == [0.0; 3] {
+            if base < 0.0 {
+                return Way {
+                    u: [base * x[0] - beta[0], base * x[1] - beta[1]],
+                    full: Some(-1.0 / base),
+                };
+            }
+            // No slope but rounding: one way is as good as another.
+            let level = dot(down, down) <= LEVEL * linear * linear;
+            return Way {
+                u: if level {
+                    [1.0, 0.0]
+                } else {
+                    [-down[0], -down[1]]
+                },
+                full: None,
+            };
+        }
+        let to = valley(beta, bend, base, middle, radius);
+        Way {
+            u: [to[0] - x[0], to[1] - x[1]],
+            full: Some(1.0),
+        }
+    }
+
+    /// The bend along a kink: of its two points as they share the slope.
+    #[inline(never)]
+    fn shared(
+        &self,
+        end: &End,
+        carry: [Real; 2],
+        x: &Flat,
+        beta: &Flat,
+        linear: Real,
+    ) -> [Real; 3] {
+        let Kink { object, point, e } = &end.kinks[0];
+        let m = [0, 1].map(|a| beta[a] - linear * x[a]);
+        let share = (-dot(&m, e) / dot(e, e)).clamp(0.0, 1.0);
+        let mut carry = carry;
+        let other = self.cuts[object % 2].carries(*point);
+        carry[object % 2] += share * (other - carry[object % 2]);
+        self.bend(carry)
+    }
+
+    /// At two kinks: are they a minimum? Else one is left.
+    #[inline(always)]
+    fn weigh(&self, end: &mut End, down: &Flat, one: Real, left: &mut (usize, usize)) -> bool {
+        let [p, q] = end.kinks;
+        let m = [down[0] / one, down[1] / one];
+        let area = cross(&p.e, &q.e);
+        let (sign, area) = ((1.0 as Real).copysign(area), area.abs());
+        let (s, t) = (-cross(&m, &q.e) * sign, -cross(&p.e, &m) * sign);
+        let same = p.object == q.object;
+        let mut least = NEGATIVE * area;
+        let mut out = 4;
+        let rest = if same { area - s - t } else { area - s };
+        for (i, w) in [s, t, rest].into_iter().enumerate() {
+            if w < least {
+                (least, out) = (w, i);
+            }
+        }
+        if !same && area - t < least {
+            out = 3;
+        }
+        match out {
+            0 => {
+                *left = (p.object, p.point);
+                end.kinks[0] = q;
+            }
+            1 => *left = (q.object, q.point),
+            // The active point of the first kink's object.
+            2 => {
+                let active = core::mem::replace(&mut end.active[p.object % 2], p.point);
+                *left = (p.object, active);
+                end.kinks[0] = if same {
+                    Kink {
+                        e: [q.e[0] - p.e[0], q.e[1] - p.e[1]],
+                        ..q
+                    }
+                } else {
+                    q
+                };
+            }
+            3 => {
+                let active = core::mem::replace(&mut end.active[q.object % 2], q.point);
+                *left = (q.object, active);
+            }
+            _ => {
+                end.weights = [s / area, t / area];
+                end.lost = !(area > 0.0);
+                return true;
+            }
+        }
+        end.count = 1;
+        false
+    }
+}
+
+#[inline(always)]
+fn times(a: &[Real; 3], x: &Flat) -> Flat {
+    [a[0] * x[0] + a[1] * x[1], a[1] * x[0] + a[2] * x[1]]
+}
+
+/// Along a kink, down, to where φ is least. With φ = L/√(1+x²) and x + t u its derivative is
+/// proportional to (g·u)(1 + x²) − L x·u + t ((g·u)(x·u) − L u² + u'Gu (1 + x²)), exact where G = 0.
+#[inline(always)]
+fn along<const BENT: bool>(
+    e: &Flat,
+    x: &Flat,
+    slope: &Flat,
+    bend: &[Real; 3],
+    value: Real,
+    down: &Flat,
+) -> Way {
+    let mut u = [-e[1], e[0]];
+    let mut fall = dot(down, &u);
+    if fall > 0.0 {
+        u = [e[1], -e[0]];
+        fall = -fall;
+    }
+    let mut rise = dot(slope, &u) * dot(x, &u) - value * dot(&u, &u);
+    if BENT {
+        rise += dot(&times(bend, &u), &u) * (1.0 + dot(x, x));
+    }
+    Way {
+        u,
+        full: (rise > 0.0).then(|| -fall / rise),
+    }
+}
+
+/// Where α + β·x + ½ x'Kx, K = G − α I, is least within the radius: the minimum along what bends
+/// up, and along what bends down the border.
+#[inline(never)]
+fn valley(beta: &Flat, bend: &[Real; 3], base: Real, middle: &Flat, radius: Real) -> Flat {
+    let [xx, xy, yy] = *bend;
+    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+    let spread = (half * half + xy * xy).sqrt();
+    let (high, low) = (mean + spread - base, mean - spread - base);
+    // The direction of the high one.
+    let cos2 = if spread > 0.0 { half / spread } else { 1.0 };
+    let c = (0.5 * (1.0 + cos2)).sqrt();
+    let s = (0.5 * (1.0 - cos2)).sqrt().copysign(xy);
+    let turn = |v: &Flat| [c * v[0] + s * v[1], c * v[1] - s * v[0]];
+    let (g, m) = (turn(beta), turn(middle));
+    let mut to = [m[0], m[1]];
+    if high > 0.0 {
+        to[0] = -g[0] / high;
+        if low > 0.0 {
+            to[1] = -g[1] / low;
+        } else {
+            let off = (to[0] - m[0]) * (to[0] - m[0]);
+            let room = larger(radius * radius - off, 0.0).sqrt() * 1.000_001;
+            to[1] = m[1] - room.copysign(g[1] + low * m[1]);
+        }
+    } else {
+        // Down the slope, over the border.
+        let d = [g[0] + high * m[0], g[1] + low * m[1]];
+        let length = dot(&d, &d).sqrt();
+        let f = if length > 0.0 {
+            1.000_001 * radius / length
+        } else {
+            0.0
+        };
+        to = [m[0] - f * d[0], m[1] - f * d[1]];
+    }
+    [c * to[0] - s * to[1], c * to[1] + s * to[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::shapes::Random;
+
+    /// What rounding leaves.
+    const NEAR: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
+
+    /// Both objects' points of a pair that overlaps by about `depth` along b.
+    fn model(r: &mut Random, len: [usize; 2], depth: Real, bend: Real) -> Model {
+        let mut model = Model {
+            cuts: [Cuts::NONE; 2],
+        };
+        for (cuts, len) in model.cuts.iter_mut().zip(len) {
+            cuts.len = len;
+            for k in 0..len {
+                cuts.a[k] = 0.5 * depth - if k == 0 { 0.0 } else { r.within(0.0, 0.02) };
+                cuts.x[k] = r.within(-0.3, 0.3);
+                cuts.y[k] = r.within(-0.3, 0.3);
+            }
+        }
+        model.cuts[0].carried = !0;
+        model.cuts[0].bend = [bend, 0.3 * bend, 0.1 * bend];
+        model
+    }
+
+    fn value(model: &Model, x: &Flat) -> Real {
+        let linear: Real = [0, 1]
+            .map(|o| {
+                let cuts = &model.cuts[o];
+                cuts.levels(x)[..cuts.len]
+                    .iter()
+                    .copied()
+                    .fold(Real::NEG_INFINITY, Real::max)
+            })
+            .iter()
+            .sum();
+        let bent = 0.5 * dot(&times(&model.cuts[0].bend, x), x);
+        (linear + bent) / (1.0 + dot(x, x)).sqrt()
+    }
+
+    /// A walk ends at a local minimum of the model, or on the border below where it began; and what
+    /// it says of the weights is so.
+    #[test]
+    fn a_walk_ends_where_nothing_is_lower() {
+        let mut r = Random::new(3);
+        let mut ends = [0; 4];
+        for round in 0..4000 {
+            let depth = r.within(-0.3, 0.4);
+            let bend = if round % 2 == 0 {
+                0.0
+            } else {
+                r.within(0.1, 1.0)
+            };
+            let len = [1 + round % 5, 1 + round / 7 % ROOM];
+            let model = model(&mut r, len, depth, bend);
+            let radius = r.within(0.02, 0.5);
+            let mut end = End::NONE;
+            let start = [0.0; 2];
+            if bend > 0.0 {
+                model.walk::<true>(&start, &start, radius, &mut end);
+            } else {
+                model.walk::<false>(&start, &start, radius, &mut end);
+            }
+            let off = dot(&end.x, &end.x).sqrt();
+            assert!(off <= radius * 1.000_01 && !end.lost, "{end:?}");
+            assert!(value(&model, &end.x) <= value(&model, &start) + NEAR);
+            if end.on_border {
+                ends[3] += 1;
+                continue;
+            }
+            ends[end.count] += 1;
+            assert!(
+                (end.value - value(&model, &end.x)).abs() < NEAR,
+                "{} {end:?} {model:?}",
+                value(&model, &end.x)
+            );
+            // The bent model's slope is right to second order about the start, its third
+            // derivative no more than three times its slopes and bends.
+            let slack = if bend > 0.0 { 3.0 * off * off } else { NEAR };
+            for k in 0..24 {
+                let (s, c) = (k as Real * 0.2618).sin_cos();
+                let beside = [end.x[0] + 1e-3 * c, end.x[1] + 1e-3 * s];
+                let lower = end.value - value(&model, &beside);
+                assert!(lower <= NEAR + 1e-3 * slack, "{lower} {end:?}");
+            }
+            if end.count == 2 && bend == 0.0 && end.is_lowest(radius - off) {
+                for k in 0..240 {
+                    let (s, c) = (k as Real * 0.26).sin_cos();
+                    let far = (radius - off) * (k as Real / 240.0);
+                    let there = value(&model, &[end.x[0] + far * c, end.x[1] + far * s]);
+                    assert!(there >= end.value - 1e-4 * depth.abs() - NEAR);
+                }
+            }
+        }
+        assert!(ends.iter().all(|n| *n > 20), "{ends:?}");
+    }
+
+    /// Edges of both objects that are parallel are one kink.
+    #[test]
+    fn parallel_edges_are_walked_along() {
+        let mut model = Model {
+            cuts: [Cuts::NONE; 2],
+        };
+        for (cuts, scale) in model.cuts.iter_mut().zip([0.5, 0.2]) {
+            (cuts.len, cuts.a) = (2, [-0.1; ROOM]);
+            (cuts.x[0], cuts.x[1]) = (scale, -scale);
+            (cuts.y[0], cuts.y[1]) = (0.1, 0.1);
+        }
+        let mut end = End::NONE;
+        model.walk::<false>(&[0.0; 2], &[0.0; 2], 2.0, &mut end);
+        assert!(!end.lost && !end.on_border && end.count == 1, "{end:?}");
+        assert!(
+            end.x[0].abs() < NEAR && (end.x[1] + 1.0).abs() < NEAR,
+            "{end:?}"
+        );
+    }
+}
