@@ -208,14 +208,14 @@ impl Exact {
         let dir = &self.hit.dir;
         // Along a disc's axis its points are those of a polytope.
         let discs = [0, 1].map(|o| {
-            let disc = *self.objects[o].disc();
+            let disc = *self.objects[o % 2].disc();
             if disc.is_there() && disc.is_along(dir) {
                 Disc::default()
             } else {
                 disc
             }
         });
-        let balls = [0, 1].map(|o| self.objects[o].radius);
+        let balls = [0, 1].map(|o: usize| self.objects[o % 2].radius);
         let round = balls[0] + balls[1] > 0.0 || discs.iter().any(Disc::is_there);
         let smooth = if round {
             Smooth::Round { balls, discs }
@@ -757,7 +757,7 @@ impl Exact {
         let Some(o) = (0..2).find(|o| near(&self.objects[*o])) else {
             return;
         };
-        let disc = *self.objects[o].disc();
+        let disc = *self.objects[o % 2].disc();
         let n = disc.axis * (1.0 as Real).copysign(disc.axis.dot(b));
         let [(h, i), (k, j)] = [self.objects[0].height(&n), self.objects[1].height(&n)];
         let depth = h + k + self.rho();
@@ -803,7 +803,7 @@ impl Exact {
         let n = &n;
         let depth = at.h;
         let end = &step.end;
-        let mut points = [0, 1].map(|o| self.objects[o].point(end.active[o], n));
+        let mut points = [0, 1].map(|o: usize| self.objects[o % 2].point(end.active[o % 2], n));
         let mut slopes = [points[0] + points[1]; 3];
         if let Some(o) = step.axis {
             // All of the disc is as far: its point below the origin.
@@ -876,7 +876,8 @@ impl Exact {
     /// Names the points of D for the proof: the active ones, the one here, the others.
     #[inline(always)]
     fn show(&self, at: &Sample, end: &End, known: &mut Known) {
-        let [a, b] = [0, 1].map(|o| self.objects[o].at[end.active[o] % super::walk::ROOM].p);
+        let [a, b] =
+            [0, 1].map(|o: usize| self.objects[o % 2].at[end.active[o % 2] % super::walk::ROOM].p);
         let mut put = |p: &Vec3, q: &Vec3| {
             known.push(&SupportPoint {
                 v: p + q,

@@ -325,7 +325,7 @@ impl Model {
             end.value = value;
             let f = value / (1.0 + dot(&x, &x));
             let m = [slope[0] - f * x[0], slope[1] - f * x[1]];
-            let Some((o, k)) = met else {
+            let Some((o, k)) = met.map(|(o, k): (usize, usize)| (o % 2, k % ROOM)) else {
                 // Least on one cut, or on a kink: of which both points must hold.
                 if end.count == 0 {
                     end.lost = false;
