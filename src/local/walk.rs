@@ -187,10 +187,36 @@ pub struct Model {
     pub cuts: [Cuts; 2],
 }
 
-/// A way from x: so many times `u`, or without an end.
+/// A way from x: `num` / `den` times `u`; without an end, where that is infinite.
 struct Way {
     u: Flat,
-    full: Option<Real>,
+    num: Real,
+    den: Real,
+}
+
+impl Way {
+    #[inline(always)]
+    fn endless(u: Flat) -> Self {
+        Self {
+            u,
+            num: Real::INFINITY,
+            den: 1.0,
+        }
+    }
+
+    /// To where a fall of this rate, which rises by that, ends.
+    #[inline(always)]
+    fn to_the_least(u: Flat, fall: Real, rise: Real) -> Self {
+        if rise > 0.0 {
+            Self {
+                u,
+                num: fall,
+                den: rise,
+            }
+        } else {
+            Self::endless(u)
+        }
+    }
 }
 
 impl Model {
@@ -242,26 +268,25 @@ impl Model {
                     false => continue,
                 },
             };
-            let Way { mut u, mut full } = way;
+            let mut way = way;
             if BENT && end.count == 0 && left.0 < 2 {
-                let (there, here) = (
-                    cuts[left.0].slope(left.1),
-                    cuts[left.0].slope(end.active[left.0]),
-                );
-                let e = [there[0] - here[0], there[1] - here[1]];
-                if dot(&e, &u) > 0.0 {
+                let of = &cuts[left.0 % 2];
+                let (there, here) = (of.slope(left.1), of.slope(end.active[left.0 % 2]));
+                if dot(&way.u, &there) > dot(&way.u, &here) {
                     // The valley is across the kink that was just left: straight down first.
-                    u = [-down[0], -down[1]];
+                    let u = [-down[0], -down[1]];
                     let rise = dot(&times(&bend, &u), &u) - value * dot(&u, &u);
-                    full = (rise > 0.0).then(|| dot(&u, &u) / rise);
+                    way = Way::to_the_least(u, dot(&u, &u), rise);
                 }
             }
+            let Way {
+                u,
+                mut num,
+                mut den,
+            } = way;
             cuts[0].rises(&u, &mut rises[0]);
             cuts[1].rises(&u, &mut rises[1]);
-            let (mut num, mut den, mut met) = match full {
-                Some(full) => (full, 1.0, None),
-                None => (Real::INFINITY, 1.0, None),
-            };
+            let mut met = None;
             for o in 0..2 {
                 let a = end.active[o] % ROOM;
                 let mut skip = 1 << a | alike[o];
@@ -314,7 +339,7 @@ impl Model {
                     }
                 }
             }
-            // M there.
+            // (1 + x²) M there.
             let mut value = levels[0][i % ROOM] + levels[1][j % ROOM];
             let mut slope = beta;
             if BENT {
@@ -323,8 +348,8 @@ impl Model {
                 slope = [beta[0] + gx[0], beta[1] + gx[1]];
             }
             end.value = value;
-            let f = value / (1.0 + dot(&x, &x));
-            let m = [slope[0] - f * x[0], slope[1] - f * x[1]];
+            let one = 1.0 + dot(&x, &x);
+            let m = [slope[0] * one - value * x[0], slope[1] * one - value * x[1]];
             let Some((o, k)) = met.map(|(o, k): (usize, usize)| (o % 2, k % ROOM)) else {
                 // Least on one cut, or on a kink: of which both points must hold.
                 if end.count == 0 {
@@ -332,7 +357,7 @@ impl Model {
                     break;
                 }
                 let kink = end.kinks[0];
-                let (share, e2) = (-dot(&m, &kink.e), dot(&kink.e, &kink.e));
+                let (share, e2) = (-dot(&m, &kink.e), dot(&kink.e, &kink.e) * one);
                 if share >= 0.0 && share <= e2 {
                     end.weights[0] = share / e2;
                     end.lost = false;
@@ -363,7 +388,7 @@ impl Model {
                     end.count = 2;
                     alike = [0; 2];
                 }
-            } else if -dot(&m, &e) >= dot(&e, &e) {
+            } else if -dot(&m, &e) >= dot(&e, &e) * one {
                 // It goes down on the other side as well.
                 left = (o, core::mem::replace(&mut end.active[o % 2], k));
             } else {
@@ -390,24 +415,23 @@ impl Model {
             if base < 0.0 {
                 return Way {
                     u: [base * x[0] - beta[0], base * x[1] - beta[1]],
-                    full: Some(-1.0 / base),
+                    num: 1.0,
+                    den: -base,
                 };
             }
             // No slope but rounding: one way is as good as another.
             let level = dot(down, down) <= LEVEL * linear * linear;
-            return Way {
-                u: if level {
-                    [1.0, 0.0]
-                } else {
-                    [-down[0], -down[1]]
-                },
-                full: None,
-            };
+            return Way::endless(if level {
+                [1.0, 0.0]
+            } else {
+                [-down[0], -down[1]]
+            });
         }
         let to = valley(beta, bend, base, middle, radius);
         Way {
             u: [to[0] - x[0], to[1] - x[1]],
-            full: Some(1.0),
+            num: 1.0,
+            den: 1.0,
         }
     }
 
@@ -434,10 +458,10 @@ impl Model {
     #[inline(always)]
     fn weigh(&self, end: &mut End, down: &Flat, one: Real, left: &mut (usize, usize)) -> bool {
         let [p, q] = end.kinks;
-        let m = [down[0] / one, down[1] / one];
-        let area = cross(&p.e, &q.e);
+        // All of them (1 + x²) times as large.
+        let area = cross(&p.e, &q.e) * one;
         let (sign, area) = ((1.0 as Real).copysign(area), area.abs());
-        let (s, t) = (-cross(&m, &q.e) * sign, -cross(&p.e, &m) * sign);
+        let (s, t) = (-cross(down, &q.e) * sign, -cross(&p.e, down) * sign);
         let same = p.object == q.object;
         let mut least = NEGATIVE * area;
         let mut out = 4;
@@ -474,7 +498,8 @@ impl Model {
                 *left = (q.object, active);
             }
             _ => {
-                end.weights = [s / area, t / area];
+                let inverse = 1.0 / area;
+                end.weights = [s * inverse, t * inverse];
                 end.lost = !(area > 0.0);
                 return true;
             }
@@ -510,10 +535,7 @@ fn along<const BENT: bool>(
     if BENT {
         rise += dot(&times(bend, &u), &u) * (1.0 + dot(x, x));
     }
-    Way {
-        u,
-        full: (rise > 0.0).then(|| -fall / rise),
-    }
+    Way::to_the_least(u, -fall, rise)
 }
 
 /// Where α + β·x + ½ x'Kx, K = G − α I, is least within the radius: the minimum along what bends
