@@ -45,8 +45,9 @@ const DOUBTS: u32 = 4;
 const MOST: usize = 24;
 /// Charts of one walk where discs bend, …
 const CHARTS: usize = 6;
-/// … until what they are off by is this share of the tolerance, squared.
-const NEWTON: Real = 1e-4;
+/// … until what they are off by is this share of the tolerance. Measured: 0.3 no change but cones
+/// +1 %; 0.03 +2 % of time on recorded contacts.
+const NEWTON: Real = 0.1;
 /// Where walks start beside the best direction, in trust radii: on all sides, off the axes.
 const AROUND: [Flat; 4] = [[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9]];
 /// The samples kept: the best one, and the latest.
@@ -733,8 +734,8 @@ impl Exact {
             let x = end.x;
             let n = self.direction(&x);
             self.step.n = n;
-            // What a chart is off by is of third order.
-            if !(x2 * x2 * x2 * self.extent2 > NEWTON * self.tolerance * self.tolerance) {
+            // A chart is off by third order in its slope, so its least value by fourth.
+            if !(x2 * x2 * self.extent2.sqrt() > NEWTON * self.tolerance) {
                 break;
             }
             self.chart(&n);
