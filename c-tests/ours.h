@@ -56,6 +56,7 @@ typedef struct {
     ccd_vec3_t *dir, *pos; /* dir: of ccdGJKSeparate too */
     ccd_penetration_t *full;
     ccd_distance_t *distance;
+    ccd_manifold_t *memory; /* ccdContacts' */
     ccd_contact_t *contacts;
 } call_rest_t;
 
@@ -66,7 +67,7 @@ typedef struct {
 #define KIND_DEPTH_WARM(f) f(a, b, ccd, x->warm, x->depth, x->dir, x->pos)
 #define KIND_FULL(f) f(a, b, ccd, x->warm, x->want, x->full)
 #define KIND_FULL_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->full)
-#define KIND_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->contacts, x->max)
+#define KIND_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->memory, x->contacts, x->max)
 #define KIND_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
 
 static inline int call_by_number(int number, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)

@@ -12,6 +12,7 @@ use core::fmt;
 
 use crate::contact::{self, Answer};
 use crate::contacts::manifold;
+use crate::contacts::memory::Memory;
 use crate::ffi::arena::Heap;
 use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::{self, Wanted};
@@ -198,6 +199,11 @@ impl Warm {
     }
 }
 
+/// What [`contacts`] of a pair leaves for the next: a plain value, cold at first, that serves either
+/// order of the pair. A stale, foreign or random one costs time alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Manifold(Memory);
+
 /// An overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -286,6 +292,8 @@ pub struct Contact {
     pub point2: [Real; 3],
     /// Metres; negative where the shapes are apart.
     pub depth: Real,
+    /// Its name, not 0, while it moves with either shape; 0 without a memory.
+    pub id: u32,
 }
 
 /// A caller's shape as the solvers ask it.
@@ -501,7 +509,8 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
 ///
 /// `normal`: of an answer for this pose (`dir` where there is no other), of any length. `slop`,
 /// metres: how far below its support plane a corner may lie and still belong to the face; a
-/// thousandth of the shapes' size is good for contacts that rest. Allocates nothing.
+/// thousandth of the shapes' size is good for contacts that rest. With a memory a shape that has
+/// the same face as the last time is asked half as often. Allocates nothing.
 ///
 /// ```
 /// use ccd::{Contact, Real};
@@ -511,7 +520,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
 ///     [x, y, z + h]
 /// };
 /// let mut room = [Contact::default(); 8];
-/// let contacts = ccd::contacts(&cube(0.0), &cube(0.99), [0.0, 0.0, 1.0], 1e-3, &mut room)?;
+/// let contacts = ccd::contacts(&cube(0.0), &cube(0.99), [0.0, 0.0, 1.0], 1e-3, None, &mut room)?;
 /// assert_eq!(contacts.len(), 4);
 /// assert!((contacts[0].depth - 0.01).abs() < 1e-5);
 /// # Ok::<(), ccd::Error>(())
@@ -525,6 +534,7 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     normal: [Real; 3],
     slop: Real,
+    memory: Option<&mut Manifold>,
     room: &'r mut [Contact],
 ) -> Result<&'r [Contact], Error> {
     let normal = direction(normal)?;
@@ -533,13 +543,15 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
         return Err(Error::BadInput("no room for a contact"));
     }
     let most = room.len().min(manifold::ROOM);
-    let manifold = manifold::contacts(&Asked(a), &Asked(b), &normal, slop, most)?;
+    let memory = memory.map(|memory| &mut memory.0);
+    let manifold = manifold::contacts(&Asked(a), &Asked(b), &normal, slop, memory, most)?;
     let mut count = 0;
     for (place, contact) in room.iter_mut().zip(manifold.contacts()) {
         *place = Contact {
             point1: contact.point1.into(),
             point2: contact.point2.into(),
             depth: contact.depth,
+            id: contact.name,
         };
         count += 1;
     }

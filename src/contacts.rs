@@ -4,9 +4,11 @@
 //! Where the objects touch, once depth and direction are known.
 //!
 //! [`pressure`] finds the position of one contact, [`manifold`] several contacts; [`polygon`]
-//! clips and measures the faces of these.
+//! clips and measures the faces of these, [`again`] finds them again by what [`memory`] keeps.
 
+pub mod again;
 pub mod fan;
 pub mod manifold;
+pub mod memory;
 pub mod polygon;
 pub mod pressure;

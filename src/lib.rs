@@ -70,8 +70,8 @@ mod shapes;
 mod state;
 
 pub use api::{
-    Check, Contact, Distance, DistanceOptions, Error, Penetration, Real, Settings, Shape, Want,
-    Warm, check, contacts, implementation, intersect, penetration, penetration_along,
+    Check, Contact, Distance, DistanceOptions, Error, Manifold, Penetration, Real, Settings, Shape,
+    Want, Warm, check, contacts, implementation, intersect, penetration, penetration_along,
     penetration_incremental, penetration_local, penetration_planar, penetration_proven,
     signed_distance,
 };

@@ -75,6 +75,7 @@ static inline int run(const call_t *entry, const void *a, const void *b, const c
 {
     const ccd_vec3_t along = {{1, 2, -2}}, plane = {{0, 0, 3}}, up = {{0, 1, 0}};
     ccd_contact_t contacts[4];
+    ccd_manifold_t memory;
     ccd_penetration_t full;
     ccd_distance_t distance;
     ccd_warm_t warm;
@@ -94,6 +95,8 @@ static inline int run(const call_t *entry, const void *a, const void *b, const c
     rest.max = 4;
     rest.full = &full;
     rest.distance = &distance;
+    memset(&memory, 0, sizeof memory);
+    rest.memory = &memory;
     rest.contacts = contacts;
     if (number == ASK_CONTACTS) {
         code = call_by_number(number, a, b, ccd, &rest);

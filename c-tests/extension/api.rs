@@ -252,7 +252,7 @@ fn yes_or_no_and_distance(
 
 fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
     let mut room = [Contact::default(); 4];
-    let found = ccd::contacts(a, b, DIR, 0.01, &mut room).expect("good input");
+    let found = ccd::contacts(a, b, DIR, 0.01, None, &mut room).expect("good input");
     let (a, b) = (&raw const *a, &raw const *b);
     let dir = ccd_vec3_t { v: DIR };
     let mut out = [const { MaybeUninit::<ccd_contact_t>::uninit() }; 4];
@@ -264,6 +264,7 @@ fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
             c,
             &dir,
             0.01,
+            std::ptr::null_mut(),
             out.as_mut_ptr().cast(),
             4,
         )
@@ -328,7 +329,7 @@ fn lengths_that_are_none() {
             is_bad(answer, &warm, &before, "option of the distance");
         }
         let mut room = [Contact::default(); 2];
-        let answer = ccd::contacts(&a, &b, DIR, bad, &mut room);
+        let answer = ccd::contacts(&a, &b, DIR, bad, None, &mut room);
         assert!(matches!(answer, Err(Error::BadInput(_))), "slop");
         assert_eq!(room, [Contact::default(); 2]);
     }
@@ -338,7 +339,7 @@ fn lengths_that_are_none() {
     };
     let answer = ccd::signed_distance(&a, &b, &Settings::default(), &endless, Some(&mut warm));
     is_bad(answer, &warm, &before, "infinite margin");
-    assert!(ccd::contacts(&a, &b, DIR, 0.0, &mut []).is_err());
+    assert!(ccd::contacts(&a, &b, DIR, 0.0, None, &mut []).is_err());
     // Zero asks for the best there is, infinity for any answer.
     for call in 0..CALLS {
         for tolerance in [0.0, Real::INFINITY] {
@@ -359,7 +360,7 @@ fn directions_that_are_none() {
         is_bad(answer, &warm, &before, "along");
         let answer = ccd::penetration_planar(&a, &b, bad, &settings, Some(&mut warm));
         is_bad(answer, &warm, &before, "planar");
-        let answer = ccd::contacts(&a, &b, bad, 0.01, &mut room);
+        let answer = ccd::contacts(&a, &b, bad, 0.01, None, &mut room);
         assert!(matches!(answer, Err(Error::BadInput(_))), "contacts");
         // A guess of nothing is cold.
         assert_eq!(
@@ -391,7 +392,7 @@ fn shapes_that_are_none() {
             let answer = ccd::signed_distance(&a, &lost, &settings, &options, Some(&mut warm));
             is_bad(answer, &warm, &before, "distance");
             let mut room = [Contact::default(); 2];
-            assert!(ccd::contacts(&a, &lost, DIR, 0.01, &mut room).is_err());
+            assert!(ccd::contacts(&a, &lost, DIR, 0.01, None, &mut room).is_err());
         }
     }
 }

@@ -14,6 +14,7 @@ enum { ROOM = 32 };
 static const double epsilon = sizeof(ccd_real_t) == 8 ? DBL_EPSILON : (double)FLT_EPSILON;
 
 static unsigned long most_calls, most_box_calls;
+static ccd_manifold_t *memory_in_use; /* NULL: none */
 
 typedef struct {
     shape_t a, b;
@@ -66,7 +67,7 @@ static contacts_t ask_at_most(scene_t *s, int max)
         normal.v[k] = (ccd_real_t)(3 * s->n[k]);
     s->a.calls = s->b.calls = 0;
     memset(&out, 0, sizeof out);
-    out.n = OURS(ccdContacts)(&s->a, &s->b, &ccd, &normal, (ccd_real_t)s->slop, out.c, max);
+    out.n = OURS(ccdContacts)(&s->a, &s->b, &ccd, &normal, (ccd_real_t)s->slop, memory_in_use, out.c, max);
     CHECK(out.n >= 1 && out.n <= max, "%d contacts", out.n);
     for (k = 0; k < 2; k++) {
         const shape_t *shape = k ? &s->b : &s->a;
@@ -74,12 +75,25 @@ static contacts_t ask_at_most(scene_t *s, int max)
             most_calls = shape->calls;
         if (shape->type == SHAPE_BOX && shape->calls > most_box_calls)
             most_box_calls = shape->calls;
-        CHECK(shape->calls <= (shape->type == SHAPE_BOX ? 12 : 24), "%lu calls of type %d", shape->calls, shape->type);
+        CHECK(shape->calls <= (shape->type == SHAPE_BOX ? 12UL : 24UL) + (memory_in_use ? 10 : 0), "%lu calls of type %d", shape->calls, shape->type);
     }
     return out;
 }
 
-static contacts_t ask(scene_t *s) { return ask_at_most(s, ROOM); }
+static unsigned long cold_calls, warm_calls;
+static int asked_twice;
+
+/* With a memory: what is asked again is judged. */
+static contacts_t ask(scene_t *s)
+{
+    contacts_t c = ask_at_most(s, ROOM);
+    if (asked_twice) {
+        cold_calls += s->a.calls + s->b.calls;
+        c = ask_at_most(s, ROOM);
+        warm_calls += s->a.calls + s->b.calls;
+    }
+    return c;
+}
 
 static flats_t flats_of(const contacts_t *c, const frame_t *f)
 {
@@ -622,6 +636,177 @@ static void motions(void)
     }
 }
 
+/* --- a memory ------------------------------------------------------------------------------------- */
+
+enum { REST, DRIFT, SLIDING, TURNING, ROLLING, MOVES };
+static const char *const move_name[MOVES] = {"resting", "drifting", "sliding", "turning", "rolling"};
+
+/* A body on a table, twenty frames of each move, the whole scene drifting in all but the first: with its memory it
+ * costs half of what it costs without, and every point keeps its id; the same in the other order. */
+static void remembered(const char *what, shape_t table, shape_t body, int moves, int few)
+{
+    const double zero[3] = {0, 0, 0}, slop = 1e-3;
+    int move, frame, i, k, order;
+    for (move = 0; move < moves; move++) {
+        static ccd_manifold_t memory;
+        double world[9], turn[9], old[9], by[3] = {0, 0, 0};
+        unsigned long cold = 0, warm = 0;
+        contacts_t last;
+        scene_t start;
+        memset(&memory, 0, sizeof memory);
+        last.n = 0;
+        place(&start, 0);
+        start.slop = slop;
+        start.a = table;
+        start.b = body;
+        rotation_about(0, 0, 1, move == TURNING ? 0.02 : 0, turn);
+        if (move == SLIDING)
+            by[0] = 2e-3, by[1] = 1e-3;
+        if (move == ROLLING) { /* along y, about x: 0.3 is the radius */
+            rotation_about(1, 0, 0, -2e-3 / 0.3, turn);
+            by[1] = 2e-3;
+        }
+        rotation_about(1, 2, -1, move == REST ? 0 : 0.01, world);
+        for (frame = 0; frame < 20; frame++) {
+            const double pos[3] = {(double)start.b.pos[0] + by[0], (double)start.b.pos[1] + by[1], (double)start.b.pos[2]};
+            contacts_t c, none;
+            scene_t s;
+            int keep = 0;
+            for (k = 0; k < 3; k++)
+                scene_at[k] += move == REST ? 0 : 0.05 * (k + 1);
+            shape_move(&start.b, 0, 0, 0);
+            turn_by(&start.b, turn, zero);
+            shape_move(&start.b, pos[0], pos[1], pos[2]);
+            s = start;
+            put(&s);
+            memory_in_use = NULL;
+            none = ask_at_most(&s, 4);
+            cold += s.a.calls + s.b.calls;
+            memory_in_use = &memory;
+            c = ask_at_most(&s, 4);
+            if (frame > 0)
+                warm += s.a.calls + s.b.calls;
+            judge(&s, &c, what);
+            CHECK(few || c.n == none.n, "%s, %s: %d points, %d without a memory", what, move_name[move], c.n, none.n);
+            for (i = 0; i < c.n; i++) {
+                CHECK(c.c[i].id != 0, "%s: no id", what);
+                for (k = 0; k < i; k++)
+                    CHECK(c.c[i].id != c.c[k].id, "%s: id twice", what);
+                for (k = 0; k < last.n; k++)
+                    keep += c.c[i].id == last.c[k].id;
+            }
+            CHECK(frame == 0 || few || keep == c.n, "%s, %s: %d of %d ids stay in frame %d", what, move_name[move], keep, c.n, frame);
+            last = c;
+            for (k = 0; k < 9; k++)
+                old[k] = scene_rot[k];
+            rotation_times(world, old, scene_rot);
+        }
+        if (few)
+            continue;
+        CHECK(38 * warm <= 19 * 20 * cold / 20, "%s, %s: %lu calls with a memory, %lu without", what, move_name[move],
+              warm, 19 * cold / 20);
+        printf("%s, %s: %.2f support points with a memory, %.2f without\n", what, move_name[move], (double)warm / 19,
+               (double)cold / 20);
+    }
+}
+
+static void memories(void)
+{
+    const double pi = 3.14159265358979;
+    const shape_t table = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+    remembered("box", table, at(turned(shape_box(0.3, 0.2, 0.25), 0, 0, 1, 0.3), 0.1, 0.2, 0.249), ROLLING, 0);
+    remembered("hull", table, at(prism(1, 6, 0.3), 0.1, 0.2, 0.299), ROLLING, 0);
+    remembered("cylinder", table, at(shape_cylinder(0.3, 0.25), 0.1, 0.2, 0.249), ROLLING, 0);
+    remembered("cone", table, at(shape_cone(0.3, 0.25), 0.1, 0.2, 0.249), ROLLING, 0);
+    remembered("capsule", table, at(turned(shape_capsule(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), MOVES, 0);
+    remembered("lying cylinder", table, at(turned(shape_cylinder(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), MOVES, 0);
+    remembered("ball", table, at(shape_sphere(0.3), 0.1, 0.2, 0.299), MOVES, 0);
+}
+
+/* A block comes down: from a corner or an edge onto its face, and up again. Its memory is always of
+ * another pose. */
+static void tipping(void)
+{
+    static const double tilts[] = {0.3, 0.1, 0.02, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 5e-5, 0, 0, 1e-5, 1e-4, 1e-3, 5e-3, 0.1};
+    int i, j;
+    for (i = 0; i < 400; i++) {
+        static ccd_manifold_t memory;
+        const double zero[3] = {0, 0, 0}, up[3] = {0, 0, 1}, angle = i % 3 ? random_in(0, 6.28) : i % 4 * 1.5708;
+        double half;
+        scene_t start;
+        memset(&memory, 0, sizeof memory);
+        memory_in_use = &memory;
+        start.slop = slop_of();
+        start.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+        start.b = i % 3 ? block(1, &half) : shape_box(0.5, 0.7, 0.3);
+        place(&start, 1);
+        for (j = 0; j < (int)(sizeof tilts / sizeof *tilts); j++) {
+            scene_t s = start;
+            double rot[9];
+            s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+            s.b = at(start.b, 0, 0, 0);
+            if (!(i % 3))
+                s.b = shape_box(0.5, 0.7, 0.3);
+            rotation_about(0, 0, 1, 0, s.b.rot);
+            (void)rot;
+            {
+                double r[9];
+                rotation_about(cos(angle), sin(angle), 0, tilts[j], r);
+                shape_turn(&s.b, r);
+            }
+            shape_move(&s.b, 0, 0, -1e-4 - reach(&s.b, up, -1));
+            (void)zero;
+            put(&s);
+            compare(&s, "tipping");
+        }
+    }
+}
+
+/* Whatever bits it holds. */
+static void garbage(void)
+{
+    int i;
+    for (i = 0; i < 20000; i++) {
+        static ccd_manifold_t memory, good;
+        unsigned char *bytes = (unsigned char *)&memory;
+        scene_t s;
+        contacts_t c;
+        size_t k;
+        int j;
+        memory = good;
+        s.slop = 1e-3;
+        s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+        s.b = i % 3 == 0   ? at(shape_box(0.5, 0.6, 0.7), 0.1, 0.2, 0.69)
+              : i % 3 == 1 ? at(shape_cylinder(0.5, 0.6), 0, 0, 0.59)
+                           : at(turned(shape_capsule(0.3, 0.25), 0, 1, 0, 1.5707963267949), 0, 0, 0.29);
+        if (i % 64 == 0)
+            place(&s, 1);
+        else
+            put(&s);
+        memory_in_use = &memory;
+        switch (i % 4) {
+        case 0: /* noise */
+            for (k = 0; k < sizeof memory; k++)
+                bytes[k] = (unsigned char)random_below(256);
+            break;
+        case 1: /* a good one with noise in it */
+            for (j = 0; j < 1 + i % 7; j++)
+                bytes[random_below((int)sizeof memory)] ^= (unsigned char)(1 + random_below(255));
+            break;
+        case 2: /* no numbers */
+            for (j = 0; j < CCD_MANIFOLD_REALS; j++)
+                if (random_below(4) == 0)
+                    memory.reals[j] = j % 3 ? (float)NAN : j % 2 ? (float)INFINITY : -1e30f;
+            break;
+        default: break; /* of another pair */
+        }
+        c = ask_at_most(&s, 8);
+        judge(&s, &c, "garbage");
+        CHECK(c.n == (i % 3 == 0 ? 4 : i % 3 == 1 ? 8 : 2), "garbage: %d points", c.n);
+        good = memory;
+    }
+}
+
 /* --- fewer points, and what is refused ---------------------------------------------------------- */
 
 static void fewer(void)
@@ -680,7 +865,7 @@ static void refuse(const shape_t *a, const shape_t *b, const ccd_t *ccd, const c
     int code;
     memset(before, 0x5a, sizeof before);
     memcpy(out, before, sizeof out);
-    code = OURS(ccdContacts)(a, b, ccd, normal, slop, out, max);
+    code = OURS(ccdContacts)(a, b, ccd, normal, slop, memory_in_use, out, max);
     CHECK(code == CCD_BAD_INPUT, "%s: %d", why, code);
     CHECK(same_bits(out, before, sizeof out), "%s: contacts were written", why);
 }
@@ -697,10 +882,10 @@ static void bad_input(void)
     shape_move(&b, 0.1, 0.2, 1.9);
     memset(&ccd, 0xff, sizeof ccd); /* nothing else is read */
     ccd.support1 = ccd.support2 = shape_support;
-    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, out, 4) == 4, "the good query");
-    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, 0, out, 4) == 4, "no slop");
-    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, inf, out, 4) >= 1, "any slop");
-    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, out, 2147483647) == 4, "any number");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, NULL, out, 4) == 4, "the good query");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, 0, NULL, out, 4) == 4, "no slop");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, inf, NULL, out, 4) >= 1, "any slop");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, NULL, out, 2147483647) == 4, "any number");
     refuse(&a, &b, NULL, &up, slop, 4, "no ccd");
     refuse(&a, &b, &ccd, NULL, slop, 4, "no normal");
     refuse(&a, &b, &ccd, &zero, slop, 4, "zero normal");
@@ -708,7 +893,7 @@ static void bad_input(void)
     refuse(&a, &b, &ccd, &up, nan, 4, "NaN slop");
     refuse(&a, &b, &ccd, &up, slop, 0, "no room");
     refuse(&a, &b, &ccd, &up, slop, -1, "less room");
-    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, NULL, 4) == CCD_BAD_INPUT, "no contacts");
+    CHECK(OURS(ccdContacts)(&a, &b, &ccd, &up, slop, NULL, NULL, 4) == CCD_BAD_INPUT, "no contacts");
     other = ccd;
     other.support1 = NULL;
     refuse(&a, &b, &other, &up, slop, 4, "no support1");
@@ -736,12 +921,26 @@ static void bad_input(void)
 
 int main(void)
 {
-    rest();
-    anywhere();
-    shapes();
-    discs();
-    motions();
-    fewer();
+    static ccd_manifold_t memory;
+    int round;
+    for (round = 0; round < 3; round++) {
+        /* without a memory, with that of the last pair, with the pair's own */
+        memory_in_use = round ? &memory : NULL;
+        asked_twice = round == 2;
+        rest();
+        anywhere();
+        shapes();
+        discs();
+        if (!round)
+            fewer();
+        asked_twice = 0;
+        motions();
+        printf("round %d: %lu calls cold, %lu again\n", round, cold_calls, warm_calls);
+    }
+    memories();
+    tipping();
+    garbage();
+    memory_in_use = NULL;
     bad_input();
     printf("%lu regions, %lu segments, %lu points, %lu beside each other, %lu doubtful; at most %lu support points, %lu of a box\n",
            regions, segments, points, beside, doubtful, most_calls, most_box_calls);

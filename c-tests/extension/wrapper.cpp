@@ -159,7 +159,7 @@ static void same_as_c()
         ccd_contact_t c_contacts[4];
         std::array<ccd::Contact, 4> contacts;
         const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts);
-        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), c_contacts, 4) && count >= 1, "contacts");
+        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), nullptr, c_contacts, 4) && count >= 1, "contacts");
         for (int k = 0; k < count; k++) {
             const ccd::Contact &p = contacts[static_cast<std::size_t>(k)];
             CHECK(same(p.point1, c_contacts[k].point1) && same(p.point2, c_contacts[k].point2) &&

@@ -72,7 +72,7 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         case 6: code = OURS(ccdPenetrationProven)(&a, &b, &ccd, warm, CCD_WANT_ALL, &out); break;
         case 7: code = OURS(ccdPenetrationIncremental)(&a, &b, &ccd, warm, CCD_WANT_ALL, &out); break;
         case 8: code = OURS(ccdSignedDistance)(&a, &b, &ccd, (ccd_real_t).01, 0, (ccd_real_t)INFINITY, warm, CCD_WANT_ALL, &distance); break;
-        case 9: code = OURS(ccdContacts)(&a, &b, &ccd, &along, (ccd_real_t)1e-3, contact, 4); break;
+        case 9: code = OURS(ccdContacts)(&a, &b, &ccd, &along, (ccd_real_t)1e-3, NULL, contact, 4); break;
         case 10: code = OURS(ccdPenetration)(&a, &b, &ccd, warm, CCD_WANT_ALL, &out); break;
         case 11: code = OURS(ccdIntersect)(&a, &b, &ccd, warm); break;
         default: code = OURS(ccdMPRIntersect)(&a, &b, &ccd); break;

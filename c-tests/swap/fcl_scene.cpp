@@ -203,11 +203,11 @@ extern "C" int ccdSignedDistance(const void *a, const void *b, const ccd_t *ccd,
 }
 
 extern "C" int ccdContacts(const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
-                           ccd_contact_t *contacts, int max)
+                           ccd_manifold_t *memory, ccd_contact_t *contacts, int max)
 {
     ccd_t behind;
     return counted("ccdContacts", ccd, &behind, [&](void *next) {
-        return ((decltype(&ccdContacts))next)(a, b, &behind, normal, slop, contacts, max);
+        return ((decltype(&ccdContacts))next)(a, b, &behind, normal, slop, memory, contacts, max);
     });
 }
 #else

@@ -15,6 +15,7 @@
 static scene_t scene;
 static int convex;                 /* the class */
 static ccd_warm_t warm[SCENE_BODIES][SCENE_BODIES];
+static ccd_manifold_t memory[SCENE_BODIES][SCENE_BODIES];
 static int most = 1;               /* contacts of a pair */
 static unsigned long queries, supports, limits;
 
@@ -61,7 +62,7 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
     contact[0].point1 = hit.point1;
     contact[0].point2 = hit.point2;
     contact[0].depth = hit.depth;
-    n = max > 1 ? ccdContacts(&a, &b, &ccd, &hit.normal, SLOP, contact, max) : 1;
+    n = max > 1 ? ccdContacts(&a, &b, &ccd, &hit.normal, SLOP, i < j ? &memory[i][j] : &memory[j][i], contact, max) : 1;
     supports += a.calls;
     for (k = 0; k < n; k++) {
         dContactGeom *g = (dContactGeom *)((char *)out + written * skip);

@@ -509,14 +509,18 @@ fn contacts() {
     let (a, b) = (pointer(&mut obj1), pointer(&mut obj2));
     let settings = Settings::mpr();
     let normal = ccd_vec3_t { v: [0.0, 0.0, 3.0] };
-    for max in [1, 4, 9] {
+    let mut manifold = MaybeUninit::<ccd_manifold_t>::zeroed();
+    let manifold = manifold.as_mut_ptr();
+    // Without a memory, cold and warm.
+    for (max, memory) in [(1, null_mut()), (4, null_mut()), (9, manifold), (4, manifold)] {
         let mut out = vec![MaybeUninit::<ccd_contact_t>::uninit(); max];
         let room = out.as_mut_ptr().cast();
-        let n = unsafe { ccdContacts(a, b, settings.get(), &normal, 1e-3, room, max as c_int) };
+        let n = unsafe { ccdContacts(a, b, settings.get(), &normal, 1e-3, memory, room, max as c_int) };
         assert_eq!(n, max.min(4) as c_int);
         for contact in &out[..n as usize] {
             let contact = unsafe { contact.assume_init() };
             assert!((contact.depth - 0.01).abs() < TOLERANCE);
+            assert_eq!(contact.id == 0, memory.is_null());
         }
     }
     let mut strange = object(Shape::NotANumber, [0.0; 3]);
@@ -524,11 +528,11 @@ fn contacts() {
     let mut contact = MaybeUninit::<ccd_contact_t>::uninit();
     unsafe {
         let one = contact.as_mut_ptr();
-        let bad = ccdContacts(a, strange, settings.get(), &normal, 0.0, one, 1);
+        let bad = ccdContacts(a, strange, settings.get(), &normal, 0.0, null_mut(), one, 1);
         assert_eq!(bad, CCD_BAD_INPUT);
-        let bad = ccdContacts(a, b, settings.get(), null(), 0.0, one, 1);
+        let bad = ccdContacts(a, b, settings.get(), null(), 0.0, null_mut(), one, 1);
         assert_eq!(bad, CCD_BAD_INPUT);
-        let bad = ccdContacts(a, b, settings.get(), &normal, 0.0, room, 1);
+        let bad = ccdContacts(a, b, settings.get(), &normal, 0.0, null_mut(), room, 1);
         assert_eq!(bad, CCD_BAD_INPUT);
     }
 }

@@ -381,7 +381,7 @@ public:
         const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
         const std::size_t asked = std::min(std::min(room, settings.contacts_per_pair), MOST);
         ccd_contact_t found[MOST];
-        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.normal, slop_of(a_, b_, settings), found,
+        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.normal, slop_of(a_, b_, settings), nullptr, found,
                                                   static_cast<int>(asked))
                                     : 0;
         must_be_answered(count);

@@ -296,6 +296,27 @@ int ccdSignedDistance(const void *obj1,
 /* Contacts: where two objects touch. */
 
 /**
+ * How many numbers a ccd_manifold_t holds.
+ */
+#define CCD_MANIFOLD_REALS 141
+
+/**
+ * The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the
+ * others. All bytes zero is cold; plain data, to be copied and stored freely. It serves either
+ * order of the pair. A stale, foreign or random one costs time alone.
+ */
+typedef struct ccd_manifold_t {
+  /**
+   * Private.
+   */
+  float reals[CCD_MANIFOLD_REALS];
+  /**
+   * Private.
+   */
+  unsigned int words[10];
+} ccd_manifold_t;
+
+/**
  * One point of a contact manifold.
  */
 typedef struct ccd_contact_t {
@@ -312,6 +333,10 @@ typedef struct ccd_contact_t {
    * are apart.
    */
   ccd_real_t depth;
+  /**
+   * Its name, not 0, while it moves with obj1 or with obj2; 0 without a memory.
+   */
+  unsigned int id;
 } ccd_contact_t;
 
 /**
@@ -327,12 +352,15 @@ typedef struct ccd_contact_t {
  *
  * Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
  * Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
- * one point, midway between them. The region moves as the objects do. Points carry no names:
- * match those of two frames by position. For objects that are meant with margins, move the
- * points by them along the normal.
+ * one point, midway between them. The region moves as the objects do. For objects that are
+ * meant with margins, move the points by them along the normal.
+ *
+ * `memory`: NULL, or the pair's: an object that has the same face as the last time is asked
+ * half as often, and points keep their ids, so that a solver can begin with the impulses of
+ * the last frame. Which points are left where there are more than `max` then changes less.
  *
  * Reads no tolerance, centre or max_iterations; at most 24 support points of each object, 12
- * of a box. Allocates nothing.
+ * of a box; up to 10 more where a memory no longer fits. Allocates nothing.
  *
  * Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
  * that is zero, not finite or NULL, a slop that is negative or NaN, max < 1, no contacts, a
@@ -344,6 +372,7 @@ int ccdContacts(const void *obj1,
                 const ccd_t *ccd,
                 const ccd_vec3_t *normal,
                 ccd_real_t slop,
+                ccd_manifold_t *memory,
                 ccd_contact_t *contacts,
                 int max);
 

@@ -38,6 +38,8 @@
 //!
 //! *Reduction.* The deepest point stays; with it, those that span the largest area.
 
+use crate::contacts::again::{Known, Motion, Ring, short};
+use crate::contacts::memory::{Memory, Names};
 use crate::contacts::polygon::{
     Corner, Flat, Polygon, between, cross, dot, length, nearest_to, side,
 };
@@ -54,6 +56,8 @@ pub struct Contact {
     pub point2: Vec3,
     /// How deep the objects overlap there, metres; negative where they are apart.
     pub depth: Real,
+    /// Its name, as long as it moves with either body; 0 without a memory.
+    pub name: u32,
 }
 
 /// Support points of one object, at most: what its corners cost when there are eight, each
@@ -61,7 +65,7 @@ pub struct Contact {
 const SUPPORTS: u32 = 24;
 /// Corners of a face, at most. One more than eight: a face of eight is known to be one. A
 /// curved face has as many, whether its points had to be asked again or not.
-const CORNERS: usize = 9;
+pub const CORNERS: usize = 9;
 /// Corners of what two faces share: each side of the one adds at most one to the other's.
 pub const ROOM: usize = 2 * CORNERS;
 /// Tilt of the first directions: 14°. Less, and round objects seem to be smaller than the
@@ -77,7 +81,7 @@ const BIAS: Real = 1.0 / 4096.0;
 const PARALLEL: Real = 0.17;
 /// Cosine and sine of the first directions.
 #[allow(clippy::excessive_precision)] // In single precision.
-const CIRCLE: [Flat; 3] = [
+pub const CIRCLE: [Flat; 3] = [
     [1.0, 0.0],
     [-0.5, 0.866_025_403_784_438_6],
     [-0.5, -0.866_025_403_784_438_6],
@@ -85,31 +89,49 @@ const CIRCLE: [Flat; 3] = [
 
 /// The plane across the normal, and where its origin is.
 #[derive(Clone, Copy)]
-struct Plane {
-    n: Vec3,
-    e1: Vec3,
+pub struct Plane {
+    pub n: Vec3,
+    pub e1: Vec3,
     e2: Vec3,
     origin: Vec3,
 }
 
 impl Plane {
     /// With axes that turn as little as `n` does.
-    fn of(n: Vec3) -> Self {
-        let [e1, e2] = axes(&n);
+    fn of(n: &Vec3) -> Self {
+        let [e1, _] = axes(n);
+        Self::with(n, &e1)
+    }
+
+    /// With this first axis.
+    pub fn with(n: &Vec3, e1: &Vec3) -> Self {
         Self {
-            n,
-            e1,
-            e2,
+            n: *n,
+            e1: *e1,
+            e2: n.cross(e1),
             origin: Vec3::zeros(),
         }
     }
 
-    fn flat(&self, p: &Vec3) -> Flat {
+    pub fn flat(&self, p: &Vec3) -> Flat {
         let p = p - self.origin;
         [self.e1.dot(&p), self.e2.dot(&p)]
     }
 
-    fn height(&self, p: &Vec3) -> Real {
+    /// The support point of a face that looks along the normal (`sign` 1) or against it, in a
+    /// direction that is tilted `aside`.
+    pub fn ask<S: SupportMap>(&self, object: &S, sign: Real, aside: &Flat) -> Result<Vec3, Fault> {
+        let d = self.n * sign + self.e1 * aside[0] + self.e2 * aside[1];
+        let p = object.support(&(d / d.norm()));
+        // NaN ends here too; beyond that squares of squares overflow.
+        let q = p.norm_squared();
+        if !(q * q).is_finite() {
+            return Err(Fault::NonFinite);
+        }
+        Ok(p)
+    }
+
+    pub fn height(&self, p: &Vec3) -> Real {
         self.n.dot(&(p - self.origin))
     }
 
@@ -127,6 +149,9 @@ struct Sample {
     corner: Corner,
     /// The tilt of its direction.
     aside: Flat,
+    /// The tilt to find it by again, and how much farther it is found for each.
+    again: Flat,
+    radius: Real,
     /// Whether it is known where it is without a tilt.
     settled: bool,
     /// Whether nothing is beyond the side to the next sample, as far as can be asked.
@@ -141,16 +166,18 @@ impl Sample {
 }
 
 /// The face of one object.
-struct Face {
-    corners: Polygon<CORNERS>,
+pub struct Face {
+    pub corners: Polygon<CORNERS>,
     /// Height of the support plane along n.
-    top: Real,
+    pub top: Real,
     /// The slop in force.
-    slop: Real,
+    pub slop: Real,
     /// How far aside of a round corner the surface is as much as the slop low.
-    round: Real,
+    pub round: Real,
     /// What rounding can do to a coordinate.
-    rounding: Real,
+    pub rounding: Real,
+    /// What is kept of it.
+    pub ring: Ring,
 }
 
 /// The points of a contact.
@@ -189,15 +216,8 @@ struct Search<'a, S> {
 
 impl<S: SupportMap> Search<'_, S> {
     fn point(&mut self, aside: Flat) -> Result<Vec3, Fault> {
-        let plane = self.plane;
-        let d = plane.n * self.sign + plane.e1 * aside[0] + plane.e2 * aside[1];
-        let p = self.object.support(&(d / d.norm()));
+        let p = self.plane.ask(self.object, self.sign, &aside)?;
         self.asked += 1;
-        // NaN ends here too; beyond that squares of squares overflow.
-        let q = p.norm_squared();
-        if !(q * q).is_finite() {
-            return Err(Fault::NonFinite);
-        }
         self.rounding = larger(self.rounding, 8.0 * EPSILON * largest(&p));
         Ok(p)
     }
@@ -212,6 +232,7 @@ impl<S: SupportMap> Search<'_, S> {
             found,
             corner: found,
             aside,
+            again: aside,
             ..Sample::default()
         })
     }
@@ -421,6 +442,7 @@ impl<S: SupportMap> Search<'_, S> {
             let smooth = (there - back).abs() <= 0.5 * (there + back) + self.rounding;
             if moved * moved <= 0.5 * self.slop * self.size && smooth {
                 self.radius = larger(self.radius, radius);
+                (self.ring[i].again, self.ring[i].radius) = (full.aside, radius);
                 self.ring[i].corner = Corner {
                     at: between(&full.found.at, &near.found.at, 2.0),
                     low: larger((4.0 * near.found.low - full.found.low) / 3.0, 0.0),
@@ -445,18 +467,72 @@ impl<S: SupportMap> Search<'_, S> {
         }
         let found = self.ring.map(|s| s.corner);
         let found = found.get(..self.len).unwrap_or(&[]);
+        let corners = Polygon::hull(found, self.slop, self.flat());
         Ok(Face {
-            corners: Polygon::hull(found, self.slop, self.flat()),
+            ring: self.kept(&corners),
+            corners,
             top: self.top,
             slop: self.slop,
             round: (2.0 * self.radius * self.slop).sqrt(),
             rounding: self.rounding,
         })
     }
+
+    /// What is kept of the face.
+    fn kept(&self, corners: &Polygon<CORNERS>) -> Ring {
+        let mut ring = Ring::NONE;
+        let lows = corners.corners().iter().map(|c| c.low);
+        (ring.tilt, ring.slop) = (short(self.tilt), short(self.slop));
+        ring.excess = short(larger(lows.fold(Real::INFINITY, Real::min), 0.0));
+        ring.radius = short(self.radius);
+        ring.len = corners.corners().len() as f32;
+        // Of a full ring nobody knows what is between its corners.
+        ring.inscribed = f32::from(u8::from(self.len == CORNERS));
+        for (known, corner) in ring.corners.iter_mut().zip(corners.corners()) {
+            let samples = self.ring.iter().take(self.len);
+            let sample = samples.into_iter().find(|s| s.corner == *corner);
+            let sample = sample.copied().unwrap_or_default();
+            *known = Known {
+                at: corner.at.map(short),
+                low: short(corner.low),
+                aside: sample.again.map(short),
+                radius: short(sample.radius),
+            };
+        }
+        ring
+    }
+}
+
+/// A face of an object by what is kept of it, else from nothing, and how it moved.
+fn face<S: SupportMap>(
+    object: &S,
+    plane: &mut Plane,
+    sign: Real,
+    slop: Real,
+    ring: Option<&Ring>,
+) -> Result<(Face, Option<Motion>), Fault> {
+    // The first point is the origin of the plane.
+    let first = sign > 0.0;
+    if let Some(ring) = ring {
+        if let Some(asked) = ring.ask(object, plane, sign)? {
+            if first {
+                plane.origin = asked.first();
+            }
+            if let Some((face, motion)) = ring.recall(&asked, plane, sign) {
+                return Ok((face, Some(motion)));
+            }
+        }
+    }
+    let top = search(object, plane, sign).point([0.0; 2])?;
+    if first {
+        plane.origin = top;
+    }
+    Ok((search(object, plane, sign).face(top, slop)?, None))
 }
 
 /// The points in which the objects touch, as their faces that look along the unit vector
-/// `normal` and against it show, at most `max` of them. At most 24 support points of each.
+/// `normal` and against it show, at most `max` of them. At most 24 support points of each, and
+/// those that ask in vain for what the memory holds.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -465,45 +541,90 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     obj2: &B,
     normal: &Vec3,
     slop: Real,
+    memory: Option<&mut Memory>,
     max: usize,
 ) -> Result<Manifold, Fault> {
-    let mut plane = Plane::of(*normal);
-    let first = [
-        search(obj1, &plane, 1.0).point([0.0; 2])?,
-        search(obj2, &plane, -1.0).point([0.0; 2])?,
-    ];
-    plane.origin = first[0];
-    let one = search(obj1, &plane, 1.0).face(first[0], slop)?;
-    let two = search(obj2, &plane, -1.0).face(first[1], slop)?;
+    let mut known = memory.as_deref().copied();
+    let again = known.as_mut().and_then(|known| known.plane(normal, slop));
+    let rings = known.as_ref().filter(|_| again.is_some());
+    let [ring1, ring2] = [0, 1].map(|i| rings.map(|known| &known.rings()[i]));
+    let mut plane = again.unwrap_or_else(|| Plane::of(normal));
+    let (one, motion1) = face(obj1, &mut plane, 1.0, slop, ring1)?;
+    let (two, motion2) = face(obj2, &mut plane, -1.0, slop, ring2)?;
     let mut region = shared(&one, &two);
     for corner in region.corners_mut() {
         corner.low = one.corners.low(&corner.at) + two.corners.low(&corner.at);
     }
-    // Rounding alone makes no corner the deepest.
-    let tie = one.rounding + two.rounding;
-    let first = region.corners().first();
-    let (mut deepest, mut least) = (0, first.map_or(0.0, |corner| corner.low));
-    for (i, corner) in region.corners().iter().enumerate() {
-        if corner.low < least - tie {
-            (deepest, least) = (i, corner.low);
-        }
-    }
+    let names = known.as_ref().map_or(Names::NONE, |known| {
+        let slop = larger(one.slop, two.slop);
+        known.names([motion1, motion2], region.corners(), slop)
+    });
+    let chosen = chosen(&region, &names, max, one.rounding + two.rounding);
     let mut manifold = Manifold {
         contacts: [Contact::default(); ROOM],
         len: 0,
     };
-    let reduced = region.reduced(deepest, max);
-    for (contact, corner) in manifold.contacts.iter_mut().zip(reduced.corners()) {
+    let mut named = [([0.0; 2], 0); ROOM];
+    let places = manifold.contacts.iter_mut().zip(&mut named);
+    for ((contact, named), corner) in places.zip(chosen.corners()) {
         let point1 = plane.point(&corner.at, one.top - one.corners.low(&corner.at));
         let depth = one.top + two.top - corner.low;
+        let mut all = region.corners().iter();
+        let name = names.of(all.position(|c| c.at == corner.at).unwrap_or(ROOM));
+        let name = match &mut known {
+            Some(known) if name == 0 => known.name(),
+            _ => name,
+        };
+        *named = (corner.at, name);
         *contact = Contact {
             point1,
             point2: point1 - plane.n * depth,
             depth,
+            name,
         };
         manifold.len += 1;
     }
+    if let (Some(memory), Some(mut known)) = (memory, known) {
+        let named = named.get(..manifold.len).unwrap_or(&[]);
+        known.keep(&plane, slop, [one.ring, two.ring], named);
+        *memory = known;
+    }
     Ok(manifold)
+}
+
+/// At most `max` corners of the region, the deepest first. Those that have names stay while
+/// they span nine tenths of the largest area; differences by `tie` are rounding.
+fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: Real) -> Polygon<ROOM> {
+    let corners = region.corners();
+    // Rounding alone makes no corner the deepest.
+    let (mut deepest, mut least) = (0, corners.first().map_or(0.0, |corner| corner.low));
+    for (i, corner) in corners.iter().enumerate() {
+        if corner.low < least - tie {
+            (deepest, least) = (i, corner.low);
+        }
+    }
+    if let Some(i) = names.first() {
+        let still = corners.get(i).is_some_and(|c| c.low <= least + tie);
+        deepest = if still { i } else { deepest };
+    }
+    let best = region.reduced(deepest, max);
+    if corners.len() <= max || !names.has(deepest) {
+        return best;
+    }
+    let mut kept = Polygon::default();
+    for i in (deepest..corners.len()).chain(0..deepest) {
+        if names.has(i) {
+            kept.extend(corners.get(i..=i).unwrap_or(&[]));
+        }
+    }
+    let size = |p: &Polygon<ROOM>| match p.corners() {
+        [a, b] => length(&side(&a.at, &b.at)),
+        _ => p.area(),
+    };
+    if kept.corners().len() == best.corners().len() && size(&kept) >= 0.9 * size(&best) {
+        return kept;
+    }
+    best
 }
 
 /// A place in the ring that is in range whatever `i` is.
@@ -647,7 +768,7 @@ mod tests {
         let plate = placed(&plate, &turn, Vec3::z() * -0.5);
         let cube = corners(Vec3::new(1.0, 1.0, 0.5));
         let cube = placed(&cube, &turn.inverse(), Vec3::z() * 0.49);
-        contacts(&hull(&plate), &hull(&cube), &Vec3::z(), SLOP, max).unwrap()
+        contacts(&hull(&plate), &hull(&cube), &Vec3::z(), SLOP, None, max).unwrap()
     }
 
     #[test]
@@ -698,7 +819,7 @@ mod tests {
             );
             let slop = 0.6;
             let cube = placed(&corners(Vec3::repeat(0.5)), &turn.into(), Vec3::z());
-            let found = contacts(&hull(&plate), &hull(&cube), &Vec3::z(), slop, 4).unwrap();
+            let found = contacts(&hull(&plate), &hull(&cube), &Vec3::z(), slop, None, 4).unwrap();
             let deepest = found.contacts()[0].depth;
             assert!(
                 found
@@ -715,13 +836,13 @@ mod tests {
         let mut r = Random::new(5);
         for _ in 0..100 {
             let at = Vec3::new(r.within(-0.3, 0.3), r.within(-0.3, 0.3), 0.89);
-            let found = contacts(&hull(&plate), &ball(at, 0.4), &Vec3::z(), SLOP, 8).unwrap();
+            let found = contacts(&hull(&plate), &ball(at, 0.4), &Vec3::z(), SLOP, None, 8).unwrap();
             assert_eq!(found.contacts().len(), 1);
             let across = found.contacts()[0].point1 - at;
             assert!(across.xy().norm() < SLOP, "{across}");
             let way = Vec3::new(0.3, r.within(-0.3, 0.3), 0.0);
             let rod = capsule(at - way, at + way, 0.4);
-            let found = contacts(&hull(&plate), &rod, &Vec3::z(), SLOP, 8).unwrap();
+            let found = contacts(&hull(&plate), &rod, &Vec3::z(), SLOP, None, 8).unwrap();
             assert_eq!(found.contacts().len(), 2);
             for c in found.contacts() {
                 let across = (c.point1 - at).xy();
@@ -738,7 +859,7 @@ mod tests {
         for _ in 0..1000 {
             let n = r.direction();
             let m = (n + r.vector(1e-3)).normalize();
-            let (p, q) = (Plane::of(n), Plane::of(m));
+            let (p, q) = (Plane::of(&n), Plane::of(&m));
             assert!(p.e1.dot(&n).abs() + p.e2.dot(&n).abs() < 64.0 * EPSILON);
             assert!((p.e1.cross(&p.e2) - n).norm() < 64.0 * EPSILON);
             if n.dot(&Vec3::new(0.36, 0.48, 0.8)) > -0.9 {
