@@ -232,7 +232,16 @@ fn contacts(a: &Object, b: &Object, normal: &[Real; 3], slop: Real) -> (c_int, V
     // numbers, for which zero is a value.
     unsafe {
         let (a, b, room) = (pointer(a), pointer(b), out.as_mut_ptr().cast());
-        let code = ccdContacts(a, b, &ccd, &normal, slop, null_mut(), room, MOST_CONTACTS as c_int);
+        let code = ccdContacts(
+            a,
+            b,
+            &ccd,
+            &normal,
+            slop,
+            null_mut(),
+            room,
+            MOST_CONTACTS as c_int,
+        );
         let count = usize::try_from(code).unwrap_or(0).min(MOST_CONTACTS);
         (
             code,

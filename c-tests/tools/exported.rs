@@ -512,10 +512,26 @@ fn contacts() {
     let mut manifold = MaybeUninit::<ccd_manifold_t>::zeroed();
     let manifold = manifold.as_mut_ptr();
     // Without a memory, cold and warm.
-    for (max, memory) in [(1, null_mut()), (4, null_mut()), (9, manifold), (4, manifold)] {
+    for (max, memory) in [
+        (1, null_mut()),
+        (4, null_mut()),
+        (9, manifold),
+        (4, manifold),
+    ] {
         let mut out = vec![MaybeUninit::<ccd_contact_t>::uninit(); max];
         let room = out.as_mut_ptr().cast();
-        let n = unsafe { ccdContacts(a, b, settings.get(), &normal, 1e-3, memory, room, max as c_int) };
+        let n = unsafe {
+            ccdContacts(
+                a,
+                b,
+                settings.get(),
+                &normal,
+                1e-3,
+                memory,
+                room,
+                max as c_int,
+            )
+        };
         assert_eq!(n, max.min(4) as c_int);
         for contact in &out[..n as usize] {
             let contact = unsafe { contact.assume_init() };

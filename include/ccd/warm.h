@@ -298,7 +298,7 @@ int ccdSignedDistance(const void *obj1,
 /**
  * How many numbers a ccd_manifold_t holds.
  */
-#define CCD_MANIFOLD_REALS 141
+#define CCD_MANIFOLD_REALS 143
 
 /**
  * The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the
@@ -313,7 +313,7 @@ typedef struct ccd_manifold_t {
   /**
    * Private.
    */
-  unsigned int words[10];
+  unsigned int words[11];
 } ccd_manifold_t;
 
 /**

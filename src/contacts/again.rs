@@ -290,7 +290,9 @@ impl Ring {
         let flat = rounding + long(self.tilt) * slop;
         face.corners = Polygon::hull(all.get(..count)?, slop, flat);
         face.ring.radius = short(most);
-        face.round = (2.0 * most * slop).sqrt();
+        let least = corners.iter().map(|c| c.2).fold(most, Real::min);
+        let round = if count == 2 { least } else { most };
+        face.round = (2.0 * round * slop).sqrt();
         Some((face, motion))
     }
 

@@ -34,7 +34,7 @@
 //! the depth there. Segments that cross share a point. Nearly parallel ones share a strip
 //! as wide as the slop makes of the roundness: sqrt(2 R slop) aside of the middle a surface
 //! of radius R is as much as the slop low. Faces that share nothing have a nearest point
-//! each, and the middle of these is the contact.
+//! each; where these are no farther apart than the slop the middle of them is the contact, else the two are, though they do not lie over each other.
 //!
 //! *Reduction.* The deepest point stays; with it, those that span the largest area.
 
@@ -52,7 +52,7 @@ use core::mem::swap;
 pub struct Contact {
     /// On obj1, metres.
     pub point1: Vec3,
-    /// On obj2: `point1 - depth * normal`.
+    /// On obj2: `point1 - depth * normal`, unless the faces share nothing.
     pub point2: Vec3,
     /// How deep the objects overlap there, metres; negative where they are apart.
     pub depth: Real,
@@ -180,6 +180,19 @@ pub struct Face {
     pub ring: Ring,
 }
 
+impl Face {
+    /// How far aside of its corners it is no more than half the slop away; as far as it is round
+    /// for a line that is long for that: what looks round along a curved rim is not so across.
+    fn reach(&self) -> Real {
+        match self.corners.corners() {
+            [a, b] if length(&side(&a.at, &b.at)) > 2.0 * self.round => {
+                larger(self.round, 0.5 * self.slop)
+            }
+            _ => 0.5 * self.slop,
+        }
+    }
+}
+
 /// The points of a contact.
 #[derive(Clone, Copy)]
 pub struct Manifold {
@@ -200,8 +213,9 @@ struct Search<'a, S> {
     plane: &'a Plane,
     /// 1 where the face looks along n, -1 against it.
     sign: Real,
-    /// Height of the support plane, along the way the face looks.
+    /// Height of the support plane, along the way the face looks, and where it is met.
     top: Real,
+    first: Flat,
     slop: Real,
     size: Real,
     /// Tilt that finds corners.
@@ -262,6 +276,7 @@ impl<S: SupportMap> Search<'_, S> {
         self.rounding = 8.0 * EPSILON * largest(&first);
         self.top = self.sign * self.plane.height(&first);
         let at = self.plane.flat(&first);
+        self.first = at;
         let mut wide = [Sample::default(); 3];
         for (sample, way) in wide.iter_mut().zip(CIRCLE) {
             *sample = self.ask(way.map(|x| WIDE * x))?;
@@ -443,10 +458,13 @@ impl<S: SupportMap> Search<'_, S> {
             if moved * moved <= 0.5 * self.slop * self.size && smooth {
                 self.radius = larger(self.radius, radius);
                 (self.ring[i].again, self.ring[i].radius) = (full.aside, radius);
-                self.ring[i].corner = Corner {
-                    at: between(&full.found.at, &near.found.at, 2.0),
-                    low: larger((4.0 * near.found.low - full.found.low) / 3.0, 0.0),
-                };
+                self.ring[i].corner = self.inside(
+                    Corner {
+                        at: between(&full.found.at, &near.found.at, 2.0),
+                        low: larger((4.0 * near.found.low - full.found.low) / 3.0, 0.0),
+                    },
+                    &near.found,
+                );
                 break;
             }
             // Another corner; of two round ends of a line the half tilt finds the higher one.
@@ -455,6 +473,17 @@ impl<S: SupportMap> Search<'_, S> {
             aside = [0, 1].map(|k| aside[k] + way[k] / moved * lean);
         }
         Ok(())
+    }
+
+    /// The corner, if it is within the slop of the way from a point of the object to the highest;
+    /// else that point.
+    fn inside(&self, corner: Corner, near: &Corner) -> Corner {
+        let t = nearest_to(&corner.at, &near.at, &self.first);
+        let at = between(&near.at, &self.first, t);
+        if length(&side(&at, &corner.at)) <= self.slop {
+            return corner;
+        }
+        *near
     }
 
     fn face(mut self, first: Vec3, slop: Real) -> Result<Face, Fault> {
@@ -470,12 +499,26 @@ impl<S: SupportMap> Search<'_, S> {
         let corners = Polygon::hull(found, self.slop, self.flat());
         Ok(Face {
             ring: self.kept(&corners),
-            corners,
             top: self.top,
             slop: self.slop,
-            round: (2.0 * self.radius * self.slop).sqrt(),
+            round: (2.0 * self.roundness(&corners) * self.slop).sqrt(),
+            corners,
             rounding: self.rounding,
         })
+    }
+
+    /// The largest radius of its corners; of a segment that of the less round end.
+    fn roundness(&self, corners: &Polygon<CORNERS>) -> Real {
+        let [a, b] = corners.corners() else {
+            return self.radius;
+        };
+        let mut ends = [0.0; 2];
+        for sample in self.ring.iter().take(self.len) {
+            let [to_a, to_b] = [a, b].map(|end| length(&side(&sample.corner.at, &end.at)));
+            let end = &mut ends[usize::from(to_b < to_a)];
+            *end = larger(*end, sample.radius);
+        }
+        ends[0].min(ends[1])
     }
 
     /// What is kept of the face.
@@ -551,7 +594,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     let mut plane = again.unwrap_or_else(|| Plane::of(normal));
     let (one, motion1) = face(obj1, &mut plane, 1.0, slop, ring1)?;
     let (two, motion2) = face(obj2, &mut plane, -1.0, slop, ring2)?;
-    let mut region = shared(&one, &two);
+    let (mut region, beside) = shared(&one, &two);
     for corner in region.corners_mut() {
         corner.low = one.corners.low(&corner.at) + two.corners.low(&corner.at);
     }
@@ -567,8 +610,11 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     let mut named = [([0.0; 2], 0); ROOM];
     let places = manifold.contacts.iter_mut().zip(&mut named);
     for ((contact, named), corner) in places.zip(chosen.corners()) {
-        let point1 = plane.point(&corner.at, one.top - one.corners.low(&corner.at));
-        let depth = one.top + two.top - corner.low;
+        let [at1, at2] = beside.unwrap_or([corner.at; 2]);
+        let lows = [one.corners.low(&at1), two.corners.low(&at2)];
+        let point1 = plane.point(&at1, one.top - lows[0]);
+        let depth = one.top + two.top - lows[0] - lows[1];
+        let across = plane.point(&side(&at1, &at2), 0.0) - plane.origin;
         let mut all = region.corners().iter();
         let name = names.of(all.position(|c| c.at == corner.at).unwrap_or(ROOM));
         let name = match &mut known {
@@ -578,7 +624,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
         *named = (corner.at, name);
         *contact = Contact {
             point1,
-            point2: point1 - plane.n * depth,
+            point2: point1 - plane.n * depth + across,
             depth,
             name,
         };
@@ -638,6 +684,7 @@ fn search<'a, S>(object: &'a S, plane: &'a Plane, sign: Real) -> Search<'a, S> {
         plane,
         sign,
         top: 0.0,
+        first: [0.0; 2],
         slop: 0.0,
         size: 0.0,
         tilt: 0.0,
@@ -650,17 +697,19 @@ fn search<'a, S>(object: &'a S, plane: &'a Plane, sign: Real) -> Search<'a, S> {
     }
 }
 
-/// What the two faces share.
-fn shared(one: &Face, two: &Face) -> Polygon<ROOM> {
+/// What the two faces share; where that is nothing within the slop, the point between them, and
+/// the nearest point of each.
+fn shared(one: &Face, two: &Face) -> (Polygon<ROOM>, Option<[Flat; 2]>) {
     let rounding = one.rounding + two.rounding;
-    let (mut small, mut large, mut own) = (&one.corners, &two.corners, one.round);
-    if small.area() > large.area() {
-        (small, large, own) = (large, small, two.round);
+    let reach = [one.reach(), two.reach()];
+    let (mut small, mut large, mut own) = (&one.corners, &two.corners, reach[0]);
+    let swapped = small.area() > large.area();
+    if swapped {
+        (small, large, own) = (large, small, reach[1]);
     }
-    let round = one.round + two.round;
-    let slack = larger(one.slop, two.slop) + round;
+    let slack = reach[0] + reach[1];
     // A point between the two is to be on both: the rounder one reaches farther.
-    let share = if round > 0.0 { own / round } else { 0.5 };
+    let share = own / slack;
     let beside = |sides: &[[Flat; 2]; 2]| strip(sides, slack, share, rounding);
     let mut region: Polygon<ROOM> = Polygon::default();
     match (small.corners(), large.corners()) {
@@ -678,21 +727,25 @@ fn shared(one: &Face, two: &Face) -> Polygon<ROOM> {
         _ => {}
     }
     if !region.corners().is_empty() {
-        return Polygon::hull(region.corners(), rounding, rounding);
+        return (Polygon::hull(region.corners(), rounding, rounding), None);
     }
     let Some(near) = small.nearest(large) else {
-        return region;
+        return (region, None);
     };
-    if round > 0.0 {
+    if one.round + two.round > 0.0 {
         region.extend(beside(&near.sides).corners());
     }
-    if region.corners().is_empty() {
-        region.push(Corner {
-            at: between(&near.points[0], &near.points[1], 0.5),
-            low: 0.0,
-        });
+    if !region.corners().is_empty() {
+        return (region, None);
     }
-    region
+    let [a, b] = near.points;
+    region.push(Corner {
+        at: between(&a, &b, 0.5),
+        low: 0.0,
+    });
+    let far = near.apart > one.slop.min(two.slop);
+    let points = if swapped { [b, a] } else { [a, b] };
+    (region, far.then_some(points))
 }
 
 /// Where two segments cross, at more than an angle that makes them parallel.

@@ -110,7 +110,12 @@ impl Memory {
         self.axis.into_iter().for_each(&mut mix);
         mix(self.slop);
         self.rings.iter().for_each(|ring| ring.visit(&mut mix));
-        for (point, name) in self.points.iter().zip(&self.names).take(self.count as usize) {
+        for (point, name) in self
+            .points
+            .iter()
+            .zip(&self.names)
+            .take(self.count as usize)
+        {
             point.iter().copied().for_each(&mut mix);
             mix(f32::from_bits(*name));
         }
