@@ -252,10 +252,12 @@ fn yes_or_no_and_distance(
 
 fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
     let mut room = [Contact::default(); 4];
-    let found = ccd::contacts(a, b, DIR, 0.01, None, &mut room).expect("good input");
+    let mut memory = ccd::Manifold::default();
+    let found = ccd::contacts(a, b, DIR, 0.01, Some(&mut memory), &mut room).expect("good input");
     let (a, b) = (&raw const *a, &raw const *b);
     let dir = ccd_vec3_t { v: DIR };
     let mut out = [const { MaybeUninit::<ccd_contact_t>::uninit() }; 4];
+    let mut manifold = MaybeUninit::<ccd_manifold_t>::zeroed();
     // SAFETY: live objects of their types, room for four.
     let count = unsafe {
         ccdContacts(
@@ -264,7 +266,7 @@ fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
             c,
             &dir,
             0.01,
-            std::ptr::null_mut(),
+            manifold.as_mut_ptr(),
             out.as_mut_ptr().cast(),
             4,
         )
@@ -277,7 +279,7 @@ fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
             [contact.point1, contact.point2],
             [out.point1.v, out.point2.v]
         );
-        assert_eq!(contact.depth, out.depth);
+        assert_eq!((contact.depth, contact.id), (out.depth, out.id));
     }
 }
 

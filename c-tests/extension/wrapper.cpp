@@ -158,12 +158,14 @@ static void same_as_c()
 
         ccd_contact_t c_contacts[4];
         std::array<ccd::Contact, 4> contacts;
-        const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts);
-        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), nullptr, c_contacts, 4) && count >= 1, "contacts");
+        ccd::Manifold memory{};
+        ccd_manifold_t c_memory{};
+        const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts, &memory);
+        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), &c_memory, c_contacts, 4) && count >= 1, "contacts");
         for (int k = 0; k < count; k++) {
             const ccd::Contact &p = contacts[static_cast<std::size_t>(k)];
             CHECK(same(p.point1, c_contacts[k].point1) && same(p.point2, c_contacts[k].point2) &&
-                      p.depth == c_contacts[k].depth,
+                      p.depth == c_contacts[k].depth && p.id == c_contacts[k].id && p.id != 0,
                   "contact %d", k);
         }
 

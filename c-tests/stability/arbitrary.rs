@@ -238,7 +238,7 @@ fn contacts(a: &Object, b: &Object, normal: &[Real; 3], slop: Real) -> (c_int, V
             &ccd,
             &normal,
             slop,
-            null_mut(),
+            std::ptr::null_mut(),
             room,
             MOST_CONTACTS as c_int,
         );

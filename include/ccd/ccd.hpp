@@ -167,10 +167,10 @@ public:
 
 private:
     ccd_warm_t state_{};
+};
 
 /** What contacts of a pair leave for the next: a value, cold at first, for either order of the pair. */
 using Manifold = ccd_manifold_t;
-};
 
 /** What check found wrong with a shape. Lengths are metres. */
 struct Check {

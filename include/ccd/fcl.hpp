@@ -69,22 +69,38 @@ public:
         return &entry.warm;
     }
 
+    /** The memory of the pair's contacts, for ccdContacts, made where it is asked for; the same. */
+    ccd_manifold_t *contacts(const void *first, const void *second)
+    {
+        const bool ordered = std::less<const void *>()(first, second);
+        Manifold &entry = contacts_[ordered ? Key(first, second) : Key(second, first)];
+        entry.frame = frame_;
+        return &entry.memory;
+    }
+
     /** Drops the pairs that were not asked for since the last call: once a frame, and what
      * belongs to objects that are gone goes by itself. */
     void next_frame()
     {
-        drop([this](const Key &, const Entry &entry) { return entry.frame != frame_; });
+        drop(pairs_, [this](const Key &, unsigned long frame) { return frame != frame_; });
+        drop(contacts_, [this](const Key &, unsigned long frame) { return frame != frame_; });
         frame_++;
     }
 
     /** Drops the pairs of an object at once. Looks at every pair. */
     void forget(const void *object)
     {
-        drop([object](const Key &key, const Entry &) { return key.first == object || key.second == object; });
+        const auto of = [object](const Key &key, unsigned long) { return key.first == object || key.second == object; };
+        drop(pairs_, of);
+        drop(contacts_, of);
     }
 
     /** Drops everything. */
-    void clear() { pairs_.clear(); }
+    void clear()
+    {
+        pairs_.clear();
+        contacts_.clear();
+    }
 
     /** How many pairs there are. */
     std::size_t size() const { return pairs_.size(); }
@@ -94,6 +110,10 @@ private:
     struct Entry {
         ccd_warm_t warm = ccd_warm_t();
         bool ordered = true; /* the state's obj1 is the key's first */
+        unsigned long frame = 0;
+    };
+    struct Manifold {
+        ccd_manifold_t memory = ccd_manifold_t();
         unsigned long frame = 0;
     };
     struct Hash {
@@ -106,18 +126,19 @@ private:
         }
     };
 
-    template <typename Which>
-    void drop(Which which)
+    template <typename Map, typename Which>
+    static void drop(Map &map, Which which)
     {
-        for (auto it = pairs_.begin(); it != pairs_.end();) {
-            if (which(it->first, it->second))
-                it = pairs_.erase(it);
+        for (auto it = map.begin(); it != map.end();) {
+            if (which(it->first, it->second.frame))
+                it = map.erase(it);
             else
                 ++it;
         }
     }
 
     std::unordered_map<Key, Entry, Hash> pairs_;
+    std::unordered_map<Key, Manifold, Hash> contacts_;
     unsigned long frame_ = 0;
 };
 
@@ -376,12 +397,13 @@ public:
     /* The points where the faces lie over each other, the deepest first; without those at
      * which the objects are apart. The first has the depth of the objects: where none of the
      * points is as deep to a thousandth, it is the middle of the overlap. */
-    void add(std::size_t room, const Settings &settings)
+    template <typename Memory>
+    void add(std::size_t room, const Settings &settings, Memory memory)
     {
         const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
         const std::size_t asked = std::min(std::min(room, settings.contacts_per_pair), MOST);
         ccd_contact_t found[MOST];
-        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.normal, slop_of(a_, b_, settings), nullptr, found,
+        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.normal, slop_of(a_, b_, settings), memory(), found,
                                                   static_cast<int>(asked))
                                     : 0;
         must_be_answered(count);
@@ -433,11 +455,11 @@ bool is_ours(const fcl::CollisionGeometry<S> *a, const fcl::CollisionGeometry<S>
 /** @cond */
 namespace detail {
 
-/* Of two geometries that this library answers for. */
-template <typename S>
+/* Of two geometries that this library answers for. `memory` gives that of their contacts. */
+template <typename S, typename Memory>
 std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, const fcl::CollisionGeometry<S> *g2,
                     const fcl::Transform3<S> &tf2, const fcl::CollisionRequest<S> &request,
-                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings)
+                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings, Memory memory)
 {
     if (request.isSatisfied(result))
         return result.numContacts();
@@ -448,7 +470,7 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
     if (!overlap(a, b, ccd, request.enable_contact, warm, &hit))
         return result.numContacts();
     if (request.enable_contact)
-        Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings);
+        Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings, memory);
     else
         result.addContact(fcl::Contact<S>(g1, g2, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
     return result.numContacts();
@@ -472,7 +494,8 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
                     const fcl::Transform3<S> &tf2, const fcl::CollisionRequest<S> &request,
                     fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings = Settings())
 {
-    return detail::answers(g1, g2, request) ? detail::collide(g1, tf1, g2, tf2, request, result, warm, settings)
+    return detail::answers(g1, g2, request) ? detail::collide(g1, tf1, g2, tf2, request, result, warm, settings,
+                                                            [] { return static_cast<ccd_manifold_t *>(nullptr); })
                                             : fcl::collide(g1, tf1, g2, tf2, request, result);
 }
 
@@ -484,7 +507,8 @@ std::size_t collide(const fcl::CollisionObject<S> *o1, const fcl::CollisionObjec
 {
     const fcl::CollisionGeometry<S> *g1 = o1->collisionGeometry().get(), *g2 = o2->collisionGeometry().get();
     return detail::answers(g1, g2, request)
-               ? detail::collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result, cache.state(o1, o2), settings)
+               ? detail::collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result, cache.state(o1, o2), settings,
+                                 [&] { return cache.contacts(o1, o2); })
                : fcl::collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result);
 }
 

@@ -270,14 +270,14 @@ impl Ring {
             rounding,
             ring,
         };
-        let (mut all, mut most): ([Corner; CORNERS], Real) = (Default::default(), 0.0);
-        let known = face.ring.corners.iter_mut().zip(all.iter_mut());
-        for ((at, height, radius), (known, corner)) in corners.iter().zip(known) {
+        let mut most = 0.0;
+        for ((at, height, radius), known) in corners.iter().zip(&mut face.ring.corners) {
             let low = larger(top - height, 0.0);
             if !(top - height <= slop + rounding) {
                 return None;
             }
-            *corner = Corner { at: *at, low };
+            // In the order of the hull that they were.
+            face.corners.push(Corner { at: *at, low });
             let aside = known.aside.map(long);
             *known = Known {
                 at: at.map(short),
@@ -287,8 +287,6 @@ impl Ring {
             };
             most = larger(most, *radius);
         }
-        let flat = rounding + long(self.tilt) * slop;
-        face.corners = Polygon::hull(all.get(..count)?, slop, flat);
         face.ring.radius = short(most);
         let least = corners.iter().map(|c| c.2).fold(most, Real::min);
         let round = if count == 2 { least } else { most };
@@ -341,7 +339,8 @@ impl Ring {
     /// Each corner by its own direction, of a full ring, else by that of the side before it.
     fn polygon(&self, asked: &Asked, found: &[(Flat, Real); ASKS], next: &mut Heights) -> bool {
         let count = self.count();
-        for i in 0..count {
+        let asked = found.iter().zip(&asked.asides).enumerate();
+        for (i, ((at, height), aside)) in asked.take(count) {
             let j = if self.inscribed != 0.0 {
                 i
             } else if i + 1 < count {
@@ -349,11 +348,10 @@ impl Ring {
             } else {
                 0
             };
-            let ((at, height), aside) = (found[i], asked.asides[i]);
             let radius = long(self.corners[j].radius);
             next.corners[j] = (
                 [0, 1].map(|k| at[k] - radius * aside[k]),
-                height + 0.5 * radius * dot(&aside, &aside),
+                height + 0.5 * radius * dot(aside, aside),
                 radius,
             );
         }

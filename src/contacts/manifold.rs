@@ -181,6 +181,11 @@ pub struct Face {
 }
 
 impl Face {
+    /// How far below its support plane it is at a place.
+    fn low(&self, at: &Flat) -> Real {
+        self.corners.low(at, self.rounding)
+    }
+
     /// How far aside of its corners it is no more than half the slop away; as far as it is round
     /// for a line that is long for that: what looks round along a curved rim is not so across.
     fn reach(&self) -> Real {
@@ -596,7 +601,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     let (two, motion2) = face(obj2, &mut plane, -1.0, slop, ring2)?;
     let (mut region, beside) = shared(&one, &two);
     for corner in region.corners_mut() {
-        corner.low = one.corners.low(&corner.at) + two.corners.low(&corner.at);
+        corner.low = one.low(&corner.at) + two.low(&corner.at);
     }
     let names = known.as_ref().map_or(Names::NONE, |known| {
         let slop = larger(one.slop, two.slop);
@@ -611,7 +616,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     let places = manifold.contacts.iter_mut().zip(&mut named);
     for ((contact, named), corner) in places.zip(chosen.corners()) {
         let [at1, at2] = beside.unwrap_or([corner.at; 2]);
-        let lows = [one.corners.low(&at1), two.corners.low(&at2)];
+        let lows = [one.low(&at1), two.low(&at2)];
         let point1 = plane.point(&at1, one.top - lows[0]);
         let depth = one.top + two.top - lows[0] - lows[1];
         let across = plane.point(&side(&at1, &at2), 0.0) - plane.origin;

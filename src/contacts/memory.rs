@@ -9,7 +9,7 @@
 
 use crate::contacts::again::{Motion, Ring, long, short};
 use crate::contacts::manifold::{Plane, ROOM};
-use crate::contacts::polygon::{Corner, Flat, length, side};
+use crate::contacts::polygon::{Corner, Flat, dot, side};
 use crate::math::{Real, Vec3, larger};
 use core::mem::swap;
 
@@ -138,31 +138,35 @@ impl Memory {
     pub fn names(&self, motions: [Option<Motion>; 2], corners: &[Corner], slop: Real) -> Names {
         let mut names = Names::NONE;
         let root = corners.first().map_or([0.0; 2], |c| c.at);
-        let reach = corners.iter().map(|c| length(&side(&root, &c.at)));
-        let near = 0.25 * reach.fold(0.0, larger) + slop;
+        let square = |a: &Flat, b: &Flat| dot(&side(a, b), &side(a, b));
+        let reach = corners.iter().map(|c| square(&root, &c.at));
+        let near = 0.25 * reach.fold(0.0, larger).sqrt() + slop;
+        // The nearest of the old points to each corner, of which it is the nearest.
+        let mut nearest = [(near * near, NAMED); ROOM];
         let count = (self.count as usize).min(NAMED);
-        let mut left = [true; NAMED];
-        // The nearest two first.
-        for _ in 0..count {
-            let mut best = (near, None);
-            for (k, old) in self.points.iter().enumerate().take(count) {
-                let old = old.map(long);
-                for now in motions.iter().flatten().map(|m| m.of(&old)) {
-                    for (i, corner) in corners.iter().enumerate() {
-                        let apart = length(&side(&now, &corner.at));
-                        if left[k] && !names.has(i) && apart < best.0 {
-                            best = (apart, Some((k, i)));
-                        }
+        for (k, old) in self.points.iter().enumerate().take(count) {
+            let old = old.map(long);
+            let mut best = (near * near, ROOM);
+            for now in motions.iter().flatten().map(|m| m.of(&old)) {
+                for (i, corner) in corners.iter().enumerate() {
+                    let apart = square(&now, &corner.at);
+                    if apart < best.0 {
+                        best = (apart, i);
                     }
                 }
             }
-            let Some((k, i)) = best.1 else { break };
-            if let (Some(left), Some(name)) = (left.get_mut(k), names.of.get_mut(i)) {
-                *left = false;
-                *name = self.names.get(k).map_or(1, |name| (*name).max(1));
+            if let Some(nearest) = nearest.get_mut(best.1) {
+                if best.0 < nearest.0 {
+                    *nearest = (best.0, k);
+                }
             }
-            if k == 0 {
-                names.first = Some(i);
+        }
+        for (i, ((_, k), name)) in nearest.iter().zip(&mut names.of).enumerate() {
+            if let Some(old) = self.names.get(*k) {
+                *name = (*old).max(1);
+                if *k == 0 {
+                    names.first = Some(i);
+                }
             }
         }
         names

@@ -4,7 +4,7 @@
 //! Convex polygons in a plane, whose corners lie a little below it; segments and points
 //! are polygons of two corners and of one.
 
-use crate::math::Real;
+use crate::math::{Real, larger, lesser};
 use core::mem::swap;
 
 /// A point of the plane.
@@ -198,11 +198,18 @@ impl<const ROOM: usize> Polygon<ROOM> {
     }
 
     /// How far below the plane it is at a point of it: between its corners, as triangles
-    /// about the first of them span it.
-    pub fn low(&self, at: &Flat) -> Real {
+    /// about the first of them span it. Differences by `rounding` are none.
+    pub fn low(&self, at: &Flat, rounding: Real) -> Real {
         let Some(first) = self.corners().first() else {
             return 0.0;
         };
+        let (mut least, mut most) = (first.low, first.low);
+        for corner in self.corners() {
+            (least, most) = (lesser(corner.low, least), larger(corner.low, most));
+        }
+        if most - least <= rounding {
+            return least;
+        }
         let mut best = (Real::NEG_INFINITY, first.low);
         for (a, b) in self.sides() {
             let [u, v, p] = [&a.at, &b.at, at].map(|x| side(&first.at, x));
@@ -226,9 +233,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
             }
         }
         // A sliver cannot tell how high it is beside itself.
-        let lows = self.corners().iter().map(|c| c.low);
-        let least = lows.clone().fold(Real::INFINITY, Real::min);
-        best.1.max(least).min(lows.fold(least, Real::max))
+        best.1.max(least).min(most)
     }
 
     /// The two sides, of this polygon and of another, that are nearest to each other, and a
@@ -410,11 +415,11 @@ mod tests {
     #[test]
     fn low_is_linear_between_corners() {
         for at in [[0.1, 0.2], [-0.7, 0.9], [1.0, 1.0], [0.0, 0.0]] {
-            let low = square(0.0, 0.0, 1.0).low(&at);
+            let low = square(0.0, 0.0, 1.0).low(&at, 0.0);
             assert!((low - (at[0] + 2.0 * at[1])).abs() < 8.0 * EPSILON);
         }
-        assert!((polygon(&[[0.0, 0.0], [1.0, 0.0]]).low(&[0.25, 0.3]) - 0.25).abs() < EPSILON);
-        assert_eq!(polygon(&[[1.0, 1.0]]).low(&[5.0, 5.0]), 3.0);
+        assert!((polygon(&[[0.0, 0.0], [1.0, 0.0]]).low(&[0.25, 0.3], 0.0) - 0.25).abs() < EPSILON);
+        assert_eq!(polygon(&[[1.0, 1.0]]).low(&[5.0, 5.0], 0.0), 3.0);
     }
 
     #[test]
