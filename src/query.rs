@@ -452,7 +452,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         // Many triangles of a resting face prove the same: the one that needed no other
         // point stays.
         if !(middle.is_some() && state.rested() && asked == state.asks()) {
-            *state = State::proven(basis);
+            state.prove(basis);
         }
         if let Some(middle) = middle {
             state.rest(middle, basis.mark);

@@ -285,16 +285,22 @@ impl State {
     }
 
     /// The pair overlaps: its minimum is proven by support points along these directions.
-    pub fn proven(basis: &Basis) -> Self {
-        let mut state = Self::default();
+    pub fn prove(&mut self, basis: &Basis) {
+        // In its place: nothing is copied.
+        self.forget();
         if let Some((first, others)) = basis.directions().split_first() {
-            state = Self::of(PROVEN, *first);
-            for (slope, n) in state.memory.slopes.iter_mut().zip(others) {
+            self.kind = PROVEN;
+            self.memory.dir = *first;
+            for (slope, n) in self.memory.slopes.iter_mut().zip(others) {
                 *slope = *n;
             }
-            state.memory.drift = basis.hint as Real;
+            self.memory.drift = basis.hint as Real;
         }
-        state
+    }
+
+    /// Cold.
+    fn forget(&mut self) {
+        *self = Self::default();
     }
 
     /// The same, and it rests face on face: the middle of where it does, obj1's witness point, and

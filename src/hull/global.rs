@@ -228,7 +228,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// All that comes after the first support point.
     #[inline(never)]
     fn run(&mut self, first: &SupportPoint) -> Result<bool, Stop> {
-        let mut start = Handed::<{ FIRST.0 }>::EMPTY;
+        let mut start = None;
         if let Some(centre) = self.request.centre {
             // Where the first plane is as far as that the contact is a deep one.
             let depth = self.inquiry.lowest.depth;
@@ -238,13 +238,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 return Ok(true);
             }
         }
+        let start = start.get_or_insert(Handed::EMPTY);
         loop {
-            let known = !start.set.is_empty();
+            let known = start.known;
             let mut opposite = None;
             if !known {
                 opposite = self.begin(&mut start.set, first)?;
             }
-            let proven = self.expanded(&mut start, known, opposite)?;
+            let proven = self.expanded(start, opposite)?;
             if !known || self.is_deepest(&start.set) {
                 return Ok(proven);
             }
@@ -281,7 +282,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         &mut self,
         centre: &SupportPoint,
         first: &SupportPoint,
-        start: &mut Handed<{ FIRST.0 }>,
+        start: &mut Option<Handed<{ FIRST.0 }>>,
     ) -> Result<bool, Stop> {
         let Request {
             first: dir,
@@ -291,30 +292,35 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             ..
         } = self.request;
         self.inquiry.precision.note(centre);
-        let mut attempt = Try::new(&centre.v, dir, first);
+        let mut attempt = Try::new(&centre.v);
+        attempt.points.first(dir, first);
         if let Some(least) = attempt.run(&mut self.inquiry, limits, others, *hint)? {
             self.conclude_at_once(&attempt, centre, least);
             return Ok(true);
         }
         if !attempt.lies && attempt.is_honest(self.inquiry.precision.tie()) {
-            attempt.hand_over(centre, start);
+            attempt.hand_over(centre, start.insert(Handed::EMPTY));
         } else {
             self.forget(first);
         }
         Ok(false)
     }
 
-    /// The first tetrahedron, in one of the ways; `known`: with what a try has come to know.
+    /// The first tetrahedron, in one of the ways.
     #[inline(always)]
     fn first_tetrahedron<const P: usize>(
         &mut self,
         way: Way,
         start: &mut Handed<P>,
-        known: bool,
         skip: usize,
     ) -> Result<Option<[usize; 4]>, Stop> {
         let Handed {
-            set, names, ball, ..
+            set,
+            names,
+            low,
+            radius,
+            known,
+            ..
         } = start;
         let tolerance = self.tolerance();
         let gap = self.request.limits.gap;
@@ -322,12 +328,12 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Ok(match way {
             Way::Known if names[1] > 0 => Some(names.map(usize::from)),
             Way::Known => start::known(set),
-            Way::Ring if ball.0 > 0 => {
-                let ball = Ball::known(set, usize::from(ball.0), ball.1);
+            Way::Ring if *low > 0 => {
+                let ball = Ball::known(set, usize::from(*low), *radius);
                 let within = within(self.inquiry.lowest.depth);
                 Some(start::ring(&mut self.inquiry, set, &ball, within)?)
             }
-            Way::Ring if known => None,
+            Way::Ring if *known => None,
             Way::Ring => {
                 let warm = !self.request.cold();
                 start::ring_of_ball(&mut self.inquiry, set, warm, within)?
@@ -338,14 +344,12 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         })
     }
 
-    /// The answer of the hulls that begin in the ways there are; `known`: with those that a
-    /// try without one has come to know first.
+    /// The answer of the hulls that begin in the ways there are.
     #[inline(always)]
     fn expanded<const P: usize>(
         &mut self,
         start: &mut Handed<P>,
-        known: bool,
-        mut opposite: Option<SupportPoint>,
+        mut opposite: Option<[Vec3; 2]>,
     ) -> Result<bool, Stop> {
         let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
         // The index of `opposite`, once it is in the set.
@@ -357,11 +361,12 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 continue;
             }
             skip = begin_again(&mut start.set, skip);
-            let names = self.first_tetrahedron(way, start, known, skip)?;
+            let names = self.first_tetrahedron(way, start, skip)?;
             let Handed { set, rounds, .. } = &mut *start;
             // A point of the polytope like others from here on, but no corner of a portal.
             if names.is_some() || way == Way::Ring {
-                if let Some(point) = opposite.take() {
+                if let Some([v1, v2]) = opposite.take() {
+                    let point = SupportPoint { v: v1 - v2, v1, v2 };
                     skip = set.push(&-self.request.first, &point);
                 }
             }
@@ -419,8 +424,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let [a, b, c] = names.map(|names| points.witnesses(names));
         let point1 = barycentric::mix(&weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&weights, [&a[1], &b[1], &c[1]]);
-        let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
-        let extent = pressure::extent(asked.clone(), [&point1, &point2]);
+        let extent = match self.request.wants_pos {
+            true => points.extent([&point1, &point2]),
+            false => [0.0; 2],
+        };
         *self.hit = Penetration {
             depth,
             depth_lower: lower,
@@ -435,6 +442,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let Some(basis) = &mut self.basis {
             known.basis(portal, basis);
             if self.request.wants_pos {
+                let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
                 let all = asked.chain([[centre.v1, centre.v2]]);
                 basis.mark = mark::of(all.clone());
                 basis.unmoved = self.request.mark == Some(basis.mark) && mark::pins(all, true);
@@ -491,14 +499,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
 
     /// Puts the apex into the set as point 0, `first` as point 1, and the points that the last
     /// proof stood on. Where no centre is given the apex is the middle of `first` and the
-    /// support point opposite, which is returned. It is not in the set yet:
+    /// support point opposite, whose points of the objects are returned. It is not in the set yet:
     /// on a line with the apex and `first`, it makes no tetrahedron with them.
     #[inline(always)]
     fn begin<const P: usize>(
         &mut self,
         set: &mut SupportSet<P>,
         first: &SupportPoint,
-    ) -> Result<Option<SupportPoint>, Stop> {
+    ) -> Result<Option<[Vec3; 2]>, Stop> {
         let Request {
             centre,
             first: dir,
@@ -517,7 +525,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             let point = set.point(i);
             set.truncate(2);
             set.put(0, &Vec3::zeros(), &first.middle(&point));
-            opposite = Some(point);
+            opposite = Some([point.v1, point.v2]);
             // A cold query's first direction may have nothing to do with where the objects
             // are. Then it is only good for an apex, and the support point along the way from
             // there through the origin takes its place as point 1.
@@ -664,7 +672,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
         let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
         let points = (1..set.len()).map(|i| set.witnesses(i));
-        let extent = pressure::extent(points, [&point1, &point2]);
+        let extent = match self.request.wants_pos {
+            true => pressure::extent(points, [&point1, &point2]),
+            false => [0.0; 2],
+        };
         *self.hit = Penetration {
             depth,
             depth_lower: lower,

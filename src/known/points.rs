@@ -16,8 +16,8 @@ use crate::math::{Real, Vec3, larger};
 /// instructions, 12 cost warm ones 3 %.
 pub const ROOM: usize = 10;
 
-/// Points of one object, coordinate by coordinate. Where their number is odd the last one is there
-/// twice.
+/// Points of one object, coordinate by coordinate. The first one is there in all places that are not
+/// taken.
 struct Cloud([[[Real; 2]; ROOM / 2]; 3]);
 
 #[cfg(not(feature = "single"))]
@@ -36,20 +36,22 @@ fn named(x: Real, i: usize) -> Real {
 }
 
 impl Cloud {
+    const EMPTY: Self = Self([[[0.0; 2]; ROOM / 2]; 3]);
+
+    /// Of one point.
     #[inline(always)]
-    fn of(p: &Vec3) -> Self {
-        let mut cloud = Self([[[0.0; 2]; ROOM / 2]; 3]);
-        cloud.put(0, p);
-        cloud
+    fn fill(&mut self, p: &Vec3) {
+        self.0 = [
+            [[p.x; 2]; ROOM / 2],
+            [[p.y; 2]; ROOM / 2],
+            [[p.z; 2]; ROOM / 2],
+        ];
     }
 
     #[inline(always)]
     fn put(&mut self, i: usize, p: &Vec3) {
         let [x, y, z] = self.0.each_mut().map(|all| all.as_flattened_mut());
         let i = i.min(ROOM - 1);
-        (x[i], y[i], z[i]) = (p.x, p.y, p.z);
-        // Of an odd place itself.
-        let i = (i | 1).min(ROOM - 1);
         (x[i], y[i], z[i]) = (p.x, p.y, p.z);
     }
 
@@ -80,9 +82,6 @@ impl Cloud {
     /// `len` points.
     #[inline(always)]
     fn farthest(&self, n: &Vec3, len: usize) -> usize {
-        if len < 2 {
-            return 0;
-        }
         let mut best = [Real::NEG_INFINITY; 2];
         let [x, y, z] = &self.0;
         for i in 0..len.div_ceil(2).min(ROOM / 2) {
@@ -92,30 +91,43 @@ impl Cloud {
                 best[l] = larger(named(along, 2 * i + l), best[l]);
             }
         }
-        let name = larger(best[0], best[1]).to_bits() & 15;
-        (name as usize).min(len - 1)
+        let name = (larger(best[0], best[1]).to_bits() & 15) as usize;
+        // Beyond is the first one again.
+        if name < len { name } else { 0 }
     }
 
-    /// How much farther along a unit direction one of `len` points is than the point at place `i`, at
-    /// most, metres.
+    /// How much farther along a unit direction than `reach` one of `len` points is, metres: `beyond` grows
+    /// to that.
     #[inline(always)]
-    fn beyond(&self, n: &Vec3, len: usize, i: usize) -> Real {
-        let mut best = [Real::NEG_INFINITY; 2];
+    fn beyond(&self, n: &Vec3, len: usize, reach: Real, beyond: &mut [Real; 2]) {
         let [x, y, z] = &self.0;
         for i in 0..len.div_ceil(2).min(ROOM / 2) {
             let (x, y, z) = (x[i], y[i], z[i]);
             for l in 0..2 {
-                best[l] = larger(n.x * x[l] + n.y * y[l] + n.z * z[l], best[l]);
+                let along = n.x * x[l] + n.y * y[l] + n.z * z[l];
+                beyond[l] = larger(along - reach, beyond[l]);
             }
         }
-        larger(best[0], best[1]) - n.dot(&self.get(i))
+    }
+
+    /// The square of how far one of `len` points is from `p`, m².
+    #[inline(always)]
+    fn extent(&self, p: &Vec3, len: usize) -> Real {
+        let mut far2 = [0.0; 2];
+        let [x, y, z] = &self.0;
+        for i in 0..len.div_ceil(2).min(ROOM / 2) {
+            for l in 0..2 {
+                let (x, y, z) = (x[i][l] - p.x, y[i][l] - p.y, z[i][l] - p.z);
+                far2[l] = larger(x * x + y * y + z * z, far2[l]);
+            }
+        }
+        larger(far2[0], far2[1])
     }
 }
 
 /// What is known of the two objects: P is the difference of the points.
 pub struct Points {
     one: Cloud,
-    /// Of obj2, turned round.
     two: Cloud,
     /// How many points each object has; one that comes again counts once.
     lens: [usize; 2],
@@ -128,20 +140,25 @@ pub struct Points {
 }
 
 impl Points {
-    /// One point of each, found along `n`.
+    /// No point. (Made in its place and filled there it is not copied.)
+    pub const EMPTY: Self = Self {
+        one: Cloud::EMPTY,
+        two: Cloud::EMPTY,
+        lens: [0; 2],
+        names: [[0; 2]; ROOM],
+        found: [[0; ROOM]; 2],
+        directions: [Vec3::new(0.0, 0.0, 0.0); ROOM],
+        asked: 0,
+    };
+
+    /// The first point of each, found along `n`.
     #[inline(always)]
-    pub fn of(n: &Vec3, p: &SupportPoint) -> Self {
-        let mut directions = [Vec3::zeros(); ROOM];
-        directions[0] = *n;
-        Self {
-            one: Cloud::of(&p.v1),
-            two: Cloud::of(&-p.v2),
-            lens: [1; 2],
-            names: [[0; 2]; ROOM],
-            found: [[0; ROOM]; 2],
-            directions,
-            asked: 1,
-        }
+    pub fn first(&mut self, n: &Vec3, p: &SupportPoint) {
+        self.one.fill(&p.v1);
+        self.two.fill(&p.v2);
+        self.lens = [1; 2];
+        self.directions[0] = *n;
+        self.asked = 1;
     }
 
     /// Is there no room?
@@ -157,7 +174,7 @@ impl Points {
         let [one, two] = &mut self.lens;
         let [by_one, by_two] = &mut self.found;
         let i = self.one.add(one, &p.v1, k, by_one);
-        let j = self.two.add(two, &-p.v2, k, by_two);
+        let j = self.two.add(two, &p.v2, k, by_two);
         self.names[k] = [i as u8, j as u8];
         self.directions[k] = *n;
         self.asked = k + 1;
@@ -190,34 +207,42 @@ impl Points {
     /// The points of obj1 and of obj2 of these places.
     #[inline(always)]
     pub fn witnesses(&self, [i, j]: [usize; 2]) -> [Vec3; 2] {
-        [self.one.get(i), -self.two.get(j)]
+        [self.one.get(i), self.two.get(j)]
     }
 
     /// The point of P of these two.
     #[inline(always)]
     pub fn point(&self, [i, j]: [usize; 2]) -> Vec3 {
-        self.one.get(i) + self.two.get(j)
+        self.one.get(i) - self.two.get(j)
     }
 
     /// How far a known point of one of the objects lies beyond what a direction found of it, at most,
     /// metres.
-    #[inline(always)]
+    #[inline(never)]
     pub fn beyond(&self) -> Real {
-        let mut beyond = Real::NEG_INFINITY;
+        let mut beyond = [Real::NEG_INFINITY; 2];
         let [one, two] = self.lens;
-        for (n, found) in self.directions.iter().zip(&self.names).take(self.asked) {
-            let [i, j] = found.map(usize::from);
-            beyond = larger(self.one.beyond(n, one, i), beyond);
-            beyond = larger(self.two.beyond(n, two, j), beyond);
+        for (n, names) in self.directions.iter().zip(&self.names).take(self.asked) {
+            let [i, j] = names.map(usize::from);
+            let (m, [a, b]) = (-n, self.witnesses([i, j]));
+            self.one.beyond(n, one, n.dot(&a), &mut beyond);
+            self.two.beyond(&m, two, m.dot(&b), &mut beyond);
         }
-        beyond
+        larger(beyond[0], beyond[1])
+    }
+
+    /// The squares of how far the objects are known to reach from these points of theirs, m².
+    #[inline(never)]
+    pub fn extent(&self, [p, q]: [&Vec3; 2]) -> [Real; 2] {
+        let [one, two] = self.lens;
+        [self.one.extent(p, one), self.two.extent(q, two)]
     }
 
     /// The farthest point of P along a direction that need not be unit.
     #[inline(never)]
     pub fn extreme(&self, n: &Vec3) -> [usize; 2] {
         let [one, two] = self.lens;
-        [self.one.farthest(n, one), self.two.farthest(n, two)]
+        [self.one.farthest(n, one), self.two.farthest(&-n, two)]
     }
 }
 #[cfg(test)]
@@ -227,16 +252,16 @@ pub mod tests {
     use crate::shapes::Random;
 
     pub fn random_points(r: &mut Random, count: usize) -> Points {
-        let mut points = None;
-        for _ in 0..count {
+        let mut points = Points::EMPTY;
+        for k in 0..count {
             let (n, v1, v2) = (r.direction(), r.vector(1.0), r.vector(1.0));
             let point = SupportPoint { v: v1 - v2, v1, v2 };
-            match &mut points {
-                None => points = Some(Points::of(&n, &point)),
-                Some(points) => points.add(&n, &point),
+            match k {
+                0 => points.first(&n, &point),
+                _ => points.add(&n, &point),
             }
         }
-        points.unwrap()
+        points
     }
 
     #[test]
