@@ -107,6 +107,23 @@ pub fn cpp(source: &str) -> Program {
         .flag("-isystem/usr/include/eigen3")
 }
 
+/// Of each kind of body, on either library: how far FCL's contact positions are off, metres rms.
+pub fn fcl_positions() -> Vec<(String, Both<f64>)> {
+    let program = Swapped::new("FCL", cpp("fcl_position").library("fcl"), "0");
+    let told = |line: &&String| line.starts_with("position ");
+    let rms = |line: &String| -> (String, f64) {
+        let words: Vec<&str> = line.split(' ').collect();
+        (words[1].to_owned(), words[5].parse().expect("metres"))
+    };
+    let [theirs, ours] = program.run(&["1".to_owned(), "200".to_owned()]);
+    let both = theirs
+        .iter()
+        .filter(told)
+        .map(rms)
+        .zip(ours.iter().filter(told).map(rms));
+    both.map(|((kind, a), (_, b))| (kind, [a, b])).collect()
+}
+
 pub fn fcl_static() -> Swapped {
     Swapped::new("FCL", cpp("fcl_static").library("fcl"), "0")
 }

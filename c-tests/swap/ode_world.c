@@ -52,15 +52,15 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
     /* The pair's state, whichever order the broad phase hands the two over in. */
     if (i > j)
         ccdWarmFlip(&warm[j][i]);
-    code = ccdPenetrationLocal(&a, &b, &ccd, i < j ? &warm[i][j] : &warm[j][i], CCD_WANT_ALL, &hit);
+    code = ccdPenetrationLocal(&a, &b, &ccd, i < j ? &warm[i][j] : &warm[j][i],
+                               max > 1 ? 0 : CCD_WANT_POS, &hit);
     if (i > j)
         ccdWarmFlip(&warm[j][i]);
     queries++;
     limits += code == CCD_LIMIT;
     if (code != CCD_HIT && code != CCD_LIMIT)
         return 0;
-    contact[0].point1 = hit.point1;
-    contact[0].point2 = hit.point2;
+    contact[0].point1 = contact[0].point2 = hit.pos;
     contact[0].depth = hit.depth;
     n = max > 1 ? ccdContacts(&a, &b, &ccd, &hit.normal, SLOP, i < j ? &memory[i][j] : &memory[j][i], contact, max) : 1;
     supports += a.calls;

@@ -50,6 +50,17 @@ fn piles_must_pass(p: &Piles) {
     );
 }
 
+/// To 7 mm, as `pos` itself (`extension/pressure.c`); a point contact is where libccd has it.
+#[test]
+fn fcl_positions_are_the_centre_of_pressure() {
+    let all = checks::fcl_positions();
+    assert_eq!(all.len(), 6);
+    for (kind, [theirs, ours]) in all {
+        assert!(ours <= 0.007, "{kind}: {ours} m, libccd's {theirs}");
+        assert!(ours <= 0.1 * theirs || ours <= 1e-4, "{kind}: {ours}");
+    }
+}
+
 #[test]
 fn fcl_collide_and_signed_distance() {
     let lines = checks::fcl_static().run(&args(1, 20));
