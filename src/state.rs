@@ -327,7 +327,8 @@ fn flipped(hint: u32) -> Option<u32> {
         let both = hint >> (4 * i) & 15;
         both >> 2 | (both & 3) << 2
     };
-    (hint != 0).then(|| hint & !0xfff | corner(1) | corner(0) << 4 | corner(2) << 8)
+    (hint >= Basis::PORTAL)
+        .then(|| hint & !(Basis::PORTAL - 1) | corner(1) | corner(0) << 4 | corner(2) << 8)
 }
 
 #[cfg(test)]

@@ -14,10 +14,10 @@
 //! is not proven after a few goes to a hull, with all that is known.
 
 use crate::hull::expansion::Limits;
-use crate::hull::global::Basis;
+use crate::hull::global::{Basis, FIRST};
 use crate::hull::portal::{Plane, Portal, Step, View};
 use crate::hull::start::{self, Ball, Sample, TRIES};
-use crate::known::points::{Points, ROOM};
+use crate::known::points::Points;
 use crate::known::precision::Precision;
 use crate::known::support::{SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet};
@@ -40,6 +40,9 @@ const START: usize = Basis::ROOM - 1;
 /// instructions, with 7 1 % fewer, but ODE's cylinder errs along its axis more often; warm: with
 /// 1 to 4 within 1.4 %.
 const ROUNDS: [u64; 2] = [2, 5];
+
+/// What a hull keeps its points in.
+type Known = SupportSet<{ FIRST.0 }>;
 
 /// What counts for nothing.
 struct Sizes {
@@ -139,7 +142,7 @@ impl Try {
             }
         }
         let sizes = Sizes::of(&inquiry.precision, limits);
-        if hint != 0 {
+        if hint >= Basis::PORTAL {
             let portal = Portal::hinted(&self.points, hint);
             self.portal = Some(portal).filter(|portal| portal.is_pierced(&self.c));
         }
@@ -189,7 +192,7 @@ impl Try {
         if !(far > inquiry.beyond(n, answer)) {
             return Err(Stop::Apart(*n));
         }
-        let mut set = SupportSet::<{ ROOM + 2 }>::EMPTY;
+        let mut set = Known::EMPTY;
         set.push(&Vec3::zeros(), answer);
         for k in 0..points.asked() {
             let [v1, v2] = points.witnesses(points.names(k));
@@ -482,9 +485,9 @@ impl Try {
 
     /// What a hull may begin with.
     #[inline(never)]
-    pub fn hand_over<const P: usize>(&self, apex: &SupportPoint, to: &mut Handed<P>) {
+    pub fn hand_over(&self, apex: &SupportPoint, to: &mut Handed) {
         let points = &self.points;
-        let put = |set: &mut SupportSet<P>, n: &Vec3, names| {
+        let put = |set: &mut Known, n: &Vec3, names| {
             let [v1, v2] = points.witnesses(names);
             set.push(n, &SupportPoint { v: v1 - v2, v1, v2 })
         };
@@ -511,9 +514,9 @@ impl Try {
 }
 
 /// What a try leaves to a hull.
-pub struct Handed<const P: usize> {
+pub struct Handed {
     /// The apex, and the points asked for; and those of the portal's corners that are none.
-    pub set: SupportSet<P>,
+    pub set: Known,
     /// The corners of a tetrahedron to begin with; all 0 for none.
     pub names: [u16; 4],
     /// A ball that D looks like: the index of its lowest sample, 0 for none.
@@ -526,7 +529,7 @@ pub struct Handed<const P: usize> {
     pub known: bool,
 }
 
-impl<const P: usize> Handed<P> {
+impl Handed {
     /// Nothing.
     pub const EMPTY: Self = Self {
         set: SupportSet::EMPTY,
