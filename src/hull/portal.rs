@@ -301,10 +301,13 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Is it this far from the origin, metres?
+    /// Is it this far from the origin, metres, by more than what rounds? `tiny`: what three
+    /// products of lengths round by. The normal of a small triangle is off by as much as its corners
+    /// are, and that tells far from it.
     #[inline(always)]
-    pub fn reaches(&self, least: Real) -> bool {
-        self.d > 0.0 && self.d * self.d >= least * least * self.n2
+    pub fn reaches(&self, least: Real, tiny: Real) -> bool {
+        let d = self.d - tiny;
+        d > 0.0 && d * d >= least * least * self.n2
     }
 
     /// Is it too far from the origin for a shallow contact?
@@ -333,8 +336,8 @@ impl Inner<'_> {
     /// The normal of the sides points inwards.
     #[inline(always)]
     fn is_behind(&self, n: &Vec3, p: &Vec3) -> bool {
-        let d = -n.dot(p);
-        d > self.tiny && d * d >= self.least2 * n.norm_squared()
+        let d = -n.dot(p) - self.tiny;
+        d > 0.0 && d * d >= self.least2 * n.norm_squared()
     }
 
     /// The surface goes on beyond the edge from `a` to `b` with the face to the point of P farthest

@@ -340,11 +340,14 @@ impl Try {
             let Some(least) = least(lowest, &c, sizes) else {
                 break;
             };
-            if plane.reaches(least) && self.touch(&portal, &plane, lowest, least, sizes.tolerance) {
+            if plane.reaches(least, sizes.tiny)
+                && self.touch(&portal, &plane, lowest, least, sizes.tolerance)
+            {
                 self.portal = Some(portal);
                 let held = (settled || self.is_honest(sizes.tie))
                     && portal.holds(&self.points, &c, least, sizes.tiny);
-                return Ok(held.then_some(least));
+                // Rounded down by what was asked for beyond.
+                return Ok(held.then_some(least - sizes.tie));
             }
             if settled || plane.is_deep(inquiry.precision.size2()) {
                 break;
