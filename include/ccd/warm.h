@@ -325,7 +325,8 @@ typedef struct ccd_contact_t {
    */
   ccd_vec3_t point1;
   /**
-   * point1 - depth * normal; within slop of the surface of obj2.
+   * point1 - depth * normal; within slop of the surface of obj2. Of faces that do not lie over
+   * each other, the nearest point of obj2's face: aside of that.
    */
   ccd_vec3_t point2;
   /**
@@ -352,7 +353,7 @@ typedef struct ccd_contact_t {
  *
  * Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
  * Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
- * one point, midway between them. The region moves as the objects do. For objects that are
+ * one point, the nearest of each. The region moves as the objects do. For objects that are
  * meant with margins, move the points by them along the normal.
  *
  * `memory`: NULL, or the pair's: an object that has the same face as the last time is asked

@@ -111,7 +111,7 @@ pub struct Basis {
     /// The first so many of them.
     pub directions: [Vec3; Basis::ROOM],
     /// How many there are.
-    pub len: usize,
+    pub len: u16,
     /// Of the portal of a proof without a hull, of each corner the numbers of the directions that find
     /// obj1's point and obj2's, two bits each, below a bit that is set ([`Basis::PORTAL`]). Of a hull's,
     /// how many queries after it leave that out.
@@ -133,7 +133,7 @@ impl Basis {
 
     /// The directions.
     pub fn directions(&self) -> &[Vec3] {
-        &self.directions[..self.len.min(Self::ROOM)]
+        &self.directions[..usize::from(self.len).min(Self::ROOM)]
     }
 
     /// Keeps what the `others`, the state's other directions, found: each direction that was asked
@@ -156,9 +156,11 @@ impl Basis {
 
     /// Adds a direction, unless it is there, is zero, or there is no room.
     pub fn add(&mut self, n: &Vec3) {
-        if self.len < Self::ROOM && *n != Vec3::zeros() && !self.directions().contains(n) {
-            self.directions[self.len] = *n;
-            self.len += 1;
+        if *n != Vec3::zeros() && !self.directions().contains(n) {
+            if let Some(free) = self.directions.get_mut(usize::from(self.len)) {
+                *free = *n;
+                self.len += 1;
+            }
         }
     }
 }

@@ -472,15 +472,15 @@ impl Try {
         // Of each direction, two bits, the number that it has now. In the order in which they were
         // asked: the swapped pair's is the same.
         let mut numbers = 0_u32;
-        while left != 0 && basis.len < Basis::ROOM {
+        while left != 0 && usize::from(basis.len) < Basis::ROOM {
             let k = left.trailing_zeros();
-            basis.directions[basis.len] = points.direction(k as usize);
-            numbers |= (basis.len as u32) << (2 * k);
+            basis.directions[usize::from(basis.len) % Basis::ROOM] = points.direction(k as usize);
+            numbers |= u32::from(basis.len) << (2 * k);
             basis.len += 1;
             left &= left - 1;
         }
         // Where no room is left a portal of fewer is looked for.
-        if basis.len < Basis::ROOM {
+        if usize::from(basis.len) < Basis::ROOM {
             let all = by.as_flattened().iter().rev();
             basis.hint = all.fold(1, |hint, k| hint << 2 | numbers >> (2 * k) & 3);
         }

@@ -19,7 +19,8 @@ use crate::math::Real;
 pub struct ccd_contact_t {
     /// Within slop of the surface of obj1.
     pub point1: ccd_vec3_t,
-    /// point1 - depth * normal; within slop of the surface of obj2.
+    /// point1 - depth * normal; within slop of the surface of obj2. Of faces that do not lie over
+    /// each other, the nearest point of obj2's face: aside of that.
     pub point2: ccd_vec3_t,
     /// Metres: at least the support value of normal less 2 slop; negative where the objects
     /// are apart.
@@ -60,7 +61,7 @@ const _: () = {
 ///
 /// Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
 /// Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
-/// one point, midway between them. The region moves as the objects do. For objects that are
+/// one point, the nearest of each. The region moves as the objects do. For objects that are
 /// meant with margins, move the points by them along the normal.
 ///
 /// `memory`: NULL, or the pair's: an object that has the same face as the last time is asked
