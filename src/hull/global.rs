@@ -29,12 +29,11 @@ use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
 
-/// Points and faces of the first room, 3 KB: enough for shallow contacts. Measured: 16 points take 2 % less
-/// time on recorded contacts, and 200 bytes of stack more than there are.
+/// Points and faces of the first room, 3 KB: enough for shallow contacts.
 ///
 /// In each room, a closed surface of V points has 2V − 4 faces, and some are left over for a
 /// fan, which is made before the faces that it replaces are freed.
-pub const FIRST: (usize, usize) = (14, 32);
+pub const FIRST: (usize, usize) = (16, 32);
 /// Of the second, 5 KB (double): enough for most polytopes.
 const SECOND: (usize, usize) = (24, 48);
 /// Of the third, 30 KB: enough for the 160 support points of an MPR query, of which a few make no
@@ -136,17 +135,15 @@ impl Basis {
         &self.directions[..usize::from(self.len).min(Self::ROOM)]
     }
 
-    /// Keeps what the `others`, the state's other directions, found: each direction that was asked
-    /// after the first, and its points of the two objects.
+    /// Keeps what the other directions of the state found: they come after the apex and the first.
     #[cold]
     #[inline(never)]
-    fn keep_found(&mut self, asked: impl Iterator<Item = (Vec3, [Vec3; 2])>, others: &[Vec3]) {
-        let mut len = 0;
-        for ((found, n), (dir, points)) in self.found.iter_mut().zip(others).zip(asked) {
-            *found = points;
-            len += usize::from((dir - n).amax() < ALIKE);
+    fn keep_found<const P: usize>(&mut self, set: &SupportSet<P>, others: &[Vec3]) {
+        self.has_found = set.len() > Self::ROOM;
+        for ((found, n), i) in self.found.iter_mut().zip(others).zip(2..) {
+            *found = set.witnesses(i);
+            self.has_found &= (set.direction(i) - n).amax() < ALIKE;
         }
-        self.has_found = len == self.found.len();
     }
 
     /// What the other directions of the state found, if the position is asked by them.
@@ -465,12 +462,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let Some(basis) = &mut self.basis {
             known.basis(portal, basis);
             if self.request.wants_pos {
-                let witnesses = |k| points.witnesses(points.names(k));
-                if self.request.stands {
-                    let asked = (1..points.asked()).map(|k| (points.direction(k), witnesses(k)));
-                    basis.keep_found(asked, self.request.others);
-                }
-                let asked = (0..points.asked()).map(witnesses);
+                let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
                 let all = asked.chain([[centre.v1, centre.v2]]);
                 basis.mark = mark::of(all.clone());
                 basis.unmoved = self.request.mark == Some(basis.mark) && mark::pins(all, true);
@@ -723,9 +715,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let Some(basis) = &mut self.basis {
             if self.request.wants_pos {
                 if self.request.stands {
-                    // They come after the apex and the first.
-                    let asked = (2..set.len()).map(|i| (set.direction(i), set.witnesses(i)));
-                    basis.keep_found(asked, self.request.others);
+                    basis.keep_found(set, self.request.others);
                 }
                 let points = (0..set.len()).map(|i| set.witnesses(i));
                 basis.mark = mark::of(points.clone());
