@@ -512,7 +512,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         three
             .iter()
             .for_each(|i| stands.add(&around.directions[*i]));
-        state.stand(&stands, hit.pos);
+        *state = State::stand(&stands, hit.pos);
         self.face(state);
     }
 

@@ -235,11 +235,12 @@ impl State {
 
     /// The pair overlaps, and rests face on face: its minimum is proven by support points along these
     /// directions, of which all but the first are asked for the position too.
-    pub fn stand(&mut self, basis: &Basis, pos: Vec3) {
-        self.prove(basis);
+    pub fn stand(basis: &Basis, pos: Vec3) -> Self {
+        let mut state = Self::proven(basis);
         // What these find is not known to the last bit: no mark is that of another pose.
-        self.rest(pos, 0);
-        self.marks |= STANDS;
+        state.rest(pos, 0);
+        state.marks |= STANDS;
+        state
     }
 
     /// Its [`Basis::mark`], if it did.
