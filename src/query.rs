@@ -289,7 +289,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         if wants_pos {
             let centre = self.centre.as_ref();
-            hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, None, None)?;
+            hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, &[], None)?;
         }
         Ok(Answer::Hit(hit))
     }
@@ -312,7 +312,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         match answer {
             Answer::Hit(mut hit) if wants_pos => {
                 let centre = self.centre.as_ref();
-                hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, None, None)?;
+                hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, &[], None)?;
                 Ok(Answer::Hit(hit))
             }
             other => Ok(other.in_the_middle()),
@@ -412,10 +412,30 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         });
         match found {
             Ok(true) => {
+                let asked = self.md.supports();
+                let mut around = Around {
+                    low: 0.25 * larger(limits.tolerance, limits.gap * hit.depth),
+                    ..Around::default()
+                };
                 if wants_pos {
-                    self.place(state, &basis, &mut hit, limits)?;
-                } else {
-                    self.keep(state, &basis, None, 0);
+                    hit.pos = match state.position().filter(|_| basis.unmoved) {
+                        Some(pos) => pos,
+                        None => {
+                            let around = self.lasting.then_some(&mut around);
+                            let known = if request.stands {
+                                &basis.asked[..]
+                            } else {
+                                &[]
+                            };
+                            let (centre, tolerance) = (self.centre.as_ref(), limits.tolerance);
+                            pressure::centre(&self.md, &hit, centre, tolerance, known, around)?
+                        }
+                    };
+                }
+                self.keep(state, &basis, wants_pos.then_some(hit.pos), asked);
+                let new = self.md.supports() > asked + 1;
+                if new && self.lasting && around.directions[0] != Vec3::zeros() {
+                    self.stand_on(state, &around, &hit);
                 }
                 Ok(Answer::Hit(hit))
             }
@@ -458,37 +478,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             state.rest(middle, basis.mark);
         }
         self.face(state);
-    }
-
-    /// The position of a hit, and what its state keeps. (Not in the frame that the search runs in.)
-    #[inline(never)]
-    fn place(
-        &self,
-        state: &mut State,
-        basis: &Basis,
-        hit: &mut Penetration,
-        limits: &Limits,
-    ) -> Result<(), Fault> {
-        let asked = self.md.supports();
-        let mut around = Around {
-            low: 0.25 * larger(limits.tolerance, limits.gap * hit.depth),
-            ..Around::default()
-        };
-        hit.pos = match state.position().filter(|_| basis.unmoved) {
-            Some(pos) => pos,
-            None => {
-                let known = (state.others(), basis.found());
-                let known = (!known.1.is_empty()).then_some(&known);
-                let around = self.lasting.then_some(&mut around);
-                let (centre, tolerance) = (self.centre.as_ref(), limits.tolerance);
-                pressure::centre(&self.md, hit, centre, tolerance, known, around)?
-            }
-        };
-        self.keep(state, basis, Some(hit.pos), asked);
-        if self.md.supports() > asked + 1 && around.directions[0] != Vec3::zeros() {
-            self.stand_on(state, &around, hit);
-        }
-        Ok(())
     }
 
     /// Where the four points around the deepest place lie in one face of D, three of them prove the

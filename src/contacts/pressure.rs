@@ -84,8 +84,8 @@ const CIRCLE: [Flat; WAYS] = {
     ]
 };
 
-/// Directions and the points of both objects that were found along them.
-pub type Asked<'a> = (&'a [Vec3], &'a [[Vec3; 2]]);
+/// A unit direction, zero for none, and the support point of D that was found along it.
+pub type Asked = (Vec3, SupportPoint);
 /// A point that was found no farther aside of a direction than this, in tilts, is the one that would
 /// be found there: less than the ÷1.2 and ×1.2 of [`TILT`] that are seen.
 const SAME: Real = 0.1;
@@ -124,12 +124,17 @@ impl View {
         &self,
         md: &MinkowskiDifference<A, B>,
         k: usize,
-        known: Option<&Asked>,
+        known: &[Asked],
     ) -> Result<[Corner; 2], Fault> {
         let [x, y] = CIRCLE[k % WAYS];
         let [e1, e2] = &self.axes;
         let d = self.direction(k);
-        let [v1, v2] = match known.and_then(|known| self.seen(known, &d)) {
+        let seen = if known.is_empty() {
+            None
+        } else {
+            self.seen(known, &d)
+        };
+        let [v1, v2] = match seen {
             Some(points) => points,
             None => {
                 let point = md.support(&d)?;
@@ -151,10 +156,11 @@ impl View {
     /// What was found about there.
     #[cold]
     #[inline(never)]
-    fn seen(&self, (directions, points): &Asked, d: &Vec3) -> Option<[Vec3; 2]> {
+    fn seen(&self, known: &[Asked], d: &Vec3) -> Option<[Vec3; 2]> {
         let near2 = SAME * SAME * self.tilt * self.tilt;
-        let is_same = |n: &Vec3| (d - n).norm_squared() <= near2;
-        points.get(directions.iter().position(is_same)?).copied()
+        let is_same = |(n, _): &&Asked| (d - n).norm_squared() <= near2;
+        let (_, point) = known.iter().find(is_same)?;
+        Some([point.v1, point.v2])
     }
 
     /// The `k`th direction, unit to its last bits.
@@ -193,7 +199,7 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     hit: &Penetration,
     centre: Option<&SupportPoint>,
     tolerance: Real,
-    known: Option<&Asked>,
+    known: &[Asked],
     around: Option<&mut Around>,
 ) -> Result<Vec3, Fault> {
     let n = hit.normal;
@@ -235,7 +241,7 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     if is_beyond[0] || is_beyond[1] {
         let mut between = [[Corner::default(); HALF]; 2];
         for i in 0..HALF {
-            let [p, q] = view.ask(md, 2 * i + 1, None)?;
+            let [p, q] = view.ask(md, 2 * i + 1, &[])?;
             between[0][i] = p;
             between[1][(i + HALF / 2) % HALF] = q;
         }

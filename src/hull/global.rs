@@ -17,7 +17,7 @@
 //! only then, and at last to a block that the caller lends ([`Arena`]), if it does.
 
 use crate::contact::Penetration;
-use crate::contacts::pressure;
+use crate::contacts::pressure::{self, Asked};
 use crate::gjk::barycentric;
 use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
@@ -27,7 +27,7 @@ use crate::hull::start::{self, Ball};
 use crate::known::mark;
 use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
-use crate::math::{EPSILON, Real, Vec3, larger, unit};
+use crate::math::{Real, Vec3, larger, unit};
 
 /// Points and faces of the first room, 3 KB: enough for shallow contacts.
 ///
@@ -100,9 +100,6 @@ impl Request<'_> {
     }
 }
 
-/// Unit vectors that are made unit again differ by less.
-const ALIKE: Real = 16.0 * EPSILON;
-
 /// The directions that a proof stands on, for the next query of the pair: unit, the minimum's
 /// first, then those that found the corners of the polytope's nearest face.
 #[derive(Clone, Copy, Debug, Default)]
@@ -119,9 +116,8 @@ pub struct Basis {
     pub mark: u64,
     /// Has the pair not moved since the state was left?
     pub unmoved: bool,
-    /// What the other directions of the state found, if the position is asked by them.
-    found: [[Vec3; 2]; Basis::ROOM - 1],
-    has_found: bool,
+    /// What the directions of the state found, if the position is asked by them.
+    pub asked: [Asked; Basis::ROOM],
 }
 
 impl Basis {
@@ -133,22 +129,6 @@ impl Basis {
     /// The directions.
     pub fn directions(&self) -> &[Vec3] {
         &self.directions[..usize::from(self.len).min(Self::ROOM)]
-    }
-
-    /// Keeps what the other directions of the state found: they come after the apex and the first.
-    #[cold]
-    #[inline(never)]
-    fn keep_found<const P: usize>(&mut self, set: &SupportSet<P>, others: &[Vec3]) {
-        self.has_found = set.len() > Self::ROOM;
-        for ((found, n), i) in self.found.iter_mut().zip(others).zip(2..) {
-            *found = set.witnesses(i);
-            self.has_found &= (set.direction(i) - n).amax() < ALIKE;
-        }
-    }
-
-    /// What the other directions of the state found, if the position is asked by them.
-    pub fn found(&self) -> &[[Vec3; 2]] {
-        if self.has_found { &self.found } else { &[] }
     }
 
     /// Adds a direction, unless it is there, is zero, or there is no room.
@@ -715,7 +695,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let Some(basis) = &mut self.basis {
             if self.request.wants_pos {
                 if self.request.stands {
-                    basis.keep_found(set, self.request.others);
+                    for (i, asked) in (1..set.len()).zip(&mut basis.asked) {
+                        *asked = (set.direction(i), set.point(i));
+                    }
                 }
                 let points = (0..set.len()).map(|i| set.witnesses(i));
                 basis.mark = mark::of(points.clone());
