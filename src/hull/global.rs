@@ -17,7 +17,7 @@
 //! only then, and at last to a block that the caller lends ([`Arena`]), if it does.
 
 use crate::contact::Penetration;
-use crate::contacts::pressure::{self, Asked};
+use crate::contacts::pressure;
 use crate::gjk::barycentric;
 use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
@@ -89,8 +89,6 @@ pub struct Request<'a> {
     pub wants_pos: bool,
     /// The [`Basis::mark`] of when the pair's position was asked for last.
     pub mark: Option<u64>,
-    /// Are the others those that the position is asked by?
-    pub stands: bool,
 }
 
 impl Request<'_> {
@@ -116,8 +114,6 @@ pub struct Basis {
     pub mark: u64,
     /// Has the pair not moved since the state was left?
     pub unmoved: bool,
-    /// What the directions of the state found, if the position is asked by them.
-    pub asked: [Asked; Basis::ROOM],
 }
 
 impl Basis {
@@ -694,11 +690,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         if let Some(basis) = &mut self.basis {
             if self.request.wants_pos {
-                if self.request.stands {
-                    for (i, asked) in (1..set.len()).zip(&mut basis.asked) {
-                        *asked = (set.direction(i), set.point(i));
-                    }
-                }
                 let points = (0..set.len()).map(|i| set.witnesses(i));
                 basis.mark = mark::of(points.clone());
                 basis.unmoved = self.request.mark == Some(basis.mark)
@@ -813,7 +804,6 @@ mod tests {
             limits: &limits,
             wants_pos: true,
             mark: None,
-            stands: false,
         };
         let mut hit = Penetration::default();
         let mut heap = Heap(None);
@@ -845,7 +835,6 @@ mod tests {
             limits: &limits,
             wants_pos: false,
             mark: None,
-            stands: false,
         };
         let mut hit = Penetration::default();
         let proven = minimum(inquiry, &point, &request, None, None, &mut hit);
