@@ -667,7 +667,7 @@ impl Exact {
     }
 
     /// The model's minimum near the best direction.
-    #[inline(always)]
+    #[inline(never)]
     fn lowest(&mut self) {
         let b = self.best().n;
         let radius = self.trust.radius;
@@ -796,7 +796,7 @@ impl Exact {
     }
 
     /// The answer at a sample, with witness points, if the active points show them.
-    #[inline(always)]
+    #[inline(never)]
     fn conclude(&mut self, at: usize, known: &mut Known) -> bool {
         let at = &self.samples[at % LATEST];
         let step = &self.step;
