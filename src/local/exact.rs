@@ -651,7 +651,7 @@ impl Exact {
     }
 
     /// The chart of unit `b`, and the cuts in it.
-    #[inline(always)]
+    #[inline(never)]
     fn chart(&mut self, b: &Vec3) {
         self.b = *b;
         (self.e1, self.e2) = basis(b);

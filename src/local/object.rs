@@ -376,7 +376,7 @@ impl Object {
 
     /// Takes a new point, the vertex in place `twin` if known; returns its place. `best`: the best
     /// direction. `kept`: the place that must stay. `None`: it contradicts what is known.
-    #[inline(always)]
+    #[inline(never)]
     pub fn take(
         &mut self,
         new: &Seen,
