@@ -214,7 +214,7 @@ impl Object {
     }
 
     /// What a new point shows with those before.
-    #[inline(always)]
+    #[inline(never)]
     pub fn learn(&self, best: usize, new: &Seen, same: &Same) -> Shown {
         if self.is_round() {
             return Shown::Nothing;
