@@ -6,7 +6,7 @@
 //!
 //! The portal, a triangle of P that the ray from the apex c through the origin passes, is found in P
 //! ([`View`]), and moved outwards until it lies in P's surface, which is MPR's refinement
-//! ([`Portal::refine`]). Of a flat face its normal comes from the face's own corners, to
+//! ([`Portal::advance`]). Of a flat face its normal comes from the face's own corners, to
 //! rounding, whatever the other object is.
 //!
 //! Where its plane, and the three planes through c and two of its corners, are at least r from the
@@ -29,8 +29,8 @@ const NEARER: Real = 0.999;
 /// Faces beyond each other on one side of the portal, at most. Insensitive: 2 to 8 tried, within 0.5 % of
 /// the instructions.
 const DEEP: usize = 4;
-/// The share of the size up to which a depth is shallow. Measured in the prototype: deep pairs take a
-/// quarter more time where these are tried too.
+/// The share of the size up to which a depth is shallow. Measured on a first version: deep pairs took
+/// a quarter more time where these were tried too.
 const SHALLOW: Real = 0.05;
 
 /// A triangle of points of P, counter-clockwise as seen from outside.
