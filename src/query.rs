@@ -34,7 +34,7 @@ use crate::hull::global::{self, Arena, Basis, Request};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::local::{self, Memory};
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::paper::along;
 use crate::paper::incremental::{self, Shortcut};
 use crate::paper::planar;
@@ -480,18 +480,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let level = Settings {
             tolerance: limits.tolerance * 0.01,
-            max_iterations: left,
+            max_iterations: left.min(BUDGET),
         };
         let mut memory = Memory::towards(hit.normal);
         let mut known = Known::default();
         let mut floor = Penetration::default();
-        match self.search(
-            &mut memory,
-            left.min(BUDGET),
-            &level,
-            &mut known,
-            &mut floor,
-        ) {
+        match self.local_minimum(&mut memory, &level, &mut known, &mut floor) {
             Ok(minimum) if floor.depth < hit.depth => {
                 // The polytope's witness points are points of the objects, the local search's lie on
                 // the planes, and beside their objects where it found no minimum: there means of the
@@ -504,8 +498,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                     (floor.point1, floor.point2) = (hit.point1, hit.point2);
                 } else if !minimum {
                     let open = larger(floor.depth - hit.depth_lower, near);
-                    if let Some(own) = own_witnesses(known.points(), &floor, open) {
-                        (floor.point1, floor.point2) = own;
+                    match own_witnesses(known.points(), &floor, open) {
+                        Some(own) => (floor.point1, floor.point2) = own,
+                        None => return Ok(()),
                     }
                 }
                 *hit = Penetration {
@@ -533,13 +528,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             || self.search_on(memory, settings, known, hit)?)
     }
 
-    /// Goes on from a search that stalled. After each there are three cases:
-    ///
-    /// - It ended at a minimum, no higher than what was met before: the answer.
-    /// - It stalled, lower than before: the floor of a long valley bends away from any straight
-    ///   step. It goes on from there, and nothing is remembered.
-    /// - It stalled no lower, or ended higher: it starts again beside the lowest place met, in
-    ///   each of the [`RESTARTS`]. After these the paper's method goes on from there.
+    /// Goes on from a search that stalled: from the lowest place it met, as long as that is lower than
+    /// before; then by the paper's method.
     #[cold]
     #[inline(never)]
     fn search_on(
@@ -551,49 +541,38 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<bool, Stop> {
         let most = settings.max_iterations;
         let mut left = most;
-        let mut ended = false;
-        let mut lowest: Option<Penetration> = None;
-        let mut restarts = RESTARTS.iter();
+        let mut before = Real::INFINITY;
         // Ends: `left` falls.
         loop {
             left = left.saturating_sub(hit.iterations.max(1));
-            hit.iterations = most - left;
             // Depths that differ by less are the same.
             let reach = larger(hit.point1.norm(), hit.point2.norm());
-            let level = larger(settings.tolerance, rounding(reach));
-            let before = lowest.map_or(Real::INFINITY, |low| low.depth);
-            if ended && hit.depth <= before + level {
+            let lower = hit.depth < before - larger(settings.tolerance, rounding(reach));
+            if !lower || left == 0 {
+                break;
+            }
+            before = hit.depth;
+            *memory = Memory::towards(hit.normal);
+            if self.search(memory, left.min(BUDGET), settings, known, hit)? {
+                hit.iterations += most - left;
                 return Ok(true);
             }
-            let start = if !ended && hit.depth <= before - level {
-                lowest = Some(*hit);
-                restarts = RESTARTS.iter();
-                hit.normal
-            } else if let (Some(way), Some(low)) = (restarts.next(), &lowest) {
-                beside(&low.normal, *way)
-            } else {
-                break;
-            };
-            if left == 0 {
-                *hit = lowest.unwrap_or(*hit);
-                return Ok(false);
-            }
-            *memory = Memory::towards(start);
-            ended = self.search(memory, left.min(BUDGET), settings, known, hit)?;
         }
-        let Some(low) = lowest else {
-            return Ok(ended);
-        };
+        hit.iterations = most - left;
+        if left == 0 {
+            return Ok(false);
+        }
         let rest = Settings {
             max_iterations: left,
             ..*settings
         };
-        let last = incremental::penetration(&self.md, low.normal, Shortcut::Always, &rest, |_| ())?;
-        match last {
+        let start = hit.normal;
+        let last = incremental::penetration(&self.md, start, Shortcut::Always, &rest, |_| ())?;
+        let ended = match last {
             // D reaches beyond that plane: a callback that errs must not separate.
-            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(ended),
-            other => ended = other.put(hit)?,
-        }
+            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(false),
+            other => other.put(hit)?,
+        };
         hit.iterations += most - left;
         *memory = Memory::towards(hit.normal);
         Ok(ended)
@@ -719,22 +698,6 @@ const INSIDE: Real = if EPSILON > 1e-10 {
 
 /// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty.
 const BUDGET: u64 = 64;
-
-/// The ways to restart beside the lowest place met, as cosines and sines: the golden angle apart,
-/// never twice nearly the same way. Written down, for the same bits in every build.
-#[allow(clippy::excessive_precision)] // In single precision.
-const RESTARTS: [[Real; 2]; 4] = [
-    [-0.7373937155412454, 0.675463180551151],
-    [0.0874989834394464, -0.9961646088358407],
-    [0.6083513145322552, 0.7936678638491527],
-    [-0.984687855794127, -0.17432678122297965],
-];
-
-/// The unit vector `n` turned by a tenth of a radian, not normalised.
-fn beside(n: &Vec3, [c, s]: [Real; 2]) -> Vec3 {
-    let e1 = perpendicular(n);
-    n + (e1 * c + n.cross(&e1) * s) * 0.1
-}
 
 /// Points of the proof of an overlap: those known, the centre, and some more.
 const PROOF: usize = 2 * Known::ROOM;

@@ -71,6 +71,10 @@ impl State {
     /// lengths and curvatures stay, and the balls of the objects change places.
     pub fn flip(&mut self) {
         let before = self.memory;
+        if self.rested() {
+            // What is round of the objects has given way.
+            self.memory.curved = 0;
+        }
         self.memory.flip();
         if self.rested() {
             // A position and a mark, which no order matters to.

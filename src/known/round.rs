@@ -343,69 +343,6 @@ pub enum Round {
     Curved(Symmetric),
 }
 
-impl Round {
-    /// The radius of a ball, metres; else 0.
-    #[inline(always)]
-    pub fn ball(&self) -> Real {
-        match self {
-            Self::Ball(radius) => *radius,
-            _ => 0.0,
-        }
-    }
-
-    /// The vertex that carries a ball or a disc at a support point; else the point itself.
-    #[inline(always)]
-    pub fn core(&self, at: &Seen) -> Vec3 {
-        match self {
-            Self::Ball(radius) => at.p - at.n * *radius,
-            Self::Disc(disc) => at.p - disc.point(&at.n),
-            Self::None | Self::Curved(_) => at.p,
-        }
-    }
-
-    /// Where the support point on the same piece is along unit `b`: exact but for
-    /// [`Round::Curved`], of which the height along b is right to third order.
-    #[inline(always)]
-    pub fn moved(&self, at: &Seen, b: &Vec3) -> Vec3 {
-        match self {
-            Self::None => at.p,
-            Self::Ball(radius) => at.p + (b - at.n) * *radius,
-            Self::Disc(disc) => at.p + (disc.point(b) - disc.point(&at.n)),
-            Self::Curved(r) => {
-                let dn = b - at.n;
-                let w = r.times(&dn);
-                // R has a part along b, a ball's: in height half of R counts.
-                at.p + w + b * (0.5 * dn.dot(&w) - b.dot(&w))
-            }
-        }
-    }
-
-    /// The second derivative of its support function at unit `b` in the chart b + x e1 + y e2: xx,
-    /// xy, yy, metres. Zero along a disc's axis, where there is a kink.
-    #[inline(always)]
-    pub fn bend(&self, b: &Vec3, e1: &Vec3, e2: &Vec3) -> [Real; 3] {
-        match self {
-            Self::None => [0.0; 3],
-            Self::Ball(radius) => [*radius, 0.0, *radius],
-            Self::Disc(disc) => {
-                let m = disc.across(b);
-                let l2 = m.norm_squared();
-                if !(l2 > EPSILON) {
-                    return [0.0; 3];
-                }
-                let t = disc.axis.cross(&m);
-                let f = disc.radius / (l2 * l2.sqrt());
-                let (x, y) = (t.dot(e1), t.dot(e2));
-                [f * x * x, f * x * y, f * y * y]
-            }
-            Self::Curved(r) => {
-                let (rho, axx, axy) = r.within(e1, e2);
-                [rho + axx, axy, rho - axx]
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -511,7 +448,7 @@ mod tests {
                 let Some(disc) = Disc::of(&a, &b) else {
                     continue;
                 };
-                let core = |at: &Seen| Round::Disc(disc).core(at);
+                let core = |at: &Seen| at.p - disc.point(&at.n);
                 let off = disc.across(&(core(&c) - core(&b))).norm();
                 met[i] += 1;
                 // The axis is told by the third order of the angle.
@@ -559,7 +496,7 @@ mod tests {
         let up = |x: Real, y: Real| ask(&half_disc, Vec3::new(x, y, 0.1));
         let disc = Disc::of(&up(0.5, 0.5), &up(0.3, 0.5)).unwrap();
         assert!((disc.radius - 0.5).abs() < 10.0 * NEAR, "{disc:?}");
-        let core = |at: &Seen| Round::Disc(disc).core(at).norm();
+        let core = |at: &Seen| (at.p - disc.point(&at.n)).norm();
         assert!(core(&up(0.4, 0.6)) < 10.0 * NEAR);
         assert!(core(&up(0.5, -0.5)) > 0.1);
         assert_eq!(
@@ -572,88 +509,12 @@ mod tests {
             matches!(pair, Pair::Ball(r) if (r - 0.3).abs() < NEAR),
             "{pair:?}"
         );
-        assert!(Round::Ball(0.3).core(&at(0.1, 1.0)).norm() > 0.1);
+        let tip = at(0.1, 1.0);
+        assert!((tip.p - tip.n * 0.3).norm() > 0.1);
         assert_eq!(
             Pair::of(&at(0.1, 1.0), &at(0.2, 1.0), &EXTENT),
             Pair::Vertex
         );
-    }
-
-    /// R of an ellipsoid from a handful of pairs around one direction.
-    #[test]
-    fn curvature_is_learned_from_pairs() {
-        let mut r = Random::new(4);
-        for _ in 0..100 {
-            let radii = Vec3::from_fn(|_, _| r.within(0.3, 0.6));
-            let shape = ellipsoid(radii, r.rotation(), r.vector(0.1));
-            let n = r.direction();
-            let (t, step) = (perpendicular(&n), if EPSILON > 1e-10 { 0.05 } else { 0.01 });
-            let u = n.cross(&t);
-            let at = ask(&shape, n);
-            let mut matrix: Option<Symmetric> = None;
-            for way in [t, u, t + u, t, u, t - u, t, u] {
-                let to = ask(&shape, n + way * step);
-                assert!(matches!(
-                    Pair::of(&at, &to, &EXTENT),
-                    Pair::Smooth | Pair::Ball(_)
-                ));
-                let (d, dn) = (to.p - at.p, to.n - at.n);
-                match &mut matrix {
-                    None => matrix = Some(Symmetric::first(&d, &dn)),
-                    Some(matrix) => {
-                        matrix.correct(&d, &dn);
-                    }
-                }
-            }
-            let round = Round::Curved(matrix.unwrap());
-            let to = ask(&shape, n + (t * 0.6 - u * 0.3) * step);
-            let moved = round.moved(&at, &to.n);
-            let d = (to.p - at.p).norm();
-            assert!(
-                (moved - to.p).norm() < 0.05 * d,
-                "{} {d}",
-                (moved - to.p).norm()
-            );
-            // In height to third order.
-            let off = (moved - to.p).dot(&to.n).abs();
-            assert!(off < 0.05 * d * step + 16.0 * EPSILON, "{off}");
-            let [xx, xy, yy] = round.bend(&n, &t, &u);
-            assert!(xx > 0.0 && xx * yy > xy * xy);
-        }
-    }
-
-    /// Moved points and second derivatives are those of the support functions.
-    #[test]
-    fn what_is_exact_is_exact() {
-        let mut r = Random::new(5);
-        let disc = Disc {
-            radius: 0.5,
-            axis: Vec3::z(),
-        };
-        for _ in 0..200 {
-            let (m, n) = (r.direction(), r.direction());
-            if m.z * n.z < 0.0 {
-                continue;
-            }
-            let at = ask(&cylinder, m);
-            let moved = Round::Disc(disc).moved(&at, &n);
-            assert!((moved - cylinder(&n)).norm() < 16.0 * EPSILON / n.x.hypot(n.y));
-            let ball = |n: &Vec3| Vec3::x() + n * 0.3;
-            let moved = Round::Ball(0.3).moved(&ask(&ball, m), &n);
-            assert!((moved - ball(&n)).norm() < 8.0 * EPSILON);
-            if n.z.abs() > 0.9 {
-                continue;
-            }
-            let (e1, step) = (perpendicular(&n), NEAR.cbrt());
-            let e2 = n.cross(&e1);
-            let h = |v: Vec3| disc.radius * disc.across(&v).norm();
-            let second = |e: Vec3| (h(n + e * step) - 2.0 * h(n) + h(n - e * step)) / (step * step);
-            let [xx, xy, yy] = Round::Disc(disc).bend(&n, &e1, &e2);
-            let near = 20.0 * step * step + 0.1 * step;
-            let diagonal = second((e1 + e2) * (0.5 as Real).sqrt());
-            assert!((second(e1) - xx).abs() < near && (second(e2) - yy).abs() < near);
-            assert!((diagonal - (0.5 * (xx + yy) + xy)).abs() < near);
-        }
     }
 
     #[test]
@@ -672,7 +533,6 @@ mod tests {
         let mut r = Symmetric::scaled_identity(1.0);
         r.reduce(&Vec3::x(), 0.25);
         assert!((r.times(&Vec3::x()) - Vec3::x() * 0.25).norm() < 4.0 * EPSILON);
-        assert_eq!((Round::None.ball(), Round::Ball(2.0).ball()), (0.0, 2.0));
     }
 
     #[test]

@@ -3,11 +3,10 @@
 
 //! What a search leaves behind for the next one of the pair.
 
-use super::model::basis;
 use super::trust_region::ASIDE;
 use crate::contacts::polygon::{Flat, dot, length, side};
-use crate::known::round::{Disc, Symmetric};
-use crate::math::{EPSILON, Real, Vec3, larger, unit};
+use crate::known::round::{Disc, Round, Symmetric};
+use crate::math::{EPSILON, Real, Vec3, basis, unit};
 
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
 /// any other bits are harmless, since they only choose where to look first.
@@ -16,30 +15,30 @@ use crate::math::{EPSILON, Real, Vec3, larger, unit};
 pub struct Memory {
     /// The direction of the answer, or a guess of it.
     pub dir: Vec3,
-    /// The gradients of the active cuts there, metres. Of one cut, if `curved` says so, obj1's part
-    /// of R, six numbers.
+    /// The gradients of the active cuts there, metres; of one cut, numbers for which there is no room
+    /// in `curvature`.
     pub slopes: [Vec3; 3],
-    /// R, metres: xx, xy, xz, yy, yz, zz. Or three numbers for each object: its ball's radius and
-    /// zeros, or its disc's axis times its radius.
+    /// What is round of obj1, and after that of obj2, metres: a ball's radius; a disc's axis times its
+    /// radius; or R: xx, xy, xz, yy, yz, zz.
     pub curvature: [Real; 6],
     /// How far `dir` moved since the query before, radians.
     pub drift: Real,
     /// How many of `slopes` are in use.
     pub count: u32,
-    /// 1 if `curvature` is R, and 16 more if obj1's part of it is known; 2 if it is balls and discs,
-    /// and 4 more for a disc of obj1, 8 more for one of obj2; else nothing is known of it.
+    /// What `curvature` is of obj1: 0 nothing, 1 a ball, 2 a disc, 3 R; and four times that of obj2.
     pub curved: u32,
 }
 
-/// [`Memory::curved`] where R was known.
-const CURVED: u32 = 1;
-/// … and obj1's part of it.
-const PARTED: u32 = 16;
-const PARTED_R: u32 = CURVED + PARTED;
-/// Where balls and discs were, …
-const ROUND: u32 = 2;
-/// … and whose these discs were.
-const DISC: [u32; 2] = [4, 8];
+/// Bits of [`Memory::curved`] for the kind of one object's round part; see [`Memory::round`].
+const KIND: u32 = 2;
+const NONE: u32 = 0;
+const BALL: u32 = 1;
+const DISC: u32 = 2;
+const CURVED: u32 = 3;
+/// The numbers of each kind: nothing, a radius, an axis times a radius, a matrix.
+const NUMBERS: [usize; 4] = [0, 1, 3, 6];
+/// Room for numbers in [`Memory::curvature`].
+const FEW: usize = 6;
 
 /// [`Memory::count`] where an edge of each object crosses the other's: the slopes at one end of both,
 /// at the other end of the one, and of the other.
@@ -48,21 +47,6 @@ pub const EDGES: u32 = 4;
 const WIDER: Real = 1.4;
 /// … and the second of the two directions, to the other side.
 const OPPOSITE: Real = -0.7;
-
-/// What is known of the smooth part of D.
-#[derive(Clone, Copy, Debug)]
-pub enum Smooth {
-    /// Nothing.
-    Unknown,
-    /// R, metres, and, where it is known, obj1's part of it.
-    Curved(Symmetric, Option<Symmetric>),
-    /// The two objects' balls and discs.
-    Round {
-        /// Radii, metres; 0 for none.
-        balls: [Real; 2],
-        discs: [Disc; 2],
-    },
-}
 
 /// Directions to ask before the first model, last one first.
 pub struct Queue {
@@ -101,9 +85,9 @@ impl Memory {
     }
 
     /// Leaves behind the direction of the minimum, the gradients of the active cuts and how
-    /// many these are, and what is known of the smooth part.
+    /// many these are, and what is round of each object.
     #[inline]
-    pub fn keep(&mut self, dir: &Vec3, slopes: &[Vec3; 3], count: usize, smooth: Smooth) {
+    pub fn keep(&mut self, dir: &Vec3, slopes: &[Vec3; 3], count: usize, round: &[Round; 2]) {
         let drift = if self.count > 0 || self.curved != 0 {
             (dir - self.dir).norm()
         } else {
@@ -111,97 +95,126 @@ impl Memory {
         };
         // One cut has no others to be found again.
         let several = count > 1;
-        let mut slopes = if several { *slopes } else { [Vec3::zeros(); 3] };
-        let (curved, curvature) = match smooth {
-            Smooth::Unknown => (0, [0.0; 6]),
-            Smooth::Curved(r, Some(Symmetric([a, b, c, d, e, f]))) if !several => {
-                slopes = [Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::zeros()];
-                (PARTED_R, r.0)
-            }
-            Smooth::Curved(r, _) => (CURVED, r.0),
-            Smooth::Round { balls, discs } => {
-                let mut curved = ROUND;
-                let mut of = [0, 1].map(|o| Vec3::new(balls[o], 0.0, 0.0));
-                for (o, disc) in discs.iter().enumerate() {
-                    if disc.is_there() {
-                        curved += DISC[o];
-                        of[o] = disc.axis * disc.radius;
-                    }
-                }
-                (
-                    curved,
-                    [of[0].x, of[0].y, of[0].z, of[1].x, of[1].y, of[1].z],
-                )
-            }
-        };
         *self = Self {
             dir: *dir,
-            slopes,
-            curvature,
+            slopes: if several { *slopes } else { [Vec3::zeros(); 3] },
+            curvature: [0.0; 6],
             drift,
             count: if several { count as u32 } else { 0 },
-            curved,
+            curved: 0,
         };
+        self.put(round);
     }
 
-    /// What was known of the smooth part and still makes sense.
-    #[inline(always)]
-    pub fn smooth(&self) -> Smooth {
-        let [a, b, c, d, e, f] = self.curvature;
-        if self.curved == 0 || !(a + b + c + d + e + f).is_finite() {
-            return Smooth::Unknown;
-        }
-        match self.curved {
-            CURVED => Smooth::Curved(Symmetric(self.curvature), None),
-            PARTED_R => {
-                let [a, b, _] = self.slopes;
-                let part = [a.x, a.y, a.z, b.x, b.y, b.z];
-                let known = part.iter().all(|x| x.is_finite());
-                Smooth::Curved(Symmetric(self.curvature), known.then_some(Symmetric(part)))
+    /// Is there room for no more than six numbers?
+    fn is_full(&self) -> bool {
+        self.count > 1
+    }
+
+    /// Notes what is round of each object; of R what there is room for.
+    fn put(&mut self, round: &[Round; 2]) {
+        let mut kinds = [0, 1].map(|o: usize| match &round[o % 2] {
+            Round::None => NONE,
+            Round::Ball(_) => BALL,
+            Round::Disc(_) => DISC,
+            Round::Curved(_) => CURVED,
+        });
+        let needed = |kinds: &[u32; 2]| -> usize {
+            kinds.iter().map(|kind| NUMBERS[*kind as usize % 4]).sum()
+        };
+        for o in (0..2).rev() {
+            if self.is_full() && kinds[o] == CURVED && needed(&kinds) > FEW {
+                kinds[o] = NONE;
             }
-            _ if self.curved & ROUND != 0 => {
-                let [x, y, z, p, q, r] = self.curvature;
-                let of = [Vec3::new(x, y, z), Vec3::new(p, q, r)];
-                let mut balls = [0.0; 2];
-                let mut discs = [Disc::default(); 2];
-                for (o, v) in of.iter().enumerate() {
-                    if self.curved & DISC[o] == 0 {
-                        balls[o] = larger(v.x, 0.0);
-                    } else if let Some(axis) = unit(v) {
-                        let radius = v.norm();
-                        discs[o] = Disc { radius, axis };
+        }
+        self.curved = kinds[0] | kinds[1] << KIND;
+        if self.curved == 0 {
+            return;
+        }
+        let mut at = 0;
+        for (round, kind) in round.iter().zip(kinds) {
+            match round {
+                Round::Ball(radius) => self.set(at, *radius),
+                Round::Disc(disc) => {
+                    for i in 0..3 {
+                        self.set(at + i, disc.axis[i] * disc.radius);
                     }
                 }
-                Smooth::Round { balls, discs }
+                Round::Curved(Symmetric(r)) if kind == CURVED => {
+                    for (i, entry) in r.iter().enumerate() {
+                        self.set(at + i, *entry);
+                    }
+                }
+                _ => (),
             }
-            _ => Smooth::Unknown,
+            at += NUMBERS[kind as usize % 4];
         }
     }
 
-    /// Does the search begin with curvature? Three active cuts are mostly exact ones.
+    /// The number in that place; 0 where there is none.
+    #[inline(always)]
+    fn get(&self, i: usize) -> Real {
+        match self.curvature.get(i) {
+            Some(number) => *number,
+            None if self.is_full() => 0.0,
+            None => *self.slopes.iter().flatten().nth(i - FEW).unwrap_or(&0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, number: Real) {
+        if let Some(place) = self.curvature.get_mut(i) {
+            *place = number;
+        } else if let Some(place) = self.slopes.iter_mut().flatten().nth(i - FEW) {
+            *place = number;
+        }
+    }
+
+    /// What was round of each object and still makes sense.
     #[inline]
-    pub fn is_curved(&self) -> bool {
-        self.count < 3 && matches!(self.smooth(), Smooth::Curved(..))
+    pub fn round(&self) -> [Round; 2] {
+        let mut round = [Round::None; 2];
+        if self.curved == 0 {
+            return round;
+        }
+        let mut at = 0;
+        for (o, round) in round.iter_mut().enumerate() {
+            let kind = self.curved >> (KIND * o as u32) & 3;
+            let vector = || Vec3::new(self.get(at), self.get(at + 1), self.get(at + 2));
+            *round = match kind {
+                BALL => Round::Ball(self.get(at)),
+                DISC => {
+                    let radius = vector().norm();
+                    let axis = unit(&vector());
+                    axis.map_or(Round::None, |axis| Round::Disc(Disc { radius, axis }))
+                }
+                CURVED => Round::Curved(Symmetric([0, 1, 2, 3, 4, 5].map(|i| self.get(at + i)))),
+                _ => Round::None,
+            };
+            at += NUMBERS[kind as usize % 4];
+            let sound = match round {
+                Round::Ball(radius) => *radius > 0.0 && *radius < Real::INFINITY,
+                Round::Disc(disc) => disc.radius < Real::INFINITY,
+                Round::Curved(Symmetric(r)) => r.iter().sum::<Real>().is_finite(),
+                Round::None => true,
+            };
+            // Of several cuts there is no room for more.
+            if !sound || self.is_full() && at > FEW {
+                *round = Round::None;
+            }
+        }
+        round
     }
 
     /// The memory of the same objects in the other order, whose D is this one's mirror image
     /// in the origin: directions and gradients change sign, lengths and R stay.
     pub fn flip(&mut self) {
-        for v in self.slopes.iter_mut().chain([&mut self.dir]) {
-            // Not -v: a cold memory is one of plain zeros.
-            *v = Vec3::zeros() - *v;
-        }
-        if self.curved == PARTED_R {
-            // The other part of it.
-            let [a, b, _] = &mut self.slopes;
-            for (x, r) in a.iter_mut().chain(b).zip(self.curvature) {
-                *x += r;
-            }
-        }
-        if self.curved & ROUND != 0 {
-            self.curvature.rotate_left(3);
-            let [a, b] = DISC.map(|disc| self.curved & disc != 0);
-            self.curved = ROUND + u32::from(b) * DISC[0] + u32::from(a) * DISC[1];
+        let [one, two] = self.round();
+        // Not -v: a cold memory is one of plain zeros.
+        self.dir = Vec3::zeros() - self.dir;
+        self.slopes = self.slopes.map(|v| Vec3::zeros() - v);
+        if self.curved != 0 {
+            self.put(&[two, one]);
         }
     }
 
@@ -214,7 +227,7 @@ impl Memory {
         // by samples that are not as near. NaN becomes the least angle. Measured in motion: ×2, ÷2
         // of the factors up to 12 % and 4 % of one set, of the least angles 5 % and 2 %; the same
         // two numbers for both 10 to 23 %.
-        let alone = self.curved & !PARTED == CURVED || self.curved == ROUND;
+        let alone = self.curved != 0 && !self.has_disc();
         let (times, least) = if alone && EPSILON < 1e-10 {
             (2.0, 0.0005)
         } else {
@@ -227,6 +240,10 @@ impl Memory {
             least
         };
         (self.towards_cuts(dir, angle), angle)
+    }
+
+    fn has_disc(&self) -> bool {
+        self.curved & 3 == DISC || self.curved >> KIND & 3 == DISC
     }
 
     /// Two directions that show both ends of the two edges: in the middle between their ways, and
@@ -289,147 +306,119 @@ impl Memory {
 
 #[cfg(test)]
 mod tests {
-    use super::super::curvature::Curvature;
-    use super::super::model::Model;
-    use super::super::samples::tests::{around, samples};
     use super::*;
-    use crate::known::support::Known;
-    use crate::shapes::{Random, corners, hull};
+    use crate::shapes::Random;
 
+    /// Directions to ask are as far aside as said, each where its cut is above the others.
     #[test]
     fn each_remembered_cut_is_asked_where_it_is_highest() {
         let mut r = Random::new(9);
-        let mut met = 0;
         for _ in 0..1000 {
-            let shape = hull(&corners(r.vector(1.0).abs() + Vec3::repeat(0.1)));
-            let mut known = Known::default();
-            let samples = samples(&mut known, &shape, &around(&mut r, 3, 0.9));
-            let curvature = Curvature::new();
-            let model = Model::new(&samples, &curvature);
-            let step = (0..3).map(|i| model.minimise(i, 1.0, samples.rounding));
-            let Some(step) = step.into_iter().find(|step| step.count == 3) else {
-                continue;
-            };
-            met += 1;
+            let dir = r.direction();
+            let (e1, e2) = basis(&dir);
+            // Three slopes around the origin.
+            let turn = r.within(0.0, 6.0);
+            let slopes = [0.0, 2.1, 4.2].map(|at: Real| {
+                let (s, c) = (at + turn + r.within(-0.4, 0.4)).sin_cos();
+                (e1 * c + e2 * s) * r.within(0.5, 1.0)
+            });
             let mut memory = Memory::default();
-            let gradient = |i: usize| model.e1 * model.x[i] + model.e2 * model.y[i];
-            let slopes = step.set.map(gradient);
-            memory.keep(&model.b, &slopes, step.count, Smooth::Unknown);
-            let (mut queue, angle) = memory.recall(&model.b);
+            memory.keep(&dir, &slopes, 3, &[Round::None; 2]);
+            let (mut queue, angle) = memory.recall(&dir);
             // Last one first.
             for i in (0..3).rev() {
                 let n = queue.pop().unwrap();
                 assert!((n.norm() - 1.0).abs() < 4.0 * EPSILON);
-                let tangent = n - model.b * model.b.dot(&n);
+                let tangent = n - dir * dir.dot(&n);
                 assert!((tangent.norm() - angle).abs() < 0.01 * angle);
                 let slope = |k: usize| memory.slopes[k % 3].dot(&tangent);
                 assert!(slope(i) > slope(i + 1) && slope(i) > slope(i + 2));
             }
             assert!(queue.pop().is_none());
         }
-        assert!(met > 20, "{met}");
     }
 
-    #[test]
-    fn balls_change_sides_with_the_objects() {
+    const R: Symmetric = Symmetric([0.5, 0.1, 0.0, 0.4, -0.1, 0.3]);
+    const S: Symmetric = Symmetric([0.25, 0.0, 0.1, 0.2, 0.0, 0.7]);
+
+    fn kept(count: usize, round: &[Round; 2]) -> Memory {
         let mut memory = Memory::default();
-        memory.keep(
-            &Vec3::z(),
-            &[Vec3::x(); 3],
-            2,
-            Smooth::Round {
-                balls: [0.5, 0.25],
-                discs: Default::default(),
-            },
-        );
-        memory.flip();
-        assert!(matches!(
-            memory.smooth(),
-            Smooth::Round {
-                balls: [0.25, 0.5],
-                ..
-            }
-        ));
-        assert_eq!((memory.dir, memory.slopes[1]), (-Vec3::z(), -Vec3::x()));
-        memory.curvature[0] = Real::NAN;
-        assert!(matches!(memory.smooth(), Smooth::Unknown));
+        memory.keep(&Vec3::z(), &[Vec3::x(); 3], count, round);
+        memory
     }
 
+    /// What is round changes sides with the objects, and the slopes their signs.
     #[test]
-    fn the_other_part_of_r_is_obj2s() {
-        let (r, part) = (
-            Symmetric::scaled_identity(0.5),
-            Symmetric::scaled_identity(0.125),
-        );
-        let mut memory = Memory::default();
-        memory.keep(
-            &Vec3::z(),
-            &[Vec3::x(); 3],
-            1,
-            Smooth::Curved(r, Some(part)),
-        );
-        assert!(memory.is_curved());
-        memory.flip();
-        let other = Symmetric::scaled_identity(0.375);
-        assert!(matches!(memory.smooth(), Smooth::Curved(s, Some(t)) if s == r && t == other));
-        // Several cuts need the room.
-        memory.keep(
-            &Vec3::z(),
-            &[Vec3::x(); 3],
-            2,
-            Smooth::Curved(r, Some(part)),
-        );
-        assert!(matches!(memory.smooth(), Smooth::Curved(_, None)));
-    }
-
-    #[test]
-    fn discs_change_sides_with_the_objects() {
+    fn round_parts_change_sides_with_the_objects() {
         let disc = Disc {
             radius: 0.5,
-            axis: Vec3::new(0.0, 0.6, 0.8),
+            axis: Vec3::z(),
         };
-        let mut memory = Memory::default();
-        let smooth = Smooth::Round {
-            balls: [0.0, 0.25],
-            discs: [disc, Disc::default()],
-        };
-        memory.keep(&Vec3::z(), &[Vec3::x(); 3], 2, smooth);
-        memory.flip();
-        match memory.smooth() {
-            Smooth::Round {
-                balls: [ball, other],
-                discs: [none, there],
-            } => {
-                assert_eq!((ball, other), (0.25, 0.0));
-                assert!(!none.is_there() && (there.radius - 0.5).abs() < 4.0 * EPSILON);
-                assert!((there.axis - disc.axis).norm() < 4.0 * EPSILON);
+        let all = [
+            Round::None,
+            Round::Ball(0.25),
+            Round::Disc(disc),
+            Round::Curved(R),
+            Round::Curved(S),
+        ];
+        for one in all {
+            for two in all {
+                let mut memory = kept(1, &[one, two]);
+                assert_eq!(memory.round(), [one, two]);
+                memory.flip();
+                assert_eq!(memory.round(), [two, one]);
+                assert_eq!((memory.dir, memory.count), (-Vec3::z(), 0));
             }
-            other => panic!("{other:?}"),
         }
-        for i in 0..6 {
-            let mut broken = memory;
-            broken.curvature[i] = Real::NAN;
-            assert!(matches!(broken.smooth(), Smooth::Unknown));
-        }
-        // An axis of no length is no disc's.
-        memory.curvature = [0.0; 6];
-        assert!(
-            matches!(memory.smooth(), Smooth::Round { discs: [_, none], .. } if !none.is_there())
+        let mut memory = kept(2, &[Round::Disc(disc), Round::Ball(0.25)]);
+        memory.flip();
+        assert_eq!(memory.round(), [Round::Ball(0.25), Round::Disc(disc)]);
+        assert_eq!((memory.dir, memory.slopes[1]), (-Vec3::z(), -Vec3::x()));
+    }
+
+    /// Several cuts need the room: of R one has it, if the other object has nothing.
+    #[test]
+    fn several_cuts_leave_room_for_one_matrix() {
+        assert_eq!(
+            kept(2, &[Round::None, Round::Curved(R)]).round(),
+            [Round::None, Round::Curved(R)]
+        );
+        assert_eq!(
+            kept(3, &[Round::Curved(R), Round::Curved(S)]).round(),
+            [Round::Curved(R), Round::None]
+        );
+        assert_eq!(
+            kept(2, &[Round::Curved(R), Round::Ball(0.5)]).round(),
+            [Round::None, Round::Ball(0.5)]
         );
     }
 
     #[test]
     fn what_makes_no_sense_is_not_recalled() {
+        let disc = Disc {
+            radius: 0.5,
+            axis: Vec3::new(0.0, 0.6, 0.8),
+        };
+        for (place, lost) in [(0, 0), (2, 0), (3, 1)] {
+            let mut memory = kept(2, &[Round::Disc(disc), Round::Ball(0.5)]);
+            memory.curvature[place] = Real::NAN;
+            let round = memory.round();
+            assert!(round[lost] == Round::None && round[1 - lost] != Round::None);
+        }
+        // An axis of no length is no disc's.
+        let mut memory = kept(2, &[Round::Disc(disc), Round::None]);
+        memory.curvature = [0.0; 6];
+        assert_eq!(memory.round(), [Round::None; 2]);
         let memory = Memory {
             dir: Vec3::z(),
             slopes: [Vec3::repeat(Real::NAN), Vec3::zeros(), Vec3::z()],
             curvature: [Real::INFINITY, 1.0, Real::NAN, 0.0, 0.0, 0.0],
             drift: Real::NAN,
             count: 77,
-            curved: 1,
+            curved: u32::MAX,
         };
         let (mut queue, angle) = memory.recall(&Vec3::z());
-        assert!(queue.pop().is_none() && matches!(memory.smooth(), Smooth::Unknown));
+        assert!(queue.pop().is_none() && memory.round() == [Round::None; 2]);
         assert!(angle > 0.0 && angle < ASIDE);
     }
 }

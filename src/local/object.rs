@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What a search knows of one object: its points, and the ball or disc that is taken off them.
+//! What a search knows of one object: its points, and the ball, the disc or R that is taken off
+//! them.
 //!
 //! With the ball of radius ρ, or the disc of radius r, of a support point p along n (`known/round.rs`)
 //! c = p − ρ n, or c = p − r m(n), is a vertex of what is left, and its cut is exact: the support
@@ -18,29 +19,35 @@
 //! found: a cone's tip has a cut without it. A *remembered* disc keeps its radius; its axis turns
 //! with the object, and a pair finds it again ([`Disc::of`], which confirms itself by that radius;
 //! where the pair is too narrow [`Disc::turned`], which does not).
+//!
+//! *R* bends the cuts of the points that were seen to be of a smooth piece, and moves them once a
+//! second pair has told that it is right.
 
-use super::curvature::{BALL, FAR, alike};
+use super::curved::Curved;
 use super::walk::{Cuts, LANES, ROOM, Row};
-use crate::known::round::{ALIKE, Disc, Extent, Pair, Seen, TOLD, fits, is_smooth};
+use crate::known::round::{ALIKE, Disc, Round, Seen, fits};
 use crate::math::{Real, Vec3, larger};
 
-/// Relative difference of the two excesses of one object's points up to which they are taken for
-/// those of another smooth surface, before a disc is confirmed; a kink's are what they like.
-/// Measured: ×2 nothing, ÷3 ellipsoids beside a ball two support points more.
-const OWN: Real = 0.1;
+/// How many times as far from where it was seen as the directions are apart that showed it what is
+/// round is believed: the body may be cut off beyond. Measured: 1 +1.1 %, +8 % (cylinders); 2 −0.1 %,
+/// and half a disc is taken for a disc half a radian beyond its end.
+const FAR: Real = 1.4;
+/// How much more alike the excesses of a smooth pair must be once a vertex was seen twice (a
+/// polytope, it seems). Measured: ×2, ÷2 nothing; 1 +0.1 %, +1.5 %.
+const FLAT: Real = 0.05;
 
 /// A disc and how it was found.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Found {
     pub disc: Disc,
     /// The directions of the pair.
-    pair: [Vec3; 2],
+    pub(super) pair: [Vec3; 2],
     /// The vertex that carries it there.
-    carrier: Vec3,
+    pub(super) carrier: Vec3,
 }
 
 impl Found {
-    const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         disc: Disc {
             radius: 0.0,
             axis: Vec3::new(0.0, 0.0, 0.0),
@@ -51,7 +58,7 @@ impl Found {
 
     /// Does this point carry it, too? Of another smooth surface it would be off by a third order of
     /// the angles between the three directions.
-    fn is_shown_by(&self, at: &Seen) -> bool {
+    pub(super) fn is_shown_by(&self, at: &Seen) -> bool {
         let [a, b] = self.pair;
         let order = (at.n - a).norm() * (at.n - b).norm() * (a - b).norm();
         // Above or below is as good: a cylinder's other end.
@@ -59,28 +66,6 @@ impl Found {
         let apart = self.disc.across(&apart).norm();
         order > 0.0 && apart <= ALIKE * self.disc.radius * order
     }
-}
-
-/// What a point shows with the points before.
-pub enum Shown {
-    /// Nothing new.
-    Nothing,
-    /// The vertex in that place.
-    Twin(usize),
-    /// A ball of this radius, metres.
-    Ball(Real),
-    /// A smooth surface that is no ball.
-    Smooth,
-}
-
-/// What a point of a smooth surface shows.
-pub enum Smooth {
-    /// It is none.
-    None,
-    /// Maybe a disc; by another point than the pair too; and moved more aside than along.
-    Disc(Found, bool, bool),
-    /// No disc.
-    Other,
 }
 
 /// How far apart points of an object may be, metres, that are one.
@@ -99,28 +84,34 @@ pub struct Object {
     /// Support points, each where it was seen nearest to the best direction.
     pub at: [Seen; ROOM],
     /// The same without the ball or disc.
-    x: Row,
-    y: Row,
-    z: Row,
+    pub(super) x: Row,
+    pub(super) y: Row,
+    pub(super) z: Row,
     pub len: usize,
     /// Those seen along two directions, as bits, …
-    seen: u32,
+    pub(super) seen: u32,
     /// … and how far these are apart, squared.
-    span: Row,
+    pub(super) span: Row,
     /// The ball's radius, metres; 0 for none.
     pub radius: Real,
     /// The disc, …
-    found: Found,
+    pub(super) found: Found,
     /// … how many had been asked when it was found, 0 for a remembered one, …
-    found_at: usize,
+    pub(super) found_at: usize,
     /// … whether it was shown by more than the pair, …
-    confirmed: bool,
-    /// … and the points that carry it, as bits.
-    carried: u32,
-    /// Has it a ball or a disc?
-    round: bool,
+    pub(super) confirmed: bool,
+    /// … and the points that carry it, as bits; else those that R bends.
+    pub(super) carried: u32,
+    /// R of what is neither.
+    pub curved: Curved,
+    /// The points that make a smooth pair with the new one, as bits: as those of D do.
+    pub pieces: u32,
+    /// Has it a ball, a disc or R?
+    pub(super) round: bool,
+    /// It showed balls or discs that it has not: none is looked for.
+    pub(super) given_up: bool,
     /// A vertex was seen twice: a polytope, it seems.
-    flat: bool,
+    pub(super) flat: bool,
 }
 
 impl Object {
@@ -140,19 +131,51 @@ impl Object {
         found_at: 0,
         confirmed: false,
         carried: 0,
+        curved: Curved::NONE,
+        pieces: 0,
         round: false,
+        given_up: false,
         flat: false,
     };
 
     /// What was round of it in the query before.
-    pub fn recall(&mut self, radius: Real, disc: Disc) {
-        self.radius = radius;
-        self.found.disc = disc;
+    pub fn recall(&mut self, round: Round) {
+        match round {
+            Round::None => return,
+            Round::Ball(radius) => self.radius = radius,
+            Round::Disc(disc) => self.found.disc = disc,
+            Round::Curved(r) => {
+                self.curved = Curved::recall(r);
+                self.carried = !0;
+            }
+        }
         self.note();
     }
 
-    fn note(&mut self) {
-        self.round = self.radius > 0.0 || self.disc().is_there();
+    /// What is round of it for the next query, of an answer along unit `n`. Along a disc's axis its
+    /// points are those of a polytope.
+    #[inline(always)]
+    pub fn round(&self, n: &Vec3) -> Round {
+        let disc = self.disc();
+        if self.radius > 0.0 {
+            Round::Ball(self.radius)
+        } else if disc.is_there() && !disc.is_along(n) {
+            Round::Disc(*disc)
+        } else if self.curved.is_there() {
+            Round::Curved(*self.curved.r())
+        } else {
+            Round::None
+        }
+    }
+
+    /// How alike the excesses of a smooth pair must be.
+    #[inline(always)]
+    pub(super) fn alike(&self) -> Real {
+        if self.flat { ALIKE * FLAT } else { ALIKE }
+    }
+
+    pub(super) fn note(&mut self) {
+        self.round = self.radius > 0.0 || self.disc().is_there() || self.curved.is_there();
     }
 
     #[inline(always)]
@@ -165,10 +188,22 @@ impl Object {
         self.round
     }
 
+    /// Is its round part exact, or has it none, as a vertex showed that was seen twice?
+    #[inline(always)]
+    pub fn is_exact(&self) -> bool {
+        self.flat || self.round && !self.curved.is_there()
+    }
+
     /// Has it a disc that more than a pair showed?
     #[inline(always)]
     pub fn is_confirmed(&self) -> bool {
         self.disc().is_there() && self.confirmed
+    }
+
+    /// Has it a remembered ball or disc that no sample has shown?
+    pub fn is_guess(&self) -> bool {
+        let guess = self.round && !self.curved.is_there() && self.found_at == 0;
+        guess && self.seen == 0 && !self.confirmed
     }
 
     /// Is its disc no more than a pair's?
@@ -185,6 +220,9 @@ impl Object {
         if !fits(self.disc().radius, extent2) {
             self.found.disc = Disc::default();
         }
+        if !self.curved.fits(extent2.sqrt()) {
+            self.curved = Curved::NONE;
+        }
         self.note();
     }
 
@@ -194,13 +232,13 @@ impl Object {
     }
 
     #[inline(always)]
-    fn carries(&self, k: usize) -> bool {
+    pub(super) fn carries(&self, k: usize) -> bool {
         self.carried >> k & 1 != 0
     }
 
     /// The vertex of a point, and whether it carries the disc.
     #[inline(always)]
-    fn vertex(&self, at: &Seen, same: Real) -> (Vec3, bool) {
+    pub(super) fn vertex(&self, at: &Seen, same: Real) -> (Vec3, bool) {
         if self.radius > 0.0 {
             return (at.p - at.n * self.radius, false);
         }
@@ -213,81 +251,21 @@ impl Object {
         (if carries { core } else { at.p }, carries)
     }
 
-    /// What a new point shows with those before.
-    #[inline(never)]
-    pub fn learn(&self, best: usize, new: &Seen, same: &Same) -> Shown {
-        if self.is_round() {
-            return Shown::Nothing;
-        }
-        if let Some(k) = self.twin(&new.p, false, same.rounding) {
-            return Shown::Twin(k);
-        }
-        let extent = Extent {
-            size2: same.extent2,
-            error: same.rounding,
-        };
-        let others = if self.flat {
-            best..best + 1
-        } else {
-            0..self.len
-        };
-        let mut smooth = false;
-        for k in others {
-            match Pair::of(&self.at[k % ROOM], new, &extent) {
-                Pair::Ball(radius) => return Shown::Ball(radius),
-                Pair::Smooth => smooth = true,
-                _ => (),
+    /// Forgets the `k`th point: the last one takes its place.
+    pub(super) fn drop(&mut self, k: usize, places: [&mut usize; 2]) {
+        self.len -= 1;
+        let last = self.len % ROOM;
+        let k = k % ROOM;
+        let (at, core, carries) = (self.at[last], self.core(last), self.carries(last));
+        self.at[k] = at;
+        self.set(k, &core, carries);
+        self.seen = self.seen & !(1 << k) | (self.seen >> last & 1) << k;
+        self.span[k] = self.span[last];
+        for place in places {
+            if *place == last {
+                *place = k;
             }
         }
-        if smooth {
-            Shown::Smooth
-        } else {
-            Shown::Nothing
-        }
-    }
-
-    /// Looks for a disc that a new point shows with those before. Of others than the `best` one only
-    /// what a third point confirms: corners far from each other look smooth by chance.
-    #[inline(never)]
-    pub fn learn_disc(&self, best: usize, new: &Seen, same: &Same) -> Smooth {
-        if self.is_round() {
-            return Smooth::None;
-        }
-        let others = if self.flat {
-            best..best + 1
-        } else {
-            0..self.len
-        };
-        for k in others {
-            match self.disc_of(k, new, same) {
-                Smooth::None => (),
-                Smooth::Other | Smooth::Disc(_, false, _) if k != best => (),
-                shown => return shown,
-            }
-        }
-        Smooth::None
-    }
-
-    fn disc_of(&self, k: usize, new: &Seen, same: &Same) -> Smooth {
-        let old = &self.at[k % ROOM];
-        let (d, dn) = (new.p - old.p, new.n - old.n);
-        let (d2, dn2, along) = (d.norm_squared(), dn.norm_squared(), d.dot(&dn));
-        let excess = [d.dot(&new.n), -d.dot(&old.n)];
-        let told = dn2 > TOLD * TOLD && along > same.rounding;
-        if !told || !is_smooth(excess, d2, same.extent2 * dn2, alike(self.flat)) {
-            return Smooth::None;
-        }
-        let Some(disc) = Disc::of(old, new).filter(|disc| fits(disc.radius, same.extent2)) else {
-            return Smooth::Other;
-        };
-        let found = Found {
-            disc,
-            pair: [old.n, new.n],
-            carrier: new.p - disc.point(&new.n),
-        };
-        let third = |at: &Seen| found.is_shown_by(at);
-        let confirmed = self.at.iter().take(self.len).any(third);
-        Smooth::Disc(found, confirmed, 2.0 * along * along < d2 * dn2)
     }
 
     /// Takes a ball off all points. Returns where the `best` one is now.
@@ -342,112 +320,15 @@ impl Object {
     }
 
     #[inline(always)]
-    fn set(&mut self, k: usize, core: &Vec3, carries: bool) {
+    pub(super) fn set(&mut self, k: usize, core: &Vec3, carries: bool) {
         let k = k % ROOM;
         (self.x[k], self.y[k], self.z[k]) = (core.x, core.y, core.z);
         self.carried = self.carried & !(1 << k) | u32::from(carries) << k;
     }
 
-    /// Turns a remembered disc to where two points show it.
-    #[inline(never)]
-    pub fn turn(&mut self, k: usize, new: &Seen, same: &Same, asked: usize) -> usize {
-        let disc = *self.disc();
-        if !disc.is_there() || self.found_at > 0 || self.confirmed {
-            return k;
-        }
-        let old = self.at[k % ROOM];
-        let d = new.p - old.p;
-        let moved = disc.point(&new.n) - disc.point(&old.n);
-        if (d - moved).norm_squared() <= same.round * same.round {
-            return k;
-        }
-        let anew = Disc::of(&old, new)
-            .filter(|anew| (anew.radius - disc.radius).abs() <= BALL * disc.radius);
-        if let Some(disc) = anew.or_else(|| disc.turned(&old, new, same.round)) {
-            let found = Found {
-                disc,
-                carrier: new.p - disc.point(&new.n),
-                pair: [old.n, new.n],
-            };
-            return self.take_disc((&found, anew.is_some()), asked, k, same);
-        }
-        k
-    }
-
-    /// Takes a new point, the vertex in place `twin` if known; returns its place. `best`: the best
-    /// direction. `kept`: the place that must stay. `None`: it contradicts what is known.
-    #[inline(never)]
-    pub fn take(
-        &mut self,
-        new: &Seen,
-        mut twin: Option<usize>,
-        best: &Vec3,
-        kept: usize,
-        same: &Same,
-        asked: usize,
-    ) -> Option<usize> {
-        let (mut core, mut carries) = (new.p, false);
-        if self.is_round() {
-            let near = same.round;
-            (core, carries) = self.vertex(new, near);
-            twin = if self.disc().is_there() {
-                if !self.agrees(new, &core, carries, near, asked) {
-                    return None;
-                }
-                self.twin(&core, carries, near)
-            } else {
-                self.among(new, &core, near)?
-            };
-        }
-        if let Some(place) = twin {
-            // Each point by the direction nearest to the best one.
-            let old = &mut self.at[place % ROOM];
-            let nearer = old.n.dot(best) < new.n.dot(best);
-            self.flat |= (new.n - old.n).norm_squared() > TOLD * TOLD;
-            if nearer {
-                *old = *new;
-                self.set(place, &core, carries);
-            }
-            return Some(place);
-        }
-        let mut place = self.len;
-        if place >= ROOM {
-            place = self.lowest(best, kept);
-        } else {
-            self.len += 1;
-        }
-        self.at[place % ROOM] = *new;
-        self.set(place, &core, carries);
-        self.seen &= !(1 << place);
-        Some(place)
-    }
-
-    /// The point whose vertex in the ball is a new one's, which was seen again then. `None`: the new
-    /// one lies beyond a cut, or another beyond its.
-    #[inline(always)]
-    fn among(&mut self, new: &Seen, core: &Vec3, same: Real) -> Option<Option<usize>> {
-        for k in 0..self.len.min(ROOM) {
-            let e = core - self.core(k);
-            if e.norm_squared() <= same * same {
-                let turned = (new.n - self.at[k].n).norm_squared();
-                let moved2 = self.radius * self.radius * turned;
-                if turned > TOLD * TOLD && moved2 > 16.0 * same * same {
-                    self.seen |= 1 << k;
-                    self.span[k] = larger(turned, self.span[k]);
-                }
-                return Some(Some(k));
-            }
-            // Also NaN.
-            if !(e.dot(&new.n) >= -same && e.dot(&self.at[k].n) <= same) {
-                return None;
-            }
-        }
-        Some(None)
-    }
-
     /// The point that is the same vertex as this one.
     #[inline(always)]
-    fn twin(&self, core: &Vec3, carries: bool, same: Real) -> Option<usize> {
+    pub(super) fn twin(&self, core: &Vec3, carries: bool, same: Real) -> Option<usize> {
         (0..self.len.min(ROOM)).find(|&k| {
             let apart = core - self.core(k);
             apart.norm_squared() <= same * same && carries == self.carries(k)
@@ -456,7 +337,7 @@ impl Object {
 
     /// The lowest point along `b` that is not to be kept.
     #[cold]
-    fn lowest(&self, b: &Vec3, kept: usize) -> usize {
+    pub(super) fn lowest(&self, b: &Vec3, kept: usize) -> usize {
         let mut least = (0, Real::INFINITY);
         for k in (0..ROOM).filter(|k| *k != kept) {
             let level = self.core(k).dot(b);
@@ -465,79 +346,6 @@ impl Object {
             }
         }
         least.0
-    }
-
-    /// Does a new point agree with the disc? Notes which vertices it shows again from another
-    /// direction: not before the disc is confirmed.
-    #[inline(never)]
-    fn agrees(&mut self, new: &Seen, core: &Vec3, carries: bool, same: Real, asked: usize) -> bool {
-        let len = self.len.min(ROOM);
-        let disc = *self.disc();
-        let least = larger(TOLD * TOLD * disc.radius * disc.radius, 16.0 * same * same);
-        let height = |carries: bool, n: &Vec3| {
-            if carries {
-                disc.radius * disc.across(n).norm()
-            } else {
-                0.0
-            }
-        };
-        let (value, here) = (new.p.dot(&new.n), height(true, &new.n));
-        let at = disc.point(&new.n);
-        let (mut shown, mut again): (u32, bool) = (0, false);
-        let mut refuted = false;
-        for k in 0..len {
-            let (old, old_core) = (self.at[k], self.core(k));
-            let old_carries = self.carries(k);
-            let ahead = value - old_core.dot(&new.n) - if old_carries { here } else { 0.0 };
-            let behind = (old.p - core).dot(&old.n) - height(carries, &old.n);
-            // A cut above a support value.
-            if !(ahead >= -same && behind >= -same) {
-                return false;
-            }
-            let d = new.p - old.p;
-            if self.is_doubted() && !carries {
-                let (e, f) = (d.dot(&new.n), -d.dot(&old.n));
-                refuted |= (e - f).abs() <= OWN * (e + f);
-            }
-            if !old_carries || !carries {
-                continue;
-            }
-            let moved = at - (old.p - old_core);
-            let off2 = (d - moved).norm_squared();
-            if moved.norm_squared() > least && off2 <= same * same {
-                shown |= 1 << k;
-                // A remembered one, whose axis has not turned.
-                let turned = (new.n - old.n).norm_squared();
-                again |= off2 <= ALIKE * ALIKE * turned * moved.norm_squared();
-            }
-        }
-        if refuted {
-            return false;
-        }
-        let mut pair = 0;
-        self.confirmed |= self.found_at == 0 && again;
-        if self.is_doubted() && self.found_at != asked && self.found.is_shown_by(new) {
-            self.confirmed = true;
-            // The pair's vertex was seen twice.
-            for k in (0..len).filter(|k| self.carries(*k)) {
-                let apart = disc.across(&(self.core(k) - self.found.carrier));
-                pair |= u32::from(apart.norm_squared() <= same * same) << k;
-            }
-        }
-        if !self.confirmed {
-            return true;
-        }
-        self.seen |= shown | pair;
-        let [a, b] = self.found.pair;
-        for k in 0..len {
-            if shown >> k & 1 != 0 {
-                self.span[k] = larger((new.n - self.at[k].n).norm_squared(), self.span[k]);
-            }
-            if pair >> k & 1 != 0 {
-                self.span[k] = larger((a - b).norm_squared(), self.span[k]);
-            }
-        }
-        true
     }
 
     /// The cuts in the chart of unit `b`.
@@ -556,6 +364,41 @@ impl Object {
         (cuts.len, cuts.carried, cuts.bend) = (self.len, 0, [0.0; 3]);
         if self.disc().is_there() {
             self.carry(b, [e1, e2], cuts);
+        } else if self.curved.is_there() {
+            self.bend(b, [e1, e2], cuts);
+        }
+    }
+
+    /// The same of R: with y where a point's direction is in the chart, and G = E'R E, its cut is
+    /// α + ½ y'Gy + (β − G y)·x + ½ x'Gx. No cut is above the object's value at b.
+    #[inline(never)]
+    fn bend(&self, b: &Vec3, [e1, e2]: [&Vec3; 2], cuts: &mut Cuts) {
+        let (rho, axx, axy) = self.curved.r().within(e1, e2);
+        let g = [rho + axx, axy, rho - axx];
+        (cuts.bend, cuts.carried) = (g, self.carried);
+        if !self.curved.is_believed() {
+            return;
+        }
+        let len = self.len.min(ROOM);
+        let top = cuts.a.iter().take(len).copied().fold(cuts.a[0], larger);
+        for k in (0..len).filter(|k| self.carries(*k)) {
+            let n = &self.at[k].n;
+            let along = n.dot(b);
+            if !(along > 0.0) {
+                cuts.carried &= !(1 << k);
+                continue;
+            }
+            let y = [e1.dot(n) / along, e2.dot(n) / along];
+            let gy = [g[0] * y[0] + g[1] * y[1], g[1] * y[0] + g[2] * y[1]];
+            let lift = 0.5 * (gy[0] * y[0] + gy[1] * y[1]);
+            // Above the object's value at b: another piece.
+            if lift > top - cuts.a[k] && cuts.a[k] < top {
+                cuts.carried &= !(1 << k);
+                continue;
+            }
+            cuts.a[k] += lift;
+            cuts.x[k] -= gy[0];
+            cuts.y[k] -= gy[1];
         }
     }
 
@@ -579,6 +422,11 @@ impl Object {
         }
     }
 
+    /// Is a cut above the support value of its own point there, metres?
+    pub fn is_above(&self, own: &Seen, tolerance: Real) -> bool {
+        self.height(&own.n).0 + self.radius > own.p.dot(&own.n) + tolerance
+    }
+
     /// The support value of the known points along unit `n`, without the ball, and the highest.
     pub fn height(&self, n: &Vec3) -> (Real, usize) {
         let disc = if self.disc().is_there() {
@@ -589,7 +437,13 @@ impl Object {
         let mut best = (Real::NEG_INFINITY, 0);
         for k in 0..self.len.min(ROOM) {
             let plain = self.core(k).dot(n);
-            let level = if self.carries(k) { plain + disc } else { plain };
+            let level = if self.curved.is_believed() {
+                plain + self.lift(k, n)
+            } else if self.carries(k) {
+                plain + disc
+            } else {
+                plain
+            };
             if level > best.0 {
                 best = (level, k);
             }
@@ -599,7 +453,7 @@ impl Object {
 
     /// The `k`th point where it is along unit `n`: round where that was seen.
     #[inline(always)]
-    pub fn point(&self, k: usize, n: &Vec3) -> Vec3 {
+    pub fn point(&self, k: usize, n: &Vec3, same: Real) -> Vec3 {
         let k = k % ROOM;
         if !self.round || !self.was_seen(k, n) {
             return self.at[k].p;
@@ -607,10 +461,32 @@ impl Object {
         if self.radius > 0.0 {
             return self.core(k) + n * self.radius;
         }
+        if self.curved.is_there() {
+            let p = self.at[k].p;
+            if !(self.carries(k) && self.curved.is_certain()) {
+                return p;
+            }
+            let moved = p + self.curved.r().times(&(n - self.at[k].n));
+            // Behind all support planes that were seen.
+            let beyond = |at: &Seen| (moved - at.p).dot(&at.n) > same;
+            let out = self.at.iter().take(self.len).any(beyond);
+            return if out { p } else { moved };
+        }
         if self.carries(k) {
             return self.core(k) + self.disc().point(n);
         }
         self.at[k].p
+    }
+
+    /// How far R lifts the cut of the `k`th point along unit `n`, metres.
+    #[inline(always)]
+    fn lift(&self, k: usize, n: &Vec3) -> Real {
+        let dn = n - self.at[k % ROOM].n;
+        if self.carries(k) {
+            0.5 * self.curved.r().times(&dn).dot(&dn)
+        } else {
+            0.0
+        }
     }
 
     /// Was the round part of the `k`th point seen from two directions, and not too far from unit `n`?
@@ -628,6 +504,14 @@ impl Object {
             return false;
         }
         let k = k % ROOM;
+        if self.curved.is_there() {
+            let error = if self.was_seen(k, n) {
+                self.curved.error
+            } else {
+                1.0
+            };
+            return self.curved.is_believed() && error * self.lift(k, n) > hair;
+        }
         if self.was_seen(k, n) {
             return false;
         }
@@ -640,6 +524,16 @@ impl Object {
             0.0
         };
         lift > hair
+    }
+
+    /// The radius of its round part, metres, as seen from the `k`th point towards unit `n`.
+    pub fn radius(&self, k: usize, n: &Vec3) -> Real {
+        let dn = n - self.at[k % ROOM].n;
+        if self.curved.is_there() {
+            self.curved.r().times(&dn).dot(&dn) / dn.norm_squared()
+        } else {
+            larger(self.radius, self.disc().radius)
+        }
     }
 
     /// Was the `k`th point seen along two directions?
@@ -658,6 +552,7 @@ impl Object {
 // In single precision two points tell no disc as near as this.
 #[cfg(all(test, not(feature = "single")))]
 mod tests {
+    use super::super::learn::{Shown, Smooth};
     use super::*;
     use crate::math::EPSILON;
     use crate::shapes::Random;
@@ -699,7 +594,7 @@ mod tests {
         let mut shown = Shown::Nothing;
         for (i, at) in points.iter().enumerate() {
             if i > 0 {
-                shown = object.learn(0, at, &SAME);
+                shown = object.learn(&mut 0, at, &SAME);
                 match &shown {
                     Shown::Ball(radius) => {
                         object.take_ball(*radius, 0, &SAME);
@@ -712,7 +607,7 @@ mod tests {
                     _ => (),
                 }
             }
-            let _ = object.take(at, None, &points[0].n, 0, &SAME, i + 1);
+            let _ = object.take(at, None, &points[0].n, &mut 0, &SAME, i + 1);
         }
         (object, shown)
     }
@@ -746,7 +641,7 @@ mod tests {
         assert!((three.core(0) - Vec3::z() * 0.4).norm() < NEAR);
         // The rim where it is along another direction, and its support value.
         let n = Vec3::new(0.8, 0.05, 0.45).normalize();
-        assert!((three.point(0, &n) - cylinder(&n)).norm() < NEAR);
+        assert!((three.point(0, &n, NEAR) - cylinder(&n)).norm() < NEAR);
         assert!((three.height(&n).0 - cylinder(&n).dot(&n)).abs() < NEAR);
     }
 
@@ -762,7 +657,8 @@ mod tests {
             if found.is_doubted() {
                 met += 1;
                 let third = near(&mut random);
-                assert_eq!(found.take(&third, None, &n, 0, &SAME, 3), None);
+                assert!(found.take(&third, None, &n, &mut 0, &SAME, 3).is_some());
+                assert!(!found.disc().is_there());
             }
         }
         assert!(met > 20, "{met}");
@@ -801,8 +697,8 @@ mod tests {
             let axis = (Vec3::z() + random.vector(0.02)).normalize();
             let turn = |radius| {
                 let mut object = Object::NEW;
-                object.recall(0.0, Disc { radius, axis });
-                object.take(&a, None, &n, 0, &same, 1);
+                object.recall(Round::Disc(Disc { radius, axis }));
+                object.take(&a, None, &n, &mut 0, &same, 1);
                 object.turn(0, &b, &same, 2);
                 object
             };
@@ -818,7 +714,7 @@ mod tests {
             assert!(off < 1e-4, "{off}");
             at_once += usize::from(!object.is_doubted());
             for (i, at) in [b, c].iter().enumerate() {
-                object.take(at, None, &n, 0, &same, 2 + i);
+                object.take(at, None, &n, &mut 0, &same, 2 + i);
             }
             confirmed += usize::from(!object.is_doubted());
         }
@@ -834,7 +730,7 @@ mod tests {
         for k in 0..2 * ROOM {
             let p = Vec3::new(k as Real, 1.0, (k * 7 % (2 * ROOM)) as Real);
             let at = Seen { n: b, p };
-            let place = object.take(&at, None, &b, 2, &SAME, k + 1).unwrap();
+            let place = object.take(&at, None, &b, &mut 2, &SAME, k + 1).unwrap();
             assert_eq!(object.core(place), p);
         }
         assert!(object.len == ROOM && object.core(2).x == 2.0);

@@ -1,380 +1,1017 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The loop: ask, learn, keep, look where the model is least, judge. The derivation stands at
-//! the head of `local.rs`.
+//! The loop. The derivation stands at the head of `local.rs`.
+//!
+//! Find the model's minimum near the best direction, for no support point ([`Search::lowest`]);
+//! ask there; done, if the objects are as deep as the model foretold; else their two new points join
+//! it.
 
-use core::ops::ControlFlow;
+use super::learn::{Shown, Smooth};
+use super::memory::{Memory, Queue};
+use super::object::{Found, Object, Same};
+use super::trust_region::{FIRST, TrustRegion};
+use super::walk::{Cuts, End, Model, ROOM};
+use crate::contact::{Penetration, Settings};
+use crate::contacts::polygon::Flat;
+use crate::known::round::{ALIKE, Seen, TOLD, is_smooth};
+use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::math::{self, EPSILON, Real, Vec3, larger, unit};
 
-use super::curvature::Curvature;
-use super::memory::{Memory, Queue, Smooth};
-use super::model::{Model, Step};
-use super::samples::{CUTS, Sample, Samples};
-use super::trust_region::{self, ASIDE, TrustRegion};
-use super::verdict::{Next, Verdict, judge};
-use super::witness::{INSIDE, Witnesses};
-use crate::contact::{Answer, Settings};
-use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap};
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, tolerance, unit};
+/// Share of the tolerance by which two vertices that are the same may differ: a radius is in error
+/// by more than rounding. Insensitive: 0, ÷2, ×2 tried.
+pub(super) const SAME: Real = 0.06;
+/// Share of the tolerance by which a depth may differ for what a round part is not: it leaves room
+/// for rounding, the radius and the model. Insensitive.
+pub(super) const HAIR: Real = 0.25;
+/// How much less alike a pair of D may be than one of an object. Measured: ÷2 +0.3 %, +8 % (ellipsoids),
+/// ×1.5 +0.1 %, and cones from 45° 4 % more.
+const JOINT: Real = 2.0;
+/// Support points that were asked for what they tell, after which the search has lost its way.
+const DOUBTS: u32 = 4;
+/// Support points after which what is remembered and was not seen is forgotten: it is mostly seen by
+/// the third.
+const GUESS: usize = 5;
+/// Support points of one search.
+pub(super) const MOST: usize = 24;
+/// The samples kept: the best one, and the latest.
+pub(super) const LATEST: usize = 6;
 
-/// Support points asked to see witness points that only R leads to: as many as are kept. Derived:
-/// each makes one point the objects' own. Without any there are 11 more.
-pub const WITNESS_QUERIES: usize = CUTS;
-/// Support points after which curvature is given up. Measured: ×2 no change, +2 %; ÷2 no change,
-/// +1.4 %; never +44 % on touches of random pairs.
-pub const TRUST_CURVATURE: u64 = 40;
-
-/// A search for a local minimum.
-pub struct Search<'a> {
-    samples: Samples<'a>,
-    curvature: Curvature,
-    trust: TrustRegion,
-    queue: Queue,
-    /// Samples asked before, not yet taken.
-    asked: &'a [Sample],
-    /// The sample whose error the next one settles, and whose place it takes.
-    probed: Option<usize>,
-    /// The last sample contradicted another, or lay beyond the origin: the next one, a little
-    /// beside it, is taken as it is.
-    again: bool,
-    /// Any inner point of D: how far the support points lie from it is what curvature is first
-    /// guessed from.
-    inner: Vec3,
-    settings: Settings,
-    /// In force, metres.
-    tolerance: Real,
-    iterations: u64,
-    witness_queries: usize,
+/// How a search ends.
+#[derive(Debug)]
+pub enum Outcome {
+    /// At a local minimum: [`Search::minimum`].
+    Found,
+    /// All of D is on the far side of this unit direction's support plane.
+    Apart(Vec3),
+    /// Not here: [`Search::lowest_met`].
+    Open,
 }
 
-impl<'a> Search<'a> {
-    #[inline]
-    pub fn new(inner: Option<&Vec3>, settings: &Settings, known: &'a mut Known) -> Self {
+/// A support point, asked.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sample {
+    /// Unit direction.
+    pub(super) n: Vec3,
+    /// The support point there.
+    pub(super) p: SupportPoint,
+    /// n·p, the support value.
+    pub(super) h: Real,
+}
+
+impl Sample {
+    #[inline(always)]
+    pub(super) fn new(n: &Vec3, p: SupportPoint) -> Self {
+        let h = n.dot(&p.v);
+        Self { n: *n, p, h }
+    }
+
+    /// Rounding error of the support value, metres.
+    #[inline(always)]
+    fn rounding(&self) -> Real {
+        let p = &self.p;
+        let size = (p.v1.x.abs() + p.v1.y.abs() + p.v1.z.abs())
+            + (p.v2.x.abs() + p.v2.y.abs() + p.v2.z.abs());
+        8.0 * EPSILON * size
+    }
+}
+
+/// The model's minimum.
+#[derive(Clone, Copy)]
+pub(super) struct Step {
+    pub(super) end: End,
+    /// The unit direction there, and the depth, metres.
+    pub(super) n: Vec3,
+    pub(super) depth: Real,
+    /// Along the axis of that object's disc.
+    pub(super) axis: Option<usize>,
+}
+
+/// What comes after a support point.
+enum Next {
+    Ask(Vec3),
+    Found,
+    Open,
+}
+
+/// A search for a local minimum.
+// In this order what is zero at first is two pieces, each less than memset fills word by word.
+#[repr(C)]
+pub struct Search {
+    pub(super) objects: [Object; 2],
+    pub(super) trust: TrustRegion,
+    pub(super) model: Model,
+    /// The chart of the last walk.
+    pub(super) b: Vec3,
+    pub(super) e1: Vec3,
+    pub(super) e2: Vec3,
+    /// Where the best direction is in it.
+    pub(super) middle: Flat,
+    pub(super) samples: [Sample; LATEST],
+    /// The best one's place, …
+    pub(super) best: usize,
+    /// … those of its points, …
+    pub(super) places: [usize; 2],
+    /// … and of the newest one's.
+    pub(super) newest_places: [usize; 2],
+    /// The last step.
+    pub(super) step: Step,
+    /// Is the minimum in the direction asked last, should the depth foretold come true?
+    pub(super) told: bool,
+    /// Where both objects may have discs: the slope of the pair that they were seen by, metres, until
+    /// the next sample shows them; else 0.
+    pub(super) slope: Real,
+    pub(super) extent2: Real,
+    pub(super) tolerance: Real,
+    /// Before rounding made it larger.
+    pub(super) finest: Real,
+    pub(super) rounding: Real,
+    pub(super) newest: usize,
+    pub(super) asked: usize,
+    pub(super) doubts: u32,
+    /// The point doubted last, and whose it is.
+    pub(super) doubted: (usize, usize),
+    /// Did the search before find what is round?
+    pub(super) recalled: bool,
+    pub(super) levelled: bool,
+    /// How often the model's minimum was asked because the best direction showed no witness points.
+    pub(super) asked_there: u32,
+    pub(super) hit: Penetration,
+    pub(super) slopes: [Vec3; 3],
+    pub(super) count: usize,
+}
+
+impl Search {
+    #[inline(always)]
+    pub fn new() -> Self {
         Self {
-            samples: Samples::new(known),
-            curvature: Curvature::new(),
-            trust: TrustRegion::new(trust_region::FIRST),
-            queue: Queue::EMPTY,
-            asked: &[],
-            probed: None,
-            again: false,
-            inner: inner.copied().unwrap_or_default(),
-            settings: *settings,
-            tolerance: settings.tolerance,
-            iterations: 0,
-            witness_queries: WITNESS_QUERIES,
+            objects: [Object::NEW; 2],
+            model: Model {
+                cuts: [Cuts::NONE; 2],
+                level: 0.0,
+            },
+            b: Vec3::zeros(),
+            e1: Vec3::zeros(),
+            e2: Vec3::zeros(),
+            middle: [0.0; 2],
+            samples: [Sample::default(); LATEST],
+            best: 0,
+            places: [0; 2],
+            newest_places: [0; 2],
+            trust: TrustRegion::new(FIRST),
+            step: Step {
+                end: End::NONE,
+                n: Vec3::zeros(),
+                depth: 0.0,
+                axis: None,
+            },
+            told: false,
+            slope: 0.0,
+            extent2: 0.0,
+            tolerance: 0.0,
+            finest: 0.0,
+            rounding: 0.0,
+            newest: 0,
+            asked: 0,
+            doubts: 0,
+            doubted: (2, 0),
+            recalled: false,
+            levelled: false,
+            asked_there: 0,
+            hit: Penetration::default(),
+            slopes: [Vec3::zeros(); 3],
+            count: 0,
         }
     }
 
-    /// The first direction to ask: what the memory leads to, else `start`.
+    /// The directions to ask first: what the memory leads to, else `start`'s.
     #[inline]
-    pub fn recall(&mut self, memory: &Memory, start: &Vec3) -> Vec3 {
+    pub fn recall(&mut self, memory: &Memory, start: impl Fn() -> Vec3) -> (Vec3, Queue) {
         let Some(dir) = unit(&memory.dir) else {
-            return *start;
+            return (start(), Queue::EMPTY);
         };
-        if let Smooth::Curved(r, part) = memory.smooth() {
-            self.curvature.recall(r, part);
+        if memory.curved != 0 {
+            for (object, round) in self.objects.iter_mut().zip(memory.round()) {
+                object.recall(round);
+            }
         }
-        let (queue, angle) = memory.recall(&dir);
-        self.queue = queue;
-        match self.queue.pop() {
+        self.recalled = memory.count > 0 || memory.curved != 0;
+        let (mut queue, angle) = memory.recall(&dir);
+        match queue.pop() {
             Some(n) => {
                 self.trust.recall(angle);
-                n
+                (n, queue)
             }
-            None => dir,
+            None => (dir, queue),
         }
     }
 
-    /// Goes on from what a search of exact cuts has asked: the first direction to go through.
-    #[inline]
-    pub fn resume(&mut self, asked: &'a [Sample], trust: Real, memory: &Memory) -> Option<Vec3> {
-        let first = asked.first()?;
-        if let Smooth::Curved(r, part) = memory.smooth() {
-            self.curvature.recall(r, part);
-        }
-        self.asked = asked;
-        self.trust.radius = trust;
-        Some(first.n)
+    #[inline(always)]
+    pub(super) fn rho(&self) -> Real {
+        self.objects[0].radius + self.objects[1].radius
     }
 
-    /// Searches from the unit vector n on.
-    #[inline]
+    #[inline(always)]
+    pub(super) fn is_round(&self) -> bool {
+        self.objects[0].is_round() || self.objects[1].is_round()
+    }
+
+    #[inline(always)]
+    pub(super) fn is_curved(&self) -> bool {
+        self.objects.iter().any(|object| object.curved.is_there())
+    }
+
+    #[inline(always)]
+    pub(super) fn same(&self) -> Same {
+        Same {
+            rounding: self.rounding,
+            round: larger(self.rounding, self.tolerance * SAME),
+            extent2: self.extent2,
+        }
+    }
+
+    /// Searches from `n`, after the queued directions.
+    ///
+    /// `centre`: any inner point of D, its distance is the size of what was not seen.
+    /// `known` gains the points of a minimum: the active ones, the one there, the others.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`] from a support mapping.
     pub fn run<A: SupportMap, B: SupportMap>(
         &mut self,
         md: &MinkowskiDifference<A, B>,
+        centre: &Vec3,
         mut n: Vec3,
-        memory: &mut Memory,
-    ) -> Result<Answer, Fault> {
+        queue: &mut Queue,
+        settings: &Settings,
+        known: &mut Known,
+    ) -> Result<Outcome, Fault> {
         loop {
-            let Some(new) = self.ask(md, &n)? else {
-                return Ok(Answer::Miss(n));
-            };
-            n = match self.take(&new) {
-                Some(newest) => match self.next(newest, memory) {
-                    ControlFlow::Continue(n) => n,
-                    ControlFlow::Break(answer) => return Ok(answer),
-                },
-                // A callback that errs here is asked again a little beside.
-                None => {
-                    self.again = true;
-                    unit(&(n + perpendicular(&n) * EPSILON.sqrt())).unwrap_or(n)
+            let new = Sample::new(&n, md.support(&n)?);
+            if new.h < 0.0 {
+                // D holds what was seen: where that lies beyond, a callback errs.
+                let mut seen = self.samples.iter().take(self.asked);
+                return Ok(if !seen.any(|sample| sample.p.v.dot(&n) > 0.0) {
+                    Outcome::Apart(n)
+                } else {
+                    Outcome::Open
+                });
+            }
+            if std::env::var("TR").is_ok() {
+                eprintln!(
+                    "ask {} h {:.9} foretold {:.9} r {:.4} curved {:?} len {:?} cnt {} border {} doubts {}",
+                    self.asked,
+                    new.h,
+                    self.step.depth,
+                    self.trust.radius,
+                    self.objects.each_ref().map(|o| (
+                        o.curved.is_there(),
+                        o.curved.error,
+                        o.curved.spread,
+                        o.radius,
+                        o.disc().radius
+                    )),
+                    self.objects.each_ref().map(|o| o.len),
+                    self.step.end.count,
+                    self.step.end.on_border,
+                    self.doubts
+                );
+            }
+            let place = self.put(&new);
+            let told = self.told && self.trust.came_true(new.h, self.tolerance);
+            if let (true, Some(o)) = (self.told, self.step.axis) {
+                let other = &self.objects[(o + 1) % 2];
+                let seen =
+                    !other.is_unseen(self.step.end.active[(o + 1) % 2], &n, HAIR * self.tolerance);
+                let found = told && seen && self.conclude(place, known);
+                let found = found && !self.is_cut_short(md, &n, o)?;
+                return Ok(if found { Outcome::Found } else { Outcome::Open });
+            }
+            self.told = false;
+            if !self.take(place, centre, settings.tolerance) {
+                if std::env::var("TR").is_ok() {
+                    eprintln!("why take");
                 }
-            };
-        }
-    }
-
-    /// Learns from a sample and keeps it; returns where. `None` where it contradicts what was
-    /// seen: nothing is learnt from it.
-    #[inline]
-    pub fn take(&mut self, new: &Sample) -> Option<usize> {
-        self.iterations += 1;
-        if self.iterations == TRUST_CURVATURE {
-            self.curvature.give_up();
-        }
-        self.measure(new);
-        let twin = if self.samples.len == 0 {
-            self.curvature.forget_unless_fits(self.samples.size);
-            None
-        } else {
-            self.learn(new)?
-        };
-        self.again = false;
-        let newest = self.keep(new, twin);
-        self.probed = None;
-        Some(newest)
-    }
-
-    /// The direction to ask after the `newest` sample, or the answer.
-    #[inline]
-    pub fn next(&mut self, newest: usize, memory: &mut Memory) -> ControlFlow<Answer, Vec3> {
-        if let Some(n) = self.planned() {
-            return ControlFlow::Continue(n);
-        }
-        loop {
-            let model = Model::new(&self.samples, &self.curvature);
-            let step = model.minimise(newest, self.trust.radius, self.samples.rounding);
-            let next = match self.judge(&model, &step) {
-                Verdict::Ask(next) => Some(next),
-                Verdict::End(minimum) => self.end(&model, &step, minimum, memory)?,
-            };
-            if let Some(next) = next {
-                let n = self.turn(&model, &step, &next);
-                if self.samples.len == CUTS {
-                    self.make_room(newest, &model, &step);
+                return Ok(Outcome::Open);
+            }
+            if told
+                && !self.is_curved()
+                && self.is_lowest()
+                && !self.is_doubtful(&n, self.newest_places, HAIR * self.tolerance)
+                && self.conclude(place, known)
+            {
+                return Ok(Outcome::Found);
+            }
+            if self.asked as u64 >= settings.max_iterations || self.asked >= MOST {
+                return Ok(Outcome::Open);
+            }
+            if let Some(next) = queue.pop() {
+                n = next;
+                continue;
+            }
+            match self.next(known) {
+                Next::Ask(next) => n = next,
+                Next::Found => return Ok(Outcome::Found),
+                Next::Open => {
+                    if std::env::var("TR").is_ok() {
+                        eprintln!("open");
+                    }
+                    return Ok(Outcome::Open);
                 }
-                return ControlFlow::Continue(n);
             }
-            // R has led astray: on from here by exact cuts, and what the next pairs tell.
-            self.curvature.known = false;
         }
     }
 
-    /// The sample along n; `None` where it separates the objects.
-    #[inline]
-    fn ask<A: SupportMap, B: SupportMap>(
-        &mut self,
-        md: &MinkowskiDifference<A, B>,
-        n: &Vec3,
-    ) -> Result<Option<Sample>, Fault> {
-        if let Some((first, rest)) = self.asked.split_first() {
-            self.asked = rest;
-            return Ok(Some(*first));
+    /// Keeps a sample in the place of the oldest one that is not the best.
+    #[inline(always)]
+    pub(super) fn put(&mut self, new: &Sample) -> usize {
+        let mut place = self.newest + 1;
+        if self.asked < LATEST {
+            place = self.asked;
+        } else if place % LATEST == self.best {
+            place += 1;
         }
-        let new = Sample::new(n, md.support(n)?);
-        if !(new.h < 0.0) {
-            return Ok(Some(new));
-        }
-        Ok(match self.samples.farthest(n) {
-            // D holds what was seen: no miss.
-            Some(seen) if self.again || self.samples.len == 0 => Some(Sample::new(n, seen)),
-            Some(_) => Some(new),
-            None => None,
-        })
+        self.newest = place % LATEST;
+        self.samples[self.newest] = *new;
+        self.asked += 1;
+        self.newest
     }
 
-    /// The size of D, its rounding errors, and the tolerance that they allow.
-    #[inline]
-    fn measure(&mut self, new: &Sample) {
-        let rounding = new.rounding();
-        let samples = &mut self.samples;
-        if rounding > samples.rounding {
-            samples.rounding = rounding;
-            self.tolerance = larger(rounding, self.tolerance);
+    /// The best sample.
+    #[inline(always)]
+    pub(super) fn best(&self) -> &Sample {
+        &self.samples[self.best % LATEST]
+    }
+
+    /// The two points of a sample, as points of D.
+    #[inline(always)]
+    pub(super) fn points(sample: &Sample) -> [Seen; 2] {
+        let n = sample.n;
+        [sample.p.v1, -sample.p.v2].map(|p| Seen { n, p })
+    }
+
+    /// Takes a support point. Not, if it contradicts what is known.
+    #[inline(always)]
+    fn take(&mut self, place: usize, centre: &Vec3, tolerance: Real) -> bool {
+        let new = &self.samples[place % LATEST];
+        let (n, h, p) = (new.n, new.h, &new.p);
+        self.rounding = larger(new.rounding(), self.rounding);
+        self.extent2 = larger((p.v - centre).norm_squared(), self.extent2);
+        let first = self.asked == 1;
+        if first {
+            self.tolerance = math::tolerance(tolerance, self.extent2.sqrt(), 0.0);
+            let least = 8.0 * EPSILON * self.extent2.sqrt();
+            self.finest = larger(self.tolerance, least);
         }
-        let extent = (new.p.v - self.inner).norm();
-        if samples.len == 0 {
-            samples.size = extent;
-            let asked = tolerance(self.settings.tolerance, extent, 0.0);
-            self.tolerance = larger(rounding, asked);
+        self.tolerance = larger(self.tolerance, self.rounding);
+        let same = self.same();
+        let points = Self::points(new);
+        let before = self.best().h;
+        let mut twins = [None; 2];
+        if first {
+            for object in &mut self.objects {
+                object.forget_unless_fits(self.extent2);
+            }
         } else {
-            samples.size = larger(extent, samples.size);
-        }
-    }
-
-    /// Learns R from a sample. Returns the one that it makes a smooth pair with, and `None`
-    /// where the sample is not to be kept.
-    #[inline]
-    fn learn(&mut self, new: &Sample) -> Option<Option<usize>> {
-        let learnt = self.curvature.learn(&mut self.samples, new, self.again);
-        let twin = learnt.ok()?;
-        if new.h < 0.0 && !self.again {
-            return None;
-        }
-        if let Some(twin) = twin {
-            self.samples.error[twin] = self.curvature.error;
-        }
-        Some(twin)
-    }
-
-    /// Keeps a sample, in place of the one whose error it settles, or of its twin where that
-    /// tells nothing more; returns where.
-    #[inline]
-    fn keep(&mut self, new: &Sample, twin: Option<usize>) -> usize {
-        let samples = &mut self.samples;
-        if samples.len == 0 {
-            samples.set(0, new, 1.0);
-            return 0;
-        }
-        self.trust.compare(&new.n, new.h, samples.depth());
-        // A serious step moves the centre, a null step adds a cut.
-        let serious = new.h < samples.depth();
-        let dir = samples.dir();
-        let centre = samples.centre;
-        let free = |i: &usize| serious || *i != centre;
-        // The same vertex within R, and farther off: it tells nothing more.
-        let outdated = |i: &usize| serious || samples.n.get(*i).dot(&dir) <= new.n.dot(&dir);
-        let error = twin.map_or(1.0, |_| self.curvature.error);
-        let place = self.probed.filter(free);
-        let place = place.or_else(|| twin.filter(free).filter(outdated));
-        let newest = place.unwrap_or(samples.len);
-        if serious {
-            samples.centre = newest;
-        }
-        samples.set(newest, new, error);
-        newest
-    }
-
-    /// May nothing more be asked?
-    #[inline]
-    fn last(&self) -> bool {
-        self.iterations >= self.settings.max_iterations
-    }
-
-    /// What to ask without a model.
-    #[inline]
-    fn planned(&mut self) -> Option<Vec3> {
-        if let Some(next) = self.asked.first() {
-            if self.samples.len == CUTS {
-                self.samples.evict_any();
+            self.trust.compare(&n, h, before);
+            if self.recalled && self.asked == GUESS {
+                // What the samples have not shown again is another's.
+                for object in &mut self.objects {
+                    if object.is_guess() {
+                        object.forget();
+                    }
+                }
             }
-            return Some(next.n);
+            if self.recalled {
+                for (o, object) in self.objects.iter_mut().enumerate() {
+                    self.places[o] = object.turn(self.places[o], &points[o], &same, self.asked);
+                }
+            }
+            match self.learn(&points, &same) {
+                Some(known) => twins = known,
+                None => return false,
+            }
         }
-        if self.last() {
-            return None;
+        let better = first || h < before;
+        let best = if better { n } else { self.best().n };
+        let mut places = [0; 2];
+        for o in 0..2 {
+            let object = &mut self.objects[o];
+            let kept = &mut self.places[o];
+            let place = object.take(&points[o], twins[o], &best, kept, &same, self.asked);
+            match place {
+                Some(place) => places[o] = place,
+                None => return false,
+            }
         }
-        self.queue.pop().or_else(|| {
-            let samples = &self.samples;
-            let alone = samples.len == 1 && !self.curvature.known && !samples.touch();
-            alone.then(|| {
-                self.trust
-                    .first_step(&samples.n.get(0), &samples.v.get(0), samples.size)
-            })
-        })
+        if self.slope > 0.0 && self.asked > 2 {
+            self.slope = 0.0;
+            for o in 0..2 {
+                let object = &mut self.objects[o];
+                if object.is_doubted() {
+                    object.unround();
+                    if self.places[o] != places[o] {
+                        object.curve(self.places[o], &points[o]);
+                    }
+                }
+            }
+        }
+        self.newest_places = places;
+        if better {
+            (self.best, self.places) = (place, places);
+        }
+        true
     }
 
-    #[inline]
-    fn judge(&self, model: &Model, step: &Step) -> Verdict {
-        let (samples, curvature, trust) = (&self.samples, &self.curvature, &self.trust);
-        judge(
-            samples,
-            curvature,
-            model,
-            step,
-            trust,
-            self.tolerance,
-            self.last(),
-        )
+    /// Looks for what is round: a new point of each object beside those before. Returns which
+    /// vertices the new points are, if known; `None`, where one of them is no support point.
+    #[inline(always)]
+    fn learn(&mut self, points: &[Seen; 2], same: &Same) -> Option<[Option<usize>; 2]> {
+        let mut twins = [None; 2];
+        let mut smooth = false;
+        for object in &mut self.objects {
+            object.pieces = 0;
+        }
+        if self.is_curved() {
+            self.pieces(points, same);
+        }
+        for o in 0..2 {
+            let object = &mut self.objects[o];
+            match object.learn(&mut self.places[o], &points[o], same) {
+                Shown::Nothing => (),
+                Shown::Twin(k) => twins[o] = Some(k),
+                Shown::Ball(radius) => {
+                    self.places[o] = object.take_ball(radius, self.places[o], same);
+                }
+                Shown::Smooth => smooth = true,
+                Shown::Contradiction => return None,
+            }
+        }
+        if smooth {
+            if !self.is_curved() {
+                self.pieces(points, same);
+            }
+            self.learn_discs(points, same);
+        }
+        Some(twins)
     }
 
-    /// The search ends, in a `minimum` or not: a witness query, or the answer. `None` where
-    /// there is neither, because R has led astray.
-    fn end(
-        &mut self,
-        model: &Model,
-        step: &Step,
-        minimum: bool,
-        memory: &mut Memory,
-    ) -> ControlFlow<Answer, Option<Next>> {
-        let (samples, curvature) = (&self.samples, &self.curvature);
-        // As asked for, also where rounding allows the depth less; but no finer than is promised.
-        let fine = self.tolerance.min(self.settings.tolerance);
-        let fine = larger(fine, INSIDE * samples.size);
-        let witnesses = Witnesses::of(samples, curvature, model, step, fine);
-        // A minimum is where the support plane touches D below the origin: witness points
-        // farther apart across the normal than a curve of the object's size may be within the
-        // tolerance (twice the root of tolerance · size; measured: ×2 nothing, ÷2 +0.2 %) are not
-        // witnesses of one.
-        let size = samples.size.max(samples.depth());
-        let apart2 = witnesses.apart2();
-        let met = samples.touch() || minimum && apart2 <= 4.0 * self.tolerance * size;
-        let enough = samples.touch() || self.last() || self.witness_queries == 0;
-        if met && !enough && !witnesses.believed {
-            self.witness_queries -= 1;
-            return ControlFlow::Continue(Some(witnesses.query(samples, model, fine)));
+    /// The points of each object whose samples show one smooth piece of D with the new one, as bits:
+    /// what each of the objects shows there is smooth, too. What its excesses differ by is small
+    /// beside D's. Not where one of them shows a vertex of its own.
+    #[inline(never)]
+    fn pieces(&mut self, points: &[Seen; 2], same: &Same) {
+        let n = points[0].n;
+        let v = points[0].p + points[1].p;
+
+        let least = same.rounding * same.rounding;
+        for ((object, new), best) in self.objects.iter().zip(points).zip(self.places) {
+            let d = new.p - object.at[best % ROOM].p;
+            if object.is_exact() || d.norm_squared() <= least {
+                return;
+            }
         }
-        // The queries are used up, or R is not known: own points, or none.
-        let met = met && (samples.touch() || witnesses.believed);
-        if !met && !self.last() && curvature.known {
-            return ControlFlow::Continue(None);
+        for i in (0..self.asked.min(LATEST)).filter(|i| *i != self.newest) {
+            let old = &self.samples[i];
+            let (d, dn) = (v - old.p.v, n - old.n);
+            let (d2, dn2, along) = (d.norm_squared(), dn.norm_squared(), d.dot(&dn));
+            let excess = [d.dot(&n), -d.dot(&old.n)];
+            let told = dn2 > TOLD * TOLD && along > same.rounding;
+            if told && is_smooth(excess, d2, same.extent2 * dn2, JOINT * ALIKE) {
+                for object in &mut self.objects {
+                    object.is_piece(&old.n);
+                }
+            }
         }
-        let gradient = |i: usize| model.e1 * model.x[i] + model.e2 * model.y[i];
-        let smooth = match curvature.known {
-            true => Smooth::Curved(curvature.r, curvature.part()),
-            false => Smooth::Unknown,
+    }
+
+    /// Looks for discs of the objects whose points look smooth. What is none has R.
+    #[inline(never)]
+    fn learn_discs(&mut self, points: &[Seen; 2], same: &Same) {
+        let mut maybe: [Option<(Found, bool, bool)>; 2] = [None, None];
+        for o in 0..2 {
+            match self.objects[o].learn_disc(self.places[o], &points[o], same) {
+                Smooth::None => (),
+                Smooth::Disc(found, confirmed, aside) => maybe[o] = Some((found, confirmed, aside)),
+                Smooth::Other(k) => self.objects[o].curve(k, &points[o]),
+            }
+        }
+        // Beside what is curved a suspicion is not enough.
+        for o in 0..2 {
+            if matches!(maybe[o], Some((_, false, _))) && self.objects[1 - o].curved.is_there() {
+                self.objects[o].curve(self.places[o], &points[o]);
+                maybe[o] = None;
+            }
+        }
+        let both = matches!(&maybe, [Some((_, false, _)), Some((_, false, _))]);
+        if let ([Some(p), Some(q)], true) = (&maybe, both) {
+            // Any surface shows two of them at first: the next sample is to tell, where it may be.
+            if self.asked > 2 || !p.2 && !q.2 {
+                for ((object, new), best) in self.objects.iter_mut().zip(points).zip(self.places) {
+                    object.curve(best, new);
+                }
+                return;
+            }
+            let [d, e] = [0, 1].map(|o| points[o].p - self.objects[o].at[0].p);
+            let dn = points[0].n - self.best().n;
+            self.slope = (d + e).dot(&dn) / dn.norm_squared();
+        }
+        for (o, maybe) in maybe.iter().enumerate() {
+            if let Some((found, confirmed, _)) = maybe {
+                let found = (found, *confirmed);
+                let object = &mut self.objects[o];
+                self.places[o] = object.take_disc(found, self.asked, self.places[o], same);
+            }
+        }
+    }
+
+    /// Where to ask next, or the answer.
+    #[inline(always)]
+    fn next(&mut self, known: &mut Known) -> Next {
+        let best = self.best();
+        // A touch cannot be lower, and is for others to tell.
+        if !(best.h > self.rounding) || self.trust.is_stuck() {
+            return Next::Open;
+        }
+        let round = self.is_round();
+        if self.asked == 1 && !round || self.slope > 0.0 {
+            let (n, v) = (best.n, best.p.v);
+            let size = if self.slope > 0.0 {
+                self.slope
+            } else {
+                self.extent2.sqrt()
+            };
+            return Next::Ask(self.trust.first_step(&n, &v, size));
+        }
+        let (b, h) = (best.n, best.h);
+        self.lowest();
+        let mut gain = h - self.step.depth;
+        if gain < -self.tolerance && round {
+            // The model is above what was seen: what is remembered is not so any more, and what a cut
+            // above its object's own support value is round by never was.
+            let own = Self::points(self.best());
+            for (object, own) in self.objects.iter_mut().zip(own) {
+                if self.recalled {
+                    object.forget();
+                } else if object.is_doubted() || object.is_above(&own, self.tolerance) {
+                    object.give_up();
+                }
+            }
+            self.recalled = false;
+            self.lowest();
+            gain = h - self.step.depth;
+            if gain < -self.tolerance {
+                for object in &mut self.objects {
+                    object.forget();
+                }
+                self.lowest();
+                gain = h - self.step.depth;
+            }
+        }
+        if round
+            && gain.abs() <= self.tolerance
+            && self.step.end.on_border
+            && self.trust.radius < FIRST
+            && !self.levelled
+        {
+            // Level so far: is it as far as the first radius?
+            self.levelled = true;
+            self.trust.radius = FIRST;
+            let near = self.step;
+            self.lowest();
+            if !(self.step.depth <= near.depth) {
+                self.step = near;
+            }
+            gain = h - self.step.depth;
+        }
+        if gain <= self.tolerance && !self.step.end.on_border && !self.is_lowest() {
+            self.look_around();
+            gain = h - self.step.depth;
+        }
+        // Also NaN.
+        if !(gain >= -self.tolerance && gain < Real::INFINITY) {
+            {
+                if std::env::var("TR").is_ok() {
+                    eprintln!(
+                        "why 1 gain {:e} tol {:e} end {:?}",
+                        h - self.step.depth,
+                        self.tolerance,
+                        self.step.end
+                    );
+                }
+                return Next::Open;
+            }
+        }
+        if self.step.end.lost {
+            // No minimum, but lower.
+            if !(gain > self.tolerance) {
+                {
+                    if std::env::var("TR").is_ok() {
+                        eprintln!(
+                            "why 2 gain {:e} tol {:e} end {:?}",
+                            h - self.step.depth,
+                            self.tolerance,
+                            self.step.end
+                        );
+                    }
+                    return Next::Open;
+                }
+            }
+            self.trust.foretell(self.step.depth, false, &b);
+            return Next::Ask(self.step.n);
+        }
+        let inside = !self.step.end.on_border;
+        self.trust.foretell(self.step.depth, !inside, &b);
+        self.told = inside;
+        let mut n = self.step.n;
+        if self.step.axis.is_some() {
+            return Next::Ask(n);
+        }
+        if gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST) {
+            if let Some(next) = self.open(&b) {
+                self.doubts += 1;
+                if self.doubts > DOUBTS {
+                    {
+                        if std::env::var("TR").is_ok() {
+                            eprintln!(
+                                "why 3 gain {:e} tol {:e} end {:?}",
+                                h - self.step.depth,
+                                self.tolerance,
+                                self.step.end
+                            );
+                        }
+                        return Next::Open;
+                    }
+                }
+                self.told = false;
+                return Next::Ask(next);
+            }
+            let mut hair = HAIR * self.tolerance;
+            // A remembered ball is no more than a guess.
+            let mut doubtful = self.asked == 1 || self.is_doubtful(&b, self.places, hair);
+            if !doubtful {
+                if self.conclude(self.best, known) {
+                    return Next::Found;
+                }
+                // Near enough for the depth, and not for witness points: a round part that was not
+                // seen leads to none.
+                hair = 0.0;
+                doubtful = self.is_doubtful(&b, self.places, hair);
+            }
+            if doubtful {
+                self.doubts += 1;
+                if self.doubts > DOUBTS {
+                    {
+                        if std::env::var("TR").is_ok() {
+                            eprintln!(
+                                "why 4 gain {:e} tol {:e} end {:?}",
+                                h - self.step.depth,
+                                self.tolerance,
+                                self.step.end
+                            );
+                        }
+                        return Next::Open;
+                    }
+                }
+                self.trust.no_forecast();
+                self.told = false;
+                n = self.beside();
+            } else if self.asked_there >= DOUBTS {
+                {
+                    if std::env::var("TR").is_ok() {
+                        eprintln!(
+                            "why 5 gain {:e} tol {:e} end {:?}",
+                            h - self.step.depth,
+                            self.tolerance,
+                            self.step.end
+                        );
+                    }
+                    return Next::Open;
+                }
+            } else {
+                // Shallow, the best direction is near enough for the depth and not for witness
+                // points: the minimum itself is, if the model is right.
+                self.asked_there += 1;
+            }
+        } else if inside && round {
+            n = self.towards_unseen();
+        }
+        if (n - b).norm_squared() < EPSILON * EPSILON {
+            {
+                if std::env::var("TR").is_ok() {
+                    eprintln!(
+                        "why 6 gain {:e} tol {:e} end {:?}",
+                        h - self.step.depth,
+                        self.tolerance,
+                        self.step.end
+                    );
+                }
+                return Next::Open;
+            }
+        }
+        Next::Ask(n)
+    }
+}
+
+// In single precision more of them are left to the search with curvature.
+#[cfg(all(test, not(feature = "single")))]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::shapes::{Random, capsule, corners, hull, placed};
+
+    const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
+
+    /// How a search ends, and with what.
+    enum End {
+        Found(Penetration),
+        Apart(Vec3),
+        Open,
+    }
+
+    fn run(
+        a: impl Fn(&Vec3) -> Vec3,
+        b: impl Fn(&Vec3) -> Vec3,
+        centre: &Vec3,
+        start: &Vec3,
+    ) -> (End, u64) {
+        let md = MinkowskiDifference::new(a, b);
+        let settings = Settings {
+            tolerance: TOLERANCE,
+            max_iterations: 60,
         };
-        memory.keep(&model.b, &step.set.map(gradient), step.count, smooth);
-        let answer = witnesses.answer(samples, model, self.iterations);
-        self.samples.lead();
-        ControlFlow::Break(if met {
-            Answer::Hit(answer)
-        } else {
-            Answer::Limit(answer)
-        })
+        let mut known = Known::default();
+        let n = start.normalize();
+        let mut queue = Queue::EMPTY;
+        let mut exact = Search::new();
+        let outcome = exact.run(&md, centre, n, &mut queue, &settings, &mut known);
+        let end = match outcome.unwrap() {
+            Outcome::Found => End::Found(*exact.minimum(&mut Memory::default())),
+            Outcome::Apart(n) => End::Apart(n),
+            Outcome::Open => End::Open,
+        };
+        (end, md.supports())
     }
 
-    /// The direction that `next` means.
-    #[inline]
-    fn turn(&mut self, model: &Model, step: &Step, next: &Next) -> Vec3 {
-        self.trust.foretell(step.value, !step.inside, &model.b);
-        let mut d = model.direction(step.x, step.y);
-        if !matches!(next, Next::Minimum) {
-            self.trust.no_forecast();
+    fn found(end: End) -> Penetration {
+        match end {
+            End::Found(hit) => hit,
+            End::Apart(n) => panic!("apart along {n}"),
+            End::Open => panic!("open"),
         }
-        match next {
-            Next::Minimum => (),
-            Next::Beside(i, share) => {
-                d += (self.samples.n.get(*i) - d) * *share;
-                self.probed = Some(*i);
-            }
-            Next::Across => {
-                let line = &self.curvature.line;
-                let across = line.and_then(|line| unit(&line.cross(&model.b)));
-                let across = across.unwrap_or(model.e1);
-                self.curvature.spread = line.is_some();
-                let slope = self.samples.v.get(self.samples.centre).dot(&across);
-                d += across * ASIDE.copysign(-slope);
-            }
-            Next::Aside(by) => d += by,
-        }
-        d * (1.0 / d.norm())
     }
 
-    /// Makes room for the next sample.
-    #[inline]
-    fn make_room(&mut self, newest: usize, model: &Model, step: &Step) {
-        let levels = model.a + model.x * step.x + model.y * step.y;
-        let samples = &mut self.samples;
-        self.probed = samples.evict(newest, &step.set, &levels, &model.a, self.probed);
+    fn ball(c: Vec3, r: Real) -> impl Fn(&Vec3) -> Vec3 {
+        move |d| c + d * r
+    }
+
+    #[test]
+    fn boxes_are_exact() {
+        let mut random = Random::new(1);
+        let half = Vec3::new(0.5, 0.6, 0.7);
+        // Corners that look like points of one smooth surface.
+        let mut open = 0;
+        for _ in 0..200 {
+            let turn = random.rotation();
+            let place = |at: Vec3| placed(&corners(half), &turn, at);
+            let a = place(Vec3::zeros());
+            // Shallow along the first axis of the boxes.
+            let axis = turn * Vec3::x();
+            let b = place(axis * 0.98);
+            let start = axis + random.vector(0.05);
+            let (end, supports) = run(hull(&a), hull(&b), &(axis * -0.98), &start);
+            if let End::Open = end {
+                open += 1;
+                continue;
+            }
+            let hit = found(end);
+            assert!((hit.depth - 0.02).abs() < 64.0 * EPSILON, "{}", hit.depth);
+            assert!((hit.dir - axis).norm() < 64.0 * EPSILON);
+            assert!((hit.point1 - hit.point2 - hit.dir * hit.depth).norm() < 64.0 * EPSILON);
+            assert!(supports <= 12, "{supports}");
+        }
+        assert!(open <= 4, "{open}");
+    }
+
+    /// The core of a ball is a point: the second support point shows it, the third is the
+    /// minimum.
+    #[test]
+    fn balls_are_taken_off() {
+        let mut random = Random::new(2);
+        for _ in 0..200 {
+            let c = random.direction() * random.within(0.4, 1.2);
+            let (end, supports) = run(
+                ball(Vec3::zeros(), 1.0),
+                ball(c, 0.5),
+                &-c,
+                &(c.normalize() + random.vector(0.2)),
+            );
+            let hit = found(end);
+            assert!((hit.depth - (1.5 - c.norm())).abs() < TOLERANCE);
+            assert!((hit.dir.dot(&c) - c.norm()).abs() < TOLERANCE);
+            assert!((hit.point1 - hit.dir).norm() < TOLERANCE.sqrt());
+            assert!(supports <= 4, "{supports}");
+        }
+    }
+
+    /// Two crossed capsules: the nearest points of their segments.
+    #[test]
+    fn crossed_capsules() {
+        let (x, y) = (Vec3::x(), Vec3::y());
+        let up = Vec3::z() * 0.3;
+        let (end, supports) = run(
+            capsule(-x, x, 0.25),
+            capsule(up - y, up + y, 0.15),
+            &-up,
+            &Vec3::new(0.06, -0.05, 1.0),
+        );
+        let hit = found(end);
+        assert!((hit.depth - 0.1).abs() < TOLERANCE, "{}", hit.depth);
+        assert!((hit.dir - Vec3::z()).norm() < TOLERANCE.sqrt());
+        assert!(supports <= 10, "{supports}");
+    }
+
+    /// The hull of a unit ball and the point (3, 0, 0), and a point at (2.6, 0, 0): round
+    /// where the search starts, and a cone at its minimum, 0.4 / 3 deep.
+    #[test]
+    fn a_tip_is_no_ball() {
+        let mut random = Random::new(3);
+        let tip = |d: &Vec3| {
+            let top = Vec3::x() * 3.0;
+            if top.dot(d) > 1.0 { top } else { *d }
+        };
+        for _ in 0..200 {
+            let start = random.direction();
+            match run(tip, ball(Vec3::x() * 2.6, 0.0), &(Vec3::x() * -2.6), &start).0 {
+                End::Found(hit) => {
+                    let depth = hit.depth;
+                    assert!((depth - 0.4 / 3.0).abs() < 1e-3, "{depth} from {start}");
+                }
+                End::Open => {}
+                End::Apart(n) => panic!("apart along {n}"),
+            }
+        }
+    }
+
+    /// Of this radius about the z axis, its upper rim in the plane z = 0.
+    fn cylinder(radius: Real) -> impl Fn(&Vec3) -> Vec3 {
+        move |d| {
+            let f = radius / d.x.hypot(d.y);
+            Vec3::new(d.x * f, d.y * f, if d.z > 0.0 { 0.0 } else { -2.0 })
+        }
+    }
+
+    /// A straight line over a cylinder's rim, by e inside of it at 45°: across the line the rim
+    /// bends, and the depth is √2 e. Two exact cuts, and K along the line.
+    #[test]
+    fn an_edge_on_a_rim() {
+        let mut random = Random::new(4);
+        let n = Vec3::new(1.0, 0.0, 1.0).normalize();
+        let along = Vec3::new(1.0, 0.0, -1.0) * 3.0;
+        let mut open = 0;
+        for _ in 0..100 {
+            let (r, e) = (random.within(0.3, 1.5), random.within(0.01, 0.1));
+            let at = Vec3::new(r - e, 0.0, -e);
+            let (end, supports) = run(
+                cylinder(r),
+                hull(&[at + along, at - along]),
+                &(-at - Vec3::z()),
+                &(n + random.vector(0.15)),
+            );
+            // Ends of the line that look like points of one smooth surface.
+            if let End::Open = end {
+                open += 1;
+                continue;
+            }
+            let hit = found(end);
+            let depth = (2.0 as Real).sqrt() * e;
+            assert!((hit.depth - depth).abs() < 2.0 * TOLERANCE, "{}", hit.depth);
+            assert!((hit.dir - n).norm() < TOLERANCE.sqrt() * 2.0);
+            let near = (4.0 * depth * TOLERANCE).sqrt() + TOLERANCE;
+            assert!((hit.point1 - Vec3::x() * r).norm() < near, "{}", hit.point1);
+            assert!((hit.point1 - hit.point2 - hit.dir * hit.depth).norm() < near);
+            assert!(supports <= 12, "{supports}");
+        }
+        assert!(open <= 10, "{open}");
+    }
+
+    /// A cylinder's flat end on a vertex: least along its axis, where its disc has no curvature.
+    #[test]
+    fn a_vertex_in_a_flat_end() {
+        let mut random = Random::new(5);
+        let mut open = 0;
+        for _ in 0..100 {
+            let at = Vec3::new(0.2, random.within(-0.2, 0.2), random.within(-0.2, -0.01));
+            let (end, supports) = run(
+                cylinder(0.5),
+                ball(at, 0.0),
+                &(-at - Vec3::z()),
+                &(Vec3::z() + random.vector(0.15)),
+            );
+            // Started so near the axis that the rim turned by more than a quarter.
+            if let End::Open = end {
+                open += 1;
+                continue;
+            }
+            let hit = found(end);
+            assert!((hit.depth + at.z).abs() < TOLERANCE, "{} {at}", hit.depth);
+            assert!((hit.dir - Vec3::z()).norm() < 1e-4);
+            assert!((hit.point2 - at).norm() < TOLERANCE.sqrt());
+            assert!(supports <= 12, "{supports}");
+        }
+        assert!(open <= 30, "{open}");
+    }
+
+    /// The hull of a cylinder and an edge beside it, parallel to its axis, and a point: round
+    /// where the search starts, and a wedge at its minimum, 0.4 / 3 deep; 1 at the flat ends.
+    #[test]
+    fn a_wedge_is_no_cylinder() {
+        let mut random = Random::new(6);
+        let wedge = |d: &Vec3| {
+            let f = 1.0 / d.x.hypot(d.y);
+            let z = (1.0 as Real).copysign(d.z);
+            if 3.0 * d.x * f > 1.0 {
+                Vec3::new(3.0, 0.0, z)
+            } else {
+                Vec3::new(d.x * f, d.y * f, z)
+            }
+        };
+        let mut met = 0;
+        for _ in 0..400 {
+            let start = random.direction();
+            match run(
+                wedge,
+                ball(Vec3::x() * 2.6, 0.0),
+                &(Vec3::x() * -2.6),
+                &start,
+            )
+            .0
+            {
+                End::Found(hit) => {
+                    met += 1;
+                    let depth = hit.depth;
+                    let right = (depth - 0.4 / 3.0).abs() < 1e-3 || (depth - 1.0).abs() < 1e-6;
+                    assert!(right, "{depth} from {start}");
+                }
+                End::Open => {}
+                End::Apart(n) => panic!("apart along {n}"),
+            }
+        }
+        assert!(met > 50, "{met}");
+    }
+
+    /// What is smooth and no ball has R: an ellipsoid and a ball, whose centre is on the way of a
+    /// normal of the ellipsoid.
+    #[test]
+    fn an_ellipsoid_shows_its_curvature() {
+        let mut random = Random::new(7);
+        let r = Vec3::new(0.5, 0.35, 0.25);
+        let ellipsoid = |d: &Vec3| {
+            let w = r.component_mul(&r.component_mul(d));
+            w / w.dot(d).sqrt()
+        };
+        let mut open = 0;
+        for _ in 0..200 {
+            let n = random.direction();
+            let at = ellipsoid(&n) + n * 0.15;
+            let (end, supports) = run(ellipsoid, ball(at, 0.2), &-at, &(n + random.vector(0.1)));
+            if let End::Open = end {
+                open += 1;
+                continue;
+            }
+            let hit = found(end);
+            assert!((hit.depth - 0.05).abs() < 2.0 * TOLERANCE, "{}", hit.depth);
+            let near = (2.0 * hit.depth * TOLERANCE).sqrt();
+            assert!((hit.point1 - ellipsoid(&n)).norm() < 2.0 * near);
+            assert!(supports <= 16, "{supports}");
+        }
+        assert!(open <= 4, "{open}");
+    }
+
+    #[test]
+    fn apart_is_told() {
+        let (end, supports) = run(
+            ball(Vec3::zeros(), 1.0),
+            ball(Vec3::x() * 3.0, 1.0),
+            &(Vec3::x() * -3.0),
+            &Vec3::new(1.0, 0.1, 0.0),
+        );
+        assert!(matches!(end, End::Apart(_)) && supports == 1);
+    }
+
+    /// A callback that contradicts what it showed before separates nothing.
+    #[test]
+    fn contradictions_separate_nothing() {
+        let calls = core::cell::Cell::new(0);
+        let liar = |d: &Vec3| {
+            calls.set(calls.get() + 1);
+            if calls.get() == 1 {
+                Vec3::repeat(5.0)
+            } else {
+                -d
+            }
+        };
+        let (end, _) = run(liar, ball(Vec3::zeros(), 0.1), &Vec3::zeros(), &Vec3::x());
+        assert!(matches!(end, End::Open));
     }
 }

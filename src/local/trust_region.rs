@@ -127,8 +127,8 @@ impl TrustRegion {
                 self.radius = lesser(self.radius * GROW, LARGEST);
             }
         } else if self.foretold.is_finite()
-            // Level ground within rounding is no failure.
-            && !(actual > -8.0 * EPSILON * h)
+            // Level ground within rounding, as foretold, is no failure.
+            && !(actual > -8.0 * EPSILON * h && predicted <= 8.0 * EPSILON * h)
             && (n - self.from).norm_squared() > HALFWAY * self.radius * self.radius
         {
             self.radius *= SHRINK;

@@ -185,6 +185,8 @@ impl End {
 #[derive(Debug)]
 pub struct Model {
     pub cuts: [Cuts; 2],
+    /// By how much level ground may fall, metres.
+    pub level: Real,
 }
 
 /// A way from x: `num` / `den` times `u`; without an end, where that is infinite.
@@ -316,13 +318,23 @@ impl Model {
                 let room = larger(radius * radius - dot(&off, &off), 0.0);
                 let t = ((xu * xu + uu * room).sqrt() - xu) / uu;
                 if uu > 0.0 {
-                    x = [x[0] + t * u[0], x[1] + t * u[1]];
-                    end.value = linear + t * dot(&beta, &u);
+                    let to = [x[0] + t * u[0], x[1] + t * u[1]];
+                    let mut there = linear + t * dot(&beta, &u);
                     if BENT {
-                        end.value += 0.5 * dot(&times(&bend, &x), &x);
+                        there += 0.5 * dot(&times(&bend, &to), &to);
+                    }
+                    let fall = value / one.sqrt() - there / (1.0 + dot(&to, &to)).sqrt();
+                    // On level ground what bends is known best near by.
+                    if !(BENT && fall <= self.level) {
+                        (x, end.value) = (to, there);
                     }
                 }
                 (end.on_border, end.lost) = (true, false);
+                if end.count == 1 {
+                    // The share where it began; nearly level on the way.
+                    let e = &end.kinks[0].e;
+                    end.weights[0] = (-dot(&down, e) / (dot(e, e) * one)).clamp(0.0, 1.0);
+                }
                 break;
             }
             if t > 0.0 {
@@ -589,6 +601,7 @@ mod tests {
     fn model(r: &mut Random, len: [usize; 2], depth: Real, bend: Real) -> Model {
         let mut model = Model {
             cuts: [Cuts::NONE; 2],
+            level: 0.0,
         };
         for (cuts, len) in model.cuts.iter_mut().zip(len) {
             cuts.len = len;
@@ -680,6 +693,7 @@ mod tests {
     fn parallel_edges_are_walked_along() {
         let mut model = Model {
             cuts: [Cuts::NONE; 2],
+            level: 0.0,
         };
         for (cuts, scale) in model.cuts.iter_mut().zip([0.5, 0.2]) {
             (cuts.len, cuts.a) = (2, [-0.1; ROOM]);
