@@ -355,7 +355,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if large && way != Way::Surround {
                 continue;
             }
-            skip = begin_again(&mut start.set, skip);
+            // What a try has handed over is named.
+            if way != Way::Known {
+                skip = begin_again(&mut start.set, skip);
+            }
             let names = self.first_tetrahedron(way, start, skip)?;
             let Handed { set, rounds, .. } = &mut *start;
             // A point of the polytope like others from here on, but no corner of a portal.
