@@ -48,10 +48,6 @@ const DOUBTS: usize = 4;
 /// The share of the centres' distance that the first depth of a shallow contact is, at most. Measured: 0.5
 /// changes no recorded contact by 0.1 %, and leaves deep pairs alone.
 const FAR: Real = 0.5;
-/// Queries of a pair that leave the proof without a hull out after a warm one in vain: a pair of round
-/// objects mostly needs one again. Measured on the recorded contacts, warm: 1, 2, 3 and 6 take 4, 6,
-/// 6 and 7 % fewer instructions, and 1.6, 2, 2.2 and 2.8 % more support points.
-const WAITS: u32 = 2;
 /// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
@@ -105,8 +101,7 @@ pub struct Basis {
     /// How many there are.
     pub len: u16,
     /// Of the portal of a proof without a hull, of each corner the numbers of the directions that find
-    /// obj1's point and obj2's, two bits each, below a bit that is set ([`Basis::PORTAL`]). Of a hull's,
-    /// how many queries after it leave that out.
+    /// obj1's point and obj2's, two bits each, below a bit that is set ([`Basis::PORTAL`]); 0 of a hull's.
     pub hint: u32,
     /// The [`mark::of`] the points known, where the position was asked for.
     pub mark: u64,
@@ -238,14 +233,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
     }
 
-    /// How many queries more of this pair leave the proof without a hull out, this one with them.
-    fn waits(&self) -> u32 {
-        match self.request.hint {
-            portal if portal >= Basis::PORTAL => 0,
-            waits => waits.min(WAITS),
-        }
-    }
-
     /// Does no point that known ones make lie beyond the lowest plane?
     #[inline(never)]
     fn is_deepest(&self, set: &SupportSet<{ FIRST.0 }>) -> bool {
@@ -282,9 +269,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             limits,
             ..
         } = self.request;
-        if self.waits() > 0 {
-            return Ok(false);
-        }
         self.inquiry.precision.note(centre);
         let mut attempt = Try::new(&centre.v);
         attempt.points.first(dir, first);
@@ -662,16 +646,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             false => [0.0; 2],
         };
         self.put(depth, lower, touch, extent, progress.iterations);
-        let waits = match self.waits() {
-            0 if self.request.cold() || self.request.centre.is_none() => 0,
-            0 => WAITS,
-            left => left - 1,
-        };
         if let Some(basis) = &mut self.basis {
-            **basis = Basis {
-                hint: waits,
-                ..Basis::default()
-            };
+            **basis = Basis::default();
             mark_rest(
                 basis,
                 self.request,
