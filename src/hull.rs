@@ -9,6 +9,7 @@
 //! tetrahedron, [`expansion`] chooses where to ask, [`polytope`] and [`plane`] are the
 //! polytope.
 
+pub mod cores;
 pub mod expansion;
 pub mod global;
 pub mod plane;

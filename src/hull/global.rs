@@ -29,16 +29,14 @@ use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
 use crate::math::{Real, Vec3, larger, unit};
 
-/// Points and faces of the first room, 3 KB: enough for shallow contacts.
+/// Points and faces of the first room, 5 KB (double): enough for shallow contacts and most polytopes.
 ///
 /// In each room, a closed surface of V points has 2V − 4 faces, and some are left over for a
 /// fan, which is made before the faces that it replaces are freed.
-pub const FIRST: (usize, usize) = (16, 32);
-/// Of the second, 5 KB (double): enough for most polytopes.
-const SECOND: (usize, usize) = (24, 48);
-/// Of the third, 30 KB: enough for the 160 support points of an MPR query, of which a few make no
+pub const FIRST: (usize, usize) = (24, 48);
+/// Of the second, 30 KB: enough for the 160 support points of an MPR query, of which a few make no
 /// corner. (Eight faces more, and the room that is lent after it ends beyond 44 KB of stack.)
-const THIRD: (usize, usize) = (162, 320);
+const SECOND: (usize, usize) = (162, 320);
 /// Of the one that is lent, 70 KB: enough for all that a query may ask.
 const LENT: (usize, usize) = (376, 760);
 /// Grains more than the tolerance that proven bounds may be apart, where rounding ended the search.
@@ -50,10 +48,6 @@ const DOUBTS: usize = 4;
 /// The share of the centres' distance that the first depth of a shallow contact is, at most. Measured: 0.5
 /// changes no recorded contact by 0.1 %, and leaves deep pairs alone.
 const FAR: Real = 0.5;
-/// Queries of a pair that leave the proof without a hull out after a warm one in vain: a pair of round
-/// objects mostly needs one again. Measured on the recorded contacts, warm: 1, 2, 3 and 6 take 4, 6,
-/// 6 and 7 % fewer instructions, and 1.6, 2, 2.2 and 2.8 % more support points.
-const WAITS: u32 = 2;
 /// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
@@ -107,8 +101,7 @@ pub struct Basis {
     /// How many there are.
     pub len: u16,
     /// Of the portal of a proof without a hull, of each corner the numbers of the directions that find
-    /// obj1's point and obj2's, two bits each, below a bit that is set ([`Basis::PORTAL`]). Of a hull's,
-    /// how many queries after it leave that out.
+    /// obj1's point and obj2's, two bits each, below a bit that is set ([`Basis::PORTAL`]); 0 of a hull's.
     pub hint: u32,
     /// The [`mark::of`] the points known, where the position was asked for.
     pub mark: u64,
@@ -240,14 +233,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
     }
 
-    /// How many queries more of this pair leave the proof without a hull out, this one with them.
-    fn waits(&self) -> u32 {
-        match self.request.hint {
-            portal if portal >= Basis::PORTAL => 0,
-            waits => waits.min(WAITS),
-        }
-    }
-
     /// Does no point that known ones make lie beyond the lowest plane?
     #[inline(never)]
     fn is_deepest(&self, set: &SupportSet<{ FIRST.0 }>) -> bool {
@@ -284,9 +269,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             limits,
             ..
         } = self.request;
-        if self.waits() > 0 {
-            return Ok(false);
-        }
         self.inquiry.precision.note(centre);
         let mut attempt = Try::new(&centre.v);
         attempt.points.first(dir, first);
@@ -340,14 +322,15 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         })
     }
 
-    /// The answer of the hulls that begin in the ways there are.
-    #[inline(always)]
+    /// The answer of the hulls that begin in the ways there are. (Of its own stack frame, which the try
+    /// without a hull does without.)
+    #[inline(never)]
     fn expanded(
         &mut self,
         start: &mut Handed,
         mut opposite: Option<[Vec3; 2]>,
     ) -> Result<bool, Stop> {
-        let mut hull = Polytope::<{ FIRST.1 }>::BLANK;
+        let mut hull = Polytope::<{ FIRST.1 }>::blank(self.inquiry.precision.size());
         // The index of `opposite`, once it is in the set.
         let mut skip = usize::MAX;
         let mut large = false;
@@ -356,7 +339,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if large && way != Way::Surround {
                 continue;
             }
-            skip = begin_again(&mut start.set, skip);
+            // What a try has handed over is named.
+            if way != Way::Known {
+                skip = begin_again(&mut start.set, skip);
+            }
             let names = self.first_tetrahedron(way, start, skip)?;
             let Handed { set, rounds, .. } = &mut *start;
             // A point of the polytope like others from here on, but no corner of a portal.
@@ -388,20 +374,17 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
                 continue;
             }
-            let answer = self.widened::<{ FIRST.0 }, { FIRST.1 }, { SECOND.0 }, { SECOND.1 }>(
-                set,
-                &hull,
-                &mut progress,
-            )?;
-            if let Some(proven) = answer {
+            if let Some(proven) = self.widened(set, &hull, &mut progress)? {
                 return Ok(proven);
             }
             large = !self.stuck;
         }
         Ok(self.open.unwrap_or_else(|| {
             let set = &start.set;
-            let lowest = set.farther(&self.inquiry.lowest.dir, Real::NEG_INFINITY);
-            *self.hit = self.bare(&set.point(lowest.unwrap_or(1)));
+            // Nothing is known but the upper bound.
+            let Lowest { depth, dir } = self.inquiry.lowest;
+            let lowest = set.farther(&dir, Real::NEG_INFINITY).unwrap_or(1);
+            self.put(depth, 0.0, set.witnesses(lowest), [0.0; 2], 0);
             false
         }))
     }
@@ -409,21 +392,36 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// The answer of a proof without a hull.
     #[inline(always)]
     fn conclude_at_once(&mut self, known: &Try, centre: &SupportPoint, lower: Real) {
-        let Lowest { depth, dir } = self.inquiry.lowest;
-        let Some(portal) = &known.portal else {
+        let (Some(portal), Some((names, weights))) = (&known.portal, known.exit) else {
             return;
         };
         let points = &known.points;
-        let Some((names, weights)) = known.exit else {
-            return;
-        };
-        let [a, b, c] = names.map(|names| points.witnesses(names));
-        let point1 = barycentric::mix(&weights, [&a[0], &b[0], &c[0]]);
-        let point2 = barycentric::mix(&weights, [&a[1], &b[1], &c[1]]);
+        let touch = mixed(&weights, names.map(|names| points.witnesses(names)));
         let extent = match self.request.wants_pos {
-            true => points.extent([&point1, &point2]),
+            true => points.extent([&touch[0], &touch[1]]),
             false => [0.0; 2],
         };
+        let depth = self.inquiry.lowest.depth;
+        self.put(depth, lower, touch, extent, known.rounds);
+        if let Some(basis) = &mut self.basis {
+            known.basis(portal, basis);
+            let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
+            let all = asked.chain([[centre.v1, centre.v2]]);
+            mark_rest(basis, self.request, all);
+        }
+    }
+
+    /// Writes an answer along the lowest direction.
+    #[inline(always)]
+    fn put(
+        &mut self,
+        depth: Real,
+        lower: Real,
+        [point1, point2]: [Vec3; 2],
+        extent: [Real; 2],
+        iterations: u64,
+    ) {
+        let dir = self.inquiry.lowest.dir;
         *self.hit = Penetration {
             depth,
             depth_lower: lower,
@@ -431,19 +429,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             normal: dir,
             point1,
             point2,
-            extent,
             pos: Vec3::zeros(),
-            iterations: known.rounds,
+            extent,
+            iterations,
         };
-        if let Some(basis) = &mut self.basis {
-            known.basis(portal, basis);
-            if self.request.wants_pos {
-                let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
-                let all = asked.chain([[centre.v1, centre.v2]]);
-                basis.mark = mark::of(all.clone());
-                basis.unmoved = self.request.mark == Some(basis.mark) && mark::pins(all, true);
-            }
-        }
     }
 
     /// No polytope has come to hold the origin, by rounding or by callbacks that contradict
@@ -541,25 +530,20 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Ok(opposite)
     }
 
-    /// The expansion goes on in a larger room of `Q` points and `G` faces, and in those after
-    /// it.
+    /// The expansion goes on in a larger room, and in the one after it.
     #[cold]
     #[inline(never)]
-    fn widened<const P: usize, const F: usize, const Q: usize, const G: usize>(
+    fn widened(
         &mut self,
-        small: &SupportSet<P>,
-        polytope: &Polytope<F>,
+        small: &SupportSet<{ FIRST.0 }>,
+        polytope: &Polytope<{ FIRST.1 }>,
         progress: &mut Progress,
     ) -> Result<Option<bool>, Stop> {
-        let mut set = SupportSet::<Q>::EMPTY;
-        let mut hull = Polytope::<G>::BLANK;
+        let mut set = SupportSet::<{ SECOND.0 }>::EMPTY;
+        let mut hull = Polytope::<{ SECOND.1 }>::BLANK;
         set.take(small);
         polytope.moved_to(&mut hull);
-        progress.coarsen();
         let end = expand(&mut self.inquiry, &mut set, &mut hull, progress)?;
-        if end == End::NoRoom && Q < THIRD.0 {
-            return self.widened::<Q, G, { THIRD.0 }, { THIRD.1 }>(&set, &hull, progress);
-        }
         // It is lent once: an expansion that fills it stays open.
         if let (End::NoRoom, Some(arena)) = (end, self.arena.take()) {
             return self.lent(arena.room()?, &set, &hull, progress);
@@ -570,11 +554,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// The expansion goes on in the room that is lent.
     #[cold]
     #[inline(never)]
-    fn lent<const P: usize, const F: usize>(
+    fn lent(
         &mut self,
         Room { set, hull }: &mut Room,
-        small: &SupportSet<P>,
-        polytope: &Polytope<F>,
+        small: &SupportSet<{ SECOND.0 }>,
+        polytope: &Polytope<{ SECOND.1 }>,
         progress: &mut Progress,
     ) -> Result<Option<bool>, Stop> {
         set.take(small);
@@ -621,24 +605,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Ok(depth)
     }
 
-    /// The answer where nothing is known but the upper bound.
-    fn bare(&self, witness: &SupportPoint) -> Penetration {
-        let Lowest { depth, dir, .. } = self.inquiry.lowest;
-        Penetration {
-            depth,
-            depth_lower: 0.0,
-            dir,
-            normal: dir,
-            point1: witness.v1,
-            point2: witness.v2,
-            pos: Vec3::zeros(),
-            extent: [0.0; 2],
-            iterations: 0,
-        }
-    }
-
     /// Writes the answer of an expansion, and tells whether it is proven: depth and direction
-    /// are the upper bound's, lower bound and witness points the polytope's.
+    /// are the upper bound's, lower bound and witness points the polytope's. An earlier one stays whose
+    /// bounds are as close.
     #[inline(never)]
     fn conclude<const P: usize, const F: usize>(
         &mut self,
@@ -655,47 +624,35 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if dir.dot(&set.v(lowest)) > depth + self.inquiry.precision.tie() {
             depth = self.confirmed(set, &dir, depth)?;
         }
-        let precision = &self.inquiry.precision;
-        let near = if end == End::Open {
+        let grain = self.inquiry.precision.grain();
+        let lower = if end == End::Open {
             0.0
         } else {
-            hull.bound(&top)
+            larger(hull.bound(&top) - grain, 0.0).min(depth)
         };
-        // What an earlier expansion has proven holds too; 0 before the first.
-        let lower = larger(near - precision.grain(), self.hit.depth_lower).min(depth);
+        if let Some(proven) = self.open {
+            if self.hit.depth - self.hit.depth_lower <= depth - lower {
+                return Ok(proven);
+            }
+        }
         let (face, nearest) = exit_face(set, hull, top.face, &dir, depth, progress.tolerance);
-        let [a, b, c] = hull.corners(face).map(|i| set.witnesses(i));
-        let point1 = barycentric::mix(&nearest.weights, [&a[0], &b[0], &c[0]]);
-        let point2 = barycentric::mix(&nearest.weights, [&a[1], &b[1], &c[1]]);
-        let waits = match self.waits() {
-            0 if self.request.cold() || self.request.centre.is_none() => 0,
-            0 => WAITS,
-            left => left - 1,
-        };
+        let touch = mixed(
+            &nearest.weights,
+            hull.corners(face).map(|i| set.witnesses(i)),
+        );
         let points = (1..set.len()).map(|i| set.witnesses(i));
         let extent = match self.request.wants_pos {
-            true => pressure::extent(points, [&point1, &point2]),
+            true => pressure::extent(points, [&touch[0], &touch[1]]),
             false => [0.0; 2],
         };
-        *self.hit = Penetration {
-            depth,
-            depth_lower: lower,
-            dir,
-            normal: dir,
-            point1,
-            point2,
-            pos: Vec3::zeros(),
-            extent,
-            iterations: progress.iterations,
-        };
+        self.put(depth, lower, touch, extent, progress.iterations);
         if let Some(basis) = &mut self.basis {
-            if self.request.wants_pos {
-                let points = (0..set.len()).map(|i| set.witnesses(i));
-                basis.mark = mark::of(points.clone());
-                basis.unmoved = self.request.mark == Some(basis.mark)
-                    && mark::pins(points, self.request.centre.is_some());
-            }
-            basis.hint = waits;
+            **basis = Basis::default();
+            mark_rest(
+                basis,
+                self.request,
+                (0..set.len()).map(|i| set.witnesses(i)),
+            );
             basis.add(&dir);
             // What asking along dir has found it finds again: one of several that are as far.
             let found = (1..set.len()).find(|&i| set.direction(i) == dir);
@@ -711,12 +668,32 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         // this order NaN is none.)
         let Limits { tolerance, gap, .. } = *self.request.limits;
         let asked = larger(tolerance, progress.tolerance);
-        let close = larger(
-            gap / (1.0 + gap) * depth,
-            asked + ROUNDED * precision.grain(),
-        );
+        let close = larger(gap / (1.0 + gap) * depth, asked + ROUNDED * grain);
         Ok(depth - lower <= close)
     }
+}
+
+/// Has the pair moved since the state was left? Only where somebody reads the contact position.
+#[inline(always)]
+fn mark_rest(
+    basis: &mut Basis,
+    request: &Request<'_>,
+    points: impl Iterator<Item = [Vec3; 2]> + Clone,
+) {
+    if request.wants_pos {
+        basis.mark = mark::of(points.clone());
+        basis.unmoved =
+            request.mark == Some(basis.mark) && mark::pins(points, request.centre.is_some());
+    }
+}
+
+/// The objects' points where these corners of a face have these weights.
+#[inline(always)]
+fn mixed(weights: &[Real; 3], corners: [[Vec3; 2]; 3]) -> [Vec3; 2] {
+    let [a, b, c] = &corners;
+    let point1 = barycentric::mix(weights, [&a[0], &b[0], &c[0]]);
+    let point2 = barycentric::mix(weights, [&a[1], &b[1], &c[1]]);
+    [point1, point2]
 }
 
 /// Makes room for another start where a larger room was stuck. Returns `skip`, if that point

@@ -102,8 +102,11 @@ const FRESH: f64 = 8.0;
 const BORROWED: u64 = 1 << 63;
 
 /// The hull of points that are named by numbers below 32768.
+#[repr(C)]
 pub struct Polytope<const F: usize> {
     planes: [[f64; 4]; F],
+    /// An ulp of the points' size, metres.
+    ulp: f64,
     /// d|d| / |N|² with the face's number in its low bits.
     keys: [f64; F],
     /// The half-edge on the other side of each of the three edges. The fourth is used while a
@@ -121,8 +124,6 @@ pub struct Polytope<const F: usize> {
     /// What every plane has z below it by, at least, in units of its |N|, metres.
     margin: f64,
     error: f64,
-    /// An ulp of the points' size, metres.
-    ulp: f64,
     /// |N|² below which planes are computed from their corners.
     collapsed: f64,
     /// [`UNTOLD`], or 0 where keys are made to tell ([`Polytope::is_nearer`]).
@@ -148,9 +149,11 @@ pub enum Inserted {
 }
 
 impl<const F: usize> Polytope<F> {
-    /// Nothing, and not yet fit for use: [`Polytope::tetrahedron`] comes first.
+    /// Nothing, and not yet fit for use: [`Polytope::tetrahedron`] comes first. All zero, so that no
+    /// pattern is copied.
     pub const BLANK: Self = Self {
         planes: [[0.0; 4]; F],
+        ulp: 0.0,
         keys: [0.0; F],
         twins: [[0; 4]; F],
         corners: [0; F],
@@ -160,11 +163,30 @@ impl<const F: usize> Polytope<F> {
         inner: Wide3::new(0.0, 0.0, 0.0),
         margin: 0.0,
         error: 0.0,
-        ulp: 0.0,
-        // All zero, so that no pattern is copied.
         collapsed: 0.0,
         untold: 0.0,
     };
+
+    /// The same, for points of about this size, metres. A number between two arrays has a small
+    /// hull's zeroed one by one: all at once, of 2 KB and more, they are byte by byte.
+    #[inline(always)]
+    pub fn blank(size: Real) -> Self {
+        Self {
+            planes: [[0.0; 4]; F],
+            ulp: f64::EPSILON * wide(size),
+            keys: [0.0; F],
+            twins: [[0; 4]; F],
+            corners: [0; F],
+            next: [0; F],
+            free: 0,
+            used: 0,
+            inner: Wide3::new(0.0, 0.0, 0.0),
+            margin: 0.0,
+            error: 0.0,
+            collapsed: 0.0,
+            untold: 0.0,
+        }
+    }
 
     #[inline(always)]
     fn at(i: usize) -> usize {

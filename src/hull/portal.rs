@@ -19,7 +19,7 @@ use crate::gjk::barycentric;
 use crate::hull::start;
 use crate::known::points::Points;
 use crate::known::support_set::Lowest;
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, larger};
 
 /// Steps of a portal that is looked for. Insensitive: 5 to 16 tried on the recorded contacts.
 const FOUND: usize = 8;
@@ -94,6 +94,27 @@ impl View {
             way,
             from: way.dot(&p),
         }
+    }
+
+    /// From an edge of a portal that the ray passes beyond; `None` where it passes the portal.
+    fn beyond(portal: &Portal, c: &Vec3) -> Option<Self> {
+        let seen = |i: usize| Seen::of(portal.names[i], portal.points[i], c);
+        let corners = [seen(0), seen(1), seen(2)];
+        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+            let (a, b) = (corners[a], corners[b]);
+            let ab = a.across.dot(&b.p);
+            if ab > 0.0 {
+                let mut view = Self {
+                    a,
+                    b: None,
+                    way: Vec3::zeros(),
+                    from: 0.0,
+                };
+                view.turn(b, ab);
+                return Some(view);
+            }
+        }
+        None
     }
 
     /// The way that the lowest direction is to be tilted by, as [`start::tilt`] has it, and
@@ -183,12 +204,22 @@ impl Portal {
         }
     }
 
-    /// Does the ray from c through the origin pass it?
+    /// Does the ray from c through the origin pass it, and has the tetrahedron with c a volume? `tiny`: what
+    /// three products of lengths round by.
     #[inline(always)]
-    pub fn is_pierced(&self, c: &Vec3) -> bool {
+    pub fn is_pierced(&self, c: &Vec3, tiny: Real) -> bool {
         let [u, v, w] = &self.points;
-        let (m, side) = (w.cross(c), c.dot(&u.cross(v)));
-        side <= 0.0 && m.dot(v) <= 0.0 && m.dot(u) >= 0.0
+        let m = w.cross(c);
+        let (x, y, z) = (c.dot(&u.cross(v)), m.dot(v), -m.dot(u));
+        x <= 0.0 && y <= 0.0 && z <= 0.0 && x + y + z < -tiny
+    }
+
+    /// The portal of another ray.
+    pub fn moved(&self, points: &Points, c: &Vec3) -> Option<Self> {
+        match View::beyond(self, c) {
+            Some(mut view) => view.portal(points, c),
+            None => Some(*self),
+        }
     }
 
     /// Its plane.
@@ -241,9 +272,10 @@ impl Portal {
         (*name, *corner) = (names, *p);
     }
 
-    /// Is the ball of this radius, metres, inside, if the portal's plane reaches so far?
+    /// Is the ball of this radius, metres, inside, if the portal's plane reaches so far? Else the normal of
+    /// the plane that leans out as far as may be on a side where it is not.
     #[inline(always)]
-    pub fn holds(&self, points: &Points, c: &Vec3, least: Real, tiny: Real) -> bool {
+    pub fn open_side(&self, points: &Points, c: &Vec3, least: Real, tiny: Real) -> Option<Vec3> {
         let [u, v, w] = &self.points;
         let inner = Inner {
             c,
@@ -251,8 +283,11 @@ impl Portal {
             tiny,
         };
         // Spelt out: a loop would go by way of memory.
-        let side = |a, b| inner.is_beside(a, b) || inner.is_within(points, [a, b], DEEP);
-        side(u, v) && side(v, w) && side(w, u)
+        let open = |a, b| match inner.is_beside(a, b) {
+            true => None,
+            false => inner.open_side(points, [a, b], DEEP),
+        };
+        open(u, v).or_else(|| open(v, w)).or_else(|| open(w, u))
     }
 
     /// The weights of the corners in the point where the ray along the lowest direction leaves,
@@ -310,6 +345,12 @@ impl Plane {
         d > 0.0 && d * d >= least * least * self.n2
     }
 
+    /// How far a point is above it, metres.
+    #[inline(always)]
+    pub fn above(&self, p: &Vec3) -> Real {
+        (self.n.dot(p) - self.d) / self.n2.sqrt()
+    }
+
     /// Is it too far from the origin for a shallow contact?
     #[inline(always)]
     pub fn is_deep(&self, size2: Real) -> bool {
@@ -340,28 +381,32 @@ impl Inner<'_> {
         d > 0.0 && d * d >= self.least2 * n.norm_squared()
     }
 
-    /// The surface goes on beyond the edge from `a` to `b` with the face to the point of P farthest
-    /// out there.
+    /// The surface goes on beyond the edge from `a` to `b` with a face to a point of P out there. Where
+    /// it does not, the normal of the plane through the edge that leans out as far as may be.
     #[cold]
     #[inline(never)]
-    fn is_within(&self, points: &Points, [a, b]: [&Vec3; 2], deep: usize) -> bool {
-        let c = self.c;
-        let mut p = points.point(points.extreme(&(b - c).cross(&(a - c))));
-        for _ in 0..DEEP {
-            let f = (a - b).cross(&(p - b));
-            if self.is_behind(&-f, a) {
-                return [[a, &p], [&p, b]].into_iter().all(|[a, b]| {
-                    self.is_beside(a, b) || deep > 0 && self.is_within(points, [a, b], deep - 1)
-                });
-            }
-            // A point above that face is nearer by, and the next one goes on from there.
-            let q = points.point(points.extreme(&f));
-            if !(f.dot(&(q - a)) > self.tiny) {
-                break;
-            }
-            p = q;
+    fn open_side(&self, points: &Points, [a, b]: [&Vec3; 2], deep: usize) -> Option<Vec3> {
+        // What is above that plane makes a face that leans out less.
+        let e = b - a;
+        let across = e * (e.dot(a) / e.norm_squared()) - a;
+        let far2 = across.norm_squared();
+        let out = across.cross(&e);
+        let slope = (larger(far2 / self.least2 - 1.0, 0.0) / out.norm_squared()).sqrt();
+        let f = out * (far2.sqrt() * slope) - across;
+        let p = points.point(points.extreme(&f));
+        if !self.is_behind(&(p - b).cross(&(a - b)), a) {
+            return Some(f);
         }
-        false
+        let open = |a: &Vec3, b: &Vec3| {
+            if self.is_beside(a, b) {
+                None
+            } else if deep > 0 {
+                self.open_side(points, [a, b], deep - 1)
+            } else {
+                Some(f)
+            }
+        };
+        open(a, &p).or_else(|| open(&p, b))
     }
 }
 #[cfg(test)]

@@ -96,20 +96,6 @@ impl Cloud {
         if name < len { name } else { 0 }
     }
 
-    /// How much farther along a unit direction than `reach` one of `len` points is, metres: `beyond` grows
-    /// to that.
-    #[inline(always)]
-    fn beyond(&self, n: &Vec3, len: usize, reach: Real, beyond: &mut [Real; 2]) {
-        let [x, y, z] = &self.0;
-        for i in 0..len.div_ceil(2).min(ROOM / 2) {
-            let (x, y, z) = (x[i], y[i], z[i]);
-            for l in 0..2 {
-                let along = n.x * x[l] + n.y * y[l] + n.z * z[l];
-                beyond[l] = larger(along - reach, beyond[l]);
-            }
-        }
-    }
-
     /// The square of how far one of `len` points is from `p`, m².
     #[inline(always)]
     fn extent(&self, p: &Vec3, len: usize) -> Real {
@@ -180,6 +166,12 @@ impl Points {
         self.asked = k + 1;
     }
 
+    /// Has each direction found another point of obj1 (`object` 0) or of obj2?
+    #[inline(always)]
+    pub fn is_new(&self, object: usize) -> bool {
+        self.lens[object % 2] == self.asked
+    }
+
     /// How many directions have been asked.
     #[inline(always)]
     pub fn asked(&self) -> usize {
@@ -221,12 +213,20 @@ impl Points {
     #[inline(never)]
     pub fn beyond(&self) -> Real {
         let mut beyond = [Real::NEG_INFINITY; 2];
+        let ([x, y, z], [u, v, w]) = (&self.one.0, &self.two.0);
         let [one, two] = self.lens;
+        let pairs = one.max(two).div_ceil(2).min(ROOM / 2);
         for (n, names) in self.directions.iter().zip(&self.names).take(self.asked) {
             let [i, j] = names.map(usize::from);
-            let (m, [a, b]) = (-n, self.witnesses([i, j]));
-            self.one.beyond(n, one, n.dot(&a), &mut beyond);
-            self.two.beyond(&m, two, m.dot(&b), &mut beyond);
+            let (p, q) = (n.dot(&self.one.get(i)), n.dot(&self.two.get(j)));
+            for i in 0..pairs {
+                let (x, y, z, u, v, w) = (x[i], y[i], z[i], u[i], v[i], w[i]);
+                for l in 0..2 {
+                    let along = n.x * x[l] + n.y * y[l] + n.z * z[l] - p;
+                    let against = q - (n.x * u[l] + n.y * v[l] + n.z * w[l]);
+                    beyond[l] = larger(larger(along, against), beyond[l]);
+                }
+            }
         }
         larger(beyond[0], beyond[1])
     }
