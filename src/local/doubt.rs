@@ -21,9 +21,9 @@ impl Search {
         let end = &self.step.end;
         let kinks = end.kinks.iter().take(end.count);
         let mut hair = hair;
-        for o in 0..2 {
-            let own = |k: &Kink| k.object == o && k.point == places[o];
-            if end.active[o] != places[o] && self.objects[o].is_round() && !kinks.clone().any(own) {
+        for (o, (object, place)) in self.objects.iter().zip(places).enumerate() {
+            let own = |k: &Kink| k.object == o && k.point == place;
+            if object.is_round() && end.active[o % 2] != place && !kinks.clone().any(own) {
                 hair = 0.0;
             }
         }

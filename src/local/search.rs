@@ -713,7 +713,7 @@ impl Search {
     }
 }
 
-// In single precision more of them are left to the search with curvature.
+// In single precision more of them are left to the paper's method.
 #[cfg(all(test, not(feature = "single")))]
 mod tests {
     use super::*;
