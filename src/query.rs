@@ -23,7 +23,8 @@
 //!    is spent on it.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::contacts::pressure;
+use crate::contacts::polygon::cross;
+use crate::contacts::pressure::{self, Around};
 use crate::gjk::barycentric;
 use crate::gjk::intersect;
 use crate::gjk::overlap::{self, Proof};
@@ -287,7 +288,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Limit(hit));
         }
         if wants_pos {
-            hit.pos = pressure::centre(&self.md, &hit, self.centre.as_ref(), settings.tolerance)?;
+            let centre = self.centre.as_ref();
+            hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, None, None)?;
         }
         Ok(Answer::Hit(hit))
     }
@@ -309,8 +311,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.remember(state, &answer)?;
         match answer {
             Answer::Hit(mut hit) if wants_pos => {
-                hit.pos =
-                    pressure::centre(&self.md, &hit, self.centre.as_ref(), settings.tolerance)?;
+                let centre = self.centre.as_ref();
+                hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, None, None)?;
                 Ok(Answer::Hit(hit))
             }
             other => Ok(other.in_the_middle()),
@@ -391,6 +393,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             limits,
             wants_pos,
             mark: state.mark(),
+            stands: state.stands(),
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
@@ -409,19 +412,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         });
         match found {
             Ok(true) => {
-                let asked = self.md.supports();
                 if wants_pos {
-                    hit.pos = match state.position().filter(|_| basis.unmoved) {
-                        Some(pos) => pos,
-                        None => pressure::centre(
-                            &self.md,
-                            &hit,
-                            self.centre.as_ref(),
-                            limits.tolerance,
-                        )?,
-                    };
+                    self.place(state, &basis, &mut hit, limits)?;
+                } else {
+                    self.keep(state, &basis, None, 0);
                 }
-                self.keep(state, &basis, wants_pos.then_some(hit.pos), asked);
                 Ok(Answer::Hit(hit))
             }
             Ok(false) => {
@@ -462,6 +457,62 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(middle) = middle {
             state.rest(middle, basis.mark);
         }
+        self.face(state);
+    }
+
+    /// The position of a hit, and what its state keeps. (Not in the frame that the search runs in.)
+    #[inline(never)]
+    fn place(
+        &self,
+        state: &mut State,
+        basis: &Basis,
+        hit: &mut Penetration,
+        limits: &Limits,
+    ) -> Result<(), Fault> {
+        let asked = self.md.supports();
+        let mut around = Around {
+            low: 0.25 * larger(limits.tolerance, limits.gap * hit.depth),
+            ..Around::default()
+        };
+        hit.pos = match state.position().filter(|_| basis.unmoved) {
+            Some(pos) => pos,
+            None => {
+                let known = (state.others(), basis.found());
+                let known = (!known.1.is_empty()).then_some(&known);
+                let around = self.lasting.then_some(&mut around);
+                let (centre, tolerance) = (self.centre.as_ref(), limits.tolerance);
+                pressure::centre(&self.md, hit, centre, tolerance, known, around)?
+            }
+        };
+        self.keep(state, basis, Some(hit.pos), asked);
+        if self.md.supports() > asked + 1 && around.directions[0] != Vec3::zeros() {
+            self.stand_on(state, &around, hit);
+        }
+        Ok(())
+    }
+
+    /// Where the four points around the deepest place lie in one face of D, three of them prove the
+    /// minimum as well as what the search found: the state keeps those, and the next query has asked
+    /// three of the four.
+    fn stand_on(&self, state: &mut State, around: &Around, hit: &Penetration) {
+        let mut best = (EDGE, None);
+        for left_out in 0..4 {
+            let [a, b, c] = [1, 2, 3].map(|i| (left_out + i) % 4);
+            let area = |i: usize, j: usize| cross(&around.points[i], &around.points[j]);
+            let areas = [area(a, b), area(b, c), area(c, a)];
+            let whole: Real = areas.iter().sum();
+            let least = areas.iter().map(|x| x / whole).fold(1.0, Real::min);
+            if least > best.0 {
+                best = (least, Some([a, b, c]));
+            }
+        }
+        let Some(three) = best.1 else { return };
+        let mut stands = Basis::default();
+        stands.add(&hit.normal);
+        three
+            .iter()
+            .for_each(|i| stands.add(&around.directions[*i]));
+        state.stand(&stands, hit.pos);
         self.face(state);
     }
 
@@ -741,6 +792,9 @@ const PROOF: usize = 2 * Known::ROOM;
 
 /// Support points of an MPR query, at most.
 const MPR_SUPPORTS: u64 = 160;
+/// Part of a triangle by which the origin is inside of it, at least, for the state to stand on it.
+/// Insensitive: 0.01 to 0.1 tried.
+const EDGE: Real = 0.02;
 /// Of a proven minimum, which may take a local search more.
 const MOST_SUPPORTS: u64 = 360;
 /// Where an MPR query may stop: a gap of this share of the depth.

@@ -36,7 +36,7 @@
 
 use crate::contact::Penetration;
 use crate::contacts::fan::{Corner, Fan, pressed};
-use crate::contacts::polygon::Flat;
+use crate::contacts::polygon::{Flat, side};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::math::{EPSILON, POLE, Real, Vec3, axes, larger, lesser};
 
@@ -84,6 +84,23 @@ const CIRCLE: [Flat; WAYS] = {
     ]
 };
 
+/// Directions and the points of both objects that were found along them.
+pub type Asked<'a> = (&'a [Vec3], &'a [[Vec3; 2]]);
+/// A point that was found no farther aside of a direction than this, in tilts, is the one that would
+/// be found there: less than the ÷1.2 and ×1.2 of [`TILT`] that are seen.
+const SAME: Real = 0.1;
+
+/// The four directions around a deepest place whose points all lie in the face of D there.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Around {
+    /// How low they may be, metres.
+    pub low: Real,
+    /// Unit; zero where one was lower.
+    pub directions: [Vec3; WAYS / 2],
+    /// What they found, in the plane.
+    pub points: [Flat; WAYS / 2],
+}
+
 /// The plane across the normal, at the deepest place.
 struct View {
     /// A point half-way between the support planes.
@@ -107,13 +124,18 @@ impl View {
         &self,
         md: &MinkowskiDifference<A, B>,
         k: usize,
+        known: Option<&Asked>,
     ) -> Result<[Corner; 2], Fault> {
         let [x, y] = CIRCLE[k % WAYS];
         let [e1, e2] = &self.axes;
-        let aside = e1 * (x * self.tilt) + e2 * (y * self.tilt);
-        let d = self.up + aside;
-        // Unit to its last bits.
-        let point = md.support(&(d * (1.5 - 0.5 * d.norm_squared())))?;
+        let d = self.direction(k);
+        let [v1, v2] = match known.and_then(|known| self.seen(known, &d)) {
+            Some(points) => points,
+            None => {
+                let point = md.support(&d)?;
+                [point.v1, point.v2]
+            }
+        };
         let hair = self.depth * HAIR;
         let corner = |p: &Vec3, sign: Real| {
             let p = p - self.middle;
@@ -123,12 +145,45 @@ impl View {
                 low: larger(self.half - sign * self.n.dot(&p) * self.share, 0.0),
             }
         };
-        Ok([corner(&point.v1, 1.0), corner(&point.v2, -1.0)])
+        Ok([corner(&v1, 1.0), corner(&v2, -1.0)])
+    }
+
+    /// What was found about there.
+    #[cold]
+    #[inline(never)]
+    fn seen(&self, (directions, points): &Asked, d: &Vec3) -> Option<[Vec3; 2]> {
+        let near2 = SAME * SAME * self.tilt * self.tilt;
+        let is_same = |n: &Vec3| (d - n).norm_squared() <= near2;
+        points.get(directions.iter().position(is_same)?).copied()
+    }
+
+    /// The `k`th direction, unit to its last bits.
+    #[inline(always)]
+    fn direction(&self, k: usize) -> Vec3 {
+        let [x, y] = CIRCLE[k % WAYS];
+        let [e1, e2] = &self.axes;
+        let d = self.up + (e1 * (x * self.tilt) + e2 * (y * self.tilt));
+        d * (1.5 - 0.5 * d.norm_squared())
+    }
+
+    /// What the corners of both fans make in D, if all of them are level.
+    #[inline(never)]
+    fn around(&self, one: &Fan, two: &Fan, around: &mut Around) {
+        let (ones, twos) = (one.corners(), two.corners().iter().cycle().skip(WAYS / 4));
+        let is_level = |(p, q): (&Corner, &Corner)| (p.low + q.low) * self.depth <= around.low;
+        if !ones.iter().zip(twos.clone()).all(is_level) {
+            return;
+        }
+        let places = around.directions.iter_mut().zip(&mut around.points);
+        for (k, ((direction, point), (p, q))) in places.zip(ones.iter().zip(twos)).enumerate() {
+            (*direction, *point) = (self.direction(2 * k), side(&q.at, &p.at));
+        }
     }
 }
 
 /// The centre of pressure of a hit, in the middle of the chord there. Four support points, and four more where a face
-/// has more than four corners. `centre`: the centres of the objects, where they are given.
+/// has more than four corners. `centre`: the centres of the objects, where they are given. `known`: what
+/// the query has asked. `around`: for who keeps the four.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -138,6 +193,8 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     hit: &Penetration,
     centre: Option<&SupportPoint>,
     tolerance: Real,
+    known: Option<&Asked>,
+    around: Option<&mut Around>,
 ) -> Result<Vec3, Fault> {
     let n = hit.normal;
     let middle = hit.middle();
@@ -164,9 +221,12 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     let (mut one, mut two) = (Fan::default(), Fan::default());
     const HALF: usize = WAYS / 2;
     for i in 0..HALF {
-        let [p, q] = view.ask(md, 2 * i)?;
+        let [p, q] = view.ask(md, 2 * i, known)?;
         one.put(i, p);
         two.put((i + HALF / 2) % HALF, q);
+    }
+    if let Some(around) = around {
+        view.around(&one, &two, around);
     }
     if one.is_point(POINT * far) || two.is_point(POINT * far) {
         return Ok(middle);
@@ -175,7 +235,7 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     if is_beyond[0] || is_beyond[1] {
         let mut between = [[Corner::default(); HALF]; 2];
         for i in 0..HALF {
-            let [p, q] = view.ask(md, 2 * i + 1)?;
+            let [p, q] = view.ask(md, 2 * i + 1, None)?;
             between[0][i] = p;
             between[1][(i + HALF / 2) % HALF] = q;
         }

@@ -27,7 +27,7 @@ use crate::hull::start::{self, Ball};
 use crate::known::mark;
 use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
-use crate::math::{Real, Vec3, larger, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, unit};
 
 /// Points and faces of the first room, 3 KB: enough for shallow contacts.
 ///
@@ -89,6 +89,8 @@ pub struct Request<'a> {
     pub wants_pos: bool,
     /// The [`Basis::mark`] of when the pair's position was asked for last.
     pub mark: Option<u64>,
+    /// Are the others those that the position is asked by?
+    pub stands: bool,
 }
 
 impl Request<'_> {
@@ -97,6 +99,9 @@ impl Request<'_> {
         self.others.is_empty()
     }
 }
+
+/// Unit vectors that are made unit again differ by less.
+const ALIKE: Real = 16.0 * EPSILON;
 
 /// The directions that a proof stands on, for the next query of the pair: unit, the minimum's
 /// first, then those that found the corners of the polytope's nearest face.
@@ -114,6 +119,9 @@ pub struct Basis {
     pub mark: u64,
     /// Has the pair not moved since the state was left?
     pub unmoved: bool,
+    /// What the other directions of the state found, if the position is asked by them.
+    found: [[Vec3; 2]; Basis::ROOM - 1],
+    has_found: bool,
 }
 
 impl Basis {
@@ -125,6 +133,24 @@ impl Basis {
     /// The directions.
     pub fn directions(&self) -> &[Vec3] {
         &self.directions[..usize::from(self.len).min(Self::ROOM)]
+    }
+
+    /// Keeps what the `others`, the state's other directions, found: each direction that was asked
+    /// after the first, and its points of the two objects.
+    #[cold]
+    #[inline(never)]
+    fn keep_found(&mut self, asked: impl Iterator<Item = (Vec3, [Vec3; 2])>, others: &[Vec3]) {
+        let mut len = 0;
+        for ((found, n), (dir, points)) in self.found.iter_mut().zip(others).zip(asked) {
+            *found = points;
+            len += usize::from((dir - n).amax() < ALIKE);
+        }
+        self.has_found = len == self.found.len();
+    }
+
+    /// What the other directions of the state found, if the position is asked by them.
+    pub fn found(&self) -> &[[Vec3; 2]] {
+        if self.has_found { &self.found } else { &[] }
     }
 
     /// Adds a direction, unless it is there, is zero, or there is no room.
@@ -438,7 +464,12 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if let Some(basis) = &mut self.basis {
             known.basis(portal, basis);
             if self.request.wants_pos {
-                let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
+                let witnesses = |k| points.witnesses(points.names(k));
+                if self.request.stands {
+                    let asked = (1..points.asked()).map(|k| (points.direction(k), witnesses(k)));
+                    basis.keep_found(asked, self.request.others);
+                }
+                let asked = (0..points.asked()).map(witnesses);
                 let all = asked.chain([[centre.v1, centre.v2]]);
                 basis.mark = mark::of(all.clone());
                 basis.unmoved = self.request.mark == Some(basis.mark) && mark::pins(all, true);
@@ -690,6 +721,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         if let Some(basis) = &mut self.basis {
             if self.request.wants_pos {
+                if self.request.stands {
+                    // They come after the apex and the first.
+                    let asked = (2..set.len()).map(|i| (set.direction(i), set.witnesses(i)));
+                    basis.keep_found(asked, self.request.others);
+                }
                 let points = (0..set.len()).map(|i| set.witnesses(i));
                 basis.mark = mark::of(points.clone());
                 basis.unmoved = self.request.mark == Some(basis.mark)
@@ -804,6 +840,7 @@ mod tests {
             limits: &limits,
             wants_pos: true,
             mark: None,
+            stands: false,
         };
         let mut hit = Penetration::default();
         let mut heap = Heap(None);
@@ -835,6 +872,7 @@ mod tests {
             limits: &limits,
             wants_pos: false,
             mark: None,
+            stands: false,
         };
         let mut hit = Penetration::default();
         let proven = minimum(inquiry, &point, &request, None, None, &mut hit);
