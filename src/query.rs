@@ -24,7 +24,8 @@
 
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contacts::polygon::cross;
-use crate::contacts::pressure::{self, Around};
+use crate::contacts::pressure::{self, Around, Aside};
+use crate::contacts::seen::Seen;
 use crate::gjk::barycentric;
 use crate::gjk::intersect;
 use crate::gjk::overlap::{self, Proof};
@@ -288,8 +289,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Limit(hit));
         }
         if wants_pos {
-            let centre = self.centre.as_ref();
-            hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, None, None)?;
+            let mut seen = Seen::Nothing;
+            seen.rest(
+                &|k: usize| known.points().get(k).map(|p| [p.v1, p.v2]),
+                &hit,
+            );
+            hit.pos = self.position(&hit, settings.tolerance, &seen)?;
         }
         Ok(Answer::Hit(hit))
     }
@@ -311,8 +316,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.remember(state, &answer)?;
         match answer {
             Answer::Hit(mut hit) if wants_pos => {
-                let centre = self.centre.as_ref();
-                hit.pos = pressure::centre(&self.md, &hit, centre, settings.tolerance, None, None)?;
+                hit.pos = self.position(&hit, settings.tolerance, &Seen::Nothing)?;
                 Ok(Answer::Hit(hit))
             }
             other => Ok(other.in_the_middle()),
@@ -393,19 +397,22 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             limits,
             wants_pos,
             mark: state.mark(),
-            stands: state.stands(),
+            stands: wants_pos && state.stands(),
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
         let mut hit = Penetration::default();
+        let mut seen = Seen::Nothing;
         #[allow(clippy::needless_match, reason = "it shortens the lifetime")]
         let arena: Option<&mut dyn Arena> = match arena {
             Some(arena) => Some(arena),
             None => None,
         };
-        let found = global::minimum(inquiry, &point, &request, arena, kept, &mut hit);
+        let out = (&mut hit, &mut seen);
+        let found = global::minimum(inquiry, &point, &request, arena, kept, out);
         let found = found.and_then(|proven| {
             if hit.depth <= limits.tolerance && !(hit.depth_lower > 0.0) {
+                seen = Seen::Nothing;
                 self.touching(apex, &mut hit, limits.tolerance)?;
             }
             Ok(proven)
@@ -413,7 +420,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         match found {
             Ok(true) => {
                 if wants_pos {
-                    self.place(state, &basis, &mut hit, limits)?;
+                    self.place(state, &basis, &seen, &mut hit, limits)?;
                 } else {
                     self.keep(state, &basis, None, 0);
                 }
@@ -466,6 +473,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         state: &mut State,
         basis: &Basis,
+        seen: &Seen,
         hit: &mut Penetration,
         limits: &Limits,
     ) -> Result<(), Fault> {
@@ -477,11 +485,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit.pos = match state.position().filter(|_| basis.unmoved) {
             Some(pos) => pos,
             None => {
-                let known = (state.others(), basis.found());
-                let known = (!known.1.is_empty()).then_some(&known);
-                let around = self.lasting.then_some(&mut around);
-                let (centre, tolerance) = (self.centre.as_ref(), limits.tolerance);
-                pressure::centre(&self.md, hit, centre, tolerance, known, around)?
+                let aside = Aside {
+                    centre: self.centre.as_ref(),
+                    seen,
+                    others: state.others(),
+                    around: self.lasting.then_some(&mut around),
+                };
+                pressure::centre(&self.md, hit, limits.tolerance, aside)?
             }
         };
         self.keep(state, basis, Some(hit.pos), asked);
@@ -489,6 +499,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             self.stand_on(state, &around, hit);
         }
         Ok(())
+    }
+
+    /// The position of a hit, of which nothing is kept.
+    fn position(&self, hit: &Penetration, tolerance: Real, seen: &Seen) -> Result<Vec3, Fault> {
+        let aside = Aside {
+            centre: self.centre.as_ref(),
+            seen,
+            others: &[],
+            around: None,
+        };
+        pressure::centre(&self.md, hit, tolerance, aside)
     }
 
     /// Where the four points around the deepest place lie in one face of D, three of them prove the

@@ -18,6 +18,7 @@
 
 use crate::contact::Penetration;
 use crate::contacts::pressure;
+use crate::contacts::seen::Seen;
 use crate::gjk::barycentric;
 use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
@@ -27,7 +28,7 @@ use crate::hull::start::{self, Ball};
 use crate::known::mark;
 use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
-use crate::math::{EPSILON, Real, Vec3, larger, unit};
+use crate::math::{Real, Vec3, larger, unit};
 
 /// Points and faces of the first room, 3 KB: enough for shallow contacts.
 ///
@@ -89,7 +90,7 @@ pub struct Request<'a> {
     pub wants_pos: bool,
     /// The [`Basis::mark`] of when the pair's position was asked for last.
     pub mark: Option<u64>,
-    /// Are the others those that the position is asked by?
+    /// Is the position wanted, and are the others those that it is asked by?
     pub stands: bool,
 }
 
@@ -99,9 +100,6 @@ impl Request<'_> {
         self.others.is_empty()
     }
 }
-
-/// Unit vectors that are made unit again differ by less.
-const ALIKE: Real = 16.0 * EPSILON;
 
 /// The directions that a proof stands on, for the next query of the pair: unit, the minimum's
 /// first, then those that found the corners of the polytope's nearest face.
@@ -119,9 +117,6 @@ pub struct Basis {
     pub mark: u64,
     /// Has the pair not moved since the state was left?
     pub unmoved: bool,
-    /// What the other directions of the state found, if the position is asked by them.
-    found: [[Vec3; 2]; Basis::ROOM - 1],
-    has_found: bool,
 }
 
 impl Basis {
@@ -133,24 +128,6 @@ impl Basis {
     /// The directions.
     pub fn directions(&self) -> &[Vec3] {
         &self.directions[..usize::from(self.len).min(Self::ROOM)]
-    }
-
-    /// Keeps what the `others`, the state's other directions, found: each direction that was asked
-    /// after the first, and its points of the two objects.
-    #[cold]
-    #[inline(never)]
-    fn keep_found(&mut self, asked: impl Iterator<Item = (Vec3, [Vec3; 2])>, others: &[Vec3]) {
-        let mut len = 0;
-        for ((found, n), (dir, points)) in self.found.iter_mut().zip(others).zip(asked) {
-            *found = points;
-            len += usize::from((dir - n).amax() < ALIKE);
-        }
-        self.has_found = len == self.found.len();
-    }
-
-    /// What the other directions of the state found, if the position is asked by them.
-    pub fn found(&self) -> &[[Vec3; 2]] {
-        if self.has_found { &self.found } else { &[] }
     }
 
     /// Adds a direction, unless it is there, is zero, or there is no room.
@@ -168,7 +145,7 @@ impl Basis {
 /// `basis` takes the directions that the proof stands on, where somebody remembers them;
 /// without an `arena` the rooms on the stack are all there is.
 ///
-/// Writes the answer to `hit`, all zero before, and returns whether it is proven to within the
+/// Writes the answer to `hit`, all zero before, and what the position can be read from to `seen`, and returns whether it is proven to within the
 /// limits' gap; `depth_lower` is what the polytope proves. Where it is not, a cap or rounding
 /// came first: the depth is sound, and the lower bound proven, but they are farther apart.
 ///
@@ -182,7 +159,7 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
     request: &'q Request<'q>,
     arena: Option<&'q mut dyn Arena>,
     basis: Option<&'q mut Basis>,
-    hit: &'q mut Penetration,
+    (hit, seen): (&'q mut Penetration, &'q mut Seen),
 ) -> Result<bool, Stop> {
     let mut search = Search {
         inquiry,
@@ -190,6 +167,7 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
         arena,
         basis,
         hit,
+        seen,
         open: None,
         stuck: false,
     };
@@ -228,6 +206,8 @@ struct Search<'q, 'r, A, B> {
     basis: Option<&'r mut Basis>,
     /// The answer of the last expansion.
     hit: &'r mut Penetration,
+    /// What the position can be read from, where it is wanted.
+    seen: &'r mut Seen,
     /// Whether it is proven, where rounding has ended all expansions so far: the answer where it
     /// ends the last one too.
     open: Option<bool>,
@@ -461,14 +441,17 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             pos: Vec3::zeros(),
             iterations: known.rounds,
         };
+        let witnesses = |k| points.witnesses(points.names(k));
+        if self.request.stands {
+            let asked = (1..points.asked()).map(|k| (points.direction(k), witnesses(k)));
+            self.seen.stand(asked, self.request.others);
+        }
+        if self.request.wants_pos {
+            self.seen.rest(points, self.hit);
+        }
         if let Some(basis) = &mut self.basis {
             known.basis(portal, basis);
             if self.request.wants_pos {
-                let witnesses = |k| points.witnesses(points.names(k));
-                if self.request.stands {
-                    let asked = (1..points.asked()).map(|k| (points.direction(k), witnesses(k)));
-                    basis.keep_found(asked, self.request.others);
-                }
                 let asked = (0..points.asked()).map(witnesses);
                 let all = asked.chain([[centre.v1, centre.v2]]);
                 basis.mark = mark::of(all.clone());
@@ -501,6 +484,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         // Where its planes do not show that it is around anything, nor is the origin inside.
         let end = if hull.winds() { end } else { End::Open };
         let proven = self.conclude(set, hull, progress, end)?;
+        if self.request.wants_pos {
+            self.see(set);
+        }
         let open = match end {
             End::Open => true,
             End::NoRoom => !(hull.nearest().key >= 0.0),
@@ -516,6 +502,19 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             return Ok(None);
         }
         Ok(Some(proven))
+    }
+
+    /// Keeps what the position can be read from. (Not in the frame of [`Search::conclude`].)
+    #[inline(always)]
+    fn see<const P: usize>(&mut self, set: &SupportSet<P>) {
+        *self.seen = Seen::Nothing;
+        if self.request.stands {
+            // They come after the apex and the first.
+            let asked = (2..set.len()).map(|i| (set.direction(i), set.witnesses(i)));
+            self.seen.stand(asked, self.request.others);
+        }
+        let known = |k: usize| (k + 1 < set.len()).then(|| set.witnesses(k + 1));
+        self.seen.rest(&known, self.hit);
     }
 
     fn tolerance(&self) -> Real {
@@ -721,11 +720,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         if let Some(basis) = &mut self.basis {
             if self.request.wants_pos {
-                if self.request.stands {
-                    // They come after the apex and the first.
-                    let asked = (2..set.len()).map(|i| (set.direction(i), set.witnesses(i)));
-                    basis.keep_found(asked, self.request.others);
-                }
                 let points = (0..set.len()).map(|i| set.witnesses(i));
                 basis.mark = mark::of(points.clone());
                 basis.unmoved = self.request.mark == Some(basis.mark)
@@ -844,7 +838,14 @@ mod tests {
         };
         let mut hit = Penetration::default();
         let mut heap = Heap(None);
-        let proven = minimum(inquiry, &point, &request, Some(&mut heap), None, &mut hit);
+        let proven = minimum(
+            inquiry,
+            &point,
+            &request,
+            Some(&mut heap),
+            None,
+            (&mut hit, &mut Seen::Nothing),
+        );
         Some((proven.ok()?, hit))
     }
 
@@ -875,7 +876,14 @@ mod tests {
             stands: false,
         };
         let mut hit = Penetration::default();
-        let proven = minimum(inquiry, &point, &request, None, None, &mut hit);
+        let proven = minimum(
+            inquiry,
+            &point,
+            &request,
+            None,
+            None,
+            (&mut hit, &mut Seen::Nothing),
+        );
         (proven.unwrap(), hit)
     }
 
