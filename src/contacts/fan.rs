@@ -135,7 +135,7 @@ impl Fan {
 
     /// Takes this share of what all corners are lower by off them, and puts them in order. `hair`,
     /// metres: what is nearer is the same.
-    #[inline(always)]
+    #[inline(never)]
     pub fn settle(&mut self, share: Real, hair: Real) {
         let low = self.corners().iter().map(|corner| corner.low);
         let level = low.fold(1.0, lesser) * share;
@@ -246,7 +246,7 @@ impl Fan {
 
     /// How far the object is below its plane at a place, in units of the depth; `None` where that is
     /// no place of the fan, but for a hundredth.
-    #[inline(always)]
+    #[inline(never)]
     pub fn low(&self, r: &Flat) -> Option<Real> {
         let [wall, low] = self.within(self.sector(r)?, r);
         (wall <= 1.01).then_some(low + self.level * wall)
@@ -353,7 +353,7 @@ impl Sum {
     }
 
     /// The outline from one ray, whose largest is the `i`th, to the next, whose largest is the `j`th.
-    #[inline(always)]
+    #[inline(never)]
     fn cone(&mut self, s: &Ray, i: usize, e: &Ray, j: usize) {
         if i != j {
             let cut = s.between(e, i, j);

@@ -84,15 +84,14 @@ impl Around {
     /// Of the four corners of either object.
     #[inline(never)]
     fn fill(&mut self, view: &View, [one, two]: [&Four; 2]) {
-        let twos = || two.iter().cycle().skip(FOUR / 2);
-        let is_level = |(p, q): (&Corner, &Corner)| (p.low + q.low) * view.depth <= self.low;
-        if !one.iter().zip(twos()).all(is_level) {
-            return;
-        }
-        let places = self.directions.iter_mut().zip(&mut self.points);
-        for (k, ((direction, point), (p, q))) in places.zip(one.iter().zip(twos())).enumerate() {
-            *direction = view.direction(&view.way(2 * k), view.cosine);
-            *point = side(&q.at, &p.at);
+        for k in 0..FOUR {
+            let (p, q) = (&one[k], &two[(k + FOUR / 2) % FOUR]);
+            if !((p.low + q.low) * view.depth <= self.low) {
+                self.directions = [Vec3::zeros(); FOUR];
+                return;
+            }
+            self.directions[k] = view.direction(&view.way(2 * k), view.cosine);
+            self.points[k] = side(&q.at, &p.at);
         }
     }
 }
@@ -168,7 +167,7 @@ impl<A: SupportMap, B: SupportMap> Faces<'_, A, B> {
     /// Asks an object for its corners: the first four, and what else it has there; `false` of a point.
     #[inline(never)]
     fn look(&mut self, object: usize, four: &mut Four) -> Result<bool, Fault> {
-        *four = self.view.four(self.md, object, 0, |d| self.found(d))?;
+        *four = self.view.four(self.md, object, 0, &|d| self.found(d))?;
         self.put(object, four);
         let fan = &self.fans[object % 2];
         if fan.is_point(self.point) {
@@ -184,7 +183,7 @@ impl<A: SupportMap, B: SupportMap> Faces<'_, A, B> {
         } else if is_beyond {
             let between = match self.view.rim(four) {
                 Some(between) => between,
-                None => self.view.four(self.md, object, 1, |_| None)?,
+                None => self.view.four(self.md, object, 1, &|_| None)?,
             };
             self.interleave(object, between);
         }

@@ -68,13 +68,19 @@ pub enum Seen {
 
 impl Seen {
     /// Keeps what the `others`, the directions of a state that stands, found, if they have been
-    /// `asked`: each direction after the first, and its points of the two objects.
+    /// `asked`: so many directions after the first, and their points of the two objects.
     #[cold]
     #[inline(never)]
-    pub fn stand(&mut self, asked: impl Iterator<Item = (Vec3, [Vec3; 2])>, others: &[Vec3]) {
+    pub fn stand(
+        &mut self,
+        asked: &dyn Fn(usize) -> (Vec3, [Vec3; 2]),
+        count: usize,
+        others: &[Vec3],
+    ) {
         let mut found = [[Vec3::zeros(); 2]; OTHERS];
         let mut len = 0;
-        for ((place, n), (dir, points)) in found.iter_mut().zip(others).zip(asked) {
+        for (i, (place, n)) in found.iter_mut().zip(others).enumerate().take(count) {
+            let (dir, points) = asked(i);
             *place = points;
             len += usize::from((dir - n).amax() < ALIKE);
         }
@@ -86,7 +92,7 @@ impl Seen {
     /// Keeps the face around the deepest place of a hit, if what is known of the object that reaches
     /// farther shows one. What stands stays.
     #[inline(never)]
-    pub fn rest(&mut self, known: &impl Known, hit: &Penetration) {
+    pub fn rest(&mut self, known: &dyn Known, hit: &Penetration) {
         if matches!(self, Self::Standing(_)) {
             return;
         }
@@ -110,7 +116,7 @@ pub struct Floor {
 impl Floor {
     /// Of a hit, if they lie around the deepest place.
     #[inline(always)]
-    fn of(object: usize, known: &impl Known, hit: &Penetration) -> Option<Self> {
+    fn of(object: usize, known: &dyn Known, hit: &Penetration) -> Option<Self> {
         let n = if object == 0 { hit.normal } else { -hit.normal };
         let middle = hit.middle();
         let least = n.dot(&middle) + hit.depth * (0.5 - LEVEL);

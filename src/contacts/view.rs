@@ -123,7 +123,7 @@ impl View {
         md: &MinkowskiDifference<A, B>,
         object: usize,
         (aside, cosine): (&Flat, Real),
-        known: impl Fn(&Vec3) -> Option<[Vec3; 2]>,
+        known: &dyn Fn(&Vec3) -> Option<[Vec3; 2]>,
     ) -> Result<Corner, Fault> {
         let sign = if object == 0 { 1.0 } else { -1.0 };
         let d = self.direction(&aside.map(|x| sign * x), cosine);
@@ -141,11 +141,11 @@ impl View {
         md: &MinkowskiDifference<A, B>,
         object: usize,
         first: usize,
-        known: impl Fn(&Vec3) -> Option<[Vec3; 2]>,
+        known: &dyn Fn(&Vec3) -> Option<[Vec3; 2]>,
     ) -> Result<Four, Fault> {
         let mut four = Four::default();
         for (i, corner) in four.iter_mut().enumerate() {
-            *corner = self.ask(md, object, (&self.way(2 * i + first), self.cosine), &known)?;
+            *corner = self.ask(md, object, (&self.way(2 * i + first), self.cosine), known)?;
         }
         Ok(four)
     }
@@ -228,7 +228,7 @@ impl View {
         let out = [along[1] / length, -along[0] / length];
         let aside = [slope[0] + out[0] * self.tilt, slope[1] + out[1] * self.tilt];
         let cosine = 1.0 / (1.0 + dot(&aside, &aside)).sqrt();
-        let corner = self.ask(md, object, (&aside, cosine), |_| None)?;
+        let corner = self.ask(md, object, (&aside, cosine), &|_| None)?;
         let is_new = dot(&out, &side(&p.at, &corner.at)) > self.near
             && corner.low <= self.low(o, &slope, &corner.at) + SAME_FACE;
         // In their order, each in the direction that is nearest to where it is.

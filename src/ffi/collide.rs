@@ -144,8 +144,12 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-#[inline(always)]
-unsafe fn gjk_penetration(query: Query, wants_pos: bool, put: impl FnOnce(&Penetration)) -> c_int {
+#[inline(never)]
+unsafe fn gjk_penetration(
+    query: Query,
+    wants_pos: bool,
+    put: &mut dyn FnMut(&Penetration),
+) -> c_int {
     // SAFETY: passed on.
     unsafe {
         let Some(md) = query.difference() else {
@@ -195,7 +199,7 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
 ) -> c_int {
     // SAFETY: passed on; [outputs].
     unsafe {
-        gjk_penetration(Query { obj1, obj2, ccd }, !pos.is_null(), |hit| {
+        gjk_penetration(Query { obj1, obj2, ccd }, !pos.is_null(), &mut |hit| {
             write(hit, depth, dir, pos);
         })
     }
@@ -212,7 +216,7 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
 ) -> c_int {
     // SAFETY: passed on; [outputs].
     unsafe {
-        gjk_penetration(Query { obj1, obj2, ccd }, false, |hit| {
+        gjk_penetration(Query { obj1, obj2, ccd }, false, &mut |hit| {
             if let Some(sep) = sep.as_mut() {
                 *sep = (hit.dir * hit.depth).into();
             }

@@ -443,8 +443,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         let witnesses = |k| points.witnesses(points.names(k));
         if self.request.stands {
-            let asked = (1..points.asked()).map(|k| (points.direction(k), witnesses(k)));
-            self.seen.stand(asked, self.request.others);
+            let asked = |k: usize| (points.direction(k + 1), witnesses(k + 1));
+            let count = points.asked() - 1;
+            self.seen.stand(&asked, count, self.request.others);
         }
         if self.request.wants_pos {
             self.seen.rest(points, self.hit);
@@ -484,7 +485,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         // Where its planes do not show that it is around anything, nor is the origin inside.
         let end = if hull.winds() { end } else { End::Open };
         let proven = self.conclude(set, hull, progress, end)?;
-        if self.request.wants_pos {
+        // Of the first room: what needs a larger one rests on no floor.
+        *self.seen = Seen::Nothing;
+        if self.request.wants_pos && P == FIRST.0 {
             self.see(set);
         }
         let open = match end {
@@ -507,11 +510,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// Keeps what the position can be read from. (Not in the frame of [`Search::conclude`].)
     #[inline(always)]
     fn see<const P: usize>(&mut self, set: &SupportSet<P>) {
-        *self.seen = Seen::Nothing;
         if self.request.stands {
             // They come after the apex and the first.
-            let asked = (2..set.len()).map(|i| (set.direction(i), set.witnesses(i)));
-            self.seen.stand(asked, self.request.others);
+            let asked = |i: usize| (set.direction(i + 2), set.witnesses(i + 2));
+            let count = set.len().saturating_sub(2);
+            self.seen.stand(&asked, count, self.request.others);
         }
         let known = |k: usize| (k + 1 < set.len()).then(|| set.witnesses(k + 1));
         self.seen.rest(&known, self.hit);
