@@ -112,8 +112,8 @@ fn direction(dir: [Real; 3]) -> Result<Vec3, Error> {
 /// and costs no support point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Want {
-    /// The contact position: 4 support points, 8 where a face has more than four corners, none where
-    /// a state shows that nothing has moved.
+    /// The contact position: 2 to 4 support points, 8 at most where a face has more than four corners,
+    /// none where a state shows that nothing has moved. For it the objects are asked one by one.
     pub pos: bool,
     /// The witness points, which cost nothing.
     pub points: bool,
@@ -228,7 +228,7 @@ pub struct Penetration {
     pub point1: [Real; 3],
     /// Witness point of the second shape, [`Want::points`]; the same.
     pub point2: [Real; 3],
-    /// Calls of each shape's [`Shape::support`].
+    /// Calls of both shapes' [`Shape::support`], halved and rounded up; without a position, calls of each.
     pub support_calls: u64,
     /// Iterations of the solver.
     pub iterations: u64,
@@ -275,7 +275,7 @@ pub struct Distance {
     pub point1: [Real; 3],
     /// Witness point of the second shape, [`Want::points`].
     pub point2: [Real; 3],
-    /// Calls of each shape's [`Shape::support`].
+    /// Calls of both shapes' [`Shape::support`], halved and rounded up; without a position, calls of each.
     pub support_calls: u64,
     /// Iterations of the solver.
     pub iterations: u64,

@@ -3,8 +3,10 @@
 
 //! Where the objects touch, once depth and direction are known.
 //!
-//! [`pressure`] finds the position of one contact, [`manifold`] several contacts; [`polygon`]
-//! clips and measures the faces of these, [`again`] finds them again by what [`memory`] keeps.
+//! [`pressure`] finds the position of one contact: it asks for corners as [`view`] tells, leaves out
+//! what the search has [`seen`], and integrates over a [`fan`] of them. [`manifold`] finds several
+//! contacts; [`polygon`] clips and measures the faces of these, [`again`] finds them again by what
+//! [`memory`] keeps.
 
 pub mod again;
 pub mod fan;
@@ -12,3 +14,5 @@ pub mod manifold;
 pub mod memory;
 pub mod polygon;
 pub mod pressure;
+pub mod seen;
+pub mod view;

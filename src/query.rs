@@ -23,7 +23,9 @@
 //!    is spent on it.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::contacts::pressure;
+use crate::contacts::polygon::cross;
+use crate::contacts::pressure::{self, Around, Aside};
+use crate::contacts::seen::Seen;
 use crate::gjk::barycentric;
 use crate::gjk::intersect;
 use crate::gjk::overlap::{self, Proof};
@@ -287,7 +289,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(Answer::Limit(hit));
         }
         if wants_pos {
-            hit.pos = pressure::centre(&self.md, &hit, self.centre.as_ref(), settings.tolerance)?;
+            let mut seen = Seen::Nothing;
+            seen.rest(
+                &|k: usize| known.points().get(k).map(|p| [p.v1, p.v2]),
+                &hit,
+            );
+            hit.pos = self.position(&hit, settings.tolerance, &seen)?;
         }
         Ok(Answer::Hit(hit))
     }
@@ -309,8 +316,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.remember(state, &answer)?;
         match answer {
             Answer::Hit(mut hit) if wants_pos => {
-                hit.pos =
-                    pressure::centre(&self.md, &hit, self.centre.as_ref(), settings.tolerance)?;
+                hit.pos = self.position(&hit, settings.tolerance, &Seen::Nothing)?;
                 Ok(Answer::Hit(hit))
             }
             other => Ok(other.in_the_middle()),
@@ -391,37 +397,33 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             limits,
             wants_pos,
             mark: state.mark(),
+            stands: wants_pos && state.stands(),
         };
         let mut basis = Basis::default();
         let kept = self.lasting.then_some(&mut basis);
         let mut hit = Penetration::default();
+        let mut seen = Seen::Nothing;
         #[allow(clippy::needless_match, reason = "it shortens the lifetime")]
         let arena: Option<&mut dyn Arena> = match arena {
             Some(arena) => Some(arena),
             None => None,
         };
-        let found = global::minimum(inquiry, &point, &request, arena, kept, &mut hit);
+        let out = (&mut hit, &mut seen);
+        let found = global::minimum(inquiry, &point, &request, arena, kept, out);
         let found = found.and_then(|proven| {
             if hit.depth <= limits.tolerance && !(hit.depth_lower > 0.0) {
+                seen = Seen::Nothing;
                 self.touching(apex, &mut hit, limits.tolerance)?;
             }
             Ok(proven)
         });
         match found {
             Ok(true) => {
-                let asked = self.md.supports();
                 if wants_pos {
-                    hit.pos = match state.position().filter(|_| basis.unmoved) {
-                        Some(pos) => pos,
-                        None => pressure::centre(
-                            &self.md,
-                            &hit,
-                            self.centre.as_ref(),
-                            limits.tolerance,
-                        )?,
-                    };
+                    self.place(state, &basis, &seen, &mut hit, limits)?;
+                } else {
+                    self.keep(state, &basis, None, 0);
                 }
-                self.keep(state, &basis, wants_pos.then_some(hit.pos), asked);
                 Ok(Answer::Hit(hit))
             }
             Ok(false) => {
@@ -462,6 +464,76 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(middle) = middle {
             state.rest(middle, basis.mark);
         }
+        self.face(state);
+    }
+
+    /// The position of a hit, and what its state keeps. (Not in the frame that the search runs in.)
+    #[inline(never)]
+    fn place(
+        &self,
+        state: &mut State,
+        basis: &Basis,
+        seen: &Seen,
+        hit: &mut Penetration,
+        limits: &Limits,
+    ) -> Result<(), Fault> {
+        let asked = self.md.supports();
+        let mut around = Around {
+            low: 0.25 * larger(limits.tolerance, limits.gap * hit.depth),
+            ..Around::default()
+        };
+        hit.pos = match state.position().filter(|_| basis.unmoved) {
+            Some(pos) => pos,
+            None => {
+                let aside = Aside {
+                    centre: self.centre.as_ref(),
+                    seen,
+                    others: state.others(),
+                    around: self.lasting.then_some(&mut around),
+                };
+                pressure::centre(&self.md, hit, limits.tolerance, aside)?
+            }
+        };
+        self.keep(state, basis, Some(hit.pos), asked);
+        if self.md.supports() > asked + 1 && around.directions[0] != Vec3::zeros() {
+            self.stand_on(state, &around, hit);
+        }
+        Ok(())
+    }
+
+    /// The position of a hit, of which nothing is kept.
+    fn position(&self, hit: &Penetration, tolerance: Real, seen: &Seen) -> Result<Vec3, Fault> {
+        let aside = Aside {
+            centre: self.centre.as_ref(),
+            seen,
+            others: &[],
+            around: None,
+        };
+        pressure::centre(&self.md, hit, tolerance, aside)
+    }
+
+    /// Where the four points around the deepest place lie in one face of D, three of them prove the
+    /// minimum as well as what the search found: the state keeps those, and the next query has asked
+    /// three of the four.
+    fn stand_on(&self, state: &mut State, around: &Around, hit: &Penetration) {
+        let mut best = (EDGE, None);
+        for left_out in 0..4 {
+            let [a, b, c] = [1, 2, 3].map(|i| (left_out + i) % 4);
+            let area = |i: usize, j: usize| cross(&around.points[i], &around.points[j]);
+            let areas = [area(a, b), area(b, c), area(c, a)];
+            let whole: Real = areas.iter().sum();
+            let least = areas.iter().map(|x| x / whole).fold(1.0, Real::min);
+            if least > best.0 {
+                best = (least, Some([a, b, c]));
+            }
+        }
+        let Some(three) = best.1 else { return };
+        let mut stands = Basis::default();
+        stands.add(&hit.normal);
+        three
+            .iter()
+            .for_each(|i| stands.add(&around.directions[*i]));
+        state.stand(&stands, hit.pos);
         self.face(state);
     }
 
@@ -704,6 +776,9 @@ const PROOF: usize = 2 * Known::ROOM;
 
 /// Support points of an MPR query, at most.
 const MPR_SUPPORTS: u64 = 160;
+/// Part of a triangle by which the origin is inside of it, at least, for the state to stand on it.
+/// Insensitive: 0.01 to 0.1 tried.
+const EDGE: Real = 0.02;
 /// Of a proven minimum, which may take a local search more.
 const MOST_SUPPORTS: u64 = 360;
 /// Where an MPR query may stop: a gap of this share of the depth.

@@ -27,6 +27,8 @@ use crate::math::{Real, Vec3, as_unit, normalised, unit};
 
 /// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1 << 31;
+/// The bit for one whose other directions are those that a position is asked by.
+const STANDS: u32 = 1 << 30;
 /// The bits of [`State::marks`] for a coordinate of the direction of the centres' difference.
 const COORDINATE: u32 = 10;
 /// What a coordinate is greater by there: none is 0, and all bits 0 are no direction.
@@ -42,7 +44,7 @@ pub struct State {
     memory: Memory,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
-    /// [`RESTED`], and the direction of the centres' difference.
+    /// [`RESTED`], [`STANDS`], and the direction of the centres' difference.
     marks: u32,
 }
 
@@ -95,7 +97,7 @@ impl State {
 
     /// Keeps the direction of the centres' difference, obj1's less obj2's.
     pub fn face(&mut self, centre: &Vec3) {
-        self.marks &= RESTED;
+        self.marks &= RESTED | STANDS;
         if let Some(n) = normalised(centre) {
             for (i, x) in (0..).zip(n.iter()) {
                 // To the nearest whole number.
@@ -111,7 +113,7 @@ impl State {
             let x = self.marks >> (i * COORDINATE) & (2 * OFFSET - 1);
             (x as i32 - OFFSET as i32) as Real / SCALE
         };
-        let given = self.marks & !RESTED != 0;
+        let given = self.marks & !(RESTED | STANDS) != 0;
         given.then(|| Vec3::new(coordinate(0), coordinate(1), coordinate(2)))
     }
 
@@ -228,6 +230,20 @@ impl State {
     /// Did the pair rest face on face when its minimum was proven?
     pub fn rested(&self) -> bool {
         self.kind == PROVEN && self.marks & RESTED != 0
+    }
+
+    /// Are its other directions those of [`State::stand`]?
+    pub fn stands(&self) -> bool {
+        self.rested() && self.marks & STANDS != 0
+    }
+
+    /// The pair overlaps, and rests face on face: its minimum is proven by support points along these
+    /// directions, of which all but the first are asked for the position too.
+    pub fn stand(&mut self, basis: &Basis, pos: Vec3) {
+        self.prove(basis);
+        // What these find is not known to the last bit: no mark is that of another pose.
+        self.rest(pos, 0);
+        self.marks |= STANDS;
     }
 
     /// Its [`Basis::mark`], if it did.

@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What callbacks see: support1 first, support2 next with exactly the opposite direction,
+/* What callbacks see: support1 first, support2 next with exactly the opposite direction, but where a
+ * position is read, for which the objects are asked on their own once depth and direction are known;
  * directions unit and finite, the object pointers as given, the thread that called; the
  * centers in MPR alone, first_dir in GJK alone. Directions are unit even when first_dir or
  * the centers are not well given. */
@@ -17,7 +18,7 @@ static struct {
     int expect_second;
     int apart; /* each object is asked on its own */
     ccd_vec3_t dir;
-    unsigned long pairs, centers, first_dirs;
+    unsigned long firsts, pairs, centers, first_dirs;
     ccd_vec3_t first;
 } seen;
 
@@ -36,6 +37,7 @@ static void support1(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
     CHECK(seen.apart || !seen.expect_second, "support1 after support2");
     check_direction(dir);
     seen.expect_second = !seen.apart;
+    seen.firsts++;
     seen.dir = *dir;
     shape_support(obj, dir, out);
 }
@@ -91,6 +93,8 @@ int main(void)
             ccd_t ccd;
             outputs_t out;
             int code, k, hit = round % 2;
+            /* Each way as often hit or missed, and with every length. */
+            const int want = round / 2 % 2 ? CCD_WANT_ALL : entries[i].number == ASK_DISTANCE ? 0 : CCD_WANT_POINTS;
             random_pair(&entries[i], hit, &a, &b, &ccd);
             if (round % 5 == 0) {
                 /* Centers in one place leave no first ray to start from. */
@@ -101,7 +105,7 @@ int main(void)
             }
             memset(&seen, 0, sizeof seen);
             seen.obj1 = &a;
-            seen.apart = (entries[i].traits & ONE_BY_ONE) != 0;
+            seen.apart = (entries[i].traits & ONE_BY_ONE) != 0 || want == CCD_WANT_ALL;
             seen.obj2 = &b;
             seen.thread = pthread_self();
             for (k = 0; k < 3; k++)
@@ -116,12 +120,12 @@ int main(void)
             }
             if (ccd.first_dir != NULL)
                 ccd.first_dir = first_dir;
-            code = run(&entries[i], &a, &b, &ccd, &out);
+            code = run_wanting(want, &entries[i], &a, &b, &ccd, &out);
             CHECK(code == (hit ? entries[i].hit : entries[i].miss), "%s returned %d", entries[i].name, code);
             /* Equal centers alone prove an overlap. */
             CHECK((seen.pairs > 0 || round % 5 == 0) && !seen.expect_second, "%s: both supports every time",
                   entries[i].name);
-            CHECK(b.calls == seen.pairs && (seen.apart || a.calls == seen.pairs), "callbacks may write through their objects");
+            CHECK(b.calls == seen.pairs && a.calls == seen.firsts && (seen.apart || a.calls == b.calls), "callbacks may write through their objects");
             if (entries[i].traits & FROM_FIRST_DIR)
                 CHECK(seen.first_dirs > 0, "%s asks first_dir", entries[i].name);
             if (entries[i].traits & FROM_CENTERS)

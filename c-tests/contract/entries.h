@@ -69,9 +69,9 @@ static inline int stored_distance(int code, const ccd_distance_t *d, outputs_t *
     return code;
 }
 
-/* Asks an entry. The extension's are asked from a cold state, and with that state again; out is
- * the second answer. */
-static inline int run(const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+/* Asks an entry for what is wanted. The extension's are asked from a cold state, and with that state
+ * again; out is the second answer. */
+static inline int run_wanting(int want, const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     const ccd_vec3_t along = {{1, 2, -2}}, plane = {{0, 0, 3}}, up = {{0, 1, 0}};
     ccd_contact_t contacts[4];
@@ -91,7 +91,7 @@ static inline int run(const call_t *entry, const void *a, const void *b, const c
     rest.along = number == ASK_PLANAR ? &plane : &along;
     rest.max_distance = INFINITY;
     rest.slop = CCD_REAL(0.01);
-    rest.want = CCD_WANT_ALL;
+    rest.want = want;
     rest.max = 4;
     rest.full = &full;
     rest.distance = &distance;
@@ -109,12 +109,18 @@ static inline int run(const call_t *entry, const void *a, const void *b, const c
         call_by_number(number, a, b, ccd, &rest);
     rest.depth = &out->depth;
     rest.dir = &out->dir;
-    rest.pos = &out->pos;
+    rest.pos = want & CCD_WANT_POS ? &out->pos : NULL;
     code = call_by_number(number, a, b, ccd, &rest);
     if (number == ASK_DISTANCE)
         return stored_distance(code, &distance, out);
     /* The others of the extension fill a struct, and libccd's the outputs themselves. */
     return (entry->traits & EXTENSION) && (entry->traits & STORES) && number != ASK_MPR_WARM ? stored(code, &full, out) : code;
+}
+
+/* The same for everything. */
+static inline int run(const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+{
+    return run_wanting(CCD_WANT_ALL, entry, a, b, ccd, out);
 }
 
 /* --- pairs ------------------------------------------------------------------ */

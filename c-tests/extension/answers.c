@@ -43,7 +43,7 @@ static int ask(case_t *c, int swap, ccd_warm_t *warm, ccd_penetration_t *out)
 {
     shape_t *a = swap ? &c->b : &c->a, *b = swap ? &c->a : &c->b;
     ccd_vec3_t dir = c->dir;
-    int code, k;
+    int code, k, reads;
     a->calls = b->calls = 0;
     memset(out, 0, sizeof *out);
     for (k = 0; k < 3 && swap; k++)
@@ -61,9 +61,11 @@ static int ask(case_t *c, int swap, ccd_warm_t *warm, ccd_penetration_t *out)
         break;
     default: code = OURS(ccdMPRIntersectWarm)(a, b, &c->ccd, warm) == 1 ? CCD_HIT : CCD_MISS; break;
     }
-    CHECK(a->calls == b->calls, "%s: %lu and %lu calls", name[c->query], a->calls, b->calls);
-    CHECK(code != CCD_HIT || c->query >= MPR || out->support_calls == a->calls, "%s: %lu counted, %lu calls", name[c->query], out->support_calls,
-          a->calls);
+    /* For a position the objects are asked one by one. */
+    reads = c->query == MPR || ((want & CCD_WANT_POS) != 0 && c->query != ALONG && c->query != PLANAR && c->query < MPR);
+    CHECK((reads && code != CCD_MISS) || a->calls == b->calls, "%s: %lu and %lu calls", name[c->query], a->calls, b->calls);
+    CHECK(code != CCD_HIT || c->query >= MPR || out->support_calls == (a->calls + b->calls + 1) / 2, "%s: %lu counted, %lu and %lu calls",
+          name[c->query], out->support_calls, a->calls, b->calls);
     if (a->calls > most[c->query])
         most[c->query] = a->calls;
     asked[c->query]++;

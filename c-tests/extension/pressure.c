@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* `pos` against the centre of pressure by integration: bodies of a quarter metre that tilt, slide,
- * stand, tip and roll on a floor, a millimetre and a hundredth of one deep, in steps so small
+ * stand, tip, roll and turn on a floor, a millimetre and a hundredth of one deep, in steps so small
  * that what jumps shows.
  *
  *   pressure [tilt]   tilt, which needs libccd beside this library, asks no more than MPR, a
@@ -27,10 +27,15 @@ typedef struct {
     shape_t body;
     double axis[3], before;
     double about[3];
-    int rolls;    /* the angle is in its symmetry: steps of a degree */
+    double rolls; /* degrees a step: the angle is in its symmetry, or it turns around all ways to stand */
     double slide; /* over the floor's edge by so much along x, in place of the angle */
     double rms, step; /* at most: metres, and metres beyond twice the truth's step */
+    int ground;
+    double lean; /* besides, in depths over its width */
 } sweep_t;
+
+/* What it is on: a floor, a box as wide as itself, or a disc, neither of which it stands on the middle of. */
+enum { FLOOR, BOX, DISC };
 
 static double deg(double x) { return x * atan(1.0) / 45; }
 
@@ -63,13 +68,17 @@ static void pose(const sweep_t *s, double angle, double depth, shape_t *body, sh
 {
     const ccd_vec3_t down = {{0, 0, -1}};
     ccd_vec3_t low;
-    double first[9], then[9], all[9];
-    *floor = shape_box(1, 1, 0.5);
+    double first[9], then[9], all[9], lean[9];
+    *floor = s->ground == DISC ? shape_cylinder(0.15, 0.5) : s->ground == BOX ? shape_box(HALF, HALF, 0.5) : shape_box(1, 1, 0.5);
     shape_move(floor, s->slide != 0 ? -0.9 : 0.05, 0.03, -0.5);
     *body = s->body;
     rotation_about(s->axis[0], s->axis[1], s->axis[2], s->before, first);
     rotation_about(s->about[0], s->about[1], s->about[2], s->slide != 0 ? deg(-0.2) : angle, then);
     rotation_times(then, first, all);
+    /* About no axis of anything. */
+    rotation_about(cos(0.35), sin(0.35), 0, s->lean * depth / (2 * HALF), lean);
+    memcpy(then, all, sizeof then);
+    rotation_times(lean, then, all);
     shape_turn(body, all);
     shape_support(body, &down, &low);
     shape_move(body, s->slide != 0 ? angle : 0, 0, -depth - (double)low.v[2]);
@@ -100,6 +109,18 @@ static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, c
     return code;
 }
 
+/* A place that both share: the lowest corner may be beside the ground. */
+static void shared_place(const shape_t *body, const shape_t *floor, double place[3])
+{
+    ccd_penetration_t p;
+    ccd_t ccd;
+    int i;
+    shape_query(&ccd);
+    CHECK(OURS(ccdPenetration)(body, floor, &ccd, NULL, CCD_WANT_POINTS, &p) == CCD_HIT, "a hit");
+    for (i = 0; i < 3; i++)
+        place[i] = ((double)p.point1.v[i] + (double)p.point2.v[i]) / 2;
+}
+
 typedef struct { double square, worst, jump, truth; int poses; } errors_t;
 
 static double apart(const double p[3], const double q[3])
@@ -116,8 +137,8 @@ static double angle_at(const sweep_t *s, double depth, int k)
     const double width = 2 * HALF, step = depth / (8 * width);
     if (s->slide != 0)
         return k < STEPS ? s->slide * k / STEPS : -1;
-    if (s->rolls)
-        return k < STEPS ? deg(k) : -1;
+    if (s->rolls > 0)
+        return k < STEPS ? deg(s->rolls * k) : -1;
     if (k < STEPS)
         return (k - STEPS / 2 + 0.5) * step;
     return deg(0.05 * (k - STEPS) * (k - STEPS) + 0.05);
@@ -138,7 +159,7 @@ static void sweep(const sweep_t *s, double depth, int call, const double world[9
         ccd_vec3_t low;
         int i, code;
         const ccd_vec3_t down = {{0, 0, -1}};
-        if (angle < 0 && (s->slide != 0 || s->rolls))
+        if (angle < 0 && (s->slide != 0 || s->rolls > 0))
             break;
         pose(s, angle, depth, &body, &floor);
         shape_support(&body, &down, &low);
@@ -148,6 +169,8 @@ static void sweep(const sweep_t *s, double depth, int call, const double world[9
             /* The deepest place may be beyond the edge. */
             place[0] = fmin(place[0], 0.1 - 1e-9);
         }
+        if (s->ground != FLOOR)
+            shared_place(&body, &floor, place);
         if (!(pressure_centre(&body, &floor, up, place, truth) > 0))
             continue;
         a = turned(k % 2 ? &body : &floor, world);
@@ -228,7 +251,9 @@ int main(int argc, char **argv)
  * deepest place jumps along the line, pos follows by a part. */
 #define TAPERED 15e-3, 50e-3
 #define SWEEP(name, body, axis, before, about, rolls, slide, ...) \
-    {name, body, {axis[0], axis[1], axis[2]}, before, {about[0], about[1], about[2]}, rolls, slide, __VA_ARGS__}
+    {name, body, {axis[0], axis[1], axis[2]}, before, {about[0], about[1], about[2]}, rolls, slide, __VA_ARGS__, FLOOR, 0}
+/* Turned on the spot through all its ways to stand, leaning. */
+#define TURN(name, body, ground, lean, ...) {name, body, {0, 0, 1}, 0, {0, 0, 1}, 1.43, 0, __VA_ARGS__, ground, lean}
     const shape_t box = shape_box(HALF, HALF, HALF), brick = shape_box(HALF, 0.08, 0.06);
     const shape_t can = shape_cylinder(0.09, HALF), rod = shape_capsule(0.05, HALF), hat = shape_cone(HALF, HALF);
     const shape_t egg = shape_ellipsoid(0.1, 0.07, HALF), ball = shape_sphere(HALF);
@@ -248,6 +273,13 @@ int main(int argc, char **argv)
         SWEEP("cone on its side", hat, X, q + atan(0.5), X, 0, 0, TAPERED),
         SWEEP("ellipsoid", egg, X, 0.7, Y, 1, 0, ROUND),
         SWEEP("sphere", ball, X, 0.7, Y, 1, 0, ROUND),
+        TURN("box turning", box, FLOOR, 0.4, FLAT),
+        TURN("box turning, leaning more", box, FLOOR, 0.9, FLAT),
+        TURN("box turning on a box", box, BOX, 0.4, FLAT),
+        TURN("brick turning on a box", brick, BOX, 0.9, FLAT),
+        TURN("box turning on a disc", box, DISC, 0.4, ROUND),
+        TURN("box turning on a disc, leaning more", box, DISC, 0.9, ROUND),
+        TURN("can turning on a box", can, BOX, 0.4, ROUND),
     };
     double world[2][9];
     unsigned i;
@@ -276,7 +308,7 @@ int main(int argc, char **argv)
                     sweep(&all[i], depth, CALLS[c], world[w], &e);
                     rms = sqrt(e.square / e.poses);
                     if (c == 0)
-                        printf("%-24s %g m deep, world %d: rms %6.3f mm, worst %7.3f, step beyond twice the truth's %7.3f (%.3f)\n",
+                        printf("%-35s %g m deep, world %d: rms %6.3f mm, worst %7.3f, step beyond twice the truth's %7.3f (%.3f)\n",
                                all[i].name, depth, w, 1e3 * rms, 1e3 * e.worst, 1e3 * e.jump, 1e3 * e.truth);
                     CHECK(rms <= all[i].rms, "%s, %g deep, world %d, call %d: rms %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * rms);
                     CHECK(e.jump <= all[i].step, "%s, %g deep, world %d, call %d: a step of %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * e.jump);

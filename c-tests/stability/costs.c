@@ -192,6 +192,33 @@ static int unchanged(int which)
     return which < UNCHANGED_ROUND ? (double)again <= 4.5 * i : (double)again <= .7 * (double)cold;
 }
 
+/* --- V11: faces that slide, their position read --------------------------------------------------- */
+
+static int sliding(int what)
+{
+    unsigned long all = 0;
+    int i, k, m, frames = 0;
+    for (i = 0; i < 200; i++) {
+        static pair_t p;
+        dice_t d = dice(4300, (uint64_t)i);
+        ccd_warm_t warm = fresh();
+        double way;
+        resting_boxes(&d, &p);
+        way = dice_in(&d, 0, 6.28);
+        for (k = 0; k < 50; k++) {
+            const unsigned long n = supports(what, &p.a, &p.b, &warm);
+            double pos[3];
+            all += k ? n : 0;
+            frames += k > 0;
+            for (m = 0; m < 3; m++)
+                pos[m] = (double)p.b.pos[m] + .002 * (cos(way) * (double)p.a.rot[3 * m] + sin(way) * (double)p.a.rot[3 * m + 1]);
+            shape_move(&p.b, pos[0], pos[1], pos[2]);
+        }
+    }
+    printf("%.2f callbacks a query", 2. * (double)all / frames);
+    return all <= 6UL * (unsigned long)frames;
+}
+
 /* --- U04: the slowest queries ---------------------------------------------------------------------- */
 
 /* ccdMPRPenetration cold, from the state of the pair before, and asked again: never more
@@ -536,6 +563,8 @@ int main(int argc, char **argv)
         {"U08", "MPR with a fresh state, far apart", asked_once, 3, HOLDS},
         {"U11", "a face that rests on a face", unchanged, UNCHANGED_FACES, HOLDS},
         {"U11", "the same, its position not read", unchanged, UNCHANGED_FACES_UNREAD, HOLDS},
+        {"V11", "faces that slide", sliding, ASK_MPR_WARM, HOLDS},
+        {"V11", "faces that slide, by ccdPenetration", sliding, ASK_PENETRATION, HOLDS},
         {"U11", "shallow polytopes, unchanged", unchanged, UNCHANGED_FLAT, HOLDS},
         {"U11", "shallow round pairs, unchanged", unchanged, UNCHANGED_ROUND, HOLDS},
         {"U11", "deep round pairs, unchanged", unchanged, UNCHANGED_ROUND_DEEP, BROKEN},

@@ -491,8 +491,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         faults |= judge_witness(e, x, a, b, q);
         if (x->lower > t->depth + q->noise + gap)
             faults |= FAULT_FALSE_PROOF;
-        /* supports counts pairs of calls; the callbacks of one pair may be a first sample each */
-        if (x->supports * 2 != x->calls)
+        /* supports counts pairs of calls, of which the last may lack one: for a position the objects are asked one by one */
+        if (x->supports != (x->calls + 1) / 2)
             faults |= FAULT_MISCOUNTED;
     }
     /* h(dir) itself rounds by up to the noise, and a depth is never below 0 */

@@ -75,7 +75,7 @@ enum class Status : int {
 
 /** What is wanted of an answer: depths, bounds and directions always, and any of these together. */
 enum Want : unsigned {
-    want_pos = CCD_WANT_POS,       /**< pos: costs 4 calls of support(), 8 where a face has more than four corners */
+    want_pos = CCD_WANT_POS,       /**< pos: costs 2 to 4 calls of support(), 8 at most */
     want_points = CCD_WANT_POINTS, /**< point1 and point2: cost nothing */
     want_all = CCD_WANT_ALL        /**< everything */
 };

@@ -121,8 +121,9 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* The one call to begin with: do two objects overlap, how deep, which way out, where? */
 
 /**
- * Wanted: pos. It costs 4 support points, 8 where a face has more than four corners, none where a
- * state shows that nothing has moved (ccdPenetration, ccdPenetrationProven).
+ * Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
+ * where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). For it the objects
+ * are asked one by one.
  */
 #define CCD_WANT_POS 1
 
@@ -177,7 +178,7 @@ typedef struct ccd_penetration_t {
    */
   ccd_vec3_t point2;
   /**
-   * How often support1 was called, and as often support2.
+   * Half as often as support1 and support2 were called, rounded up; each as often, where no position was wanted.
    */
   unsigned long support_calls;
   /**
@@ -255,7 +256,7 @@ typedef struct ccd_distance_t {
    */
   ccd_vec3_t point2;
   /**
-   * How often support1 was called, and as often support2.
+   * Half as often as support1 and support2 were called, rounded up; each as often, where no position was wanted.
    */
   unsigned long support_calls;
   /**

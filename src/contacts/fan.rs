@@ -39,6 +39,10 @@ use core::mem::swap;
 
 /// Corners of a fan, at most: eight that are asked for, and those that close it.
 const ROOM: usize = 11;
+/// A corner within so many hairs, and more than the one it was moved by, is the deepest place itself:
+/// as far as witness points are beside it. Measured
+/// (`extension/pressure.c`): 1 leaves out half of a box that leans by less than its depth.
+const HERE: Real = 32.0;
 /// Part of a hair by which directions must differ, at the farther corner. Insensitive.
 const PART: Real = 0.25;
 
@@ -131,7 +135,7 @@ impl Fan {
 
     /// Takes this share of what all corners are lower by off them, and puts them in order. `hair`,
     /// metres: what is nearer is the same.
-    #[inline(always)]
+    #[inline(never)]
     pub fn settle(&mut self, share: Real, hair: Real) {
         let low = self.corners().iter().map(|corner| corner.low);
         let level = low.fold(1.0, lesser) * share;
@@ -146,7 +150,7 @@ impl Fan {
             area > 0.0 && area * area > part2 * dot(&way, &way)
         };
         if !(0..self.len).all(is_around) {
-            *self = self.in_order(part2).closed(hair);
+            *self = self.in_order(hair, part2).closed(hair);
         }
         self.level = level;
     }
@@ -155,9 +159,15 @@ impl Fan {
     /// `part2`, m²: what is aside by less than its root is not.
     #[cold]
     #[inline(never)]
-    fn in_order(&self, part2: Real) -> Self {
+    fn in_order(&self, hair: Real, part2: Real) -> Self {
         let mut fan = Self::default();
-        for corner in self.corners() {
+        // What is the deepest place, but beside it, has no direction.
+        let is_here = |c: &Corner| {
+            let far2 = dot(&c.at, &c.at) / (hair * hair);
+            far2 > 4.0 && far2 <= HERE * HERE
+        };
+        let all = self.corners().iter().all(is_here);
+        for corner in self.corners().iter().filter(|c| all || !is_here(c)) {
             let mut last = *corner;
             for place in fan.corners.iter_mut().take(fan.len) {
                 if is_before(&last.at, &place.at) {
@@ -236,7 +246,7 @@ impl Fan {
 
     /// How far the object is below its plane at a place, in units of the depth; `None` where that is
     /// no place of the fan, but for a hundredth.
-    #[inline(always)]
+    #[inline(never)]
     pub fn low(&self, r: &Flat) -> Option<Real> {
         let [wall, low] = self.within(self.sector(r)?, r);
         (wall <= 1.01).then_some(low + self.level * wall)
@@ -336,8 +346,14 @@ impl Sum {
         self.last = w;
     }
 
+    /// NaN where nothing is shared.
+    fn centroid(&self) -> Flat {
+        let share = 1.0 / self.volume;
+        self.moment.map(|m| m * share)
+    }
+
     /// The outline from one ray, whose largest is the `i`th, to the next, whose largest is the `j`th.
-    #[inline(always)]
+    #[inline(never)]
     fn cone(&mut self, s: &Ray, i: usize, e: &Ray, j: usize) {
         if i != j {
             let cut = s.between(e, i, j);
@@ -397,8 +413,29 @@ pub fn pressed(one: &Fan, two: &Fan, rim: Real) -> Option<Flat> {
         sum.cone(&last, top, &next, next_top);
         (last, top) = (next, next_top);
     }
-    let share = 1.0 / sum.volume;
-    Some(sum.moment.map(|m| m * share))
+    Some(sum.centroid())
+}
+
+/// The same of a fan on a level plane that reaches farther than it.
+pub fn pressed_on_plane(fan: &Fan, rim: Real) -> Flat {
+    let ray = |corner: &Corner| Ray {
+        at: corner.at,
+        most: [1.0, 0.0, corner.low],
+    };
+    let mut last = ray(fan.corner(0));
+    let mut top = last.top();
+    let mut sum = Sum {
+        rim,
+        last: last.outer(top),
+        ..Sum::default()
+    };
+    for i in 1..=fan.len {
+        let next = ray(fan.corner(i));
+        let next_top = next.top();
+        sum.cone(&last, top, &next, next_top);
+        (last, top) = (next, next_top);
+    }
+    sum.centroid()
 }
 
 #[cfg(test)]

@@ -20,11 +20,13 @@
 //! is lower than its plane by a convex function, low(r), and δ = d − low1 − low2. At the deepest
 //! place r* both are 0, so along each ray from there δ falls from d, the steeper the farther.
 //!
-//! *What is asked.* Four support points of D, [`TILT`] aside of n, a right angle apart: of each
-//! object the four points that reach farthest around. Of a box's face they are its corners, each
-//! the farthest over a right angle; of a round one they lie evenly around, so that c leaves r* as
-//! little as the truth does. Nothing else enters, though more points may be known: those lie where
-//! the search came from, and would pull c there.
+//! *What is asked.* Of an object four points, [`TILT`] aside of n, a right angle apart: those that reach
+//! farthest around. Of a box's face they are its corners, each the farthest over a right angle; of a
+//! round one they lie evenly around, so that c leaves r* as little as the truth does. Where they are
+//! not the whole face more is asked: [`crate::contacts::view`]. Other points enter only as a floor
+//! ([`crate::contacts::seen`]): where known points of one object lie in its support plane all around what
+//! the other has there, no corner of that floor matters, and that object is not asked. As corners they
+//! would not do: they lie where the search came from, and would pull c there.
 //!
 //! *Fans.* The points of an object, seen from r*, are the corners of a fan of triangles, in each of
 //! which low is linear. The integrals over two fans are in closed form: [`crate::contacts::fan`].
@@ -35,10 +37,12 @@
 //! makes up for that.
 
 use crate::contact::Penetration;
-use crate::contacts::fan::{Corner, Fan, pressed};
-use crate::contacts::polygon::Flat;
+use crate::contacts::fan::{Corner, Fan, pressed, pressed_on_plane};
+use crate::contacts::polygon::{Flat, side};
+use crate::contacts::seen::{Outline, Seen, across};
+use crate::contacts::view::{CIRCLE, FOUR, Four, View, WAYS};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::math::{EPSILON, POLE, Real, Vec3, axes, larger, lesser};
+use crate::math::{EPSILON, Real, Vec3, larger, lesser};
 
 /// The tilt of the directions asked, as a tangent, is this times the root of depth / extent: so a
 /// round face of that radius, or half of it, is seen no lower than half the depth, and of a flat one
@@ -61,74 +65,182 @@ const POINT: Real = 0.016;
 /// Share of what all corners are lower by that is taken off. Measured: 0 lets a lying capsule step by 5 mm, 1
 /// leaves it 7 mm off.
 const LEVEL: Real = 0.75;
+/// A point that was found no farther aside of a direction than this, in tilts, is the one that would
+/// be found there: less than the ÷1.2 and ×1.2 of [`TILT`] that are seen.
+const SAME: Real = 0.1;
 
-/// Directions: four a right angle apart at even places, and four between them.
-const WAYS: usize = 8;
-/// Their cosines and sines in the plane's axes. Of a box whose axes are the world's no two corners
-/// are as far in any of the four.
-const CIRCLE: [Flat; WAYS] = {
-    const X: Real = 11.0 / 61.0;
-    const Y: Real = 60.0 / 61.0;
-    const H: Real = core::f64::consts::FRAC_1_SQRT_2 as Real;
-    const U: Real = (X - Y) * H;
-    const V: Real = (X + Y) * H;
-    [
-        [X, Y],
-        [U, V],
-        [-Y, X],
-        [-V, U],
-        [-X, -Y],
-        [-U, -V],
-        [Y, -X],
-        [V, -U],
-    ]
-};
-
-/// The plane across the normal, at the deepest place.
-struct View {
-    /// A point half-way between the support planes.
-    middle: Vec3,
-    /// The unit of lows, metres, and its inverse.
-    depth: Real,
-    share: Real,
-    /// How far the support planes are from the middle, in units of that.
-    half: Real,
-    n: Vec3,
-    axes: [Vec3; 2],
-    /// For unit directions: n, and the tilt.
-    up: Vec3,
-    tilt: Real,
+/// The four directions around a deepest place whose points all lie in the face of D there.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Around {
+    /// How low they may be, metres.
+    pub low: Real,
+    /// Unit; zero where one was lower, or not asked for.
+    pub directions: [Vec3; FOUR],
+    /// What they found, in the plane.
+    pub points: [Flat; FOUR],
 }
 
-impl View {
-    /// Asks in the `k`th direction: obj1's corner there, and obj2's, which is asked the other way.
-    #[inline(always)]
-    fn ask<A: SupportMap, B: SupportMap>(
-        &self,
-        md: &MinkowskiDifference<A, B>,
-        k: usize,
-    ) -> Result<[Corner; 2], Fault> {
-        let [x, y] = CIRCLE[k % WAYS];
-        let [e1, e2] = &self.axes;
-        let aside = e1 * (x * self.tilt) + e2 * (y * self.tilt);
-        let d = self.up + aside;
-        // Unit to its last bits.
-        let point = md.support(&(d * (1.5 - 0.5 * d.norm_squared())))?;
-        let hair = self.depth * HAIR;
-        let corner = |p: &Vec3, sign: Real| {
-            let p = p - self.middle;
-            let hair = sign * hair;
-            Corner {
-                at: [e1.dot(&p) + hair * x, e2.dot(&p) + hair * y],
-                low: larger(self.half - sign * self.n.dot(&p) * self.share, 0.0),
+impl Around {
+    /// Of the four corners of either object.
+    #[inline(never)]
+    fn fill(&mut self, view: &View, [one, two]: [&Four; 2]) {
+        for k in 0..FOUR {
+            let (p, q) = (&one[k], &two[(k + FOUR / 2) % FOUR]);
+            if !((p.low + q.low) * view.depth <= self.low) {
+                self.directions = [Vec3::zeros(); FOUR];
+                return;
             }
-        };
-        Ok([corner(&point.v1, 1.0), corner(&point.v2, -1.0)])
+            self.directions[k] = view.direction(&view.way(2 * k), view.cosine);
+            self.points[k] = side(&q.at, &p.at);
+        }
     }
 }
 
-/// The centre of pressure of a hit, in the middle of the chord there. Four support points, and four more where a face
-/// has more than four corners. `centre`: the centres of the objects, where they are given.
+/// What is known of a pair besides the hit, and for whom the directions are kept that are asked.
+pub struct Aside<'a> {
+    /// The centres of the objects, where they are given.
+    pub centre: Option<&'a SupportPoint>,
+    /// What the search has seen.
+    pub seen: &'a Seen,
+    /// The directions of a state that stands, which found [`Seen::Standing`].
+    pub others: &'a [Vec3],
+    /// For who keeps the four.
+    pub around: Option<&'a mut Around>,
+}
+
+/// What has been found of both objects.
+enum Found {
+    /// One is a point.
+    Point,
+    /// This one is on the other's floor.
+    On(usize),
+    /// The corners of both.
+    Both,
+}
+
+/// The objects as they are seen from the deepest place.
+struct Faces<'q, A, B> {
+    md: &'q MinkowskiDifference<A, B>,
+    view: View,
+    seen: &'q Seen,
+    others: &'q [Vec3],
+    fans: [Fan; 2],
+    hair: Real,
+    /// What ends within it is a point, metres.
+    point: Real,
+}
+
+impl<A: SupportMap, B: SupportMap> Faces<'_, A, B> {
+    /// What the search found about there.
+    #[inline]
+    fn found(&self, d: &Vec3) -> Option<[Vec3; 2]> {
+        let Seen::Standing(found) = self.seen else {
+            return None;
+        };
+        let near2 = SAME * SAME * self.view.tilt * self.view.tilt;
+        let is_same = |n: &Vec3| (d - n).norm_squared() <= near2;
+        found.get(self.others.iter().position(is_same)?).copied()
+    }
+
+    /// A corner a hair beyond its place, towards where it was asked for.
+    fn moved(&self, corner: &Corner, k: usize) -> Corner {
+        let [x, y] = CIRCLE[k % WAYS];
+        Corner {
+            at: [corner.at[0] + self.hair * x, corner.at[1] + self.hair * y],
+            low: corner.low,
+        }
+    }
+
+    fn put(&mut self, object: usize, four: &Four) {
+        for (i, corner) in four.iter().enumerate() {
+            self.fans[object % 2].put(i, self.moved(corner, 2 * i));
+        }
+    }
+
+    fn interleave(&mut self, object: usize, mut four: Four) {
+        for (i, corner) in four.iter_mut().enumerate() {
+            *corner = self.moved(corner, 2 * i + 1);
+        }
+        self.fans[object % 2].interleave(&four);
+    }
+
+    /// Asks an object for its corners: the first four, and what else it has there; `false` of a point.
+    #[inline(never)]
+    fn look(&mut self, object: usize, four: &mut Four) -> Result<bool, Fault> {
+        *four = self.view.four(self.md, object, 0, &|d| self.found(d))?;
+        self.put(object, four);
+        let fan = &self.fans[object % 2];
+        if fan.is_point(self.point) {
+            return Ok(false);
+        }
+        let is_beyond = fan.is_beyond(BEYOND);
+        let face = match self.view.twice(four) {
+            Some(twice) => self.view.fourth(self.md, object, four, twice)?,
+            None => None,
+        };
+        if let Some(face) = face {
+            self.put(object, &face);
+        } else if is_beyond {
+            let between = match self.view.rim(four) {
+                Some(between) => between,
+                None => self.view.four(self.md, object, 1, &|_| None)?,
+            };
+            self.interleave(object, between);
+        }
+        Ok(true)
+    }
+
+    /// Is all that an object shares on the floor?
+    fn is_on(&self, object: usize, floor: &Outline) -> bool {
+        let mut corners = self.fans[object % 2].corners().iter();
+        // What is lower than the depth is on the way to it.
+        corners.all(|c| {
+            floor.holds(&if c.low > 1.0 {
+                c.at.map(|x| x / c.low)
+            } else {
+                c.at
+            })
+        })
+    }
+
+    /// The same of an object with four corners that lie on a rim: it has eight.
+    fn round_off(&mut self, object: usize, four: &Four) {
+        if self.fans[object % 2].corners().len() == FOUR {
+            if let Some(between) = self.view.rim(four) {
+                self.interleave(object, between);
+            }
+        }
+    }
+
+    /// The corners of both objects, as far as they matter.
+    fn look_at_both(
+        &mut self,
+        first: usize,
+        floor: Option<&Outline>,
+        around: Option<&mut Around>,
+    ) -> Result<Found, Fault> {
+        let other = (1 + first) % 2;
+        let mut four = [Four::default(); 2];
+        if !self.look(first, &mut four[0])? {
+            return Ok(Found::Point);
+        }
+        if floor.is_some_and(|floor| self.is_on(first, floor)) {
+            return Ok(Found::On(first));
+        }
+        if !self.look(other, &mut four[1])? {
+            return Ok(Found::Point);
+        }
+        self.round_off(first, &four[0]);
+        self.round_off(other, &four[1]);
+        if let Some(around) = around {
+            around.fill(&self.view, [&four[first % 2], &four[other % 2]]);
+        }
+        Ok(Found::Both)
+    }
+}
+
+/// The centre of pressure of a hit, in the middle of the chord there. Two support points where the search
+/// has seen a floor, else four, and one or two more where a face has more than four corners.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -136,66 +248,75 @@ impl View {
 pub fn centre<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     hit: &Penetration,
-    centre: Option<&SupportPoint>,
     tolerance: Real,
+    aside: Aside,
 ) -> Result<Vec3, Fault> {
     let n = hit.normal;
     let middle = hit.middle();
     let depth = larger(hit.depth, tolerance);
     let mut far2 = hit.extent;
-    if let Some(c) = centre {
+    if let Some(c) = aside.centre {
         far2[0] = larger((c.v1 - hit.point1).norm_squared(), far2[0]);
         far2[1] = larger((c.v2 - hit.point2).norm_squared(), far2[1]);
     }
     let far = lesser(far2[0], far2[1]).sqrt();
     let tilt = lesser(TILT * (depth / far).sqrt(), MOST);
-    let share = 1.0 / (1.0 + tilt * tilt).sqrt();
-    let view = View {
-        middle,
-        depth,
-        share: 1.0 / depth,
-        half: 0.5 * hit.depth / depth,
-        n,
-        // The same for the objects swapped.
-        axes: axes(&(if POLE.dot(&n) < 0.0 { -n } else { n })),
-        up: n * share,
-        tilt: tilt * share,
-    };
-    let (mut one, mut two) = (Fan::default(), Fan::default());
-    const HALF: usize = WAYS / 2;
-    for i in 0..HALF {
-        let [p, q] = view.ask(md, 2 * i)?;
-        one.put(i, p);
-        two.put((i + HALF / 2) % HALF, q);
-    }
-    if one.is_point(POINT * far) || two.is_point(POINT * far) {
-        return Ok(middle);
-    }
-    let is_beyond = [&one, &two].map(|fan| fan.is_beyond(BEYOND));
-    if is_beyond[0] || is_beyond[1] {
-        let mut between = [[Corner::default(); HALF]; 2];
-        for i in 0..HALF {
-            let [p, q] = view.ask(md, 2 * i + 1)?;
-            between[0][i] = p;
-            between[1][(i + HALF / 2) % HALF] = q;
-        }
-        let fans = [&mut one, &mut two].into_iter().zip(&between);
-        for ((fan, between), _) in fans.zip(is_beyond).filter(|(_, is)| *is) {
-            fan.interleave(between);
-        }
-    }
     let hair = larger(depth * HAIR, 64.0 * EPSILON * far);
-    one.settle(LEVEL, hair);
-    two.settle(LEVEL, hair);
-    let Some(c) = pressed(&one, &two, depth * 0.5 / FLANK) else {
-        return Ok(middle);
+    let mut faces = Faces {
+        md,
+        view: View {
+            middle,
+            depth,
+            share: 1.0 / depth,
+            half: 0.5 * hit.depth / depth,
+            n,
+            axes: across(&n),
+            tilt,
+            cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
+            near: 2.0 * hair,
+        },
+        seen: aside.seen,
+        others: aside.others,
+        fans: [Fan::default(), Fan::default()],
+        hair,
+        point: POINT * far,
+    };
+    // The smaller one, or that on the floor.
+    let smaller = usize::from(far2[1] < far2[0]);
+    let (first, floor) = match aside.seen {
+        Seen::Floor(floor) => (1 - floor.object, Some(floor.seen(&faces.view.axes))),
+        _ => (smaller, None),
+    };
+    let rim = depth * 0.5 / FLANK;
+    let found = faces.look_at_both(first, floor.as_ref(), aside.around)?;
+    let [one, two] = &mut faces.fans;
+    let (c, lows) = match found {
+        Found::Point => return Ok(middle),
+        Found::On(first) => {
+            let fan = if first == 0 { one } else { two };
+            fan.settle(LEVEL, hair);
+            let c = pressed_on_plane(fan, rim);
+            let low = fan.low(&c);
+            (
+                c,
+                low.map(|low| if first == 0 { [low, 0.0] } else { [0.0, low] }),
+            )
+        }
+        Found::Both => {
+            one.settle(LEVEL, hair);
+            two.settle(LEVEL, hair);
+            let Some(c) = pressed(one, two, rim) else {
+                return Ok(middle);
+            };
+            (c, one.low(&c).zip(two.low(&c)).map(<[Real; 2]>::from))
+        }
     };
     // Rounding may have it elsewhere, where a fan is a line.
-    let (Some(low1), Some(low2)) = (one.low(&c), two.low(&c)) else {
+    let Some([low1, low2]) = lows else {
         return Ok(middle);
     };
     let rise = 0.5 * depth * (lesser(low2, 1.0) - lesser(low1, 1.0));
-    let [e1, e2] = &view.axes;
+    let [e1, e2] = &faces.view.axes;
     let centre = middle + e1 * c[0] + e2 * c[1] + n * rise;
     // NaN where nothing is shared.
     Ok(if centre.norm_squared() < Real::INFINITY {

@@ -139,18 +139,24 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
 }
 
-/// The global minimum, from first_dir; the centres are not asked for.
+/// The global minimum, from first_dir; the centres are not asked for. A hit is told to `put`. Returns
+/// as [`ccdGJKPenetration`].
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn gjk_penetration(query: Query, wants_pos: bool) -> Result<Penetration, c_int> {
+#[inline(never)]
+unsafe fn gjk_penetration(
+    query: Query,
+    wants_pos: bool,
+    put: &mut dyn FnMut(&Penetration),
+) -> c_int {
     // SAFETY: passed on.
     unsafe {
         let Some(md) = query.difference() else {
-            return Err(-1);
+            return -1;
         };
         let Some(first) = query.first_dir() else {
-            return Err(-1);
+            return -1;
         };
         let pair = Pair {
             md,
@@ -164,10 +170,13 @@ unsafe fn gjk_penetration(query: Query, wants_pos: bool) -> Result<Penetration, 
         };
         let mut cold = State::default();
         let answer = arena::with(|arena| pair.minimum(&mut cold, &settings, arena, wants_pos));
-        match answer {
-            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => Ok(hit),
-            Ok(Answer::Miss(_)) | Err(Fault::NonFinite) => Err(-1),
-            Err(Fault::NoMemory) => Err(-2),
+        match &answer {
+            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => {
+                put(hit);
+                0
+            }
+            Ok(Answer::Miss(_)) | Err(Fault::NonFinite) => -1,
+            Err(Fault::NoMemory) => -2,
         }
     }
 }
@@ -190,13 +199,9 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
 ) -> c_int {
     // SAFETY: passed on; [outputs].
     unsafe {
-        match gjk_penetration(Query { obj1, obj2, ccd }, !pos.is_null()) {
-            Ok(hit) => {
-                write(&hit, depth, dir, pos);
-                0
-            }
-            Err(code) => code,
-        }
+        gjk_penetration(Query { obj1, obj2, ccd }, !pos.is_null(), &mut |hit| {
+            write(hit, depth, dir, pos);
+        })
     }
 }
 
@@ -211,14 +216,10 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
 ) -> c_int {
     // SAFETY: passed on; [outputs].
     unsafe {
-        match gjk_penetration(Query { obj1, obj2, ccd }, false) {
-            Ok(hit) => {
-                if let Some(sep) = sep.as_mut() {
-                    *sep = (hit.dir * hit.depth).into();
-                }
-                0
+        gjk_penetration(Query { obj1, obj2, ccd }, false, &mut |hit| {
+            if let Some(sep) = sep.as_mut() {
+                *sep = (hit.dir * hit.depth).into();
             }
-            Err(code) => code,
-        }
+        })
     }
 }

@@ -18,6 +18,7 @@
 
 use crate::contact::Penetration;
 use crate::contacts::pressure;
+use crate::contacts::seen::Seen;
 use crate::gjk::barycentric;
 use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
@@ -83,6 +84,8 @@ pub struct Request<'a> {
     pub wants_pos: bool,
     /// The [`Basis::mark`] of when the pair's position was asked for last.
     pub mark: Option<u64>,
+    /// Is the position wanted, and are the others those that it is asked by?
+    pub stands: bool,
 }
 
 impl Request<'_> {
@@ -135,7 +138,7 @@ impl Basis {
 /// `basis` takes the directions that the proof stands on, where somebody remembers them;
 /// without an `arena` the rooms on the stack are all there is.
 ///
-/// Writes the answer to `hit`, all zero before, and returns whether it is proven to within the
+/// Writes the answer to `hit`, all zero before, and what the position can be read from to `seen`, and returns whether it is proven to within the
 /// limits' gap; `depth_lower` is what the polytope proves. Where it is not, a cap or rounding
 /// came first: the depth is sound, and the lower bound proven, but they are farther apart.
 ///
@@ -149,7 +152,7 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
     request: &'q Request<'q>,
     arena: Option<&'q mut dyn Arena>,
     basis: Option<&'q mut Basis>,
-    hit: &'q mut Penetration,
+    (hit, seen): (&'q mut Penetration, &'q mut Seen),
 ) -> Result<bool, Stop> {
     let mut search = Search {
         inquiry,
@@ -157,6 +160,7 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
         arena,
         basis,
         hit,
+        seen,
         open: None,
         stuck: false,
     };
@@ -195,6 +199,8 @@ struct Search<'q, 'r, A, B> {
     basis: Option<&'r mut Basis>,
     /// The answer of the last expansion.
     hit: &'r mut Penetration,
+    /// What the position can be read from, where it is wanted.
+    seen: &'r mut Seen,
     /// Whether it is proven, where rounding has ended all expansions so far: the answer where it
     /// ends the last one too.
     open: Option<bool>,
@@ -403,6 +409,15 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         let depth = self.inquiry.lowest.depth;
         self.put(depth, lower, touch, extent, known.rounds);
+        if self.request.stands {
+            let witnesses = |k| points.witnesses(points.names(k));
+            let asked = |k: usize| (points.direction(k + 1), witnesses(k + 1));
+            let count = points.asked() - 1;
+            self.seen.stand(&asked, count, self.request.others);
+        }
+        if self.request.wants_pos {
+            self.seen.rest(points, self.hit);
+        }
         if let Some(basis) = &mut self.basis {
             known.basis(portal, basis);
             let asked = (0..points.asked()).map(|k| points.witnesses(points.names(k)));
@@ -459,6 +474,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         // Where its planes do not show that it is around anything, nor is the origin inside.
         let end = if hull.winds() { end } else { End::Open };
         let proven = self.conclude(set, hull, progress, end)?;
+        // Of the first room: what needs a larger one rests on no floor.
+        *self.seen = Seen::Nothing;
+        if self.request.wants_pos && P == FIRST.0 {
+            self.see(set);
+        }
         let open = match end {
             End::Open => true,
             End::NoRoom => !(hull.nearest().key >= 0.0),
@@ -474,6 +494,19 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             return Ok(None);
         }
         Ok(Some(proven))
+    }
+
+    /// Keeps what the position can be read from. (Not in the frame of [`Search::conclude`].)
+    #[inline(always)]
+    fn see<const P: usize>(&mut self, set: &SupportSet<P>) {
+        if self.request.stands {
+            // They come after the apex and the first.
+            let asked = |i: usize| (set.direction(i + 2), set.witnesses(i + 2));
+            let count = set.len().saturating_sub(2);
+            self.seen.stand(&asked, count, self.request.others);
+        }
+        let known = |k: usize| (k + 1 < set.len()).then(|| set.witnesses(k + 1));
+        self.seen.rest(&known, self.hit);
     }
 
     fn tolerance(&self) -> Real {
@@ -781,10 +814,18 @@ mod tests {
             limits: &limits,
             wants_pos: true,
             mark: None,
+            stands: false,
         };
         let mut hit = Penetration::default();
         let mut heap = Heap(None);
-        let proven = minimum(inquiry, &point, &request, Some(&mut heap), None, &mut hit);
+        let proven = minimum(
+            inquiry,
+            &point,
+            &request,
+            Some(&mut heap),
+            None,
+            (&mut hit, &mut Seen::Nothing),
+        );
         Some((proven.ok()?, hit))
     }
 
@@ -812,9 +853,17 @@ mod tests {
             limits: &limits,
             wants_pos: false,
             mark: None,
+            stands: false,
         };
         let mut hit = Penetration::default();
-        let proven = minimum(inquiry, &point, &request, None, None, &mut hit);
+        let proven = minimum(
+            inquiry,
+            &point,
+            &request,
+            None,
+            None,
+            (&mut hit, &mut Seen::Nothing),
+        );
         (proven.unwrap(), hit)
     }
 

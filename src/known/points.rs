@@ -96,6 +96,21 @@ impl Cloud {
         if name < len { name } else { 0 }
     }
 
+    /// Which of `len` points are at least `least` along a direction: a bit each.
+    #[inline(always)]
+    fn level(&self, n: &Vec3, len: usize, least: Real) -> u32 {
+        let mut level = 0;
+        let [x, y, z] = &self.0;
+        for i in 0..len.div_ceil(2).min(ROOM / 2) {
+            let (x, y, z) = (x[i], y[i], z[i]);
+            for l in 0..2 {
+                let along = n.x * x[l] + n.y * y[l] + n.z * z[l];
+                level |= u32::from(along >= least) << (2 * i + l);
+            }
+        }
+        level & ((1 << len) - 1)
+    }
+
     /// The square of how far one of `len` points is from `p`, m².
     #[inline(always)]
     fn extent(&self, p: &Vec3, len: usize) -> Real {
@@ -194,6 +209,26 @@ impl Points {
     #[inline(always)]
     pub fn found(&self, object: usize, name: usize) -> u32 {
         u32::from(self.found[object % 2][name.min(ROOM - 1)])
+    }
+
+    /// The places of the points of obj1 (`object` 0) or of obj2 that are at least `least` along a
+    /// direction: a bit each.
+    #[inline(always)]
+    pub fn level(&self, object: usize, n: &Vec3, least: Real) -> u32 {
+        let [one, two] = self.lens;
+        match object {
+            0 => self.one.level(n, one, least),
+            _ => self.two.level(n, two, least),
+        }
+    }
+
+    /// The point of obj1 (`object` 0) or of obj2 at this place.
+    #[inline(always)]
+    pub fn point_of(&self, object: usize, i: usize) -> Vec3 {
+        match object {
+            0 => self.one.get(i),
+            _ => self.two.get(i),
+        }
     }
 
     /// The points of obj1 and of obj2 of these places.

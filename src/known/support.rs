@@ -155,7 +155,8 @@ pub enum Fault {
 pub struct MinkowskiDifference<A, B> {
     obj1: A,
     obj2: B,
-    supports: Cell<u64>,
+    /// Calls of either object's mapping.
+    calls: Cell<u64>,
 }
 
 impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
@@ -164,7 +165,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         Self {
             obj1,
             obj2,
-            supports: Cell::new(0),
+            calls: Cell::new(0),
         }
     }
 
@@ -172,7 +173,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
     /// then obj2 along `-dir`.
     #[inline]
     pub fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault> {
-        self.supports.set(self.supports.get() + 1);
+        self.calls.set(self.calls.get() + 2);
         let v1 = self.obj1.support(dir);
         let v2 = self.obj2.support(&-dir);
         let v = v1 - v2;
@@ -185,9 +186,20 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         Ok(SupportPoint { v, v1, v2 })
     }
 
-    /// Support points evaluated so far (one = one call of each object's mapping).
+    /// The point of one object (0 or 1) in that direction of D: obj2 is asked along `-dir`. It may be
+    /// not finite.
+    #[inline]
+    pub fn point_of(&self, object: usize, dir: &Vec3) -> Vec3 {
+        self.calls.set(self.calls.get() + 1);
+        match object {
+            0 => self.obj1.support(dir),
+            _ => self.obj2.support(&-dir),
+        }
+    }
+
+    /// Support points evaluated so far (one = one call of each object's mapping, or two of one's).
     #[inline]
     pub fn supports(&self) -> u64 {
-        self.supports.get()
+        self.calls.get().div_ceil(2)
     }
 }

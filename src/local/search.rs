@@ -257,26 +257,6 @@ impl Search {
                     Outcome::Open
                 });
             }
-            if std::env::var("TR").is_ok() {
-                eprintln!(
-                    "ask {} h {:.9} foretold {:.9} r {:.4} curved {:?} len {:?} cnt {} border {} doubts {}",
-                    self.asked,
-                    new.h,
-                    self.step.depth,
-                    self.trust.radius,
-                    self.objects.each_ref().map(|o| (
-                        o.curved.is_there(),
-                        o.curved.error,
-                        o.curved.spread,
-                        o.radius,
-                        o.disc().radius
-                    )),
-                    self.objects.each_ref().map(|o| o.len),
-                    self.step.end.count,
-                    self.step.end.on_border,
-                    self.doubts
-                );
-            }
             let place = self.put(&new);
             let told = self.told && self.trust.came_true(new.h, self.tolerance);
             if let (true, Some(o)) = (self.told, self.step.axis) {
@@ -289,9 +269,6 @@ impl Search {
             }
             self.told = false;
             if !self.take(place, centre, settings.tolerance) {
-                if std::env::var("TR").is_ok() {
-                    eprintln!("why take");
-                }
                 return Ok(Outcome::Open);
             }
             if told
@@ -312,12 +289,7 @@ impl Search {
             match self.next(known) {
                 Next::Ask(next) => n = next,
                 Next::Found => return Ok(Outcome::Found),
-                Next::Open => {
-                    if std::env::var("TR").is_ok() {
-                        eprintln!("open");
-                    }
-                    return Ok(Outcome::Open);
-                }
+                Next::Open => return Ok(Outcome::Open),
             }
         }
     }
@@ -590,32 +562,12 @@ impl Search {
         }
         // Also NaN.
         if !(gain >= -self.tolerance && gain < Real::INFINITY) {
-            {
-                if std::env::var("TR").is_ok() {
-                    eprintln!(
-                        "why 1 gain {:e} tol {:e} end {:?}",
-                        h - self.step.depth,
-                        self.tolerance,
-                        self.step.end
-                    );
-                }
-                return Next::Open;
-            }
+            return Next::Open;
         }
         if self.step.end.lost {
             // No minimum, but lower.
             if !(gain > self.tolerance) {
-                {
-                    if std::env::var("TR").is_ok() {
-                        eprintln!(
-                            "why 2 gain {:e} tol {:e} end {:?}",
-                            h - self.step.depth,
-                            self.tolerance,
-                            self.step.end
-                        );
-                    }
-                    return Next::Open;
-                }
+                return Next::Open;
             }
             self.trust.foretell(self.step.depth, false, &b);
             return Next::Ask(self.step.n);
@@ -631,17 +583,7 @@ impl Search {
             if let Some(next) = self.open(&b) {
                 self.doubts += 1;
                 if self.doubts > DOUBTS {
-                    {
-                        if std::env::var("TR").is_ok() {
-                            eprintln!(
-                                "why 3 gain {:e} tol {:e} end {:?}",
-                                h - self.step.depth,
-                                self.tolerance,
-                                self.step.end
-                            );
-                        }
-                        return Next::Open;
-                    }
+                    return Next::Open;
                 }
                 self.told = false;
                 return Next::Ask(next);
@@ -661,33 +603,13 @@ impl Search {
             if doubtful {
                 self.doubts += 1;
                 if self.doubts > DOUBTS {
-                    {
-                        if std::env::var("TR").is_ok() {
-                            eprintln!(
-                                "why 4 gain {:e} tol {:e} end {:?}",
-                                h - self.step.depth,
-                                self.tolerance,
-                                self.step.end
-                            );
-                        }
-                        return Next::Open;
-                    }
+                    return Next::Open;
                 }
                 self.trust.no_forecast();
                 self.told = false;
                 n = self.beside();
             } else if self.asked_there >= DOUBTS {
-                {
-                    if std::env::var("TR").is_ok() {
-                        eprintln!(
-                            "why 5 gain {:e} tol {:e} end {:?}",
-                            h - self.step.depth,
-                            self.tolerance,
-                            self.step.end
-                        );
-                    }
-                    return Next::Open;
-                }
+                return Next::Open;
             } else {
                 // Shallow, the best direction is near enough for the depth and not for witness
                 // points: the minimum itself is, if the model is right.
@@ -697,17 +619,7 @@ impl Search {
             n = self.towards_unseen();
         }
         if (n - b).norm_squared() < EPSILON * EPSILON {
-            {
-                if std::env::var("TR").is_ok() {
-                    eprintln!(
-                        "why 6 gain {:e} tol {:e} end {:?}",
-                        h - self.step.depth,
-                        self.tolerance,
-                        self.step.end
-                    );
-                }
-                return Next::Open;
-            }
+            return Next::Open;
         }
         Next::Ask(n)
     }

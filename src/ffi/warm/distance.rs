@@ -34,7 +34,7 @@ pub struct ccd_distance_t {
     pub point1: ccd_vec3_t,
     /// Witness point on the surface of obj2 with its margin; CCD_WANT_POINTS.
     pub point2: ccd_vec3_t,
-    /// How often support1 was called, and as often support2.
+    /// Half as often as support1 and support2 were called, rounded up; each as often, where no position was wanted.
     pub support_calls: c_ulong,
     /// Iterations of the solver.
     pub iterations: c_ulong,

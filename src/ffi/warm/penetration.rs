@@ -14,8 +14,9 @@ use crate::known::support::Fault;
 use crate::math::Real;
 use crate::{query::Pair, state::State};
 
-/// Wanted: pos. It costs 4 support points, 8 where a face has more than four corners, none where a
-/// state shows that nothing has moved (ccdPenetration, ccdPenetrationProven).
+/// Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
+/// where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). For it the objects
+/// are asked one by one.
 pub const CCD_WANT_POS: c_uint = 1;
 /// Wanted: point1 and point2. They cost nothing.
 pub const CCD_WANT_POINTS: c_uint = 2;
@@ -48,7 +49,7 @@ pub struct ccd_penetration_t {
     pub point1: ccd_vec3_t,
     /// Witness point of obj2, the same.
     pub point2: ccd_vec3_t,
-    /// How often support1 was called, and as often support2.
+    /// Half as often as support1 and support2 were called, rounded up; each as often, where no position was wanted.
     pub support_calls: c_ulong,
     /// Iterations of the solver.
     pub iterations: c_ulong,

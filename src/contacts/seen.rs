@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! What the search for a hit has seen that its position need not ask for again.
+
+use crate::contact::Penetration;
+use crate::contacts::polygon::{Flat, cross, side};
+use crate::contacts::view::{CIRCLE, FOUR};
+use crate::known::points::Points;
+use crate::math::{EPSILON, POLE, Real, Vec3, axes};
+
+/// How low a known point of a floor may be, as a share of the depth: taken for level, it turns a floor
+/// by so little that the position moves by a third of that share of the face's half width. Insensitive:
+/// 0.01 to 0.05 tried on recorded contacts.
+const LEVEL: Real = 0.01;
+/// Unit vectors that are made unit again differ by less.
+const ALIKE: Real = 16.0 * EPSILON;
+/// Directions of a state that stands besides the minimum's.
+const OTHERS: usize = 3;
+
+/// Points of the two objects, 0 and 1.
+pub trait Known {
+    /// Which points are at least `least` along a direction: a bit each.
+    fn level(&self, object: usize, n: &Vec3, least: Real) -> u32;
+    /// The point of that bit.
+    fn point_of(&self, object: usize, i: usize) -> Vec3;
+}
+
+impl Known for Points {
+    #[inline(always)]
+    fn level(&self, object: usize, n: &Vec3, least: Real) -> u32 {
+        Points::level(self, object, n, least)
+    }
+
+    #[inline(always)]
+    fn point_of(&self, object: usize, i: usize) -> Vec3 {
+        Points::point_of(self, object, i)
+    }
+}
+
+/// In any order.
+impl<F: Fn(usize) -> Option<[Vec3; 2]>> Known for F {
+    #[inline(always)]
+    fn level(&self, object: usize, n: &Vec3, least: Real) -> u32 {
+        let points = (0..u32::BITS).map_while(|i| Some((i, self(i as usize)?)));
+        points.fold(0, |level, (i, p)| {
+            level | u32::from(n.dot(&p[object % 2]) >= least) << i
+        })
+    }
+
+    #[inline(always)]
+    fn point_of(&self, object: usize, i: usize) -> Vec3 {
+        self(i).map_or(Vec3::zeros(), |p| p[object % 2])
+    }
+}
+
+/// What has been seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Seen {
+    /// Nothing of use.
+    #[default]
+    Nothing,
+    /// What the directions of a state that stands ([`crate::state::State::stand`]) found.
+    Standing([[Vec3; 2]; OTHERS]),
+    /// A face around the deepest place.
+    Floor(Floor),
+}
+
+impl Seen {
+    /// Keeps what the `others`, the directions of a state that stands, found, if they have been
+    /// `asked`: so many directions after the first, and their points of the two objects.
+    #[cold]
+    #[inline(never)]
+    pub fn stand(
+        &mut self,
+        asked: &dyn Fn(usize) -> (Vec3, [Vec3; 2]),
+        count: usize,
+        others: &[Vec3],
+    ) {
+        let mut found = [[Vec3::zeros(); 2]; OTHERS];
+        let mut len = 0;
+        for (i, (place, n)) in found.iter_mut().zip(others).enumerate().take(count) {
+            let (dir, points) = asked(i);
+            *place = points;
+            len += usize::from((dir - n).amax() < ALIKE);
+        }
+        if len == OTHERS {
+            *self = Self::Standing(found);
+        }
+    }
+
+    /// Keeps the face around the deepest place of a hit, if what is known of the object that reaches
+    /// farther shows one. What stands stays.
+    #[inline(never)]
+    pub fn rest(&mut self, known: &dyn Known, hit: &Penetration) {
+        if matches!(self, Self::Standing(_)) {
+            return;
+        }
+        let larger = usize::from(hit.extent[1] > hit.extent[0]);
+        if let Some(floor) = Floor::of(larger, known, hit) {
+            *self = Self::Floor(floor);
+        }
+    }
+}
+
+/// Points of one object in its support plane: of those known the farthest in four directions a right
+/// angle apart, in their order.
+#[derive(Clone, Copy, Debug)]
+pub struct Floor {
+    /// Whose: 0 or 1.
+    pub object: usize,
+    /// Seen from half-way between the support planes.
+    points: [Vec3; FOUR],
+}
+
+impl Floor {
+    /// Of a hit, if they lie around the deepest place.
+    #[inline(always)]
+    fn of(object: usize, known: &dyn Known, hit: &Penetration) -> Option<Self> {
+        let n = if object == 0 { hit.normal } else { -hit.normal };
+        let middle = hit.middle();
+        let least = n.dot(&middle) + hit.depth * (0.5 - LEVEL);
+        let mut level = known.level(object, &n, least);
+        if level.count_ones() < 3 {
+            return None;
+        }
+        // Across n and each other, of one length, and turned as those of `across`.
+        let up = upwards(&n);
+        let e1 = if n.x.abs() < 0.6 {
+            Vec3::new(0.0, n.z, -n.y)
+        } else {
+            Vec3::new(-n.z, 0.0, n.x)
+        };
+        let e2 = up.cross(&e1);
+        let [x, y] = CIRCLE[0];
+        let ways = [e1 * x + e2 * y, e2 * x - e1 * y];
+        let mut most = [Real::NEG_INFINITY; FOUR];
+        let mut names = [0; FOUR];
+        while level != 0 {
+            let i = level.trailing_zeros() as usize;
+            level &= level - 1;
+            let [a, b] = ways
+                .each_ref()
+                .map(|way| way.dot(&known.point_of(object, i)));
+            for ((name, most), reach) in names.iter_mut().zip(&mut most).zip([a, b, -a, -b]) {
+                (*name, *most) = if reach > *most {
+                    (i, reach)
+                } else {
+                    (*name, *most)
+                };
+            }
+        }
+        let points = names.map(|i| known.point_of(object, i) - middle);
+        let floor = Self { object, points };
+        floor.seen(&ways).holds(&[0.0; 2]).then_some(floor)
+    }
+
+    /// The same in the plane.
+    #[inline]
+    pub fn seen(&self, [e1, e2]: &[Vec3; 2]) -> Outline {
+        Outline(self.points.each_ref().map(|p| [e1.dot(p), e2.dot(p)]))
+    }
+}
+
+/// A polygon of up to four corners, in their order.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline([Flat; FOUR]);
+
+impl Outline {
+    /// Does this place lie within?
+    #[inline]
+    pub fn holds(&self, at: &Flat) -> bool {
+        let [a, b, c, d] = &self.0;
+        let is_inside = |p: &Flat, q: &Flat| {
+            let along = side(p, q);
+            cross(&along, &side(p, at)) > 0.0 || along == [0.0; 2]
+        };
+        is_inside(a, b)
+            && is_inside(b, c)
+            && is_inside(c, d)
+            && is_inside(d, a)
+            && (a != c || b != d)
+    }
+}
+
+/// Two unit vectors across the unit vector `n` and each other, the same for the objects swapped.
+#[inline]
+pub fn across(n: &Vec3) -> [Vec3; 2] {
+    axes(&upwards(n))
+}
+
+/// Of a vector and its opposite always the same.
+fn upwards(n: &Vec3) -> Vec3 {
+    if POLE.dot(n) < 0.0 { -n } else { *n }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_floor_is_around_the_deepest_place() {
+        let corner = |x: Real, y: Real| Vec3::new(x, y, 0.0);
+        let hit = Penetration {
+            depth: 0.01,
+            normal: Vec3::z(),
+            point1: Vec3::zeros(),
+            point2: Vec3::new(0.0, 0.0, -0.01),
+            extent: [2.0, 1.0],
+            ..Penetration::default()
+        };
+        let tip = Vec3::new(0.0, 0.0, -0.01);
+        let outline = |points: &[Vec3]| {
+            let mut seen = Seen::Nothing;
+            seen.rest(&|k| Some([*points.get(k)?, tip]), &hit);
+            match seen {
+                Seen::Floor(floor) if floor.object == 0 => Some(floor.seen(&across(&hit.normal))),
+                _ => None,
+            }
+        };
+        let three = [corner(1.0, 1.0), corner(-1.0, 1.0), corner(0.0, -1.0)];
+        let [e1, e2] = across(&hit.normal);
+        let at = |v: Vec3| [e1.dot(&v), e2.dot(&v)];
+        let floor = outline(&three).unwrap();
+        assert!(floor.holds(&at(corner(0.9, 0.95))));
+        assert!(!floor.holds(&at(corner(0.9, 0.7))));
+        // One is lower, or the place is beyond a side, or on it.
+        let lower = Vec3::new(0.0, -1.0, -0.001);
+        assert!(outline(&[three[0], three[1], lower]).is_none());
+        let beyond = [corner(1.0, 1.0), corner(-1.0, 1.0), corner(0.0, 0.5)];
+        assert!(outline(&beyond).is_none());
+        let line = [corner(1.0, 0.0), corner(-1.0, 0.0), corner(0.0, 0.0)];
+        assert!(outline(&line).is_none());
+    }
+}
