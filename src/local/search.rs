@@ -515,51 +515,23 @@ impl Search {
             };
             return Next::Ask(self.trust.first_step(&n, &v, size));
         }
-        let (b, h) = (best.n, best.h);
+        let b = best.n;
         self.lowest();
-        let mut gain = h - self.step.depth;
-        if gain < -self.tolerance && round {
-            // The model is above what was seen: what is remembered is not so any more, and what a cut
-            // above its object's own support value is round by never was.
-            let own = Self::points(self.best());
-            for (object, own) in self.objects.iter_mut().zip(own) {
-                if self.recalled {
-                    object.forget();
-                } else if object.is_doubted() || object.is_above(&own, self.tolerance) {
-                    object.give_up();
-                }
-            }
-            self.recalled = false;
-            self.lowest();
-            gain = h - self.step.depth;
-            if gain < -self.tolerance {
-                for object in &mut self.objects {
-                    object.forget();
-                }
-                self.lowest();
-                gain = h - self.step.depth;
-            }
+        if round && self.gain() < -self.tolerance {
+            self.refute();
         }
         if round
-            && gain.abs() <= self.tolerance
+            && self.gain().abs() <= self.tolerance
             && self.step.end.on_border
             && self.trust.radius < FIRST
             && !self.levelled
         {
-            // Level so far: is it as far as the first radius?
-            self.levelled = true;
-            self.trust.radius = FIRST;
-            let near = self.step;
-            self.lowest();
-            if !(self.step.depth <= near.depth) {
-                self.step = near;
-            }
-            gain = h - self.step.depth;
+            self.level();
         }
-        if gain <= self.tolerance && !self.step.end.on_border && !self.is_lowest() {
+        if self.gain() <= self.tolerance && !self.step.end.on_border && !self.is_lowest() {
             self.look_around();
-            gain = h - self.step.depth;
         }
+        let gain = self.gain();
         // Also NaN.
         if !(gain >= -self.tolerance && gain < Real::INFINITY) {
             return Next::Open;
@@ -580,40 +552,9 @@ impl Search {
             return Next::Ask(n);
         }
         if gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST) {
-            if let Some(next) = self.open(&b) {
-                self.doubts += 1;
-                if self.doubts > DOUBTS {
-                    return Next::Open;
-                }
-                self.told = false;
-                return Next::Ask(next);
-            }
-            let mut hair = HAIR * self.tolerance;
-            // A remembered ball is no more than a guess.
-            let mut doubtful = self.asked == 1 || self.is_doubtful(&b, self.places, hair);
-            if !doubtful {
-                if self.conclude(self.best, known) {
-                    return Next::Found;
-                }
-                // Near enough for the depth, and not for witness points: a round part that was not
-                // seen leads to none.
-                hair = 0.0;
-                doubtful = self.is_doubtful(&b, self.places, hair);
-            }
-            if doubtful {
-                self.doubts += 1;
-                if self.doubts > DOUBTS {
-                    return Next::Open;
-                }
-                self.trust.no_forecast();
-                self.told = false;
-                n = self.beside();
-            } else if self.asked_there >= DOUBTS {
-                return Next::Open;
-            } else {
-                // Shallow, the best direction is near enough for the depth and not for witness
-                // points: the minimum itself is, if the model is right.
-                self.asked_there += 1;
+            match self.settle(&b, known) {
+                Next::Ask(next) => n = next,
+                end => return end,
             }
         } else if inside && round {
             n = self.towards_unseen();
@@ -622,6 +563,91 @@ impl Search {
             return Next::Open;
         }
         Next::Ask(n)
+    }
+
+    /// How much lower than the best sample the model is, metres.
+    #[inline(always)]
+    fn gain(&self) -> Real {
+        self.best().h - self.step.depth
+    }
+
+    /// The model is above what was seen: what is remembered is not so any more, and what a cut above
+    /// its object's own support value is round by never was.
+    #[cold]
+    fn refute(&mut self) {
+        let own = Self::points(self.best());
+        for (object, own) in self.objects.iter_mut().zip(own) {
+            if self.recalled {
+                object.forget();
+            } else if object.is_doubted() || object.is_above(&own, self.tolerance) {
+                object.give_up();
+            }
+        }
+        self.recalled = false;
+        self.lowest();
+        if self.gain() < -self.tolerance {
+            for object in &mut self.objects {
+                object.forget();
+            }
+            self.lowest();
+        }
+    }
+
+    /// Level so far: is it as far as the first radius?
+    #[cold]
+    fn level(&mut self) {
+        self.levelled = true;
+        self.trust.radius = FIRST;
+        let near = self.step;
+        self.lowest();
+        if !(self.step.depth <= near.depth) {
+            self.step = near;
+        }
+    }
+
+    /// The best direction `b` is as deep as the model's minimum: the answer, or what is to be asked
+    /// before it is.
+    #[inline(always)]
+    fn settle(&mut self, b: &Vec3, known: &mut Known) -> Next {
+        if let Some(next) = self.open(b) {
+            self.told = false;
+            return self.doubt(next);
+        }
+        // A remembered ball is no more than a guess.
+        let mut doubtful =
+            self.asked == 1 || self.is_doubtful(b, self.places, HAIR * self.tolerance);
+        if !doubtful {
+            if self.conclude(self.best, known) {
+                return Next::Found;
+            }
+            // Near enough for the depth, and not for witness points: a round part that was not
+            // seen leads to none.
+            doubtful = self.is_doubtful(b, self.places, 0.0);
+        }
+        if doubtful {
+            self.trust.no_forecast();
+            self.told = false;
+            let next = self.beside();
+            return self.doubt(next);
+        }
+        if self.asked_there >= DOUBTS {
+            return Next::Open;
+        }
+        // Shallow, the best direction is near enough for the depth and not for witness points: the
+        // minimum itself is, if the model is right.
+        self.asked_there += 1;
+        Next::Ask(self.step.n)
+    }
+
+    /// Asks for what it tells, if that was not done too often.
+    #[inline(always)]
+    fn doubt(&mut self, n: Vec3) -> Next {
+        self.doubts += 1;
+        if self.doubts > DOUBTS {
+            Next::Open
+        } else {
+            Next::Ask(n)
+        }
     }
 }
 
