@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn it_is_learned_from_pairs() {
         let mut r = Random::new(4);
-        let step = if EPSILON > 1e-10 { 0.05 } else { 0.01 };
+        let step = if EPSILON > 1e-10 { 0.02 } else { 0.01 };
         for _ in 0..100 {
             let radii = Vec3::from_fn(|_, _| r.within(0.3, 0.6));
             let shape = ellipsoid(radii, r.rotation(), r.vector(0.1));
