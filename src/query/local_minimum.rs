@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! A local minimum, its overlap not proven, and what it is good for in the other queries.
+
+use super::Pair;
+use crate::contact::{Answer, Penetration, Settings};
+use crate::gjk::barycentric;
+use crate::hull::expansion::Limits;
+use crate::known::support::{Fault, Known, SupportMap, SupportPoint};
+use crate::known::support_set::Stop;
+use crate::local::{self, Memory};
+use crate::math::{EPSILON, Real, Vec3, larger};
+use crate::paper::incremental::{self, Shortcut};
+use crate::paper::portal::rounding;
+
+/// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
+/// 1e-12, or what single precision tells.
+const INSIDE: Real = if EPSILON > 1e-10 {
+    32.0 * EPSILON
+} else {
+    1e-12
+};
+
+/// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty.
+const BUDGET: u64 = 64;
+
+impl<A: SupportMap, B: SupportMap> Pair<A, B> {
+    /// A local minimum, its overlap not proven: mostly the first search ends at one.
+    pub(super) fn local_minimum(
+        &self,
+        memory: &mut Memory,
+        settings: &Settings,
+        known: &mut Known,
+        hit: &mut Penetration,
+    ) -> Result<bool, Stop> {
+        let first = settings.max_iterations.min(BUDGET);
+        Ok(self.search(memory, first, settings, known, hit)?
+            || self.search_on(memory, settings, known, hit)?)
+    }
+
+    /// Goes on from a search that stalled: from the lowest place it met, as long as that is lower than
+    /// before; then by the paper's method.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn search_on(
+        &self,
+        memory: &mut Memory,
+        settings: &Settings,
+        known: &mut Known,
+        hit: &mut Penetration,
+    ) -> Result<bool, Stop> {
+        let most = settings.max_iterations;
+        let mut left = most;
+        let mut before = Real::INFINITY;
+        // Ends: `left` falls.
+        loop {
+            left = left.saturating_sub(hit.iterations.max(1));
+            // Depths that differ by less are the same.
+            let reach = larger(hit.point1.norm(), hit.point2.norm());
+            let lower = hit.depth < before - larger(settings.tolerance, rounding(reach));
+            if !lower || left == 0 {
+                break;
+            }
+            before = hit.depth;
+            *memory = Memory::towards(hit.normal);
+            if self.search(memory, left.min(BUDGET), settings, known, hit)? {
+                hit.iterations += most - left;
+                return Ok(true);
+            }
+        }
+        hit.iterations = most - left;
+        if left == 0 {
+            return Ok(false);
+        }
+        let rest = Settings {
+            max_iterations: left,
+            ..*settings
+        };
+        let start = hit.normal;
+        let last = incremental::penetration(&self.md, start, Shortcut::Always, &rest, |_| ())?;
+        let ended = match last {
+            // D reaches beyond that plane: a callback that errs must not separate.
+            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(false),
+            other => other.put(hit)?,
+        };
+        hit.iterations += most - left;
+        *memory = Memory::towards(hit.normal);
+        Ok(ended)
+    }
+
+    /// One local search, of so many iterations at most.
+    #[inline(never)]
+    pub(super) fn search(
+        &self,
+        memory: &mut Memory,
+        max_iterations: u64,
+        settings: &Settings,
+        known: &mut Known,
+        hit: &mut Penetration,
+    ) -> Result<bool, Stop> {
+        let settings = Settings {
+            max_iterations,
+            ..*settings
+        };
+        local::penetration(
+            &self.md,
+            self.centre.as_ref().map(|c| &c.v),
+            || self.cold_start(),
+            memory,
+            &settings,
+            known,
+            hit,
+        )
+    }
+
+    /// Lowers a depth that the global search could not prove. Where minima form a curve or a
+    /// surface, no polytope proves them in the steps there are, and the least depth met need
+    /// not be theirs to the tolerance. But its direction is near them, and a local search from
+    /// there finds one: to a hundredth of the tolerance, since what falls so little over the
+    /// first trust radius falls thirty times as much over the sphere.
+    /// It takes what is left of the iterations, and no more than one search's.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn floor(&self, hit: &mut Penetration, limits: &Limits) -> Result<(), Fault> {
+        let left = limits.iterations.saturating_sub(hit.iterations);
+        if left == 0 {
+            return Ok(());
+        }
+        let level = Settings {
+            tolerance: limits.tolerance * 0.01,
+            max_iterations: left.min(BUDGET),
+        };
+        let mut memory = Memory::towards(hit.normal);
+        let mut known = Known::default();
+        let mut floor = Penetration::default();
+        match self.local_minimum(&mut memory, &level, &mut known, &mut floor) {
+            Ok(minimum) if floor.depth < hit.depth => {
+                // The polytope's witness points are points of the objects, the local search's lie on
+                // the planes, and beside their objects where it found no minimum: there means of the
+                // objects' own points, if they meet as well as the bounds do.
+                let reach = larger(floor.point1.norm(), floor.point2.norm());
+                let near = larger(limits.tolerance, INSIDE * reach);
+                let [one, two] = [hit.point1 - floor.point1, hit.point2 - floor.point2];
+                let n = &floor.normal;
+                if one.dot(n).abs() <= near && two.dot(n).abs() <= near {
+                    (floor.point1, floor.point2) = (hit.point1, hit.point2);
+                } else if !minimum {
+                    let open = larger(floor.depth - hit.depth_lower, near);
+                    match own_witnesses(known.points(), &floor, open) {
+                        Some(own) => (floor.point1, floor.point2) = own,
+                        None => return Ok(()),
+                    }
+                }
+                *hit = Penetration {
+                    depth_lower: hit.depth_lower.min(floor.depth),
+                    iterations: hit.iterations + floor.iterations,
+                    ..floor
+                };
+                Ok(())
+            }
+            Ok(_) | Err(Stop::Apart(_)) => Ok(()),
+            Err(Stop::Fault(fault)) => Err(fault),
+        }
+    }
+}
+
+/// Means of the objects' own points, of those known, that are the depth apart along an answer's
+/// direction to within `open`, metres.
+#[cold]
+fn own_witnesses(known: &[SupportPoint], hit: &Penetration, open: Real) -> Option<(Vec3, Vec3)> {
+    let to = hit.normal * hit.depth;
+    let (first, rest) = known.split_first()?;
+    let mut best = None;
+    let mut least2 = 2.0 * hit.depth * open;
+    for (i, a) in rest.iter().enumerate() {
+        for (j, b) in rest.iter().enumerate().skip(i) {
+            for c in rest.iter().skip(j) {
+                let points = [first, a, b, c];
+                let nearest = barycentric::tetrahedron(&to, points.map(|p| &p.v));
+                let low = hit.depth - nearest.point.dot(&hit.normal);
+                if nearest.distance2 < least2 && low <= open {
+                    least2 = nearest.distance2;
+                    best = Some(barycentric::witnesses(&nearest.weights, points));
+                }
+            }
+        }
+    }
+    best
+}
