@@ -10,11 +10,14 @@
 //! Wright, Numerical Optimization, ch. 6). What it was off by is the error of R.
 
 use crate::known::round::{BLUNT, Symmetric};
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, larger};
 
 /// Relative error of R up to which it leads to witness points, and up to which the first pair that
 /// confirms a remembered R confirms all of it. Measured: ×2 −0.1 %, ÷2 +0.1 %, +3 % (ellipsoids).
 pub const FORETOLD: Real = 0.2;
+/// The least relative error of R that one pair tells: chance has a say in it. Measured: ×2 +0.2 %,
+/// +3 % (ellipsoids); without, one ellipsoid in 500 is three tolerances too deep.
+const CHANCE: Real = 0.3;
 /// Pairs that must be foretold so before it leads to witness points.
 const CERTAIN: u32 = 1;
 /// Relative error up to which R moves cuts; also that of a remembered R, until a pair tells.
@@ -125,6 +128,15 @@ impl Curved {
     pub fn foretells(&self, d: &Vec3, dn: &Vec3) -> bool {
         let off = d - self.r.times(dn);
         self.is_believed() && off.norm_squared() <= FORETOLD * FORETOLD * d.norm_squared()
+    }
+
+    /// The relative error to be reckoned with.
+    pub fn worst(&self) -> Real {
+        if self.foretold > 1 {
+            self.error
+        } else {
+            larger(self.error, CHANCE)
+        }
     }
 
     /// Does it lead to witness points?

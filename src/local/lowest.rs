@@ -161,7 +161,10 @@ impl Search {
         let bend = [0, 1, 2].map(|i: usize| p.bend[i % 3] + q.bend[i % 3]);
         let (mean, half) = (0.5 * (bend[0] + bend[2]), 0.5 * (bend[0] - bend[2]));
         let spread = (half * half + bend[1] * bend[1]).sqrt();
-        let error = larger(self.objects[0].curved.error, self.objects[1].curved.error);
+        let error = larger(
+            self.objects[0].curved.worst(),
+            self.objects[1].curved.worst(),
+        );
         let twice = 2.0 * (self.best().h - self.step.depth);
         let low = mean - spread - self.best().h;
         self.step.end.count == 0 && twice <= self.tolerance && 2.0 * error * (mean + spread) <= low
@@ -171,7 +174,7 @@ impl Search {
     pub(super) fn gain_by_less(&mut self) -> Real {
         for (object, cuts) in self.objects.iter().zip(&mut self.model.cuts) {
             if object.curved.is_there() {
-                let left = larger(1.0 - object.curved.error, 0.0);
+                let left = larger(1.0 - object.curved.worst(), 0.0);
                 cuts.bend = cuts.bend.map(|g| g * left);
             }
         }

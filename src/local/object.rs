@@ -466,7 +466,10 @@ impl Object {
             if !(self.carries(k) && self.curved.is_certain()) {
                 return p;
             }
-            let moved = p + self.curved.r().times(&(n - self.at[k].n));
+            // In its own support plane.
+            let own = self.at[k].n;
+            let way = self.curved.r().times(&(n - own));
+            let moved = p + way - own * own.dot(&way);
             // Behind all support planes that were seen.
             let beyond = |at: &Seen| (moved - at.p).dot(&at.n) > same;
             let out = self.at.iter().take(self.len).any(beyond);
