@@ -20,6 +20,9 @@ pub const FORETOLD: Real = 0.2;
 const CHANCE: Real = 0.3;
 /// Pairs that must be foretold so before it leads to witness points.
 const CERTAIN: u32 = 1;
+/// What bends by less than this share of what it bends by across is taken for an edge, which moves
+/// along itself alone.
+const EDGE: Real = 0.05;
 /// Relative error up to which R moves cuts; also that of a remembered R, until a pair tells.
 /// Measured: ×2 +1.2 %, +19 % (hulls); ÷2 +0.2 %, +6 %.
 pub const BELIEVED: Real = 0.5;
@@ -141,7 +144,16 @@ impl Curved {
 
     /// Does it lead to witness points?
     pub fn is_certain(&self) -> bool {
-        self.there && self.foretold >= CERTAIN
+        self.there && self.foretold >= CERTAIN && !self.is_edge()
+    }
+
+    /// Does it bend along one direction alone? With the greater and the lesser of its eigenvalues
+    /// across the normal, whose third one is about zero.
+    fn is_edge(&self) -> bool {
+        let [xx, xy, xz, yy, yz, zz] = self.r.0;
+        let sum = xx + yy + zz;
+        let squares = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+        !(0.5 * (sum * sum - squares) >= EDGE * squares)
     }
 
     /// A kink along `dn` leaves R no more than this `room`. What no second pair confirmed ends.

@@ -466,13 +466,13 @@ impl Object {
             if !(self.carries(k) && self.curved.is_certain()) {
                 return p;
             }
-            // In its own support plane.
-            let own = self.at[k].n;
-            let way = self.curved.r().times(&(n - own));
-            let moved = p + way - own * own.dot(&way);
+            // In its own support plane, above the surface by half of what R bends.
+            let dn = n - self.at[k].n;
+            let way = self.curved.r().times(&dn);
+            let moved = p + way - self.at[k].n * self.at[k].n.dot(&way);
             // Behind all support planes that were seen.
             let beyond = |at: &Seen| (moved - at.p).dot(&at.n) > same;
-            let out = self.at.iter().take(self.len).any(beyond);
+            let out = 0.5 * way.dot(&dn) > same || self.at.iter().take(self.len).any(beyond);
             return if out { p } else { moved };
         }
         if self.carries(k) {
