@@ -126,7 +126,6 @@ static void watched_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *
     if (w->asked->most && w->asked->calls >= w->asked->most)
         guard_end();
     w->asked->calls++;
-    w->asked->supports += !w->which;
     (w->which ? w->q->ccd->support2 : w->q->ccd->support1)(w->q->obj[w->which], dir, point);
     if (ask_audit && !guard_active())
         ask_audit(w->q->obj[w->which], center_of(w), &asked_dir, point);

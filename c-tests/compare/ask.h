@@ -61,7 +61,7 @@ typedef struct {
 /* How a query went: support points of the difference, and where to write. */
 typedef struct {
     seen_t *seen; /* NULL: nothing is written down */
-    unsigned long supports, calls;
+    unsigned long calls;
     unsigned long most; /* calls, beyond which guard_end; 0: no end */
     const ccd_vec3_t *shift; /* NULL, or by how much obj2 is moved */
     const ccd_vec3_t *pending; /* the direction of support1, whose support2 comes next */

@@ -28,7 +28,7 @@ enum { COMPARE_BINS = 512, COMPARE_BINS_OCTAVE = 100 };
 /* One library on the judged queries of one call. */
 typedef struct {
     uint64_t verdict[VERDICTS];
-    uint64_t hits, supports;
+    uint64_t hits, calls; /* of support functions: two are a support point */
     uint64_t slanted; /* hits whose direction is not the normal of a plane that depth brings apart */
     uint64_t aside;   /* of these, counted as unsound: the depth would do, along another direction */
     uint64_t nanoseconds; /* of `timed` queries */
@@ -43,7 +43,7 @@ typedef struct {
     uint64_t threw, endless, memory, no_shape;
     uint64_t contradicted; /* a proven lower bound above a depth that was seen: this library's fault */
     compare_side_t side[COMPARE_SIDES];
-    uint64_t minimum_supports, minimum_nanoseconds;
+    uint64_t minimum_calls, minimum_nanoseconds;
     /* the swap: hits of one library alone, and of both: how much deeper libccd's is */
     uint64_t found, gone, both, turned, ratio[COMPARE_BINS];
 } compare_call_t;

@@ -165,12 +165,12 @@ static int shows(const compare_t *compare, const sample_t *s, int side, case_t *
     if (c->columns == 3) {
         seen_t *seen = (seen_t *)malloc(sizeof *seen);
         sample_t again;
-        uint64_t supports;
+        uint64_t calls;
         int bad, k;
         if (!seen)
             return 0;
         seen_clear(seen);
-        bad = sample_truth(&compare->library[COMPARE_OURS], &w.q, seen, &again, &supports);
+        bad = sample_truth(&compare->library[COMPARE_OURS], &w.q, seen, &again, &calls);
         free(seen);
         if (bad)
             return 0;

@@ -88,7 +88,7 @@ static double extent(const seen_t *seen, int which, double *largest)
     return sqrt(diagonal2);
 }
 
-int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t *s, uint64_t *supports)
+int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t *s, uint64_t *calls)
 {
     asked_t asked;
     work_t w;
@@ -103,7 +103,7 @@ int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t
     w.tolerance = FINER * query_tolerance(q);
     if (guard_run(work_minimum, &w) != GUARD_RETURNED)
         return -1;
-    *supports = asked.supports;
+    *calls = asked.calls;
     size[0] = extent(seen, 0, &largest);
     size[1] = extent(seen, 1, &largest);
     s->size = fmin(size[0], size[1]) > 0 ? fmin(size[0], size[1]) : fmax(size[0], size[1]);
@@ -296,7 +296,7 @@ static void count_side(compare_side_t *to, const sample_t *s, int side)
     const verdict_answer_t judged = { a->hit, sample_has_depth(s->q, a), (double)a->depth, 1 };
     count_add(&to->verdict[s->verdict[side]], 1);
     count_add(&to->hits, (uint64_t)a->hit);
-    count_add(&to->supports, s->asked[side].supports);
+    count_add(&to->calls, s->asked[side].calls);
     if (judged.has_depth && verdict_has_error(&judged, s->verdict[side])) {
         const uint64_t error = (uint64_t)(PICO * fmin(verdict_error(&judged, &s->truth), 1e6));
         count_add(&to->with_error, 1);
@@ -342,7 +342,7 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
     compare_call_t *c = &compare->counts->call[s->q->call];
     answer_t again;
     guard_t how[COMPARE_SIDES];
-    uint64_t supports = 0;
+    uint64_t calls = 0;
     const int base = compare->base, other = 1 - base;
     sample_t unused;
     how[base] = ask_side(compare, s, base, &s->answer[base]);
@@ -352,7 +352,7 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
         return -1;
     }
     if (how[base] != GUARD_RETURNED || how[other] != GUARD_RETURNED
-        || sample_truth(&compare->library[COMPARE_OURS], s->q, s->seen, s, &supports) != 0) {
+        || sample_truth(&compare->library[COMPARE_OURS], s->q, s->seen, s, &calls) != 0) {
         count_add(&c->threw, 1);
         return -1;
     }
@@ -375,7 +375,7 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
         } else
             s->truth.lower = s->truth.upper;
     }
-    count_add(&c->minimum_supports, supports);
+    count_add(&c->minimum_calls, calls);
     return 0;
 }
 

@@ -38,7 +38,7 @@ enum { ENDLESS = 100000 };
 void sample_query(const compare_t *compare, const query_t *q, const answer_t *own);
 
 /* Bounds on the signed depth. Returns 0, or -1 where callbacks left or did not end. */
-int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t *s, uint64_t *supports);
+int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t *s, uint64_t *calls);
 
 verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth);
 

@@ -145,7 +145,7 @@ static void break_even(const compare_call_t *c, char *out, size_t size)
     const compare_side_t *theirs = &c->side[COMPARE_THEIRS], *ours = &c->side[COMPARE_OURS];
     const double now = part(all.callback_nanoseconds, all.callback_pairs);
     const double slower = part(ours->nanoseconds, c->timed) - part(theirs->nanoseconds, c->timed);
-    const double fewer = part(theirs->supports, c->judged) - part(ours->supports, c->judged);
+    const double fewer = 0.5 * (part(theirs->calls, c->judged) - part(ours->calls, c->judged));
     const double even = now + slower / fewer;
     char text[32];
     if (!c->timed)
@@ -162,7 +162,7 @@ static void print_side(const char *name, const compare_side_t *s, const compare_
     printf("%-20s %7s %6s %7s %7s %8s %8.3g %8.3g %9.2f %7.0f", name, thousands(s->verdict[VERDICT_MISSED]),
            thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_BROKEN]), thousands(s->verdict[VERDICT_DEEP]),
            thousands(s->verdict[VERDICT_UNSOUND]), 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
-           part(s->supports, c->judged), part(s->nanoseconds, c->timed));
+           0.5 * part(s->calls, c->judged), part(s->nanoseconds, c->timed));
 }
 
 static void print_wrong(const compare_call_t *c, const char *call)
@@ -175,7 +175,7 @@ static void print_wrong(const compare_call_t *c, const char *call)
     print_side("this library", &c->side[COMPARE_OURS], c);
     break_even(c, even, sizeof even);
     printf("  %s\n", even);
-    printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", part(c->minimum_supports, c->judged), part(c->minimum_nanoseconds, c->timed));
+    printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged), part(c->minimum_nanoseconds, c->timed));
 }
 
 /* What kept queries from being judged, and what the program should know. */
@@ -323,11 +323,11 @@ static void print_fields(void)
         for (v = 0; v < VERDICTS; v++)
             printf(" %s_%s %llu", side_name[i], verdict_name[v], (unsigned long long)s->verdict[v]);
         printf(" %s_hits %llu %s_supports %llu %s_slanted %llu %s_aside %llu %s_nanoseconds %llu", side_name[i], (unsigned long long)s->hits, side_name[i],
-               (unsigned long long)s->supports, side_name[i], (unsigned long long)s->slanted, side_name[i], (unsigned long long)s->aside, side_name[i], (unsigned long long)s->nanoseconds);
+               (unsigned long long)(s->calls + 1) / 2, side_name[i], (unsigned long long)s->slanted, side_name[i], (unsigned long long)s->aside, side_name[i], (unsigned long long)s->nanoseconds);
         printf(" %s_error_mean %.9g %s_error_max %.9g", side_name[i], PICO * part(s->error_sum, s->with_error), side_name[i],
                PICO * (double)s->error_max);
     }
-    printf(" minimum_supports %llu callback_pairs %llu callback_nanoseconds %llu\n", (unsigned long long)sum.minimum_supports,
+    printf(" minimum_supports %llu callback_pairs %llu callback_nanoseconds %llu\n", (unsigned long long)(sum.minimum_calls + 1) / 2,
            (unsigned long long)all.callback_pairs, (unsigned long long)all.callback_nanoseconds);
 }
 
