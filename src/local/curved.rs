@@ -142,17 +142,20 @@ impl Curved {
         }
     }
 
-    /// Does it lead to witness points?
-    pub fn is_certain(&self) -> bool {
-        self.there && self.foretold >= CERTAIN && !self.is_edge()
+    /// Does it lead to witness points, of a point seen along unit `n`?
+    pub fn is_certain(&self, n: &Vec3) -> bool {
+        self.there && self.foretold >= CERTAIN && !self.is_edge(n)
     }
 
-    /// Does it bend along one direction alone? With the greater and the lesser of its eigenvalues
-    /// across the normal, whose third one is about zero.
-    fn is_edge(&self) -> bool {
+    /// Does it bend along one direction across `n` alone? By its eigenvalues there, through their sum
+    /// and the sum of their squares.
+    fn is_edge(&self, n: &Vec3) -> bool {
         let [xx, xy, xz, yy, yz, zz] = self.r.0;
-        let sum = xx + yy + zz;
-        let squares = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+        let along = self.r.times(n);
+        let height = along.dot(n);
+        let sum = xx + yy + zz - height;
+        let all = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+        let squares = all - 2.0 * along.norm_squared() + height * height;
         !(0.5 * (sum * sum - squares) >= EDGE * squares)
     }
 
@@ -206,7 +209,7 @@ mod tests {
                 let to = ask(n + way * step);
                 curved.learn(&(to.p - at.p), &(to.n - at.n));
             }
-            assert!(curved.is_believed() && curved.is_certain() && curved.spread);
+            assert!(curved.is_believed() && curved.is_certain(&n) && curved.spread);
             assert!(curved.across(&n).is_none());
             let to = ask(n + (t * 0.6 - u * 0.3) * step);
             let (d, dn) = (to.p - at.p, to.n - at.n);

@@ -427,7 +427,12 @@ impl Object {
         let curved = self.curved.is_there();
         if curved {
             // The first one is as R is remembered.
-            carries = twin.map_or(self.pieces != 0 || self.len == 0, |k| self.carries(k));
+            let k = twin.unwrap_or(ROOM);
+            carries = if k < ROOM {
+                self.carries(k)
+            } else {
+                self.pieces != 0 || self.len == 0
+            };
         }
         if let Some(place) = twin {
             // Each point by the direction nearest to the best one.

@@ -463,7 +463,7 @@ impl Object {
         }
         if self.curved.is_there() {
             let p = self.at[k].p;
-            if !(self.carries(k) && self.curved.is_certain()) {
+            if !(self.carries(k) && self.curved.is_certain(&self.at[k].n)) {
                 return p;
             }
             // In its own support plane, above the surface by half of what R bends.
