@@ -113,7 +113,7 @@ use search::{Outcome, Search};
 /// points for the proof, the active ones or else the best one first.
 ///
 /// # Errors
-/// [`Stop::Apart`]. [`Fault::NonFinite`] from a support mapping.
+/// [`Stop::Apart`]; [`Stop::Fault`], where a support mapping answers no number.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     inner: Option<&Vec3>,

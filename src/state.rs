@@ -11,10 +11,10 @@
 //! |---|---|---|---|---|
 //! | cold: 0, or no other | | | | |
 //! | `APART` | every query of a pair that is apart | the separating direction, as long as the margin to aim at | after [`State::near`] (the distance): the directions of the points around the nearest one | the radius of a ball |
-//! | `OVERLAP` | the local search: its [`Memory`] | the minimum's | slopes of the active cuts | what is known of the smooth part |
+//! | `OVERLAP` | the local search: its [`Memory`] | the minimum's | slopes of the active cuts | what is round of the objects |
 //! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::middle`] and [`State::mark`]; in `drift` [`State::hint`] |
+//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::position`] and [`State::mark`]; in `drift` [`State::hint`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none. What a query for the depth of an overlap leaves

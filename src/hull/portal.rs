@@ -13,7 +13,7 @@
 //! origin, each with the origin on its inner side, the ball of radius r is in the tetrahedron of c and
 //! the portal. Where a side is not, the surface goes on beyond that edge with faces of P, each as far
 //! away: the solid angles of a closed surface's faces, all positive, add up to a whole number of
-//! spheres, at least one ([`Portal::holds`]).
+//! spheres, at least one ([`Portal::open_side`]).
 
 use crate::gjk::barycentric;
 use crate::hull::start;
