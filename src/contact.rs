@@ -4,7 +4,15 @@
 //! What a query answers.
 
 use crate::known::support_set::Stop;
-use crate::math::{Real, Vec3};
+use crate::math::{EPSILON, Real, Vec3};
+
+/// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
+/// 1e-12, or what single precision tells.
+pub const INSIDE: Real = if EPSILON > 1e-10 {
+    32.0 * EPSILON
+} else {
+    1e-12
+};
 
 /// How much work a query may do, and how exact its depth must be.
 #[derive(Clone, Copy, Debug)]

@@ -79,11 +79,12 @@
 //! of the pair sets from 5°, 25°, 45° beside the minimum, cold, and in motion with memory, of
 //! recorded contacts, and of hulls of meshes from 10° and cold; and how many of the 2,600
 //! answers that are no global minimum become more or fewer (a dozen is chance). Those of
-//! `curved.rs` and `trust_region.rs` were measured on the search before this one.
+//! `trust_region.rs`, and those that `curved.rs`, `object.rs` and `learn.rs` have from there, were
+//! measured on the search before this one.
 //!
-//! *Left out*: a second search with one R for D as a whole (a tenth fewer support points on
-//! ellipsoids in motion, three to eight more in a hundred on the others, 1,900 lines); starts
-//! beside a place where the search stalled (nothing: within 0.01 support points on all sets).
+//! *Left out*: a second search with one R for D as a whole (as many support points on ellipsoids, a
+//! third fewer instructions there, 1,900 lines); starts beside a place where the search stalled
+//! (nothing: within 0.01 support points on all sets).
 
 mod answer;
 mod curved;

@@ -31,7 +31,7 @@ const SAME: Real = if EPSILON > 1e-10 { 1e-3 } else { 1e-6 };
 /// The excesses of two points of a disc over each other's planes are alike within this factor, or it is not
 /// looked for. Insensitive: 1.5 and 3 tried, as all below, on the recorded contacts.
 const ALIKE: Real = 2.0;
-/// Steps of Newton's method. Free: mostly two are taken.
+/// Steps of Newton's method: mostly two are taken.
 const STEPS: usize = 4;
 /// Radians of a step after which there is none. Derived: the next one is its square.
 const NEAR: Real = 1e-3;

@@ -6,18 +6,11 @@
 use super::memory::{EDGES, Memory};
 use super::search::{HAIR, LATEST, Sample, Search};
 use super::walk::{End, ROOM};
-use crate::contact::Penetration;
+use crate::contact::{INSIDE, Penetration};
 use crate::contacts::pressure;
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
 
-/// Share of the objects' size up to which a tolerance is as fine as rounding: what is promised of
-/// witness points.
-const FINE: Real = if EPSILON > 1e-10 {
-    32.0 * EPSILON
-} else {
-    1e-12
-};
 /// How far beside a disc's axis its rim is asked for, radians: enough to tell it from the others'
 /// points by five digits.
 const BESIDE: Real = 1e-4;
@@ -91,7 +84,7 @@ impl Search {
         // Of what bends the witnesses are at the model's minimum: as deep, and below the origin.
         let out = HAIR * self.finest;
         // As fine as rounding R leads to none.
-        let fine = self.finest * self.finest <= FINE * FINE * self.extent2;
+        let fine = self.finest * self.finest <= INSIDE * INSIDE * self.extent2;
         let m = if self.is_curved() && !end.on_border && !fine {
             &step.n
         } else {

@@ -46,10 +46,9 @@ pub enum Smooth {
 
 impl Object {
     /// Notes that the point seen along `n`, if it is kept, is of one piece with the new one.
-    pub fn is_piece(&mut self, n: &Vec3) -> bool {
+    pub fn note_piece(&mut self, n: &Vec3) {
         let kept = (0..self.len.min(ROOM)).find(|&k| self.at[k].n == *n);
         self.pieces |= kept.map_or(0, |k| 1 << k);
-        kept.is_some()
     }
 
     /// What a new point shows with those before.

@@ -158,7 +158,8 @@ impl Search {
     /// of G is no more than half of K.
     pub(super) fn is_stiff(&self) -> bool {
         let [p, q] = &self.model.cuts;
-        let bend = [0, 1, 2].map(|i: usize| p.bend[i % 3] + q.bend[i % 3]);
+        let [i, j] = self.step.end.active;
+        let bend = self.model.bend([p.carries(i), q.carries(j)]);
         let (mean, half) = (0.5 * (bend[0] + bend[2]), 0.5 * (bend[0] - bend[2]));
         let spread = (half * half + bend[1] * bend[1]).sqrt();
         let error = larger(

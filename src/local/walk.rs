@@ -104,7 +104,7 @@ impl Cuts {
     }
 
     #[inline(always)]
-    fn carries(&self, k: usize) -> Real {
+    pub fn carries(&self, k: usize) -> Real {
         (self.carried >> k & 1) as Real
     }
 }
@@ -223,7 +223,7 @@ impl Way {
 
 impl Model {
     #[inline(always)]
-    fn bend(&self, of: [Real; 2]) -> [Real; 3] {
+    pub fn bend(&self, of: [Real; 2]) -> [Real; 3] {
         let [p, q] = [&self.cuts[0].bend, &self.cuts[1].bend];
         [0, 1, 2].map(|i| p[i] * of[0] + q[i] * of[1])
     }

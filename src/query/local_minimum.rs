@@ -4,23 +4,15 @@
 //! A local minimum, its overlap not proven, and what it is good for in the other queries.
 
 use super::Pair;
-use crate::contact::{Answer, Penetration, Settings};
+use crate::contact::{Answer, INSIDE, Penetration, Settings};
 use crate::gjk::barycentric;
 use crate::hull::expansion::Limits;
 use crate::known::support::{Fault, Known, SupportMap, SupportPoint};
 use crate::known::support_set::Stop;
 use crate::local::{self, Memory};
-use crate::math::{EPSILON, Real, Vec3, larger};
+use crate::math::{Real, Vec3, larger};
 use crate::paper::incremental::{self, Shortcut};
 use crate::paper::portal::rounding;
-
-/// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
-/// 1e-12, or what single precision tells.
-const INSIDE: Real = if EPSILON > 1e-10 {
-    32.0 * EPSILON
-} else {
-    1e-12
-};
 
 /// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty.
 const BUDGET: u64 = 64;
@@ -43,7 +35,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// before; then by the paper's method.
     #[cold]
     #[inline(never)]
-    pub(super) fn search_on(
+    fn search_on(
         &self,
         memory: &mut Memory,
         settings: &Settings,
@@ -91,7 +83,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// One local search, of so many iterations at most.
     #[inline(never)]
-    pub(super) fn search(
+    fn search(
         &self,
         memory: &mut Memory,
         max_iterations: u64,
