@@ -31,6 +31,8 @@ const SAME: Real = if EPSILON > 1e-10 { 1e-3 } else { 1e-6 };
 /// The excesses of two points of a disc over each other's planes are alike within this factor, or it is not
 /// looked for. Insensitive: 1.5 and 3 tried, as all below, on the recorded contacts.
 const ALIKE: Real = 2.0;
+/// Smooth pairs with one point of which none is a disc's, after which none is looked for. 
+const ENOUGH: u32 = 2;
 /// Steps of Newton's method: mostly two are taken.
 const STEPS: usize = 4;
 /// Radians of a step after which there is none. Derived: the next one is its square.
@@ -45,7 +47,7 @@ const ALONG: Real = 0.5;
 /// What is round of one object.
 #[derive(Clone, Copy)]
 struct Part {
-    /// Metres; 0 where nothing is.
+    /// Metres; 0 where nothing is yet, negative where nothing will be ([`Part::NEITHER`]).
     radius: Real,
     /// Of a disc, unit; zero of a ball.
     axis: Vec3,
@@ -78,6 +80,12 @@ pub enum Aim {
 }
 
 impl Part {
+    /// Smooth, and neither a ball nor a disc: an ellipsoid's.
+    const NEITHER: Self = Self {
+        radius: -1.0,
+        axis: Vec3::new(0.0, 0.0, 0.0),
+    };
+
     /// How far its farthest point along unit `n` is from the vertex that carries it.
     #[inline(always)]
     fn point(&self, n: &Vec3) -> Vec3 {
@@ -241,6 +249,7 @@ impl Cores {
                 smooth |= 1 << j;
             }
         }
+        let pairs = smooth.count_ones();
         for j in (0..last).rev().filter(|j| smooth >> j & 1 != 0) {
             let old = Self::seen(points, o, j);
             let Some(disc) = Disc::of(&old, &new) else {
@@ -256,6 +265,9 @@ impl Cores {
                     return;
                 }
             }
+        }
+        if pairs >= ENOUGH {
+            self.parts[o] = Part::NEITHER;
         }
     }
 
