@@ -31,7 +31,9 @@ const SAME: Real = if EPSILON > 1e-10 { 1e-3 } else { 1e-6 };
 /// The excesses of two points of a disc over each other's planes are alike within this factor, or it is not
 /// looked for. Insensitive: 1.5 and 3 tried, as all below, on the recorded contacts.
 const ALIKE: Real = 2.0;
-/// Smooth pairs with one point of which none is a disc's, after which none is looked for. 
+/// Smooth pairs with one point of which none is a disc's, after which none is looked for. Measured in
+/// MuJoCo's pile, a hit of an ellipsoid: with 3 it takes 4 % more time, where one is always looked for
+/// 60 % more; the recorded contacts take the same.
 const ENOUGH: u32 = 2;
 /// Steps of Newton's method: mostly two are taken.
 const STEPS: usize = 4;
