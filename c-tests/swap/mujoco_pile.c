@@ -154,10 +154,12 @@ int main(int argc, char **argv)
         }
         mj_step(m, d);
         out |= escaped(m, d);
-        least = fmin(least, d->energy[0] + d->energy[1]);
-        gained = fmax(gained, d->energy[0] + d->energy[1] - least);
-        if (2 * step >= steps)
+        if (2 * step >= steps) {
             kinetic += d->energy[1] / (double)(steps - steps / 2);
+            /* not while bodies fall: what an impact stores in its contact counts as lost, and comes back */
+            least = fmin(least, d->energy[0] + d->energy[1]);
+            gained = fmax(gained, d->energy[0] + d->energy[1] - least);
+        }
         for (i = 0; i < d->ncon; i++) {
             const mjContact *c = &d->contact[i];
             const mjtNum *n = c->frame;

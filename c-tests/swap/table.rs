@@ -88,12 +88,12 @@ fn long() {
         checks::dart_pile(),
     );
     let rows = [
-        piles(&ode, "pile", 2, 10_000, &["32", "pile"]),
-        piles(&ode, "convex hulls", 2, 10_000, &["32", "hulls"]),
+        piles(&ode, "pile", 8, 5000, &["32", "pile"]),
+        piles(&ode, "convex hulls", 8, 5000, &["32", "hulls"]),
         piles(
             &ode,
             "towers of boxes and hulls",
-            2,
+            8,
             10_000,
             &["20", "stack"],
         ),
@@ -105,8 +105,8 @@ fn long() {
             &["20", "stack"],
         ),
         piles(&ode, "a tower that touches", 1, 3000, &["6", "tower"]),
-        piles(&ode, "rolling cylinders", 2, 10_000, &["12", "roll"]),
-        piles(&mujoco, "pile", 2, 5000, &["30", "pile"]),
+        piles(&ode, "rolling cylinders", 8, 5000, &["12", "roll"]),
+        piles(&mujoco, "pile", 8, 3000, &["30", "pile"]),
         piles(
             &mujoco,
             "pile, several contacts a pair",
@@ -114,10 +114,10 @@ fn long() {
             5000,
             &["30", "multi"],
         ),
-        piles(&mujoco, "on a height field", 2, 3000, &["20", "field"]),
-        piles(&dart, "over FCL", 2, 3000, &["15", "fcl"]),
+        piles(&mujoco, "on a height field", 8, 3000, &["20", "field"]),
+        piles(&dart, "over FCL", 8, 3000, &["15", "fcl"]),
         piles(&dart, "over FCL, triangles", 1, 400, &["10", "triangles"]),
-        piles(&dart, "over ODE", 2, 3000, &["15", "ode"]),
+        piles(&dart, "over ODE", 8, 3000, &["15", "ode"]),
     ];
     println!("{}", checks::long_table(&rows));
 }
