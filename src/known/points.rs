@@ -274,7 +274,7 @@ impl Points {
     }
 
     /// The farthest point of P along a direction that need not be unit.
-    #[inline(never)]
+    #[inline(always)]
     pub fn extreme(&self, n: &Vec3) -> [usize; 2] {
         let [one, two] = self.lens;
         [self.one.farthest(n, one), self.two.farthest(&-n, two)]
