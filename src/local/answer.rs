@@ -85,40 +85,25 @@ impl Search {
         let out = HAIR * self.finest;
         // As fine as rounding R leads to none.
         let fine = self.finest * self.finest <= INSIDE * INSIDE * self.extent2;
-        let m = if self.is_curved() && !end.on_border && !fine {
-            &step.n
-        } else {
-            n
-        };
-        let mut points =
-            [0, 1].map(|o: usize| self.objects[o % 2].point(end.active[o % 2], m, out));
-        let mut slopes = [points[0] + points[1]; 3];
-        if let Some(o) = step.axis {
-            // All of the disc is as far: its point below the origin.
-            let disc = self.objects[o % 2].disc();
-            let core = self.objects[o % 2].core(end.active[o % 2]);
-            points[o % 2] = core;
-            let sum = points[0] + points[1];
-            points[o % 2] -= disc.across(&sum);
-        }
-        for (i, kink) in end.kinks.iter().take(end.count).enumerate() {
-            let object = &self.objects[kink.object % 2];
-            let there = object.point(kink.point, m, out);
-            let e = there - object.point(end.active[kink.object % 2], m, out);
-            points[kink.object % 2] += e * end.weights[i];
-            slopes[i + 1] += e;
-        }
-        let foot = points[0] + points[1];
-        let height = foot.dot(n);
-        let across2 = (foot - n * height).norm_squared();
-        let finest = if self.is_curved() {
-            self.finest
-        } else {
-            self.tolerance
-        };
+        let curved = self.is_curved();
+        let finest = if curved { self.finest } else { self.tolerance };
         let near2 = larger(2.0 * depth * finest, self.rounding * self.rounding);
-        if !(height >= depth - self.tolerance && across2 <= near2) {
-            return false;
+        let meets = |points: &[Vec3; 2]| {
+            let foot = points[0] + points[1];
+            let height = foot.dot(n);
+            let across2 = (foot - n * height).norm_squared();
+            height >= depth - self.tolerance && across2 <= near2
+        };
+        // Where they are near enough the points of the bodies themselves, else those that R leads to.
+        let (mut points, mut slopes) = self.witnesses(n, out);
+        if !meets(&points) {
+            if !curved || end.on_border || fine {
+                return false;
+            }
+            (points, slopes) = self.witnesses(&step.n, out);
+            if !meets(&points) {
+                return false;
+            }
         }
         let (mut point1, mut point2) = (points[0], -points[1]);
         // Of one cut the point here is the witness; but of a disc along its axis, all of which is as
@@ -165,6 +150,33 @@ impl Search {
             iterations: self.asked as u64,
         };
         true
+    }
+
+    /// The means of the active points of both objects, obj2's turned about, and three points of D's face,
+    /// each of what is round where unit `m` looks to.
+    #[inline(always)]
+    fn witnesses(&self, m: &Vec3, out: Real) -> ([Vec3; 2], [Vec3; 3]) {
+        let step = &self.step;
+        let end = &step.end;
+        let mut points =
+            [0, 1].map(|o: usize| self.objects[o % 2].point(end.active[o % 2], m, out));
+        let mut slopes = [points[0] + points[1]; 3];
+        if let Some(o) = step.axis {
+            // All of the disc is as far: its point below the origin.
+            let disc = self.objects[o % 2].disc();
+            let core = self.objects[o % 2].core(end.active[o % 2]);
+            points[o % 2] = core;
+            let sum = points[0] + points[1];
+            points[o % 2] -= disc.across(&sum);
+        }
+        for (i, kink) in end.kinks.iter().take(end.count).enumerate() {
+            let object = &self.objects[kink.object % 2];
+            let there = object.point(kink.point, m, out);
+            let e = there - object.point(end.active[kink.object % 2], m, out);
+            points[kink.object % 2] += e * end.weights[i];
+            slopes[i + 1] += e;
+        }
+        (points, slopes)
     }
 
     /// Names the points of D for the proof: the active ones, the one here, the others.

@@ -143,9 +143,10 @@ impl Curved {
         }
     }
 
-    /// Does it lead to witness points, of a point seen along unit `n`?
+    /// Does it lead to witness points, of a point seen along unit `n`? Not where it was measured along
+    /// one direction alone, and is a guess across that.
     pub fn is_certain(&self, n: &Vec3) -> bool {
-        self.there && self.foretold >= CERTAIN && !self.is_edge(n)
+        self.there && self.spread && self.foretold >= CERTAIN && !self.is_edge(n)
     }
 
     /// Does it bend along one direction across `n` alone? By its eigenvalues there, through their sum
