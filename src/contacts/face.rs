@@ -443,9 +443,9 @@ impl<'a, S: SupportMap> Search<'a, S> {
             self.settle(i)?;
         }
         let samples = self.ring.get(..self.len).unwrap_or(&[]);
-        let found = self.ring.map(|s| s.corner);
-        let found = found.get(..self.len).unwrap_or(&[]);
-        let corners = Polygon::hull(found, self.slop, self.flat());
+        let mut corners = Polygon::default();
+        samples.iter().for_each(|s| corners.add(s.corner));
+        let corners = corners.tidy(self.slop, self.flat());
         let least = corners.corners().iter().map(|c| c.low);
         let least = least.fold(Real::INFINITY, lesser);
         let mut ring = Ring {

@@ -181,7 +181,7 @@ fn shared(one: &Face, two: &Face) -> (Polygon<ROOM>, Option<[Flat; 2]>) {
         region = region.inside(large, rounding);
     }
     if !region.corners().is_empty() {
-        return (Polygon::hull(region.corners(), rounding, rounding), None);
+        return (region.tidy(rounding, rounding), None);
     }
     let Some((sides, [a, b])) = small.nearest(large) else {
         return (region, None);
@@ -232,7 +232,7 @@ fn strip(
     for end in ends.corners_mut() {
         end.at = between(&end.at, &onto(&end.at, r, s), share);
     }
-    Polygon::hull(ends.corners(), rounding, 0.0)
+    ends.tidy(rounding, 0.0)
 }
 
 #[cfg(test)]

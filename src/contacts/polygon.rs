@@ -5,7 +5,6 @@
 //! are polygons of two corners and of one.
 
 use crate::math::{Real, larger, lesser};
-use core::mem::swap;
 
 /// A point of the plane.
 pub type Flat = [Real; 2];
@@ -137,57 +136,32 @@ impl<const ROOM: usize> Polygon<ROOM> {
             .sum()
     }
 
-    /// The convex hull of the points (Andrew's monotone chain). Of points nearer than
-    /// `merged` to each other the first stays; what sticks out by `flat` or less is no corner.
-    pub fn hull(points: &[Corner], merged: Real, flat: Real) -> Self {
-        let order = |a: &Corner, b: &Corner| {
-            let x = a.at[0].total_cmp(&b.at[0]);
-            x.then(a.at[1].total_cmp(&b.at[1]))
-        };
-        let mut sorted = Self::default();
-        for p in points {
+    /// The same without what is no corner: of those nearer than `merged` to each other the first stays;
+    /// what sticks out by `flat` or less goes.
+    pub fn tidy(&self, merged: Real, flat: Real) -> Self {
+        let mut rest = Self::default();
+        for p in self.corners() {
             let near = |k: &Corner| length(&side(&k.at, &p.at)) <= merged;
-            if !sorted.corners().iter().any(near) {
-                // The last of those up to there is left in hand.
-                let mut last = *p;
-                for k in sorted.corners_mut() {
-                    if order(&last, k).is_lt() {
-                        swap(k, &mut last);
-                    }
-                }
-                sorted.add(last);
+            if !rest.corners().iter().any(near) {
+                rest.add(*p);
             }
         }
-        if sorted.len < 3 {
-            return sorted;
-        }
-        let mut hull = Self::default();
-        hull.chain(sorted.corners().iter(), flat);
-        let mut upper = Self::default();
-        upper.chain(sorted.corners().iter().rev(), flat);
-        for corner in upper
-            .corners()
-            .iter()
-            .skip(1)
-            .take(upper.len.saturating_sub(2))
-        {
-            hull.add(*corner);
-        }
-        hull
-    }
-
-    /// The half of the hull to the right of the way from the first point to the last.
-    fn chain<'a>(&mut self, points: impl Iterator<Item = &'a Corner>, flat: Real) {
-        for p in points {
-            while let [.., a, b] = self.corners() {
-                let whole = side(&a.at, &p.at);
-                if cross(&side(&a.at, &b.at), &whole) > flat * length(&whole) {
-                    break;
+        // As long as one goes.
+        let mut i = 0;
+        while i < rest.len && rest.len > 2 {
+            let corners = rest.corners_mut();
+            corners.rotate_left(1);
+            i += 1;
+            if let [q, .., p, r] = corners {
+                let t = nearest_to(&r.at, &p.at, &q.at);
+                let out = side(&between(&p.at, &q.at, t), &r.at);
+                let is_inside = cross(&side(&p.at, &q.at), &out) > 0.0;
+                if length(&out) <= flat || is_inside && t > 0.0 && t < 1.0 {
+                    (rest.len, i) = (rest.len - 1, 0);
                 }
-                self.len -= 1;
             }
-            self.add(*p);
         }
+        rest
     }
 
     /// What of it is inside another polygon of three corners or more, or no farther than
@@ -371,28 +345,33 @@ mod tests {
     }
 
     #[test]
-    fn hull_of_points() {
+    fn tidy_is_without_what_is_no_corner() {
         let points = [
             [0.0, 0.0],
+            [0.5, 0.0],
             [1.0, 0.0],
-            [0.5, 0.5],
+            [1.0, 1e-9],
+            [0.9, 0.5],
             [1.0, 1.0],
             [0.0, 1.0],
-            [0.5, 0.0],
-            [1.0, 1e-9],
         ];
-        let hull = Eight::hull(&corners(&points), 1e-6, 1e-6);
-        assert_eq!(hull.corners().len(), 4);
-        assert_eq!(hull.area(), 2.0);
-        let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
-        assert_eq!(Eight::hull(&corners(&line), 1e-6, 1e-6).corners().len(), 2);
-        assert_eq!(
-            Eight::hull(&corners(&[[3.0, 3.0]; 5]), 0.0, 0.0)
-                .corners()
-                .len(),
-            1
-        );
-        assert!(Eight::hull(&[], 0.0, 0.0).corners().is_empty());
+        for k in 0..points.len() {
+            let mut turned = points;
+            turned.rotate_left(k);
+            let tidy = polygon(&turned).tidy(1e-6, 1e-6);
+            assert_eq!(tidy.corners().len(), 4);
+            assert!((tidy.area() - 2.0).abs() < 1e-8);
+            let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
+            turned[0] = line[k % 3];
+            turned[1] = line[(k + 1) % 3];
+            turned[2] = line[(k + 2) % 3];
+            let ends = polygon(turned.get(..3).unwrap()).tidy(1e-6, 1e-6);
+            assert_eq!(ends.corners().len(), 2);
+            let apart = side(&ends.corners()[0].at, &ends.corners()[1].at);
+            assert_eq!(length(&apart), (8.0 as Real).sqrt());
+        }
+        assert_eq!(polygon(&[[3.0, 3.0]; 5]).tidy(0.0, 0.0).corners().len(), 1);
+        assert!(Eight::default().tidy(0.0, 0.0).corners().is_empty());
     }
 
     #[test]
@@ -400,7 +379,7 @@ mod tests {
         let shared = square(0.0, 0.0, 1.0).inside(&square(1.0, 1.0, 1.0), 0.0);
         assert_eq!(shared.area(), 2.0);
         let segment = polygon(&[[-3.0, 0.5], [0.5, 0.5]]).inside(&square(0.0, 0.0, 1.0), 0.0);
-        let ends = Eight::hull(segment.corners(), EPSILON, 0.0);
+        let ends = segment.tidy(EPSILON, 0.0);
         assert_eq!(
             ends.corners().iter().map(|c| c.at).collect::<Vec<_>>(),
             [[-1.0, 0.5], [0.5, 0.5]]
