@@ -5,7 +5,7 @@
 
 use crate::contacts::polygon::{Corner, Flat};
 use crate::known::support::Fault;
-use crate::math::{Real, Vec3, axes};
+use crate::math::{POLE, Real, Vec3, axes};
 
 /// The plane through `origin` across the unit vector `n`.
 #[derive(Clone, Copy)]
@@ -23,6 +23,16 @@ impl Plane {
             n: *n,
             axes: axes(n),
             origin: Vec3::zeros(),
+        }
+    }
+
+    /// Through `origin`, with the same axes for the objects swapped.
+    pub fn upright(n: &Vec3, origin: &Vec3) -> Self {
+        let up = if POLE.dot(n) < 0.0 { -n } else { *n };
+        Self {
+            n: *n,
+            axes: axes(&up),
+            origin: *origin,
         }
     }
 
