@@ -144,11 +144,11 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     for object in [first, 1 - first] {
         // What is lower than the depth is on the way to it.
         let shared = |c: &Corner| c.at.map(|x| x / larger(c.low, 1.0));
-        let mut corners = fans[first].corners().iter();
+        let mut corners = fans[first % 2].corners().iter();
         if object != first && floor.is_some_and(|floor| corners.all(|c| floor.holds(&shared(c)))) {
             break;
         }
-        let (four, fan) = (&mut four[object], &mut fans[object]);
+        let (four, fan) = (&mut four[object % 2], &mut fans[object % 2]);
         *four = view.four(object)?;
         *fan = view.fan(four);
         if fan.is_point(POINT * far) {

@@ -218,10 +218,13 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
     fn rim(&self, four: &Four) -> Option<Four> {
         let [a, b, c, _] = four;
         let slope = self.slope([a, b, c]);
-        // Where a disc that leans so reaches farthest.
+        // Where a disc that leans so reaches farthest: the direction without its part along the disc's axis.
+        let share = 1.0 / (1.0 + dot(&slope, &slope));
         let out = |k: usize| {
-            let out = side(&slope, &self.way(k));
-            let share = 1.0 / length(&out);
+            let aside = side(&slope, &self.way(k));
+            let down = dot(&slope, &aside) * share;
+            let out = [aside[0] - slope[0] * down, aside[1] - slope[1] * down];
+            let share = 1.0 / (dot(&out, &out) + down * down).sqrt();
             out.map(|x| x * share)
         };
         let first = out(0);
