@@ -5,6 +5,7 @@
 //! are polygons of two corners and of one.
 
 use crate::math::{Real, larger, lesser};
+use core::mem::swap;
 
 /// A point of the plane.
 pub type Flat = [Real; 2];
@@ -149,10 +150,12 @@ impl<const ROOM: usize> Polygon<ROOM> {
         // As long as one goes.
         let mut i = 0;
         while i < rest.len && rest.len > 2 {
-            let corners = rest.corners_mut();
-            corners.rotate_left(1);
+            // The first one becomes the last.
+            let mut first = rest.corners.first().copied().unwrap_or_default();
+            let places = rest.corners_mut().iter_mut();
+            places.rev().for_each(|place| swap(place, &mut first));
             i += 1;
-            if let [q, .., p, r] = corners {
+            if let [q, .., p, r] = rest.corners() {
                 let t = nearest_to(&r.at, &p.at, &q.at);
                 let out = side(&between(&p.at, &q.at, t), &r.at);
                 let is_inside = cross(&side(&p.at, &q.at), &out) > 0.0;
