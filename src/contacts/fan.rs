@@ -113,7 +113,7 @@ impl Fan {
     pub fn settle(&mut self, share: Real, hair: Real) {
         let low = self.corners().iter().map(|corner| corner.low);
         let level = low.fold(1.0, lesser) * share;
-        for corner in &mut self.corners {
+        for corner in self.corners.iter_mut().take(self.len) {
             corner.low -= level;
         }
         // Mostly they lie around the deepest place, in the order in which they were asked for.
@@ -171,14 +171,19 @@ impl Fan {
         for i in 0..self.len {
             let (p, q) = (self.corner(i), self.corner(i + 1).at);
             fan.insert(fan.len, *p);
+            if cross(&p.at, &q) > 0.0 {
+                continue;
+            }
             // A quarter of a turn from p, a half, three quarters, as far as q is.
             let mut at = p.at.map(|x| x * hair / length(&p.at));
             for _ in 1..4 {
-                if cross(&at, &q) > 0.0 {
-                    break;
-                }
                 at = [-at[1], at[0]];
                 fan.insert(fan.len, Corner { at, low: 0.0 });
+                let (across, along) = (cross(&at, &q), dot(&at, &q));
+                // Not where the rest is nearly half a turn: it would be no region.
+                if across > 0.0 && across > -along {
+                    break;
+                }
             }
         }
         fan

@@ -149,8 +149,7 @@ pub fn centre<A: SupportMap, B: SupportMap>(
             break;
         }
         let (four, fan) = (&mut four[object % 2], &mut fans[object % 2]);
-        *four = view.four(object)?;
-        *fan = view.fan(four);
+        view.look(object, four, fan)?;
         if fan.is_point(POINT * far) {
             return Ok(middle);
         }

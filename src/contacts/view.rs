@@ -125,15 +125,6 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         Ok(corner)
     }
 
-    /// The corners of an object in the four directions.
-    pub fn four(&self, object: usize) -> Result<Four, Fault> {
-        let mut four = Four::default();
-        for (i, corner) in four.iter_mut().enumerate() {
-            *corner = self.ask(object, &self.way(2 * i))?;
-        }
-        Ok(four)
-    }
-
     /// A corner a hair beyond its place, towards where it was asked for.
     fn moved(&self, corner: &Corner, [x, y]: &Flat) -> Corner {
         Corner {
@@ -142,13 +133,13 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         }
     }
 
-    /// The fan of the four.
-    pub fn fan(&self, four: &Four) -> Fan {
-        let mut fan = Fan::default();
-        for (i, corner) in four.iter().enumerate() {
+    /// The corners of an object in the four directions, and their fan.
+    pub fn look(&self, object: usize, four: &mut Four, fan: &mut Fan) -> Result<(), Fault> {
+        for (i, corner) in four.iter_mut().enumerate() {
+            *corner = self.ask(object, &self.way(2 * i))?;
             fan.insert(i, self.moved(corner, &CIRCLE[2 * i % WAYS]));
         }
-        fan
+        Ok(())
     }
 
     /// Puts into the fan of the four what else the object has there.
