@@ -455,7 +455,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
             // Of a full ring nobody knows what is between its corners.
             inscribed: f32::from(u8::from(self.len == CORNERS)),
             own: f32::from(u8::from(self.radius > 0.0 || least > 0.0625 * self.slop)),
-            ..Ring::NONE
+            ..Ring::default()
         };
         for (known, corner) in ring.corners.iter_mut().zip(corners.corners()) {
             let apart = |s: &Sample| length(&side(&s.corner.at, &corner.at));
@@ -543,21 +543,12 @@ impl<'a, S: SupportMap> Search<'a, S> {
         }
         self.slop = larger(long(ring.slop), self.rounding);
         let slack = 0.25 * self.slop + self.rounding;
-        if count == 1 {
-            let third =
-                |of: &dyn Fn(&Corner) -> Real| next.iter().take(3).map(of).sum::<Real>() / 3.0;
-            let mean = Corner {
-                at: [third(&|c| c.at[0]), third(&|c| c.at[1])],
-                low: third(&|c| c.low),
-            };
-            let slack_across = slack + long(ring.corner(0).radius) * tilt;
-            let is_one = |c: &Corner| {
-                length(&side(&c.at, &mean.at)) <= slack_across && (c.low - mean.low).abs() <= slack
-            };
-            if !next.iter().take(3).all(is_one) {
-                return Ok(None);
+        if let (1, [a, b, c, ..]) = (count, next) {
+            let across = slack + long(ring.corner(0).radius) * tilt;
+            match mean(&[a, b, c], across, slack) {
+                Some(mean) => next[0] = mean,
+                None => return Ok(None),
             }
-            next[0] = mean;
         }
         let next = next.get(..count).unwrap_or(&[]);
         let Some(motion) = ring.motion(next, slack) else {
@@ -579,6 +570,18 @@ impl<'a, S: SupportMap> Search<'a, S> {
         }
         Ok(Some((self.face(corners, ring), motion)))
     }
+}
+
+/// The mean of three corners that are one but for this across and along.
+fn mean(three: &[Corner; 3], across: Real, along: Real) -> Option<Corner> {
+    let third = |of: &dyn Fn(&Corner) -> Real| three.iter().map(of).sum::<Real>() / 3.0;
+    let mean = Corner {
+        at: [third(&|c| c.at[0]), third(&|c| c.at[1])],
+        low: third(&|c| c.low),
+    };
+    let is_one =
+        |c: &Corner| length(&side(&c.at, &mean.at)) <= across && (c.low - mean.low).abs() <= along;
+    three.iter().all(is_one).then_some(mean)
 }
 
 /// A place in the ring that is in range whatever `i` is.

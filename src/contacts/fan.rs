@@ -48,27 +48,12 @@ const PART: Real = 0.25;
 
 /// What is seen of one object from the deepest place: corners around it, in order, low in units of the
 /// depth. Without corners it is a level plane that reaches farther than all.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Fan {
     corners: [Corner; ROOM],
     len: usize,
     /// What is taken off all lows.
     level: Real,
-}
-
-impl Default for Fan {
-    #[inline(always)]
-    fn default() -> Self {
-        let corner = Corner {
-            at: [0.0; 2],
-            low: 0.0,
-        };
-        Self {
-            corners: [corner; ROOM],
-            len: 0,
-            level: 0.0,
-        }
-    }
 }
 
 impl Fan {

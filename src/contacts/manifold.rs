@@ -81,7 +81,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     for corner in region.corners_mut() {
         corner.low = one.low(&corner.at) + two.low(&corner.at);
     }
-    let names = known.as_ref().map_or(Names::NONE, |known| {
+    let names = known.as_ref().map_or(Names::default(), |known| {
         let slop = larger(one.slop, two.slop);
         known.names([motion1, motion2], region.corners(), slop)
     });
@@ -132,17 +132,17 @@ fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: Real) -> Polyg
             (deepest, least) = (i, corner.low);
         }
     }
-    if let Some(i) = names.first() {
+    if let Some(i) = names.first {
         let still = corners.get(i).is_some_and(|c| c.low <= least + tie);
         deepest = if still { i } else { deepest };
     }
     let best = region.reduced(deepest, max);
-    if corners.len() <= max || !names.has(deepest) {
+    if corners.len() <= max || names.of(deepest) == 0 {
         return best;
     }
     let mut kept = Polygon::default();
     for i in (deepest..corners.len()).chain(0..deepest) {
-        if names.has(i) {
+        if names.of(i) != 0 {
             kept.extend(corners.get(i..=i).unwrap_or(&[]));
         }
     }

@@ -32,7 +32,7 @@ pub fn long(x: f32) -> Real {
 }
 
 /// A corner of a face.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct Known {
     /// Where in the plane.
@@ -56,7 +56,7 @@ impl Known {
 }
 
 /// The corners of a face, counterclockwise; no tilt stands for none.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct Ring {
     pub tilt: f32,
@@ -71,21 +71,6 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// None known.
-    pub const NONE: Self = Self {
-        tilt: 0.0,
-        slop: 0.0,
-        len: 0.0,
-        inscribed: 0.0,
-        own: 0.0,
-        corners: [Known {
-            at: [0.0; 2],
-            low: 0.0,
-            aside: [0.0; 2],
-            radius: 0.0,
-        }; CORNERS],
-    };
-
     /// The corners in use.
     pub fn corners(&self) -> &[Known] {
         // NaN and what is below 0 become 0.
@@ -163,7 +148,7 @@ impl Motion {
 }
 
 /// All zero is cold; any other bits are harmless: a [`Memory::sum`] that is not its own makes it cold.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct Memory {
     normal: [f32; 3],
@@ -181,45 +166,14 @@ pub struct Memory {
     sum: u32,
 }
 
-impl Default for Memory {
-    fn default() -> Self {
-        Self {
-            normal: [0.0; 3],
-            axis: [0.0; 3],
-            slop: 0.0,
-            rings: [Ring::NONE; 2],
-            points: [[0.0; 2]; NAMED],
-            names: [0; NAMED],
-            count: 0,
-            last: 0,
-            sum: 0,
-        }
-    }
-}
-
 /// Names of the corners of a region, 0 for none, and which of them was first.
+#[derive(Default)]
 pub struct Names {
     of: [u32; ROOM],
-    first: Option<usize>,
+    pub first: Option<usize>,
 }
 
 impl Names {
-    /// None.
-    pub const NONE: Self = Self {
-        of: [0; ROOM],
-        first: None,
-    };
-
-    /// Whether corner `i` has one.
-    pub fn has(&self, i: usize) -> bool {
-        self.of.get(i).is_some_and(|name| *name != 0)
-    }
-
-    /// The corner that was the first point.
-    pub fn first(&self) -> Option<usize> {
-        self.first
-    }
-
     /// The name of corner `i`.
     pub fn of(&self, i: usize) -> u32 {
         self.of.get(i).copied().unwrap_or(0)
@@ -290,7 +244,7 @@ impl Memory {
 
     /// The names of what the faces share.
     pub fn names(&self, motions: [Option<Motion>; 2], corners: &[Corner], slop: Real) -> Names {
-        let mut names = Names::NONE;
+        let mut names = Names::default();
         let root = corners.first().map_or([0.0; 2], |c| c.at);
         let square = |a: &Flat, b: &Flat| dot(&side(a, b), &side(a, b));
         let reach = corners.iter().map(|c| square(&root, &c.at));
