@@ -52,14 +52,14 @@ const RIM: Real = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
 /// else it is another face's, and the space before it is not as low as a line to it would say.
 /// Insensitive: 0.1 to 1 tried on recorded contacts, and 0.02 leaves a corner out.
 const SAME_FACE: Real = 0.1;
-/// The deepest place is beyond a side where it is by this share of the area of four corners. Of a disc it is
-/// up to a tenth.
+/// The deepest place is beyond a side where it is by this share of the area of four corners: rounding is
+/// less. Insensitive: 0.005 to 0.08 tried (`extension/pressure.c`).
 const BEYOND: Real = 0.02;
 /// A point that was found no farther aside of a direction than this, in tilts, is the one that would
 /// be found there: less than the ÷1.2 and ×1.2 of the tilt that are seen.
 const SAME: Real = 0.1;
 /// The least height of three corners above their longest side, as a share of that: else they are a line.
-/// Insensitive.
+/// Insensitive: 0.005 to 0.08 tried (`extension/pressure.c`).
 const NARROW: Real = 0.02;
 
 /// Corners a right angle apart, in their order. At: from the deepest place; low: in units of the depth.
