@@ -299,7 +299,7 @@ int ccdSignedDistance(const void *obj1,
 /**
  * How many numbers a ccd_manifold_t holds.
  */
-#define CCD_MANIFOLD_REALS 143
+#define CCD_MANIFOLD_REALS 141
 
 /**
  * The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the

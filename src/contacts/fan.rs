@@ -31,9 +31,8 @@
 //! Where there is area it counts for little; where there is none it is all there is, and which slope
 //! it is cancels out. Where the outline is at depth 0 it is nothing. So faces, edges and corners are
 //! one case, and what is between them is between them.
-//!
 
-use crate::contacts::polygon::{Flat, between, cross, dot, length, side};
+use crate::contacts::polygon::{Corner, Flat, between, cross, dot, length, side};
 use crate::math::{Real, larger, lesser};
 use core::mem::swap;
 
@@ -43,40 +42,17 @@ const ROOM: usize = 11;
 /// as far as witness points are beside it. Measured
 /// (`extension/pressure.c`): 1 leaves out half of a box that leans by less than its depth.
 const HERE: Real = 32.0;
-/// Part of a hair by which directions must differ, at the farther corner. Insensitive.
+/// Part of a hair by which directions must differ, at the farther corner. Insensitive: 1/8 to 1/2 tried.
 const PART: Real = 0.25;
 
-/// A corner of a fan.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Corner {
-    /// Seen from the deepest place, metres.
-    pub at: Flat,
-    /// How far it is below the object's support plane, in units of the depth.
-    pub low: Real,
-}
-
-/// What is seen of one object from the deepest place: corners around it, in order.
-#[derive(Clone, Debug)]
+/// What is seen of one object from the deepest place: corners around it, in order, low in units of the
+/// depth. Without corners it is a level plane that reaches farther than all.
+#[derive(Clone, Debug, Default)]
 pub struct Fan {
     corners: [Corner; ROOM],
     len: usize,
     /// What is taken off all lows.
     level: Real,
-}
-
-impl Default for Fan {
-    #[inline(always)]
-    fn default() -> Self {
-        let corner = Corner {
-            at: [0.0; 2],
-            low: 0.0,
-        };
-        Self {
-            corners: [corner; ROOM],
-            len: 0,
-            level: 0.0,
-        }
-    }
 }
 
 impl Fan {
@@ -86,17 +62,17 @@ impl Fan {
         self.corners.get(..self.len).unwrap_or(&[])
     }
 
-    /// Puts a corner in its place.
-    #[inline(always)]
-    pub fn put(&mut self, i: usize, corner: Corner) {
-        let i = i.min(ROOM - 1);
-        self.corners[i] = corner;
-        self.len = larger(self.len, i + 1);
+    /// Does it stand for a level plane?
+    pub fn is_plane(&self) -> bool {
+        self.len == 0
     }
 
+    /// Puts a corner in its place; those from there on move up.
     #[inline(always)]
-    fn push(&mut self, corner: Corner) {
-        self.put(self.len, corner);
+    pub fn insert(&mut self, i: usize, mut corner: Corner) {
+        self.len = lesser(self.len + 1, ROOM);
+        let places = self.corners.iter_mut().take(self.len);
+        places.skip(i).for_each(|place| swap(place, &mut corner));
     }
 
     /// A corner, counted around.
@@ -115,31 +91,13 @@ impl Fan {
         })
     }
 
-    /// Does the deepest place lie beyond a side of four corners by this share of their area?
-    #[inline(always)]
-    pub fn is_beyond(&self, share: Real) -> bool {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.corners[i].at);
-        let areas = [cross(&a, &b), cross(&b, &c), cross(&c, &d), cross(&d, &a)];
-        let least = areas.into_iter().fold(0.0, lesser);
-        least < -share * areas.into_iter().sum::<Real>()
-    }
-
-    /// Puts these between its corners, of which there are as many.
-    pub fn interleave(&mut self, between: &[Corner]) {
-        let own = self.corners;
-        let both = own.iter().zip(between).flat_map(|(p, q)| [*p, *q]);
-        for (i, corner) in both.enumerate() {
-            self.put(i, corner);
-        }
-    }
-
     /// Takes this share of what all corners are lower by off them, and puts them in order. `hair`,
     /// metres: what is nearer is the same.
     #[inline(never)]
     pub fn settle(&mut self, share: Real, hair: Real) {
         let low = self.corners().iter().map(|corner| corner.low);
         let level = low.fold(1.0, lesser) * share;
-        for corner in &mut self.corners {
+        for corner in self.corners.iter_mut().take(self.len) {
             corner.low -= level;
         }
         // Mostly they lie around the deepest place, in the order in which they were asked for.
@@ -168,26 +126,22 @@ impl Fan {
         };
         let all = self.corners().iter().all(is_here);
         for corner in self.corners().iter().filter(|c| all || !is_here(c)) {
-            let mut last = *corner;
-            for place in fan.corners.iter_mut().take(fan.len) {
-                if is_before(&last.at, &place.at) {
-                    swap(place, &mut last);
+            let far2 = dot(&corner.at, &corner.at);
+            let is_same = |p: &Corner| {
+                let aside = cross(&p.at, &corner.at);
+                let most2 = part2 * larger(dot(&p.at, &p.at), far2);
+                dot(&p.at, &corner.at) > 0.0 && !(aside * aside > most2)
+            };
+            let mut places = fan.corners.iter_mut().take(fan.len);
+            if let Some(place) = places.find(|p| is_same(p)) {
+                if far2 > dot(&place.at, &place.at) {
+                    *place = *corner;
                 }
+                continue;
             }
-            fan.push(last);
-        }
-        // From the start after each, for the last may be in the direction of the first.
-        let mut i = 0;
-        while i < fan.len && fan.len > 1 {
-            let (p, q) = (fan.corner(i).at, fan.corner(i + 1).at);
-            let (one2, two2, aside) = (dot(&p, &p), dot(&q, &q), cross(&p, &q));
-            if dot(&p, &q) > 0.0 && !(aside * aside > part2 * larger(one2, two2)) {
-                let nearer = if one2 < two2 { i } else { i + 1 };
-                fan.remove(if nearer < fan.len { nearer } else { 0 });
-                i = 0;
-            } else {
-                i += 1;
-            }
+            let mut later = fan.corners().iter().map(|p| is_before(&corner.at, &p.at));
+            let i = later.position(|is| is).unwrap_or(fan.len);
+            fan.insert(i, *corner);
         }
         fan
     }
@@ -199,36 +153,32 @@ impl Fan {
     fn closed(&self, hair: Real) -> Self {
         let mut fan = Self::default();
         for i in 0..self.len {
-            let (p, q) = (self.corner(i).at, self.corner(i + 1).at);
-            fan.push(*self.corner(i));
-            let aside = cross(&p, &q);
-            if aside > 0.0 {
+            let (p, q) = (self.corner(i), self.corner(i + 1).at);
+            fan.insert(fan.len, *p);
+            if cross(&p.at, &q) > 0.0 {
                 continue;
             }
             // A quarter of a turn from p, a half, three quarters, as far as q is.
-            let [x, y] = p.map(|x| x * hair / length(&p));
-            let ways = [[-y, x], [-x, -y], [y, -x]];
-            let alone = self.len == 1;
-            let half = alone || aside < 0.0;
-            let is_left_out = [true, half, alone || half && dot(&p, &q) > 0.0];
-            for (at, _) in ways.into_iter().zip(is_left_out).filter(|(_, is)| *is) {
-                fan.push(Corner { at, low: 0.0 });
+            let mut at = p.at.map(|x| x * hair / length(&p.at));
+            for _ in 1..4 {
+                at = [-at[1], at[0]];
+                fan.insert(fan.len, Corner { at, low: 0.0 });
+                let (across, along) = (cross(&at, &q), dot(&at, &q));
+                // Not where the rest is nearly half a turn: it would be no region.
+                if across > 0.0 && across > -along {
+                    break;
+                }
             }
         }
         fan
     }
 
-    fn remove(&mut self, i: usize) {
-        let mut last = Corner::default();
-        for place in self.corners.iter_mut().take(self.len).skip(i).rev() {
-            swap(place, &mut last);
-        }
-        self.len -= 1;
-    }
-
     /// Of a place in the sector from corner `i` to the next: w and low.
     #[inline(always)]
     fn within(&self, i: usize, r: &Flat) -> [Real; 2] {
+        if self.len == 0 {
+            return [0.0; 2];
+        }
         let (p, q) = (self.corner(i), self.corner(i + 1));
         let share = 1.0 / cross(&p.at, &q.at);
         let (one, two) = (cross(r, &q.at) * share, cross(&p.at, r) * share);
@@ -238,6 +188,9 @@ impl Fan {
     /// The sector that a ray is in.
     #[inline(always)]
     fn sector(&self, r: &Flat) -> Option<usize> {
+        if self.len == 0 {
+            return Some(0);
+        }
         (0..self.len).find(|i| {
             let (p, q) = (self.corner(*i), self.corner(i + 1));
             cross(&p.at, r) >= 0.0 && cross(r, &q.at) > 0.0
@@ -249,6 +202,7 @@ impl Fan {
     #[inline(never)]
     pub fn low(&self, r: &Flat) -> Option<Real> {
         let [wall, low] = self.within(self.sector(r)?, r);
+        // Not where it is NaN.
         (wall <= 1.01).then_some(low + self.level * wall)
     }
 }
@@ -416,28 +370,6 @@ pub fn pressed(one: &Fan, two: &Fan, rim: Real) -> Option<Flat> {
     Some(sum.centroid())
 }
 
-/// The same of a fan on a level plane that reaches farther than it.
-pub fn pressed_on_plane(fan: &Fan, rim: Real) -> Flat {
-    let ray = |corner: &Corner| Ray {
-        at: corner.at,
-        most: [1.0, 0.0, corner.low],
-    };
-    let mut last = ray(fan.corner(0));
-    let mut top = last.top();
-    let mut sum = Sum {
-        rim,
-        last: last.outer(top),
-        ..Sum::default()
-    };
-    for i in 1..=fan.len {
-        let next = ray(fan.corner(i));
-        let next_top = next.top();
-        sum.cone(&last, top, &next, next_top);
-        (last, top) = (next, next_top);
-    }
-    sum.centroid()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -452,7 +384,7 @@ mod tests {
         };
         let mut fan = Fan::default();
         for (i, c) in corners.iter().enumerate() {
-            fan.put(i, corner(c));
+            fan.insert(i, corner(c));
         }
         fan.settle(0.0, HAIR);
         fan

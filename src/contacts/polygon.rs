@@ -43,11 +43,16 @@ pub fn between(a: &Flat, b: &Flat, t: Real) -> Flat {
 
 /// How far along the way from `a` (0) to `b` (1) the nearest point to `p` is.
 #[inline]
-pub fn nearest_to(p: &Flat, a: &Flat, b: &Flat) -> Real {
+fn nearest_to(p: &Flat, a: &Flat, b: &Flat) -> Real {
     let along = side(a, b);
     let t = dot(&along, &side(a, p)) / dot(&along, &along);
     // NaN, of a side without length, becomes 0.
     if t > 0.0 { t.min(1.0) } else { 0.0 }
+}
+
+/// The nearest point to `p` on the way from `a` to `b`.
+pub fn onto(p: &Flat, a: &Flat, b: &Flat) -> Flat {
+    between(a, b, nearest_to(p, a, b))
 }
 
 /// A corner: where it is in the plane, and how far below it.
@@ -57,6 +62,16 @@ pub struct Corner {
     pub at: Flat,
     /// How far below the plane.
     pub low: Real,
+}
+
+/// The tilt of the direction across the side from `a` to `b` of a face, outwards, in which both win alike,
+/// but for a `lean` to `b`.
+pub fn across(a: &Corner, b: &Corner, tilt: Real, lean: Real) -> Flat {
+    let along = side(&a.at, &b.at);
+    let whole = length(&along);
+    let [x, y] = along.map(|x| x / whole);
+    let lean = ((b.low - a.low) / whole).max(-tilt).min(tilt) + lean;
+    [y * tilt + x * lean, -x * tilt + y * lean]
 }
 
 /// A convex polygon of at most `ROOM` corners, counterclockwise.
@@ -88,16 +103,21 @@ impl<const ROOM: usize> Polygon<ROOM> {
     }
 
     /// Adds a corner after the last; without room nothing happens.
-    pub fn push(&mut self, corner: Corner) {
+    pub fn add(&mut self, corner: Corner) {
         if let Some(place) = self.corners.get_mut(self.len) {
             *place = corner;
             self.len += 1;
         }
     }
 
+    /// Adds a place of the plane.
+    pub fn push(&mut self, at: Flat) {
+        self.add(Corner { at, low: 0.0 });
+    }
+
     /// Adds corners after the last, as many as there is room for.
     pub fn extend(&mut self, corners: &[Corner]) {
-        corners.iter().for_each(|c| self.push(*c));
+        corners.iter().for_each(|c| self.add(*c));
     }
 
     /// Its sides, from corner to corner; a point has one without length.
@@ -117,81 +137,57 @@ impl<const ROOM: usize> Polygon<ROOM> {
             .sum()
     }
 
-    /// The convex hull of the points (Andrew's monotone chain). Of points nearer than
-    /// `merged` to each other the first stays; what sticks out by `flat` or less is no corner.
-    pub fn hull(points: &[Corner], merged: Real, flat: Real) -> Self {
-        let order = |a: &Corner, b: &Corner| {
-            let x = a.at[0].total_cmp(&b.at[0]);
-            x.then(a.at[1].total_cmp(&b.at[1]))
-        };
-        let mut sorted = Self::default();
-        for p in points {
+    /// The same without what is no corner: of those nearer than `merged` to each other the first stays;
+    /// what sticks out by `flat` or less goes.
+    pub fn tidy(&self, merged: Real, flat: Real) -> Self {
+        let mut rest = Self::default();
+        for p in self.corners() {
             let near = |k: &Corner| length(&side(&k.at, &p.at)) <= merged;
-            if !sorted.corners().iter().any(near) {
-                // The last of those up to there is left in hand.
-                let mut last = *p;
-                for k in sorted.corners_mut() {
-                    if order(&last, k).is_lt() {
-                        swap(k, &mut last);
-                    }
-                }
-                sorted.push(last);
+            if !rest.corners().iter().any(near) {
+                rest.add(*p);
             }
         }
-        if sorted.len < 3 {
-            return sorted;
-        }
-        let mut hull = Self::default();
-        hull.chain(sorted.corners().iter(), flat);
-        let mut upper = Self::default();
-        upper.chain(sorted.corners().iter().rev(), flat);
-        for corner in upper
-            .corners()
-            .iter()
-            .skip(1)
-            .take(upper.len.saturating_sub(2))
-        {
-            hull.push(*corner);
-        }
-        hull
-    }
-
-    /// The half of the hull to the right of the way from the first point to the last.
-    fn chain<'a>(&mut self, points: impl Iterator<Item = &'a Corner>, flat: Real) {
-        for p in points {
-            while let [.., a, b] = self.corners() {
-                let whole = side(&a.at, &p.at);
-                if cross(&side(&a.at, &b.at), &whole) > flat * length(&whole) {
-                    break;
+        // As long as one goes.
+        let mut i = 0;
+        while i < rest.len && rest.len > 2 {
+            // The first one becomes the last.
+            let mut first = rest.corners.first().copied().unwrap_or_default();
+            let places = rest.corners_mut().iter_mut();
+            places.rev().for_each(|place| swap(place, &mut first));
+            i += 1;
+            if let [q, .., p, r] = rest.corners() {
+                let t = nearest_to(&r.at, &p.at, &q.at);
+                let out = side(&between(&p.at, &q.at, t), &r.at);
+                let is_inside = cross(&side(&p.at, &q.at), &out) > 0.0;
+                if length(&out) <= flat || is_inside && t > 0.0 && t < 1.0 {
+                    (rest.len, i) = (rest.len - 1, 0);
                 }
-                self.len -= 1;
             }
-            self.push(*p);
         }
+        rest
     }
 
     /// What of it is inside another polygon of three corners or more, or no farther than
     /// `slack` outside (Sutherland and Hodgman, Reentrant polygon clipping, CACM 17(1), 1974).
     pub fn inside<const OTHER: usize>(&self, other: &Polygon<OTHER>, slack: Real) -> Self {
-        let mut rest = *self;
-        for (p, q) in other.sides() {
-            let along = side(&p.at, &q.at);
-            let room = slack * length(&along);
-            let within = |a: &Corner| cross(&along, &side(&p.at, &a.at)) + room;
-            let whole = rest;
-            rest = Self::default();
-            for (a, b) in whole.sides() {
-                let (at_a, at_b) = (within(&a), within(&b));
-                if at_a >= 0.0 {
-                    rest.push(a);
-                }
-                if (at_a >= 0.0) != (at_b >= 0.0) {
-                    let t = at_a / (at_a - at_b);
-                    rest.push(Corner {
-                        at: between(&a.at, &b.at, t),
-                        low: a.low + (b.low - a.low) * t,
-                    });
-                }
+        other.sides().fold(*self, |rest, (p, q)| {
+            let [x, y] = side(&p.at, &q.at);
+            rest.cut(&p.at, &[-y, x], slack)
+        })
+    }
+
+    /// What of it is no farther than `slack` behind the line through a place across a way.
+    pub fn cut(&self, from: &Flat, way: &Flat, slack: Real) -> Self {
+        let room = slack * length(way);
+        let within = |a: &Corner| dot(way, &side(from, &a.at)) + room;
+        let mut rest = Self::default();
+        for (a, b) in self.sides() {
+            let (at_a, at_b) = (within(&a), within(&b));
+            if at_a >= 0.0 {
+                rest.add(a);
+            }
+            if (at_a >= 0.0) != (at_b >= 0.0) {
+                rest.push(between(&a.at, &b.at, at_a / (at_a - at_b)));
             }
         }
         rest
@@ -238,46 +234,28 @@ impl<const ROOM: usize> Polygon<ROOM> {
 
     /// The two sides, of this polygon and of another, that are nearest to each other, and a
     /// nearest point of each; of polygons that do not overlap.
-    pub fn nearest<const OTHER: usize>(&self, other: &Polygon<OTHER>) -> Option<Nearest> {
-        let mut best: Option<Nearest> = None;
-        for one in self.sides().map(|(a, b)| [a.at, b.at]) {
-            for two in other.sides().map(|(a, b)| [a.at, b.at]) {
-                for pair in 0..4 {
-                    let end = pair % 2;
-                    let (p, q) = if pair < 2 {
-                        let t = nearest_to(&one[end], &two[0], &two[1]);
-                        (one[end], between(&two[0], &two[1], t))
-                    } else {
-                        let t = nearest_to(&two[end], &one[0], &one[1]);
-                        (between(&one[0], &one[1], t), two[end])
-                    };
-                    let apart = length(&side(&p, &q));
-                    if best.as_ref().is_none_or(|b| apart < b.apart) {
-                        best = Some(Nearest {
-                            sides: [one, two],
-                            points: [p, q],
-                            apart,
-                        });
+    pub fn nearest<const OTHER: usize>(
+        &self,
+        other: &Polygon<OTHER>,
+    ) -> Option<([[Flat; 2]; 2], [Flat; 2])> {
+        let (mut best, mut least) = (None, Real::INFINITY);
+        for (a, b) in self.sides() {
+            for (c, d) in other.sides() {
+                let [a, b, c, d] = [a, b, c, d].map(|corner| corner.at);
+                // One of the points is an end.
+                let mine = [a, b].map(|p| [p, onto(&p, &c, &d)]);
+                let its = [c, d].map(|p| [onto(&p, &a, &b), p]);
+                for points in mine.into_iter().chain(its) {
+                    let apart = length(&side(&points[0], &points[1]));
+                    if apart < least {
+                        (best, least) = (Some(([[a, b], [c, d]], points)), apart);
                     }
                 }
             }
         }
         best
     }
-}
 
-/// What [`Polygon::nearest`] found.
-#[derive(Clone, Copy, Debug)]
-pub struct Nearest {
-    /// A side of each.
-    pub sides: [[Flat; 2]; 2],
-    /// A point of each side.
-    pub points: [Flat; 2],
-    /// How far the points are apart.
-    pub apart: Real,
-}
-
-impl<const ROOM: usize> Polygon<ROOM> {
     /// At most `most` of its corners, `first` among them and leading, the others in their
     /// order: the polygon with the largest area, or of two corners the longest side.
     ///
@@ -370,28 +348,33 @@ mod tests {
     }
 
     #[test]
-    fn hull_of_points() {
+    fn tidy_is_without_what_is_no_corner() {
         let points = [
             [0.0, 0.0],
+            [0.5, 0.0],
             [1.0, 0.0],
-            [0.5, 0.5],
+            [1.0, 1e-9],
+            [0.9, 0.5],
             [1.0, 1.0],
             [0.0, 1.0],
-            [0.5, 0.0],
-            [1.0, 1e-9],
         ];
-        let hull = Eight::hull(&corners(&points), 1e-6, 1e-6);
-        assert_eq!(hull.corners().len(), 4);
-        assert_eq!(hull.area(), 2.0);
-        let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
-        assert_eq!(Eight::hull(&corners(&line), 1e-6, 1e-6).corners().len(), 2);
-        assert_eq!(
-            Eight::hull(&corners(&[[3.0, 3.0]; 5]), 0.0, 0.0)
-                .corners()
-                .len(),
-            1
-        );
-        assert!(Eight::hull(&[], 0.0, 0.0).corners().is_empty());
+        for k in 0..points.len() {
+            let mut turned = points;
+            turned.rotate_left(k);
+            let tidy = polygon(&turned).tidy(1e-6, 1e-6);
+            assert_eq!(tidy.corners().len(), 4);
+            assert!((tidy.area() - 2.0).abs() < 1e-8);
+            let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
+            turned[0] = line[k % 3];
+            turned[1] = line[(k + 1) % 3];
+            turned[2] = line[(k + 2) % 3];
+            let ends = polygon(turned.get(..3).unwrap()).tidy(1e-6, 1e-6);
+            assert_eq!(ends.corners().len(), 2);
+            let apart = side(&ends.corners()[0].at, &ends.corners()[1].at);
+            assert_eq!(length(&apart), (8.0 as Real).sqrt());
+        }
+        assert_eq!(polygon(&[[3.0, 3.0]; 5]).tidy(0.0, 0.0).corners().len(), 1);
+        assert!(Eight::default().tidy(0.0, 0.0).corners().is_empty());
     }
 
     #[test]
@@ -399,7 +382,7 @@ mod tests {
         let shared = square(0.0, 0.0, 1.0).inside(&square(1.0, 1.0, 1.0), 0.0);
         assert_eq!(shared.area(), 2.0);
         let segment = polygon(&[[-3.0, 0.5], [0.5, 0.5]]).inside(&square(0.0, 0.0, 1.0), 0.0);
-        let ends = Eight::hull(segment.corners(), EPSILON, 0.0);
+        let ends = segment.tidy(EPSILON, 0.0);
         assert_eq!(
             ends.corners().iter().map(|c| c.at).collect::<Vec<_>>(),
             [[-1.0, 0.5], [0.5, 0.5]]
@@ -427,13 +410,14 @@ mod tests {
         let near = square(0.0, 0.0, 1.0)
             .nearest(&square(4.0, 0.5, 1.0))
             .unwrap();
-        assert_eq!(near.apart, 2.0);
+        assert_eq!(length(&side(&near.1[0], &near.1[1])), 2.0);
         let point = polygon(&[[0.0, 3.0]]);
         assert_eq!(
-            square(0.0, 0.0, 1.0).nearest(&point).unwrap().points,
+            square(0.0, 0.0, 1.0).nearest(&point).unwrap().1,
             [[0.0, 1.0], [0.0, 3.0]]
         );
-        assert_eq!(point.nearest(&polygon(&[[4.0, 0.0]])).unwrap().apart, 5.0);
+        let [p, q] = point.nearest(&polygon(&[[4.0, 0.0]])).unwrap().1;
+        assert_eq!(length(&side(&p, &q)), 5.0);
         assert!(Eight::default().nearest(&point).is_none());
     }
 

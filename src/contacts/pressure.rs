@@ -37,10 +37,11 @@
 //! makes up for that.
 
 use crate::contact::Penetration;
-use crate::contacts::fan::{Corner, Fan, pressed, pressed_on_plane};
-use crate::contacts::polygon::{Flat, side};
-use crate::contacts::seen::{Outline, Seen, across};
-use crate::contacts::view::{CIRCLE, FOUR, Four, View, WAYS};
+use crate::contacts::fan::{Fan, pressed};
+use crate::contacts::plane::Plane;
+use crate::contacts::polygon::{Corner, Flat, side};
+use crate::contacts::seen::Seen;
+use crate::contacts::view::{FOUR, Four, View};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::math::{EPSILON, Real, Vec3, larger, lesser};
 
@@ -56,19 +57,12 @@ const FLANK: Real = 4.0;
 /// By how much, in units of the depth, corners are moved outwards, so that a fan has an area and the
 /// deepest place is inside. Small beside 1 / [`FLANK`].
 const HAIR: Real = 1.0 / 512.0;
-/// A face has more than four corners where the deepest place lies beyond a side of four by this share
-/// of their area. Of a disc it is up to a tenth.
-const BEYOND: Real = 0.02;
 /// What ends within this share of the smaller object's extent is a point: the centre of pressure is
 /// within a quarter of that.
 const POINT: Real = 0.016;
 /// Share of what all corners are lower by that is taken off. Measured: 0 lets a lying capsule step by 5 mm, 1
 /// leaves it 7 mm off.
 const LEVEL: Real = 0.75;
-/// A point that was found no farther aside of a direction than this, in tilts, is the one that would
-/// be found there: less than the ÷1.2 and ×1.2 of [`TILT`] that are seen.
-const SAME: Real = 0.1;
-
 /// The four directions around a deepest place whose points all lie in the face of D there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Around {
@@ -83,14 +77,15 @@ pub struct Around {
 impl Around {
     /// Of the four corners of either object.
     #[inline(never)]
-    fn fill(&mut self, view: &View, [one, two]: [&Four; 2]) {
+    fn fill<A: SupportMap, B: SupportMap>(&mut self, view: &View<A, B>, four: &[Four; 2]) {
+        let [one, two] = four;
         for k in 0..FOUR {
             let (p, q) = (&one[k], &two[(k + FOUR / 2) % FOUR]);
             if !((p.low + q.low) * view.depth <= self.low) {
                 self.directions = [Vec3::zeros(); FOUR];
                 return;
             }
-            self.directions[k] = view.direction(&view.way(2 * k), view.cosine);
+            self.directions[k] = view.direction(0, 2 * k);
             self.points[k] = side(&q.at, &p.at);
         }
     }
@@ -108,139 +103,8 @@ pub struct Aside<'a> {
     pub around: Option<&'a mut Around>,
 }
 
-/// What has been found of both objects.
-enum Found {
-    /// One is a point.
-    Point,
-    /// This one is on the other's floor.
-    On(usize),
-    /// The corners of both.
-    Both,
-}
-
-/// The objects as they are seen from the deepest place.
-struct Faces<'q, A, B> {
-    md: &'q MinkowskiDifference<A, B>,
-    view: View,
-    seen: &'q Seen,
-    others: &'q [Vec3],
-    fans: [Fan; 2],
-    hair: Real,
-    /// What ends within it is a point, metres.
-    point: Real,
-}
-
-impl<A: SupportMap, B: SupportMap> Faces<'_, A, B> {
-    /// What the search found about there.
-    #[inline]
-    fn found(&self, d: &Vec3) -> Option<[Vec3; 2]> {
-        let Seen::Standing(found) = self.seen else {
-            return None;
-        };
-        let near2 = SAME * SAME * self.view.tilt * self.view.tilt;
-        let is_same = |n: &Vec3| (d - n).norm_squared() <= near2;
-        found.get(self.others.iter().position(is_same)?).copied()
-    }
-
-    /// A corner a hair beyond its place, towards where it was asked for.
-    fn moved(&self, corner: &Corner, k: usize) -> Corner {
-        let [x, y] = CIRCLE[k % WAYS];
-        Corner {
-            at: [corner.at[0] + self.hair * x, corner.at[1] + self.hair * y],
-            low: corner.low,
-        }
-    }
-
-    fn put(&mut self, object: usize, four: &Four) {
-        for (i, corner) in four.iter().enumerate() {
-            self.fans[object % 2].put(i, self.moved(corner, 2 * i));
-        }
-    }
-
-    fn interleave(&mut self, object: usize, mut four: Four) {
-        for (i, corner) in four.iter_mut().enumerate() {
-            *corner = self.moved(corner, 2 * i + 1);
-        }
-        self.fans[object % 2].interleave(&four);
-    }
-
-    /// Asks an object for its corners: the first four, and what else it has there; `false` of a point.
-    #[inline(never)]
-    fn look(&mut self, object: usize, four: &mut Four) -> Result<bool, Fault> {
-        *four = self.view.four(self.md, object, 0, &|d| self.found(d))?;
-        self.put(object, four);
-        let fan = &self.fans[object % 2];
-        if fan.is_point(self.point) {
-            return Ok(false);
-        }
-        let is_beyond = fan.is_beyond(BEYOND);
-        let face = match self.view.twice(four) {
-            Some(twice) => self.view.fourth(self.md, object, four, twice)?,
-            None => None,
-        };
-        if let Some(face) = face {
-            self.put(object, &face);
-        } else if is_beyond {
-            let between = match self.view.rim(four) {
-                Some(between) => between,
-                None => self.view.four(self.md, object, 1, &|_| None)?,
-            };
-            self.interleave(object, between);
-        }
-        Ok(true)
-    }
-
-    /// Is all that an object shares on the floor?
-    fn is_on(&self, object: usize, floor: &Outline) -> bool {
-        let mut corners = self.fans[object % 2].corners().iter();
-        // What is lower than the depth is on the way to it.
-        corners.all(|c| {
-            floor.holds(&if c.low > 1.0 {
-                c.at.map(|x| x / c.low)
-            } else {
-                c.at
-            })
-        })
-    }
-
-    /// The same of an object with four corners that lie on a rim: it has eight.
-    fn round_off(&mut self, object: usize, four: &Four) {
-        if self.fans[object % 2].corners().len() == FOUR {
-            if let Some(between) = self.view.rim(four) {
-                self.interleave(object, between);
-            }
-        }
-    }
-
-    /// The corners of both objects, as far as they matter.
-    fn look_at_both(
-        &mut self,
-        first: usize,
-        floor: Option<&Outline>,
-        around: Option<&mut Around>,
-    ) -> Result<Found, Fault> {
-        let other = (1 + first) % 2;
-        let mut four = [Four::default(); 2];
-        if !self.look(first, &mut four[0])? {
-            return Ok(Found::Point);
-        }
-        if floor.is_some_and(|floor| self.is_on(first, floor)) {
-            return Ok(Found::On(first));
-        }
-        if !self.look(other, &mut four[1])? {
-            return Ok(Found::Point);
-        }
-        self.round_off(first, &four[0]);
-        self.round_off(other, &four[1]);
-        if let Some(around) = around {
-            around.fill(&self.view, [&four[first % 2], &four[other % 2]]);
-        }
-        Ok(Found::Both)
-    }
-}
-
 /// The centre of pressure of a hit, in the middle of the chord there. Two support points where the search
-/// has seen a floor, else four, and one or two more where a face has more than four corners.
+/// has seen a floor, else four, and a half more where a face has more than four corners.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -251,7 +115,6 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     tolerance: Real,
     aside: Aside,
 ) -> Result<Vec3, Fault> {
-    let n = hit.normal;
     let middle = hit.middle();
     let depth = larger(hit.depth, tolerance);
     let mut far2 = hit.extent;
@@ -260,70 +123,54 @@ pub fn centre<A: SupportMap, B: SupportMap>(
         far2[1] = larger((c.v2 - hit.point2).norm_squared(), far2[1]);
     }
     let far = lesser(far2[0], far2[1]).sqrt();
-    let tilt = lesser(TILT * (depth / far).sqrt(), MOST);
     let hair = larger(depth * HAIR, 64.0 * EPSILON * far);
-    let mut faces = Faces {
+    let view = View {
         md,
-        view: View {
-            middle,
-            depth,
-            share: 1.0 / depth,
-            half: 0.5 * hit.depth / depth,
-            n,
-            axes: across(&n),
-            tilt,
-            cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
-            near: 2.0 * hair,
-        },
         seen: aside.seen,
         others: aside.others,
-        fans: [Fan::default(), Fan::default()],
+        plane: Plane::upright(&hit.normal, &middle),
+        half: 0.5 * hit.depth,
+        depth,
+        tilt: lesser(TILT * (depth / far).sqrt(), MOST),
         hair,
-        point: POINT * far,
     };
-    // The smaller one, or that on the floor.
-    let smaller = usize::from(far2[1] < far2[0]);
+    // The smaller one first, or that on the floor.
     let (first, floor) = match aside.seen {
-        Seen::Floor(floor) => (1 - floor.object, Some(floor.seen(&faces.view.axes))),
-        _ => (smaller, None),
+        Seen::Floor(floor) => (1 - floor.object % 2, Some(floor)),
+        _ => (usize::from(far2[1] < far2[0]), None),
     };
-    let rim = depth * 0.5 / FLANK;
-    let found = faces.look_at_both(first, floor.as_ref(), aside.around)?;
-    let [one, two] = &mut faces.fans;
-    let (c, lows) = match found {
-        Found::Point => return Ok(middle),
-        Found::On(first) => {
-            let fan = if first == 0 { one } else { two };
-            fan.settle(LEVEL, hair);
-            let c = pressed_on_plane(fan, rim);
-            let low = fan.low(&c);
-            (
-                c,
-                low.map(|low| if first == 0 { [low, 0.0] } else { [0.0, low] }),
-            )
+    let mut four = [Four::default(); 2];
+    let mut fans = [Fan::default(), Fan::default()];
+    for object in [first, 1 - first] {
+        // What is lower than the depth is on the way to it.
+        let shared = |c: &Corner| c.at.map(|x| x / larger(c.low, 1.0));
+        let mut corners = fans[first % 2].corners().iter();
+        if object != first && floor.is_some_and(|floor| corners.all(|c| floor.holds(&shared(c)))) {
+            break;
         }
-        Found::Both => {
-            one.settle(LEVEL, hair);
-            two.settle(LEVEL, hair);
-            let Some(c) = pressed(one, two, rim) else {
-                return Ok(middle);
-            };
-            (c, one.low(&c).zip(two.low(&c)).map(<[Real; 2]>::from))
+        let (four, fan) = (&mut four[object % 2], &mut fans[object % 2]);
+        view.look(object, four, fan)?;
+        if fan.is_point(POINT * far) {
+            return Ok(middle);
         }
-    };
-    // Rounding may have it elsewhere, where a fan is a line.
-    let Some([low1, low2]) = lows else {
+        view.complete(object, four, fan)?;
+        fan.settle(LEVEL, hair);
+    }
+    let [one, two] = &fans;
+    if let (Some(around), true) = (aside.around, !one.is_plane() && !two.is_plane()) {
+        around.fill(&view, &four);
+    }
+    // Rounding may have it elsewhere, where a fan is a line; it is NaN where nothing is shared.
+    let (one, two) = if first == 0 { (one, two) } else { (two, one) };
+    let Some(c) = pressed(one, two, depth * 0.5 / FLANK) else {
         return Ok(middle);
     };
-    let rise = 0.5 * depth * (lesser(low2, 1.0) - lesser(low1, 1.0));
-    let [e1, e2] = &faces.view.axes;
-    let centre = middle + e1 * c[0] + e2 * c[1] + n * rise;
-    // NaN where nothing is shared.
-    Ok(if centre.norm_squared() < Real::INFINITY {
-        centre
-    } else {
-        middle
-    })
+    let Some((low, other)) = one.low(&c).zip(two.low(&c)) else {
+        return Ok(middle);
+    };
+    let down = 0.5 * depth * (lesser(low, 1.0) - lesser(other, 1.0));
+    let up = if first == 0 { -down } else { down };
+    Ok(view.plane.point(&c, up))
 }
 
 /// The squares of how far the objects are known to reach from their witness points, m².

@@ -4,10 +4,11 @@
 //! What the search for a hit has seen that its position need not ask for again.
 
 use crate::contact::Penetration;
+use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Flat, cross, side};
 use crate::contacts::view::{CIRCLE, FOUR};
 use crate::known::points::Points;
-use crate::math::{EPSILON, POLE, Real, Vec3, axes};
+use crate::math::{EPSILON, Real, Vec3};
 
 /// How low a known point of a floor may be, as a share of the depth: taken for level, it turns a floor
 /// by so little that the position moves by a third of that share of the face's half width. Insensitive:
@@ -109,8 +110,8 @@ impl Seen {
 pub struct Floor {
     /// Whose: 0 or 1.
     pub object: usize,
-    /// Seen from half-way between the support planes.
-    points: [Vec3; FOUR],
+    /// In the hit's plane, [`Plane::upright`].
+    corners: [Flat; FOUR],
 }
 
 impl Floor {
@@ -124,53 +125,31 @@ impl Floor {
         if level.count_ones() < 3 {
             return None;
         }
-        // Across n and each other, of one length, and turned as those of `across`.
-        let up = upwards(&n);
-        let e1 = if n.x.abs() < 0.6 {
-            Vec3::new(0.0, n.z, -n.y)
-        } else {
-            Vec3::new(-n.z, 0.0, n.x)
-        };
-        let e2 = up.cross(&e1);
+        let [e1, e2] = Plane::upright(&n, &middle).axes;
         let [x, y] = CIRCLE[0];
-        let ways = [e1 * x + e2 * y, e2 * x - e1 * y];
         let mut most = [Real::NEG_INFINITY; FOUR];
-        let mut names = [0; FOUR];
+        let mut corners = [[0.0; 2]; FOUR];
         while level != 0 {
-            let i = level.trailing_zeros() as usize;
+            let p = known.point_of(object, level.trailing_zeros() as usize) - middle;
             level &= level - 1;
-            let [a, b] = ways
-                .each_ref()
-                .map(|way| way.dot(&known.point_of(object, i)));
-            for ((name, most), reach) in names.iter_mut().zip(&mut most).zip([a, b, -a, -b]) {
-                (*name, *most) = if reach > *most {
-                    (i, reach)
+            let at = [e1.dot(&p), e2.dot(&p)];
+            let (a, b) = (x * at[0] + y * at[1], x * at[1] - y * at[0]);
+            for ((corner, most), reach) in corners.iter_mut().zip(&mut most).zip([a, b, -a, -b]) {
+                (*corner, *most) = if reach > *most {
+                    (at, reach)
                 } else {
-                    (*name, *most)
+                    (*corner, *most)
                 };
             }
         }
-        let points = names.map(|i| known.point_of(object, i) - middle);
-        let floor = Self { object, points };
-        floor.seen(&ways).holds(&[0.0; 2]).then_some(floor)
+        let floor = Self { object, corners };
+        floor.holds(&[0.0; 2]).then_some(floor)
     }
 
-    /// The same in the plane.
-    #[inline]
-    pub fn seen(&self, [e1, e2]: &[Vec3; 2]) -> Outline {
-        Outline(self.points.each_ref().map(|p| [e1.dot(p), e2.dot(p)]))
-    }
-}
-
-/// A polygon of up to four corners, in their order.
-#[derive(Clone, Copy, Debug)]
-pub struct Outline([Flat; FOUR]);
-
-impl Outline {
     /// Does this place lie within?
     #[inline]
     pub fn holds(&self, at: &Flat) -> bool {
-        let [a, b, c, d] = &self.0;
+        let [a, b, c, d] = &self.corners;
         let is_inside = |p: &Flat, q: &Flat| {
             let along = side(p, q);
             cross(&along, &side(p, at)) > 0.0 || along == [0.0; 2]
@@ -181,17 +160,6 @@ impl Outline {
             && is_inside(d, a)
             && (a != c || b != d)
     }
-}
-
-/// Two unit vectors across the unit vector `n` and each other, the same for the objects swapped.
-#[inline]
-pub fn across(n: &Vec3) -> [Vec3; 2] {
-    axes(&upwards(n))
-}
-
-/// Of a vector and its opposite always the same.
-fn upwards(n: &Vec3) -> Vec3 {
-    if POLE.dot(n) < 0.0 { -n } else { *n }
 }
 
 #[cfg(test)]
@@ -214,12 +182,12 @@ mod tests {
             let mut seen = Seen::Nothing;
             seen.rest(&|k| Some([*points.get(k)?, tip]), &hit);
             match seen {
-                Seen::Floor(floor) if floor.object == 0 => Some(floor.seen(&across(&hit.normal))),
+                Seen::Floor(floor) if floor.object == 0 => Some(floor),
                 _ => None,
             }
         };
         let three = [corner(1.0, 1.0), corner(-1.0, 1.0), corner(0.0, -1.0)];
-        let [e1, e2] = across(&hit.normal);
+        let [e1, e2] = Plane::upright(&hit.normal, &hit.middle()).axes;
         let at = |v: Vec3| [e1.dot(&v), e2.dot(&v)];
         let floor = outline(&three).unwrap();
         assert!(floor.holds(&at(corner(0.9, 0.95))));

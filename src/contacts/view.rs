@@ -1,25 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The plane across the normal of a hit, at its deepest place, and how the objects are asked for what
-//! they look like from there.
+//! What the objects look like from the deepest place of a hit, in the plane across its normal.
 //!
 //! *Four corners.* Of an object four points are asked for, [`View::tilt`] aside of the normal and a right
 //! angle apart. Three cases are known by what these found, and seen to:
 //!
-//! *The fourth of a face.* Where two of the four directions look along the sides of a rectangle a corner
-//! is found twice, and another not at all. Three corners span the face's plane, whose own slope is
-//! taken off: so the direction across the longest side of the three, outwards, finds what is beyond it.
+//! *Beyond a side.* Where two of the four directions look along the sides of a rectangle a corner
+//! is found twice, and another not at all: it is beyond the longest side of the three. Where the deepest
+//! place lies beyond a side of the four, the face has more corners there. Three corners span the face's
+//! plane, whose own slope is taken off: so the direction across that side, outwards, finds what is beyond it.
 //!
 //! *A rim.* A disc answers a direction by its middle and the radius that way. Where four points do, to the
 //! last bits, those between lie on the rim too, and are not asked for. (Corners of a square do where it
 //! lies as the four directions do, to a ten thousandth of a radian.)
-//!
-//! *More corners.* Else where the deepest place lies beyond a side of the four, the face has more of
-//! them: another four directions, between the first.
 
-use crate::contacts::fan::Corner;
-use crate::contacts::polygon::{Flat, cross, dot, length, side};
+use crate::contacts::fan::Fan;
+use crate::contacts::plane::Plane;
+use crate::contacts::polygon::{Corner, Flat, cross, dot, length, side};
+use crate::contacts::seen::Seen;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::math::{EPSILON, Real, Vec3, larger, lesser};
 
@@ -53,101 +52,144 @@ const RIM: Real = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
 /// else it is another face's, and the space before it is not as low as a line to it would say.
 /// Insensitive: 0.1 to 1 tried on recorded contacts, and 0.02 leaves a corner out.
 const SAME_FACE: Real = 0.1;
+/// The deepest place is beyond a side where it is by this share of the area of four corners: rounding is
+/// less. Insensitive: 0.005 to 0.08 tried (`extension/pressure.c`).
+const BEYOND: Real = 0.02;
+/// A point that was found no farther aside of a direction than this, in tilts, is the one that would
+/// be found there: less than the ÷1.2 and ×1.2 of the tilt that are seen.
+const SAME: Real = 0.1;
 /// The least height of three corners above their longest side, as a share of that: else they are a line.
-/// Insensitive.
+/// Insensitive: 0.005 to 0.08 tried (`extension/pressure.c`).
 const NARROW: Real = 0.02;
 
-/// The plane across the normal, at the deepest place.
-pub struct View {
-    /// A point half-way between the support planes.
-    pub middle: Vec3,
-    /// The unit of lows, metres, and its inverse.
-    pub depth: Real,
-    pub share: Real,
-    /// How far the support planes are from the middle, in units of that.
-    pub half: Real,
-    /// Unit.
-    pub n: Vec3,
-    /// Unit, across it and each other.
-    pub axes: [Vec3; 2],
-    /// Of the directions asked: the tangent of the angle to the normal, and its cosine.
-    pub tilt: Real,
-    pub cosine: Real,
-    /// What is nearer is the same, metres.
-    pub near: Real,
-}
-
-/// Corners a right angle apart, in their order.
+/// Corners a right angle apart, in their order. At: from the deepest place; low: in units of the depth.
 pub type Four = [Corner; FOUR];
 
-impl View {
-    /// The unit direction of D that asks obj1 with this tilt in the plane; `cosine`: of its angle to the
-    /// normal, about.
-    #[inline(always)]
-    pub fn direction(&self, aside: &Flat, cosine: Real) -> Vec3 {
-        let [e1, e2] = &self.axes;
-        let d = (self.n + (e1 * aside[0] + e2 * aside[1])) * cosine;
-        // Unit to its last bits.
-        d * (1.5 - 0.5 * d.norm_squared())
-    }
+/// The plane across the normal, at the deepest place, and who is seen in it.
+pub struct View<'q, A, B> {
+    pub md: &'q MinkowskiDifference<A, B>,
+    /// What the search found, and the directions of a state that stands.
+    pub seen: &'q Seen,
+    pub others: &'q [Vec3],
+    /// Half-way between the support planes.
+    pub plane: Plane,
+    /// How far these are from there, metres.
+    pub half: Real,
+    /// The unit of lows, metres.
+    pub depth: Real,
+    /// Of the directions asked: the tangent of the angle to the normal.
+    pub tilt: Real,
+    /// By how much corners are moved outwards, metres: two that are nearer than twice that are one.
+    pub hair: Real,
+}
 
+impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
     /// What the `k`th direction is tilted by.
-    #[inline(always)]
-    pub fn way(&self, k: usize) -> Flat {
+    fn way(&self, k: usize) -> Flat {
         CIRCLE[k % WAYS].map(|x| x * self.tilt)
     }
 
-    /// A point of an object, as seen.
+    /// The direction of D with this tilt, as seen by an object.
     #[inline(always)]
-    fn corner(&self, object: usize, p: &Vec3) -> Result<Corner, Fault> {
-        let p = p - self.middle;
-        let q = p.norm_squared();
-        // As in D.
-        if !(q * q).is_finite() {
-            return Err(Fault::NonFinite);
-        }
-        let [e1, e2] = &self.axes;
-        let up = self.n.dot(&p) * self.share;
-        let low = self.half - if object == 0 { up } else { -up };
-        Ok(Corner {
-            at: [e1.dot(&p), e2.dot(&p)],
-            low: larger(low, 0.0),
-        })
+    pub fn direction(&self, object: usize, k: usize) -> Vec3 {
+        self.towards(object, &self.way(k))
     }
 
-    /// The corner of an object that is farthest along the normal with this tilt in the plane; `known`
-    /// may have it.
     #[inline(always)]
-    fn ask<A: SupportMap, B: SupportMap>(
-        &self,
-        md: &MinkowskiDifference<A, B>,
-        object: usize,
-        (aside, cosine): (&Flat, Real),
-        known: &dyn Fn(&Vec3) -> Option<[Vec3; 2]>,
-    ) -> Result<Corner, Fault> {
-        let sign = if object == 0 { 1.0 } else { -1.0 };
-        let d = self.direction(&aside.map(|x| sign * x), cosine);
-        let point = match known(&d) {
-            Some(points) => points[object % 2],
-            None => md.point_of(object, &d),
+    fn towards(&self, object: usize, aside: &Flat) -> Vec3 {
+        let sign = sign(object);
+        self.plane.direction(sign, aside) * sign
+    }
+
+    /// What the search found about there.
+    #[inline]
+    fn found(&self, d: &Vec3) -> Option<[Vec3; 2]> {
+        let Seen::Standing(found) = self.seen else {
+            return None;
         };
-        self.corner(object, &point)
+        let near2 = SAME * SAME * self.tilt * self.tilt;
+        let is_same = |n: &Vec3| (d - n).norm_squared() <= near2;
+        found.get(self.others.iter().position(is_same)?).copied()
     }
 
-    /// The corners of an object in the four directions from `first` on, 0 or 1. `known` may have them.
+    /// The corner of an object that is farthest along the normal with this tilt in the plane.
     #[inline(never)]
-    pub fn four<A: SupportMap, B: SupportMap>(
-        &self,
-        md: &MinkowskiDifference<A, B>,
-        object: usize,
-        first: usize,
-        known: &dyn Fn(&Vec3) -> Option<[Vec3; 2]>,
-    ) -> Result<Four, Fault> {
-        let mut four = Four::default();
-        for (i, corner) in four.iter_mut().enumerate() {
-            *corner = self.ask(md, object, (&self.way(2 * i + first), self.cosine), known)?;
+    fn ask(&self, object: usize, aside: &Flat) -> Result<Corner, Fault> {
+        let d = self.towards(object, aside);
+        let point = match self.found(&d) {
+            Some(points) => points[object % 2],
+            None => self.md.point_of(object, &d),
+        };
+        let mut corner = self.plane.corner(sign(object), &point)?;
+        corner.low = larger((corner.low + self.half) / self.depth, 0.0);
+        Ok(corner)
+    }
+
+    /// A corner a hair beyond its place, towards where it was asked for.
+    fn moved(&self, corner: &Corner, [x, y]: &Flat) -> Corner {
+        Corner {
+            at: [corner.at[0] + self.hair * x, corner.at[1] + self.hair * y],
+            low: corner.low,
         }
-        Ok(four)
+    }
+
+    /// The corners of an object in the four directions, and their fan.
+    pub fn look(&self, object: usize, four: &mut Four, fan: &mut Fan) -> Result<(), Fault> {
+        for (i, corner) in four.iter_mut().enumerate() {
+            *corner = self.ask(object, &self.way(2 * i))?;
+            fan.insert(i, self.moved(corner, &CIRCLE[2 * i % WAYS]));
+        }
+        Ok(())
+    }
+
+    /// Puts into the fan of the four what else the object has there.
+    #[inline(never)]
+    pub fn complete(&self, object: usize, four: &Four, fan: &mut Fan) -> Result<(), Fault> {
+        if let Some(rim) = self.rim(four) {
+            for (i, corner) in rim.iter().enumerate() {
+                fan.insert(2 * i + 1, self.moved(corner, &CIRCLE[(2 * i + 1) % WAYS]));
+            }
+            return Ok(());
+        }
+        // The side from corner `i` to the next.
+        let Some((i, third)) = self.open(four) else {
+            return Ok(());
+        };
+        let [o, p, q] = [third, i, i + 1].map(|j| &four[j % FOUR]);
+        let along = side(&p.at, &q.at);
+        let whole = length(&along);
+        let height = cross(&along, &side(&p.at, &o.at)) / whole;
+        // Beyond a side that is all too low nothing is shared.
+        if !(height > NARROW * whole && height > 2.0 * self.hair && lesser(p.low, q.low) < 1.0) {
+            return Ok(());
+        }
+        let slope = self.slope([o, p, q]);
+        let out = [along[1] / whole, -along[0] / whole];
+        let aside = [slope[0] + out[0] * self.tilt, slope[1] + out[1] * self.tilt];
+        let corner = self.ask(object, &aside)?;
+        let is_beyond = dot(&out, &side(&p.at, &corner.at)) > 2.0 * self.hair;
+        if is_beyond && corner.low <= self.low(o, &slope, &corner.at) + SAME_FACE {
+            fan.insert(i + 1, self.moved(&corner, &out));
+        }
+        Ok(())
+    }
+
+    /// The side of four corners beyond which there may be another, and a corner across from it.
+    fn open(&self, four: &Four) -> Option<(usize, usize)> {
+        let sides = [0, 1, 2, 3].map(|i| side(&four[i].at, &four[(i + 1) % FOUR].at));
+        let lengths2 = sides.map(|s| dot(&s, &s));
+        if let Some(twice) = lengths2
+            .iter()
+            .position(|l| *l <= 4.0 * self.hair * self.hair)
+        {
+            // The longest of the three; across is what is neither of its ends.
+            let longest = (1..FOUR).fold(0, |k, j| if lengths2[j] > lengths2[k] { j } else { k });
+            let third = longest + if (longest + 1) % FOUR == twice { 3 } else { 2 };
+            return Some((longest, third));
+        }
+        let areas = [0, 1, 2, 3].map(|i| cross(&four[i].at, &four[(i + 1) % FOUR].at));
+        let least = (1..FOUR).fold(0, |k, j| if areas[j] < areas[k] { j } else { k });
+        (areas[least] < -BEYOND * areas.iter().sum::<Real>()).then_some((least, least + 2))
     }
 
     /// The slope of the plane of three corners: how much lower it is a metre along each axis.
@@ -160,18 +202,20 @@ impl View {
 
     /// How low the plane through a corner is at a place.
     fn low(&self, corner: &Corner, slope: &Flat, at: &Flat) -> Real {
-        corner.low + dot(slope, &side(&corner.at, at)) * self.share
+        corner.low + dot(slope, &side(&corner.at, at)) / self.depth
     }
 
     /// The corners between, where the four lie on the rim of a disc.
-    #[inline(never)]
-    pub fn rim(&self, four: &Four) -> Option<Four> {
+    fn rim(&self, four: &Four) -> Option<Four> {
         let [a, b, c, _] = four;
         let slope = self.slope([a, b, c]);
-        // Where a disc that leans so reaches farthest.
+        // Where a disc that leans so reaches farthest: the direction without its part along the disc's axis.
+        let share = 1.0 / (1.0 + dot(&slope, &slope));
         let out = |k: usize| {
-            let out = side(&slope, &self.way(k));
-            let share = 1.0 / length(&out);
+            let aside = side(&slope, &self.way(k));
+            let down = dot(&slope, &aside) * share;
+            let out = [aside[0] - slope[0] * down, aside[1] - slope[1] * down];
+            let share = 1.0 / (dot(&out, &out) + down * down).sqrt();
             out.map(|x| x * share)
         };
         let first = out(0);
@@ -190,64 +234,12 @@ impl View {
             let off = side(&rim.at, &found.at);
             dot(&off, &off) <= most * most && (rim.low - found.low).abs() <= SAME_FACE
         };
-        let is_rim = radius > self.near && [1, 3, 2].into_iter().all(is_there);
+        let is_rim = radius > 2.0 * self.hair && [1, 3, 2].into_iter().all(is_there);
         is_rim.then(|| [1, 3, 5, 7].map(on_rim))
-    }
-
-    /// Which corner was found twice, in this direction and in the next.
-    #[inline(always)]
-    pub fn twice(&self, four: &Four) -> Option<usize> {
-        let near2 = self.near * self.near;
-        (0..FOUR).find(|i| apart2(&four[*i], &four[(i + 1) % FOUR]) <= near2)
-    }
-
-    /// A face of which three corners were found, that one `twice`, with the fourth in its place, if it has
-    /// one.
-    #[cold]
-    #[inline(never)]
-    pub fn fourth<A: SupportMap, B: SupportMap>(
-        &self,
-        md: &MinkowskiDifference<A, B>,
-        object: usize,
-        four: &Four,
-        twice: usize,
-    ) -> Result<Option<Four>, Fault> {
-        // Around: the one that is there twice, and the others. The longest side's ends, and what is across.
-        let three = [0, 2, 3].map(|j| &four[(twice + j) % FOUR]);
-        let sides2 = [0, 1, 2].map(|j| apart2(three[(j + 1) % 3], three[(j + 2) % 3]));
-        let longest = (1..3).fold(0, |k, j| if sides2[j] > sides2[k] { j } else { k });
-        let [o, p, q] = [0, 1, 2].map(|j| three[(longest + j) % 3]);
-        let along = side(&p.at, &q.at);
-        let length = sides2[longest].sqrt();
-        let height = cross(&along, &side(&p.at, &o.at)) / length;
-        // Beyond a side that is all too low nothing is shared.
-        if !(height > NARROW * length && height > self.near && lesser(p.low, q.low) < 1.0) {
-            return Ok(None);
-        }
-        let slope = self.slope([o, p, q]);
-        let out = [along[1] / length, -along[0] / length];
-        let aside = [slope[0] + out[0] * self.tilt, slope[1] + out[1] * self.tilt];
-        let cosine = 1.0 / (1.0 + dot(&aside, &aside)).sqrt();
-        let corner = self.ask(md, object, (&aside, cosine), &|_| None)?;
-        let is_new = dot(&out, &side(&p.at, &corner.at)) > self.near
-            && corner.low <= self.low(o, &slope, &corner.at) + SAME_FACE;
-        // In their order, each in the direction that is nearest to where it is.
-        let around = [o, p, &corner, q];
-        let face = |turn: usize| [0, 1, 2, 3].map(|i| *around[(i + turn) % FOUR]);
-        let reach = |turn: usize| {
-            let corners = face(turn).into_iter().enumerate();
-            corners
-                .map(|(i, c)| dot(&CIRCLE[2 * i % WAYS], &c.at))
-                .sum::<Real>()
-        };
-        let best = (1..FOUR).fold(0, |k, j| if reach(j) > reach(k) { j } else { k });
-        Ok(is_new.then(|| face(best)))
     }
 }
 
-/// The square of how far two corners are apart.
-#[inline(always)]
-fn apart2(p: &Corner, q: &Corner) -> Real {
-    let way = side(&p.at, &q.at);
-    dot(&way, &way)
+/// 1 of the object whose face looks along the normal, -1 of the other.
+fn sign(object: usize) -> Real {
+    if object == 0 { 1.0 } else { -1.0 }
 }

@@ -30,7 +30,7 @@ pub struct ccd_contact_t {
 }
 
 /// How many numbers a ccd_manifold_t holds.
-pub const CCD_MANIFOLD_REALS: usize = 143;
+pub const CCD_MANIFOLD_REALS: usize = 141;
 
 /// The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the
 /// others. All bytes zero is cold; plain data, to be copied and stored freely. It serves either
