@@ -136,12 +136,6 @@ fn adversarial_callbacks() {
     alone("adversary").run(["4", "1"]);
 }
 
-/// Tolerances, limits, outputs and shapes at and over the edge of what is allowed.
-#[test]
-fn bad_input() {
-    alone("input").run(NO_ARGS);
-}
-
 /// Same bits in threads, in two runs, and in the debug and release builds.
 #[test]
 fn determinism() {
