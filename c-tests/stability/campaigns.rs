@@ -53,7 +53,7 @@ fn main() {
         "slowest" => show(&program("costs"), &[], &["--mix", "1000000"]),
         #[cfg(not(feature = "single"))]
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
-        "determinism" => show(&programs::determinism(), &[], &["150", "list"]),
+        "determinism" => show(&programs::determinism(), &[], &["150"]),
         _ => {
             eprintln!(
                 "usage: campaigns rates|exact|wide|long|slowest|ledger|determinism [ARGUMENT...]"

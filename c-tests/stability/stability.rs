@@ -136,7 +136,7 @@ fn adversarial_callbacks() {
     alone("adversary").run(["4", "1"]);
 }
 
-/// Same bits in threads, in two runs, and in the debug and release builds.
+/// Same bits in two runs, and in the debug and release builds.
 #[test]
 fn determinism() {
     let program = programs::determinism();
