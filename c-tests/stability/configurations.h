@@ -20,6 +20,7 @@ typedef struct {
     double within;   /* absolute bound of that comparison */
     int surface;     /* minima form a curve or surface */
     int touching;    /* hit and miss are both right */
+    int missed;      /* an exact touch: every call says miss */
     int not_single;  /* the difference is below float's resolution */
 } configuration_t;
 
@@ -46,6 +47,7 @@ typedef struct {
 #define CAPSULE(r, half) .type = SHAPE_CAPSULE, .p = {r, half, 0}
 #define BOX(x, y, z) .type = SHAPE_BOX, .p = {x, y, z}
 #define CYLINDER(r, half) .type = SHAPE_CYLINDER, .p = {r, half, 0}
+#define CONE(r, half) .type = SHAPE_CONE, .p = {r, half, 0}
 #define ELLIPSOID(x, y, z) .type = SHAPE_ELLIPSOID, .p = {x, y, z}
 #define HULL(points) .type = SHAPE_POLYTOPE, .verts = points[0], .nverts = sizeof points / sizeof points[0]
 #define AT(x, y, z) .pos = {x, y, z}
@@ -67,7 +69,8 @@ enum {
     EVERYWHERE = 1, /* once more far from the origin: rounding must not become failure */
     SURFACE = 2,
     TOUCHING = 4,
-    TOUCHING_IN_SINGLE = 8
+    TOUCHING_IN_SINGLE = 8,
+    MISSED = 16
 };
 
 static const configuration_row_t configuration_rows[] = {
@@ -95,6 +98,48 @@ static const configuration_row_t configuration_rows[] = {
     {"T19 spheres", "concentric spheres", {SPHERE(1)}, {SPHERE(.1)}, 1.1, 1e-12, 1e-6, EVERYWHERE | SURFACE},
     {"T19 cubes", "coincident cubes", {BOX(1, 1, 1)}, {BOX(1, 1, 1)}, 2, 1e-12, 1e-6, EVERYWHERE},
     {"T19 point", "a point in a box's centre", {BOX(.5, .3, .4)}, {HULL(origin_point)}, .3, 1e-12, 1e-6, EVERYWHERE},
+
+    /* What this project's own users and tests found. */
+    {"U01", "a box's corner on a cylinder's rim", {CYLINDER(0.67214972553380203, 0.31071183401268843),
+     TURNED(0.99855106295427354, 0.048532335203084642, 0.023246227922522782, -0.053812323491297345,
+            0.90131270477728864, 0.42981349681869718, -9.2267862303379786e-05, -0.43044165765732256,
+            0.90261839713128933, 0.40876520371579894, -0.094725323140851803, 0.78201587064166223)},
+     {BOX(0.39141664262605902, 0.84827187544719429, 0.73600797777455128),
+     TURNED(-0.0778730966162966, 0.22561614781411801, -0.97109893145287063, 0.33813112391531325,
+            0.92229990044137855, 0.18716366283440325, 0.93787159241719009, -0.31378375912615553,
+            -0.14811019089010324, 1.9728005265422626, 0.474421426773312, -0.12951931706735448)}, 4.00694e-4, 1e-9, 1e-6, 0},
+    {"U02", "a sphere around a cylinder", {CYLINDER(0.050343935414477993, 0.030598774417823531),
+     TURNED(0.68610705470843958, 0.55929025432912338, -0.46524350709254908, -0.32839520560016827, -0.33254761662587562,
+            -0.88406372599223482, -0.64916384558764018, 0.75934609638090222, -0.044495027732908143,
+            0.19921819663588103, 0.11038189574981694, -0.42768753090485601)},
+     {SPHERE(0.26420555933554174), AT(0.20260051529887335, 0.10806714408406355, -0.41443775293687929)}, 0.294687570, 1e-9, 1e-6, 0},
+    {"U12", "cones 11 um apart, the base of one over the apex of the other", {CONE(0.93754327898898726, 0.75800192786697729),
+     TURNED(0.90918648647866329, 0.37739526750882713, -0.17593392187558488, 0.079939006405530477, 0.25646224045637289,
+            0.96324289484791636, 0.40864371775359543, -0.88983140610007605, 0.20300340060817076,
+            -0.49697751924640166, 2.0216922724918875, 0.70127657434067459)},
+     {CONE(0.76434195005137706, 0.52757161162981558),
+     TURNED(0.90918648647866329, 0.37739526750882713, -0.17593392187558488, 0.079939006405530477, 0.25646224045637289,
+            0.96324289484791636, 0.40864371775359543, -0.88983140610007605, 0.20300340060817076,
+            -0.48037416746485506, 3.1694007929941179, 1.6026589947444148)}, NAN, 0, 0, 0},
+    {"U04 point", "a point in a sphere's centre", {SPHERE(1)}, {HULL(origin_point)}, 1, 1e-12, 1e-6, SURFACE},
+    {"U04 capsules", "parallel", {CAPSULE(.3, .5)}, {CAPSULE(.2, .4), AT(1e-7, 0, .1)}, NAN, 0, 0, SURFACE},
+    {"U04 cylinders", "coaxial", {CYLINDER(.3, 1)}, {CYLINDER(.2, 1), AT(0, 0, .1)}, NAN, 0, 0, SURFACE},
+    {"U04 cylinders", "nearly coaxial", {CYLINDER(.3, 1)}, {CYLINDER(.2, 1), AT(1e-4, 1e-5, .1)}, NAN, 0, 0, SURFACE},
+    {"U04 sphere", "on a cylinder's axis", {CYLINDER(.3, 1)}, {SPHERE(.2), AT(0, 0, .1)}, .5, 1e-12, 1e-6, SURFACE},
+    {"U04 cone", "coaxial with a capsule", {CONE(.4, 1)}, {CAPSULE(.2, .3), AT(0, 0, -.3)}, NAN, 0, 0, SURFACE},
+    {"U04 spheroid", "around a sphere", {ELLIPSOID(.3, .3, 1)}, {SPHERE(.2)}, .5, 1e-12, 1e-6, SURFACE},
+
+    /* Touches without rounding. */
+    {"U06 ellipsoid", "and ball", {ELLIPSOID(20, 40, 50)}, {ELLIPSOID(10, 10, 10), AT(30, 0, 0)}, 0, 1e-12, 1e-5, MISSED},
+    {"U06 ellipsoid", "and ball", {ELLIPSOID(20, 40, 50)}, {ELLIPSOID(10, 10, 10), AT(-30, 0, 0)}, 0, 1e-12, 1e-5, MISSED},
+    {"U06 spheres", "", {SPHERE(.5)}, {SPHERE(.5), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 boxes", "", {BOX(.5, .5, .5)}, {BOX(.5, .25, .25), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 capsule", "and sphere", {CAPSULE(.5, 1)}, {SPHERE(.5), AT(1, 0, .25)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 cylinder", "and box", {CYLINDER(.5, 1)}, {BOX(.5, 1, 1), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 ellipsoid", "and box", {ELLIPSOID(.5, 1, 2)}, {BOX(.5, 1, 1), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 corner", "and box", {HULL(corner_points)}, {BOX(.5, .5, .5), AT(-.5, .25, .25)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 cylinders", "", {CYLINDER(.5, .5)}, {CYLINDER(.5, .25), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 cone", "and sphere", {CONE(.5, .5)}, {SPHERE(.5), AT(0, 0, 1)}, 0, 1e-12, 1e-6, MISSED},
 
     /* FCL, test_fcl_signed_distance */
     {"FCL spheres 1", "apart", {SPHERE(20)}, {SPHERE(10), AT(40, 0, 0)}, -10, 1e-9, 0, 0},
@@ -344,6 +389,7 @@ static inline void visit_row(const configuration_run_t *run, const configuration
     int i, k;
     c.surface = (row->flags & SURFACE) != 0;
     c.touching = row->flags & TOUCHING || (row->flags & TOUCHING_IN_SINGLE && in_single());
+    c.missed = (row->flags & MISSED) != 0;
     for (i = 0; i < (row->flags & EVERYWHERE ? 3 : 1); i++) {
         configuration_t moved = c;
         if (i > 0)

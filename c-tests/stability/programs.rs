@@ -5,8 +5,6 @@
 
 use crate::harness::{Executable, Precision, Program};
 
-pub const NO_ARGS: [&str; 0] = [];
-
 /// A program of this directory that holds this library alone.
 pub fn alone(name: &str) -> Executable {
     source(name).flag("-DOURS_ALONE").link_ours_static().build()
