@@ -108,6 +108,11 @@ static void judge(case_t *c, int swap, int code, const ccd_penetration_t *p, con
     read3(&p->pos, pos);
     CHECK(fabs(dot(n, n) - 1) <= 16 * (double)epsilon, "%s: |normal|", q);
     CHECK(fabs(dot(d, d) - 1) <= 16 * (double)epsilon, "%s: |dir|", q);
+    {
+        double m[3];
+        read3(&c->dir, m);
+        CHECK(c->query != PLANAR || fabs(dot(d, m)) <= 64 * (double)epsilon * sqrt(dot(m, m)), "planar: %g out of the plane", dot(d, m));
+    }
     CHECK(c->query == ALONG || memcmp(&p->dir, &p->normal, sizeof p->dir) == 0, "%s: dir is not normal", q);
     for (k = 0; k < 3; k++)
         back[k] = -n[k];

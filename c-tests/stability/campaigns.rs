@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
-//! | `long` | what the test run samples of swapped and moved pairs and of lying callbacks | |
+//! | `long` | what the test run samples of swapped and moved pairs, and of the truth | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | what `cmake/packages/cross.sh` compares between processors | |
 
@@ -58,10 +58,6 @@ fn main() {
 
 fn long() {
     show(&alone("metamorphic"), &[], &["20000"]);
-    let adversary = alone("adversary");
-    for seed in 2..12 {
-        show(&adversary, &[], &["40", &seed.to_string()]);
-    }
     #[cfg(not(feature = "single"))]
     {
         let mut args = vec!["100000".to_owned(), "1".to_owned()];

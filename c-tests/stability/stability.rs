@@ -104,12 +104,6 @@ fn continuity_of_positions() {
     continuity.run(["local"]);
 }
 
-/// Support functions that no convex shape has.
-#[test]
-fn adversarial_callbacks() {
-    alone("adversary").run(["4", "1"]);
-}
-
 /// Same bits in two runs, and in the debug and release builds.
 #[test]
 fn determinism() {
