@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
-//! | `long` | what the test run samples of swapped and moved pairs, and of the truth | |
+//! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | what `cmake/packages/cross.sh` compares between processors | |
 
@@ -17,7 +17,9 @@ mod harness;
 mod programs;
 
 use harness::Executable;
-use programs::{alone, program};
+#[cfg(not(feature = "single"))]
+use programs::alone;
+use programs::program;
 
 /// Runs a program in sight, with the caller's arguments before what stands for the rest.
 fn show(program: &Executable, given: &[String], rest: &[&str]) {
@@ -45,23 +47,18 @@ fn main() {
         }
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         "wide" => show(&programs::wide(), &given, &["1000", "-1", "0", "1"]),
-        "long" => long(),
+        #[cfg(not(feature = "single"))]
+        "truth" => {
+            let mut args = vec!["100000".to_owned(), "1".to_owned()];
+            args.extend(programs::pair_sets());
+            show(&alone("truth"), &args, &[]);
+        }
         #[cfg(not(feature = "single"))]
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
         "determinism" => show(&programs::determinism(), &[], &["150"]),
         _ => {
-            eprintln!("usage: campaigns rates|wide|long|ledger|determinism [ARGUMENT...]");
+            eprintln!("usage: campaigns rates|wide|truth|ledger|determinism [ARGUMENT...]");
             std::process::exit(2);
         }
-    }
-}
-
-fn long() {
-    show(&alone("metamorphic"), &[], &["20000"]);
-    #[cfg(not(feature = "single"))]
-    {
-        let mut args = vec!["100000".to_owned(), "1".to_owned()];
-        args.extend(programs::pair_sets());
-        show(&alone("truth"), &args, &[]);
     }
 }

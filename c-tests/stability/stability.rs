@@ -13,8 +13,10 @@ mod programs;
 
 use harness::Precision;
 #[cfg(not(feature = "single"))]
+use programs::alone;
+#[cfg(not(feature = "single"))]
 use programs::pair_sets;
-use programs::{alone, program, wide};
+use programs::{program, wide};
 
 /// The judge itself.
 #[test]
@@ -82,12 +84,6 @@ fn categories_of_the_local_query() {
     let campaign = program("campaign");
     campaign.run(["100", "0", "-1", "local"]);
     campaign.run(["100", "1", "-1", "local"]);
-}
-
-/// Swapped, rotated, translated, scaled.
-#[test]
-fn metamorphic() {
-    alone("metamorphic").run(["2000"]);
 }
 
 /// Sliding, rolling, rocking: directions and depths.
