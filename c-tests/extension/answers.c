@@ -468,6 +468,15 @@ int main(void)
                 swapped_apart[query] += fabs((double)(out.depth - cold.depth)) > 2 * c.tol + 1e3 * (double)epsilon;
             }
 
+            /* a state that was not flipped leads no deeper than none */
+            memcpy(&copy, &warm, sizeof copy);
+            if (query == LOCAL && again == CCD_HIT) {
+                ccd_penetration_t led;
+                again = ask(&c, 1, &copy, &led);
+                CHECK(again == CCD_HIT && (double)(led.depth - out.depth) <= c.tol, "unflipped: %g, cold %g", (double)led.depth,
+                      (double)out.depth);
+            }
+
             /* the state of the answer, moved by memcpy: sound, and the same whichever copy */
             memcpy(&copy, &warm, sizeof copy);
             if (code == CCD_HIT && c.depth > 0)
