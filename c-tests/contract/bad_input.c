@@ -117,17 +117,21 @@ static void tolerances(const call_t *entry)
 
 static void iterations(const call_t *entry)
 {
+    static const unsigned long limits[] = {0, 1, 2, 3, 5, 7, 10, 14, 20};
     int round;
-    for (round = 0; round < 200; round++) {
+    for (round = 0; round < 900; round++) {
         shape_t a, b;
         ccd_t ccd;
         int code;
         random_pair(entry, round % 2, &a, &b, &ccd);
-        ccd.max_iterations = (unsigned long)(round / 2 % 5);
+        ccd.max_iterations = limits[round / 2 % 9];
         code = ask(entry, &a, &b, &ccd, 10, "few iterations");
         /* The extension may say CCD_LIMIT, which these entries count as a hit. */
         if (round % 2 == 0 && (!(entry->traits & EXTENSION) || (entry->traits & FROM_CENTERS)))
             CHECK(code != entry->hit, "%s: objects far apart hit after %lu iterations", entry->name, ccd.max_iterations);
+        /* No support function is needed to know that they overlap. */
+        if (round % 2 && ccd.max_iterations > 0)
+            CHECK(code != entry->miss, "%s: a deep overlap missed after %lu iterations", entry->name, ccd.max_iterations);
     }
 }
 
