@@ -21,8 +21,6 @@
       "configurations are judged to; in single what eight bits above rounding leave") \
     X(LOOSE, 1e-4, 1e-3, \
       "tolerance of an ordinary query relative to the size: CCD_INIT's for unit shapes") \
-    X(MPR_DEEP, 1e-2, 1e-2, \
-      "relative excess from which an answer of MPR counts as another local minimum") \
     X(PROMISED, 1e-3, 1e-3, \
       "part of its depth by which an answer of MPR may be above the least: its promise") \
     X(LATE, 1e-2, 1e-2, \

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The benchmark: `cargo bench -p charts -- tables` prints supports, times and errors per
-//! pair set beside system libccd's and the paper's; `-- phases` instructions of each query
-//! by phase, beside libccd's and Bullet's.
+//! The benchmark: `cargo bench -p charts -- charts` measures supports, times and errors beside
+//! system libccd's and other libraries'; `-- phases` prints instructions of each query by phase,
+//! beside libccd's and Bullet's; `-- record` writes the support counts of every pair set.
 
 mod charts;
 #[path = "../harness/mod.rs"]
@@ -13,7 +13,6 @@ mod lab;
 mod peers;
 mod poses;
 mod progress;
-mod tables;
 
 use clap::{Parser, Subcommand};
 
@@ -30,8 +29,6 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Supports, times and errors of every pair set, as Markdown.
-    Tables(tables::Options),
     /// Writes the support counts and errors with which a test compares changes.
     Record,
     /// Every chart as CSV and SVG.
@@ -47,7 +44,6 @@ enum Command {
 
 fn main() {
     match Arguments::parse().command {
-        Command::Tables(options) => tables::run(&options),
         Command::Record => lab::recorded::record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),

@@ -1,9 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Sizes and offsets, asserted when compiled: of the headers' types as of the polytope's,
- * double / single, with 8-byte pointers and longs. The Rust side asserts the same numbers.
- * With other pointers C's rules, which Rust follows, lay out the same declarations. */
+/* Sizes, offsets and prototypes, asserted when compiled, against libccd's headers and ours: of
+ * the headers' types as of the polytope's, double / single, with 8-byte pointers and longs. The
+ * Rust side asserts the same numbers (src/ffi/types.rs). With other pointers C's rules, which
+ * Rust follows, lay out the same declarations. */
 
 #include "polytope.h"
 #include <ccd/quat.h>
@@ -76,6 +77,24 @@ AT(pt_t, faces, 32, 32);
 AT(pt_t, nearest, 48, 48);
 AT(pt_t, nearest_dist, 56, 56);
 AT(pt_t, nearest_type, 64, 60);
+#endif
+
+/* Declared once more: another type is an error. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+void ccdFirstDirDefault(const void *, const void *, ccd_vec3_t *);
+int ccdGJKIntersect(const void *, const void *, const ccd_t *);
+int ccdMPRIntersect(const void *, const void *, const ccd_t *);
+int ccdGJKSeparate(const void *, const void *, const ccd_t *, ccd_vec3_t *);
+int ccdGJKPenetration(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
+int ccdMPRPenetration(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
+ccd_real_t ccdVec3PointSegmentDist2(const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, ccd_vec3_t *);
+ccd_real_t ccdVec3PointTriDist2(const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, ccd_vec3_t *);
+extern ccd_vec3_t *ccd_vec3_origin, *ccd_points_on_sphere;
+extern size_t ccd_points_on_sphere_len;
+#ifdef __cplusplus
+}
 #endif
 
 int main(void)

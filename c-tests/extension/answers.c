@@ -108,6 +108,11 @@ static void judge(case_t *c, int swap, int code, const ccd_penetration_t *p, con
     read3(&p->pos, pos);
     CHECK(fabs(dot(n, n) - 1) <= 16 * (double)epsilon, "%s: |normal|", q);
     CHECK(fabs(dot(d, d) - 1) <= 16 * (double)epsilon, "%s: |dir|", q);
+    {
+        double m[3];
+        read3(&c->dir, m);
+        CHECK(c->query != PLANAR || fabs(dot(d, m)) <= 64 * (double)epsilon * sqrt(dot(m, m)), "planar: %g out of the plane", dot(d, m));
+    }
     CHECK(c->query == ALONG || memcmp(&p->dir, &p->normal, sizeof p->dir) == 0, "%s: dir is not normal", q);
     for (k = 0; k < 3; k++)
         back[k] = -n[k];
@@ -138,6 +143,11 @@ static void judge(case_t *c, int swap, int code, const ccd_penetration_t *p, con
         CHECK((double)(p->depth - p->depth_lower) <= tol, "%s from %s: %g to %g", q, state, (double)p->depth_lower,
               (double)p->depth);
         CHECK((double)p->depth <= c->depth + c->gap + tol, "%s from %s: depth %g, truth %g", q, state,
+              (double)p->depth, c->depth);
+    }
+    if (c->query == MPR) {
+        const double part = (a->calls < 160 ? 1e-3 : 1e-2) * fmax(c->depth, 0);
+        CHECK((double)p->depth <= c->depth + c->gap + fmax(c->tol, part) + ulps, "%s from %s: depth %g, truth %g", q, state,
               (double)p->depth, c->depth);
     }
     if (c->query == ALONG)
@@ -461,6 +471,15 @@ int main(void)
                     CHECK(fabs((double)(out.depth - cold.depth)) <= 2 * c.tol + c.gap + 1e3 * (double)epsilon,
                           "%s swapped: %g, %g", name[query], (double)cold.depth, (double)out.depth);
                 swapped_apart[query] += fabs((double)(out.depth - cold.depth)) > 2 * c.tol + 1e3 * (double)epsilon;
+            }
+
+            /* a state that was not flipped leads no deeper than none */
+            memcpy(&copy, &warm, sizeof copy);
+            if (query == LOCAL && again == CCD_HIT) {
+                ccd_penetration_t led;
+                again = ask(&c, 1, &copy, &led);
+                CHECK(again == CCD_HIT && (double)(led.depth - out.depth) <= c.tol, "unflipped: %g, cold %g", (double)led.depth,
+                      (double)out.depth);
             }
 
             /* the state of the answer, moved by memcpy: sound, and the same whichever copy */

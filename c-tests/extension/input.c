@@ -168,14 +168,14 @@ static void bad_center(const void *obj, ccd_vec3_t *out)
     out->v[1] = bad_value;
 }
 
-/* Points that are no number: from the first call on, from the second on, ... */
-static void bad_points(int call, const rest_t *rest)
+/* Points of obj1 or of obj2 that are no number: from the first call on, from the second on, ... */
+static void bad_points(int call, const rest_t *rest, int of_obj2)
 {
     static outputs_t out, before;
     ccd_warm_t warm, good_state;
     ccd_t ccd = good;
     int answer;
-    ccd.support1 = bad_support;
+    *(of_obj2 ? &ccd.support2 : &ccd.support1) = bad_support;
     OURS(ccdWarmGuess)(&good_state, &way);
     memset(&before, 0x5a, sizeof before);
     for (bad_call = 0; bad_call < 1000; bad_call++) {
@@ -217,11 +217,14 @@ static void bad_objects(int call, const rest_t *rest, const ccd_real_t strange[3
         expect(call, &ccd, rest, traits & (NEEDS_CENTRES | NEEDS_FIRST_DIR) ? bad : good_code, "no centre, no first_dir");
     }
     for (i = 0; i < 3; i++) {
+        int k;
         bad_value = strange[i];
-        ccd = good;
-        ccd.center2 = bad_center;
-        expect(call, &ccd, rest, traits & NO_CENTRES ? good_code : bad, "a centre that is no number");
-        bad_points(call, rest);
+        for (k = 0; k < 2; k++) {
+            ccd = good;
+            *(k ? &ccd.center2 : &ccd.center1) = bad_center;
+            expect(call, &ccd, rest, traits & NO_CENTRES ? good_code : bad, "a centre that is no number");
+            bad_points(call, rest, k);
+        }
     }
 }
 
@@ -277,6 +280,14 @@ static void bad_arguments(int call, const rest_t *good_rest, const ccd_real_t st
         expect(call, &good, &margin2, traits & TAKES_MARGINS ? bad : good_code, "margin2 that is none");
         expect(call, &good, &max_distance, traits & TAKES_MARGINS ? bad : good_code, "max_distance that is none");
         expect(call, &good, &slop, traits & TAKES_SLOP ? bad : good_code, "slop that is none");
+    }
+    rest = *good_rest;
+    rest.max = 2147483647;
+    expect(call, &good, &rest, good_code, "any room");
+    for (i = 0; i < 2; i++) {
+        rest = *good_rest;
+        rest.slop = i ? strange[1] : 0;
+        expect(call, &good, &rest, i && traits & TAKES_SLOP ? 1 : good_code, i ? "any slop" : "no slop");
     }
     rest = *good_rest;
     rest.margin2 = strange[1];

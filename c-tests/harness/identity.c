@@ -2,16 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Prints which library each kind of link really gives.
- * -DLINK_SYSTEM: linked against the system's libccd, by a function it has.
- * -DLINK_BOTH: the same, and this library under its renamed symbols. */
+ * -DLINK_BOTH: the system's libccd, by a function it has, and this library under its renamed
+ * symbols. */
 
 #include "identity.h"
 #include <stdio.h>
 
 #ifdef LINK_BOTH
 const char *rs_ccdImplementation(void);
-#endif
-#if defined LINK_SYSTEM || defined LINK_BOTH
 void ccdFirstDirDefault(const void *, const void *, void *);
 #else
 const char *ccdImplementation(void);
@@ -20,15 +18,13 @@ const char *ccdImplementation(void);
 int main(void)
 {
     const char *name = running_ccd();
-#if defined LINK_SYSTEM || defined LINK_BOTH
+#ifdef LINK_BOTH
     double dir[3];
     ccdFirstDirDefault(NULL, NULL, dir);
     printf("libccd: %s\n", name == NULL ? "another" : name);
+    printf("renamed: %s\n", rs_ccdImplementation());
 #else
     printf("libccd: %s\n", ccdImplementation());
-#endif
-#ifdef LINK_BOTH
-    printf("renamed: %s\n", rs_ccdImplementation());
 #endif
     (void)name;
     return 0;

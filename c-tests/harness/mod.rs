@@ -728,19 +728,6 @@ impl Executable {
     }
 }
 
-impl Built {
-    /// Makes any command, such as a Python script over DART, run on this library.
-    pub fn swap_under(&self, command: &mut Command) {
-        set_library_path(command, Some(&self.dir));
-    }
-}
-
-/// Makes a command run on the system's libraries alone, whatever cargo put in
-/// the environment.
-pub fn system_under(command: &mut Command) {
-    set_library_path(command, None);
-}
-
 fn set_library_path(command: &mut Command, dir: Option<&Path>) {
     match dir {
         Some(dir) => command.env("LD_LIBRARY_PATH", dir),

@@ -96,10 +96,6 @@ pub fn median(values: &[f64]) -> f64 {
     }
 }
 
-pub fn geometric_mean(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp()
-}
-
 /// Runs the method over the scene and judges every answer. A warm method's first
 /// frame of each motion has no memory yet and is left out.
 pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {

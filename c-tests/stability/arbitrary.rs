@@ -24,14 +24,26 @@ use proptest::test_runner::RngSeed;
 /// More calls of one support function than any query may take.
 const MOST_CALLS: u64 = 20_000;
 
+/// The hull of the points, inflated, perhaps with answers that are no such object's.
 #[derive(Clone, Debug)]
 struct Object {
-    /// The object is their hull, inflated; or the answers, one after the other.
     points: Vec<[Real; 3]>,
     radius: Real,
     position: [Real; 3],
-    scripted: bool,
+    lie: Option<Lie>,
     calls: Cell<u64>,
+    /// Has answered with what is no number.
+    nonsense: Cell<bool>,
+}
+
+/// Of the list one after the other, whatever the direction.
+#[derive(Clone, Debug)]
+enum Lie {
+    Instead(Vec<[Real; 3]>),
+    Added(Vec<[Real; 3]>),
+    Times(Vec<[Real; 3]>),
+    /// The point of the opposite direction.
+    Opposite,
 }
 
 fn dot(a: &[Real; 3], b: &[Real; 3]) -> Real {
@@ -43,17 +55,32 @@ impl Object {
         let calls = self.calls.get();
         self.calls.set(calls + 1);
         assert!(calls < MOST_CALLS, "endless");
-        let point = if self.scripted {
-            self.points[calls as usize % self.points.len()]
-        } else {
-            *self
-                .points
-                .iter()
-                .max_by(|a, b| dot(a, dir).total_cmp(&dot(b, dir)))
-                .expect("an object has points")
+        let sign = match self.lie {
+            Some(Lie::Opposite) => -1.0,
+            _ => 1.0,
         };
-        let length = dot(dir, dir).sqrt();
-        std::array::from_fn(|i| point[i] + self.radius * dir[i] / length + self.position[i])
+        let dir = dir.map(|x| sign * x);
+        let farthest = (self.points.iter()).max_by(|a, b| dot(a, &dir).total_cmp(&dot(b, &dir)));
+        let point = farthest.expect("an object has points");
+        let length = dot(&dir, &dir).sqrt();
+        let said = |list: &Vec<[Real; 3]>, i: usize| list[calls as usize % list.len()][i];
+        let answer = std::array::from_fn(|i| {
+            let x = point[i] + self.radius * dir[i] / length + self.position[i];
+            match &self.lie {
+                Some(Lie::Instead(list)) => said(list, i),
+                Some(Lie::Added(list)) => x + said(list, i),
+                Some(Lie::Times(list)) => x * said(list, i),
+                _ => x,
+            }
+        });
+        self.nonsense
+            .set(self.nonsense.get() || !answer.iter().all(|x| x.is_finite()));
+        answer
+    }
+
+    fn forget(&self) {
+        self.calls.set(0);
+        self.nonsense.set(false);
     }
 
     /// Largest coordinate it computes with.
@@ -135,11 +162,12 @@ impl Start {
     }
 }
 
-/// The queries that answer with a depth and a direction.
+/// The queries that answer with a depth and a direction; of which the last is asked for one.
 const MINIMUM: usize = 4;
 const INCREMENTAL: usize = 5;
 const DISTANCE: usize = 6;
-const QUERIES: usize = 7;
+const PENETRATION: usize = 7;
+const ALONG: usize = 8;
 
 /// Code, depth, direction and what is proven of the depth.
 fn ask(
@@ -168,6 +196,12 @@ fn ask(
             2 => ccdGJKPenetration(a, b, &ccd, &mut depth, &mut dir, &mut pos),
             3 => ccdPenetrationLocal(a, b, &ccd, &mut warm, CCD_WANT_ALL, out.as_mut_ptr()),
             MINIMUM => ccdPenetrationProven(a, b, &ccd, &mut warm, CCD_WANT_ALL, out.as_mut_ptr()),
+            PENETRATION => ccdPenetration(a, b, &ccd, &mut warm, CCD_WANT_ALL, out.as_mut_ptr()),
+            ALONG => {
+                let way = ccd_vec3_t { v: [0.6, 0.0, 0.8] };
+                let out = out.as_mut_ptr();
+                ccdPenetrationAlong(a, b, &ccd, &way, &mut warm, CCD_WANT_ALL, out)
+            }
             _ => ccdPenetrationIncremental(a, b, &ccd, &mut warm, CCD_WANT_ALL, out.as_mut_ptr()),
         };
         let out = out.assume_init();
@@ -176,6 +210,24 @@ fn ask(
         } else {
             (code, depth, dir.v, 0.0)
         }
+    }
+}
+
+/// What the calls say that ask no more than whether two objects overlap, or by which vector.
+fn verdicts(a: &Object, b: &Object, tolerance: Real, start: &Start) -> [c_int; 5] {
+    let ccd = settings(tolerance);
+    let mut warm = start.state();
+    let mut sep = ccd_vec3_t { v: [0.0; 3] };
+    let (a, b) = (pointer(a), pointer(b));
+    // SAFETY: every pointer is to a live object of its type.
+    unsafe {
+        [
+            ccdMPRIntersect(a, b, &ccd),
+            ccdGJKIntersect(a, b, &ccd),
+            ccdMPRIntersectWarm(a, b, &ccd, &mut warm),
+            ccdIntersect(a, b, &ccd, &mut warm),
+            ccdGJKSeparate(a, b, &ccd, &mut sep),
+        ]
     }
 }
 
@@ -281,8 +333,9 @@ fn convex() -> impl Strategy<Value = Object> {
             points,
             radius,
             position,
-            scripted: false,
+            lie: None,
             calls: Cell::new(0),
+            nonsense: Cell::new(false),
         })
 }
 
@@ -295,13 +348,23 @@ fn wild() -> impl Strategy<Value = Real> {
     ]
 }
 
-fn scripted() -> impl Strategy<Value = Object> {
-    proptest::collection::vec(proptest::array::uniform3(wild()), 1..12).prop_map(|points| Object {
-        points,
-        radius: 0.0,
-        position: [0.0; 3],
-        scripted: true,
-        calls: Cell::new(0),
+fn list(of: impl Strategy<Value = Real>) -> impl Strategy<Value = Vec<[Real; 3]>> {
+    proptest::collection::vec(proptest::array::uniform3(of), 1..12)
+}
+
+fn lying() -> impl Strategy<Value = Object> {
+    let near_one =
+        (-9.0..0.0f64, -1.0..1.0f64).prop_map(|(e, x)| (1.0 + 10f64.powf(e) * x) as Real);
+    let lie = prop_oneof![
+        4 => list(wild()).prop_map(Lie::Instead),
+        2 => list(prop_oneof![4 => Just(0.0), 1 => wild()]).prop_map(Lie::Added),
+        1 => list(wild()).prop_map(Lie::Times),
+        1 => list(near_one).prop_map(Lie::Times),
+        1 => Just(Lie::Opposite),
+    ];
+    (convex(), lie).prop_map(|(object, lie)| Object {
+        lie: Some(lie),
+        ..object
     })
 }
 
@@ -348,7 +411,7 @@ proptest! {
         dirs in proptest::collection::vec(proptest::array::uniform3(-1.0..(1.0 as Real)), 8),
     ) {
         let noise = 64.0 * EPSILON * (a.size() + b.size());
-        let answers: Vec<_> = (0..QUERIES)
+        let answers: Vec<_> = (0..ALONG)
             .map(|query| {
                 a.calls.set(0);
                 b.calls.set(0);
@@ -447,18 +510,21 @@ proptest! {
     }
 
     /// Objects that answer anything: each query ends, with a documented code, and what it
-    /// claims is finite.
+    /// claims is finite; there is no answer from points that are not, and nothing written without
+    /// an answer.
     #[test]
     fn any_answers_end(
-        a in prop_oneof![scripted(), convex()],
-        b in prop_oneof![scripted(), convex()],
+        a in prop_oneof![lying(), convex()],
+        b in prop_oneof![lying(), convex()],
         tolerance in tolerance(),
         start in start(),
     ) {
-        for query in 0..QUERIES {
-            a.calls.set(0);
-            b.calls.set(0);
+        for query in 0..=ALONG {
+            a.forget();
+            b.forget();
             let (code, depth, dir, proven) = ask(query, &a, &b, tolerance, &start);
+            let nonsense = a.nonsense.get() || b.nonsense.get();
+            prop_assert!(!nonsense || code != CCD_HIT, "query {query}: a hit from no numbers");
             let (least, most) = if query >= 3 {
                 (CCD_BAD_INPUT, CCD_LIMIT)
             } else {
@@ -476,10 +542,17 @@ proptest! {
                 prop_assert!(proven >= 0.0 && proven.is_finite(), "query {query}: {proven}");
                 let length = dot(&dir, &dir).sqrt();
                 prop_assert!((length - 1.0).abs() <= 4.0 * EPSILON, "query {query}: {dir:?}");
+            } else {
+                prop_assert!(depth == 0.0 && dir == [0.0; 3], "query {query}: written");
             }
         }
-        a.calls.set(0);
-        b.calls.set(0);
+        a.forget();
+        b.forget();
+        let [yes @ .., separated] = verdicts(&a, &b, tolerance, &start);
+        prop_assert!(yes.iter().all(|code| (0..=1).contains(code)), "{yes:?}");
+        prop_assert!((CCD_NO_MEMORY..=CCD_HIT).contains(&separated), "{separated}");
+        a.forget();
+        b.forget();
         let (count, contacts) = contacts(&a, &b, &[1.0, -2.0, 0.5], 1e-3);
         let most = MOST_CONTACTS as c_int;
         prop_assert!(count == CCD_BAD_INPUT || (1..=most).contains(&count), "{count}");

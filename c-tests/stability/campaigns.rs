@@ -7,10 +7,8 @@
 //! | name | what | arguments, and what they are without |
 //! |---|---|---|
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
-//! | `exact` | the proven minimum against the exact one, by kind of shapes; 45 minutes | pairs a kind, first pair, kind: 100000 0 -1 |
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
-//! | `long` | what the test run samples of swapped and moved pairs, of lying callbacks, beside libccd | |
-//! | `slowest` | the slowest query of a million; fails if one is too slow | |
+//! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | what `cmake/packages/cross.sh` compares between processors | |
 
@@ -19,7 +17,9 @@ mod harness;
 mod programs;
 
 use harness::Executable;
-use programs::{NO_ARGS, alone, program};
+#[cfg(not(feature = "single"))]
+use programs::alone;
+use programs::program;
 
 /// Runs a program in sight, with the caller's arguments before what stands for the rest.
 fn show(program: &Executable, given: &[String], rest: &[&str]) {
@@ -45,36 +45,20 @@ fn main() {
                 show(&campaign, &[], &[pairs, tie]);
             }
         }
-        "exact" => show(&alone("exact"), &given, &["100000", "0", "-1"]),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         "wide" => show(&programs::wide(), &given, &["1000", "-1", "0", "1"]),
-        "long" => long(),
         #[cfg(not(feature = "single"))]
-        "slowest" => show(&program("costs"), &[], &["--mix", "1000000"]),
+        "truth" => {
+            let mut args = vec!["100000".to_owned(), "1".to_owned()];
+            args.extend(programs::pair_sets());
+            show(&alone("truth"), &args, &[]);
+        }
         #[cfg(not(feature = "single"))]
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
-        "determinism" => show(&programs::determinism(), &[], &["150", "list"]),
+        "determinism" => show(&programs::determinism(), &[], &["150"]),
         _ => {
-            eprintln!(
-                "usage: campaigns rates|exact|wide|long|slowest|ledger|determinism [ARGUMENT...]"
-            );
+            eprintln!("usage: campaigns rates|wide|truth|ledger|determinism [ARGUMENT...]");
             std::process::exit(2);
         }
     }
-}
-
-fn long() {
-    show(&alone("metamorphic"), &[], &["20000"]);
-    let adversary = alone("adversary");
-    for seed in 2..12 {
-        show(&adversary, &[], &["40", &seed.to_string()]);
-    }
-    #[cfg(not(feature = "single"))]
-    {
-        show(&program("beside_libccd"), &[], &["1000"]);
-        let mut args = vec!["100000".to_owned(), "1".to_owned()];
-        args.extend(programs::pair_sets());
-        show(&alone("truth"), &args, &[]);
-    }
-    show(&program("failures"), &[], &NO_ARGS);
 }

@@ -181,13 +181,14 @@ static inline int pair_may_stop(const pair_t *p, double tol)
     X(APEX, "cone apex on a face") \
     X(EDGES, "box edge on box edge") \
     X(ELLIPSOIDS, "ellipsoids, aspect 1 to 20") \
-    X(SCALE_M3, "scale 1e-3") \
-    X(SCALE_M6, "scale 1e-6") \
-    X(SCALE_3, "scale 1e3") \
-    X(SCALE_6, "scale 1e6") \
+    X(CORNERS, "corners and rims that meet") \
+    X(DISCS, "cylinders and cones resting on one axis") \
+    X(CENTRED_SPHERE, "sphere near a solid's centre") \
+    X(SCALED, "scale 1e-6 to 1e6, any depth") \
     X(FAR_6, "far from the origin 1e6") \
     X(FAR_8, "far from the origin 1e8") \
-    X(APART, "separated")
+    X(APART, "separated") \
+    X(CONCENTRIC, "nearly concentric round objects")
 
 enum {
 #define STABILITY_CATEGORY(name, text) CATEGORY_##name,
@@ -224,6 +225,89 @@ static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
             return;
     }
     shape_move(&p->b, 0, 0, 0);
+}
+
+/* Two shapes that touch with their support points in a random direction, pushed into each other by
+ * at most a thousandth of the size: corners and rims meet. */
+static inline void pair_corners(dice_t *d, pair_t *p)
+{
+    static const shape_type_t kinds[4] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE};
+    double part = dice_log(d, 1e-5, 1e-3), deep;
+    p->a = pair_shape(d, p->verts[0], kinds[dice_below(d, 4)], .1, 1);
+    p->b = pair_shape(d, p->verts[1], kinds[dice_below(d, 4)], .1, 1);
+    pair_turn(d, &p->a);
+    pair_turn(d, &p->b);
+    do {
+        double u[3], s[3];
+        deep = part * pair_size(&p->a, &p->b);
+        dice_unit(d, u);
+        shape_move(&p->b, 0, 0, 0);
+        truth_difference(&p->a, &p->b, u, s);
+        shape_move(&p->b, s[0] - deep * u[0], s[1] - deep * u[1], s[2] - deep * u[2]);
+        part *= 1.01; /* a thin edge may be thinner than that */
+    } while (!(truth_depth(&p->a, &p->b).lower > deep / 10));
+}
+
+/* Where minima lie all around: spheres, nearly round ellipsoids, a short capsule and a sphere,
+ * cylinders on one axis. */
+static inline void pair_concentric(dice_t *d, pair_t *p)
+{
+    const double r = dice_in(d, .1, 1), s = dice_in(d, .1, 1), at = dice_log(d, 1e-12, .1) * (r + s);
+    double u[3];
+    const int which = dice_below(d, 4);
+    p->a = which == 0 ? shape_sphere(r)
+        : which == 1 ? shape_ellipsoid(r, r * dice_in(d, .98, 1), r * dice_in(d, .98, 1))
+        : which == 2 ? shape_capsule(r, r * dice_log(d, 1e-4, .1))
+                     : shape_cylinder(r, s);
+    p->b = which == 1 ? shape_ellipsoid(s, s * dice_in(d, .98, 1), s * dice_in(d, .98, 1))
+        : which == 3 ? shape_cylinder(s, r)
+                     : shape_sphere(s);
+    pair_turn(d, &p->a);
+    if (which == 3)
+        memcpy(p->b.rot, p->a.rot, sizeof p->b.rot);
+    dice_unit(d, u);
+    shape_move(&p->b, at * u[0], at * u[1], at * u[2]);
+}
+
+/* Any two shapes, 1e-6 to 1e6 m large: apart to deep, on a shared axis, about one centre. */
+static inline void pair_scaled(dice_t *d, pair_t *p)
+{
+    enum { SCATTERED, DEEP, SHALLOW, ON_AXIS, NEARLY_CENTRED, CENTRED, PLACES };
+    const double scale = pow(10, 3 * (dice_below(d, 5) - 2));
+    const int place = dice_below(d, PLACES);
+    double u[3], x;
+    int k;
+    p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
+    p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
+    if (place != ON_AXIS || dice_below(d, 2))
+        pair_turn(d, &p->a);
+    if (place == ON_AXIS)
+        memcpy(p->b.rot, p->a.rot, sizeof p->b.rot);
+    else
+        pair_turn(d, &p->b);
+    switch (place) {
+    case SCATTERED:
+    case SHALLOW:
+        pair_scatter(d, p, 1, 1e-3 * scale);
+        if (place == SHALLOW)
+            pair_pull_out(p, pair_size(&p->a, &p->b) * dice_log(d, 1e-8, 1e-2));
+        break;
+    case DEEP:
+        pair_scatter(d, p, .2, 1e-3 * scale);
+        break;
+    case ON_AXIS:
+        x = dice_in(d, 0, .3) * scale;
+        k = dice_below(d, 3);
+        shape_move(&p->b, x * (double)p->a.rot[k], x * (double)p->a.rot[3 + k], x * (double)p->a.rot[6 + k]);
+        break;
+    case NEARLY_CENTRED:
+        dice_unit(d, u);
+        x = scale * dice_log(d, 1e-18, 1e-4);
+        shape_move(&p->b, x * u[0], x * u[1], x * u[2]);
+        break;
+    default:
+        break;
+    }
 }
 
 /* Pair number index of a category, with its truth. */
@@ -414,17 +498,38 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         }
         pair_scatter(d, p, .7, 1e-4);
         break;
-    case CATEGORY_SCALE_M3:
-        pair_generic(d, p, 1e-3, 0);
+    case CATEGORY_CORNERS:
+        pair_corners(d, p);
         break;
-    case CATEGORY_SCALE_M6:
-        pair_generic(d, p, 1e-6, 0);
+    case CATEGORY_DISCS: {
+        double r[9], turned[3];
+        p->a = (dice_below(d, 2) ? shape_cylinder : shape_cone)(dice_in(d, .1, 1), dice_in(d, .1, 1));
+        p->b = (dice_below(d, 2) ? shape_cylinder : shape_cone)(dice_in(d, .1, 1), dice_in(d, .1, 1));
+        x = dice_in(d, 0, 6.28);
+        y = dice_in(d, 0, (double)p->a.p[0]);
+        u[0] = y * cos(x);
+        u[1] = y * sin(x);
+        u[2] = (double)p->a.p[1] + (double)p->b.p[1] - dice_sign(d) * dice_log(d, 1e-12, 1e-2);
+        dice_rotation(d, r);
+        for (k = 0; k < 3; k++)
+            turned[k] = truth_dot3(r + 3 * k, u);
+        shape_turn(&p->a, r);
+        shape_turn(&p->b, r);
+        shape_move(&p->b, turned[0], turned[1], turned[2]);
         break;
-    case CATEGORY_SCALE_3:
-        pair_generic(d, p, 1e3, 0);
+    }
+    case CATEGORY_CENTRED_SPHERE: {
+        static const shape_type_t kinds[3] = {SHAPE_CYLINDER, SHAPE_POLYTOPE, SHAPE_BOX};
+        p->a = pair_shape(d, p->verts[0], kinds[dice_below(d, 3)], .1, 1);
+        pair_turn(d, &p->a);
+        p->b = shape_sphere(dice_in(d, .1, 1));
+        dice_unit(d, u);
+        x = dice_log(d, 1e-3, .3) * shape_reach(&p->a);
+        shape_move(&p->b, x * u[0], x * u[1], x * u[2]);
         break;
-    case CATEGORY_SCALE_6:
-        pair_generic(d, p, 1e6, 0);
+    }
+    case CATEGORY_SCALED:
+        pair_scaled(d, p);
         break;
     case CATEGORY_FAR_6:
     case CATEGORY_FAR_8:
@@ -433,12 +538,16 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         x = category == CATEGORY_FAR_6 ? 1e6 : 1e8;
         pair_offset(p, x * u[0], x * u[1], x * u[2]);
         break;
-    default:
+    case CATEGORY_APART:
         pair_generic(d, p, 1, 1);
+        break;
+    default:
+        pair_concentric(d, p);
         break;
     }
     p->a.tie = p->b.tie = tie;
-    p->truth = truth_depth(&p->a, &p->b);
+    /* of what is nearly round all around, as near as it is judged */
+    p->truth = category == CATEGORY_CONCENTRIC ? truth_depth_within(&p->a, &p->b, 1e-5 * pair_size(&p->a, &p->b)) : truth_depth(&p->a, &p->b);
     pair_grow(p);
 }
 

@@ -20,6 +20,7 @@ typedef struct {
     double within;   /* absolute bound of that comparison */
     int surface;     /* minima form a curve or surface */
     int touching;    /* hit and miss are both right */
+    int missed;      /* an exact touch: every call says miss */
     int not_single;  /* the difference is below float's resolution */
 } configuration_t;
 
@@ -37,6 +38,7 @@ typedef struct {
     double p[3];
     const ccd_real_t *verts;
     int nverts;
+    int axis; /* of a prism 1 + its axis: verts are its corners across that, each at -0.5 and 0.5; else 0 */
     double pos[3];
     enum { UNTURNED, BY_ANGLE, BY_QUATERNION, BY_POSE, BY_ROTATION } turn;
     double by[12];
@@ -46,8 +48,10 @@ typedef struct {
 #define CAPSULE(r, half) .type = SHAPE_CAPSULE, .p = {r, half, 0}
 #define BOX(x, y, z) .type = SHAPE_BOX, .p = {x, y, z}
 #define CYLINDER(r, half) .type = SHAPE_CYLINDER, .p = {r, half, 0}
+#define CONE(r, half) .type = SHAPE_CONE, .p = {r, half, 0}
 #define ELLIPSOID(x, y, z) .type = SHAPE_ELLIPSOID, .p = {x, y, z}
 #define HULL(points) .type = SHAPE_POLYTOPE, .verts = points[0], .nverts = sizeof points / sizeof points[0]
+#define PRISM(points, along) .type = SHAPE_POLYTOPE, .verts = points[0], .nverts = sizeof points / sizeof points[0], .axis = 1 + along
 #define AT(x, y, z) .pos = {x, y, z}
 #define ABOUT(x, y, z, angle) .turn = BY_ANGLE, .by = {x, y, z, angle}
 #define QUATERNION(w, x, y, z) .turn = BY_QUATERNION, .by = {w, x, y, z}
@@ -67,7 +71,8 @@ enum {
     EVERYWHERE = 1, /* once more far from the origin: rounding must not become failure */
     SURFACE = 2,
     TOUCHING = 4,
-    TOUCHING_IN_SINGLE = 8
+    TOUCHING_IN_SINGLE = 8,
+    MISSED = 16
 };
 
 static const configuration_row_t configuration_rows[] = {
@@ -95,6 +100,48 @@ static const configuration_row_t configuration_rows[] = {
     {"T19 spheres", "concentric spheres", {SPHERE(1)}, {SPHERE(.1)}, 1.1, 1e-12, 1e-6, EVERYWHERE | SURFACE},
     {"T19 cubes", "coincident cubes", {BOX(1, 1, 1)}, {BOX(1, 1, 1)}, 2, 1e-12, 1e-6, EVERYWHERE},
     {"T19 point", "a point in a box's centre", {BOX(.5, .3, .4)}, {HULL(origin_point)}, .3, 1e-12, 1e-6, EVERYWHERE},
+
+    /* What this project's own users and tests found. */
+    {"U01", "a box's corner on a cylinder's rim", {CYLINDER(0.67214972553380203, 0.31071183401268843),
+     TURNED(0.99855106295427354, 0.048532335203084642, 0.023246227922522782, -0.053812323491297345,
+            0.90131270477728864, 0.42981349681869718, -9.2267862303379786e-05, -0.43044165765732256,
+            0.90261839713128933, 0.40876520371579894, -0.094725323140851803, 0.78201587064166223)},
+     {BOX(0.39141664262605902, 0.84827187544719429, 0.73600797777455128),
+     TURNED(-0.0778730966162966, 0.22561614781411801, -0.97109893145287063, 0.33813112391531325,
+            0.92229990044137855, 0.18716366283440325, 0.93787159241719009, -0.31378375912615553,
+            -0.14811019089010324, 1.9728005265422626, 0.474421426773312, -0.12951931706735448)}, 4.00694e-4, 1e-9, 1e-6, 0},
+    {"U02", "a sphere around a cylinder", {CYLINDER(0.050343935414477993, 0.030598774417823531),
+     TURNED(0.68610705470843958, 0.55929025432912338, -0.46524350709254908, -0.32839520560016827, -0.33254761662587562,
+            -0.88406372599223482, -0.64916384558764018, 0.75934609638090222, -0.044495027732908143,
+            0.19921819663588103, 0.11038189574981694, -0.42768753090485601)},
+     {SPHERE(0.26420555933554174), AT(0.20260051529887335, 0.10806714408406355, -0.41443775293687929)}, 0.294687570, 1e-9, 1e-6, 0},
+    {"U12", "cones 11 um apart, the base of one over the apex of the other", {CONE(0.93754327898898726, 0.75800192786697729),
+     TURNED(0.90918648647866329, 0.37739526750882713, -0.17593392187558488, 0.079939006405530477, 0.25646224045637289,
+            0.96324289484791636, 0.40864371775359543, -0.88983140610007605, 0.20300340060817076,
+            -0.49697751924640166, 2.0216922724918875, 0.70127657434067459)},
+     {CONE(0.76434195005137706, 0.52757161162981558),
+     TURNED(0.90918648647866329, 0.37739526750882713, -0.17593392187558488, 0.079939006405530477, 0.25646224045637289,
+            0.96324289484791636, 0.40864371775359543, -0.88983140610007605, 0.20300340060817076,
+            -0.48037416746485506, 3.1694007929941179, 1.6026589947444148)}, NAN, 0, 0, 0},
+    {"U04 point", "a point in a sphere's centre", {SPHERE(1)}, {HULL(origin_point)}, 1, 1e-12, 1e-6, SURFACE},
+    {"U04 capsules", "parallel", {CAPSULE(.3, .5)}, {CAPSULE(.2, .4), AT(1e-7, 0, .1)}, NAN, 0, 0, SURFACE},
+    {"U04 cylinders", "coaxial", {CYLINDER(.3, 1)}, {CYLINDER(.2, 1), AT(0, 0, .1)}, NAN, 0, 0, SURFACE},
+    {"U04 cylinders", "nearly coaxial", {CYLINDER(.3, 1)}, {CYLINDER(.2, 1), AT(1e-4, 1e-5, .1)}, NAN, 0, 0, SURFACE},
+    {"U04 sphere", "on a cylinder's axis", {CYLINDER(.3, 1)}, {SPHERE(.2), AT(0, 0, .1)}, .5, 1e-12, 1e-6, SURFACE},
+    {"U04 cone", "coaxial with a capsule", {CONE(.4, 1)}, {CAPSULE(.2, .3), AT(0, 0, -.3)}, NAN, 0, 0, SURFACE},
+    {"U04 spheroid", "around a sphere", {ELLIPSOID(.3, .3, 1)}, {SPHERE(.2)}, .5, 1e-12, 1e-6, SURFACE},
+
+    /* Touches without rounding. */
+    {"U06 ellipsoid", "and ball", {ELLIPSOID(20, 40, 50)}, {ELLIPSOID(10, 10, 10), AT(30, 0, 0)}, 0, 1e-12, 1e-5, MISSED},
+    {"U06 ellipsoid", "and ball", {ELLIPSOID(20, 40, 50)}, {ELLIPSOID(10, 10, 10), AT(-30, 0, 0)}, 0, 1e-12, 1e-5, MISSED},
+    {"U06 spheres", "", {SPHERE(.5)}, {SPHERE(.5), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 boxes", "", {BOX(.5, .5, .5)}, {BOX(.5, .25, .25), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 capsule", "and sphere", {CAPSULE(.5, 1)}, {SPHERE(.5), AT(1, 0, .25)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 cylinder", "and box", {CYLINDER(.5, 1)}, {BOX(.5, 1, 1), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 ellipsoid", "and box", {ELLIPSOID(.5, 1, 2)}, {BOX(.5, 1, 1), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 corner", "and box", {HULL(corner_points)}, {BOX(.5, .5, .5), AT(-.5, .25, .25)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 cylinders", "", {CYLINDER(.5, .5)}, {CYLINDER(.5, .25), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
+    {"U06 cone", "and sphere", {CONE(.5, .5)}, {SPHERE(.5), AT(0, 0, 1)}, 0, 1e-12, 1e-6, MISSED},
 
     /* FCL, test_fcl_signed_distance */
     {"FCL spheres 1", "apart", {SPHERE(20)}, {SPHERE(10), AT(40, 0, 0)}, -10, 1e-9, 0, 0},
@@ -166,41 +213,41 @@ static const configuration_row_t configuration_rows[] = {
           4.4637642593504145e-09, -0.9999999999999996, 0, 0.039999999999999994,
           0, 0, 1.0000000000000009, 0.3300000000000001)},
      {BOX(.05, .05, .05), AT(.05, .15, .35)}, 0, 1e-9, 1e-6, TOUCHING_IN_SINGLE},
-    {"FCL convex 1", "hulls, reported from the field", {HULL(fcl_convex1_a),
+    {"FCL convex 1", "hulls, reported from the field", {PRISM(fcl_convex1_a, 0),
      POSE(-2.0399676677885373e-09, 0.7712974481797398, -0.6364748592296648, 11.477445682202463,
           2.472087991721794e-09, 0.6364748592296648, 0.7712974481797398, 9.778505692075694,
           1, 0, -3.2051032938795743e-09, 0)},
-     {HULL(fcl_convex1_b)}, NAN, 0, 0, 0},
-    {"FCL convex 2", "hulls, reported from the field", {HULL(fcl_convex2_a),
+     {PRISM(fcl_convex1_b, 2)}, NAN, 0, 0, 0},
+    {"FCL convex 2", "hulls, reported from the field", {PRISM(fcl_convex2_a, 0),
      POSE(-3.01404872427901e-09, 0.3400965845998409, -0.9403905109812217, 4.286483694131304,
           1.0900446835381433e-09, 0.9403905109812217, 0.3400965845998409, 7.386957687225368,
           1, 0, -3.2051032938795743e-09, 0)},
-     {HULL(fcl_convex2_b)}, NAN, 0, 0, 0},
-    {"FCL convex 3", "hulls, reported from the field", {HULL(fcl_convex3_a),
+     {PRISM(fcl_convex2_b, 2)}, NAN, 0, 0, 0},
+    {"FCL convex 3", "hulls, reported from the field", {PRISM(fcl_convex3_a, 0),
      POSE(-2.0479437360480805e-09, -0.7692371274798412, -0.6389634118684439, 13.670417904867957,
           -2.465484451060101e-09, 0.6389634118684439, -0.7692371274798412, 13.169816779836705,
           1, 0, -3.2051032938795743e-09, 0)},
-     {HULL(fcl_convex3_b)}, NAN, 0, 0, 0},
-    {"FCL convex 4", "hulls, reported from the field", {HULL(fcl_convex4_a),
+     {PRISM(fcl_convex3_b, 2)}, NAN, 0, 0, 0},
+    {"FCL convex 4", "hulls, reported from the field", {PRISM(fcl_convex4_a, 0),
      POSE(-2.6487935924268805e-09, -0.5630394437818858, -0.8264300241071744, 15.712812998638135,
           -1.8045995758494454e-09, 0.8264300241071744, -0.5630394437818858, 10.219809745800642,
           1, 0, -3.2051032938795743e-09, 0)},
-     {HULL(fcl_convex4_b)}, NAN, 0, 0, 0},
-    {"FCL convex 5", "hulls, reported from the field", {HULL(fcl_convex2_a),
+     {PRISM(fcl_convex4_b, 2)}, NAN, 0, 0, 0},
+    {"FCL convex 5", "hulls, reported from the field", {PRISM(fcl_convex2_a, 0),
      POSE(-2.241179617442763e-09, 0.7148738189791494, -0.6992534754566232, 6.333574727814116,
           2.291244431918342e-09, 0.6992534754566232, 0.7148738189791494, 8.463157630327672,
           1, 0, -3.2051032938795743e-09, 0)},
-     {HULL(fcl_convex5_b)}, NAN, 0, 0, 0},
-    {"FCL convex 6", "hulls, reported from the field", {HULL(fcl_convex6_a),
+     {PRISM(fcl_convex5_b, 2)}, NAN, 0, 0, 0},
+    {"FCL convex 6", "hulls, reported from the field", {PRISM(fcl_convex6_a, 0),
      POSE(-3.193413061359499e-09, -0.08533146197201667, -0.9963526191051632, 11.261494468063983,
           -2.734961498380703e-10, 0.9963526191051632, -0.08533146197201667, 5.7102314848013025,
           1, 0, -3.2051032938795743e-09, 0)},
-     {HULL(fcl_convex6_b)}, NAN, 0, 0, 0},
-    {"FCL convex 7", "hulls, reported from the field", {HULL(fcl_convex7_a),
+     {PRISM(fcl_convex6_b, 2)}, NAN, 0, 0, 0},
+    {"FCL convex 7", "hulls, reported from the field", {PRISM(fcl_convex7_a, 0),
      POSE(-3.1553676991561266e-09, -0.17548349096519453, -0.98448237383849, 9.427754495942917,
           -5.624427149140315e-10, 0.98448237383849, -0.17548349096519453, 4.354973098260487,
           1, 0, -3.2051032938795743e-09, 0)},
-     {HULL(fcl_convex7_b)}, NAN, 0, 0, 0},
+     {PRISM(fcl_convex7_b, 2)}, NAN, 0, 0, 0},
     {"FCL convex 8", "hulls, reported from the field", {HULL(fcl_convex8_a)}, {HULL(fcl_convex8_b)}, NAN, 0, 0, 0},
 
     /* MuJoCo, engine_collision_gjk_test */
@@ -289,10 +336,27 @@ static const configuration_row_t configuration_rows[] = {
 
 /* --- visiting them --------------------------------------------------------------- */
 
+/* Kept until the second prism after it. */
+static inline shape_t prism(const body_row_t *row)
+{
+    static ccd_real_t kept[2][3 * 16];
+    static int next;
+    ccd_real_t *v = kept[next = !next];
+    const int axis = row->axis - 1;
+    int i;
+    for (i = 0; i < 2 * row->nverts; i++) {
+        v[3 * i + axis] = (ccd_real_t)(i < row->nverts ? -.5 : .5);
+        v[3 * i + (axis ? 0 : 1)] = row->verts[2 * (i % row->nverts)];
+        v[3 * i + (axis ? 1 : 2)] = row->verts[2 * (i % row->nverts) + 1];
+    }
+    return shape_polytope(v, 2 * row->nverts);
+}
+
 static inline shape_t body_shape(const body_row_t *row)
 {
-    shape_t s = row->type == SHAPE_POLYTOPE ? shape_polytope(row->verts, row->nverts)
-                                            : shape_make(row->type, row->p[0], row->p[1], row->p[2]);
+    shape_t s = row->axis                     ? prism(row)
+        : row->type == SHAPE_POLYTOPE ? shape_polytope(row->verts, row->nverts)
+                                      : shape_make(row->type, row->p[0], row->p[1], row->p[2]);
     const double *by = row->by;
     double r[9];
     int i;
@@ -344,6 +408,7 @@ static inline void visit_row(const configuration_run_t *run, const configuration
     int i, k;
     c.surface = (row->flags & SURFACE) != 0;
     c.touching = row->flags & TOUCHING || (row->flags & TOUCHING_IN_SINGLE && in_single());
+    c.missed = (row->flags & MISSED) != 0;
     for (i = 0; i < (row->flags & EVERYWHERE ? 3 : 1); i++) {
         configuration_t moved = c;
         if (i > 0)

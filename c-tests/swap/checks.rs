@@ -550,54 +550,35 @@ pub fn static_table(rows: &[Static]) -> String {
 
 // --- simulations ----------------------------------------------------------------
 
-/// One simulation.
-#[derive(Clone, Debug)]
-struct Run {
-    pile: BTreeMap<String, f64>,
-    watched: BTreeMap<String, f64>,
-}
-
-impl Run {
-    /// `side`: whose answers the program went on with, in compare.sh's words.
-    fn of(lines: &[String], side: &str) -> Run {
-        let mut watched = fields(lines, "watched");
-        for key in SIDE {
-            let of_side = watched.get(&format!("{side}_{key}")).copied();
-            if let Some(count) = of_side {
-                watched.insert(key.to_owned(), count);
-            }
-        }
-        Run {
-            pile: fields(lines, "pile"),
-            watched,
-        }
-    }
-
-    /// Support points a query, of those that were judged where not all were.
-    fn supports(&self) -> [f64; 2] {
-        let of = |key: &str| self.watched.get(key).copied();
-        let queries = of("judged").or_else(|| of("queries"));
-        [of("supports"), queries].map(Option::unwrap_or_default)
-    }
-}
+/// One simulation: what the program says of its pile, and what compare.sh counts.
+type Run = BTreeMap<String, f64>;
 
 /// What compare.sh counts of each library.
 const SIDE: [&str; 5] = ["supports", "slanted", "missed", "spurious", "unsound"];
 
-/// Support points of all runs over their queries.
-fn supports_a_query<'a>(runs: impl IntoIterator<Item = &'a Run>) -> f64 {
-    let both = runs.into_iter().map(Run::supports);
-    let [supports, queries] = both.fold([0.0; 2], |[s, q], [t, r]| [s + t, q + r]);
-    supports / queries
+/// `side`: whose answers the program went on with, in compare.sh's words.
+fn run_of(lines: &[String], side: &str) -> Run {
+    let mut run = fields(lines, "watched");
+    for key in SIDE {
+        if let Some(count) = run.get(&format!("{side}_{key}")).copied() {
+            run.insert(key.to_owned(), count);
+        }
+    }
+    // Support points are counted of those that were judged, where not all were.
+    let asked = run.get("judged").or(run.get("queries")).copied();
+    run.insert("asked".to_owned(), asked.unwrap_or_default());
+    run.extend(fields(lines, "pile"));
+    run
 }
 
-/// The same scene from several slightly moved starts, on each library.
+/// The same scene from several slightly moved starts, on what runs first and on this library; of
+/// ODE worlds in a third way.
 pub struct Piles {
     pub consumer: &'static str,
-    names: Both<&'static str>,
+    names: Vec<&'static str>,
     pub scene: &'static str,
     pub steps: usize,
-    runs: Both<Vec<Run>>,
+    runs: Vec<Vec<Run>>,
     pub against: Vec<String>,
 }
 
@@ -610,14 +591,12 @@ pub fn piles(
     after: &[&str],
     progress: impl Fn(usize),
 ) -> Piles {
-    let mut p = Piles::new(program, scene, steps);
+    let mut p = Piles::new(program.consumer, &program.names, scene, steps);
     for seed in 1..=starts {
-        for (i, lines) in program
-            .run(&pile_args(seed, steps, after))
-            .iter()
-            .enumerate()
-        {
-            p.runs[i].push(Run::of(lines, p.side(i)));
+        let both = program.run(&pile_args(seed, steps, after));
+        for (i, lines) in both.iter().enumerate() {
+            let run = run_of(lines, p.side(i));
+            p.runs[i].push(run);
         }
         progress(seed);
     }
@@ -642,19 +621,57 @@ pub fn taken_over(
     after: &[&str],
     progress: impl Fn(usize),
 ) -> Piles {
-    let mut p = Piles::new(program, scene, steps);
+    let mut p = Piles::new(program.consumer, &program.names, scene, steps);
     let file = tempfile::NamedTempFile::new().expect("a file for the state");
     let state = file.path().to_string_lossy();
     for seed in 1..=starts {
         for (library, way) in ["save", "load"].into_iter().enumerate() {
             let mut args = pile_args(seed, steps, after);
             args.extend([way.to_owned(), state.to_string()]);
-            let lines = program.lines(library, &args);
-            p.runs[library].push(Run::of(&lines, p.side(library)));
+            let run = run_of(&program.lines(library, &args), p.side(library));
+            p.runs[library].push(run);
         }
         progress(seed);
     }
     p.judge();
+    p
+}
+
+/// An ODE scene through libccd as ODE asks it, and through this library behind ODE's own class of
+/// geoms, with one contact a pair and with several.
+pub fn worlds(
+    scene: &'static str,
+    starts: usize,
+    steps: usize,
+    bodies: usize,
+    progress: impl Fn(usize),
+) -> Piles {
+    let ode = ode_pile();
+    let world = c("ode_world")
+        .library("ode")
+        .flag("-D_GNU_SOURCE")
+        .flag("-DOURS_ALONE")
+        .link_ours_shared()
+        .without_tools()
+        .build()
+        .quiet();
+    let names = [
+        "libccd",
+        "this library, one contact a pair",
+        "this library, `ccdContacts`",
+    ];
+    let mut p = Piles::new("ODE, a world", &names, scene, steps);
+    for seed in 1..=starts {
+        let args = pile_args(seed, steps, &[&bodies.to_string(), scene]);
+        p.runs[0].push(run_of(&ode.lines(0, &args), "theirs"));
+        for (way, contacts) in [(1, "one"), (2, "many")] {
+            let said = world.run(args.iter().map(String::as_str).chain([contacts]));
+            let lines: Vec<String> = said.stdout.lines().map(String::from).collect();
+            p.runs[way].push(run_of(&lines, "ours"));
+        }
+        progress(seed);
+    }
+    p.judge_several();
     p
 }
 
@@ -671,73 +688,70 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 impl Piles {
-    fn new(program: &Swapped, scene: &'static str, steps: usize) -> Self {
+    fn new(
+        consumer: &'static str,
+        names: &[&'static str],
+        scene: &'static str,
+        steps: usize,
+    ) -> Self {
         Self {
-            consumer: program.consumer,
-            names: program.names,
+            consumer,
+            names: names.to_vec(),
             scene,
             steps,
-            runs: [Vec::new(), Vec::new()],
+            runs: vec![Vec::new(); names.len()],
             against: Vec::new(),
         }
     }
 
     /// Whose answers a run goes on with.
-    fn side(&self, library: usize) -> &'static str {
-        match self.names[library] {
+    fn side(&self, way: usize) -> &'static str {
+        match self.names[way] {
             "libccd" => "theirs",
-            "this library" => "ours",
-            _ => "minimum",
+            "proven minimum" => "minimum",
+            _ => "ours",
         }
     }
 
+    /// Not every program tells everything.
+    fn has(&self, way: usize, key: &str) -> bool {
+        self.runs[way][0].contains_key(key)
+    }
+
     /// A quantity over the starts.
-    fn all(&self, library: usize, key: &str) -> Vec<f64> {
-        let of = |run: &Run| run.pile.get(key).or_else(|| run.watched.get(key)).copied();
-        self.runs[library]
-            .iter()
-            .map(|run| of(run).unwrap_or_else(|| panic!("no {key} from {}", self.consumer)))
+    fn all(&self, way: usize, key: &str) -> Vec<f64> {
+        let of = |run: &Run| run.get(key).copied();
+        let told = self.runs[way].iter().map(of);
+        told.map(|x| x.unwrap_or_else(|| panic!("no {key} from {}", self.consumer)))
             .collect()
     }
 
-    /// Not every program tells everything.
-    fn has(&self, key: &str) -> bool {
-        let run = &self.runs[1][0];
-        run.pile.contains_key(key) || run.watched.contains_key(key)
+    fn sum(&self, way: usize, key: &str) -> f64 {
+        self.all(way, key).iter().sum()
     }
 
-    fn sum(&self, library: usize, key: &str) -> f64 {
-        self.all(library, key).iter().sum()
-    }
-
-    fn range(&self, library: usize, key: &str) -> (f64, f64) {
-        let all = self.all(library, key);
+    fn range(&self, way: usize, key: &str) -> (f64, f64) {
+        let all = self.all(way, key);
         (
             all.iter().copied().fold(f64::INFINITY, f64::min),
             all.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         )
     }
 
-    fn judge(&mut self) {
-        for key in [
-            "escaped",
-            "bad",
-            "zero",
-            "not_finite",
-            "not_unit",
-            "slanted",
-            "lost",
-            "spurious",
-            "wrong_lost",
-            "missed",
-            "unsound",
-            "contradicted",
-        ] {
-            if self.has(key) && self.sum(1, key) != 0.0 {
-                self.against.push(format!("{key}: {:?}", self.all(1, key)));
+    /// These are to be none.
+    fn judge_none(&mut self, way: usize, keys: &[&str]) {
+        for key in keys {
+            if self.has(way, key) && self.sum(way, key) != 0.0 {
+                self.against
+                    .push(format!("{key}: {:?}", self.all(way, key)));
             }
         }
-        if self.has("off") && self.sum(1, "off") > OFTEN_OFF * self.sum(1, "judged") {
+    }
+
+    fn judge(&mut self) {
+        let none = "escaped bad zero not_finite not_unit slanted lost spurious wrong_lost missed unsound contradicted";
+        self.judge_none(1, &none.split(' ').collect::<Vec<_>>());
+        if self.has(1, "off") && self.sum(1, "off") > OFTEN_OFF * self.sum(1, "judged") {
             self.against.push(format!("off: {:?}", self.all(1, "off")));
         }
         if self.runs[0].len() < 10 {
@@ -759,6 +773,18 @@ impl Piles {
         }
     }
 
+    /// Several contacts are to hold as well as libccd's one at its worst.
+    fn judge_several(&mut self) {
+        for key in ["gained", "deepest"] {
+            let (here, there) = (median(self.all(2, key)), self.range(0, key).1);
+            if !(here <= there) {
+                self.against
+                    .push(format!("{key}: median {here}, libccd's largest {there}"));
+            }
+        }
+        self.judge_none(2, &["escaped", "bad", "limits"]);
+    }
+
     /// What speaks against a scene that is to stay as it is: gained, J, and the deepest contact,
     /// metres, of this library's runs, at most so much.
     pub fn restless(&self, gained: f64, deepest: f64) -> Vec<String> {
@@ -771,224 +797,71 @@ impl Piles {
         }
         against
     }
-
-    pub fn verdict(&self) -> String {
-        if self.against.is_empty() {
-            "passes".to_owned()
-        } else {
-            format!("**{}**", self.against.join("; "))
-        }
-    }
 }
 
-/// The dynamic half of the swap table. Depths in millimetres.
+/// What every simulation did, in each way; depths in millimetres. A dash: the program does not
+/// tell.
 pub fn pile_table(rows: &[Piles]) -> String {
     let mut out = String::from(
-        "| consumer | scene | starts × steps | library | penetration queries | hits | supports a query | bad or zero normals \
-         | escaped | kinetic energy, J: median (min to max) | mean contact depth, mm: median (min to max) | deepest, mm | swap |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "| consumer | scene | starts × steps | library | penetration queries | hits | supports a query \
+         | NaN, zero or bent normals, exceptions, warnings | escaped | energy gained, J: median (min to max) \
+         | kinetic energy, J: median (min to max) | mean contact depth, mm: median (min to max) | deepest, mm: median (max) \
+         | pairs judged | contacts lost | contacts spurious | depths off by > 1 % and 2 tolerances | largest error of a depth, mm \
+         | wrong callbacks: pairs, lost, spurious | error, mm | swap |\n",
     );
+    out += &format!("|{}\n", "---|".repeat(21));
     for p in rows {
-        for (library, name) in p.names.iter().enumerate() {
-            let spread = |key: &str, unit: f64| {
-                let (least, most) = p.range(library, key);
-                let middle = median(p.all(library, key));
-                format!(
-                    "{:.3} ({:.3} to {:.3})",
-                    middle * unit,
-                    least * unit,
-                    most * unit
-                )
+        for (way, name) in p.names.iter().enumerate() {
+            let told = |key: &str, text: &dyn Fn() -> String| match p.has(way, key) {
+                true => text(),
+                false => "–".to_owned(),
             };
-            let bad: f64 = ["bad", "zero", "not_finite", "not_unit"]
-                .iter()
-                .map(|key| p.sum(library, key))
-                .sum();
-            let queries = p.sum(library, "queries");
-            let _ = writeln!(
-                out,
-                "| {} | {} | {} × {} | {} | {} | {:.0} % | {:.1} | {} | {} | {} | {} | {:.1} | {} |",
+            let sum = |key: &str| told(key, &|| p.sum(way, key).to_string());
+            let most = |key: &str| told(key, &|| format!("{:.4}", 1e3 * p.range(way, key).1));
+            let spread = |key: &str, unit: f64| {
+                told(key, &|| {
+                    let (least, most) = p.range(way, key);
+                    let [middle, least, most] =
+                        [median(p.all(way, key)), least, most].map(|x| x * unit);
+                    format!("{middle:.3} ({least:.3} to {most:.3})")
+                })
+            };
+            let bad = ["bad", "zero", "not_finite", "not_unit"];
+            let bad = bad.iter().filter(|key| p.has(way, key));
+            let row = format!(
+                "| {} | {} | {} × {} | {name} | {} | {} | {:.1} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
                 p.consumer,
                 p.scene,
-                p.runs[library].len(),
+                p.runs[way].len(),
                 p.steps,
-                name,
-                queries,
-                100.0 * p.sum(library, "hits") / queries,
-                supports_a_query(&p.runs[library]),
-                bad,
-                p.sum(library, "escaped"),
+                sum("queries"),
+                sum("hits"),
+                p.sum(way, "supports") / p.sum(way, "asked"),
+                bad.map(|key| p.sum(way, key)).sum::<f64>(),
+                sum("escaped"),
+                spread("gained", 1.0),
                 spread("kinetic", 1.0),
                 spread("depth", 1e3),
-                1e3 * p.range(library, "deepest").1,
-                if library == 1 {
-                    p.verdict()
-                } else {
-                    String::new()
-                },
-            );
-        }
-    }
-    out
-}
-
-/// The long simulations: what went wrong on either library. Depths in millimetres.
-pub fn long_table(rows: &[Piles]) -> String {
-    let mut out = String::from(
-        "| consumer | scene | starts × steps | library | penetration queries | energy gained, J: median (max) | deepest contact, mm \
-         | NaN, zero or bent normals, exceptions, warnings | escaped | pairs judged | contacts lost | contacts spurious | depths off by > 1 % and 2 tolerances | largest error of a depth, mm \
-         | wrong callbacks: pairs, lost, spurious, error |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-    );
-    for p in rows {
-        for (library, name) in p.names.iter().enumerate() {
-            let gained = p.all(library, "gained");
-            let bad: f64 = ["bad", "zero", "not_finite", "not_unit"]
-                .iter()
-                .map(|key| p.sum(library, key))
-                .sum();
-            let judged = |key: &str, unit: f64| match p.runs[library][0].pile.get(key) {
-                None => "–".to_owned(),
-                Some(_) if key.ends_with("error") => {
-                    format!("{:.4}", unit * p.range(library, key).1)
-                }
-                Some(_) => p.sum(library, key).to_string(),
-            };
-            let row = format!(
-                "| {} | {} | {} × {} | {} | {} | {:.3} ({:.3}) | {:.1} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-                p.consumer,
-                p.scene,
-                p.runs[library].len(),
-                p.steps,
-                name,
-                p.sum(library, "queries"),
-                median(gained.clone()),
-                gained.iter().copied().fold(0.0, f64::max),
-                1e3 * p.range(library, "deepest").1,
-                bad,
-                p.sum(library, "escaped"),
-                judged("judged", 1.0),
-                judged("lost", 1.0),
-                judged("spurious", 1.0),
-                judged("off", 1.0),
-                judged("error", 1e3),
-                ["wrong", "wrong_lost", "wrong_spurious", "wrong_error"]
-                    .map(|key| judged(key, 1e3))
+                spread("deepest", 1e3),
+                sum("judged"),
+                sum("lost"),
+                sum("spurious"),
+                sum("off"),
+                most("error"),
+                ["wrong", "wrong_lost", "wrong_spurious"]
+                    .map(sum)
                     .join(", "),
+                most("wrong_error"),
+                match (way + 1 == p.names.len(), p.against.is_empty()) {
+                    (false, _) => String::new(),
+                    (true, true) => "passes".to_owned(),
+                    (true, false) => format!("**{}**", p.against.join("; ")),
+                },
             );
             // Compared with two others, this library has one row.
             if !out.contains(&row) {
                 out.push_str(&row);
             }
-        }
-    }
-    out
-}
-
-// --- ODE worlds that this library collides itself ---------------------------------
-
-/// An ODE scene from several starts: through libccd as ODE asks it, and through this
-/// library behind ODE's own class of geoms, with one contact a pair and with several.
-pub struct Worlds {
-    pub scene: &'static str,
-    pub steps: usize,
-    runs: [Vec<Run>; 3],
-}
-
-const WAYS: [&str; 3] = [
-    "ODE's own, libccd",
-    "this library, one contact a pair",
-    "this library, `ccdContacts`",
-];
-
-pub fn worlds(
-    scene: &'static str,
-    starts: usize,
-    steps: usize,
-    bodies: usize,
-    progress: impl Fn(usize),
-) -> Worlds {
-    let ode = ode_pile();
-    let world = c("ode_world")
-        .library("ode")
-        .flag("-D_GNU_SOURCE")
-        .flag("-DOURS_ALONE")
-        .link_ours_shared()
-        .without_tools()
-        .build()
-        .quiet();
-    let mut runs = [const { Vec::new() }; 3];
-    for seed in 1..=starts {
-        let args = pile_args(seed, steps, &[&bodies.to_string(), scene]);
-        runs[0].push(Run::of(&ode.lines(0, &args), "theirs"));
-        for (way, contacts) in [(1, "one"), (2, "many")] {
-            let mut args = args.clone();
-            args.push(contacts.to_owned());
-            let lines: Vec<String> = (world.run(&args).stdout.lines().map(String::from)).collect();
-            runs[way].push(Run::of(&lines, "ours"));
-        }
-        progress(seed);
-    }
-    Worlds { scene, steps, runs }
-}
-
-impl Worlds {
-    fn all(&self, way: usize, key: &str) -> Vec<f64> {
-        let of = |run: &Run| run.pile.get(key).or_else(|| run.watched.get(key)).copied();
-        let told = self.runs[way].iter().map(of);
-        told.map(|x| x.unwrap_or_else(|| panic!("no {key}")))
-            .collect()
-    }
-
-    fn largest(&self, way: usize, key: &str) -> f64 {
-        self.all(way, key).into_iter().fold(0.0, f64::max)
-    }
-
-    /// What speaks against several contacts: they are to hold as well as libccd's one at its
-    /// worst.
-    pub fn against(&self) -> Vec<String> {
-        let mut against = Vec::new();
-        for key in ["gained", "deepest"] {
-            let (here, there) = (median(self.all(2, key)), self.largest(0, key));
-            if !(here <= there) {
-                against.push(format!("{key}: median {here}, libccd's largest {there}"));
-            }
-        }
-        for key in ["escaped", "bad", "limits"] {
-            if self.largest(2, key) > 0.0 {
-                against.push(format!("{key}: {:?}", self.all(2, key)));
-            }
-        }
-        against
-    }
-}
-
-pub fn world_table(rows: &[Worlds]) -> String {
-    let mut out = String::from(
-        "| ODE scene | starts × steps | contacts from | energy gained, J: median (min to max) | greatest depth, mm: median (max) \
-         | mean depth, mm: median | kinetic energy, second half, J: median | supports a query | escaped |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
-    );
-    for w in rows {
-        for (way, name) in WAYS.iter().enumerate() {
-            let gained = w.all(way, "gained");
-            let least = gained.iter().copied().fold(f64::INFINITY, f64::min);
-            let sum = |key: &str| w.all(way, key).iter().sum::<f64>();
-            let _ = writeln!(
-                out,
-                "| {} | {} × {} | {name} | {:.3} ({least:.3} to {:.3}) | {:.1} ({:.1}) | {:.3} | {:.4} | {:.1} | {} |",
-                w.scene,
-                gained.len(),
-                w.steps,
-                median(gained.clone()),
-                w.largest(way, "gained"),
-                1e3 * median(w.all(way, "deepest")),
-                1e3 * w.largest(way, "deepest"),
-                1e3 * median(w.all(way, "depth")),
-                median(w.all(way, "kinetic")),
-                supports_a_query(&w.runs[way]),
-                sum("escaped"),
-            );
         }
     }
     out

@@ -119,7 +119,7 @@ fn long() {
         piles(&dart, "over FCL, triangles", 1, 400, &["10", "triangles"]),
         piles(&dart, "over ODE", 8, 3000, &["15", "ode"]),
     ];
-    println!("{}", checks::long_table(&rows));
+    println!("{}", checks::pile_table(&rows));
 }
 
 /// Into the pages too: the first screen into this folder's, a row of each into the front page.
@@ -149,12 +149,12 @@ fn world() {
         let row = checks::worlds(scene, 10, steps, bodies, |seed| {
             eprintln!("{scene}: start {seed} of 10");
         });
-        for line in row.against() {
+        for line in &row.against {
             eprintln!("{scene}: {line}");
         }
         row
     });
-    println!("{}", checks::world_table(&rows));
+    println!("{}", checks::pile_table(&rows));
 }
 
 fn scene() {

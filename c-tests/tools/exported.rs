@@ -84,63 +84,52 @@ unsafe extern "C-unwind" fn center(obj: *const c_void, center: *mut ccd_vec3_t) 
 struct Settings(MaybeUninit<ccd_t>);
 
 impl Settings {
-    /// What MPR's calls read.
-    fn mpr() -> Settings {
+    /// What every call reads, and what `more` writes.
+    fn with(centers: bool, more: impl FnOnce(*mut ccd_t)) -> Settings {
         let mut settings = MaybeUninit::<ccd_t>::uninit();
         let ccd = settings.as_mut_ptr();
         unsafe {
             (&raw mut (*ccd).support1).write(Some(support));
             (&raw mut (*ccd).support2).write(Some(support));
-            (&raw mut (*ccd).center1).write(Some(center));
-            (&raw mut (*ccd).center2).write(Some(center));
             (&raw mut (*ccd).max_iterations).write(100);
-            (&raw mut (*ccd).mpr_tolerance).write(TOLERANCE);
+            if centers {
+                (&raw mut (*ccd).center1).write(Some(center));
+                (&raw mut (*ccd).center2).write(Some(center));
+            }
         }
+        more(ccd);
         Settings(settings)
+    }
+
+    /// What MPR's calls read.
+    fn mpr() -> Settings {
+        Settings::with(true, |ccd| unsafe {
+            (&raw mut (*ccd).mpr_tolerance).write(TOLERANCE);
+        })
     }
 
     /// What ccdPenetrationProven reads.
     fn minimum() -> Settings {
-        let mut settings = Settings::mpr();
-        let ccd = settings.0.as_mut_ptr();
-        unsafe {
-            (&raw mut (*ccd).mpr_tolerance)
-                .cast::<MaybeUninit<Real>>()
-                .write(MaybeUninit::uninit());
+        Settings::with(true, |ccd| unsafe {
             (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
-        }
-        settings
+        })
     }
 
     /// What ccdSignedDistance reads.
     fn distance() -> Settings {
-        let mut settings = MaybeUninit::<ccd_t>::uninit();
-        let ccd = settings.as_mut_ptr();
-        unsafe {
+        Settings::with(true, |ccd| unsafe {
             (&raw mut (*ccd).first_dir).write(None);
-            (&raw mut (*ccd).support1).write(Some(support));
-            (&raw mut (*ccd).support2).write(Some(support));
-            (&raw mut (*ccd).center1).write(Some(center));
-            (&raw mut (*ccd).center2).write(Some(center));
-            (&raw mut (*ccd).max_iterations).write(100);
             (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
-        }
-        Settings(settings)
+        })
     }
 
     /// What GJK's calls read.
     fn gjk() -> Settings {
-        let mut settings = MaybeUninit::<ccd_t>::uninit();
-        let ccd = settings.as_mut_ptr();
-        unsafe {
+        Settings::with(false, |ccd| unsafe {
             (&raw mut (*ccd).first_dir).write(Some(ccdFirstDirDefault));
-            (&raw mut (*ccd).support1).write(Some(support));
-            (&raw mut (*ccd).support2).write(Some(support));
-            (&raw mut (*ccd).max_iterations).write(100);
             (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
             (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
-        }
-        Settings(settings)
+        })
     }
 
     fn at_most(mut self, iterations: u32) -> Settings {

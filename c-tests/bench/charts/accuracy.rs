@@ -9,19 +9,9 @@ use super::figure::{self, Curve, Look, Mark, Panel, Unit};
 use super::{Bench, Page, look, name};
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::recorded::RANDOM;
+use crate::lab::recorded::{MOTIONS, RANDOM};
 use crate::lab::scene::Scene;
 use crate::{peers, progress};
-
-/// The motions whose frames are near each other: 0.1° and 0.1 mm a step.
-const FRAMES: [&str; 6] = [
-    "box_box_trajS",
-    "p162_p162_trajS",
-    "cyl_box_trajS",
-    "p642_cap_trajS",
-    "cap_cap_trajS",
-    "ell_ell_trajS",
-];
 
 /// Tolerances asked for, metres (libccd's EPA takes them as squares).
 fn tolerances(quick: bool) -> Vec<f64> {
@@ -123,36 +113,8 @@ fn picture(
     figure::grid(&page.file(file), title, columns, &panels, &notes);
 }
 
-/// What of an error can be seen: not less than the truth's own uncertainty, nor
-/// than a few ulps of a metre.
-fn visible(row: &Row) -> f64 {
-    row.mean_error.max(row.truth_gap).max(1e-15)
-}
-
-/// Whether `a` is at least as good as `b` in supports and error.
-fn beats(a: &Row, b: &Row) -> bool {
-    let (Some(sa), Some(sb)) = (a.supports, b.supports) else {
-        return false;
-    };
-    sa <= sb && visible(a) <= visible(b)
-}
-
-/// The rows of a set that no other method's row beats: the Pareto front.
-pub fn front<'a>(rows: &'a [Row], set: &str) -> Vec<&'a Row> {
-    let of = || rows.iter().filter(|r| r.set == set && r.supports.is_some());
-    let mut front: Vec<&Row> = of()
-        .filter(|b| !of().any(|a| beats(a, b) && !beats(b, a)))
-        .collect();
-    front.sort_by(|a, b| {
-        a.supports
-            .partial_cmp(&b.supports)
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
-    front
-}
-
 pub fn measure(bench: &Bench) -> Vec<Row> {
-    let sets = [&RANDOM[..], &FRAMES].concat();
+    let sets = [&RANDOM[..], &MOTIONS].concat();
     let bar = progress::bar(sets.len() as u64, "speed against accuracy");
     let mut rows = Vec::new();
     for set in sets {
@@ -269,7 +231,7 @@ pub fn draw(page: &Page, rows: &[Row]) {
     for (sets, file, what) in [
         (&RANDOM[..], "accuracy", "independent poses, guesses 5° off"),
         (
-            &FRAMES[..],
+            &MOTIONS[..],
             "frames",
             "motions of 0.1° and 0.1 mm a frame, warm",
         ),

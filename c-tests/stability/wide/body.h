@@ -26,7 +26,8 @@ typedef enum {
     PART_HALF_DISC,
     PART_FRUSTUM,
     PART_TEARDROP,
-    PART_HALF_BALL
+    PART_HALF_BALL,
+    PART_CUT_BALL
 } part_kind_t;
 
 typedef struct {

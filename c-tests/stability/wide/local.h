@@ -73,6 +73,13 @@ static void FN(part)(const part_t *s, const REAL d[3], REAL o[3])
                 o[i] = p[0] * d[i] / x;
         }
         break;
+    case PART_CUT_BALL: { /* without what is higher than p[1]: round wherever it is asked but there */
+        const REAL rim = ROOT((REAL)p[0] * p[0] - (REAL)p[1] * p[1]);
+        x = ROOT(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (i = 0; i < 3; i++)
+            o[i] = !(p[0] * d[2] > p[1] * x) ? p[0] * d[i] / x : i == 2 ? p[1] : l > 0 ? rim * d[i] / l : 0;
+        break;
+    }
     }
 }
 

@@ -128,6 +128,13 @@ static void make_half_ball(dice_t *d, body_t *s, double *points)
     s->centre[2] = -.3 * r;
 }
 
+static void make_cut_ball(dice_t *d, body_t *s, double *points)
+{
+    const double r = some(d);
+    (void)points;
+    set_part(&s->part, PART_CUT_BALL, r, r * (1 - dice_log(d, 1e-3, .1)), 0, 0);
+}
+
 static void make_superellipsoid(dice_t *d, body_t *s, double *points)
 {
     (void)points;
@@ -313,6 +320,7 @@ static const row_t rows[] = {
     {"1e5 m from the origin", {make_any, make_any}, .1, PLACE_NEAR, 1e5},
     {"ordinary", {make_plain, make_plain}, .3, PLACE_RANDOM, 0},
     {"ordinary, near", {make_plain, make_plain}, .3, PLACE_NEAR, 0},
+    {"ball with a small flat, and ball", {make_cut_ball, make_ball}, .3, PLACE_RANDOM, 0},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 

@@ -20,37 +20,36 @@
 
 /* --- answers ------------------------------------------------------------------------ */
 
-enum {
-    CALL_MPR,
-    CALL_MPR_WARM,
-    CALL_GJK,
-    CALL_SEPARATE,
-    CALL_MPR_INTERSECT,
-    CALL_GJK_INTERSECT,
-    CALL_PENETRATION,
-    CALL_PENETRATION_BARE, /* without centres */
-    CALL_MINIMUM,
-    CALL_MINIMUM_BARE,
-    CALL_LOCAL,
-    CALL_LOCAL_BARE,
-    CALL_INCREMENTAL,
-    CALL_ALONG,
-    CALL_DISTANCE,
-    CALLS
+static const struct {
+    const char *name;
+    int ask, bare; /* without centres */
+} calls[] = {
+    {"MPR", ASK_MPR, 0},
+    {"MPR warm", ASK_MPR_WARM, 0},
+    {"GJK", ASK_GJK, 0},
+    {"GJK separate", ASK_SEPARATE, 0},
+    {"MPR yes or no", ASK_MPR_INTERSECT, 0},
+    {"GJK yes or no", ASK_GJK_INTERSECT, 0},
+    {"penetration", ASK_PENETRATION, 0},
+    {"penetration, no centres", ASK_PENETRATION, 1},
+    {"proven", ASK_PROVEN, 0},
+    {"proven, no centres", ASK_PROVEN, 1},
+    {"local", ASK_LOCAL, 0},
+    {"local, no centres", ASK_LOCAL, 1},
+    {"incremental", ASK_INCREMENTAL, 0},
+    {"along", ASK_ALONG, 0},
+    {"distance", ASK_DISTANCE, 0},
 };
-
-static const char *const call_names[CALLS] = {
-    "MPR", "MPR warm", "GJK", "GJK separate", "MPR yes or no", "GJK yes or no", "penetration", "penetration, no centres",
-    "proven", "proven, no centres", "local", "local, no centres", "incremental", "along", "distance"};
+enum { CALLS = sizeof calls / sizeof calls[0] };
 
 typedef struct {
-    int code, call, points; /* points: witness points are given */
+    int code, call, ask, points; /* points: witness points are given */
     double tol, depth, lower, dir[3], normal[3], at[2][3];
     unsigned long supports, stack;
     int moved; /* asked with a state, after a motion */
 } said_t;
 
-static int is_bare(int call) { return call == CALL_PENETRATION_BARE || call == CALL_MINIMUM_BARE || call == CALL_LOCAL_BARE; }
+static int is_verdict(int ask) { return ask == ASK_MPR_INTERSECT || ask == ASK_GJK_INTERSECT; }
 
 static void take(const ccd_vec3_t *v, double o[3])
 {
@@ -72,11 +71,12 @@ static void take_penetration(said_t *x, const ccd_penetration_t *o)
 
 static said_t say(int call, const wide_pair_t *p, double tol, const double along[3], ccd_warm_t *warm)
 {
-    const void *a = &p->body[0], *b = &p->body[1];
+    const int ask = calls[call].ask;
     ccd_penetration_t o;
     ccd_distance_t q;
-    ccd_vec3_t dir, pos;
+    ccd_vec3_t dir, pos, way;
     ccd_real_t depth = 0;
+    call_rest_t rest;
     said_t x;
     ccd_t ccd;
     int i;
@@ -84,37 +84,32 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
     memset(&dir, 0, sizeof dir);
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = body_support;
-    ccd.center1 = ccd.center2 = is_bare(call) ? NULL : body_centre;
+    ccd.center1 = ccd.center2 = calls[call].bare ? NULL : body_centre;
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     ccd.max_iterations = (unsigned long)-1;
     x.call = call;
+    x.ask = ask;
+    memset(&rest, 0, sizeof rest);
+    for (i = 0; i < 3; i++)
+        way.v[i] = (ccd_real_t)along[i];
+    rest.along = &way;
+    rest.warm = warm;
+    rest.want = CCD_WANT_ALL;
+    rest.max_distance = (ccd_real_t)HUGE_VAL;
+    rest.depth = &depth;
+    rest.dir = &dir;
+    rest.pos = &pos;
+    rest.full = &o;
+    rest.distance = &q;
     x.tol = tol;
     body_calls = 0;
     body_stack_lowest = (const char *)__builtin_frame_address(0);
-    switch (call) {
-    case CALL_MPR: x.code = OURS(ccdMPRPenetration)(a, b, &ccd, &depth, &dir, &pos); break;
-    case CALL_MPR_WARM: x.code = OURS(ccdMPRPenetrationWarm)(a, b, &ccd, warm, &depth, &dir, &pos); break;
-    case CALL_GJK: x.code = OURS(ccdGJKPenetration)(a, b, &ccd, &depth, &dir, &pos); break;
-    case CALL_SEPARATE: x.code = OURS(ccdGJKSeparate)(a, b, &ccd, &dir); break;
-    case CALL_MPR_INTERSECT: x.code = OURS(ccdMPRIntersect)(a, b, &ccd) ? CCD_HIT : CCD_MISS; break;
-    case CALL_GJK_INTERSECT: x.code = OURS(ccdGJKIntersect)(a, b, &ccd) ? CCD_HIT : CCD_MISS; break;
-    case CALL_PENETRATION:
-    case CALL_PENETRATION_BARE: x.code = OURS(ccdPenetration)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
-    case CALL_MINIMUM:
-    case CALL_MINIMUM_BARE: x.code = OURS(ccdPenetrationProven)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
-    case CALL_LOCAL:
-    case CALL_LOCAL_BARE: x.code = OURS(ccdPenetrationLocal)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
-    case CALL_INCREMENTAL: x.code = OURS(ccdPenetrationIncremental)(a, b, &ccd, warm, CCD_WANT_ALL, &o); break;
-    case CALL_ALONG:
-        for (i = 0; i < 3; i++)
-            dir.v[i] = (ccd_real_t)along[i];
-        x.code = OURS(ccdPenetrationAlong)(a, b, &ccd, &dir, warm, CCD_WANT_ALL, &o);
-        break;
-    default: x.code = OURS(ccdSignedDistance)(a, b, &ccd, 0, 0, (ccd_real_t)HUGE_VAL, warm, CCD_WANT_POINTS, &q); break;
-    }
+    x.code = call_by_number(ask, &p->body[0], &p->body[1], &ccd, &rest);
+    if (is_verdict(ask))
+        x.code = x.code ? CCD_HIT : CCD_MISS;
     x.stack = (unsigned long)((const char *)__builtin_frame_address(0) - body_stack_lowest);
     x.supports = body_calls / 2;
-    if (call == CALL_DISTANCE) {
+    if (ask == ASK_DISTANCE) {
         /* as a depth: upper and lower bound change places with the sign */
         if (x.code == CCD_HIT || x.code == CCD_MISS || x.code == CCD_LIMIT) {
             x.depth = -(double)q.distance;
@@ -126,12 +121,12 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
             take(&q.point2, x.at[1]);
         }
     } else if (x.code == CCD_HIT || x.code == CCD_LIMIT) {
-        if (call >= CALL_PENETRATION) {
+        if (ask >= ASK_PENETRATION) {
             take_penetration(&x, &o);
-        } else if (call != CALL_MPR_INTERSECT && call != CALL_GJK_INTERSECT) {
+        } else if (!is_verdict(ask)) {
             x.depth = (double)depth;
             take(&dir, x.dir);
-            if (call == CALL_SEPARATE) {
+            if (ask == ASK_SEPARATE) {
                 x.depth = sqrt(truth_dot3(x.dir, x.dir));
                 for (i = 0; i < 3 && x.depth > 0; i++)
                     x.dir[i] /= x.depth;
@@ -239,15 +234,11 @@ typedef struct {
     int may_be_deep[TOLERANCES]; /* at this tolerance the minimum said CCD_LIMIT */
 } case_t;
 
-static int is_proven(int call)
-{
-    return call == CALL_GJK || call == CALL_SEPARATE || call == CALL_MINIMUM || call == CALL_MINIMUM_BARE || call == CALL_DISTANCE;
-}
+static int is_minimum(int ask) { return ask == ASK_PROVEN || ask == ASK_DISTANCE; }
 
-static int is_mpr(int call)
-{
-    return call == CALL_MPR || call == CALL_MPR_WARM || call == CALL_PENETRATION || call == CALL_PENETRATION_BARE;
-}
+static int is_proven(int ask) { return is_minimum(ask) || ask == ASK_GJK || ask == ASK_SEPARATE; }
+
+static int is_mpr(int ask) { return ask == ASK_MPR || ask == ASK_MPR_WARM || ask == ASK_PENETRATION; }
 
 static int judge_points(const said_t *x, const wide_pair_t *p, double within, dice_t *d)
 {
@@ -256,7 +247,7 @@ static int judge_points(const said_t *x, const wide_pair_t *p, double within, di
     for (k = 0; k < 2; k++)
         if (is_outside(&p->body[k], x->at[k], bound))
             return FAULT_OUTSIDE;
-    if ((x->call == CALL_LOCAL || x->call == CALL_LOCAL_BARE) && x->code == CCD_HIT && fall(p, x->dir, d) > 2 * within + bound)
+    if (x->ask == ASK_LOCAL && x->code == CCD_HIT && fall(p, x->dir, d) > 2 * within + bound)
         return FAULT_NO_MINIMUM;
     return 0;
 }
@@ -278,11 +269,11 @@ static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, in
         return faults | FAULT_MISSED;
     if (x->code == CCD_HIT && apart)
         return faults | FAULT_FALSE_HIT;
-    if (x->code == CCD_LIMIT && apart && x->call != CALL_DISTANCE)
+    if (x->code == CCD_LIMIT && apart && x->ask != ASK_DISTANCE)
         return faults | FAULT_FALSE_HIT;
-    if ((x->code == CCD_MISS && x->call != CALL_DISTANCE) || x->call == CALL_MPR_INTERSECT || x->call == CALL_GJK_INTERSECT)
+    if ((x->code == CCD_MISS && x->ask != ASK_DISTANCE) || is_verdict(x->ask))
         return faults;
-    if (x->call == CALL_SEPARATE && x->depth == 0)
+    if (x->ask == ASK_SEPARATE && x->depth == 0)
         return faults;
     for (i = 0; i < 3; i++)
         if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->points && !(isfinite(x->at[0][i]) && isfinite(x->at[1][i]))))
@@ -294,15 +285,15 @@ static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, in
     if (x->depth * along < h - c->noise)
         faults |= FAULT_UNSOUND;
     /* along a direction of the caller's the least depth is greater, and so may its bound be */
-    if (x->call != CALL_ALONG && x->lower > c->least + c->noise)
+    if (x->ask != ASK_ALONG && x->lower > c->least + c->noise)
         faults |= FAULT_FALSE_PROOF;
-    if ((x->call == CALL_MINIMUM || x->call == CALL_MINIMUM_BARE || x->call == CALL_DISTANCE) && x->code != CCD_LIMIT
+    if (is_minimum(x->ask) && x->code != CCD_LIMIT
         && x->depth - x->lower > within)
         faults |= FAULT_OPEN;
-    if (is_proven(x->call) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
+    if (is_proven(x->ask) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
         && x->code == CCD_HIT)
         faults |= FAULT_TOO_DEEP;
-    if (is_mpr(x->call) && x->code == CCD_HIT && x->supports < MPR_POINTS
+    if (is_mpr(x->ask) && x->code == CCD_HIT && x->supports < MPR_POINTS
         && x->depth > fmax(c->least, 0) + fmax(within, tolerance(TOL_PROMISED) * c->least) + c->noise)
         faults |= FAULT_TOO_DEEP;
     if (x->points && dice_below(d, 8) == 0)
@@ -331,7 +322,7 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
     int bit, new = 0;
     judged++;
     limits_of[x->call] += x->code == CCD_LIMIT;
-    if (x->call == CALL_MINIMUM) {
+    if (x->ask == ASK_PROVEN && !calls[x->call].bare) {
         minima[row] += x->code == CCD_HIT || x->code == CCD_LIMIT;
         limits[row] += x->code == CCD_LIMIT;
         limits_at[t] += x->code == CCD_LIMIT;
@@ -341,7 +332,7 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
             new |= wrong[row][x->call][bit]++ == 0;
     if (new) {
         printf("first seen in row %d (%s), pair %lu%s, tolerance %g, %s:", row, rows[row].name, (unsigned long)index,
-               x->moved ? ", moved" : "", x->tol, call_names[x->call]);
+               x->moved ? ", moved" : "", x->tol, calls[x->call].name);
         for (bit = 0; bit < FAULT_BITS; bit++)
             if (faults >> bit & 1)
                 printf(" %s;", fault_names[bit]);
@@ -368,7 +359,7 @@ static case_t known(const wide_pair_t *p, const said_t *said, int count)
     for (i = 0; i < count; i++) {
         if (said[i].normal[0] != 0 || said[i].normal[1] != 0 || said[i].normal[2] != 0)
             c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].normal));
-        if (said[i].call == CALL_MINIMUM_BARE && said[i].code == CCD_LIMIT)
+        if (said[i].ask == ASK_PROVEN && calls[said[i].call].bare && said[i].code == CCD_LIMIT)
             c.may_be_deep[i / CALLS % TOLERANCES] = 1;
     }
     return c;
@@ -455,7 +446,7 @@ int main(int argc, char **argv)
         printf("---|");
     printf("\n");
     for (k = 0; k < CALLS; k++) {
-        printf("| %s | %lu | %lu | %lu |", call_names[k], most_supports[k], most_stack[k], limits_of[k]);
+        printf("| %s | %lu | %lu | %lu |", calls[k].name, most_supports[k], most_stack[k], limits_of[k]);
         for (bit = 0; bit < FAULT_BITS; bit++) {
             for (sum = 0, row = 0; row < (int)ROWS; row++)
                 sum += wrong[row][k][bit];

@@ -1,0 +1,125 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Leaving a query from inside of a callback, of any entry point: by longjmp; compiled as C++, by an
+ * exception, which reaches the caller's catch as it was thrown and runs the destructors on its way.
+ * The program goes on, and the next query answers as ever. */
+
+#include "entries.h"
+
+static int calls_left, destroyed;
+
+#ifdef __cplusplus
+#include <stdexcept>
+#include <string>
+
+struct Watcher {
+    ~Watcher() { destroyed++; }
+};
+
+static void leave(void)
+{
+    Watcher watcher;
+    throw std::runtime_error("out of here");
+}
+
+/* Did the query leave? */
+static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, outputs_t *out)
+{
+    destroyed = 0;
+    try {
+        Watcher watcher;
+        run(entry, a, b, ccd, out);
+        return 0;
+    } catch (const std::runtime_error &e) {
+        CHECK(e.what() == std::string("out of here"), "%s: the exception thrown", entry->name);
+        CHECK(destroyed == 2, "%s: destructors run", entry->name);
+        return 1;
+    }
+}
+#else
+#include <setjmp.h>
+
+static jmp_buf home;
+
+static void leave(void)
+{
+    destroyed = 0;
+    longjmp(home, 7);
+}
+
+static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, outputs_t *out)
+{
+    if (setjmp(home) != 0)
+        return 1;
+    run(entry, a, b, ccd, out);
+    return 0;
+}
+#endif
+
+/* The how-many-th callback is the last. */
+static void count_down(void)
+{
+    if (--calls_left == 0)
+        leave();
+}
+
+static void leaving_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    count_down();
+    shape_support(obj, dir, out);
+}
+
+static void leaving_center(const void *obj, ccd_vec3_t *out)
+{
+    count_down();
+    shape_center(obj, out);
+}
+
+static void leaving_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *dir)
+{
+    count_down();
+    ccdFirstDirDefault(obj1, obj2, dir);
+}
+
+static void test(const call_t *entry)
+{
+    int left = 0, round;
+    for (round = 0; round < 20; round++) {
+        shape_t a, b;
+        ccd_t ccd;
+        outputs_t expected, out;
+        int expected_code, last;
+        random_pair(entry, round % 2, &a, &b, &ccd);
+        ccd.support1 = ccd.support2 = leaving_support;
+        if (ccd.center1 != NULL)
+            ccd.center1 = ccd.center2 = leaving_center;
+        if (ccd.first_dir != NULL)
+            ccd.first_dir = leaving_first_dir;
+        calls_left = 0;
+        memset(&expected, 0, sizeof expected);
+        expected_code = run(entry, &a, &b, &ccd, &expected);
+        for (last = 1; last <= 50; last++) {
+            int code;
+            calls_left = last;
+            if (!leaves(entry, &a, &b, &ccd, &out))
+                break;
+            left++;
+            calls_left = 0;
+            memset(&out, 0, sizeof out);
+            code = run(entry, &a, &b, &ccd, &out);
+            CHECK(code == expected_code && same_bits(&out, &expected, sizeof out), "%s after being left", entry->name);
+        }
+        CHECK(last > 1, "%s runs callbacks", entry->name);
+    }
+    printf("%s: left %d times\n", entry->name, left);
+}
+
+int main(void)
+{
+    int i;
+    for (i = 0; i < ENTRIES; i++)
+        test(&entries[i]);
+    test(&support_entry);
+    return checks_end();
+}
