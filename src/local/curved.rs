@@ -10,7 +10,7 @@
 //! Wright, Numerical Optimization, ch. 6). What it was off by is the error of R.
 
 use crate::known::round::{BLUNT, Symmetric};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Real, Vec3, ZERO, larger};
 
 /// Relative error of R up to which it leads to witness points, and up to which the first pair that
 /// confirms a remembered R confirms all of it. Insensitive: 0.1 to 0.4, within 0.1 %.
@@ -18,12 +18,6 @@ pub const FORETOLD: Real = 0.2;
 /// The least relative error of R that one pair tells: chance has a say in it. Measured: ×2 +0.2 %,
 /// +3 % (ellipsoids); without, one ellipsoid in 500 is three tolerances too deep.
 const CHANCE: Real = 0.3;
-/// Pairs that must be foretold so before it leads to witness points. Measured: ×2 +0.3 %, +20 %
-/// (ellipsoids in motion).
-const CERTAIN: u32 = 1;
-/// What bends by less than this share of what it bends by across is taken for an edge, which moves
-/// along itself alone.
-const EDGE: Real = 0.05;
 /// Relative error up to which R moves cuts; also that of a remembered R, until a pair tells.
 /// Measured: ×2 +1.2 %, +19 % (hulls); ÷2 +0.2 %, +6 %.
 pub const BELIEVED: Real = 0.5;
@@ -41,8 +35,8 @@ pub struct Curved {
     there: bool,
     /// Relative error, by the last pair; 1 where one alone has told, meaningless where R is not there.
     pub error: Real,
-    /// Pairs, one after the other, that R foretold to within [`FORETOLD`].
-    foretold: u32,
+    /// Did R foretell the last pair to within [`FORETOLD`]?
+    foretold: bool,
     /// The direction of the first pair; zero where R is remembered, until one has told.
     line: Vec3,
     /// Measured along a second direction too.
@@ -54,8 +48,8 @@ impl Curved {
         r: Symmetric([0.0; 6]),
         there: false,
         error: 0.0,
-        foretold: 0,
-        line: Vec3::new(0.0, 0.0, 0.0),
+        foretold: false,
+        line: ZERO,
         spread: false,
     };
 
@@ -85,10 +79,9 @@ impl Curved {
         &self.r
     }
 
-    /// May it be one of an object of that extent? Else it was another's.
-    pub fn fits(&self, size: Real) -> bool {
-        let largest: Real = self.r.0.iter().map(|entry| entry.abs()).sum();
-        largest <= BLUNT * size
+    /// How large an object is at least that has it, metres.
+    pub fn size(&self) -> Real {
+        self.r.0.iter().map(|entry| entry.abs()).sum::<Real>() / BLUNT
     }
 
     /// Learns from a smooth pair: a point that moved by `d` where its direction turned by `dn`.
@@ -98,20 +91,15 @@ impl Curved {
                 r: Symmetric::first(d, dn),
                 there: true,
                 error: 1.0,
-                foretold: 0,
                 line: *dn,
-                spread: false,
+                ..Self::NONE
             };
             return;
         }
         let w = d - self.r.times(dn);
         let dn2 = dn.norm_squared();
         self.error = (w.norm_squared() / d.norm_squared()).sqrt();
-        self.foretold = if self.error <= FORETOLD {
-            self.foretold + 1
-        } else {
-            0
-        };
+        self.foretold = self.error <= FORETOLD;
         let line2 = self.line.norm_squared();
         if line2 > 0.0 {
             self.spread |= self.line.cross(dn).norm_squared() > SPREAD * dn2 * line2;
@@ -136,28 +124,12 @@ impl Curved {
 
     /// The relative error to be reckoned with.
     pub fn worst(&self) -> Real {
-        if self.foretold > 1 {
-            self.error
-        } else {
-            larger(self.error, CHANCE)
-        }
+        larger(self.error, CHANCE)
     }
 
-    /// Does it lead to witness points, of a point seen along unit `n`?
-    pub fn is_certain(&self, n: &Vec3) -> bool {
-        self.there && self.foretold >= CERTAIN && !self.is_edge(n)
-    }
-
-    /// Does it bend along one direction across `n` alone? By its eigenvalues there, through their sum
-    /// and the sum of their squares.
-    fn is_edge(&self, n: &Vec3) -> bool {
-        let [xx, xy, xz, yy, yz, zz] = self.r.0;
-        let along = self.r.times(n);
-        let height = along.dot(n);
-        let sum = xx + yy + zz - height;
-        let all = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
-        let squares = all - 2.0 * along.norm_squared() + height * height;
-        !(0.5 * (sum * sum - squares) >= EDGE * squares)
+    /// Does it lead to witness points?
+    pub fn is_certain(&self) -> bool {
+        self.there && self.foretold
     }
 
     /// A kink along `dn` leaves R no more than this `room`. What no second pair confirmed ends.
@@ -210,7 +182,7 @@ mod tests {
                 let to = ask(n + way * step);
                 curved.learn(&(to.p - at.p), &(to.n - at.n));
             }
-            assert!(curved.is_believed() && curved.is_certain(&n) && curved.spread);
+            assert!(curved.is_believed() && curved.is_certain() && curved.spread);
             assert!(curved.across(&n).is_none());
             let to = ask(n + (t * 0.6 - u * 0.3) * step);
             let (d, dn) = (to.p - at.p, to.n - at.n);
