@@ -59,8 +59,8 @@
 //! *Level ground*: minima that form a curve or a surface are told by a model that is level over the
 //! whole first trust region.
 //!
-//! *Bounds*: after [`search::MOST`] support points, the caller's cap, four doubts, or when the trust
-//! radius has shrunk to nothing, the lowest direction met is returned, for the caller to go on from:
+//! *Bounds*: after [`search::MOST`] support points, the caller's cap, or four that were asked for what
+//! they tell, the lowest direction met is returned, for the caller to go on from:
 //! by this search as long as it gets lower, and then by the paper's method.
 //!
 //! # Memory
@@ -124,12 +124,12 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     known: &mut Known,
     hit: &mut Penetration,
 ) -> Result<bool, Stop> {
-    let mut search = Search::new();
-    let (first, mut queue) = search.recall(memory, &start);
+    let mut search = Search::default();
+    let queue = search.recall(memory, &start);
     let centre = inner.copied().unwrap_or_default();
-    match search.run(md, &centre, first, &mut queue, settings, known)? {
+    match search.run(md, &centre, queue, settings, known, hit)? {
         Outcome::Found => {
-            *hit = *search.minimum(memory);
+            search.leave(&hit.dir, memory);
             Ok(true)
         }
         Outcome::Apart(n) => Err(Stop::Apart(n)),

@@ -16,6 +16,9 @@ pub type Real = f32;
 /// A point or direction in three dimensions, metres.
 pub type Vec3 = nalgebra::Vector3<Real>;
 
+/// No vector, where a constant is wanted.
+pub const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
+
 /// The same in double precision whatever [`Real`] is.
 pub type Wide3 = nalgebra::Vector3<f64>;
 

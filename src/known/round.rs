@@ -21,7 +21,7 @@
 //! Source: own derivation. R is learned by Powell's symmetric Broyden formula (Nocedal and Wright,
 //! Numerical Optimization, ch. 6).
 
-use crate::math::{EPSILON, Real, Vec3, larger};
+use crate::math::{EPSILON, Real, Vec3, ZERO, larger};
 
 /// The least angle, radians, between two directions that tell a piece from another. Derived: the
 /// difference of two points is known to some ulps of the object's size, so of a ball's move by
@@ -41,13 +41,19 @@ pub struct Seen {
     pub p: Vec3,
 }
 
-/// How large an object is.
+impl Seen {
+    pub const NONE: Self = Self { n: ZERO, p: ZERO };
+}
+
+/// How far apart points of an object may be, metres, that are one.
 #[derive(Clone, Copy, Debug)]
-pub struct Extent {
-    /// The square of the largest distance of its points from an inner one, or of those of D, m².
-    pub size2: Real,
-    /// What each coordinate of its points may be off by, metres.
-    pub error: Real,
+pub struct Same {
+    /// What each coordinate may be off by.
+    pub rounding: Real,
+    /// Where a ball or disc was taken off: a radius is in error by more than rounding.
+    pub round: Real,
+    /// The square of the largest distance of D's points from an inner one, m²: how large an object is.
+    pub extent2: Real,
 }
 
 /// What two support points of one object show.
@@ -74,27 +80,25 @@ impl Pair {
     /// nearer the farther the point moved; and farther than an object of that size can bend there
     /// the point did not move smoothly.
     #[inline(always)]
-    pub fn of(old: &Seen, new: &Seen, extent: &Extent) -> Self {
-        let (d, dn) = (new.p - old.p, new.n - old.n);
-        let (moved, turned, along) = (d.norm_squared(), dn.norm_squared(), d.dot(&dn));
+    pub fn of(old: &Seen, new: &Seen, same: &Same) -> Self {
+        let by = Move::of(old, new);
         // Also NaN.
-        if !(turned > TOLD * TOLD) {
+        if !(by.dn2 > TOLD * TOLD) {
             return Self::Close;
         }
-        if moved <= 4.0 * extent.error * extent.error {
+        if by.d2 <= 4.0 * same.rounding * same.rounding {
             return Self::Vertex;
         }
         const PARALLEL: Real = 0.1 * TOLD;
-        if !(along > 0.0) {
+        if !(by.along > 0.0) {
             return Self::Kink;
         }
-        let aside2 = moved * turned - along * along;
-        if aside2 <= PARALLEL * PARALLEL * moved * turned && fits(along / turned, extent.size2) {
-            return Self::Ball(along / turned);
+        let aside2 = by.d2 * by.dn2 - by.along * by.along;
+        let radius = by.along / by.dn2;
+        if aside2 <= PARALLEL * PARALLEL * by.d2 * by.dn2 && fits(radius, same.extent2) {
+            return Self::Ball(radius);
         }
-        let ahead = d.dot(&new.n);
-        let excess = [ahead, along - ahead];
-        if along > extent.error && is_smooth(excess, moved, extent.size2 * turned, ALIKE) {
+        if by.is_smooth(same, ALIKE) {
             Self::Smooth
         } else {
             Self::Kink
@@ -102,16 +106,54 @@ impl Pair {
     }
 }
 
-/// Does a pair look smooth ([`Pair::of`]), whose points exceed each other's support plane by
-/// `excess`, within this relative difference, and are apart by a length whose square is `moved`?
-/// `room2`: the square of the angle between the directions times the size of the object.
-#[inline(always)]
-pub fn is_smooth([ahead, behind]: [Real; 2], moved: Real, room2: Real, alike: Real) -> bool {
-    let limit = alike * (ahead + behind);
-    let (gap2, limit2) = ((ahead - behind) * (ahead - behind), limit * limit);
-    gap2 <= limit2
-        && moved <= BLUNT * BLUNT * room2
-        && gap2 * moved <= limit2 * STEEP * STEEP * room2
+/// How a point moved, where its direction turned.
+pub struct Move {
+    pub d: Vec3,
+    pub dn: Vec3,
+    /// Their squares, and their product.
+    pub d2: Real,
+    pub dn2: Real,
+    pub along: Real,
+    /// The direction it turned to.
+    n: Vec3,
+}
+
+impl Move {
+    #[inline(always)]
+    pub fn of(old: &Seen, new: &Seen) -> Self {
+        let (d, dn) = (new.p - old.p, new.n - old.n);
+        Self {
+            d,
+            dn,
+            d2: d.norm_squared(),
+            dn2: dn.norm_squared(),
+            along: d.dot(&dn),
+            n: new.n,
+        }
+    }
+
+    /// By how much the old point is behind the new one's support plane, and the new one behind the
+    /// old one's.
+    #[inline(always)]
+    pub fn excess(&self) -> [Real; 2] {
+        let ahead = self.d.dot(&self.n);
+        [ahead, self.along - ahead]
+    }
+
+    /// Does it look smooth ([`Pair::of`]), within this relative difference of the excesses, and by
+    /// more than rounding?
+    #[inline(always)]
+    pub fn is_smooth(&self, same: &Same, alike: Real) -> bool {
+        let [ahead, behind] = self.excess();
+        let limit = alike * (ahead + behind);
+        let gap2 = (ahead - behind) * (ahead - behind);
+        let (limit2, room2) = (limit * limit, same.extent2 * self.dn2);
+        self.dn2 > TOLD * TOLD
+            && self.along > same.rounding
+            && gap2 <= limit2
+            && self.d2 <= BLUNT * BLUNT * room2
+            && gap2 * self.d2 <= limit2 * STEEP * STEEP * room2
+    }
 }
 
 /// A pair whose slope is larger than this share of the object must be more alike. Measured: ×2 no
@@ -138,6 +180,11 @@ pub struct Disc {
 }
 
 impl Disc {
+    pub const NONE: Self = Self {
+        radius: 0.0,
+        axis: ZERO,
+    };
+
     #[inline(always)]
     pub fn is_there(&self) -> bool {
         self.radius > 0.0
@@ -351,9 +398,10 @@ mod tests {
 
     /// What the closed forms below may be off by.
     const NEAR: Real = if EPSILON > 1e-10 { 3e-3 } else { 1e-7 };
-    const EXTENT: Extent = Extent {
-        size2: 1.0,
-        error: 4.0 * EPSILON,
+    const SAME: Same = Same {
+        rounding: 4.0 * EPSILON,
+        round: NEAR,
+        extent2: 1.0,
     };
 
     fn ask(shape: &impl Fn(&Vec3) -> Vec3, n: Vec3) -> Seen {
@@ -410,7 +458,7 @@ mod tests {
             let radius = |a: &dyn Fn(&Vec3) -> Vec3, b: Vec3| match Pair::of(
                 &ask(&a, m),
                 &ask(&a, b),
-                &EXTENT,
+                &SAME,
             ) {
                 Pair::Ball(radius) => radius,
                 _ => 0.0,
@@ -419,10 +467,10 @@ mod tests {
             let end = m.x * n.x > 0.0;
             assert!((radius(&rod, n) - if end { 0.3 } else { 0.0 }).abs() < NEAR);
             let (a, b) = (ask(&cube, m), ask(&cube, n));
-            let pair = Pair::of(&a, &b, &EXTENT);
+            let pair = Pair::of(&a, &b, &SAME);
             assert_eq!(pair == Pair::Vertex, a.p == b.p, "{pair:?}");
             assert!(!matches!(pair, Pair::Ball(_)), "{pair:?}");
-            assert_eq!(Pair::of(&a, &a, &EXTENT), Pair::Close);
+            assert_eq!(Pair::of(&a, &a, &SAME), Pair::Close);
         }
     }
 
@@ -442,7 +490,7 @@ mod tests {
                 let [a, b, c] = [m, n, third].map(|n| ask(shape, n));
                 let one_end = a.p.z * b.p.z > 0.0 && b.p.z * c.p.z > 0.0 && a.p.z < 0.45;
                 let steep = m.z.abs().max(n.z.abs()).max(third.z.abs()) > 0.9;
-                if Pair::of(&a, &b, &EXTENT) != Pair::Smooth || !one_end || steep {
+                if Pair::of(&a, &b, &SAME) != Pair::Smooth || !one_end || steep {
                     continue;
                 }
                 let Some(disc) = Disc::of(&a, &b) else {
@@ -500,21 +548,18 @@ mod tests {
         assert!(core(&up(0.4, 0.6)) < 10.0 * NEAR);
         assert!(core(&up(0.5, -0.5)) > 0.1);
         assert_eq!(
-            Pair::of(&up(0.5, -0.5), &up(0.5, -0.9), &EXTENT),
+            Pair::of(&up(0.5, -0.5), &up(0.5, -0.9), &SAME),
             Pair::Vertex
         );
         let at = |x: Real, z: Real| ask(&teardrop, Vec3::new(x, 0.2, z));
-        let pair = Pair::of(&at(1.0, -0.2), &at(1.0, 0.1), &EXTENT);
+        let pair = Pair::of(&at(1.0, -0.2), &at(1.0, 0.1), &SAME);
         assert!(
             matches!(pair, Pair::Ball(r) if (r - 0.3).abs() < NEAR),
             "{pair:?}"
         );
         let tip = at(0.1, 1.0);
         assert!((tip.p - tip.n * 0.3).norm() > 0.1);
-        assert_eq!(
-            Pair::of(&at(0.1, 1.0), &at(0.2, 1.0), &EXTENT),
-            Pair::Vertex
-        );
+        assert_eq!(Pair::of(&at(0.1, 1.0), &at(0.2, 1.0), &SAME), Pair::Vertex);
     }
 
     #[test]
@@ -527,7 +572,7 @@ mod tests {
             n: Vec3::x(),
             p: Vec3::x(),
         };
-        assert_eq!(Pair::of(&good, &bad, &EXTENT), Pair::Close);
+        assert_eq!(Pair::of(&good, &bad, &SAME), Pair::Close);
         assert!(Disc::of(&good, &good).is_none());
         assert!(Disc::default().turned(&good, &good, 0.0).is_none());
         let mut r = Symmetric::scaled_identity(1.0);

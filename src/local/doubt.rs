@@ -3,34 +3,21 @@
 
 //! What is not certain at the model's minimum, and where to ask for it.
 
-use super::object::Object;
-use super::search::{HAIR, SAME, Search};
+use super::search::{SAME, Search};
 use super::trust_region::{ASIDE, FIRST};
-use super::walk::{Kink, ROOM};
+use super::walk::ROOM;
 use crate::known::round::TOLD;
-use crate::math::{Real, Vec3, larger, lesser, perpendicular, unit};
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
 
 impl Search {
-    /// Are the round parts of an active point in doubt at unit `n`, where the objects' own points are
-    /// in these places? Also where an object's own is another one.
+    /// Are the round parts of an active point in doubt at unit `n`?
     #[inline(always)]
-    pub(super) fn is_doubtful(&self, n: &Vec3, places: [usize; 2], hair: Real) -> bool {
-        if !self.is_round() {
-            return false;
-        }
+    pub(super) fn is_doubtful(&self, n: &Vec3, hair: Real) -> bool {
         let end = &self.step.end;
-        let kinks = end.kinks.iter().take(end.count);
-        let mut hair = hair;
-        for (o, (object, place)) in self.objects.iter().zip(places).enumerate() {
-            let own = |k: &Kink| k.object == o && k.point == place;
-            if object.is_round() && end.active[o % 2] != place && !kinks.clone().any(own) {
-                hair = 0.0;
-            }
-        }
         let unseen = |o: usize, k: usize| self.objects[o % 2].is_unseen(k, n, hair);
         unseen(0, end.active[0])
             || unseen(1, end.active[1])
-            || kinks.clone().any(|k| unseen(k.object, k.point))
+            || (end.kinks.iter().take(end.count)).any(|k| unseen(k.object, k.point))
     }
 
     /// What R leaves open at the best direction, whose depth is the model's least: where it was
@@ -38,13 +25,12 @@ impl Search {
     /// tolerance, if R bends by its error less, at the model's minimum.
     #[inline(never)]
     pub(super) fn open(&mut self, b: &Vec3) -> Option<Vec3> {
-        let curved = |object: &Object| object.curved.is_there();
-        if !self.objects.iter().any(curved) {
+        if !self.is_curved() {
             return None;
         }
         // So near to the best direction another point would tell nothing.
         let far = (self.step.n - b).norm_squared() > TOLD * TOLD;
-        if far && !self.is_stiff() && !(self.gain_by_less() <= self.tolerance) {
+        if far && !(self.gain_by_less() <= self.tolerance) {
             return Some(self.step.n);
         }
         if self.step.end.count == 2 {
@@ -94,9 +80,8 @@ impl Search {
     /// From the model's minimum to where a doubted vertex shows, by so little that the depth there
     /// is the minimum's within the tolerance.
     #[cold]
-    pub(super) fn beside(&mut self) -> Vec3 {
+    pub(super) fn beside(&self) -> Vec3 {
         let n = self.step.n;
-        let hair = HAIR * self.tolerance;
         let end = &self.step.end;
         let places = [(0, end.active[0]), (1, end.active[1])];
         let kinks = end
@@ -107,33 +92,20 @@ impl Search {
         let mut side = Vec3::zeros();
         let mut worst = -1.0;
         let mut size: Real = 0.0;
-        let mut far = Real::INFINITY;
-        let mut which = (2, 0);
         for (o, k) in places.into_iter().chain(kinks) {
             let object = &self.objects[o % 2];
-            let doubted = self.asked == 1 || object.is_unseen(k, &self.best().n, 0.0);
+            let doubted = object.is_unseen(k, &self.best().n, 0.0);
             let off = object.at[k % ROOM].n - n;
-            let radius = object.radius(k, &n);
-            let lift = radius * off.norm_squared();
-            if object.is_round() && doubted && lift > worst {
-                (side, worst, size, which) = (off, lift, radius, (o, k));
-                far = off.norm();
+            let lift = object.lift(k, &n);
+            if doubted && lift > worst {
+                (side, worst, size) = (off, lift, 2.0 * lift / off.norm_squared());
             }
         }
         let side = side - n * n.dot(&side);
-        let mut side = unit(&side).unwrap_or_else(|| perpendicular(&n));
-        if which == self.doubted {
-            // It showed nothing there.
-            side = n.cross(&side);
-        }
-        self.doubted = which;
+        let side = unit(&side).unwrap_or_else(|| perpendicular(&n));
         let same = self.same().round;
-        let tilt = if end.count == 0 {
-            // Enough, and to spare, to be told from a vertex.
-            larger(10.0 * TOLD, 8.0 * same / size)
-        } else {
-            larger(lesser((0.8 * hair / size).sqrt(), 0.5 * far), 10.0 * TOLD)
-        };
+        // Enough, and to spare, to be told from a vertex.
+        let tilt = larger(10.0 * TOLD, 8.0 * same / size);
         // Not NaN, whose tilt is none.
         let n = n + side * if tilt < FIRST { tilt } else { FIRST };
         n * (1.0 / n.norm())

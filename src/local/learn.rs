@@ -4,12 +4,10 @@
 //! What a new point of an object shows: a vertex again, a ball, a disc, R; or that one of them is
 //! not.
 
-use super::curved::{BELIEVED, Curved};
-use super::object::{Found, Object, Same};
+use super::curved::Curved;
+use super::object::{Found, Object};
 use super::walk::ROOM;
-use crate::known::round::{
-    ALIKE, BLUNT, Disc, Extent, Pair, Seen, Symmetric, TOLD, fits, is_smooth,
-};
+use crate::known::round::{ALIKE, BLUNT, Disc, Move, Pair, Same, Seen, Symmetric, TOLD, fits};
 use crate::math::{EPSILON, Real, Vec3, larger};
 
 /// Relative difference of a remembered disc's radius and that of a pair that shows it again.
@@ -63,10 +61,6 @@ impl Object {
         if let Some(k) = self.twin(&new.p, false, same.rounding) {
             return Shown::Twin(k);
         }
-        let extent = Extent {
-            size2: same.extent2,
-            error: same.rounding,
-        };
         let others = if self.flat {
             *best..*best + 1
         } else {
@@ -74,15 +68,13 @@ impl Object {
         };
         let mut smooth = false;
         for k in others {
-            match Pair::of(&self.at[k % ROOM], new, &extent) {
-                Pair::Ball(radius) if !self.given_up => return Shown::Ball(radius),
+            match Pair::of(&self.at[k % ROOM], new, same) {
+                Pair::Ball(radius) => return Shown::Ball(radius),
                 Pair::Smooth => smooth = true,
                 _ => (),
             }
         }
-        if self.given_up {
-            Shown::Nothing
-        } else if smooth || self.pieces >> *best & 1 != 0 {
+        if smooth {
             Shown::Smooth
         } else {
             Shown::Nothing
@@ -97,30 +89,26 @@ impl Object {
         let mut twin = ROOM;
         let mut nearest = Real::INFINITY;
         let mut vertex = false;
-        let mut piece = 0;
         let mut room = Real::INFINITY;
         for k in 0..self.len.min(ROOM) {
             let old = &self.at[k];
-            let (d, dn) = (new.p - old.p, new.n - old.n);
-            let (d2, dn2) = (d.norm_squared(), dn.norm_squared());
-            let (ahead, behind) = (d.dot(&new.n), -d.dot(&old.n));
+            let by = Move::of(old, new);
             // Also NaN.
+            let [ahead, behind] = by.excess();
             if !(ahead >= -rounding && behind >= -rounding) {
                 return Shown::Contradiction;
             }
-            let repeated = d2 <= 4.0 * rounding * rounding;
-            let room2 = same.extent2 * dn2;
-            let one_piece = if dn2 > TOLD * TOLD {
-                let smooth = ahead + behind > rounding
-                    && is_smooth([ahead, behind], d2, room2, self.alike());
-                smooth || self.pieces >> k & 1 != 0 || self.curved.foretells(&d, &dn)
+            let repeated = by.d2 <= 4.0 * rounding * rounding;
+            let one_piece = if by.dn2 > TOLD * TOLD {
+                by.is_smooth(same, self.alike())
+                    || self.pieces >> k & 1 != 0
+                    || self.curved.foretells(&by.d, &by.dn)
             } else {
-                d2 <= BLUNT * BLUNT * room2
+                by.d2 <= BLUNT * BLUNT * same.extent2 * by.dn2
             };
             if repeated || one_piece {
-                piece |= u32::from(!repeated) << k;
-                if dn2 < nearest {
-                    (twin, nearest, vertex) = (k, dn2, repeated);
+                if by.dn2 < nearest {
+                    (twin, nearest, vertex) = (k, by.dn2, repeated);
                 }
             } else if k == *best {
                 room = 2.0 * ahead.min(behind);
@@ -145,13 +133,6 @@ impl Object {
             self.span[k % ROOM] = larger(nearest, self.span[k % ROOM]);
         }
         self.note();
-        if self.curved.is_believed() {
-            for k in (0..self.len.min(ROOM)).rev() {
-                if piece >> k & 1 != 0 && k != twin && k != *best {
-                    self.drop(k, [&mut twin, best]);
-                }
-            }
-        }
         if twin < ROOM {
             Shown::Twin(twin)
         } else {
@@ -193,26 +174,18 @@ impl Object {
 
     pub(super) fn disc_of(&self, k: usize, best: usize, new: &Seen, same: &Same) -> Smooth {
         let old = &self.at[k % ROOM];
-        let (d, dn) = (new.p - old.p, new.n - old.n);
-        let (d2, dn2, along) = (d.norm_squared(), dn.norm_squared(), d.dot(&dn));
-        let excess = [d.dot(&new.n), -d.dot(&old.n)];
-        let told = dn2 > TOLD * TOLD && along > same.rounding;
-        let room2 = same.extent2 * dn2;
+        let by = Move::of(old, new);
         let one = k == best && self.pieces >> k & 1 != 0;
-        if !told || !one && !is_smooth(excess, d2, room2, self.alike()) {
+        if !(one || by.is_smooth(same, self.alike())) {
             return Smooth::None;
         }
         let Some(disc) = Disc::of(old, new).filter(|disc| fits(disc.radius, same.extent2)) else {
             return Smooth::Other(k);
         };
-        let found = Found {
-            disc,
-            pair: [old.n, new.n],
-            carrier: new.p - disc.point(&new.n),
-        };
+        let found = Found::of(disc, old, new);
         let third = |at: &Seen| found.is_shown_by(at);
         let confirmed = self.at.iter().take(self.len).any(third);
-        Smooth::Disc(found, confirmed, 2.0 * along * along < d2 * dn2)
+        Smooth::Disc(found, confirmed, 2.0 * by.along * by.along < by.d2 * by.dn2)
     }
 
     /// Turns a remembered disc to where two points show it.
@@ -231,11 +204,7 @@ impl Object {
         let anew = Disc::of(&old, new)
             .filter(|anew| (anew.radius - disc.radius).abs() <= BALL * disc.radius);
         if let Some(disc) = anew.or_else(|| disc.turned(&old, new, same.round)) {
-            let found = Found {
-                disc,
-                carrier: new.p - disc.point(&new.n),
-                pair: [old.n, new.n],
-            };
+            let found = Found::of(disc, &old, new);
             return self.take_disc((&found, anew.is_some()), asked, k, same);
         }
         k
@@ -347,44 +316,30 @@ impl Object {
     /// A ball or disc that was refuted is no more than a curvature.
     #[cold]
     pub fn unround(&mut self) {
-        let disc = *self.disc();
-        if self.radius > 0.0 {
-            self.curved = Curved::recall(Symmetric::scaled_identity(self.radius));
-        } else if self.found_at > 0 {
-            let [a, b] = self.found.pair;
-            self.curved = Curved::NONE;
+        let (radius, disc, [a, b]) = (self.radius, *self.disc(), self.found.pair);
+        let (carried, found) = (self.seen, disc.is_there() && self.found_at > 0);
+        self.forget();
+        if radius > 0.0 {
+            self.curved = Curved::recall(Symmetric::scaled_identity(radius));
+        } else if found {
             self.curved
                 .learn(&(disc.point(&b) - disc.point(&a)), &(b - a));
-            if self.confirmed {
-                self.curved.error = BELIEVED;
-            }
         }
-        (self.radius, self.found, self.confirmed) = (0.0, Found::NONE, false);
         // The points that were seen to be of it bend.
-        self.carried = self.seen;
-        self.seen = 0;
-        for k in 0..self.len.min(ROOM) {
-            let p = self.at[k].p;
-            (self.x[k], self.y[k], self.z[k]) = (p.x, p.y, p.z);
-        }
+        self.carried = carried;
         self.note();
     }
 
-    /// It has neither the ball nor the disc that it showed.
-    #[cold]
-    pub fn give_up(&mut self) {
-        self.unround();
-        self.given_up = true;
-    }
-
-    /// What is round of it is another's.
+    /// Nothing of it is round, but the points as they were seen are its.
     #[cold]
     pub fn forget(&mut self) {
-        if self.is_round() {
-            self.unround();
-            self.curved = Curved::NONE;
-            self.note();
+        (self.radius, self.found, self.confirmed) = (0.0, Found::NONE, false);
+        (self.curved, self.carried, self.seen) = (Curved::NONE, 0, 0);
+        for k in 0..self.len.min(ROOM) {
+            let p = self.at[k].p;
+            self.set(k, &p, false);
         }
+        self.note();
     }
 
     /// Takes a new point, the vertex in place `twin` if known; returns its place. `best`: the best

@@ -29,23 +29,54 @@ pub struct Memory {
     pub curved: u32,
 }
 
-/// Bits of [`Memory::curved`] for the kind of one object's round part; see [`Memory::round`].
+/// Bits of [`Memory::curved`] for the kind of one object's round part: nothing, a ball, a disc, R.
 const KIND: u32 = 2;
-const NONE: u32 = 0;
-const BALL: u32 = 1;
 const DISC: u32 = 2;
-const CURVED: u32 = 3;
+const CURVED: usize = 3;
 /// The numbers of each kind: nothing, a radius, an axis times a radius, a matrix.
-const NUMBERS: [usize; 4] = [0, 1, 3, 6];
+const NUMBERS: [usize; 4] = [0, 1, 3, FEW];
 /// Room for numbers in [`Memory::curvature`].
 const FEW: usize = 6;
+
+/// The kind of a round part, and its numbers.
+fn numbers(round: &Round) -> (usize, [Real; FEW]) {
+    match round {
+        Round::None => (0, [0.0; FEW]),
+        Round::Ball(radius) => (1, [*radius, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        Round::Disc(disc) => {
+            let axis = disc.axis * disc.radius;
+            (2, [axis.x, axis.y, axis.z, 0.0, 0.0, 0.0])
+        }
+        Round::Curved(Symmetric(r)) => (CURVED, *r),
+    }
+}
+
+/// The round part of that kind with these numbers, if they make sense.
+fn round(kind: usize, numbers: &[Real; FEW]) -> Round {
+    let [x, y, z, ..] = *numbers;
+    let axis = Vec3::new(x, y, z);
+    let size: Real = numbers.iter().map(|number| number.abs()).sum();
+    match (kind, unit(&axis)) {
+        // Also NaN.
+        _ if !(size > 0.0 && size < Real::INFINITY) => Round::None,
+        (1, _) => Round::Ball(x),
+        (2, Some(unit)) => Round::Disc(Disc {
+            radius: axis.norm(),
+            axis: unit,
+        }),
+        (CURVED, _) => Round::Curved(Symmetric(*numbers)),
+        _ => Round::None,
+    }
+}
 
 /// [`Memory::count`] where an edge of each object crosses the other's: the slopes at one end of both,
 /// at the other end of the one, and of the other.
 pub const EDGES: u32 = 4;
-/// How much farther aside edges are asked for than corners, …
+/// How much farther aside edges are asked for than corners. Measured: 1 +0.1 %, +4 % (boxes in
+/// motion); 2 no change; …
 const WIDER: Real = 1.4;
-/// … and the second of the two directions, to the other side.
+/// … and the second of the two directions, to the other side: not opposite to the first, where both
+/// could show the same ends. Measured: ÷2 +0.1 %, +3 %; −1 +0.9 %, +12 % (boxes in motion).
 const OPPOSITE: Real = -0.7;
 
 /// Directions to ask before the first model, last one first.
@@ -59,6 +90,19 @@ impl Queue {
         dirs: [Vec3::new(0.0, 0.0, 0.0); 3],
         len: 0,
     };
+
+    /// One direction.
+    #[inline]
+    pub fn of(n: Vec3) -> Self {
+        let mut queue = Self::EMPTY;
+        queue.push(n);
+        queue
+    }
+
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
 
     #[inline]
     fn push(&mut self, n: Vec3) {
@@ -106,104 +150,56 @@ impl Memory {
         self.put(round);
     }
 
-    /// Is there room for no more than six numbers?
-    fn is_full(&self) -> bool {
-        self.count > 1
-    }
-
     /// Notes what is round of each object; of R what there is room for.
     fn put(&mut self, round: &[Round; 2]) {
-        let mut kinds = [0, 1].map(|o: usize| match &round[o % 2] {
-            Round::None => NONE,
-            Round::Ball(_) => BALL,
-            Round::Disc(_) => DISC,
-            Round::Curved(_) => CURVED,
-        });
-        let needed = |kinds: &[u32; 2]| -> usize {
-            kinds.iter().map(|kind| NUMBERS[*kind as usize % 4]).sum()
-        };
-        for o in (0..2).rev() {
-            if self.is_full() && kinds[o] == CURVED && needed(&kinds) > FEW {
-                kinds[o] = NONE;
-            }
-        }
-        self.curved = kinds[0] | kinds[1] << KIND;
-        if self.curved == 0 {
+        let [one, two] = round.map(|round| numbers(&round));
+        let (mut kinds, mut at) = ([one.0, two.0], 0);
+        if kinds == [0; 2] {
             return;
         }
-        let mut at = 0;
-        for (round, kind) in round.iter().zip(kinds) {
-            match round {
-                Round::Ball(radius) => self.set(at, *radius),
-                Round::Disc(disc) => {
-                    for i in 0..3 {
-                        self.set(at + i, disc.axis[i] * disc.radius);
-                    }
-                }
-                Round::Curved(Symmetric(r)) if kind == CURVED => {
-                    for (i, entry) in r.iter().enumerate() {
-                        self.set(at + i, *entry);
-                    }
-                }
-                _ => (),
+        if self.count > 1 && NUMBERS[kinds[0] % 4] + NUMBERS[kinds[1] % 4] > FEW {
+            let second = usize::from(kinds[1] == CURVED);
+            kinds[second] = 0;
+        }
+        let mut all = [0.0; FEW + 9];
+        for (kind, (_, own)) in kinds.into_iter().zip([one, two]) {
+            for (place, number) in all.iter_mut().skip(at).zip(own).take(NUMBERS[kind % 4]) {
+                *place = number;
             }
-            at += NUMBERS[kind as usize % 4];
+            at += NUMBERS[kind % 4];
         }
-    }
-
-    /// The number in that place; 0 where there is none.
-    #[inline(always)]
-    fn get(&self, i: usize) -> Real {
-        match self.curvature.get(i) {
-            Some(number) => *number,
-            None if self.is_full() => 0.0,
-            None => *self.slopes.iter().flatten().nth(i - FEW).unwrap_or(&0.0),
+        let mut all = all.into_iter();
+        self.curvature = self.curvature.map(|_| all.next().unwrap_or(0.0));
+        if self.count < 2 {
+            self.slopes = self.slopes.map(|v| v.map(|_| all.next().unwrap_or(0.0)));
         }
-    }
-
-    #[inline(always)]
-    fn set(&mut self, i: usize, number: Real) {
-        if let Some(place) = self.curvature.get_mut(i) {
-            *place = number;
-        } else if let Some(place) = self.slopes.iter_mut().flatten().nth(i - FEW) {
-            *place = number;
-        }
+        self.curved = (kinds[0] | kinds[1] << KIND) as u32;
     }
 
     /// What was round of each object and still makes sense.
     #[inline]
     pub fn round(&self) -> [Round; 2] {
-        let mut round = [Round::None; 2];
-        if self.curved == 0 {
-            return round;
+        // Of several cuts there is no room beside them.
+        let slopes: &[Vec3] = if self.count < 2 { &self.slopes } else { &[] };
+        let others = slopes.iter().flatten();
+        let mut all = [0.0; FEW + 9];
+        for (place, number) in all.iter_mut().zip(self.curvature.iter().chain(others)) {
+            *place = *number;
         }
         let mut at = 0;
-        for (o, round) in round.iter_mut().enumerate() {
-            let kind = self.curved >> (KIND * o as u32) & 3;
-            let vector = || Vec3::new(self.get(at), self.get(at + 1), self.get(at + 2));
-            *round = match kind {
-                BALL => Round::Ball(self.get(at)),
-                DISC => {
-                    let radius = vector().norm();
-                    let axis = unit(&vector());
-                    axis.map_or(Round::None, |axis| Round::Disc(Disc { radius, axis }))
-                }
-                CURVED => Round::Curved(Symmetric([0, 1, 2, 3, 4, 5].map(|i| self.get(at + i)))),
-                _ => Round::None,
-            };
-            at += NUMBERS[kind as usize % 4];
-            let sound = match round {
-                Round::Ball(radius) => *radius > 0.0 && *radius < Real::INFINITY,
-                Round::Disc(disc) => disc.radius < Real::INFINITY,
-                Round::Curved(Symmetric(r)) => r.iter().sum::<Real>().is_finite(),
-                Round::None => true,
-            };
-            // Of several cuts there is no room for more.
-            if !sound || self.is_full() && at > FEW {
-                *round = Round::None;
+        [0, KIND].map(|shift| {
+            let kind = (self.curved >> shift) as usize % 4;
+            let mut own = [0.0; FEW];
+            for (own, number) in own
+                .iter_mut()
+                .zip(all.iter().skip(at))
+                .take(NUMBERS[kind % 4])
+            {
+                *own = *number;
             }
-        }
-        round
+            at += NUMBERS[kind % 4];
+            round(kind, &own)
+        })
     }
 
     /// The memory of the same objects in the other order, whose D is this one's mirror image

@@ -25,8 +25,8 @@
 
 use super::curved::Curved;
 use super::walk::{Cuts, LANES, ROOM, Row};
-use crate::known::round::{ALIKE, Disc, Round, Seen, fits};
-use crate::math::{Real, Vec3, larger};
+use crate::known::round::{ALIKE, Disc, Round, Same, Seen, fits};
+use crate::math::{Real, Vec3, ZERO, larger};
 
 /// How many times as far from where it was seen as the directions are apart that showed it what is
 /// round is believed: the body may be cut off beyond. Measured: 1 +1.1 %, +8 % (cylinders); 2 −0.1 %,
@@ -42,7 +42,7 @@ const FLAT: Real = 0.05;
 const ABOUT: Real = 0.05;
 
 /// A disc and how it was found.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Found {
     pub disc: Disc,
     /// The directions of the pair.
@@ -53,13 +53,18 @@ pub struct Found {
 
 impl Found {
     pub(super) const NONE: Self = Self {
-        disc: Disc {
-            radius: 0.0,
-            axis: Vec3::new(0.0, 0.0, 0.0),
-        },
-        pair: [Vec3::new(0.0, 0.0, 0.0); 2],
-        carrier: Vec3::new(0.0, 0.0, 0.0),
+        disc: Disc::NONE,
+        pair: [ZERO; 2],
+        carrier: ZERO,
     };
+
+    pub(super) fn of(disc: Disc, old: &Seen, new: &Seen) -> Self {
+        Self {
+            disc,
+            pair: [old.n, new.n],
+            carrier: new.p - disc.point(&new.n),
+        }
+    }
 
     /// Does this point carry it, too? Of another smooth surface it would be off by a third order of
     /// the angles between the three directions.
@@ -73,25 +78,12 @@ impl Found {
     }
 }
 
-/// How far apart points of an object may be, metres, that are one.
-#[derive(Clone, Copy)]
-pub struct Same {
-    /// By rounding.
-    pub rounding: Real,
-    /// Where a ball or disc was taken off: a radius is in error by more than rounding.
-    pub round: Real,
-    /// The squared extent of D from its centre, m².
-    pub extent2: Real,
-}
-
 /// One object's points, obj1's or those of −obj2.
 pub struct Object {
     /// Support points, each where it was seen nearest to the best direction.
     pub at: [Seen; ROOM],
     /// The same without the ball or disc.
-    pub(super) x: Row,
-    pub(super) y: Row,
-    pub(super) z: Row,
+    pub(super) core: [Row; 3],
     pub len: usize,
     /// Those seen along two directions, as bits, …
     pub(super) seen: u32,
@@ -113,36 +105,35 @@ pub struct Object {
     pub pieces: u32,
     /// Has it a ball, a disc or R?
     pub(super) round: bool,
-    /// It showed balls or discs that it has not: none is looked for.
-    pub(super) given_up: bool,
     /// A vertex was seen twice: a polytope, it seems.
     pub(super) flat: bool,
 }
 
-impl Object {
-    pub const NEW: Self = Self {
-        at: [Seen {
-            n: Vec3::new(0.0, 0.0, 0.0),
-            p: Vec3::new(0.0, 0.0, 0.0),
-        }; ROOM],
-        x: [0.0; ROOM],
-        y: [0.0; ROOM],
-        z: [0.0; ROOM],
-        len: 0,
-        seen: 0,
-        span: [0.0; ROOM],
-        radius: 0.0,
-        found: Found::NONE,
-        found_at: 0,
-        confirmed: false,
-        carried: 0,
-        curved: Curved::NONE,
-        pieces: 0,
-        round: false,
-        given_up: false,
-        flat: false,
-    };
+impl Default for Object {
+    /// Nothing: of a constant it is zeroed in its place, not copied there.
+    #[inline(always)]
+    fn default() -> Self {
+        const NONE: Object = Object {
+            at: [Seen::NONE; ROOM],
+            core: [[0.0; ROOM]; 3],
+            len: 0,
+            seen: 0,
+            span: [0.0; ROOM],
+            radius: 0.0,
+            found: Found::NONE,
+            found_at: 0,
+            confirmed: false,
+            carried: 0,
+            curved: Curved::NONE,
+            pieces: 0,
+            round: false,
+            flat: false,
+        };
+        NONE
+    }
+}
 
+impl Object {
     /// What was round of it in the query before.
     pub fn recall(&mut self, round: Round) {
         match round {
@@ -199,16 +190,9 @@ impl Object {
         self.flat || self.round && !self.curved.is_there()
     }
 
-    /// Has it a disc that more than a pair showed?
-    #[inline(always)]
-    pub fn is_confirmed(&self) -> bool {
-        self.disc().is_there() && self.confirmed
-    }
-
-    /// Has it a remembered ball or disc that no sample has shown?
+    /// Has it something remembered that no sample has shown?
     pub fn is_guess(&self) -> bool {
-        let guess = self.round && !self.curved.is_there() && self.found_at == 0;
-        guess && self.seen == 0 && !self.confirmed
+        self.round && self.found_at == 0 && self.seen == 0 && !self.confirmed
     }
 
     /// Is its disc no more than a pair's?
@@ -219,21 +203,15 @@ impl Object {
 
     /// A round part larger than the object was another's.
     pub fn forget_unless_fits(&mut self, extent2: Real) {
-        if !fits(self.radius, extent2) {
-            self.radius = 0.0;
+        let size = larger(self.radius, self.disc().radius);
+        if self.round && !fits(larger(size, self.curved.size()), extent2) {
+            *self = Self::default();
         }
-        if !fits(self.disc().radius, extent2) {
-            self.found.disc = Disc::default();
-        }
-        if !self.curved.fits(extent2.sqrt()) {
-            self.curved = Curved::NONE;
-        }
-        self.note();
     }
 
     #[inline(always)]
     pub fn core(&self, k: usize) -> Vec3 {
-        Vec3::new(self.x[k % ROOM], self.y[k % ROOM], self.z[k % ROOM])
+        Vec3::from(self.core.each_ref().map(|row| row[k % ROOM]))
     }
 
     #[inline(always)]
@@ -254,23 +232,6 @@ impl Object {
         let aside = self.disc().across(&(core - self.found.carrier));
         let carries = self.found_at == 0 || aside.norm_squared() <= same * same;
         (if carries { core } else { at.p }, carries)
-    }
-
-    /// Forgets the `k`th point: the last one takes its place.
-    pub(super) fn drop(&mut self, k: usize, places: [&mut usize; 2]) {
-        self.len -= 1;
-        let last = self.len % ROOM;
-        let k = k % ROOM;
-        let (at, core, carries) = (self.at[last], self.core(last), self.carries(last));
-        self.at[k] = at;
-        self.set(k, &core, carries);
-        self.seen = self.seen & !(1 << k) | (self.seen >> last & 1) << k;
-        self.span[k] = self.span[last];
-        for place in places {
-            if *place == last {
-                *place = k;
-            }
-        }
     }
 
     /// Takes a ball off all points. Returns where the `best` one is now.
@@ -327,7 +288,9 @@ impl Object {
     #[inline(always)]
     pub(super) fn set(&mut self, k: usize, core: &Vec3, carries: bool) {
         let k = k % ROOM;
-        (self.x[k], self.y[k], self.z[k]) = (core.x, core.y, core.z);
+        for (row, x) in self.core.iter_mut().zip(core.iter()) {
+            row[k] = *x;
+        }
         self.carried = self.carried & !(1 << k) | u32::from(carries) << k;
     }
 
@@ -356,8 +319,9 @@ impl Object {
     /// The cuts in the chart of unit `b`.
     #[inline(always)]
     pub fn chart(&self, b: &Vec3, [e1, e2]: [&Vec3; 2], cuts: &mut Cuts) {
+        let [px, py, pz] = &self.core;
         let mut of = |k: usize| {
-            let (x, y, z) = (self.x[k], self.y[k], self.z[k]);
+            let [x, y, z] = [px[k], py[k], pz[k]];
             cuts.a[k] = x * b.x + y * b.y + z * b.z;
             cuts.x[k] = x * e1.x + y * e1.y + z * e1.z;
             cuts.y[k] = x * e2.x + y * e2.y + z * e2.z;
@@ -389,10 +353,6 @@ impl Object {
         for k in (0..len).filter(|k| self.carries(*k)) {
             let n = &self.at[k].n;
             let along = n.dot(b);
-            if !(along > 0.0) {
-                cuts.carried &= !(1 << k);
-                continue;
-            }
             let y = [e1.dot(n) / along, e2.dot(n) / along];
             let gy = [g[0] * y[0] + g[1] * y[1], g[1] * y[0] + g[2] * y[1]];
             let lift = 0.5 * (gy[0] * y[0] + gy[1] * y[1]);
@@ -427,33 +387,12 @@ impl Object {
         }
     }
 
-    /// Is a cut above the support value of its own point there, metres?
-    pub fn is_above(&self, own: &Seen, tolerance: Real) -> bool {
-        self.height(&own.n).0 + self.radius > own.p.dot(&own.n) + tolerance
-    }
-
-    /// The support value of the known points along unit `n`, without the ball, and the highest.
-    pub fn height(&self, n: &Vec3) -> (Real, usize) {
-        let disc = if self.disc().is_there() {
-            self.disc().radius * self.disc().across(n).norm()
-        } else {
-            0.0
-        };
-        let mut best = (Real::NEG_INFINITY, 0);
-        for k in 0..self.len.min(ROOM) {
-            let plain = self.core(k).dot(n);
-            let level = if self.curved.is_believed() {
-                plain + self.lift(k, n)
-            } else if self.carries(k) {
-                plain + disc
-            } else {
-                plain
-            };
-            if level > best.0 {
-                best = (level, k);
-            }
-        }
-        best
+    /// The support value of the known points along unit `n`, without the ball.
+    pub fn height(&self, n: &Vec3) -> Real {
+        let disc = self.disc().radius * self.disc().across(n).norm();
+        let level = |k| self.core(k).dot(n) + if self.carries(k) { disc } else { 0.0 };
+        let levels = (0..self.len.min(ROOM)).map(level);
+        levels.fold(Real::NEG_INFINITY, larger)
     }
 
     /// The `k`th point where it is along unit `n`: round where that was seen.
@@ -499,14 +438,20 @@ impl Object {
         })
     }
 
-    /// How far R lifts the cut of the `k`th point along unit `n`, metres.
+    /// How far what is round lifts the cut of the `k`th point along unit `n` above the point itself,
+    /// metres.
     #[inline(always)]
-    fn lift(&self, k: usize, n: &Vec3) -> Real {
-        let dn = n - self.at[k % ROOM].n;
-        if self.carries(k) {
+    pub fn lift(&self, k: usize, n: &Vec3) -> Real {
+        let at = &self.at[k % ROOM];
+        let dn = n - at.n;
+        if self.radius > 0.0 {
+            0.5 * self.radius * dn.norm_squared()
+        } else if !self.carries(k) {
+            0.0
+        } else if self.curved.is_there() {
             0.5 * self.curved.r().times(&dn).dot(&dn)
         } else {
-            0.0
+            self.disc().point(n).dot(n) - (at.p - self.core(k)).dot(n)
         }
     }
 
@@ -521,52 +466,18 @@ impl Object {
     /// where, and lifting its cut by more than `hair`, metres.
     #[inline(always)]
     pub fn is_unseen(&self, k: usize, n: &Vec3, hair: Real) -> bool {
-        if !self.is_round() {
-            return false;
-        }
-        let k = k % ROOM;
-        if self.curved.is_there() {
-            let error = if self.was_seen(k, n) {
-                self.curved.error
-            } else {
-                1.0
-            };
-            return self.curved.is_believed() && error * self.lift(k, n) > hair;
-        }
-        if self.was_seen(k, n) {
-            return false;
-        }
-        let at = &self.at[k];
-        let lift = if self.radius > 0.0 {
-            0.5 * self.radius * (at.n - n).norm_squared()
-        } else if self.carries(k) {
-            self.disc().radius * self.disc().across(n).norm() - (at.p - self.core(k)).dot(n)
+        let doubted = if self.curved.is_there() {
+            self.curved.is_believed()
         } else {
-            0.0
+            self.round && !self.was_seen(k % ROOM, n)
         };
-        lift > hair
-    }
-
-    /// The radius of its round part, metres, as seen from the `k`th point towards unit `n`.
-    pub fn radius(&self, k: usize, n: &Vec3) -> Real {
-        let dn = n - self.at[k % ROOM].n;
-        if self.curved.is_there() {
-            self.curved.r().times(&dn).dot(&dn) / dn.norm_squared()
-        } else {
-            larger(self.radius, self.disc().radius)
-        }
+        doubted && self.lift(k, n) > hair
     }
 
     /// Was the `k`th point seen along two directions?
     #[inline(always)]
     pub fn seen_twice(&self, k: usize) -> bool {
         self.seen >> k & 1 != 0
-    }
-
-    /// Does the point of a sample along a disc's axis, or beside it, carry the disc?
-    pub fn is_on_rim(&self, at: &Seen, same: Real) -> bool {
-        let core = at.p - self.disc().point(&at.n) - self.found.carrier;
-        self.disc().across(&core).norm() <= same
     }
 }
 
@@ -611,7 +522,7 @@ mod tests {
 
     /// An object that has seen these, and what the last one shows.
     fn object(points: &[Seen]) -> (Object, Shown) {
-        let mut object = Object::NEW;
+        let mut object = Object::default();
         let mut shown = Shown::Nothing;
         for (i, at) in points.iter().enumerate() {
             if i > 0 {
@@ -663,7 +574,7 @@ mod tests {
         // The rim where it is along another direction, and its support value.
         let n = Vec3::new(0.8, 0.05, 0.45).normalize();
         assert!((three.point(0, &n, NEAR) - cylinder(&n)).norm() < NEAR);
-        assert!((three.height(&n).0 - cylinder(&n).dot(&n)).abs() < NEAR);
+        assert!((three.height(&n) - cylinder(&n).dot(&n)).abs() < NEAR);
     }
 
     /// Of an ellipsoid any two points could be a disc's; a third one shows that they are not.
@@ -692,11 +603,11 @@ mod tests {
         let (object, _) = object(&points);
         assert_eq!((object.len, object.carried), (2, 1));
         let up = Vec3::new(0.1, 0.0, 1.0).normalize();
-        assert_eq!(object.height(&up), (0.9 * up.z, 1));
+        assert_eq!(object.height(&up), 0.9 * up.z);
         // A cut that bends, and one that does not.
         let b = Vec3::new(0.8, 0.0, 0.6);
         let (e1, e2) = (Vec3::y(), Vec3::new(-0.6, 0.0, 0.8));
-        let mut cuts = Cuts::NONE;
+        let mut cuts = Cuts::default();
         object.chart(&b, [&e1, &e2], &mut cuts);
         let rim = cone(&Vec3::new(0.8, 0.0, -1.0));
         assert!((cuts.a[0] - rim.dot(&b)).abs() < NEAR && (cuts.y[0] - rim.dot(&e2)).abs() < NEAR);
@@ -717,7 +628,7 @@ mod tests {
             let (a, b, c) = (ask(cylinder, n), near(&mut random), near(&mut random));
             let axis = (Vec3::z() + random.vector(0.02)).normalize();
             let turn = |radius| {
-                let mut object = Object::NEW;
+                let mut object = Object::default();
                 object.recall(Round::Disc(Disc { radius, axis }));
                 object.take(&a, None, &n, &mut 0, &same, 1);
                 object.turn(0, &b, &same, 2);
@@ -747,7 +658,7 @@ mod tests {
     #[test]
     fn the_lowest_point_makes_room() {
         let b = Vec3::z();
-        let mut object = Object::NEW;
+        let mut object = Object::default();
         for k in 0..2 * ROOM {
             let p = Vec3::new(k as Real, 1.0, (k * 7 % (2 * ROOM)) as Real);
             let at = Seen { n: b, p };
