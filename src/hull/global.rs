@@ -172,10 +172,8 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
 enum Way {
     /// [`start::known`].
     Known,
-    /// [`start::ring_of_ball`].
+    /// [`start::ring`].
     Ring,
-    /// [`start::portal`].
-    Portal,
     /// [`start::solid`].
     Solid,
     /// The corners around the origin that the distance algorithm finds.
@@ -183,13 +181,7 @@ enum Way {
 }
 
 /// In the order in which they are tried: what costs least comes first.
-const WAYS: [Way; 5] = [
-    Way::Known,
-    Way::Ring,
-    Way::Portal,
-    Way::Solid,
-    Way::Surround,
-];
+const WAYS: [Way; 4] = [Way::Known, Way::Ring, Way::Solid, Way::Surround];
 
 /// A query on its way.
 struct Search<'q, 'r, A, B> {
@@ -213,23 +205,16 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     #[inline(never)]
     fn run(&mut self, first: &SupportPoint) -> Result<bool, Stop> {
         let mut start = None;
-        if let Some(centre) = self.request.centre {
-            // Where the first plane is as far as that the contact is a deep one.
-            let depth = self.inquiry.lowest.depth;
-            if depth * depth < FAR * FAR * centre.v.norm_squared()
-                && self.at_once(centre, first, &mut start)?
-            {
-                return Ok(true);
-            }
+        if self.at_once(first, &mut start)? {
+            return Ok(true);
         }
         let start = start.get_or_insert(Handed::EMPTY);
         loop {
             let known = start.known;
-            let mut opposite = None;
             if !known {
-                opposite = self.begin(&mut start.set, first)?;
+                self.begin(&mut start.set, first)?;
             }
-            let proven = self.expanded(start, opposite)?;
+            let proven = self.expanded(start)?;
             if !known || self.is_deepest(&start.set) {
                 return Ok(proven);
             }
@@ -262,28 +247,51 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// Is there an answer of a proof without a hull ([`shallow`](crate::hull::shallow))? Else `start`
     /// takes what is known, if no callback contradicts itself.
     #[inline(never)]
-    fn at_once(
-        &mut self,
-        centre: &SupportPoint,
-        first: &SupportPoint,
-        start: &mut Option<Handed>,
-    ) -> Result<bool, Stop> {
+    fn at_once(&mut self, first: &SupportPoint, start: &mut Option<Handed>) -> Result<bool, Stop> {
         let Request {
+            centre,
             first: dir,
             others,
             hint,
             limits,
             ..
         } = self.request;
-        self.inquiry.precision.note(centre);
-        let mut attempt = Try::new(&centre.v);
-        attempt.points.first(dir, first);
-        if let Some(least) = attempt.run(&mut self.inquiry, limits, others, *hint)? {
-            self.conclude_at_once(&attempt, centre, least);
+        let mut attempt = Try::new(dir, first);
+        if !attempt.recall(&mut self.inquiry, others)? {
+            self.forget(first);
+            return Ok(false);
+        }
+        let (opposite, middle);
+        let (apex, opposite) = match centre {
+            Some(centre) => {
+                self.inquiry.precision.note(centre);
+                (*centre, None)
+            }
+            None => match attempt.opposite(&mut self.inquiry, self.request.cold())? {
+                Some(point) => {
+                    opposite = point;
+                    middle = first.middle(&opposite);
+                    (&middle, Some(&opposite))
+                }
+                None => {
+                    self.forget(first);
+                    return Ok(false);
+                }
+            },
+        };
+        // Where the first plane is as far as that the contact is a deep one.
+        let depth = self.inquiry.lowest.depth;
+        let is_deep = !(depth * depth < FAR * FAR * apex.v.norm_squared());
+        let cold = self.request.cold();
+        // A warm hull from an apex in the middle is begun where the last one ended.
+        let hull = is_deep || centre.is_none() && !cold;
+        let known = attempt.run(&mut self.inquiry, &apex.v, limits, [cold, hull], *hint)?;
+        if let Some(least) = known {
+            self.conclude_at_once(&attempt, apex, least);
             return Ok(true);
         }
         if !attempt.lies && attempt.is_honest(self.inquiry.precision.tie()) {
-            attempt.hand_over(centre, start.insert(Handed::EMPTY));
+            attempt.hand_over(apex, opposite, start.insert(Handed::EMPTY));
         } else {
             self.forget(first);
         }
@@ -296,33 +304,27 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         &mut self,
         way: Way,
         start: &mut Handed,
-        skip: usize,
     ) -> Result<Option<[usize; 4]>, Stop> {
         let Handed {
             set,
             names,
             low,
             radius,
-            known,
             ..
         } = start;
-        let tolerance = self.tolerance();
-        let gap = self.request.limits.gap;
-        let within = |depth: Real| larger(gap * depth, tolerance);
         Ok(match way {
             Way::Known if names[1] > 0 => Some(names.map(usize::from)),
-            Way::Known => start::known(set),
+            Way::Known => start::known(&set.v(0), set.len() - 1, |k| set.v(k + 1))
+                .map(|[a, b, c]| [0, a + 1, b + 1, c + 1]),
             Way::Ring if *low > 0 => {
                 let ball = Ball::known(set, usize::from(*low), *radius);
-                let within = within(self.inquiry.lowest.depth);
+                let within = larger(
+                    self.request.limits.gap * self.inquiry.lowest.depth,
+                    self.tolerance(),
+                );
                 Some(start::ring(&mut self.inquiry, set, &ball, within)?)
             }
-            Way::Ring if *known => None,
-            Way::Ring => {
-                let warm = !self.request.cold();
-                start::ring_of_ball(&mut self.inquiry, set, warm, within)?
-            }
-            Way::Portal => start::portal(&mut self.inquiry, set, skip)?,
+            Way::Ring => None,
             Way::Solid => start::solid(&mut self.inquiry, set)?,
             Way::Surround => Some(self.surround(set)?),
         })
@@ -331,14 +333,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// The answer of the hulls that begin in the ways there are. (Of its own stack frame, which the try
     /// without a hull does without.)
     #[inline(never)]
-    fn expanded(
-        &mut self,
-        start: &mut Handed,
-        mut opposite: Option<[Vec3; 2]>,
-    ) -> Result<bool, Stop> {
+    fn expanded(&mut self, start: &mut Handed) -> Result<bool, Stop> {
         let mut hull = Polytope::<{ FIRST.1 }>::blank(self.inquiry.precision.size());
-        // The index of `opposite`, once it is in the set.
-        let mut skip = usize::MAX;
         let mut large = false;
         for way in WAYS {
             // What a larger room has not shown no other tetrahedron of the same points will.
@@ -346,18 +342,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 continue;
             }
             // What a try has handed over is named.
-            if way != Way::Known {
-                skip = begin_again(&mut start.set, skip);
+            if way != Way::Known && start.set.is_full() {
+                start.set.truncate(START);
             }
-            let names = self.first_tetrahedron(way, start, skip)?;
+            let names = self.first_tetrahedron(way, start)?;
             let Handed { set, rounds, .. } = &mut *start;
-            // A point of the polytope like others from here on, but no corner of a portal.
-            if names.is_some() || way == Way::Ring {
-                if let Some([v1, v2]) = opposite.take() {
-                    let point = SupportPoint { v: v1 - v2, v1, v2 };
-                    skip = set.push(&-self.request.first, &point);
-                }
-            }
             let Some(names) = names else {
                 continue;
             };
@@ -516,51 +505,29 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     }
 
     /// Puts the apex into the set as point 0, `first` as point 1, and the points that the last
-    /// proof stood on. Where no centre is given the apex is the middle of `first` and the
-    /// support point opposite, whose points of the objects are returned. It is not in the set yet:
-    /// on a line with the apex and `first`, it makes no tetrahedron with them.
-    #[inline(always)]
+    /// proof stood on: for a pair that is asked anew.
+    #[cold]
+    #[inline(never)]
     fn begin<const P: usize>(
         &mut self,
         set: &mut SupportSet<P>,
         first: &SupportPoint,
-    ) -> Result<Option<[Vec3; 2]>, Stop> {
+    ) -> Result<(), Stop> {
         let Request {
             centre,
             first: dir,
             others,
             ..
         } = self.request;
-        let apex = centre.unwrap_or(first);
-        set.push(&Vec3::zeros(), apex);
+        set.push(&Vec3::zeros(), centre.unwrap_or(first));
         set.push(dir, first);
-        let mut opposite = None;
-        if centre.is_some() {
-            self.inquiry.precision.note(apex);
-        } else {
-            let n = -dir;
-            let i = self.inquiry.ask(set, &n)?.i;
-            let point = set.point(i);
-            set.truncate(2);
-            set.put(0, &Vec3::zeros(), &first.middle(&point));
-            opposite = Some([point.v1, point.v2]);
-            // A cold query's first direction may have nothing to do with where the objects
-            // are. Then it is only good for an apex, and the support point along the way from
-            // there through the origin takes its place as point 1.
-            if let Some(n) =
-                unit(&-set.v(0)).filter(|n| self.request.cold() && start::is_far(n, dir))
-            {
-                let i = self.inquiry.ask(set, &n)?.i;
-                set.swap(1, i);
-            }
-        }
         // A state may hold anything: made unit, and no more than there is room for.
         for n in others.iter().filter_map(unit) {
             if set.len() + START <= P {
                 self.inquiry.ask(set, &n)?;
             }
         }
-        Ok(opposite)
+        Ok(())
     }
 
     /// The expansion goes on in a larger room, and in the one after it.
@@ -727,17 +694,6 @@ fn mixed(weights: &[Real; 3], corners: [[Vec3; 2]; 3]) -> [Vec3; 2] {
     let point1 = barycentric::mix(weights, [&a[0], &b[0], &c[0]]);
     let point2 = barycentric::mix(weights, [&a[1], &b[1], &c[1]]);
     [point1, point2]
-}
-
-/// Makes room for another start where a larger room was stuck. Returns `skip`, if that point
-/// stays.
-#[inline(always)]
-fn begin_again<const P: usize>(set: &mut SupportSet<P>, skip: usize) -> usize {
-    if !set.is_full() {
-        return skip;
-    }
-    set.truncate(START);
-    if skip < START { skip } else { usize::MAX }
 }
 
 /// The face through which the ray along `dir` leaves the polytope, about, and its point

@@ -82,10 +82,10 @@ pub struct View {
 }
 
 impl View {
-    /// From the point of P of these places.
+    /// From the point of P that direction number `from` found.
     #[inline(always)]
-    pub fn of(points: &Points, c: &Vec3) -> Self {
-        let names = [0; 2];
+    pub fn of(points: &Points, from: usize, c: &Vec3) -> Self {
+        let names = points.names(from);
         let p = points.point(names);
         let way = c * c.dot(&p) - p * c.norm_squared();
         Self {

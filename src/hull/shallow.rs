@@ -104,6 +104,8 @@ pub struct Try {
     pub exit: Option<([[usize; 2]; 3], [Real; 3])>,
     /// Support points beyond the portal.
     pub rounds: u64,
+    /// The direction whose point the portal is looked for from.
+    from: usize,
     /// The ball that D looks like, if it does: a hull has a ring for it.
     ball: Option<Ball>,
     /// Does a callback contradict itself?
@@ -111,24 +113,78 @@ pub struct Try {
 }
 
 impl Try {
-    /// From the apex `c`, before anything is asked.
+    /// From the first point, found along `dir`.
     #[inline(always)]
-    pub fn new(c: &Vec3) -> Self {
-        Self {
-            c: *c,
+    pub fn new(dir: &Vec3, first: &SupportPoint) -> Self {
+        let mut new = Self {
+            c: Vec3::zeros(),
             points: Points::EMPTY,
             lowest: 0,
             portal: None,
             exit: None,
             begin: None,
             rounds: 0,
+            from: 0,
             ball: None,
             lies: false,
+        };
+        new.points.first(dir, first);
+        new
+    }
+
+    /// Asks against the first direction, where there is no centre: the middle of the two is an apex.
+    /// `None`: the callback contradicts itself.
+    ///
+    /// A `cold` query's first direction may have nothing to do with where the objects are. Then it is only
+    /// good for an apex, and the portal is looked for from the point along the way from there through
+    /// the origin.
+    ///
+    /// # Errors
+    /// As [`Try::run`].
+    #[inline(never)]
+    pub fn opposite<A: SupportMap, B: SupportMap>(
+        &mut self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        cold: bool,
+    ) -> Result<Option<SupportPoint>, Stop> {
+        let dir = self.points.direction(0);
+        let opposite = inquiry.point(&-dir)?;
+        // NaN is no depth.
+        if !inquiry.precision.is_depth(-dir.dot(&opposite.v)) {
+            self.apart(inquiry, &-dir, &opposite)?;
+            return Ok(None);
         }
+        let apex = self.points.point([0; 2]) + opposite.v;
+        if let Some(n) = normalised(&-apex).filter(|n| cold && start::is_far(n, &dir)) {
+            if self.ask(inquiry, &n)?.is_none() {
+                return Ok(None);
+            }
+            self.from = self.points.asked() - 1;
+        }
+        Ok(Some(opposite))
+    }
+
+    /// Asks along the directions of a state, zero for none. `false`: the callback contradicts itself.
+    ///
+    /// # Errors
+    /// As [`Try::run`].
+    #[inline(always)]
+    pub fn recall<A: SupportMap, B: SupportMap>(
+        &mut self,
+        inquiry: &mut Inquiry<'_, A, B>,
+        others: &[Vec3],
+    ) -> Result<bool, Stop> {
+        for n in others.iter().filter_map(as_unit).take(START) {
+            if self.ask(inquiry, &n)?.is_none() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// What is proven of the depth, if anything; else the points and the portal, if there is one,
-    /// are for a hull. `others`: directions to ask first, zero for none; empty: cold.
+    /// are for a hull, as they are at once where a `hull` is better. `c`: the apex. `cold`: there was no
+    /// state.
     ///
     /// # Errors
     /// [`Stop::Apart`]: apart, or touching within rounding. Else a callback's answer that is not
@@ -137,25 +193,35 @@ impl Try {
     pub fn run<A: SupportMap, B: SupportMap>(
         &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
+        c: &Vec3,
         limits: &Limits,
-        others: &[Vec3],
+        [cold, hull]: [bool; 2],
         hint: u32,
     ) -> Result<Option<Real>, Stop> {
-        for n in others.iter().filter_map(as_unit) {
-            if self.points.asked() <= START && self.ask(inquiry, &n)?.is_none() {
+        self.c = *c;
+        let sizes = Sizes::of(&inquiry.precision, limits);
+        if hull && !cold {
+            let points = &self.points;
+            let names = |k| points.names(k);
+            let known = start::known(c, points.asked(), |k| points.point(names(k)));
+            if let Some(corners) = known {
+                self.begin = Some(corners.map(names));
                 return Ok(None);
             }
         }
-        let sizes = Sizes::of(&inquiry.precision, limits);
         if hint >= Basis::PORTAL {
             let portal = Portal::hinted(&self.points, hint);
             self.portal = Some(portal).filter(|portal| portal.is_pierced(&self.c, sizes.tiny));
         }
-        if self.portal.is_none() && !self.find(inquiry, others.is_empty(), &sizes)? {
+        if self.portal.is_none() && !self.find(inquiry, cold, &sizes)? {
             return Ok(None);
         }
         match self.portal {
-            Some(portal) => self.prove(inquiry, portal, limits, others.is_empty(), &sizes),
+            Some(portal) if hull => {
+                self.begin = Some(portal.names);
+                Ok(None)
+            }
+            Some(portal) => self.prove(inquiry, portal, limits, cold, &sizes),
             None => Ok(None),
         }
     }
@@ -173,7 +239,6 @@ impl Try {
         // NaN is no depth.
         if !inquiry.precision.is_depth(h) {
             self.apart(inquiry, n, &point)?;
-            self.lies = true;
             return Ok(None);
         }
         if h < inquiry.lowest.depth {
@@ -185,11 +250,11 @@ impl Try {
     }
 
     /// The answer along `n` separates, unless [`Inquiry::apart`] finds a point farther: then that
-    /// answer is none.
+    /// answer is none, and the callback contradicts itself.
     #[cold]
     #[inline(never)]
     fn apart<A: SupportMap, B: SupportMap>(
-        &self,
+        &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
         n: &Vec3,
         answer: &SupportPoint,
@@ -206,6 +271,7 @@ impl Try {
             let [v1, v2] = points.witnesses(points.names(k));
             set.push(&points.direction(k), &SupportPoint { v: v1 - v2, v1, v2 });
         }
+        self.lies = true;
         inquiry.apart(&mut set, *n, answer)?;
         Ok(())
     }
@@ -220,7 +286,7 @@ impl Try {
         sizes: &Sizes,
     ) -> Result<bool, Stop> {
         let c = self.c;
-        let mut view = View::of(&self.points, &c);
+        let mut view = View::of(&self.points, self.from, &c);
         let mut vain = 0;
         if !cold {
             self.portal = view.portal(&self.points, &c);
@@ -228,7 +294,7 @@ impl Try {
                 return Ok(true);
             }
         }
-        let mut ball = Ball::around(&c, self.sample(0));
+        let mut ball = Ball::around(&c, self.sample(self.from));
         let mut first = None;
         if cold {
             if ball.is_lowest(sizes.within(inquiry.lowest.depth)) {
@@ -242,7 +308,8 @@ impl Try {
             return Ok(false);
         }
         let far = c.norm();
-        let length = far - c.dot(&self.points.point([0, 0])) / far;
+        let from = self.points.point(self.points.names(self.from));
+        let length = far - c.dot(&from) / far;
         for _ in 0..TRIES {
             if self.points.is_full() {
                 break;
@@ -557,9 +624,10 @@ impl Try {
         }
     }
 
-    /// What a hull may begin with.
+    /// What a hull may begin with. The point `opposite` to the first is one of it like others, but too far
+    /// from where a portal is for a corner of that.
     #[inline(never)]
-    pub fn hand_over(&self, apex: &SupportPoint, to: &mut Handed) {
+    pub fn hand_over(&self, apex: &SupportPoint, opposite: Option<&SupportPoint>, to: &mut Handed) {
         let points = &self.points;
         let put = |set: &mut Known, n: &Vec3, names| {
             let [v1, v2] = points.witnesses(names);
@@ -577,6 +645,9 @@ impl Try {
                 }
             });
             to.names = [0, a, b, c].map(|i| i as u16);
+        }
+        if let Some(opposite) = opposite {
+            to.set.push(&-points.direction(0), opposite);
         }
         if let Some(ball) = &self.ball {
             let low = ball.low().n;
@@ -660,9 +731,9 @@ mod tests {
                 supports: 160,
                 iterations: 100,
             };
-            let mut attempt = Try::new(&c.v);
-            attempt.points.first(&dir, &first);
-            let lower = attempt.run(&mut inquiry, &limits, &[], 0).unwrap();
+            let mut attempt = Try::new(&dir, &first);
+            let lower = attempt.run(&mut inquiry, &c.v, &limits, [true, false], 0);
+            let lower = lower.unwrap();
             if let Some(lower) = lower {
                 proven += 1;
                 asked += md.supports();
@@ -714,9 +785,9 @@ mod tests {
                 supports: 160,
                 iterations: 100,
             };
-            let mut attempt = Try::new(&c.v);
-            attempt.points.first(&dir, &first);
-            let lower = attempt.run(&mut inquiry, &limits, &[], 0).unwrap();
+            let mut attempt = Try::new(&dir, &first);
+            let lower = attempt.run(&mut inquiry, &c.v, &limits, [true, false], 0);
+            let lower = lower.unwrap();
             if let Some(lower) = lower {
                 proven += 1;
                 asked += md.supports();

@@ -31,7 +31,7 @@
 //! near the minimum, as a state has it.
 
 use crate::known::support::SupportMap;
-use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
+use crate::known::support_set::{Asked, Inquiry, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, lesser, normalised, perpendicular, unit};
 
 // Measured: support points of the MPR calls in the mean of sixteen pair sets and the recorded
@@ -74,26 +74,25 @@ pub fn is_far(n: &Vec3, other: &Vec3) -> bool {
     (n - other).norm_squared() > AWAY
 }
 
-/// The apex and three known points whose triangle the axis goes through, if there are such: in
-/// a warm query of a pair that has moved little, the corners of the last proof's nearest face.
+/// The numbers of three points of the first `count`, whose triangle the axis from the apex goes through, if
+/// there are such: in a warm query of a pair that has moved little, the corners of the last proof's
+/// nearest face.
 #[inline(always)]
-pub fn known<const P: usize>(set: &SupportSet<P>) -> Option<[usize; 4]> {
-    const TRIANGLES: [[usize; 3]; 4] = [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]];
-    let apex = set.v(0);
+pub fn known(apex: &Vec3, count: usize, point: impl Fn(usize) -> Vec3) -> Option<[usize; 3]> {
+    const TRIANGLES: [[usize; 3]; 4] = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
     // The last corner is the greatest number.
-    let known = TRIANGLES.iter().filter(|[_, _, k]| *k < set.len());
-    for &[i, j, k] in known {
-        let (a, b, c) = (set.v(i), set.v(j), set.v(k));
-        // The origin is on the same side of all planes through the apex and an edge. (Where two
-        // points are one, it is on opposite sides of two.)
-        let x = apex.dot(&a.cross(&b));
-        let y = apex.dot(&b.cross(&c));
-        let z = apex.dot(&c.cross(&a));
-        if x >= 0.0 && y >= 0.0 && z >= 0.0 || x <= 0.0 && y <= 0.0 && z <= 0.0 {
-            return Some([0, i, j, k]);
-        }
-    }
-    None
+    TRIANGLES
+        .into_iter()
+        .filter(|[_, _, k]| *k < count)
+        .find(|names| {
+            let [a, b, c] = names.map(&point);
+            // The origin is on the same side of all planes through the apex and an edge. (Where two
+            // points are one, it is on opposite sides of two.)
+            let x = apex.dot(&a.cross(&b));
+            let y = apex.dot(&b.cross(&c));
+            let z = apex.dot(&c.cross(&a));
+            x >= 0.0 && y >= 0.0 && z >= 0.0 || x <= 0.0 && y <= 0.0 && z <= 0.0
+        })
 }
 
 /// The radius that two samples tell, from their directions and the way from one to the other, if they
@@ -251,32 +250,6 @@ impl Ball {
     }
 }
 
-/// The apex and three points in a ring, where D looks like a ball; else `None`. `set` holds
-/// the apex as point 0 and the known points after it, of which there is at least one; where
-/// the query is `warm` they are near the minimum. `within` is the tolerance for a depth.
-#[inline(always)]
-pub fn ring_of_ball<A: SupportMap, B: SupportMap, const P: usize>(
-    inquiry: &mut Inquiry<'_, A, B>,
-    set: &mut SupportSet<P>,
-    warm: bool,
-    within: impl Fn(Real) -> Real,
-) -> Result<Option<[usize; 4]>, Stop> {
-    let sample = |i| Sample::of(set.direction(i), set.v(i));
-    let mut ball = Ball::around(&set.v(0), sample(1));
-    if warm && !ball.is_known((2..set.len()).map(sample), inquiry.precision.rounding()) {
-        return Ok(None);
-    }
-    let ball = ball.followed(&within, |n| {
-        let Asked { h, v: s, .. } = inquiry.ask(set, n)?;
-        let n = *n;
-        Ok(Some((Sample { n, s, h }, inquiry.precision.rounding())))
-    })?;
-    let Some(ball) = ball else {
-        return Ok(None);
-    };
-    ring(inquiry, set, &ball, within(ball.low.h)).map(Some)
-}
-
 /// The apex and three points around the ball's direction: the known point farthest aside,
 /// and two asked for; all three where none is known.
 #[inline(always)]
@@ -339,188 +312,10 @@ pub fn growth(vain: usize) -> Option<Real> {
     GROWTH.get(vain).copied()
 }
 
-/// The direction to ask: `from` tilted sideways, farther the more often that was in vain,
-/// and at last all the way.
-#[inline(always)]
-pub fn tilted(from: &Vec3, sideways: &Vec3, tilt: Real, vain: usize) -> Vec3 {
-    let way = match GROWTH.get(vain) {
-        Some(by) if tilt > 0.0 => from + sideways * (tilt * by),
-        // Unit but where the point that tells it is hardly beside the axis.
-        _ => *sideways,
-    };
-    unit(&way).unwrap_or(*from)
-}
-
 /// Is there nothing wider to try, after so many tilts in vain?
 #[inline(always)]
 pub fn is_widest(vain: usize) -> bool {
     vain >= GROWTH.len()
-}
-
-/// D as it is seen along the axis, in a plane whose origin is the axis.
-struct View {
-    x: Vec3,
-    y: Vec3,
-}
-
-/// On which side of a line through two points the origin is, as they are seen.
-struct Side {
-    /// The unit way there, from the line.
-    towards: [Real; 2],
-    /// How far the origin is from the line.
-    off: Real,
-    /// How far apart the points are.
-    span: Real,
-}
-
-impl Side {
-    #[inline(always)]
-    fn of(a: &[Real; 2], b: &[Real; 2]) -> Self {
-        let d = [b[0] - a[0], b[1] - a[1]];
-        let span = dot(&d, &d).sqrt();
-        let w = [-d[1] / span, d[0] / span];
-        let off = -dot(&w, a);
-        let (towards, off) = if off < 0.0 {
-            ([-w[0], -w[1]], -off)
-        } else {
-            (w, off)
-        };
-        Self { towards, off, span }
-    }
-}
-
-impl View {
-    /// Along a unit axis, with a point on the x axis; and how far from the origin that is seen,
-    /// 0 within rounding, where any x axis will do.
-    #[inline(always)]
-    fn along(axis: Vec3, point: &Vec3, rounding: Real) -> (Self, Real) {
-        let side = point - axis * axis.dot(point);
-        let width = side.norm();
-        let (x, width) = if width > rounding {
-            (side / width, width)
-        } else {
-            (perpendicular(&axis), 0.0)
-        };
-        let y = axis.cross(&x);
-        (Self { x, y }, width)
-    }
-
-    /// Where a point is seen.
-    #[inline(always)]
-    fn see(&self, v: &Vec3) -> [Real; 2] {
-        [self.x.dot(v), self.y.dot(v)]
-    }
-}
-
-#[inline(always)]
-fn cross(a: &[Real; 2], b: &[Real; 2]) -> Real {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-#[inline(always)]
-fn dot(a: &[Real; 2], b: &[Real; 2]) -> Real {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-/// The apex and three points whose triangle the axis goes through. Point `skip` is no corner.
-///
-/// It begins with point 1. Of the triangle seen so far a and b are the ends of the edge that
-/// the axis lies beyond, and the next point is looked for there.
-///
-/// `None` where none was found: the apex is on the boundary of D or outside, or D is flat.
-#[inline(always)]
-pub fn portal<A: SupportMap, B: SupportMap, const P: usize>(
-    inquiry: &mut Inquiry<'_, A, B>,
-    set: &mut SupportSet<P>,
-    skip: usize,
-) -> Result<Option<[usize; 4]>, Stop> {
-    let apex = set.v(0);
-    let rounding = inquiry.precision.rounding();
-    let from_apex = apex.norm();
-    let axis = if from_apex > rounding {
-        apex / -from_apex
-    } else {
-        inquiry.lowest.dir
-    };
-    let mut a = 1;
-    let (view, width) = View::along(axis, &set.v(1), rounding);
-    // The way from the apex to where the axis leaves D, about.
-    let length = larger(axis.dot(&(set.v(1) - apex)), width);
-    let mut seen_a = [width, 0.0];
-    let mut b: Option<(usize, [Real; 2])> = None;
-    let mut vain = 0;
-    for _ in 0..TRIES {
-        let Side { towards, off, span } = match &b {
-            None => Side {
-                towards: [-1.0, 0.0],
-                off: width,
-                span: 0.0,
-            },
-            Some((_, seen)) => Side::of(&seen_a, seen),
-        };
-        let sideways = view.x * towards[0] + view.y * towards[1];
-        // The ends of the edge are not beyond it.
-        let name_b = b.map_or(a, |(name, _)| name);
-        let known = beyond(set, [skip, a, name_b], &sideways, rounding);
-        let (i, v) = match known {
-            Some(i) => (i, set.v(i)),
-            None => {
-                let Lowest { depth, dir } = inquiry.lowest;
-                let tilt = tilt(depth, off, off, span, length);
-                let n = tilted(&dir, &sideways, tilt, vain);
-                let Asked { i, v, .. } = inquiry.ask(set, &n)?;
-                (i, v)
-            }
-        };
-        let seen = view.see(&v);
-        let gain = dot(&towards, &seen);
-        if !(gain > rounding - off) || gain <= 0.0 && is_widest(vain) {
-            // No nearer to the origin than before. In the plane itself that is the end.
-            if is_widest(vain) {
-                return Ok(None);
-            }
-            vain += 1;
-            continue;
-        }
-        if gain <= 0.0 {
-            vain += 1;
-        }
-        let Some((name_b, seen_b)) = b else {
-            b = Some((i, seen));
-            continue;
-        };
-        let turn = cross(&seen_b, &seen_a);
-        let (with_a, with_b) = (cross(&seen_a, &seen), cross(&seen, &seen_b));
-        if gain > 0.0 && with_a * turn >= 0.0 && with_b * turn >= 0.0 {
-            return Ok(Some([0, a, name_b, i]));
-        }
-        // The origin lies beyond one of the new edges.
-        if with_a * turn < 0.0 {
-            b = Some((i, seen));
-        } else {
-            (a, seen_a) = (i, seen);
-        }
-    }
-    Ok(None)
-}
-
-/// The known point farthest along a direction across the axis, but `others`, if it is past the
-/// origin by more than rounding.
-#[inline(always)]
-fn beyond<const P: usize>(
-    set: &SupportSet<P>,
-    others: [usize; 3],
-    sideways: &Vec3,
-    rounding: Real,
-) -> Option<usize> {
-    let (mut best, mut farthest) = (None, rounding);
-    for i in (1..set.len()).filter(|i| !others.contains(i)) {
-        let d = sideways.dot(&set.v(i));
-        if d > farthest {
-            (best, farthest) = (Some(i), d);
-        }
-    }
-    best
 }
 
 /// A tetrahedron of known support points, the largest in sight, and of new ones where
