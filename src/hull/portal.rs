@@ -426,7 +426,7 @@ mod tests {
         for _ in 0..500 {
             let points = random_points(&mut r, 8);
             let c = r.vector(0.2);
-            let Some(mut portal) = View::of(&points, &c).portal(&points, &c) else {
+            let Some(mut portal) = View::of(&points, 0, &c).portal(&points, &c) else {
                 continue;
             };
             found += 1;
