@@ -346,7 +346,17 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 start.set.truncate(START);
             }
             let names = self.first_tetrahedron(way, start)?;
-            let Handed { set, rounds, .. } = &mut *start;
+            let Handed {
+                set,
+                rounds,
+                opposite,
+                ..
+            } = &mut *start;
+            if names.is_some() || way == Way::Ring {
+                if let Some((n, point)) = opposite.take() {
+                    set.push(&n, &point);
+                }
+            }
             let Some(names) = names else {
                 continue;
             };

@@ -624,8 +624,7 @@ impl Try {
         }
     }
 
-    /// What a hull may begin with. The point `opposite` to the first is one of it like others, but too far
-    /// from where a portal is for a corner of that.
+    /// What a hull may begin with.
     #[inline(never)]
     pub fn hand_over(&self, apex: &SupportPoint, opposite: Option<&SupportPoint>, to: &mut Handed) {
         let points = &self.points;
@@ -646,9 +645,7 @@ impl Try {
             });
             to.names = [0, a, b, c].map(|i| i as u16);
         }
-        if let Some(opposite) = opposite {
-            to.set.push(&-points.direction(0), opposite);
-        }
+        to.opposite = opposite.map(|point| (-points.direction(0), *point));
         if let Some(ball) = &self.ball {
             let low = ball.low().n;
             let by = (0..points.asked()).find(|&k| points.direction(k) == low);
@@ -668,6 +665,9 @@ pub struct Handed {
     pub low: u16,
     /// And its radius, metres.
     pub radius: Real,
+    /// Where there was no centre the point opposite to the first, and its direction: one of a hull like
+    /// others, but no corner of a portal or a ring.
+    pub opposite: Option<(Vec3, SupportPoint)>,
     /// Support points beyond the first tetrahedron.
     pub rounds: u16,
     /// Is there anything?
@@ -681,6 +681,7 @@ impl Handed {
         names: [0; 4],
         low: 0,
         radius: 0.0,
+        opposite: None,
         rounds: 0,
         known: false,
     };
@@ -689,6 +690,7 @@ impl Handed {
     pub fn clear(&mut self) {
         self.set.truncate(0);
         (self.names, self.low, self.rounds, self.known) = ([0; 4], 0, 0, false);
+        self.opposite = None;
     }
 }
 #[cfg(test)]
