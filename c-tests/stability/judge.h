@@ -537,7 +537,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (entry_is_minimum(e)) {
         if (faults & (FAULT_OVER | FAULT_UNDER))
             faults |= FAULT_NOT_MINIMUM;
-        const double within = q->surface == ALL_AROUND ? fmax(q->tol, tolerance(TOL_PROMISED) * t->depth) : q->tol;
+        const double within = q->surface == ALL_AROUND || x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_PROMISED) * t->depth) : q->tol;
         if (!(x->depth <= fmax(t->depth, 0) + within + gap + 2 * q->noise))
             faults |= FAULT_NOT_MINIMUM;
         if (e->ask == ASK_PROVEN && x->code == CCD_HIT
