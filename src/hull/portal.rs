@@ -19,7 +19,7 @@ use crate::gjk::barycentric;
 use crate::hull::start;
 use crate::known::points::Points;
 use crate::known::support_set::Lowest;
-use crate::math::{Real, Vec3, larger};
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular};
 
 /// Steps of a portal that is looked for. Insensitive: 5 to 16 tried on the recorded contacts.
 const FOUND: usize = 8;
@@ -87,7 +87,12 @@ impl View {
     pub fn of(points: &Points, from: usize, c: &Vec3) -> Self {
         let names = points.names(from);
         let p = points.point(names);
-        let way = c * c.dot(&p) - p * c.norm_squared();
+        let c2 = c.norm_squared();
+        let mut way = c * c.dot(&p) - p * c2;
+        // On the ray any way is as good.
+        if !(way.norm_squared() > EPSILON * EPSILON * c2 * c2 * p.norm_squared()) {
+            way = perpendicular(c) * c2;
+        }
         Self {
             a: Seen::of(names, p, c),
             b: None,

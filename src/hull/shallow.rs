@@ -198,7 +198,13 @@ impl Try {
         [cold, hull]: [bool; 2],
         hint: u32,
     ) -> Result<Option<Real>, Stop> {
-        self.c = *c;
+        // From an apex at the origin the ray is the lowest direction.
+        let Lowest { depth, dir } = inquiry.lowest;
+        let rounding = inquiry.precision.rounding();
+        self.c = match c.norm_squared() > rounding * rounding {
+            true => *c,
+            false => -dir * depth,
+        };
         let sizes = Sizes::of(&inquiry.precision, limits);
         if hull && !cold {
             let points = &self.points;
@@ -320,8 +326,7 @@ impl Try {
                 Some(n) => n,
                 None => match view.tilt(depth, far, length, vain) {
                     Some(way) => dir + way,
-                    None if start::is_widest(vain) => view.way,
-                    None => break,
+                    None => view.way,
                 },
             };
             let Some(n) = normalised(&n) else { break };
