@@ -4,10 +4,10 @@
 //! The global minimum of the depth from start to end.
 //!
 //! 1. The first direction. Where its support point separates, that is the answer.
-//! 2. The apex, and the points that the last query's proof stood on ([`Search::begin`]).
-//!    From a trusted centre a shallow contact is mostly proven without a hull then
-//!    ([`crate::hull::shallow`]).
-//! 3. The first tetrahedron, in one of the [`WAYS`] of [`crate::hull::start`].
+//! 2. The apex, the points that the last query's proof stood on, and a portal, on which a shallow
+//!    contact is mostly proven without a hull ([`crate::hull::shallow`]). The apex is a trusted centre,
+//!    else the middle of the first support point and the opposite one.
+//! 3. The first tetrahedron: that portal and the apex, or another of the [`WAYS`] ([`crate::hull::start`]).
 //! 4. The expansion ([`crate::hull::expansion`]), in rooms that grow. Where it does not show the
 //!    origin inside, 3 and 4 are tried again in the next way.
 //! 5. The answer ([`Search::conclude`]).
@@ -170,7 +170,7 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
 /// A way to a first tetrahedron.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
-    /// [`start::known`].
+    /// The portal of the try without a hull, else [`start::known`].
     Known,
     /// [`start::ring`].
     Ring,

@@ -16,9 +16,9 @@
 //! a ball's distance to the tolerance. In a warm query the points of the last proof must tell of
 //! one ball: else the pair is not round.
 //!
-//! *Else* a small portal: seen along the axis from the apex through the origin, D is flat
-//! and the origin a point of the plane, and a triangle around it is wanted. That is GJK in
-//! the plane: from the point or edge nearest to the origin, ask towards the origin. A
+//! *Else* a small portal ([`crate::hull::portal`]): seen along the axis from the apex through the
+//! origin, D is flat and the origin a point of the plane, and a triangle around it is wanted. That is GJK
+//! in the plane: from the point or edge nearest to the origin, ask towards the origin. A
 //! direction that lies in the plane is MPR's first portal, a quarter turn wide; here the
 //! direction of the lowest support plane is tilted that way. How wide a portal may be bounds
 //! the tilt; and where it brings nothing it grows, up to the plane itself.
@@ -56,9 +56,10 @@ const ALIKE: Real = 0.1;
 /// Measured: warm ellipsoids take 20 % more without the ball, contacts 6 % with it for pairs
 /// that it does not fit; 0.01 to 0.3 change neither by 0.3 %.
 const BROAD: Real = 0.1;
-/// The share of the size below which known points are no good measure of an extent. Free.
+/// The share of the size below which known points are no good measure of an extent. Not measured apart:
+/// bodies thinner than that are asked about anyway.
 const LITTLE: Real = 0.05;
-/// Directions tried for a portal. Free.
+/// Directions tried for a portal. Derived: more than [`crate::known::points::ROOM`] have no room.
 pub const TRIES: usize = 12;
 /// What a tilt grows by each time that it was in vain; from then on the direction lies in the
 /// plane. Measured: without the second and third misses take 4.6 % more, with a fourth the same.
