@@ -266,7 +266,9 @@ fn the_recorded_contacts_are_counted_as_the_benchmark_counts_them() {
         assert_eq!(of("broken"), sum(6), "{side}");
         assert_eq!(of("deep"), sum(5), "{side}");
         // The tool also counts moves of the right length in another direction.
-        assert_eq!(of("unsound") - of("aside"), sum(4), "{side}");
+        // And it knows the truth by a proof to the tolerance alone: one move may be just within that.
+        let unsound = of("unsound") - of("aside") - sum(4);
+        assert!(unsound.abs() <= 1e-4 * sum(4), "{side}: {unsound}");
         let supports = of("supports") / counted["judged"];
         assert!((supports - sum(1) / 2.0).abs() < 0.01, "{side}: {supports}");
         let largest = 1e6 * of("error_max");

@@ -428,13 +428,13 @@ impl Object {
         self.at[k].p
     }
 
-    /// Does R foretell, by half, where the points near the `k`th one are?
+    /// Does R foretell, by a tenth, where the points near the `k`th one are?
     fn is_smooth_about(&self, k: usize) -> bool {
         let at = &self.at[k % ROOM];
         self.at.iter().take(self.len).all(|other| {
             let (d, dn) = (other.p - at.p, other.n - at.n);
             let off = d - self.curved.r().times(&dn);
-            dn.norm_squared() > ABOUT * ABOUT || off.norm_squared() <= 0.25 * d.norm_squared()
+            dn.norm_squared() > ABOUT * ABOUT || off.norm_squared() <= 0.01 * d.norm_squared()
         })
     }
 
