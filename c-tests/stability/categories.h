@@ -147,7 +147,7 @@ static inline void pair_grow(pair_t *p)
 /* May a proof to this tolerance need more support points than the library takes? At an
  * angle x from the minimum a face may be as wide as the square root of
  * (tol + growth x^2) / size: about size / growth times the logarithm of growth / tol in
- * all, which is within a fifth of what is counted. Half as many as the 360 that the library
+ * all, which is within a fifth of what is counted. Half as many as the 350 that the library
  * takes, because nearly concentric shapes have two minima. */
 static inline int pair_may_stop(const pair_t *p, double tol)
 {
