@@ -112,11 +112,11 @@ pub fn normal<T: RealField + Copy>(a: &Vector3<T>, b: &Vector3<T>, c: &Vector3<T
     }
 }
 
-/// A unit vector perpendicular to the unit vector `n`.
+/// A unit vector perpendicular to `n`, which need not be unit, but is not zero.
 #[inline]
 pub fn perpendicular(n: &Vec3) -> Vec3 {
     let a = n.abs();
-    // The axis least aligned with n keeps the cross product at least sqrt(2/3) long.
+    // The axis least aligned with n keeps the cross product at least sqrt(2/3) as long.
     let axis = if a.x <= a.y && a.x <= a.z {
         Vec3::x()
     } else if a.y <= a.z {

@@ -285,7 +285,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let cold = self.request.cold();
         // A warm hull from an apex in the middle is begun where the last one ended.
         let hull = is_deep || centre.is_none() && !cold;
-        let known = attempt.run(&mut self.inquiry, &apex.v, limits, [cold, hull], *hint)?;
+        let known = attempt.run(&mut self.inquiry, &apex.v, limits, cold, hull, *hint)?;
         if let Some(least) = known {
             self.conclude_at_once(&attempt, apex, least);
             return Ok(true);
@@ -352,6 +352,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 opposite,
                 ..
             } = &mut *start;
+            // Of the hull from here on.
             if names.is_some() || way == Way::Ring {
                 if let Some((n, point)) = opposite.take() {
                     set.push(&n, &point);

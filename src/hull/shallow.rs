@@ -18,7 +18,7 @@ use crate::hull::cores::{Aim, Cores};
 use crate::hull::expansion::Limits;
 use crate::hull::global::{Basis, FIRST};
 use crate::hull::portal::{Plane, Portal, Step, View};
-use crate::hull::start::{self, Ball, Sample, TRIES};
+use crate::hull::start::{self, Ball, Sample};
 use crate::known::points::Points;
 use crate::known::precision::Precision;
 use crate::known::support::{SupportMap, SupportPoint};
@@ -195,16 +195,17 @@ impl Try {
         inquiry: &mut Inquiry<'_, A, B>,
         c: &Vec3,
         limits: &Limits,
-        [cold, hull]: [bool; 2],
+        cold: bool,
+        hull: bool,
         hint: u32,
     ) -> Result<Option<Real>, Stop> {
-        // From an apex at the origin the ray is the lowest direction.
+        // From an apex at the origin (also NaN) the ray is the lowest direction. What stands in for the apex
+        // there may be outside of D: it proves nothing.
         let Lowest { depth, dir } = inquiry.lowest;
         let rounding = inquiry.precision.rounding();
-        self.c = match c.norm_squared() > rounding * rounding {
-            true => *c,
-            false => -dir * depth,
-        };
+        let at_origin = !(c.norm_squared() > rounding * rounding);
+        self.c = if at_origin { -dir * depth } else { *c };
+        let hull = hull || at_origin;
         let sizes = Sizes::of(&inquiry.precision, limits);
         if hull && !cold {
             let points = &self.points;
@@ -316,10 +317,8 @@ impl Try {
         let far = c.norm();
         let from = self.points.point(self.points.names(self.from));
         let length = far - c.dot(&from) / far;
-        for _ in 0..TRIES {
-            if self.points.is_full() {
-                break;
-            }
+        // Each turn takes a place, or is the last one.
+        while !self.points.is_full() {
             let Lowest { depth, dir } = inquiry.lowest;
             let ring = first.is_some();
             let n = match first.take() {
@@ -739,7 +738,7 @@ mod tests {
                 iterations: 100,
             };
             let mut attempt = Try::new(&dir, &first);
-            let lower = attempt.run(&mut inquiry, &c.v, &limits, [true, false], 0);
+            let lower = attempt.run(&mut inquiry, &c.v, &limits, true, false, 0);
             let lower = lower.unwrap();
             if let Some(lower) = lower {
                 proven += 1;
@@ -793,7 +792,7 @@ mod tests {
                 iterations: 100,
             };
             let mut attempt = Try::new(&dir, &first);
-            let lower = attempt.run(&mut inquiry, &c.v, &limits, [true, false], 0);
+            let lower = attempt.run(&mut inquiry, &c.v, &limits, true, false, 0);
             let lower = lower.unwrap();
             if let Some(lower) = lower {
                 proven += 1;
