@@ -1,27 +1,14 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Ordinary input of every size, and input that no query can like: points that are not
- * numbers, tolerances of every kind, no iterations, an object against itself, objects
- * without volume, sizes far from 1. Always a return code of the call's, outputs untouched
+/* Ordinary input of every size, and input that no query can like: tolerances of every kind, no
+ * iterations, an object against itself, objects without volume, sizes far from 1. (Points that are
+ * no numbers, and callbacks that lie: extension/input.c.) Always a return code of the call's, outputs untouched
  * unless it is a hit, a hit sound, and an end: the number of support points is bounded. */
 
 #include "entries.h"
 #include <math.h>
 #include <time.h>
-
-static unsigned long bad_from, supports;
-static ccd_real_t bad_value;
-static int bad_axis, bad_seen;
-
-static void bad_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
-{
-    shape_support(obj, dir, out);
-    if (++supports >= bad_from) {
-        out->v[bad_axis] = bad_value;
-        bad_seen = 1;
-    }
-}
 
 static int may_return(const call_t *entry, int code)
 {
@@ -52,8 +39,6 @@ static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, do
     memset(&out, 0x5a, sizeof out);
     before = out;
     a->calls = b->calls = 0;
-    bad_seen = 0;
-    supports = 0;
     code = run(entry, a, b, ccd, &out);
     CHECK(may_return(entry, code), "%s, %s: returned %d", entry->name, what, code);
     CHECK(a->calls + b->calls <= most, "%s, %s: %lu supports, %.3f s", entry->name, what, a->calls + b->calls,
@@ -72,46 +57,19 @@ static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, do
     return code;
 }
 
-static void not_numbers(const call_t *entry)
-{
-    const ccd_real_t values[] = {(ccd_real_t)NAN, (ccd_real_t)HUGE_VAL, -(ccd_real_t)HUGE_VAL};
-    int round;
-    for (round = 0; round < 120; round++) {
-        shape_t a, b;
-        ccd_t ccd;
-        int code;
-        random_pair(entry, round % 2, &a, &b, &ccd);
-        ccd.support1 = round % 4 < 2 ? bad_support : shape_support;
-        ccd.support2 = round % 4 < 2 ? shape_support : bad_support;
-        bad_from = 1 + (unsigned long)random_below(6);
-        bad_value = values[round % 3];
-        bad_axis = random_below(entry->number == ASK_PLANAR ? 2 : 3);
-        code = ask(entry, &a, &b, &ccd, 10, "a point that is not a number");
-        if (bad_seen)
-            CHECK(code == (entry->hit == CCD_HIT && (entry->traits & EXTENSION) && !(entry->traits & FROM_CENTERS)
-                               ? CCD_BAD_INPUT
-                               : entry->miss),
-                  "%s after such a point returned %d", entry->name, code);
-    }
-}
-
 static void tolerances(const call_t *entry)
 {
-    const ccd_real_t values[] = {0, -1, -0.0f, (ccd_real_t)NAN, (ccd_real_t)1e-30, (ccd_real_t)1e-12, 1, (ccd_real_t)HUGE_VAL};
+    const ccd_real_t values[] = {0, -0.0f, (ccd_real_t)1e-30, (ccd_real_t)1e-12, 1, (ccd_real_t)HUGE_VAL};
     int round;
-    for (round = 0; round < 160; round++) {
-        const int kind = round % 8, overlapping = round / 8 % 2, refused = kind == 1 || kind == 3;
+    for (round = 0; round < 120; round++) {
+        const int kind = round % 6, overlapping = round / 6 % 2;
         shape_t a, b;
         ccd_t ccd;
         int code;
         random_pair(entry, overlapping, &a, &b, &ccd);
         ccd.epa_tolerance = ccd.mpr_tolerance = ccd.dist_tolerance = values[kind];
         code = ask(entry, &a, &b, &ccd, 10, "a tolerance");
-        if (refused && entry->hit == CCD_HIT && (entry->traits & EXTENSION) && !(entry->traits & FROM_CENTERS))
-            CHECK(code == CCD_BAD_INPUT, "%s with tolerance %g: %d", entry->name, (double)values[kind], code);
-        else
-            CHECK(code == (overlapping ? entry->hit : entry->miss), "%s with tolerance %g: %d", entry->name,
-                  (double)values[kind], code);
+        CHECK(code == (overlapping ? entry->hit : entry->miss), "%s with tolerance %g: %d", entry->name, (double)values[kind], code);
     }
 }
 
@@ -224,7 +182,6 @@ int main(void)
     int i;
     for (i = 0; i < ENTRIES; i++) {
         const unsigned long failed = checks_failed;
-        not_numbers(&entries[i]);
         tolerances(&entries[i]);
         iterations(&entries[i]);
         degenerate(&entries[i]);

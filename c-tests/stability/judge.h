@@ -110,6 +110,9 @@ static inline unsigned long most_calls(const entry_t *e)
     return entry_is_mpr(e) ? 2 * 400 : 2 * 1500;
 }
 
+/* What of an answer is wanted: CCD_WANT_ flags. */
+static unsigned judge_want = CCD_WANT_ALL;
+
 static sigjmp_buf judge_back;
 static volatile unsigned long judge_calls, judge_limit;
 
@@ -191,10 +194,10 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     memset(&rest, 0, sizeof rest);
     rest.warm = warm;
     rest.along = along;
-    rest.want = CCD_WANT_ALL;
+    rest.want = judge_want;
     rest.depth = &depth;
     rest.dir = &dir;
-    rest.pos = &pos;
+    rest.pos = judge_want & CCD_WANT_POS ? &pos : NULL;
     rest.full = &p;
     code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
     if (e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM)
@@ -312,6 +315,7 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
     X(CODE, "undocumented code") \
     X(MISSED, "missed an overlap") \
     X(NOT_UNIT, "direction not unit") \
+    X(NOT_NORMAL, "direction not the normal") \
     X(NOT_SUPPORT, "depth is not the support value of its direction") \
     X(NOT_MINIMUM, "not the minimum within tolerance") \
     X(NOT_PROMISED, "deeper than MPR promises") \
@@ -351,7 +355,7 @@ static inline const char *fault_text(int bit)
 /* Faults that this library never has, whatever the entry point. */
 enum {
     FAULTS_NEVER = FAULT_LOOP | FAULT_CRASH | FAULT_NAN | FAULT_DIR0 | FAULT_MISS_DEEP | FAULT_FALSE_HIT
-        | FAULT_UNSOUND | FAULT_CODE | FAULT_MISSED | FAULT_NOT_UNIT | FAULT_NOT_SUPPORT | FAULT_NOT_MINIMUM | FAULT_NOT_PROMISED
+        | FAULT_UNSOUND | FAULT_CODE | FAULT_MISSED | FAULT_NOT_UNIT | FAULT_NOT_NORMAL | FAULT_NOT_SUPPORT | FAULT_NOT_MINIMUM | FAULT_NOT_PROMISED
         | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS_DEPTH
         | FAULT_WITNESS_PLANE | FAULT_WITNESS_INSIDE | FAULT_WITNESS_ACROSS | FAULT_POSITION | FAULT_MISCOUNTED | FAULT_TOUCHED
 };
@@ -502,8 +506,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (!(fabs(sqrt(l2) - 1) <= tolerance(TOL_UNIT)) && e->ask != ASK_SEPARATE)
         faults |= FAULT_NOT_UNIT;
 
-    /* the rate table's verdicts */
-    value = truth_value(a, b, x->dir);
+    /* the rate table's verdicts; along a direction that is not the normal the plane is farther */
+    value = x->has_proof ? truth_value(a, b, x->normal) / truth_dot3(x->dir, x->normal) : truth_value(a, b, x->dir);
     table = fmin(tolerance(TOL_TABLE) * fmax(t->depth, 0) + 2 * q->tol, tolerance(TOL_TABLE_CAP) * q->size) + q->noise;
     if (x->depth > t->depth + table)
         faults |= FAULT_OVER;
@@ -523,9 +527,10 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         double along = truth_dot3(x->dir, x->normal), n2 = truth_dot3(x->normal, x->normal);
         if (!(fabs(sqrt(n2) - 1) <= tolerance(TOL_UNIT)) || !(along > 0))
             faults |= FAULT_NOT_UNIT;
-        value = truth_value(a, b, x->normal) / along;
+        if (e->ask != ASK_ALONG && memcmp(x->dir, x->normal, sizeof x->dir) != 0)
+            faults |= FAULT_NOT_NORMAL;
         faults |= judge_witness(e, x, a, b, q);
-        if (x->lower > t->depth + q->noise + gap)
+        if (!(x->lower >= 0 && x->lower <= x->depth) || x->lower > t->depth + q->noise + gap)
             faults |= FAULT_FALSE_PROOF;
         /* supports counts pairs of calls, of which the last may lack one: for a position the objects are asked one by one */
         if (x->supports != (x->calls + 1) / 2)
@@ -544,6 +549,9 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
             && !(x->depth - x->lower <= q->tol + tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b) + 2 * q->noise))
             faults |= FAULT_NO_PROOF;
     }
+    if (e->ask == ASK_PENETRATION && x->code == CCD_HIT
+        && !(x->depth - x->lower <= fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) + 2 * q->noise))
+        faults |= FAULT_NO_PROOF;
     if (entry_is_mpr(e) && !mpr_within(x->depth, t->depth, q->tol, gap + 2 * q->noise, x->calls / 2))
         faults |= FAULT_NOT_PROMISED;
     if (e->ask == ASK_ALONG && x->depth > fmax(t->depth, 0) + q->tol + gap + 2 * q->noise)

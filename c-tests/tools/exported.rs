@@ -10,7 +10,7 @@
 
 use ccd::Real;
 use ccd::internals::ffi::*;
-use std::ffi::{CStr, c_int, c_uint, c_void};
+use std::ffi::{CStr, c_int, c_void};
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
@@ -80,78 +80,47 @@ unsafe extern "C-unwind" fn center(obj: *const c_void, center: *mut ccd_vec3_t) 
     unsafe { (*center).v = (*obj.cast::<Object>()).center };
 }
 
-/// Settings with every field a call must not read left uninitialised.
-struct Settings(MaybeUninit<ccd_t>);
-
-impl Settings {
-    /// What every call reads, and what `more` writes.
-    fn with(centers: bool, more: impl FnOnce(*mut ccd_t)) -> Settings {
-        let mut settings = MaybeUninit::<ccd_t>::uninit();
-        let ccd = settings.as_mut_ptr();
-        unsafe {
-            (&raw mut (*ccd).support1).write(Some(support));
-            (&raw mut (*ccd).support2).write(Some(support));
-            (&raw mut (*ccd).max_iterations).write(100);
-            if centers {
-                (&raw mut (*ccd).center1).write(Some(center));
-                (&raw mut (*ccd).center2).write(Some(center));
-            }
-        }
-        more(ccd);
-        Settings(settings)
-    }
-
-    /// What MPR's calls read.
-    fn mpr() -> Settings {
-        Settings::with(true, |ccd| unsafe {
-            (&raw mut (*ccd).mpr_tolerance).write(TOLERANCE);
-        })
-    }
-
-    /// What ccdPenetrationProven reads.
-    fn minimum() -> Settings {
-        Settings::with(true, |ccd| unsafe {
-            (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
-        })
-    }
-
-    /// What ccdSignedDistance reads.
-    fn distance() -> Settings {
-        Settings::with(true, |ccd| unsafe {
-            (&raw mut (*ccd).first_dir).write(None);
-            (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
-        })
-    }
-
-    /// What GJK's calls read.
-    fn gjk() -> Settings {
-        Settings::with(false, |ccd| unsafe {
-            (&raw mut (*ccd).first_dir).write(Some(ccdFirstDirDefault));
-            (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
-            (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
-        })
-    }
-
-    fn at_most(mut self, iterations: u32) -> Settings {
-        unsafe { (&raw mut (*self.0.as_mut_ptr()).max_iterations).write(iterations.into()) };
-        self
-    }
-
-    fn get(&self) -> *const ccd_t {
-        self.0.as_ptr()
-    }
+/// Which fields of `ccd_t` a call reads besides the support functions and the cap.
+#[derive(Clone, Copy, PartialEq)]
+enum Reads {
+    Mpr,
+    Proven,
+    Distance,
+    Gjk,
+    /// As MPR's yes or no.
+    Centers,
 }
 
 const TOLERANCE: Real = 1e-4;
-/// `ccdMPRPenetration` and `ccdGJKPenetration`.
-type Penetration = unsafe extern "C-unwind" fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    *mut Real,
-    *mut ccd_vec3_t,
-    *mut ccd_vec3_t,
-) -> c_int;
+
+/// Settings with every field that the call must not read left uninitialised.
+fn settings(reads: Reads, iterations: u32) -> MaybeUninit<ccd_t> {
+    let mut settings = MaybeUninit::<ccd_t>::uninit();
+    let ccd = settings.as_mut_ptr();
+    unsafe {
+        (&raw mut (*ccd).support1).write(Some(support));
+        (&raw mut (*ccd).support2).write(Some(support));
+        (&raw mut (*ccd).max_iterations).write(iterations.into());
+        if reads != Reads::Gjk {
+            (&raw mut (*ccd).center1).write(Some(center));
+            (&raw mut (*ccd).center2).write(Some(center));
+        }
+        match reads {
+            Reads::Mpr => (&raw mut (*ccd).mpr_tolerance).write(TOLERANCE),
+            Reads::Proven => (&raw mut (*ccd).epa_tolerance).write(TOLERANCE),
+            Reads::Distance => {
+                (&raw mut (*ccd).first_dir).write(None);
+                (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
+            }
+            Reads::Gjk => {
+                (&raw mut (*ccd).first_dir).write(Some(ccdFirstDirDefault));
+                (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
+            }
+            Reads::Centers => {}
+        }
+    }
+    settings
+}
 
 fn pointer(object: &mut Object) -> *const c_void {
     (&raw mut *object).cast()
@@ -160,174 +129,151 @@ fn pointer(object: &mut Object) -> *const c_void {
 /// Overlapping pairs with their depths; the last is a miss.
 fn pairs() -> Vec<(Shape, Shape, [Real; 3], Option<Real>)> {
     let half = Shape::Box([0.5, 1.0, 1.5]);
+    let (ball, tetrahedron) = (Shape::Ball(1.0), Shape::Tetrahedron(1.0));
     vec![
-        (
-            Shape::Ball(1.0),
-            Shape::Ball(0.5),
-            [1.2, 0.0, 0.0],
-            Some(0.3),
-        ),
-        (Shape::Ball(1.0), half, [0.0, 0.0, 2.4], Some(0.1)),
+        (ball, Shape::Ball(0.5), [1.2, 0.0, 0.0], Some(0.3)),
+        (ball, half, [0.0, 0.0, 2.4], Some(0.1)),
         (half, half, [0.9, 0.1, 0.2], Some(0.1)),
-        (Shape::Tetrahedron(1.0), half, [-1.4, 0.0, 0.0], Some(0.1)),
-        (half, Shape::Tetrahedron(1.0), [5.0, 4.0, 3.0], None),
+        (tetrahedron, half, [-1.4, 0.0, 0.0], Some(0.1)),
+        (half, tetrahedron, [5.0, 4.0, 3.0], None),
     ]
 }
 
-fn without_outputs(
-    call: Penetration,
-    obj1: *const c_void,
-    obj2: *const c_void,
-    settings: &Settings,
-) -> c_int {
-    let none = null_mut();
-    unsafe { call(obj1, obj2, settings.get(), none, null_mut(), null_mut()) }
+// --- the calls about two objects -----------------------------------------------------------
+
+/// What a call is asked.
+struct Ask {
+    a: *const c_void,
+    b: *const c_void,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
 }
 
-fn penetrates(call: Penetration, settings: &Settings) {
-    for (shape1, shape2, center2, truth) in pairs() {
-        let mut obj1 = object(shape1, [0.0; 3]);
-        let mut obj2 = object(shape2, center2);
-        let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-        let untouched = ccd_vec3_t { v: [7.0; 3] };
-        let (mut depth, mut dir, mut pos) = (7.0, untouched, untouched);
-        let code = unsafe { call(obj1, obj2, settings.get(), &mut depth, &mut dir, &mut pos) };
-        match truth {
-            Some(truth) => {
-                assert_eq!(code, 0);
-                assert!((depth - truth).abs() <= 2.0 * TOLERANCE, "{depth} {truth}");
-                assert!((dot(&dir, &dir) - 1.0).abs() < 1e-5, "{dir:?}");
-            }
-            None => {
-                assert_eq!(code, -1);
-                assert_eq!((depth, dir, pos), (7.0, untouched, untouched));
-            }
-        }
-        assert_eq!(without_outputs(call, obj1, obj2, settings), code);
-        assert!(unsafe { (*obj1.cast::<Object>()).calls } > 0);
+/// What it says: depth, the way to move and the normal of the plane behind it.
+struct Said {
+    code: c_int,
+    answer: Option<(Real, ccd_vec3_t, ccd_vec3_t)>,
+}
+
+impl Said {
+    fn yes_or_no(code: c_int) -> Said {
+        Said { code, answer: None }
+    }
+
+    /// From a struct that is written where there is an answer.
+    fn full(code: c_int, out: MaybeUninit<ccd_penetration_t>) -> Said {
+        let answer = (code == CCD_HIT || code == CCD_LIMIT).then(|| {
+            let out = unsafe { out.assume_init() };
+            (out.depth, out.dir, out.normal)
+        });
+        Said { code, answer }
     }
 }
 
-fn refuses_what_is_not_a_number(call: Penetration, settings: &Settings) {
-    let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
-    let mut obj2 = object(Shape::NotANumber, [0.5; 3]);
-    let mut depth = 7.0;
-    let code = unsafe {
-        call(
-            pointer(&mut obj1),
-            pointer(&mut obj2),
-            settings.get(),
-            &mut depth,
-            null_mut(),
-            null_mut(),
-        )
+const UNTOUCHED: ccd_vec3_t = ccd_vec3_t { v: [7.0; 3] };
+const ALONG: ccd_vec3_t = ccd_vec3_t { v: [1.0, 0.0, 0.0] };
+
+/// A call that writes depth, direction and position, also without them.
+macro_rules! depth {
+    ($call:ident $(, $warm:ident)?) => {
+        |q: &Ask| unsafe {
+            let (mut depth, mut dir, mut pos) = (7.0, UNTOUCHED, UNTOUCHED);
+            let code = $call(q.a, q.b, q.ccd, $(q.$warm,)? &mut depth, &mut dir, &mut pos);
+            if code != 0 {
+                assert_eq!((depth, dir, pos), (7.0, UNTOUCHED, UNTOUCHED));
+            }
+            let none = (null_mut(), null_mut(), null_mut());
+            assert_eq!($call(q.a, q.b, q.ccd, $(q.$warm,)? none.0, none.1, none.2), code);
+            Said { code, answer: (code == 0).then_some((depth, dir, dir)) }
+        }
     };
-    assert_eq!((code, depth), (-1, 7.0));
 }
 
-/// Nothing is leaked or left half done when a callback does not return.
-fn unwinds(call: Penetration, settings: &Settings) {
-    let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
-    let mut obj2 = object(Shape::Panics, [0.5; 3]);
-    let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-    let caught = std::panic::catch_unwind(|| without_outputs(call, obj1, obj2, settings));
-    assert!(caught.is_err());
-}
-
-#[test]
-fn mpr() {
-    let settings = Settings::mpr();
-    penetrates(ccdMPRPenetration, &settings);
-    refuses_what_is_not_a_number(ccdMPRPenetration, &settings);
-    unwinds(ccdMPRPenetration, &settings);
-}
-
-#[test]
-fn gjk() {
-    let settings = Settings::gjk();
-    penetrates(ccdGJKPenetration, &settings);
-    refuses_what_is_not_a_number(ccdGJKPenetration, &settings);
-    unwinds(ccdGJKPenetration, &settings);
-}
-
-#[test]
-fn separation() {
-    let settings = Settings::gjk();
-    for (shape1, shape2, center2, truth) in pairs() {
-        let mut obj1 = object(shape1, [0.0; 3]);
-        let mut obj2 = object(shape2, center2);
-        let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-        let untouched = ccd_vec3_t { v: [7.0; 3] };
-        let mut sep = untouched;
-        let code = unsafe { ccdGJKSeparate(obj1, obj2, settings.get(), &mut sep) };
-        assert_eq!(code, c_int::from(truth.is_some()) - 1);
-        match truth {
-            Some(truth) => assert!((dot(&sep, &sep).sqrt() - truth).abs() <= 2.0 * TOLERANCE),
-            None => assert_eq!(sep, untouched),
+/// A call that fills a struct, by itself or along a direction.
+macro_rules! full {
+    ($call:ident $(, $along:ident)?) => {
+        |q: &Ask| {
+            let mut out = MaybeUninit::uninit();
+            let code = unsafe { $call(q.a, q.b, q.ccd, $(&$along,)? q.warm, CCD_WANT_ALL, out.as_mut_ptr()) };
+            Said::full(code, out)
         }
-        let without = unsafe { ccdGJKSeparate(obj1, obj2, settings.get(), null_mut()) };
-        assert_eq!(without, code);
+    };
+}
+
+fn separate(q: &Ask) -> Said {
+    let mut sep = UNTOUCHED;
+    let code = unsafe { ccdGJKSeparate(q.a, q.b, q.ccd, &mut sep) };
+    assert_eq!(unsafe { ccdGJKSeparate(q.a, q.b, q.ccd, null_mut()) }, code);
+    if code != 0 {
+        assert_eq!(sep, UNTOUCHED);
+        return Said::yes_or_no(code);
+    }
+    let depth = dot(&sep, &sep).sqrt();
+    let dir = ccd_vec3_t {
+        v: sep.v.map(|x| x / depth),
+    };
+    Said {
+        code,
+        answer: Some((depth, dir, dir)),
     }
 }
 
-#[test]
-fn overlap() {
-    for (shape1, shape2, center2, truth) in pairs() {
-        let mut obj1 = object(shape1, [0.0; 3]);
-        let mut obj2 = object(shape2, center2);
-        let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-        let expected = c_int::from(truth.is_some());
-        unsafe {
-            assert_eq!(ccdMPRIntersect(obj1, obj2, Settings::mpr().get()), expected);
-            assert_eq!(ccdGJKIntersect(obj1, obj2, Settings::gjk().get()), expected);
-        }
+fn distance(q: &Ask) -> Said {
+    let mut out = MaybeUninit::<ccd_distance_t>::uninit();
+    let mut ask = |margin: Real| unsafe {
+        let (far, out) = (Real::INFINITY, out.as_mut_ptr());
+        ccdSignedDistance(q.a, q.b, q.ccd, 0.0, margin, far, q.warm, CCD_WANT_ALL, out)
+    };
+    assert_eq!(ask(-0.1), CCD_BAD_INPUT);
+    let code = ask(0.0);
+    if code == CCD_BAD_INPUT {
+        return Said::yes_or_no(code);
     }
+    // A distance is an answer too.
+    let out = unsafe { out.assume_init() };
+    assert_eq!(code == CCD_HIT, out.distance < 0.0);
+    let answer = (code == CCD_HIT).then_some((-out.distance, out.normal, out.normal));
+    Said { code, answer }
 }
 
-/// A call of the extension that fills a struct, by itself or along a direction.
-#[derive(Clone, Copy)]
-enum Extended {
-    Free(
-        unsafe extern "C-unwind" fn(
-            *const c_void,
-            *const c_void,
-            *const ccd_t,
-            *mut ccd_warm_t,
-            c_uint,
-            *mut ccd_penetration_t,
-        ) -> c_int,
-    ),
-    Along(
-        unsafe extern "C-unwind" fn(
-            *const c_void,
-            *const c_void,
-            *const ccd_t,
-            *const ccd_vec3_t,
-            *mut ccd_warm_t,
-            c_uint,
-            *mut ccd_penetration_t,
-        ) -> c_int,
-    ),
+struct Call {
+    name: &'static str,
+    reads: Reads,
+    /// What it returns of an overlap, of a miss and of points that are no numbers.
+    codes: [c_int; 3],
+    /// Whether the depth is the least: of the others it is sound.
+    least: bool,
+    ask: fn(&Ask) -> Said,
 }
 
-impl Extended {
-    unsafe fn call(
-        self,
-        obj1: *const c_void,
-        obj2: *const c_void,
-        settings: &Settings,
-        warm: *mut ccd_warm_t,
-        out: *mut ccd_penetration_t,
-    ) -> c_int {
-        let (ccd, x) = (settings.get(), ccd_vec3_t { v: [1.0, 0.0, 0.0] });
-        match self {
-            Self::Free(call) => unsafe { call(obj1, obj2, ccd, warm, CCD_WANT_ALL, out) },
-            Self::Along(call) => unsafe { call(obj1, obj2, ccd, &x, warm, CCD_WANT_ALL, out) },
-        }
-    }
-}
+const YES: [c_int; 3] = [1, 0, 0];
+const LIBCCD: [c_int; 3] = [0, -1, -1];
+const FULL: [c_int; 3] = [CCD_HIT, CCD_MISS, CCD_BAD_INPUT];
 
-/// Every state that C can hand over: none, cold, any bytes at all, the last answer's.
+#[rustfmt::skip]
+const CALLS: [Call; 15] = [
+    Call { name: "MPR", reads: Reads::Mpr, codes: LIBCCD, least: true, ask: depth!(ccdMPRPenetration) },
+    Call { name: "GJK", reads: Reads::Gjk, codes: LIBCCD, least: true, ask: depth!(ccdGJKPenetration) },
+    Call { name: "separate", reads: Reads::Gjk, codes: LIBCCD, least: true, ask: separate },
+    Call { name: "MPR, warm", reads: Reads::Mpr, codes: LIBCCD, least: false, ask: depth!(ccdMPRPenetrationWarm, warm) },
+    Call { name: "local", reads: Reads::Mpr, codes: FULL, least: false, ask: full!(ccdPenetrationLocal) },
+    Call { name: "penetration", reads: Reads::Mpr, codes: FULL, least: false, ask: full!(ccdPenetration) },
+    Call { name: "incremental", reads: Reads::Mpr, codes: FULL, least: false, ask: full!(ccdPenetrationIncremental) },
+    Call { name: "proven", reads: Reads::Proven, codes: FULL, least: true, ask: full!(ccdPenetrationProven) },
+    Call { name: "along", reads: Reads::Mpr, codes: FULL, least: false, ask: full!(ccdPenetrationAlong, ALONG) },
+    Call { name: "planar", reads: Reads::Mpr, codes: FULL, least: false, ask: full!(ccdPenetrationPlanar, ALONG) },
+    Call { name: "distance", reads: Reads::Distance, codes: FULL, least: true, ask: distance },
+    Call { name: "MPR intersect", reads: Reads::Centers, codes: YES, least: false,
+        ask: |q| Said::yes_or_no(unsafe { ccdMPRIntersect(q.a, q.b, q.ccd) }) },
+    Call { name: "GJK intersect", reads: Reads::Gjk, codes: YES, least: false,
+        ask: |q| Said::yes_or_no(unsafe { ccdGJKIntersect(q.a, q.b, q.ccd) }) },
+    Call { name: "MPR intersect, warm", reads: Reads::Centers, codes: YES, least: false,
+        ask: |q| Said::yes_or_no(unsafe { ccdMPRIntersectWarm(q.a, q.b, q.ccd, q.warm) }) },
+    Call { name: "intersect", reads: Reads::Centers, codes: YES, least: false,
+        ask: |q| Said::yes_or_no(unsafe { ccdIntersect(q.a, q.b, q.ccd, q.warm) }) },
+];
+
+/// Every state that C can hand over: none, cold, a guess flipped twice, any bytes at all.
 fn states() -> Vec<Option<ccd_warm_t>> {
     let bytes = |next: &mut dyn FnMut() -> u8| {
         let mut state = MaybeUninit::<ccd_warm_t>::uninit();
@@ -342,133 +288,133 @@ fn states() -> Vec<Option<ccd_warm_t>> {
         random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (random >> 24) as u8
     };
-    let mut states = vec![None, Some(bytes(&mut || 0)), Some(bytes(&mut || 0xff))];
+    let mut guess = MaybeUninit::<ccd_warm_t>::uninit();
+    let guess = unsafe {
+        ccdWarmGuess(guess.as_mut_ptr(), &ccd_vec3_t { v: [0.0, 3.0, 0.0] });
+        ccdWarmFlip(guess.as_mut_ptr());
+        ccdWarmFlip(guess.as_mut_ptr());
+        guess.assume_init()
+    };
+    let mut states = vec![
+        None,
+        Some(bytes(&mut || 0)),
+        Some(bytes(&mut || 0xff)),
+        Some(guess),
+    ];
     let random_states = if cfg!(miri) { 1 } else { 8 };
     states.extend((0..random_states).map(|_| Some(bytes(&mut random_byte))));
     states
 }
 
 /// Whatever the state holds, hits are hits, misses misses, and the depth separates.
-fn extended(call: Extended, settings: &Settings) {
-    for (shape1, shape2, center2, truth) in pairs() {
-        for mut state in states() {
-            let mut obj1 = object(shape1, [0.0; 3]);
-            let mut obj2 = object(shape2, center2);
-            let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-            let warm = state.as_mut().map_or(null_mut(), |state| &raw mut *state);
-            // The second call starts from what the first one left.
-            for _ in 0..2 {
-                let mut out = MaybeUninit::uninit();
-                let code = unsafe { call.call(obj1, obj2, settings, warm, out.as_mut_ptr()) };
-                let Some(truth) = truth else {
-                    assert_eq!(code, CCD_MISS);
-                    continue;
+#[test]
+fn every_call_answers_from_every_state() {
+    for call in &CALLS {
+        let ccd = settings(call.reads, 100);
+        for (shape1, shape2, center2, truth) in pairs() {
+            for (number, mut state) in states().into_iter().enumerate() {
+                let (mut a, mut b) = (object(shape1, [0.0; 3]), object(shape2, center2));
+                let warm = state.as_mut().map_or(null_mut(), |state| &raw mut *state);
+                let (a, b) = (pointer(&mut a), pointer(&mut b));
+                let ask = Ask {
+                    a,
+                    b,
+                    ccd: ccd.as_ptr(),
+                    warm,
                 };
-                assert_eq!(code, CCD_HIT);
-                let out = unsafe { out.assume_init() };
-                assert!(out.depth >= truth - TOLERANCE && out.depth < 10.0);
-                let along_normal = reach(obj1, obj2, settings.get(), &out.normal);
-                let separates = along_normal / dot(&out.dir, &out.normal);
-                assert!((out.depth - separates).abs() <= 1e-5, "{separates}");
+                // The second call starts from what the first one left.
+                for _ in 0..2 {
+                    let said = (call.ask)(&ask);
+                    let what = format!("{}, state {number}", call.name);
+                    assert_eq!(
+                        said.code,
+                        call.codes[usize::from(truth.is_none())],
+                        "{what}"
+                    );
+                    let (Some(truth), Some((depth, dir, normal))) = (truth, said.answer) else {
+                        continue;
+                    };
+                    assert!((dot(&dir, &dir) - 1.0).abs() < 1e-5, "{what}: {dir:?}");
+                    assert!(
+                        depth >= truth - TOLERANCE && depth < 10.0,
+                        "{what}: {depth}"
+                    );
+                    assert!(
+                        !call.least || depth <= truth + 2.0 * TOLERANCE,
+                        "{what}: {depth}"
+                    );
+                    let separates = reach(&ask, &normal) / dot(&dir, &normal);
+                    assert!(
+                        call.least || (depth - separates).abs() <= 1e-5,
+                        "{what}: {separates}"
+                    );
+                }
+                assert!(unsafe { (*a.cast::<Object>()).calls } > 0);
             }
         }
     }
-    let (mut obj1, mut obj2) = (
-        object(Shape::Ball(1.0), [0.0; 3]),
-        object(Shape::NotANumber, [0.5; 3]),
-    );
-    let mut out = MaybeUninit::uninit();
-    let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-    let code = unsafe { call.call(obj1, obj2, settings, null_mut(), out.as_mut_ptr()) };
-    assert_eq!(code, CCD_BAD_INPUT);
 }
 
+/// A point that is no number is refused. Nothing is leaked or left half done when a callback does
+/// not return.
 #[test]
-fn local() {
-    extended(Extended::Free(ccdPenetrationLocal), &Settings::mpr());
+fn no_call_answers_of_what_is_no_object() {
+    for call in &CALLS {
+        let ccd = settings(call.reads, 100);
+        let mut ball = object(Shape::Ball(1.0), [0.0; 3]);
+        let mut ask = |shape| {
+            let mut other = object(shape, [0.5; 3]);
+            let (a, b) = (pointer(&mut ball), pointer(&mut other));
+            (call.ask)(&Ask {
+                a,
+                b,
+                ccd: ccd.as_ptr(),
+                warm: null_mut(),
+            })
+            .code
+        };
+        assert_eq!(ask(Shape::NotANumber), call.codes[2], "{}", call.name);
+        let left = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| ask(Shape::Panics)));
+        assert!(left.is_err(), "{}", call.name);
+    }
 }
 
-#[test]
-fn penetration() {
-    extended(Extended::Free(ccdPenetration), &Settings::mpr());
+/// How far obj2 has to move along `dir` until a plane with this normal separates.
+fn reach(ask: &Ask, dir: &ccd_vec3_t) -> Real {
+    let mut farthest = ccd_support_t::default();
+    unsafe { __ccdSupport(ask.a, ask.b, dir, ask.ccd, &mut farthest) };
+    dot(&farthest.v, dir)
 }
 
-#[test]
-fn incremental() {
-    extended(Extended::Free(ccdPenetrationIncremental), &Settings::mpr());
-}
-
-#[test]
-fn proven() {
-    extended(Extended::Free(ccdPenetrationProven), &Settings::minimum());
+fn dot(a: &ccd_vec3_t, b: &ccd_vec3_t) -> Real {
+    a.v.iter().zip(&b.v).map(|(a, b)| a * b).sum()
 }
 
 /// A ball in the middle of another that is a hundredth too long: minima on a circle, and nearly
 /// everywhere, and the proof outgrows the stack.
 #[test]
 fn memory_from_malloc() {
-    let mut obj1 = object(Shape::Ellipsoid([1.0, 1.0, 1.01]), [0.0; 3]);
-    let mut obj2 = object(Shape::Ball(0.5), [0.0; 3]);
-    let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-    let mut out = MaybeUninit::uninit();
-    let mut depth = 0.0;
-    unsafe {
-        let (minimum, gjk) = (
-            Settings::minimum().at_most(200),
-            Settings::gjk().at_most(200),
+    for (name, code) in [("proven", CCD_LIMIT), ("GJK", 0)] {
+        let call = CALLS.iter().find(|c| c.name == name).expect("a call");
+        let mut obj1 = object(Shape::Ellipsoid([1.0, 1.0, 1.01]), [0.0; 3]);
+        let mut obj2 = object(Shape::Ball(0.5), [0.0; 3]);
+        let (a, b) = (pointer(&mut obj1), pointer(&mut obj2));
+        let ccd = settings(call.reads, 200);
+        let said = (call.ask)(&Ask {
+            a,
+            b,
+            ccd: ccd.as_ptr(),
+            warm: null_mut(),
+        });
+        assert_eq!(said.code, code);
+        assert!(
+            said.answer
+                .is_some_and(|(depth, ..)| (depth - 1.5).abs() < TOLERANCE)
         );
-        let code = ccdPenetrationProven(
-            obj1,
-            obj2,
-            minimum.get(),
-            null_mut(),
-            CCD_WANT_ALL,
-            out.as_mut_ptr(),
-        );
-        assert_eq!(code, CCD_LIMIT);
-        assert!((out.assume_init().depth - 1.5).abs() < TOLERANCE);
-        let code = ccdGJKPenetration(obj1, obj2, gjk.get(), &mut depth, null_mut(), null_mut());
-        assert_eq!(code, 0);
-        assert!((depth - 1.5).abs() < TOLERANCE);
     }
 }
 
-#[test]
-fn along() {
-    extended(Extended::Along(ccdPenetrationAlong), &Settings::mpr());
-}
-
-#[test]
-fn planar() {
-    extended(Extended::Along(ccdPenetrationPlanar), &Settings::mpr());
-}
-
-/// Balls: the distance of the centres less radii and margin, from every state; a point that is no
-/// number and a margin below 0 are bad input.
-#[test]
-fn distance() {
-    let settings = Settings::distance();
-    for mut state in states() {
-        let mut obj1 = object(Shape::Ball(1.0), [0.0; 3]);
-        let mut strange = object(Shape::NotANumber, [0.5; 3]);
-        let (obj1, strange) = (pointer(&mut obj1), pointer(&mut strange));
-        let warm = state.as_mut().map_or(null_mut(), |state| &raw mut *state);
-        for (apart, expected) in [(2.0, CCD_MISS), (1.2, CCD_HIT)] {
-            let mut obj2 = object(Shape::Ball(0.5), [apart, 0.0, 0.0]);
-            let obj2 = pointer(&mut obj2);
-            let mut out = MaybeUninit::<ccd_distance_t>::uninit();
-            let mut ask = |obj2, margin: Real| unsafe {
-                let (ccd, far, out) = (settings.get(), Real::INFINITY, out.as_mut_ptr());
-                ccdSignedDistance(obj1, obj2, ccd, 0.0, margin, far, warm, CCD_WANT_ALL, out)
-            };
-            assert_eq!(ask(obj2, 0.1), expected);
-            assert_eq!(ask(strange, 0.1), CCD_BAD_INPUT);
-            assert_eq!(ask(obj2, -0.1), CCD_BAD_INPUT);
-            let out = unsafe { out.assume_init() };
-            assert!((out.distance - (apart - 1.6)).abs() <= TOLERANCE);
-        }
-    }
-}
+// --- the others -----------------------------------------------------------------------------
 
 /// A ball is right, one whose points are no numbers is not, and nothing need be written.
 #[test]
@@ -496,7 +442,8 @@ fn contacts() {
     let mut obj1 = object(Shape::Box([1.0, 1.0, 0.5]), [0.0; 3]);
     let mut obj2 = object(Shape::Box([0.5, 0.4, 0.5]), [0.1, 0.2, 0.99]);
     let (a, b) = (pointer(&mut obj1), pointer(&mut obj2));
-    let settings = Settings::mpr();
+    let ccd = settings(Reads::Mpr, 100);
+    let ccd = ccd.as_ptr();
     let normal = ccd_vec3_t { v: [0.0, 0.0, 3.0] };
     let mut manifold = MaybeUninit::<ccd_manifold_t>::zeroed();
     let manifold = manifold.as_mut_ptr();
@@ -509,18 +456,7 @@ fn contacts() {
     ] {
         let mut out = vec![MaybeUninit::<ccd_contact_t>::uninit(); max];
         let room = out.as_mut_ptr().cast();
-        let n = unsafe {
-            ccdContacts(
-                a,
-                b,
-                settings.get(),
-                &normal,
-                1e-3,
-                memory,
-                room,
-                max as c_int,
-            )
-        };
+        let n = unsafe { ccdContacts(a, b, ccd, &normal, 1e-3, memory, room, max as c_int) };
         assert_eq!(n, max.min(4) as c_int);
         for contact in &out[..n as usize] {
             let contact = unsafe { contact.assume_init() };
@@ -533,73 +469,13 @@ fn contacts() {
     let mut contact = MaybeUninit::<ccd_contact_t>::uninit();
     unsafe {
         let one = contact.as_mut_ptr();
-        let bad = ccdContacts(a, strange, settings.get(), &normal, 0.0, null_mut(), one, 1);
+        let bad = ccdContacts(a, strange, ccd, &normal, 0.0, null_mut(), one, 1);
         assert_eq!(bad, CCD_BAD_INPUT);
-        let bad = ccdContacts(a, b, settings.get(), null(), 0.0, null_mut(), one, 1);
+        let bad = ccdContacts(a, b, ccd, null(), 0.0, null_mut(), one, 1);
         assert_eq!(bad, CCD_BAD_INPUT);
-        let bad = ccdContacts(a, b, settings.get(), &normal, 0.0, null_mut(), room, 1);
+        let bad = ccdContacts(a, b, ccd, &normal, 0.0, null_mut(), room, 1);
         assert_eq!(bad, CCD_BAD_INPUT);
     }
-}
-
-/// The compatible calls' warm forms, from a guess too.
-#[test]
-fn warm_forms() {
-    for state in states() {
-        let warm = std::cell::Cell::new(state);
-        let pointer_to_state = || {
-            let state = warm.as_ptr();
-            unsafe { (*state).as_mut() }.map_or(null_mut(), |state| &raw mut *state)
-        };
-        let guess = ccd_vec3_t { v: [0.0, 3.0, 0.0] };
-        for (shape1, shape2, center2, truth) in pairs() {
-            let mut obj1 = object(shape1, [0.0; 3]);
-            let mut obj2 = object(shape2, center2);
-            let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-            let settings = Settings::mpr();
-            let warm = pointer_to_state();
-            let (mut depth, mut dir) = (7.0, guess);
-            unsafe {
-                let hit = c_int::from(truth.is_some());
-                assert_eq!(ccdMPRIntersectWarm(obj1, obj2, settings.get(), warm), hit);
-                assert_eq!(ccdIntersect(obj1, obj2, settings.get(), warm), hit);
-                ccdWarmGuess(warm, &guess);
-                // Twice is nothing.
-                ccdWarmFlip(warm);
-                ccdWarmFlip(warm);
-                let code = ccdMPRPenetrationWarm(
-                    obj1,
-                    obj2,
-                    settings.get(),
-                    warm,
-                    &mut depth,
-                    &mut dir,
-                    null_mut(),
-                );
-                assert_eq!(code, hit - 1);
-            }
-            match truth {
-                Some(truth) => {
-                    // Sound; not always the least depth, from a guess as far off as this.
-                    let separates = reach(obj1, obj2, settings.get(), &dir);
-                    assert!(depth >= truth - TOLERANCE);
-                    assert!((depth - separates).abs() <= 1e-5, "{depth} {separates}");
-                }
-                None => assert_eq!((depth, dir), (7.0, guess)),
-            }
-        }
-    }
-}
-
-/// How far obj2 has to move along `dir` until a plane with this normal separates.
-fn reach(obj1: *const c_void, obj2: *const c_void, ccd: *const ccd_t, dir: &ccd_vec3_t) -> Real {
-    let mut farthest = ccd_support_t::default();
-    unsafe { __ccdSupport(obj1, obj2, dir, ccd, &mut farthest) };
-    dot(&farthest.v, dir)
-}
-
-fn dot(a: &ccd_vec3_t, b: &ccd_vec3_t) -> Real {
-    a.v.iter().zip(&b.v).map(|(a, b)| a * b).sum()
 }
 
 #[test]
@@ -609,10 +485,10 @@ fn support_may_alias() {
     let mut out = ccd_support_t::default();
     out.v.v = [0.0, 1.0, 0.0];
     let (obj1, obj2) = (pointer(&mut obj1), pointer(&mut obj2));
-    let settings = Settings::mpr();
+    let ccd = settings(Reads::Mpr, 100);
     unsafe {
         let dir = &raw const out.v;
-        __ccdSupport(obj1, obj2, dir, settings.get(), &raw mut out);
+        __ccdSupport(obj1, obj2, dir, ccd.as_ptr(), &raw mut out);
     }
     assert_eq!(out.v.v, [-3.0, 2.0, 0.0]);
 }

@@ -8,6 +8,7 @@
 #define STABILITY_WIDE_ROWS_H
 
 #include "bounds.h"
+#include "tolerances.h"
 
 enum { BODY_POINTS = 10000 };
 
@@ -220,6 +221,32 @@ static void make_hull(dice_t *d, body_t *s, double *points)
         s->centre[i % 3] += s->part.points[i] / n;
 }
 
+/* A coordinate where ties, coincidences and tiny differences are common. */
+static double on_grid(dice_t *d)
+{
+    const double x = (dice_below(d, 5) - 2) / 2.;
+    switch (dice_below(d, 10)) {
+    case 0: return 8 * x * real_ulp();
+    case 1: return x + dice_in(d, -1e-6, 1e-6);
+    default: return dice_below(d, 2) ? x : dice_in(d, -1, 1);
+    }
+}
+
+/* The hull of a few points on a grid, perhaps inflated. */
+static void make_grid(dice_t *d, body_t *s, double *points)
+{
+    const int n = 2 + dice_below(d, 8);
+    int i;
+    set_part(&s->part, PART_POINTS, 2, 0, 0, 0);
+    s->part.points = points;
+    s->part.count = n;
+    s->margin = dice_below(d, 2) ? dice_in(d, 0, 1) : 0;
+    for (i = 0; i < 3 * n; i++) {
+        points[i] = on_grid(d);
+        s->centre[i % 3] += points[i] / n;
+    }
+}
+
 static make_t *const plain[] = {make_box, make_ball, make_capsule, make_frustum, make_ellipsoid, make_hull};
 static make_t *const odd[] = {make_star, make_teardrop, make_half_ball, make_superellipsoid, make_rounded_box, make_sum};
 
@@ -238,7 +265,8 @@ enum {
     PLACE_NEAR,      /* then to a depth or gap of 1e-12 to 0.1 of the smaller one */
     PLACE_PARALLEL,  /* turned alike but for 1e-12 to 1e-2 rad, and near */
     PLACE_TOUCHING,  /* turned alike or at random, and within 1e-14 of touching */
-    PLACE_COINCIDENT /* 1e-16 to 1e-2 apart and turned apart */
+    PLACE_COINCIDENT, /* 1e-16 to 1e-2 apart and turned apart */
+    PLACE_GRID        /* as they are: on one grid */
 };
 
 /* The orientation of a, and a small turn. */
@@ -267,6 +295,11 @@ static void place(dice_t *d, wide_pair_t *p, int placement)
     double u[3], far;
     int i, once;
     p->size = size;
+    if (placement == PLACE_GRID) {
+        for (i = 0; i < 3 && dice_below(d, 4); i++)
+            b->at[i] = on_grid(d);
+        return;
+    }
     dice_rotation(d, a->m);
     dice_rotation(d, b->m);
     if (placement == PLACE_PARALLEL || (placement == PLACE_TOUCHING && dice_below(d, 2)))
@@ -321,6 +354,7 @@ static const row_t rows[] = {
     {"ordinary", {make_plain, make_plain}, .3, PLACE_RANDOM, 0},
     {"ordinary, near", {make_plain, make_plain}, .3, PLACE_NEAR, 0},
     {"ball with a small flat, and ball", {make_cut_ball, make_ball}, .3, PLACE_RANDOM, 0},
+    {"inflated hulls of points on a grid", {make_grid, make_grid}, 1, PLACE_GRID, 0},
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
@@ -345,7 +379,7 @@ static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
     }
     if (r->placement == PLACE_COINCIDENT) {
         p->body[1] = p->body[0];
-    } else {
+    } else if (r->placement != PLACE_GRID) {
         const double ratio = dice_log(d, r->ratio, fmin(10 * r->ratio, 1)), by = ratio * body_reach(&p->body[0]) / body_reach(&p->body[1]);
         body_t *const b = &p->body[1];
         scale_part(&b->part, by);
