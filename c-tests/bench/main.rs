@@ -36,10 +36,7 @@ enum Command {
     /// The pictures and their page again, from the CSV that is there.
     Redraw(charts::Options),
     /// Instructions of a query by phase, as Markdown; runs this program under valgrind.
-    Phases(charts::phases::Options),
-    /// What is run under valgrind for the charts.
-    #[command(hide = true)]
-    Watched(charts::split::Watched),
+    Phases(charts::instructions::Options),
 }
 
 fn main() {
@@ -47,7 +44,6 @@ fn main() {
         Command::Record => lab::recorded::record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),
-        Command::Phases(options) => charts::phases::run(&options),
-        Command::Watched(options) => charts::split::watched(&options),
+        Command::Phases(options) => charts::instructions::run(&options),
     }
 }

@@ -16,30 +16,16 @@ void bench_center(const void *obj, ccd_vec3_t *out) { shape_center(obj, out); }
 
 unsigned long bench_calls(const shape_t *s) { return s->calls; }
 
-pair_set_t *bench_set_open(const char *path, int climb)
+/* A pair set, with how many poses and steps of one motion (0: independent poses); NULL where there
+ * is none. It stays: shapes refer to its vertices. */
+pair_set_t *bench_set(const char *path, int climb, int *n, int *trajectory)
 {
     pair_set_t *set = (pair_set_t *)malloc(sizeof *set);
-    if (!set)
+    if (!set || pair_set_read(path, set) != 0 || (climb && pair_set_climb(set) != 0))
         return NULL;
-    if (pair_set_read(path, set) != 0 || (climb && pair_set_climb(set) != 0)) {
-        pair_set_free(set);
-        free(set);
-        return NULL;
-    }
-    return set;
-}
-
-void bench_set_close(pair_set_t *set)
-{
-    pair_set_free(set);
-    free(set);
-}
-
-/* Poses, steps of one motion (0: independent poses). */
-void bench_set_count(const pair_set_t *set, int *n, int *trajectory)
-{
     *n = set->n;
     *trajectory = set->trajectory;
+    return set;
 }
 
 void bench_set_pose(const pair_set_t *set, int i, shape_t *a, shape_t *b, pair_truth_t *truth)
@@ -99,42 +85,33 @@ void bench_shape_pose(const shape_t *s, double pos[3], double rot[9], int *type,
     *type = s->type;
 }
 
-recording_t *bench_recording_open(const char *path)
+typedef struct {
+    unsigned a, b, frame;
+    double lower, upper; /* of the signed depth */
+} bench_recorded_t;
+
+/* How many pairs the first frames of a recording ask about, 0 where there is none; where not NULL, the
+ * two shapes of each go to shape and what is known of it to out. */
+size_t bench_recording(const char *path, unsigned frames, shape_t *shape, bench_recorded_t *out)
 {
-    recording_t *r = (recording_t *)malloc(sizeof *r);
-    if (!r)
-        return NULL;
-    if (recording_read(path, r) != 0 || !r->truth_at) {
-        recording_free(r);
-        free(r);
-        return NULL;
+    static recording_t r; /* it stays: shapes refer to its vertices */
+    shape_t *body;
+    size_t k = 0;
+    unsigned f, i;
+    if ((!r.bytes && recording_read(path, &r) != 0) || !r.truth_at)
+        return 0;
+    body = (shape_t *)malloc(r.bodies * sizeof *body);
+    for (f = 0; body && f < frames && f < r.frames; f++) {
+        recording_place(&r, f, body);
+        for (i = 0; i < r.frame_pairs[f]; i++, k++)
+            if (shape) {
+                recording_pair(&r, f, i, &out[k].a, &out[k].b);
+                recording_truth(&r, k, &out[k].lower, &out[k].upper);
+                out[k].frame = f;
+                shape[2 * k] = body[out[k].a];
+                shape[2 * k + 1] = body[out[k].b];
+            }
     }
-    return r;
-}
-
-void bench_recording_close(recording_t *r)
-{
-    recording_free(r);
-    free(r);
-}
-
-void bench_recording_count(const recording_t *r, unsigned *frames, unsigned *bodies)
-{
-    *frames = r->frames;
-    *bodies = r->bodies;
-}
-
-/* Places the bodies of frame f; how many pairs it asks about. */
-void bench_recording_frame(const recording_t *r, unsigned f, shape_t *bodies, unsigned *pairs)
-{
-    recording_place(r, f, bodies);
-    *pairs = r->frame_pairs[f];
-}
-
-/* Pair i of frame f, the k-th of the whole recording: its bodies and bounds on its signed depth. */
-void bench_recording_pair(const recording_t *r, unsigned f, unsigned i, size_t k, unsigned *a, unsigned *b,
-                          double *lower, double *upper)
-{
-    recording_pair(r, f, i, a, b);
-    recording_truth(r, k, lower, upper);
+    free(body);
+    return k;
 }

@@ -17,8 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use ccd::internals::ffi::{
-    CCD_WARM_REALS, ccd_center_fn, ccd_distance_t, ccd_first_dir_fn, ccd_penetration_t,
-    ccd_support_fn, ccd_t, ccd_vec3_t, ccd_warm_t,
+    CCD_WARM_REALS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t,
 };
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
 
@@ -26,16 +25,6 @@ use crate::harness;
 
 /// glibc's flag; libloading does not name it.
 const RTLD_DEEPBIND: c_int = 8;
-
-type Query = unsafe extern "C-unwind" fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    *mut f64,
-    *mut ccd_vec3_t,
-    *mut ccd_vec3_t,
-) -> c_int;
-type Yes = unsafe extern "C-unwind" fn(*const c_void, *const c_void, *const ccd_t) -> c_int;
 
 /// A state that is cold.
 pub const COLD: ccd_warm_t = ccd_warm_t {
@@ -52,60 +41,56 @@ pub unsafe fn zeroed<T>() -> T {
     unsafe { MaybeUninit::zeroed().assume_init() }
 }
 
-type WarmDistance = unsafe extern "C-unwind" fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    f64,
-    f64,
-    f64,
-    *mut ccd_warm_t,
-    c_uint,
-    *mut ccd_distance_t,
-) -> c_int;
-type WarmQuery = unsafe extern "C-unwind" fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    *mut ccd_warm_t,
-    c_uint,
-    *mut ccd_penetration_t,
-) -> c_int;
-type WarmMpr = unsafe extern "C-unwind" fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    *mut ccd_warm_t,
-    *mut f64,
-    *mut ccd_vec3_t,
-    *mut ccd_vec3_t,
-) -> c_int;
-
-type WarmYes = unsafe extern "C-unwind" fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    *mut ccd_warm_t,
-) -> c_int;
-
-/// What libccd's API offers, of either library.
-#[derive(Clone, Copy)]
-pub struct Classic {
-    pub mpr: Query,
-    pub gjk: Query,
-    pub mpr_intersect: Yes,
-    pub first_dir: ccd_first_dir_fn,
+/// Functions of a library's, with the names and types that they have in C.
+macro_rules! functions {
+    ($(#[$about:meta])* $Name:ident {
+        $($(#[$what:meta])* $field:ident: fn $symbol:ident($($arg:ty),*) $(-> $ret:ty)?;)*
+    }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy)]
+        pub struct $Name {
+            $($(#[$what])* pub $field: unsafe extern "C-unwind" fn($($arg),*) $(-> $ret)?,)*
+        }
+        impl $Name {
+            fn of(library: &Library) -> Self {
+                // SAFETY: the types are those of the C headers.
+                unsafe { Self { $($field: function(library, stringify!($symbol)),)* } }
+            }
+        }
+    };
 }
 
-/// What `<ccd/warm.h>` adds.
-#[derive(Clone, Copy)]
-pub struct Extension {
-    pub guess: unsafe extern "C-unwind" fn(*mut ccd_warm_t, *const ccd_vec3_t),
-    pub mpr: WarmMpr,
-    pub mpr_intersect: WarmYes,
-    pub local: WarmQuery,
-    pub minimum: WarmQuery,
-    pub distance: WarmDistance,
+type Object = *const c_void;
+type Settings = *const ccd_t;
+type Vector = *const ccd_vec3_t;
+type Point = *mut ccd_vec3_t;
+type State = *mut ccd_warm_t;
+type Full = *mut ccd_penetration_t;
+
+/// `ccdMPRPenetration` and `ccdGJKPenetration`.
+pub type Query =
+    unsafe extern "C-unwind" fn(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
+
+functions! {
+    /// What libccd's API offers, of either library.
+    Classic {
+        mpr: fn ccdMPRPenetration(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
+        gjk: fn ccdGJKPenetration(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
+        mpr_intersect: fn ccdMPRIntersect(Object, Object, Settings) -> c_int;
+        first_dir: fn ccdFirstDirDefault(Object, Object, Point);
+    }
+}
+
+functions! {
+    /// What `<ccd/warm.h>` adds.
+    Extension {
+        guess: fn ccdWarmGuess(State, Vector);
+        mpr: fn ccdMPRPenetrationWarm(Object, Object, Settings, State, *mut f64, Point, Point) -> c_int;
+        mpr_intersect: fn ccdMPRIntersectWarm(Object, Object, Settings, State) -> c_int;
+        local: fn ccdPenetrationLocal(Object, Object, Settings, State, c_uint, Full) -> c_int;
+        minimum: fn ccdPenetrationProven(Object, Object, Settings, State, c_uint, Full) -> c_int;
+        distance: fn ccdSignedDistance(Object, Object, Settings, f64, f64, f64, State, c_uint, *mut ccd_distance_t) -> c_int;
+    }
 }
 
 /// `pair_truth_t` of `c-tests/pairs.h`.
@@ -121,54 +106,35 @@ pub struct Truth {
     pub cold: [f64; 3],
 }
 
-/// The shared object of `callbacks.c`.
-#[derive(Clone, Copy)]
-pub struct Callbacks {
-    pub support: ccd_support_fn,
-    pub center: ccd_center_fn,
-    pub shape_size: unsafe extern "C" fn() -> usize,
-    pub calls: unsafe extern "C" fn(*const c_void) -> c_ulong,
-    pub set_open: unsafe extern "C" fn(*const c_char, c_int) -> *mut c_void,
-    pub set_close: unsafe extern "C" fn(*mut c_void),
-    pub set_count: unsafe extern "C" fn(*const c_void, *mut c_int, *mut c_int),
-    pub set_pose: unsafe extern "C" fn(*const c_void, c_int, *mut c_void, *mut c_void, *mut Truth),
-    pub set_mesh: unsafe extern "C" fn(
-        *const c_void,
-        c_int,
-        *mut c_int,
-        *mut *const f64,
-        *mut c_int,
-        *mut *const c_int,
-    ),
-    pub shape: unsafe extern "C" fn(
-        *mut c_void,
-        c_int,
-        *const f64,
-        *const f64,
-        c_int,
-        *const c_int,
-        *const f64,
-        *const f64,
-    ),
-    pub graph: unsafe extern "C" fn(c_int, *const c_int, c_int, *mut c_int) -> c_int,
-    pub recording_open: unsafe extern "C" fn(*const c_char) -> *mut c_void,
-    pub recording_close: unsafe extern "C" fn(*mut c_void),
-    pub recording_count: unsafe extern "C" fn(*const c_void, *mut c_uint, *mut c_uint),
-    pub recording_frame: unsafe extern "C" fn(*const c_void, c_uint, *mut c_void, *mut c_uint),
-    pub recording_pair: unsafe extern "C" fn(
-        *const c_void,
-        c_uint,
-        c_uint,
-        usize,
-        *mut c_uint,
-        *mut c_uint,
-        *mut f64,
-        *mut f64,
-    ),
-    pub shape_pose: unsafe extern "C" fn(*const c_void, *mut f64, *mut f64, *mut c_int, *mut f64),
-    pub shape_shift: unsafe extern "C" fn(*mut c_void, *const f64),
-    pub begin: unsafe extern "C" fn(),
-    pub end: unsafe extern "C" fn(),
+/// `bench_recorded_t` of `callbacks.c`: two bodies in a frame, and bounds on their signed depth.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct Recorded {
+    pub a: c_uint,
+    pub b: c_uint,
+    pub frame: c_uint,
+    pub lower: f64,
+    pub upper: f64,
+}
+
+functions! {
+    /// The shared object of `callbacks.c`, which says what each does.
+    Callbacks {
+        support: fn bench_support(Object, Vector, Point);
+        center: fn bench_center(Object, Point);
+        shape_size: fn bench_shape_size() -> usize;
+        calls: fn bench_calls(Object) -> c_ulong;
+        set: fn bench_set(*const c_char, c_int, *mut c_int, *mut c_int) -> Object;
+        set_pose: fn bench_set_pose(Object, c_int, *mut c_void, *mut c_void, *mut Truth);
+        set_mesh: fn bench_set_mesh(Object, c_int, *mut c_int, *mut *const f64, *mut c_int, *mut *const c_int);
+        graph: fn bench_graph(c_int, *const c_int, c_int, *mut c_int) -> c_int;
+        shape: fn bench_shape(*mut c_void, c_int, *const f64, *const f64, c_int, *const c_int, *const f64, *const f64);
+        shape_pose: fn bench_shape_pose(Object, *mut f64, *mut f64, *mut c_int, *mut f64);
+        shape_shift: fn bench_shape_shift(*mut c_void, *const f64);
+        recording: fn bench_recording(*const c_char, c_uint, *mut c_void, *mut Recorded) -> usize;
+        begin: fn bench_begin();
+        end: fn bench_end();
+    }
 }
 
 /// Everything opened; lives as long as the process.
@@ -206,18 +172,6 @@ pub unsafe fn function<F: Copy>(library: &Library, name: &str) -> F {
 }
 
 impl Classic {
-    fn of(library: &Library) -> Self {
-        // SAFETY: the types are those of <ccd/ccd.h>.
-        unsafe {
-            Self {
-                mpr: function(library, "ccdMPRPenetration"),
-                gjk: function(library, "ccdGJKPenetration"),
-                mpr_intersect: function(library, "ccdMPRIntersect"),
-                first_dir: function(library, "ccdFirstDirDefault"),
-            }
-        }
-    }
-
     /// A query's settings over the benchmark's callbacks.
     pub fn settings(&self, callbacks: &Callbacks, tolerance: f64) -> ccd_t {
         ccd_t {
@@ -270,46 +224,17 @@ impl Libraries {
             "a libccd is global in this process: libraries would call its functions, not their own"
         );
         let callbacks = open(&object).expect("the callbacks");
-        // SAFETY: the types are those of callbacks.c and <ccd/warm.h>.
-        unsafe {
-            Self {
-                callbacks: Callbacks {
-                    support: function(callbacks, "bench_support"),
-                    center: function(callbacks, "bench_center"),
-                    shape_size: function(callbacks, "bench_shape_size"),
-                    calls: function(callbacks, "bench_calls"),
-                    set_open: function(callbacks, "bench_set_open"),
-                    set_close: function(callbacks, "bench_set_close"),
-                    set_count: function(callbacks, "bench_set_count"),
-                    set_pose: function(callbacks, "bench_set_pose"),
-                    set_mesh: function(callbacks, "bench_set_mesh"),
-                    shape: function(callbacks, "bench_shape"),
-                    graph: function(callbacks, "bench_graph"),
-                    recording_open: function(callbacks, "bench_recording_open"),
-                    recording_close: function(callbacks, "bench_recording_close"),
-                    recording_count: function(callbacks, "bench_recording_count"),
-                    recording_frame: function(callbacks, "bench_recording_frame"),
-                    recording_pair: function(callbacks, "bench_recording_pair"),
-                    shape_pose: function(callbacks, "bench_shape_pose"),
-                    shape_shift: function(callbacks, "bench_shape_shift"),
-                    begin: function(callbacks, "bench_begin"),
-                    end: function(callbacks, "bench_end"),
-                },
-                system: Classic::of(system),
-                ours: Classic::of(ours),
-                extension: Extension {
-                    guess: function(ours, "ccdWarmGuess"),
-                    mpr: function(ours, "ccdMPRPenetrationWarm"),
-                    mpr_intersect: function(ours, "ccdMPRIntersectWarm"),
-                    local: function(ours, "ccdPenetrationLocal"),
-                    minimum: function(ours, "ccdPenetrationProven"),
-                    distance: function(ours, "ccdSignedDistance"),
-                },
-                implementation,
-                system_file: file_of(function(system, "ccdMPRPenetration")),
-                compiler,
-                work,
-            }
+        // SAFETY: only its address is used.
+        let anywhere = unsafe { function(system, "ccdMPRPenetration") };
+        Self {
+            callbacks: Callbacks::of(callbacks),
+            system: Classic::of(system),
+            ours: Classic::of(ours),
+            extension: Extension::of(ours),
+            implementation,
+            system_file: file_of(anywhere),
+            compiler,
+            work,
         }
     }
 
@@ -337,14 +262,12 @@ impl Libraries {
             .and_then(|l| l.split_once(": "))
             .map_or("unknown processor", |l| l.1);
         let cores = std::thread::available_parallelism().map_or(0, usize::from);
-        let date = Command::new("date").args(["-u", "+%F"]).output().ok();
-        let date = date
-            .map(|d| String::from_utf8_lossy(&d.stdout).trim().to_owned())
-            .unwrap_or_default();
-        let version = Command::new("rustc").arg("--version").output().ok();
-        let version = version
-            .map(|d| String::from_utf8_lossy(&d.stdout).trim().to_owned())
-            .unwrap_or_default();
+        let said = |command: &mut Command| {
+            let output = command.output().map(|o| o.stdout).unwrap_or_default();
+            String::from_utf8_lossy(&output).trim().to_owned()
+        };
+        let date = said(Command::new("date").args(["-u", "+%F"]));
+        let version = said(Command::new("rustc").arg("--version"));
         format!(
             "{date}, {processor}, {cores} cores; {} ({version}, release), beside {}; callbacks: {}",
             self.implementation, self.system_file, self.compiler

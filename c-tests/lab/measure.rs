@@ -12,52 +12,51 @@ use std::time::Instant;
 use ccd::internals::ffi::ccd_vec3_t;
 use nalgebra::Vector3;
 
-use super::csv::table;
+use serde::{Deserialize, Serialize};
+
 use super::libraries::Libraries;
 use super::methods::Method;
 use super::scene::{Pair, Scene};
 
-table! {
-    /// One method on one scene. Lengths in metres.
-    #[derive(Clone, Debug, Default)]
-    pub struct Row {
-        pub set: String,
-        pub method: String,
-        /// Where the search starts: `5`, `25`, `45` degrees off the truth, `centres`,
-        /// `warm` (the last frame's state) or nothing.
-        pub start: String,
-        pub tolerance: Option<f64>,
-        pub ours: bool,
-        /// What a chart varies: vertices, degrees a frame.
-        pub x: Option<f64>,
-        pub queries: usize,
-        /// Of these, overlaps deeper than 1 nm: the ones that are judged.
-        pub overlaps: usize,
-        /// Support points of D per query; none for a method that does not use our callbacks.
-        pub supports: Option<f64>,
-        /// Mean time of a query, of medians over repetitions; none when not timed.
-        pub ns: Option<f64>,
-        /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
-        pub mean_error: f64,
-        pub median_error: f64,
-        pub max_error: f64,
-        /// Mean over the answers within 1 mm of the truth.
-        pub mean_error_1mm: f64,
-        /// Share of answers more than 1 mm too deep (percent).
-        pub nonminimal: f64,
-        /// Share of answers more than 1 mm too shallow (percent).
-        pub shallow: f64,
-        /// Share of overlaps answered by no hit or by a failure (percent).
-        pub missed: f64,
-        /// Largest h(dir) - depth: how far from separated the shapes may be left.
-        pub unsound: f64,
-        /// Mean angle to the true direction over the answers within 1 mm (milliradian).
-        pub direction: f64,
-        /// Largest depth - depth_lower, where a bound was proven.
-        pub gap: Option<f64>,
-        /// Widest uncertainty of the truth itself.
-        pub truth_gap: f64,
-    }
+/// One method on one scene. Lengths in metres.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Row {
+    pub set: String,
+    pub method: String,
+    /// Where the search starts: `5`, `25`, `45` degrees off the truth, `centres`,
+    /// `warm` (the last frame's state) or nothing.
+    pub start: String,
+    pub tolerance: Option<f64>,
+    pub ours: bool,
+    /// What a chart varies: vertices, degrees a frame.
+    pub x: Option<f64>,
+    pub queries: usize,
+    /// Of these, overlaps deeper than 1 nm: the ones that are judged.
+    pub overlaps: usize,
+    /// Support points of D per query; none for a method that does not use our callbacks.
+    pub supports: Option<f64>,
+    /// Mean time of a query, of medians over repetitions; none when not timed.
+    pub ns: Option<f64>,
+    /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
+    pub mean_error: f64,
+    pub median_error: f64,
+    pub max_error: f64,
+    /// Mean over the answers within 1 mm of the truth.
+    pub mean_error_1mm: f64,
+    /// Share of answers more than 1 mm too deep (percent).
+    pub nonminimal: f64,
+    /// Share of answers more than 1 mm too shallow (percent).
+    pub shallow: f64,
+    /// Share of overlaps answered by no hit or by a failure (percent).
+    pub missed: f64,
+    /// Largest h(dir) - depth: how far from separated the shapes may be left.
+    pub unsound: f64,
+    /// Mean angle to the true direction over the answers within 1 mm (milliradian).
+    pub direction: f64,
+    /// Largest depth - depth_lower, where a bound was proven.
+    pub gap: Option<f64>,
+    /// Widest uncertainty of the truth itself.
+    pub truth_gap: f64,
 }
 
 /// The support value of D along `dir`.

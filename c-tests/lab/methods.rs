@@ -3,7 +3,8 @@
 
 //! The methods under measurement, each as a closure over one pair.
 
-use std::ffi::{c_int, c_void};
+use std::ffi::c_void;
+use std::ptr::null_mut;
 
 use ccd::internals::ffi::{
     CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
@@ -13,7 +14,7 @@ use ccd::internals::{
 };
 
 use super::deep::{Deep, Polytope};
-use super::libraries::{COLD, Classic, Libraries, Truth, zeroed};
+use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
 use super::scene::{Pair, Scene};
 
 /// What a query answered.
@@ -103,8 +104,8 @@ impl<'a> Method<'a> {
         self
     }
 
-    pub fn of_ours(mut self) -> Self {
-        self.ours = true;
+    pub fn of_ours(mut self, ours: bool) -> Self {
+        self.ours = ours;
         self
     }
 
@@ -123,15 +124,6 @@ impl<'a> Method<'a> {
     }
 }
 
-type Query = unsafe extern "C-unwind" fn(
-    *const c_void,
-    *const c_void,
-    *const ccd_t,
-    *mut f64,
-    *mut ccd_vec3_t,
-    *mut ccd_vec3_t,
-) -> c_int;
-
 /// A call of libccd's, without its position where it need not have one: `pos` of this library is
 /// charted beside libccd's by the recorded contacts and the worlds.
 pub fn classic(
@@ -141,30 +133,26 @@ pub fn classic(
 ) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
     move |_, pair| {
         let (mut depth, mut dir, mut pos) = (0.0, ccd_vec3_t::default(), ccd_vec3_t::default());
-        let pos = if needs_pos {
-            &raw mut pos
-        } else {
-            std::ptr::null_mut()
-        };
+        let pos = if needs_pos { &raw mut pos } else { null_mut() };
         // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
         let code = unsafe { query(pair.a, pair.b, &settings, &mut depth, &mut dir, pos) };
-        (code == 0).then_some(Answer {
-            depth,
-            dir: dir.v,
-            lower: 0.0,
-        })
+        let (dir, lower) = (dir.v, 0.0);
+        (code == 0).then_some(Answer { depth, dir, lower })
     }
+}
+
+/// The name of a call of either library's, and whether it is this one's.
+fn named<'a>(libraries: &Libraries, of: &Classic, names: [&'a str; 2]) -> (&'a str, bool) {
+    let ours = std::ptr::eq(of, &libraries.ours);
+    (names[usize::from(ours)], ours)
 }
 
 /// libccd's MPR, of either library.
 pub fn mpr<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
     let settings = of.settings(&libraries.callbacks, tolerance);
-    if std::ptr::eq(of, &libraries.ours) {
-        let method = Method::new("MPR", classic(of.mpr, settings, false));
-        method.within(tolerance).of_ours()
-    } else {
-        Method::new("libccd MPR", classic(of.mpr, settings, true)).within(tolerance)
-    }
+    let (name, ours) = named(libraries, of, ["libccd MPR", "MPR"]);
+    let method = Method::new(name, classic(of.mpr, settings, !ours));
+    method.within(tolerance).of_ours(ours)
 }
 
 /// libccd's GJK and EPA.
@@ -175,28 +163,22 @@ pub fn libccd_epa<'a>(libraries: &Libraries, tolerance: f64) -> Method<'a> {
 /// libccd's GJK and EPA, or what takes their place in this library.
 pub fn gjk<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
     let settings = of.settings(&libraries.callbacks, tolerance);
-    if std::ptr::eq(of, &libraries.ours) {
-        let method = Method::new("GJK", classic(of.gjk, settings, false));
-        method.within(tolerance).of_ours()
-    } else {
-        Method::new("libccd EPA", classic(of.gjk, settings, true)).within(tolerance)
-    }
+    let (name, ours) = named(libraries, of, ["libccd EPA", "GJK"]);
+    let method = Method::new(name, classic(of.gjk, settings, !ours));
+    method.within(tolerance).of_ours(ours)
 }
 
 /// Yes or no by MPR, of either library; the answer's numbers say nothing.
 pub fn intersect<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
     let settings = of.settings(&libraries.callbacks, tolerance);
     let query = of.mpr_intersect;
+    let (name, ours) = named(libraries, of, ["libccd MPR intersect", "MPR intersect"]);
     let run = move |_: &Scene, pair: &Pair| {
         // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
         let yes = unsafe { query(pair.a, pair.b, &settings) };
         (yes == 1).then(Answer::default)
     };
-    if std::ptr::eq(of, &libraries.ours) {
-        Method::new("MPR intersect", run).of_ours()
-    } else {
-        Method::new("libccd MPR intersect", run)
-    }
+    Method::new(name, run).of_ours(ours)
 }
 
 /// The same with one state a motion.
@@ -213,7 +195,7 @@ pub fn intersect_warm<'a>(libraries: &'a Libraries, tolerance: f64) -> Method<'a
         (yes == 1).then(Answer::default)
     })
     .from(Start::Warm)
-    .of_ours()
+    .of_ours(true)
 }
 
 /// What of the extension is asked.
@@ -254,34 +236,13 @@ pub fn extension<'a>(
         }
         // SAFETY: numbers.
         let mut out: ccd_penetration_t = unsafe { zeroed() };
+        let (a, b, ccd, warm) = (pair.a, pair.b, &settings, &mut state);
         // SAFETY: queries of <ccd/warm.h> over the callbacks' own shapes.
         let code = unsafe {
             match ask {
-                Ask::Local => (calls.local)(
-                    pair.a,
-                    pair.b,
-                    &settings,
-                    &mut state,
-                    CCD_WANT_POINTS,
-                    &mut out,
-                ),
-                Ask::Minimum => (calls.minimum)(
-                    pair.a,
-                    pair.b,
-                    &settings,
-                    &mut state,
-                    CCD_WANT_POINTS,
-                    &mut out,
-                ),
-                Ask::Mpr => (calls.mpr)(
-                    pair.a,
-                    pair.b,
-                    &settings,
-                    &mut state,
-                    &mut out.depth,
-                    &mut out.dir,
-                    std::ptr::null_mut(),
-                ),
+                Ask::Local => (calls.local)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
+                Ask::Minimum => (calls.minimum)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
+                Ask::Mpr => (calls.mpr)(a, b, ccd, warm, &mut out.depth, &mut out.dir, null_mut()),
             }
         };
         // CCD_HIT, or CCD_LIMIT: the best sound answer at the cap.
@@ -293,7 +254,7 @@ pub fn extension<'a>(
     })
     .from(start)
     .within(tolerance)
-    .of_ours()
+    .of_ours(true)
 }
 
 /// The signed distance, cold, of objects with these margins around them.
@@ -306,19 +267,9 @@ pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64)
         let mut out: ccd_distance_t = unsafe { zeroed() };
         // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
         let code = unsafe {
-            let far = f64::INFINITY;
-            let query = libraries.extension.distance;
-            query(
-                pair.a,
-                pair.b,
-                &settings,
-                one,
-                two,
-                far,
-                &mut state,
-                CCD_WANT_POINTS,
-                &mut out,
-            )
+            let (query, far) = (libraries.extension.distance, f64::INFINITY);
+            let (a, b, state, want) = (pair.a, pair.b, &mut state, CCD_WANT_POINTS);
+            query(a, b, &settings, one, two, far, state, want, &mut out)
         };
         (code == 0 || code == CCD_LIMIT).then_some(Answer {
             depth: -out.distance,
@@ -327,7 +278,7 @@ pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64)
         })
     })
     .within(tolerance)
-    .of_ours()
+    .of_ours(true)
 }
 
 /// The paper's method without later improvements, from inside this library:

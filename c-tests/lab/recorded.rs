@@ -6,7 +6,9 @@
 
 use std::path::PathBuf;
 
-use super::csv::{self, table};
+use serde::{Deserialize, Serialize};
+
+use super::csv;
 use super::libraries::Libraries;
 use super::measure::{self, Row};
 use super::methods::{self, Ask, Method, Start};
@@ -46,18 +48,16 @@ pub const MOTIONS: [&str; 6] = [
     "ell_ell_trajS",
 ];
 
-table! {
-    /// What a later change may not lose: one of ours on one set.
-    #[derive(Debug)]
-    pub struct Recorded {
-        pub set: String,
-        pub method: String,
-        pub start: String,
-        pub tolerance: f64,
-        pub supports: f64,
-        pub mean_error_1mm: f64,
-        pub nonminimal: f64,
-    }
+/// What a later change may not lose: one of ours on one set.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Recorded {
+    pub set: String,
+    pub method: String,
+    pub start: String,
+    pub tolerance: f64,
+    pub supports: f64,
+    pub mean_error_1mm: f64,
+    pub nonminimal: f64,
 }
 
 pub fn file() -> PathBuf {

@@ -5,12 +5,11 @@
 //! penetration depth: read from `c-tests/pairs` or `c-tests/record`, or placed by
 //! whoever knows the truth.
 
-use std::collections::BTreeMap;
 use std::ffi::{c_int, c_uint, c_void};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::libraries::{Callbacks, Libraries, Truth};
+use super::libraries::{Callbacks, Libraries, Recorded, Truth};
 use crate::harness;
 
 /// One pose: two shapes that the callbacks know, and what is true of them.
@@ -25,17 +24,11 @@ pub struct Pair {
 impl Pair {
     /// Rotation (local to world) and position of the first or second shape.
     pub fn pose(&self, libraries: &Libraries, which: usize) -> (Matrix3<f64>, Vector3<f64>) {
+        let shape = [self.a, self.b][which];
         // SAFETY: a shape of the scene.
-        let shape = unsafe {
-            Shape::read(
-                &libraries.callbacks,
-                if which == 0 { self.a } else { self.b },
-            )
-        };
-        (
-            Matrix3::from_row_slice(&shape.rotation),
-            shape.position.into(),
-        )
+        let shape = unsafe { Shape::read(&libraries.callbacks, shape) };
+        let rotation = Matrix3::from_row_slice(&shape.rotation);
+        (rotation, shape.position.into())
     }
 }
 
@@ -102,34 +95,8 @@ pub struct Scene {
     pub meshes: [Mesh; 2],
     /// Where the shapes live.
     _shapes: Vec<u64>,
-    /// What the shapes refer to: an open file, or bodies.
-    _source: Option<Source>,
+    /// What shapes that were placed refer to.
     _bodies: Vec<Body>,
-}
-
-/// An open file of the callbacks'.
-enum Source {
-    Set(*mut c_void, Callbacks),
-    Recording(*mut c_void, Callbacks),
-}
-
-impl Source {
-    fn pointer(&self) -> *mut c_void {
-        let (Self::Set(p, _) | Self::Recording(p, _)) = *self;
-        p
-    }
-}
-
-impl Drop for Source {
-    fn drop(&mut self) {
-        // SAFETY: opened by the function beside the one that closes it; closed once.
-        unsafe {
-            match self {
-                Self::Set(p, callbacks) => (callbacks.set_close)(*p),
-                Self::Recording(p, callbacks) => (callbacks.recording_close)(*p),
-            }
-        }
-    }
 }
 
 /// A shape to place: its type number and parameters as in `c-tests/shapes.h`.
@@ -143,31 +110,30 @@ pub struct Form {
 }
 
 impl Form {
-    pub fn sphere(radius: f64) -> Self {
+    pub fn solid(kind: c_int, p: [f64; 3]) -> Self {
+        let mesh = Mesh::default();
+        let climb = false;
         Self {
-            kind: 0,
-            p: [radius, 0.0, 0.0],
-            mesh: Mesh::default(),
-            climb: false,
+            kind,
+            p,
+            mesh,
+            climb,
         }
+    }
+
+    pub fn sphere(radius: f64) -> Self {
+        Self::solid(0, [radius, 0.0, 0.0])
     }
 
     /// Along z.
     pub fn capsule(radius: f64, half: f64) -> Self {
-        Self {
-            kind: 1,
-            p: [radius, half, 0.0],
-            mesh: Mesh::default(),
-            climb: false,
-        }
+        Self::solid(1, [radius, half, 0.0])
     }
 
     pub fn polytope(mesh: Mesh) -> Self {
         Self {
-            kind: 6,
-            p: [0.0; 3],
             mesh,
-            climb: false,
+            ..Self::solid(6, [0.0; 3])
         }
     }
 
@@ -215,14 +181,12 @@ impl Scene {
         let callbacks = libraries.callbacks;
         let climb = name.contains("hc");
         let path = harness::root().join(format!("c-tests/pairs/{}.bin", name.replace("hc", "")));
-        // SAFETY: the functions of callbacks.c, called as it says; every pointer
-        // read is theirs until the set is closed, which waits for the scene's end.
+        // SAFETY: the functions of callbacks.c, called as it says; what they point to stays.
         unsafe {
-            let set = (callbacks.set_open)(Libraries::c_path(&path).as_ptr(), climb.into());
-            assert!(!set.is_null(), "{} is not a pair set", path.display());
-            let source = Source::Set(set, callbacks);
             let (mut n, mut motion) = (0, 0);
-            (callbacks.set_count)(set, &mut n, &mut motion);
+            let file = Libraries::c_path(&path);
+            let set = (callbacks.set)(file.as_ptr(), climb.into(), &mut n, &mut motion);
+            assert!(!set.is_null(), "{} is not a pair set", path.display());
             let n = (n as usize).min(limit);
             let motion = motion as usize;
             let (mut shapes, words) = room(&callbacks, 2 * n);
@@ -263,7 +227,6 @@ impl Scene {
                 motion,
                 meshes,
                 _shapes: shapes,
-                _source: Some(source),
                 _bodies: Vec::new(),
             }
         }
@@ -319,7 +282,6 @@ impl Scene {
             motion,
             meshes: forms.map(|f| f.mesh.clone()),
             _shapes: shapes,
-            _source: None,
             _bodies: bodies.into(),
         }
     }
@@ -330,90 +292,49 @@ impl Scene {
     pub fn recorded(libraries: &Libraries, frames: usize) -> Self {
         let callbacks = libraries.callbacks;
         let path = harness::root().join("c-tests/record/contacts.bin");
-        // SAFETY: the functions of callbacks.c, called as it says.
-        unsafe {
-            let recording = (callbacks.recording_open)(Libraries::c_path(&path).as_ptr());
-            assert!(
-                !recording.is_null(),
-                "{} is not a recording",
-                path.display()
-            );
-            let recording = Source::Recording(recording, callbacks);
-            let of = recording.pointer();
-            let (mut n, mut bodies, mut count) = (0, 0, 0);
-            (callbacks.recording_count)(of, &mut n, &mut bodies);
-            // By pair, in time: the frame number and where the two shapes are.
-            let mut found: BTreeMap<(c_uint, c_uint), Vec<_>> = BTreeMap::new();
-            let (mut world, words) = room(&callbacks, bodies as usize);
-            let mut shapes: Vec<u64> = Vec::new();
-            let mut queries = 0;
-            for frame in 0..(n as usize).min(frames) {
-                (callbacks.recording_frame)(
-                    of,
-                    frame as c_uint,
-                    world.as_mut_ptr().cast(),
-                    &mut count,
-                );
-                for k in 0..count {
-                    let (mut a, mut b, mut low, mut high) = (0, 0, 0.0, 0.0);
-                    (callbacks.recording_pair)(
-                        of,
-                        frame as c_uint,
-                        k,
-                        queries,
-                        &mut a,
-                        &mut b,
-                        &mut low,
-                        &mut high,
-                    );
-                    queries += 1;
-                    let [pa, pb] = [a, b].map(|k| {
-                        Vector3::from(
-                            Shape::read(&callbacks, world.as_ptr().add(k as usize * words).cast())
-                                .position,
-                        )
-                    });
-                    let truth = Truth {
-                        depth: (low + high) / 2.0,
-                        gap: high - low,
-                        cold: (pb - pa).try_normalize(0.0).unwrap_or(Vector3::x()).into(),
-                        ..Truth::default()
-                    };
-                    found
-                        .entry((a, b))
-                        .or_default()
-                        .push((frame, shapes.len(), truth));
-                    for body in [a as usize, b as usize] {
-                        shapes.extend_from_slice(&world[body * words..(body + 1) * words]);
-                    }
-                }
-            }
-            let base = shapes.as_mut_ptr();
-            let mut pairs = Vec::new();
-            for contact in found.values() {
-                let mut last = usize::MAX - 1;
-                let mut age = 0;
-                for &(frame, at, truth) in contact {
-                    age = if frame == last + 1 { age + 1 } else { 0 };
-                    last = frame;
-                    let (a, b) = (base.add(at).cast(), base.add(at + words).cast());
-                    pairs.push(Pair {
-                        a,
-                        b,
-                        truth,
-                        frame: age,
-                    });
-                }
-            }
-            Self {
-                name: "recorded".to_owned(),
-                pairs,
-                motion: 1,
-                meshes: Default::default(),
-                _shapes: shapes,
-                _source: Some(recording),
-                _bodies: Vec::new(),
-            }
+        let name = Libraries::c_path(&path);
+        let frames = c_uint::try_from(frames).unwrap_or(c_uint::MAX);
+        let read = |shapes: *mut u64, out: *mut Recorded| {
+            // SAFETY: room for as many as it says it has, or none.
+            unsafe { (callbacks.recording)(name.as_ptr(), frames, shapes.cast(), out) }
+        };
+        let count = read(std::ptr::null_mut(), std::ptr::null_mut());
+        assert!(count > 0, "{} is not a recording", path.display());
+        let (mut shapes, words) = room(&callbacks, 2 * count);
+        let mut found = vec![Recorded::default(); count];
+        read(shapes.as_mut_ptr(), found.as_mut_ptr());
+        let base = shapes.as_mut_ptr();
+        // SAFETY: one of the shapes.
+        let shape = |k: usize| -> *mut c_void { unsafe { base.add(k * words).cast() } };
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by_key(|&k| (found[k].a, found[k].b));
+        let mut pairs: Vec<Pair> = Vec::with_capacity(count);
+        let mut last = Recorded::default();
+        for k in order {
+            let now = found[k];
+            let goes_on = (now.a, now.b, now.frame) == (last.a, last.b, last.frame + 1);
+            let age = pairs.last().map_or(0, |pair| pair.frame + 1);
+            last = now;
+            let (a, b) = (shape(2 * k), shape(2 * k + 1));
+            // SAFETY: shapes that were placed.
+            let [pa, pb] =
+                [a, b].map(|s| Vector3::from(unsafe { Shape::read(&callbacks, s) }.position));
+            let truth = Truth {
+                depth: (now.lower + now.upper) / 2.0,
+                gap: now.upper - now.lower,
+                cold: (pb - pa).try_normalize(0.0).unwrap_or(Vector3::x()).into(),
+                ..Truth::default()
+            };
+            let frame = if goes_on { age } else { 0 };
+            pairs.push(Pair { a, b, truth, frame });
+        }
+        Self {
+            name: "recorded".to_owned(),
+            pairs,
+            motion: 1,
+            meshes: Default::default(),
+            _shapes: shapes,
+            _bodies: Vec::new(),
         }
     }
 }

@@ -3,10 +3,8 @@
 
 //! Speed against accuracy: every method at every tolerance on every kind of pair.
 
-use plotters::style::RGBColor;
-
-use super::figure::{self, Curve, Look, Mark, Panel, Unit};
-use super::{Bench, Page, look, name};
+use super::figure::{self, Axis, Look, Mark, Panel, Unit};
+use super::{Bench, COUNTED, Cost, Page, SUPPORTS, TIME, TIMED};
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::recorded::{MOTIONS, RANDOM};
@@ -45,29 +43,6 @@ fn roster<'a>(bench: &Bench<'a>, scene: &Scene) -> Vec<Method<'a>> {
     all
 }
 
-/// Every method's cost on every scene, a curve a method through its tolerances.
-pub fn curves(rows: &[&Row], cost: &dyn Fn(&Row) -> Option<f64>) -> Vec<Curve> {
-    let mut curves: Vec<Curve> = Vec::new();
-    for row in rows {
-        let Some(cost) = cost(row) else { continue };
-        // Below the last digit of a metre there is nothing to see.
-        let point = (row.mean_error.max(1e-16), cost);
-        let label = name(row);
-        match curves.iter_mut().find(|c| c.label == label) {
-            Some(curve) => curve.points.push(point),
-            None => curves.push(Curve {
-                label,
-                look: look(row),
-                points: vec![point],
-            }),
-        }
-    }
-    curves
-}
-
-const SUPPORTS: (&str, Unit) = ("support points per query", Unit::Count);
-const TIME: (&str, Unit) = ("time per query", Unit::Seconds);
-
 /// The four kinds of pairs, and the methods, of the picture in front.
 const FRONT: [&str; 4] = ["box_box", "p642_p642", "cyl_box", "cap_cap"];
 const IN_FRONT: [&str; 6] = [
@@ -79,33 +54,22 @@ const IN_FRONT: [&str; 6] = [
     "minimum",
 ];
 
-fn seconds(row: &Row) -> Option<f64> {
-    row.ns.map(|n| n * 1e-9)
-}
-
 /// A panel a set, a curve a method: what it costs against its error.
-fn picture(
-    page: &Page,
-    file: &str,
-    title: &str,
-    rows: &[&Row],
-    (sets, columns): (&[&str], usize),
-    y: (&'static str, Unit),
-    cost: &dyn Fn(&Row) -> Option<f64>,
-) {
-    let panels: Vec<Panel> = sets
-        .iter()
-        .map(|set| {
-            let of: Vec<&Row> = rows.iter().copied().filter(|r| r.set == *set).collect();
-            Panel {
-                title: super::kind(set),
-                x: ("mean |depth error|", Unit::Metres),
-                y,
-                limit: of.first().map(|r| r.truth_gap),
-                curves: curves(&of, cost),
-            }
-        })
-        .collect();
+fn picture(page: &Page, file: &str, title: &str, rows: &[&Row], sets: &[&str], columns: usize) {
+    let (y, cost) = match file.ends_with("_supports.svg") {
+        true => (SUPPORTS, COUNTED),
+        false => (TIME, TIMED),
+    };
+    let panel = |set: &&str| {
+        let of: Vec<&Row> = rows.iter().copied().filter(|r| r.set == *set).collect();
+        // Below the last digit of a metre there is nothing to see.
+        let curves = super::curves(of.iter().copied(), |r| Some(r.mean_error.max(1e-16)), cost);
+        let x = ("mean |depth error|", Unit::Metres);
+        let mut panel = Panel::new(&super::kind(set), x, y, curves);
+        panel.limit = of.first().map(|r| r.truth_gap);
+        panel
+    };
+    let panels: Vec<Panel> = sets.iter().map(panel).collect();
     let notes = [
         "left of the dashes the truth is not known".to_owned(),
         page.footer(),
@@ -151,64 +115,32 @@ fn tolerance(page: &Page, rows: &[Row]) {
         (192, 38, 211),
         (120, 113, 108),
     ];
-    let curves = |method: &str, start: &str, cost: &dyn Fn(&Row) -> Option<f64>| {
-        let of = |set: &str| -> Vec<(f64, f64)> {
-            let mine = rows
-                .iter()
-                .filter(|r| r.set == set && r.method == method && r.start == start);
-            mine.filter_map(|r| Some((r.tolerance?, cost(r)?)))
-                .collect()
-        };
-        let curve = |((set, (r, g, b)), mark): ((&&str, (u8, u8, u8)), Mark)| Curve {
-            label: super::kind(set),
-            look: Look {
-                colour: RGBColor(r, g, b),
-                mark,
-                bold: false,
-                dashed: false,
-            },
-            points: of(set),
-        };
+    let panel = |title: &str, (method, start): (&str, &str), y: Axis, cost: Cost| {
         let marked = RANDOM.iter().zip(palette).zip(marks.into_iter().cycle());
-        marked.map(curve).collect::<Vec<_>>()
+        let points = marked.flat_map(|((set, colour), mark)| {
+            let mine = move |r: &&Row| r.set == *set && r.method == method && r.start == start;
+            let look = Look::new(colour, mark, false);
+            let point = move |r: &Row| Some((super::kind(set), look, (r.tolerance?, cost(r)?)));
+            rows.iter().filter(mine).filter_map(point)
+        });
+        let curves = figure::curves(points);
+        Panel::new(title, ("tolerance", Unit::Metres), y, curves)
     };
-    let x = ("tolerance", Unit::Metres);
     let error = ("mean |depth error| within 1 mm", Unit::Metres);
-    let exact = |r: &Row| Some(r.mean_error_1mm.max(1e-16));
-    let panel = |title: &str, y, curves| Panel {
-        title: title.to_owned(),
-        x,
-        y,
-        curves,
-        limit: None,
-    };
+    let exact: Cost = |r| Some(r.mean_error_1mm.max(1e-16));
+    let (local, minimum) = (("local", "5"), ("minimum", ""));
     let panels = [
-        panel(
-            "local, guess 5° off: supports",
-            SUPPORTS,
-            curves("local", "5", &|r| r.supports),
-        ),
-        panel(
-            "local, guess 5° off: time",
-            TIME,
-            curves("local", "5", &seconds),
-        ),
-        panel(
-            "local, guess 5° off: error",
-            error,
-            curves("local", "5", &exact),
-        ),
-        panel(
-            "minimum: supports",
-            SUPPORTS,
-            curves("minimum", "", &|r| r.supports),
-        ),
-        panel("minimum: time", TIME, curves("minimum", "", &seconds)),
-        panel("minimum: error", error, curves("minimum", "", &exact)),
+        panel("local, guess 5° off: supports", local, SUPPORTS, COUNTED),
+        panel("local, guess 5° off: time", local, TIME, TIMED),
+        panel("local, guess 5° off: error", local, error, exact),
+        panel("minimum: supports", minimum, SUPPORTS, COUNTED),
+        panel("minimum: time", minimum, TIME, TIMED),
+        panel("minimum: error", minimum, error, exact),
     ];
+    let title = "What a tolerance costs";
     figure::grid(
         &page.file("tolerance.svg"),
-        "What a tolerance costs",
+        title,
         3,
         &panels,
         &[page.footer()],
@@ -219,15 +151,11 @@ pub fn draw(page: &Page, rows: &[Row]) {
     tolerance(page, rows);
     let all: Vec<&Row> = rows.iter().collect();
     let some = rows.iter().filter(|r| IN_FRONT.contains(&&*r.method));
-    picture(
-        page,
-        "front.svg",
+    let (some, title) = (
+        some.collect::<Vec<_>>(),
         "Time of a query against its error",
-        &some.collect::<Vec<_>>(),
-        (&FRONT, 2),
-        TIME,
-        &seconds,
     );
+    picture(page, "front.svg", title, &some, &FRONT, 2);
     for (sets, file, what) in [
         (&RANDOM[..], "accuracy", "independent poses, guesses 5° off"),
         (
@@ -236,23 +164,9 @@ pub fn draw(page: &Page, rows: &[Row]) {
             "motions of 0.1° and 0.1 mm a frame, warm",
         ),
     ] {
-        picture(
-            page,
-            &format!("{file}_time.svg"),
-            &format!("Time against error: {what}"),
-            &all,
-            (sets, 3),
-            TIME,
-            &seconds,
-        );
-        picture(
-            page,
-            &format!("{file}_supports.svg"),
-            &format!("Support points against error: {what}"),
-            &all,
-            (sets, 3),
-            SUPPORTS,
-            &|r| r.supports,
-        );
+        for (cost, title) in [("time", "Time"), ("supports", "Support points")] {
+            let title = format!("{title} against error: {what}");
+            picture(page, &format!("{file}_{cost}.svg"), &title, &all, sets, 3);
+        }
     }
 }

@@ -9,8 +9,8 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 use super::figure::{self, Curve, Panel, Unit as AxisUnit};
-use super::paper::{over_x, rows, seconds};
-use super::{Bench, Page};
+use super::paper::rows;
+use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
 use crate::lab::libraries::Truth;
 use crate::lab::measure::Row;
 use crate::lab::methods::{self, Ask, Start};
@@ -25,15 +25,9 @@ const DEPTH: f64 = 0.01;
 
 /// Pairs that are moved, by the names of the pair sets.
 fn kinds(bench: &Bench) -> Vec<(&'static str, [Form; 2])> {
-    let solid = |kind, p| Form {
-        kind,
-        p,
-        mesh: Default::default(),
-        climb: false,
-    };
-    let cuboid = || solid(2, [0.5, 0.4, 0.3]);
-    let cylinder = || solid(3, [0.5, 0.5, 0.0]);
-    let ellipsoid = || solid(5, [0.5, 0.35, 0.25]);
+    let cuboid = || Form::solid(2, [0.5, 0.4, 0.3]);
+    let cylinder = || Form::solid(3, [0.5, 0.5, 0.0]);
+    let ellipsoid = || Form::solid(5, [0.5, 0.35, 0.25]);
     let capsule = || Form::capsule(0.5, 0.5);
     let mesh = Scene::load(bench.libraries, "p162_p162", 1).meshes[0].clone();
     let hull = || Form::polytope(mesh.clone());
@@ -163,41 +157,18 @@ fn cold_dashed(mut curves: Vec<Curve>) -> Vec<Curve> {
 }
 
 pub fn draw(page: &Page, all: &[Row]) {
-    let mut sets: Vec<&str> = Vec::new();
-    for row in all {
-        if !sets.contains(&row.set.as_str()) {
-            sets.push(&row.set);
-        }
-    }
     for (file, y, cost) in [
-        (
-            "coherence_supports.svg",
-            ("support points per query", AxisUnit::Count),
-            (|r: &Row| r.supports) as fn(&Row) -> _,
-        ),
-        (
-            "coherence_time.svg",
-            ("time per query", AxisUnit::Seconds),
-            seconds,
-        ),
+        ("coherence_supports.svg", SUPPORTS, COUNTED),
+        ("coherence_time.svg", TIME, TIMED),
     ] {
-        let panels: Vec<Panel> = sets
-            .iter()
-            .map(|set| Panel {
-                title: super::kind(set),
-                x: ("motion per frame", AxisUnit::Degrees),
-                y,
-                curves: cold_dashed(over_x(all.iter().filter(|r| r.set == *set), &cost)),
-                limit: None,
-            })
-            .collect();
-        figure::grid(
-            &page.file(file),
-            "Cost of a query of a contact that moves, 1 cm deep",
-            3,
-            &panels,
-            &[page.footer()],
-        );
+        let panel = |set: &str| {
+            let curves = super::curves(all.iter().filter(|r| r.set == set), |r| r.x, cost);
+            let x = ("motion per frame", AxisUnit::Degrees);
+            Panel::new(&super::kind(set), x, y, cold_dashed(curves))
+        };
+        let panels: Vec<Panel> = super::sets(all).into_iter().map(panel).collect();
+        let title = "Cost of a query of a contact that moves, 1 cm deep";
+        figure::grid(&page.file(file), title, 3, &panels, &[page.footer()]);
     }
 }
 

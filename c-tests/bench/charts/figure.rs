@@ -38,11 +38,23 @@ pub enum Mark {
 /// How a method looks in every picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
-    pub colour: RGBColor,
-    pub mark: Mark,
+    colour: RGBColor,
+    mark: Mark,
     /// Ours are drawn bolder.
     pub bold: bool,
     pub dashed: bool,
+}
+
+impl Look {
+    pub fn new((r, g, b): (u8, u8, u8), mark: Mark, bold: bool) -> Self {
+        let (colour, dashed) = (RGBColor(r, g, b), false);
+        Self {
+            colour,
+            mark,
+            bold,
+            dashed,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -105,14 +117,47 @@ fn short(v: f64) -> String {
     }
 }
 
+/// What an axis says, and the unit of its labels.
+pub type Axis = (&'static str, Unit);
+
 #[derive(Clone, Debug)]
 pub struct Panel {
-    pub title: String,
-    pub x: (&'static str, Unit),
-    pub y: (&'static str, Unit),
-    pub curves: Vec<Curve>,
+    title: String,
+    x: Axis,
+    y: Axis,
+    curves: Vec<Curve>,
     /// A line across at this x, where a value loses its meaning.
     pub limit: Option<f64>,
+}
+
+impl Panel {
+    pub fn new(title: &str, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
+        let title = title.to_owned();
+        let limit = None;
+        Self {
+            title,
+            x,
+            y,
+            curves,
+            limit,
+        }
+    }
+}
+
+/// A curve a label, each through its points as they come.
+pub fn curves(points: impl IntoIterator<Item = (String, Look, (f64, f64))>) -> Vec<Curve> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for (label, look, point) in points {
+        match curves.iter_mut().find(|c| c.label == label) {
+            Some(curve) => curve.points.push(point),
+            None => curves.push(Curve {
+                label,
+                look,
+                points: vec![point],
+            }),
+        }
+    }
+    curves
 }
 
 /// Smallest and largest, opened by a margin; none without points.

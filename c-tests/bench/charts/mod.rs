@@ -7,24 +7,25 @@
 pub mod accuracy;
 pub mod coherence;
 pub mod figure;
+pub mod instructions;
 pub mod models;
 pub mod paper;
-pub mod phases;
 pub mod position;
 pub mod results;
-pub mod split;
 
 use std::path::PathBuf;
 
 use clap::Args;
-use plotters::style::RGBColor;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use crate::lab::csv::{self, Line};
+use crate::lab::csv;
 use crate::lab::libraries::Libraries;
 use crate::lab::measure::Row;
 use crate::lab::methods::Method;
 use crate::peers::Compiled;
-use figure::{Look, Mark};
+use figure::{Axis, Curve, Look, Mark, Unit};
+use results::Results;
 
 #[derive(Args)]
 pub struct Options {
@@ -70,12 +71,16 @@ impl Page {
         format!("{place}; {version}; all in one process, rustc and gcc -O3")
     }
 
-    fn write<T: Line>(&self, name: &str, rows: &[T]) {
-        csv::write(&self.file(name), &self.machine, rows);
+    /// Writes the rows, unless there are none.
+    fn keep<T: Serialize>(&self, name: &str, rows: Vec<T>) -> Vec<T> {
+        if !rows.is_empty() {
+            csv::write(&self.file(name), &self.machine, &rows);
+        }
+        rows
     }
 
     /// None where the file is missing, as instructions.csv without valgrind.
-    fn read<T: Line>(&self, name: &str) -> Vec<T> {
+    fn read<T: DeserializeOwned>(&self, name: &str) -> Vec<T> {
         csv::read(&self.file(name))
     }
 }
@@ -95,28 +100,51 @@ impl Bench<'_> {
 /// local amber, minimum green; libccd's are red, the paper's purple, the rest grey. What
 /// starts cold is dashed where the same query starts warm beside it.
 pub fn look(row: &Row) -> Look {
-    let (r, g, b, mark, bold) = match (row.method.as_str(), row.start.as_str()) {
-        ("local", "45") => (244, 170, 40, Mark::Ring, true),
-        ("local", _) => (217, 119, 6, Mark::Dot, true),
-        ("minimum", _) => (22, 145, 70, Mark::Dot, true),
-        ("MPR" | "MPR warm", _) => (37, 99, 235, Mark::Triangle, true),
-        ("libccd MPR", _) => (239, 68, 68, Mark::Triangle, false),
-        ("libccd EPA", _) => (153, 27, 27, Mark::Dot, false),
-        ("Algorithm 4/5", "45") => (190, 130, 240, Mark::Ring, false),
-        ("Algorithm 4/5", _) => (147, 51, 234, Mark::Dot, false),
-        ("Algorithm 3", _) => (147, 51, 234, Mark::Cross, false),
-        ("DEEP", _) => (219, 39, 119, Mark::Triangle, false),
-        ("Bullet EPA", _) => (107, 114, 128, Mark::Dot, false),
-        ("FCL EPA", _) => (107, 114, 128, Mark::Ring, false),
-        ("Coal EPA", _) => (107, 114, 128, Mark::Cross, false),
-        _ => (107, 114, 128, Mark::Triangle, false),
+    let (colour, mark, bold) = match (row.method.as_str(), row.start.as_str()) {
+        ("local", "45") => ((244, 170, 40), Mark::Ring, true),
+        ("local", _) => ((217, 119, 6), Mark::Dot, true),
+        ("minimum", _) => ((22, 145, 70), Mark::Dot, true),
+        ("MPR" | "MPR warm", _) => ((37, 99, 235), Mark::Triangle, true),
+        ("libccd MPR", _) => ((239, 68, 68), Mark::Triangle, false),
+        ("libccd EPA", _) => ((153, 27, 27), Mark::Dot, false),
+        ("Algorithm 4/5", "45") => ((190, 130, 240), Mark::Ring, false),
+        ("Algorithm 4/5", _) => ((147, 51, 234), Mark::Dot, false),
+        ("Algorithm 3", _) => ((147, 51, 234), Mark::Cross, false),
+        ("DEEP", _) => ((219, 39, 119), Mark::Triangle, false),
+        ("Bullet EPA", _) => (GREY, Mark::Dot, false),
+        ("FCL EPA", _) => (GREY, Mark::Ring, false),
+        ("Coal EPA", _) => (GREY, Mark::Cross, false),
+        _ => (GREY, Mark::Triangle, false),
     };
-    Look {
-        colour: RGBColor(r, g, b),
-        mark,
-        bold,
-        dashed: false,
+    Look::new(colour, mark, bold)
+}
+
+pub const GREY: (u8, u8, u8) = (107, 114, 128);
+
+pub const SUPPORTS: Axis = ("support points per query", Unit::Count);
+pub const TIME: Axis = ("time per query", Unit::Seconds);
+
+/// What a query costs, on either axis.
+pub type Cost = fn(&Row) -> Option<f64>;
+
+pub const COUNTED: Cost = |r| r.supports;
+pub const TIMED: Cost = |r| r.ns.map(|n| n * 1e-9);
+
+/// A curve a method: what it costs over `x`.
+pub fn curves<'a>(rows: impl IntoIterator<Item = &'a Row>, x: Cost, cost: Cost) -> Vec<Curve> {
+    let point = |r: &'a Row| Some((name(r), look(r), (x(r)?, cost(r)?)));
+    figure::curves(rows.into_iter().filter_map(point))
+}
+
+/// The sets that rows are about, each once.
+pub fn sets(rows: &[Row]) -> Vec<&str> {
+    let mut sets: Vec<&str> = Vec::new();
+    for row in rows {
+        if !sets.contains(&row.set.as_str()) {
+            sets.push(&row.set);
+        }
     }
+    sets
 }
 
 /// A method's name in pictures.
@@ -163,7 +191,7 @@ pub fn kind(set: &str) -> String {
 }
 
 /// Every picture, and the page about them.
-fn draw(page: &Page, results: &results::Results) {
+fn draw(page: &Page, results: &Results) {
     accuracy::draw(page, &results.accuracy);
     paper::draw(page, &results.vertices);
     coherence::draw(page, &results.coherence);
@@ -174,7 +202,7 @@ fn draw(page: &Page, results: &results::Results) {
     };
     models::draw(&page_of("models.csv"), &results.models);
     position::draw(&page_of("position.csv"), &results.position);
-    split::draw(page, &results.split);
+    instructions::draw(page, &results.split);
     results::write(page, results);
 }
 
@@ -185,17 +213,7 @@ pub fn redraw(options: &Options) {
         machine: String::new(),
     };
     page.machine = csv::origin(&page.file("accuracy.csv"));
-    let results = results::Results {
-        accuracy: page.read("accuracy.csv"),
-        paper: page.read("paper.csv"),
-        vertices: page.read("vertices.csv"),
-        coherence: page.read("coherence.csv"),
-        recorded: page.read("recorded.csv"),
-        models: page.read("models.csv"),
-        split: page.read("instructions.csv"),
-        position: page.read("position.csv"),
-    };
-    draw(&page, &results);
+    draw(&page, &Results::read(&page));
 }
 
 pub fn run(options: &Options) {
@@ -219,44 +237,15 @@ pub fn run(options: &Options) {
         );
     }
     if options.models {
-        page.write("models.csv", &models::measure_all(&bench));
+        page.keep("models.csv", models::measure_all(&bench));
         return redraw(options);
     }
     if options.position {
-        page.write("position.csv", &position::measure(&bench));
+        page.keep("position.csv", position::measure(&bench));
         return redraw(options);
     }
-    let accuracy = accuracy::measure(&bench);
-    page.write("accuracy.csv", &accuracy);
-    let paper = paper::tables(&bench);
-    page.write("paper.csv", &paper);
-    let vertices = paper::vertices(&bench);
-    page.write("vertices.csv", &vertices);
-    let coherence = coherence::measure(&bench);
-    page.write("coherence.csv", &coherence);
-    let recorded = coherence::recorded(&bench);
-    page.write("recorded.csv", &recorded);
-    let models = models::measure_all(&bench);
-    page.write("models.csv", &models);
-    let position = position::measure(&bench);
-    page.write("position.csv", &position);
-    let split = if options.no_instructions {
-        Vec::new()
-    } else {
-        split::measure(&bench)
-    };
-    if !split.is_empty() {
-        page.write("instructions.csv", &split);
-    }
-    let results = results::Results {
-        accuracy,
-        paper,
-        vertices,
-        coherence,
-        recorded,
-        models,
-        split,
-        position,
-    };
-    draw(&page, &results);
+    draw(
+        &page,
+        &Results::measure(&bench, &page, !options.no_instructions),
+    );
 }

@@ -8,14 +8,14 @@
 use nalgebra::Vector3;
 use parry3d_f64::math::Vector as ParryVector;
 use parry3d_f64::transformation::convex_hull;
-use plotters::style::RGBColor;
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
-use super::figure::{self, Curve, Look, Mark, Panel, Unit};
+use serde::{Deserialize, Serialize};
+
+use super::figure::{self, Look, Mark, Panel, Unit};
 use super::paper::VERTICES;
-use super::{Bench, Page};
-use crate::lab::csv::table;
+use super::{Bench, Page, TIME};
 use crate::lab::libraries::Truth;
 use crate::lab::measure;
 use crate::lab::methods::{self, Ask, Method, Start};
@@ -23,24 +23,22 @@ use crate::lab::scene::{Form, Mesh, Pose, Scene};
 use crate::poses::{self, Oracle};
 use crate::progress;
 
-table! {
-    /// One model of a body in contact with a capsule.
-    #[derive(Clone, Debug)]
-    pub struct Model {
-        /// What the body is.
-        pub body: String,
-        /// What it is modelled as.
-        pub model: String,
-        /// 0 for a primitive.
-        pub vertices: usize,
-        pub method: String,
-        /// Mean |depth of the model - depth of the body|, metres.
-        pub modelling_error: f64,
-        /// Mean |answer - depth of the model|, metres.
-        pub query_error: f64,
-        pub supports: f64,
-        pub ns: f64,
-    }
+/// One model of a body in contact with a capsule.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Model {
+    /// What the body is.
+    pub body: String,
+    /// What it is modelled as.
+    pub model: String,
+    /// 0 for a primitive.
+    pub vertices: usize,
+    pub method: String,
+    /// Mean |depth of the model - depth of the body|, metres.
+    pub modelling_error: f64,
+    /// Mean |answer - depth of the model|, metres.
+    pub query_error: f64,
+    pub supports: f64,
+    pub ns: f64,
 }
 
 /// The hull of two copies of an icosphere, `half` up and down: a capsule's polytope.
@@ -160,15 +158,14 @@ const CORES: &str = "core and margin";
 const NOTHING: f64 = 1e-7;
 
 /// Modelling error against time, from the coarsest model to the finest.
-fn panel(title: &str, models: &[&Model]) -> Panel {
-    let mut curves: Vec<Curve> = Vec::new();
-    for m in models {
+fn panel<'a>(title: &str, models: impl Iterator<Item = &'a Model>) -> Panel {
+    let point = |m: &'a Model| {
         let ours = m.method.starts_with("warmccd");
         let colour = match m.method.as_str() {
-            "warmccd minimum" => RGBColor(22, 145, 70),
-            "warmccd distance" => RGBColor(37, 99, 235),
-            _ if ours => RGBColor(217, 119, 6),
-            _ => RGBColor(153, 27, 27),
+            "warmccd minimum" => (22, 145, 70),
+            "warmccd distance" => (37, 99, 235),
+            _ if ours => (217, 119, 6),
+            _ => (153, 27, 27),
         };
         let (kind, mark) = match m.model.as_str() {
             "polytope, scan" => ("polytopes", Mark::Dot),
@@ -179,28 +176,10 @@ fn panel(title: &str, models: &[&Model]) -> Panel {
         // A primitive's modelling error is 0: what is left is its query's.
         let error = m.modelling_error.max(m.query_error).max(NOTHING);
         let label = format!("{}: {kind}", m.method);
-        let point = (error, m.ns * 1e-9);
-        match curves.iter_mut().find(|c| c.label == label) {
-            Some(curve) => curve.points.push(point),
-            None => curves.push(Curve {
-                label,
-                look: Look {
-                    colour,
-                    mark,
-                    bold: ours,
-                    dashed: false,
-                },
-                points: vec![point],
-            }),
-        }
-    }
-    Panel {
-        title: title.to_owned(),
-        x: ("mean error of the depth, model's or query's", Unit::Metres),
-        y: ("time per query", Unit::Seconds),
-        curves,
-        limit: None,
-    }
+        (label, Look::new(colour, mark, ours), (error, m.ns * 1e-9))
+    };
+    let x = ("mean error of the depth, model's or query's", Unit::Metres);
+    Panel::new(title, x, TIME, figure::curves(models.map(point)))
 }
 
 pub fn measure_all(bench: &Bench) -> Vec<Model> {
@@ -233,12 +212,11 @@ pub fn measure_all(bench: &Bench) -> Vec<Model> {
 }
 
 pub fn draw(page: &Page, all: &[Model]) {
-    let panels: Vec<Panel> = [("sphere", "a sphere"), ("capsule", "a capsule")]
-        .map(|(body, what)| {
-            let of: Vec<&Model> = all.iter().filter(|m| m.body == body).collect();
-            panel(&format!("{what} against a capsule"), &of)
-        })
-        .into();
+    let of = |body: &'static str| all.iter().filter(move |m| m.body == body);
+    let panels = [
+        panel("a sphere against a capsule", of("sphere")),
+        panel("a capsule against a capsule", of("capsule")),
+    ];
     figure::grid(
         &page.file("models.svg"),
         "No more model than the scene needs",

@@ -4,8 +4,8 @@
 //! The paper's Section IV measured again: Tables I to III, the figures over vertex
 //! counts, the comparison with DEEP, the ablation of the shortcut.
 
-use super::figure::{self, Curve, Panel, Unit};
-use super::{Bench, Page, look, name};
+use super::figure::{self, Panel, Unit};
+use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::scene::{Form, Scene};
@@ -16,24 +16,10 @@ pub const VERTICES: [usize; 5] = [12, 42, 162, 642, 2562];
 
 /// Pairs of the tables, and how many times faster than EPA the paper's Table III has its method
 /// with guesses 5° off.
-pub struct Published {
-    pub pair: &'static str,
-    pub faster: f64,
-}
-
-pub const PAPER: [Published; 3] = [
-    Published {
-        pair: "sphere vs. sphere",
-        faster: 44.8,
-    },
-    Published {
-        pair: "capsule vs. capsule",
-        faster: 24.7,
-    },
-    Published {
-        pair: "sphere vs. capsule",
-        faster: 30.8,
-    },
+pub const PAPER: [(&str, f64); 3] = [
+    ("sphere vs. sphere", 44.8),
+    ("capsule vs. capsule", 24.7),
+    ("sphere vs. capsule", 30.8),
 ];
 
 /// The tolerance at which the paper's algorithms are as exact here as its Table I says
@@ -65,7 +51,7 @@ pub fn tables(bench: &Bench) -> Vec<Row> {
     let bar = progress::bar(3, "the paper's tables");
     let mut all = Vec::new();
     for (k, forms) in forms.into_iter().enumerate() {
-        let scene = poses::random_rounded(libraries, PAPER[k].pair, forms, n, k as u64);
+        let scene = poses::random_rounded(libraries, PAPER[k].0, forms, n, k as u64);
         let mut methods = Vec::new();
         for start in Start::GUESSES {
             methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));
@@ -73,12 +59,8 @@ pub fn tables(bench: &Bench) -> Vec<Row> {
         }
         // Squares of metres: the second takes the time that the paper reports.
         methods.extend([1e-6, 1e-10].map(|t| methods::libccd_epa(libraries, t)));
-        methods.push(methods::extension(
-            libraries,
-            Ask::Minimum,
-            Start::None,
-            1e-6,
-        ));
+        let minimum = methods::extension(libraries, Ask::Minimum, Start::None, 1e-6);
+        methods.push(minimum);
         all.extend(rows(bench, &scene, methods, None));
         bar.inc(1);
     }
@@ -93,32 +75,22 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
     let mut all = Vec::new();
     for n in VERTICES {
         let scene = Scene::load(libraries, &format!("p{n}_cap"), bench.poses());
-        let mut methods = Vec::new();
-        for start in [Start::Five, Start::FortyFive] {
-            methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));
-            methods.push(methods::paper(libraries, true, start, AS_PUBLISHED));
-        }
-        methods.push(methods::paper(
-            libraries,
-            false,
-            Start::FortyFive,
-            AS_PUBLISHED,
-        ));
-        methods.push(methods::libccd_epa(libraries, 1e-6));
-        methods.push(methods::extension(
-            libraries,
-            Ask::Minimum,
-            Start::None,
-            1e-6,
-        ));
+        let local = |start| methods::extension(libraries, Ask::Local, start, 1e-6);
+        let paper = |on, start| methods::paper(libraries, on, start, AS_PUBLISHED);
+        let methods = vec![
+            local(Start::Five),
+            paper(true, Start::Five),
+            local(Start::FortyFive),
+            paper(true, Start::FortyFive),
+            paper(false, Start::FortyFive),
+            methods::libccd_epa(libraries, 1e-6),
+            methods::extension(libraries, Ask::Minimum, Start::None, 1e-6),
+        ];
         all.extend(rows(bench, &scene, methods, Some(n as f64)));
         bar.inc(1);
         // Climbing supports here: DEEP walks over the same edges.
         let scene = Scene::load(libraries, &format!("p{n}hc_p{n}hc"), bench.poses());
-        let mut methods = vec![
-            methods::extension(libraries, Ask::Local, Start::Five, 1e-6),
-            methods::paper(libraries, true, Start::Five, AS_PUBLISHED),
-        ];
+        let mut methods = vec![local(Start::Five), paper(true, Start::Five)];
         methods.extend(methods::deep(libraries, &scene, Start::Five));
         all.extend(rows(bench, &scene, methods, Some(n as f64)));
         bar.inc(1);
@@ -127,86 +99,35 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
     all
 }
 
-/// One curve a method through the rows' `x`.
-pub fn over_x<'a>(
-    rows: impl Iterator<Item = &'a Row>,
-    cost: &dyn Fn(&Row) -> Option<f64>,
-) -> Vec<Curve> {
-    let mut curves: Vec<Curve> = Vec::new();
-    for row in rows {
-        let (Some(x), Some(cost)) = (row.x, cost(row)) else {
-            continue;
-        };
-        let label = name(row);
-        match curves.iter_mut().find(|c| c.label == label) {
-            Some(curve) => curve.points.push((x, cost)),
-            None => curves.push(Curve {
-                label,
-                look: look(row),
-                points: vec![(x, cost)],
-            }),
-        }
-    }
-    curves
-}
-
-pub fn seconds(row: &Row) -> Option<f64> {
-    row.ns.map(|n| n * 1e-9)
-}
-
 pub fn draw(page: &Page, all: &[Row]) {
-    let x = ("vertices", Unit::Count);
-    let time = ("time per query", Unit::Seconds);
-    let supports = ("support points per query", Unit::Count);
-    let capsule = |r: &&Row| r.set.ends_with("_cap");
-    let ablation = |r: &&Row| capsule(r) && r.start == "45" && r.method.starts_with("Algorithm");
-    let panel = |title: &str, y, curves| Panel {
-        title: title.to_owned(),
-        x,
-        y,
-        curves,
-        limit: None,
+    let capsule = |r: &Row| r.set.ends_with("_cap");
+    let over_counts = |title: &str, wanted: &dyn Fn(&Row) -> bool, timed: bool| {
+        let (y, cost) = if timed {
+            (TIME, TIMED)
+        } else {
+            (SUPPORTS, COUNTED)
+        };
+        let rows = all.iter().filter(|r| wanted(r));
+        let curves = super::curves(rows, |r| r.x, cost);
+        Panel::new(title, ("vertices", Unit::Count), y, curves)
     };
+    let all_on = |r: &Row| capsule(r) && r.method != "Algorithm 3";
+    let ablation = |r: &Row| capsule(r) && r.start == "45" && r.method.starts_with("Algorithm");
     let panels = [
-        panel(
-            "polytope – capsule: time",
-            time,
-            over_x(
-                all.iter()
-                    .filter(capsule)
-                    .filter(|r| r.method != "Algorithm 3"),
-                &seconds,
-            ),
-        ),
-        panel(
-            "polytope – capsule: supports",
-            supports,
-            over_x(
-                all.iter()
-                    .filter(capsule)
-                    .filter(|r| r.method != "Algorithm 3"),
-                &|r| r.supports,
-            ),
-        ),
-        panel(
+        over_counts("polytope – capsule: time", &all_on, true),
+        over_counts("polytope – capsule: supports", &all_on, false),
+        over_counts(
             "polytope – polytope, climbing: DEEP",
-            time,
-            over_x(all.iter().filter(|r| !capsule(r)), &seconds),
+            &|r| !capsule(r),
+            true,
         ),
-        panel(
-            "shortcut on and off, 45°: time",
-            time,
-            over_x(all.iter().filter(ablation), &seconds),
-        ),
-        panel(
-            "shortcut on and off, 45°: supports",
-            supports,
-            over_x(all.iter().filter(ablation), &|r| r.supports),
-        ),
+        over_counts("shortcut on and off, 45°: time", &ablation, true),
+        over_counts("shortcut on and off, 45°: supports", &ablation, false),
     ];
+    let title = "The paper's figures over vertex counts";
     figure::grid(
         &page.file("vertices.svg"),
-        "The paper's figures over vertex counts",
+        title,
         3,
         &panels,
         &[page.footer()],

@@ -4,24 +4,21 @@
 //! Where the contact position of a body that tips over is, by libccd, by this library and by
 //! integration: what `extension/pressure.c` says of tilts.
 
-use plotters::style::RGBColor;
+use serde::{Deserialize, Serialize};
 
-use super::figure::{self, Curve, Look, Mark, Panel, Unit};
-use super::{Bench, Page};
+use super::figure::{self, Look, Mark, Panel, Unit};
+use super::{Bench, GREY, Page};
 use crate::harness::Program;
-use crate::lab::csv::table;
 use crate::progress;
 
-table! {
-    /// How far off a body's middle its contact position is, metres.
-    #[derive(Clone, Debug)]
-    pub struct Position {
-        pub body: String,
-        pub degrees: f64,
-        pub truth: f64,
-        pub ours: f64,
-        pub libccd: f64,
-    }
+/// How far off a body's middle its contact position is, metres.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Position {
+    pub body: String,
+    pub degrees: f64,
+    pub truth: f64,
+    pub ours: f64,
+    pub libccd: f64,
 }
 
 pub fn measure(_: &Bench) -> Vec<Position> {
@@ -51,50 +48,29 @@ pub fn measure(_: &Bench) -> Vec<Position> {
 pub fn draw(page: &Page, all: &[Position]) {
     let mut bodies: Vec<&str> = all.iter().map(|p| p.body.as_str()).collect();
     bodies.dedup();
-    let look = |(r, g, b): (u8, u8, u8), mark, bold| Look {
-        colour: RGBColor(r, g, b),
-        mark,
-        bold,
-        dashed: false,
+    type Value = fn(&Position) -> f64;
+    let lines: [(&str, Look, Value); 3] = [
+        (
+            "libccd MPR",
+            Look::new((239, 68, 68), Mark::Triangle, false),
+            |p| p.libccd,
+        ),
+        (
+            "warmccd MPR",
+            Look::new((37, 99, 235), Mark::Triangle, true),
+            |p| p.ours,
+        ),
+        ("integral", Look::new(GREY, Mark::Ring, false), |p| p.truth),
+    ];
+    let panel = |body: &&str| {
+        let points = lines.iter().flat_map(|&(label, look, value)| {
+            let of = all.iter().filter(|p| p.body == **body);
+            of.map(move |p| (label.to_owned(), look, (p.degrees, value(p))))
+        });
+        let (x, y) = (("tilt", Unit::Degrees), ("off its middle", Unit::Metres));
+        Panel::new(body, x, y, figure::curves(points))
     };
-    let curve = |label: &str, look, body: &str, value: &dyn Fn(&Position) -> f64| Curve {
-        label: label.to_owned(),
-        look,
-        points: all
-            .iter()
-            .filter(|p| p.body == body)
-            .map(|p| (p.degrees, value(p)))
-            .collect(),
-    };
-    let panels: Vec<Panel> = bodies
-        .iter()
-        .map(|body| Panel {
-            title: (*body).to_owned(),
-            x: ("tilt", Unit::Degrees),
-            y: ("off its middle", Unit::Metres),
-            curves: vec![
-                curve(
-                    "libccd MPR",
-                    look((239, 68, 68), Mark::Triangle, false),
-                    body,
-                    &|p| p.libccd,
-                ),
-                curve(
-                    "warmccd MPR",
-                    look((37, 99, 235), Mark::Triangle, true),
-                    body,
-                    &|p| p.ours,
-                ),
-                curve(
-                    "integral",
-                    look((107, 114, 128), Mark::Ring, false),
-                    body,
-                    &|p| p.truth,
-                ),
-            ],
-            limit: None,
-        })
-        .collect();
+    let panels: Vec<Panel> = bodies.iter().map(panel).collect();
     figure::grid(
         &page.file("position.svg"),
         "Contact position of a body of a quarter metre, 1 mm deep, that tips over",

@@ -6,12 +6,11 @@
 
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 
-use super::Page;
-use super::coherence;
-use super::models::Model;
-use super::paper::{AS_PUBLISHED, PAPER};
-use super::position::Position;
-use super::split::Split;
+use super::instructions::{self, Split};
+use super::models::{self, Model};
+use super::paper::{self, AS_PUBLISHED, PAPER};
+use super::position::{self, Position};
+use super::{Bench, Page, accuracy, coherence};
 use crate::lab::measure::Row;
 
 /// Everything a run has measured.
@@ -24,6 +23,40 @@ pub struct Results {
     pub models: Vec<Model>,
     pub split: Vec<Split>,
     pub position: Vec<Position>,
+}
+
+impl Results {
+    /// As they were written.
+    pub fn read(page: &Page) -> Self {
+        Self {
+            accuracy: page.read("accuracy.csv"),
+            paper: page.read("paper.csv"),
+            vertices: page.read("vertices.csv"),
+            coherence: page.read("coherence.csv"),
+            recorded: page.read("recorded.csv"),
+            models: page.read("models.csv"),
+            split: page.read("instructions.csv"),
+            position: page.read("position.csv"),
+        }
+    }
+
+    /// Measures all, and writes each as it comes.
+    pub fn measure(bench: &Bench, page: &Page, instructions: bool) -> Self {
+        let split = || instructions::measure(bench);
+        Self {
+            accuracy: page.keep("accuracy.csv", accuracy::measure(bench)),
+            paper: page.keep("paper.csv", paper::tables(bench)),
+            vertices: page.keep("vertices.csv", paper::vertices(bench)),
+            coherence: page.keep("coherence.csv", coherence::measure(bench)),
+            recorded: page.keep("recorded.csv", coherence::recorded(bench)),
+            models: page.keep("models.csv", models::measure_all(bench)),
+            position: page.keep("position.csv", position::measure(bench)),
+            split: page.keep(
+                "instructions.csv",
+                instructions.then(split).unwrap_or_default(),
+            ),
+        }
+    }
 }
 
 fn markdown<const N: usize>(
@@ -55,8 +88,8 @@ fn find<'a>(
 }
 
 fn times_faster(rows: &[Row]) -> String {
-    let lines = PAPER.iter().map(|p| {
-        let ns = |m: &str, s: &str, t: f64| find(rows, p.pair, m, s, t).and_then(|r| r.ns);
+    let lines = PAPER.iter().map(|(pair, faster)| {
+        let ns = |m: &str, s: &str, t: f64| find(rows, pair, m, s, t).and_then(|r| r.ns);
         let ratio = |m: &str, s: &str, t: f64| {
             let own = if m.starts_with("Algorithm") {
                 AS_PUBLISHED
@@ -68,13 +101,13 @@ fn times_faster(rows: &[Row]) -> String {
                 .map_or("-".to_owned(), |(e, m)| format!("{:.1}", e / m))
         };
         [
-            p.pair.to_owned(),
+            (*pair).to_owned(),
             ratio("local", "5", 1e-6),
             ratio("local", "5", 1e-10),
             ratio("minimum", "", 1e-6),
             ratio("Algorithm 4/5", "5", 1e-6),
             ratio("Algorithm 4/5", "5", 1e-10),
-            p.faster.to_string(),
+            faster.to_string(),
         ]
     });
     markdown(
@@ -97,12 +130,6 @@ fn supports(row: Option<&Row>) -> String {
 }
 
 fn coherent(rows: &[Row]) -> String {
-    let mut sets: Vec<&str> = Vec::new();
-    for row in rows {
-        if !sets.contains(&row.set.as_str()) {
-            sets.push(&row.set);
-        }
-    }
     let until = |set: &str, method: &str| match coherence::stops_paying(rows, set, method) {
         Some(step) => format!("{step}°"),
         None => "always pays".to_owned(),
@@ -113,7 +140,7 @@ fn coherent(rows: &[Row]) -> String {
                 .find(|r| r.set == set && r.method == method && r.start == start && r.x == Some(x)),
         )
     };
-    let lines = sets.into_iter().map(|set| {
+    let lines = super::sets(rows).into_iter().map(|set| {
         [
             super::kind(set),
             at(set, "local", "warm", 0.1),
