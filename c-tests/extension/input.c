@@ -18,12 +18,7 @@ static int ask_for(int query, const void *a, const void *b, const ccd_t *ccd, co
                    unsigned want, ccd_penetration_t *out)
 {
     static const int number[QUERIES] = {ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_ALONG, ASK_PLANAR};
-    call_rest_t rest;
-    memset(&rest, 0, sizeof rest);
-    rest.warm = warm;
-    rest.along = dir;
-    rest.want = want;
-    rest.full = out;
+    const call_rest_t rest = {.warm = warm, .along = dir, .want = want, .full = out};
     return call_by_number(number[query], a, b, ccd, &rest);
 }
 
@@ -108,16 +103,8 @@ typedef char every_call_is_there[(int)CALLS == (int)ASKS ? 1 : -1];
 
 static int ask_number(int number, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
 {
-    call_rest_t x;
-    memset(&x, 0, sizeof x);
-    x.warm = warm;
-    x.along = rest->dir_at;
-    x.margin1 = rest->margin1;
-    x.margin2 = rest->margin2;
-    x.max_distance = rest->max_distance;
-    x.slop = rest->slop;
-    x.want = rest->want;
-    x.max = rest->max;
+    call_rest_t x = {.warm = warm, .along = rest->dir_at, .margin1 = rest->margin1, .margin2 = rest->margin2,
+                     .max_distance = rest->max_distance, .slop = rest->slop, .want = rest->want, .max = rest->max};
     if (!rest->no_out) {
         x.depth = &out->depth;
         x.dir = &out->dir;

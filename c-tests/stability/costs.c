@@ -281,7 +281,7 @@ static int stack_asks(int class, const entry_t *e)
     switch (class) {
     case STACK_ANY: return 1;
     case STACK_FEW: return entry_is_mpr(e) || e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_PROVEN;
-    case STACK_VERDICT: return e->ask == ASK_MPR_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM || e->ask == ASK_GJK_INTERSECT;
+    case STACK_VERDICT: return entry_is_verdict(e);
     default: return e->ask == ASK_LOCAL;
     }
 }

@@ -79,6 +79,9 @@ static const entry_t entries[] = {
     {"minimum, wrong guess", 0, ASK_PROVEN, STATE_AGAINST},
     {"minimum, guess beside", 0, ASK_PROVEN, STATE_BESIDE},
     {"along, again", 0, ASK_ALONG, STATE_AGAIN},
+    {"distance", 0, ASK_DISTANCE, STATE_NONE},
+    {"distance, again", 0, ASK_DISTANCE, STATE_AGAIN},
+    {"distance, wrong guess", 0, ASK_DISTANCE, STATE_AGAINST},
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
@@ -86,7 +89,7 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
  * the extension's own "local", or "proven", which have a lower bound that closes? NULL: any. */
 static inline int entry_in(const entry_t *e, const char *group)
 {
-    int local = e->ask == ASK_LOCAL, proven = e->ask == ASK_PROVEN || e->ask == ASK_ALONG;
+    int local = e->ask == ASK_LOCAL, proven = e->ask == ASK_PROVEN || e->ask == ASK_ALONG || e->ask == ASK_DISTANCE;
     return !group || strcmp(group, local ? "local" : proven ? "proven" : "compatible") == 0;
 }
 
@@ -100,6 +103,11 @@ static inline int entry_is_minimum(const entry_t *e)
 static inline int entry_is_mpr(const entry_t *e)
 {
     return e->ask == ASK_MPR || e->ask == ASK_MPR_WARM || e->ask == ASK_PENETRATION;
+}
+
+static inline int entry_is_verdict(const entry_t *e)
+{
+    return e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM;
 }
 
 /* From so many calls of both support functions on it counts as looping: no query is slower. */
@@ -177,11 +185,26 @@ static inline int judge_libccd(const entry_t *e, const void *a, const void *b, c
 #endif
 }
 
+/* A signed distance, as a depth: its upper and lower bound change places with the sign. */
+static inline void judge_distance(const ccd_distance_t *d, answer_t *out)
+{
+    out->has_proof = out->code == CCD_HIT || out->code == CCD_MISS || out->code == CCD_LIMIT;
+    if (!out->has_proof)
+        return;
+    out->depth = -(double)d->distance;
+    out->lower = -(double)d->distance_upper;
+    judge_vec(&d->normal, out->dir);
+    judge_vec(&d->normal, out->normal);
+    judge_vec(&d->point1, out->point1);
+    judge_vec(&d->point2, out->point2);
+}
+
 /* One call of the function itself. */
 static inline void ask_once(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
                             const ccd_vec3_t *along, answer_t *out)
 {
     ccd_penetration_t p;
+    ccd_distance_t distance;
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
     call_rest_t rest;
@@ -199,8 +222,10 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     rest.dir = &dir;
     rest.pos = judge_want & CCD_WANT_POS ? &pos : NULL;
     rest.full = &p;
+    rest.max_distance = (ccd_real_t)HUGE_VAL;
+    rest.distance = &distance;
     code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
-    if (e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM)
+    if (entry_is_verdict(e))
         code = code ? CCD_HIT : CCD_MISS;
     if (e->ask == ASK_SEPARATE && code == 0) {
         /* a zero vector keeps no direction: give it the answer's own */
@@ -212,6 +237,10 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
             dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
     }
     out->code = code;
+    if (e->ask == ASK_DISTANCE) {
+        judge_distance(&distance, out);
+        return;
+    }
     if (code != CCD_HIT && code != CCD_LIMIT) {
         out->touched = !judge_is_blank(&p, sizeof p) || !judge_is_blank(&depth, sizeof depth)
             || !judge_is_blank(&dir, sizeof dir) || !judge_is_blank(&pos, sizeof pos);
@@ -291,7 +320,7 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
     ccd_t ccd;
     shape_query(&ccd);
     ccd.support1 = ccd.support2 = judge_support;
-    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)tol;
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     return ask_objects(e, &sa, &sb, &ccd, normal, limit);
 }
 
@@ -328,7 +357,9 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
     X(WITNESS_ACROSS, "witness points apart across the normal") \
     X(POSITION, "position not between the witness points") \
     X(MISCOUNTED, "supports miscounted") \
-    X(TOUCHED, "outputs written without an answer")
+    X(TOUCHED, "outputs written without an answer") \
+    X(STACK, "stack") \
+    X(TAIL, "tail")
 
 enum {
 #define STABILITY_FAULT_BIT(name, text) FAULT_BIT_##name,
@@ -391,28 +422,59 @@ static inline double judge_reach(const shape_t *s, const double origin[3], const
     return truth_dot3(p, n);
 }
 
+/* How far an answer's points may be off: as far as the depth may be, and where a bound is given, and
+ * the cap or rounding, by no more than FAULT_NO_PROOF allows, left it open, by that. */
+static inline double judge_bound(const entry_t *e, const answer_t *x, const question_t *q)
+{
+    const double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) : q->tol;
+    const double reached = x->code == CCD_LIMIT || e->ask == ASK_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
+    return reached + q->noise + tolerance(TOL_INSIDE) * q->size;
+}
+
+/* Is a point, told relative to origin, farther than this outside of the shape? By 26 planes. */
+static inline int judge_outside(const shape_t *s, const double origin[3], const double p[3], double bound)
+{
+    int i, outside = 0;
+    for (i = 0; i < 27; i++) {
+        double n[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, l = sqrt(truth_dot3(n, n));
+        if (l == 0)
+            continue;
+        n[0] /= l;
+        n[1] /= l;
+        n[2] /= l;
+        outside |= !(truth_dot3(p, n) - judge_reach(s, origin, n) <= bound);
+    }
+    return outside;
+}
+
+/* pos is within half the depth of both shapes; deeper than an object is thick the middle of the chord
+ * is beyond it. And a hair. */
+static inline int judge_position(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+{
+    const double inside = judge_bound(e, x, q) + (0.5 + 1.0 / 256) * x->depth;
+    double origin[3], p[3];
+    int i;
+    for (i = 0; i < 3; i++) {
+        origin[i] = (double)a->pos[i];
+        p[i] = x->pos[i] - origin[i];
+    }
+    return judge_outside(a, origin, p, inside) || judge_outside(b, origin, p, inside) ? FAULT_POSITION : 0;
+}
+
 /* Witness points: each in its shape and at its supporting plane, their difference
- * the depth. pos within half the depth of both shapes, and where no centre of pressure is
- * promised their middle. */
+ * the depth; pos their middle where no centre of pressure is promised. */
 static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
-    /* as far off as the depth may be: where a bound is given, and the cap or rounding, by no
-       more than FAULT_NO_PROOF allows, left it open, by that */
-    double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) : q->tol;
-    double reached = x->code == CCD_LIMIT || e->ask == ASK_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
-    double bound = reached + q->noise + tolerance(TOL_INSIDE) * q->size, origin[3], d[3], m[3], p[3], p1[3], p2[3], value, l2;
+    double bound = judge_bound(e, x, q), origin[3], d[3], m[3], p1[3], p2[3], value, l2;
     const int has_centre = x->code == CCD_HIT && e->ask != ASK_ALONG && e->ask != ASK_PLANAR;
-    /* deeper than an object is thick the middle of the chord is beyond it; and a hair */
-    const double inside = bound + (0.5 + 1.0 / 256) * x->depth;
-    int faults = 0, i, j, k;
+    int faults = 0, i;
     for (i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
         m[i] = -x->normal[i];
         p1[i] = x->point1[i] - origin[i];
         p2[i] = x->point2[i] - origin[i];
         d[i] = p1[i] - p2[i];
-        p[i] = x->pos[i] - origin[i];
-        if (!has_centre && !(fabs((p1[i] + p2[i]) / 2 - p[i]) <= q->noise))
+        if (!has_centre && !(fabs((p1[i] + p2[i]) / 2 - (x->pos[i] - origin[i])) <= q->noise))
             faults |= FAULT_POSITION;
     }
     value = x->depth * truth_dot3(x->dir, x->normal);
@@ -428,24 +490,10 @@ static inline int judge_witness(const entry_t *e, const answer_t *x, const shape
     if (!(judge_reach(a, origin, x->normal) - truth_dot3(p1, x->normal) <= bound)
         || !(judge_reach(b, origin, m) - truth_dot3(p2, m) <= bound))
         faults |= FAULT_WITNESS_PLANE;
-    /* inside: under the support planes of 26 directions */
-    for (i = -1; i <= 1; i++)
-        for (j = -1; j <= 1; j++)
-            for (k = -1; k <= 1; k++) {
-                double n[3], l = sqrt((double)(i * i + j * j + k * k));
-                if (l == 0)
-                    continue;
-                n[0] = i / l;
-                n[1] = j / l;
-                n[2] = k / l;
-                if (!(truth_dot3(p1, n) - judge_reach(a, origin, n) <= bound)
-                    || !(truth_dot3(p2, n) - judge_reach(b, origin, n) <= bound))
-                    faults |= FAULT_WITNESS_INSIDE;
-                if (has_centre
-                    && (!(truth_dot3(p, n) - judge_reach(a, origin, n) <= inside)
-                        || !(truth_dot3(p, n) - judge_reach(b, origin, n) <= inside)))
-                    faults |= FAULT_POSITION;
-            }
+    if (judge_outside(a, origin, p1, bound) || judge_outside(b, origin, p2, bound))
+        faults |= FAULT_WITNESS_INSIDE;
+    if (has_centre)
+        faults |= judge_position(e, x, a, b, q);
     return faults;
 }
 
@@ -460,6 +508,36 @@ static inline int mpr_within(double depth, double least, double tol, double nois
         || (supports >= MPR_POINTS && depth <= least + fmax(tol, tolerance(TOL_LATE) * least) + noise);
 }
 
+/* A signed distance, overlapping or not: the sign is the code's, the plane is as far as it says and the
+ * bounds close about the truth; at the cap, where minima form a surface, the distance is right all the
+ * same. */
+static inline int judge_signed(const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+{
+    const truth_t *t = &q->truth;
+    const double rounding = 2 * q->noise + t->depth - t->lower, floor = tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b);
+    const double within = x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_PROMISED) * fabs(t->depth)) : q->tol;
+    int faults = 0;
+    if (!x->has_proof)
+        return FAULT_CODE;
+    if (x->code == CCD_LIMIT && !q->surface)
+        faults |= FAULT_LIMIT;
+    if (!isfinite(x->depth) || !isfinite(x->lower) || !isfinite(truth_dot3(x->normal, x->normal)))
+        return faults | FAULT_NAN;
+    if (!(fabs(sqrt(truth_dot3(x->normal, x->normal)) - 1) <= tolerance(TOL_UNIT)))
+        faults |= FAULT_NOT_UNIT;
+    if (x->code != CCD_LIMIT && (x->code == CCD_HIT) != (x->depth > 0))
+        faults |= FAULT_CODE;
+    if (x->depth < truth_value(a, b, x->normal) - 2 * q->noise)
+        faults |= FAULT_UNSOUND;
+    if (x->lower > x->depth || x->lower > t->depth + rounding)
+        faults |= FAULT_FALSE_PROOF;
+    if (x->code != CCD_LIMIT && x->depth - x->lower > q->tol + floor + 2 * q->noise)
+        faults |= FAULT_NO_PROOF;
+    if (x->depth > t->depth + within + rounding)
+        faults |= FAULT_NOT_MINIMUM;
+    return faults;
+}
+
 /* All that is wrong with the answer. */
 static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
@@ -470,6 +548,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         return FAULT_LOOP;
     if (x->code == ANSWER_CRASH)
         return FAULT_CRASH;
+    if (e->ask == ASK_DISTANCE)
+        return judge_signed(x, a, b, q);
     if (x->touched)
         faults |= FAULT_TOUCHED;
     if (x->code == CCD_MISS) {
@@ -490,7 +570,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         faults |= FAULT_LIMIT;
     if (t->depth < -q->noise && !q->touching)
         return faults | FAULT_FALSE_HIT;
-    if (e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM)
+    if (entry_is_verdict(e))
         return faults;
     if (e->ask == ASK_SEPARATE && x->depth == 0)
         return faults | (t->depth > q->tol + q->noise ? FAULT_ZERO | FAULT_UNSOUND : 0);
@@ -536,6 +616,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         if (x->supports != (x->calls + 1) / 2)
             faults |= FAULT_MISCOUNTED;
     }
+    if (x->has_pos && !x->has_proof)
+        faults |= judge_position(e, x, a, b, q);
     /* h(dir) itself rounds by up to the noise, and a depth is never below 0 */
     if (!(fabs(x->depth - fmax(value, 0)) <= 2 * q->noise))
         faults |= x->depth < value ? FAULT_NOT_SUPPORT | FAULT_UNSOUND : FAULT_NOT_SUPPORT;

@@ -7,9 +7,6 @@
 #ifndef STABILITY_WIDE_BODY_H
 #define STABILITY_WIDE_BODY_H
 
-#define __STDC_WANT_IEC_60559_TYPES_EXT__ 1
-#include <math.h>
-
 #include "stability/dice.h"
 
 /* 113 bits on every platform of the tests; x86's long double has 64. */

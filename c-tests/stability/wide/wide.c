@@ -11,168 +11,79 @@
  * it. Prints a table, the counts by call, and the first pair of each kind of fault; exits
  * with 1 where there is one. */
 
+#define __STDC_WANT_IEC_60559_TYPES_EXT__ 1 /* powf128 */
+#include "stability/judge.h"
+
 #include "rows.h"
-
-#include "ours.h"
-#include "tolerances.h"
-
-#include <stdio.h>
 
 /* --- answers ------------------------------------------------------------------------ */
 
 static const struct {
-    const char *name;
-    int ask, bare; /* without centres */
+    entry_t entry;
+    int bare; /* without centres */
 } calls[] = {
-    {"MPR", ASK_MPR, 0},
-    {"MPR warm", ASK_MPR_WARM, 0},
-    {"GJK", ASK_GJK, 0},
-    {"GJK separate", ASK_SEPARATE, 0},
-    {"MPR yes or no", ASK_MPR_INTERSECT, 0},
-    {"GJK yes or no", ASK_GJK_INTERSECT, 0},
-    {"penetration", ASK_PENETRATION, 0},
-    {"penetration, no centres", ASK_PENETRATION, 1},
-    {"proven", ASK_PROVEN, 0},
-    {"proven, no centres", ASK_PROVEN, 1},
-    {"local", ASK_LOCAL, 0},
-    {"local, no centres", ASK_LOCAL, 1},
-    {"incremental", ASK_INCREMENTAL, 0},
-    {"along", ASK_ALONG, 0},
-    {"distance", ASK_DISTANCE, 0},
+    {{"MPR", 0, ASK_MPR, STATE_AGAIN}, 0},
+    {{"MPR warm", 0, ASK_MPR_WARM, STATE_AGAIN}, 0},
+    {{"GJK", 0, ASK_GJK, STATE_AGAIN}, 0},
+    {{"GJK separate", 0, ASK_SEPARATE, STATE_AGAIN}, 0},
+    {{"MPR yes or no", 0, ASK_MPR_INTERSECT, STATE_AGAIN}, 0},
+    {{"GJK yes or no", 0, ASK_GJK_INTERSECT, STATE_AGAIN}, 0},
+    {{"penetration", 0, ASK_PENETRATION, STATE_AGAIN}, 0},
+    {{"penetration, no centres", 0, ASK_PENETRATION, STATE_AGAIN}, 1},
+    {{"proven", 0, ASK_PROVEN, STATE_AGAIN}, 0},
+    {{"proven, no centres", 0, ASK_PROVEN, STATE_AGAIN}, 1},
+    {{"local", 0, ASK_LOCAL, STATE_AGAIN}, 0},
+    {{"local, no centres", 0, ASK_LOCAL, STATE_AGAIN}, 1},
+    {{"incremental", 0, ASK_INCREMENTAL, STATE_AGAIN}, 0},
+    {{"along", 0, ASK_ALONG, STATE_AGAIN}, 0},
+    {{"distance", 0, ASK_DISTANCE, STATE_AGAIN}, 0},
 };
 enum { CALLS = sizeof calls / sizeof calls[0] };
 
 typedef struct {
-    int code, call, ask, points; /* points: witness points are given */
-    double tol, depth, lower, dir[3], normal[3], at[2][3];
+    int call, ask;
+    answer_t a; /* normal: dir, where none is given */
+    double tol;
     unsigned long supports, stack;
     int moved; /* asked with a state, after a motion */
 } said_t;
 
-static int is_verdict(int ask) { return ask == ASK_MPR_INTERSECT || ask == ASK_GJK_INTERSECT; }
-
-static void take(const ccd_vec3_t *v, double o[3])
-{
-    int i;
-    for (i = 0; i < 3; i++)
-        o[i] = (double)v->v[i];
-}
-
-static void take_penetration(said_t *x, const ccd_penetration_t *o)
-{
-    x->depth = (double)o->depth;
-    x->lower = (double)o->depth_lower;
-    x->points = 1;
-    take(&o->dir, x->dir);
-    take(&o->normal, x->normal);
-    take(&o->point1, x->at[0]);
-    take(&o->point2, x->at[1]);
-}
-
 static said_t say(int call, const wide_pair_t *p, double tol, const double along[3], ccd_warm_t *warm)
 {
-    const int ask = calls[call].ask;
-    ccd_penetration_t o;
-    ccd_distance_t q;
-    ccd_vec3_t dir, pos, way;
-    ccd_real_t depth = 0;
-    call_rest_t rest;
+    ccd_vec3_t way;
     said_t x;
     ccd_t ccd;
     int i;
     memset(&x, 0, sizeof x);
-    memset(&dir, 0, sizeof dir);
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = body_support;
     ccd.center1 = ccd.center2 = calls[call].bare ? NULL : body_centre;
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     ccd.max_iterations = (unsigned long)-1;
-    x.call = call;
-    x.ask = ask;
-    memset(&rest, 0, sizeof rest);
     for (i = 0; i < 3; i++)
         way.v[i] = (ccd_real_t)along[i];
-    rest.along = &way;
-    rest.warm = warm;
-    rest.want = CCD_WANT_ALL;
-    rest.max_distance = (ccd_real_t)HUGE_VAL;
-    rest.depth = &depth;
-    rest.dir = &dir;
-    rest.pos = &pos;
-    rest.full = &o;
-    rest.distance = &q;
+    x.call = call;
+    x.ask = calls[call].entry.ask;
     x.tol = tol;
     body_calls = 0;
     body_stack_lowest = (const char *)__builtin_frame_address(0);
-    x.code = call_by_number(ask, &p->body[0], &p->body[1], &ccd, &rest);
-    if (is_verdict(ask))
-        x.code = x.code ? CCD_HIT : CCD_MISS;
+    ask_once(&calls[call].entry, &p->body[0], &p->body[1], &ccd, warm, &way, &x.a);
     x.stack = (unsigned long)((const char *)__builtin_frame_address(0) - body_stack_lowest);
     x.supports = body_calls / 2;
-    if (ask == ASK_DISTANCE) {
-        /* as a depth: upper and lower bound change places with the sign */
-        if (x.code == CCD_HIT || x.code == CCD_MISS || x.code == CCD_LIMIT) {
-            x.depth = -(double)q.distance;
-            x.lower = -(double)q.distance_upper;
-            x.points = 1;
-            take(&q.normal, x.dir);
-            take(&q.normal, x.normal);
-            take(&q.point1, x.at[0]);
-            take(&q.point2, x.at[1]);
-        }
-    } else if (x.code == CCD_HIT || x.code == CCD_LIMIT) {
-        if (ask >= ASK_PENETRATION) {
-            take_penetration(&x, &o);
-        } else if (!is_verdict(ask)) {
-            x.depth = (double)depth;
-            take(&dir, x.dir);
-            if (ask == ASK_SEPARATE) {
-                x.depth = sqrt(truth_dot3(x.dir, x.dir));
-                for (i = 0; i < 3 && x.depth > 0; i++)
-                    x.dir[i] /= x.depth;
-            }
-            memcpy(x.normal, x.dir, sizeof x.normal);
-        }
-    }
+    if (!x.a.has_proof)
+        memcpy(x.a.normal, x.a.dir, sizeof x.a.normal);
     return x;
 }
 
 /* --- faults ------------------------------------------------------------------------- */
 
-#define FAULTS(X) \
-    X(CODE, "code") \
-    X(NUMBER, "not a number or not unit") \
-    X(MISSED, "overlap missed") \
-    X(FALSE_HIT, "false hit") \
-    X(UNSOUND, "unsound") \
-    X(TOO_DEEP, "too deep") \
-    X(FALSE_PROOF, "false proof") \
-    X(OPEN, "bounds open") \
-    X(OUTSIDE, "point outside") \
-    X(NO_MINIMUM, "no local minimum") \
-    X(STACK, "stack") \
-    X(TAIL, "tail")
+/* Of judge.h's: those that contradict an interval; of a local search, where h falls beside it. */
+static const int columns[] = {FAULT_BIT_CODE,        FAULT_BIT_NAN,       FAULT_BIT_MISSED,   FAULT_BIT_FALSE_HIT,
+                              FAULT_BIT_UNSOUND,     FAULT_BIT_OVER,      FAULT_BIT_FALSE_PROOF, FAULT_BIT_NO_PROOF,
+                              FAULT_BIT_WITNESS_INSIDE, FAULT_BIT_NOT_MINIMUM, FAULT_BIT_STACK, FAULT_BIT_TAIL};
+enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
 enum {
-#define WIDE_FAULT_BIT(name, text) FAULT_BIT_##name,
-    FAULTS(WIDE_FAULT_BIT)
-#undef WIDE_FAULT_BIT
-        FAULT_BITS
-};
-enum {
-#define WIDE_FAULT(name, text) FAULT_##name = 1 << FAULT_BIT_##name,
-    FAULTS(WIDE_FAULT)
-#undef WIDE_FAULT
-};
-
-static const char *const fault_names[FAULT_BITS] = {
-#define WIDE_FAULT_NAME(name, text) text,
-    FAULTS(WIDE_FAULT_NAME)
-#undef WIDE_FAULT_NAME
-};
-
-enum {
-    MPR_POINTS = 160,      /* beyond so many support points MPR promises nothing */
     STACK_BYTES = 44 << 10, /* in any call, down to a support function */
     TAIL_POINTS = 400      /* support points, at CCD_INIT's tolerance relative to the size */
 };
@@ -234,34 +145,30 @@ typedef struct {
     int may_be_deep[TOLERANCES]; /* at this tolerance the minimum said CCD_LIMIT */
 } case_t;
 
-static int is_minimum(int ask) { return ask == ASK_PROVEN || ask == ASK_DISTANCE; }
-
-static int is_proven(int ask) { return is_minimum(ask) || ask == ASK_GJK || ask == ASK_SEPARATE; }
-
-static int is_mpr(int ask) { return ask == ASK_MPR || ask == ASK_MPR_WARM || ask == ASK_PENETRATION; }
-
 static int judge_points(const said_t *x, const wide_pair_t *p, double within, dice_t *d)
 {
     const double bound = fmax(within, tolerance(TOL_INSIDE) * p->size) + tolerance(TOL_ULPS) * real_ulp() * p->largest;
     int k;
     for (k = 0; k < 2; k++)
-        if (is_outside(&p->body[k], x->at[k], bound))
-            return FAULT_OUTSIDE;
-    if (x->ask == ASK_LOCAL && x->code == CCD_HIT && fall(p, x->dir, d) > 2 * within + bound)
-        return FAULT_NO_MINIMUM;
+        if (is_outside(&p->body[k], k ? x->a.point2 : x->a.point1, bound))
+            return FAULT_WITNESS_INSIDE;
+    if (x->ask == ASK_LOCAL && x->a.code == CCD_HIT && fall(p, x->a.dir, d) > 2 * within + bound)
+        return FAULT_NOT_MINIMUM;
     return 0;
 }
 
-static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, int t, dice_t *d)
+static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c, int t, dice_t *d)
 {
-    const double floor = tolerance(TOL_PROOF_FLOOR) * p->largest, within = x->tol + floor;
+    const double floor = tolerance(TOL_PROOF_FLOOR) * p->largest, within = said->tol + floor;
     const int overlap = c->truth.lower > c->noise, apart = c->least < -c->noise;
+    const entry_t *e = &calls[said->call].entry;
+    const answer_t *x = &said->a;
     const double *n = x->normal;
     int faults = 0, i;
     double h, along;
-    if (x->stack > STACK_BYTES)
+    if (said->stack > STACK_BYTES)
         faults |= FAULT_STACK;
-    if (t == DEFAULT_TOLERANCE && x->supports > TAIL_POINTS)
+    if (t == DEFAULT_TOLERANCE && said->supports > TAIL_POINTS)
         faults |= FAULT_TAIL;
     if (x->code != CCD_HIT && x->code != CCD_MISS && x->code != CCD_LIMIT)
         return faults | FAULT_CODE;
@@ -269,41 +176,41 @@ static int judge_said(const said_t *x, const wide_pair_t *p, const case_t *c, in
         return faults | FAULT_MISSED;
     if (x->code == CCD_HIT && apart)
         return faults | FAULT_FALSE_HIT;
-    if (x->code == CCD_LIMIT && apart && x->ask != ASK_DISTANCE)
+    if (x->code == CCD_LIMIT && apart && said->ask != ASK_DISTANCE)
         return faults | FAULT_FALSE_HIT;
-    if ((x->code == CCD_MISS && x->ask != ASK_DISTANCE) || is_verdict(x->ask))
+    if ((x->code == CCD_MISS && said->ask != ASK_DISTANCE) || entry_is_verdict(e))
         return faults;
-    if (x->ask == ASK_SEPARATE && x->depth == 0)
+    if (said->ask == ASK_SEPARATE && x->depth == 0)
         return faults;
     for (i = 0; i < 3; i++)
-        if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->points && !(isfinite(x->at[0][i]) && isfinite(x->at[1][i]))))
-            return faults | FAULT_NUMBER;
+        if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->has_proof && !(isfinite(x->point1[i]) && isfinite(x->point2[i]))))
+            return faults | FAULT_NAN;
     along = truth_dot3(x->dir, n);
     if (!(fabs(sqrt(truth_dot3(n, n)) - 1) <= tolerance(TOL_UNIT) * 4) || !(along > 0) || !isfinite(x->depth) || !isfinite(x->lower))
-        return faults | FAULT_NUMBER;
+        return faults | FAULT_NAN;
     h = wide_value(&p->body[0], &p->body[1], n);
     if (x->depth * along < h - c->noise)
         faults |= FAULT_UNSOUND;
     /* along a direction of the caller's the least depth is greater, and so may its bound be */
-    if (x->ask != ASK_ALONG && x->lower > c->least + c->noise)
+    if (said->ask != ASK_ALONG && x->lower > c->least + c->noise)
         faults |= FAULT_FALSE_PROOF;
-    if (is_minimum(x->ask) && x->code != CCD_LIMIT
+    if ((said->ask == ASK_PROVEN || said->ask == ASK_DISTANCE) && x->code != CCD_LIMIT
         && x->depth - x->lower > within)
-        faults |= FAULT_OPEN;
-    if (is_proven(x->ask) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
+        faults |= FAULT_NO_PROOF;
+    if ((entry_is_minimum(e) || said->ask == ASK_DISTANCE) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
         && x->code == CCD_HIT)
-        faults |= FAULT_TOO_DEEP;
-    if (is_mpr(x->ask) && x->code == CCD_HIT && x->supports < MPR_POINTS
+        faults |= FAULT_OVER;
+    if (entry_is_mpr(e) && x->code == CCD_HIT && said->supports < MPR_POINTS
         && x->depth > fmax(c->least, 0) + fmax(within, tolerance(TOL_PROMISED) * c->least) + c->noise)
-        faults |= FAULT_TOO_DEEP;
-    if (x->points && dice_below(d, 8) == 0)
-        faults |= judge_points(x, p, within + (x->code == CCD_LIMIT ? fmax(x->depth - x->lower, 0) : 0), d);
+        faults |= FAULT_OVER;
+    if (x->has_proof && dice_below(d, 8) == 0)
+        faults |= judge_points(said, p, within + (x->code == CCD_LIMIT ? fmax(x->depth - x->lower, 0) : 0), d);
     return faults;
 }
 
 /* --- the table ---------------------------------------------------------------------- */
 
-static unsigned long judged, wrong[ROWS][CALLS][FAULT_BITS], limits[ROWS], minima[ROWS], pairs_of[ROWS];
+static unsigned long judged, wrong[ROWS][CALLS][FAULT_BIT_COUNT], limits[ROWS], minima[ROWS], pairs_of[ROWS];
 static unsigned long most_supports[CALLS], most_stack[CALLS], limits_of[CALLS], limits_at[TOLERANCES];
 
 static void print_body(const char *name, const body_t *s)
@@ -321,27 +228,24 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
 {
     int bit, new = 0;
     judged++;
-    limits_of[x->call] += x->code == CCD_LIMIT;
+    limits_of[x->call] += x->a.code == CCD_LIMIT;
     if (x->ask == ASK_PROVEN && !calls[x->call].bare) {
-        minima[row] += x->code == CCD_HIT || x->code == CCD_LIMIT;
-        limits[row] += x->code == CCD_LIMIT;
-        limits_at[t] += x->code == CCD_LIMIT;
+        minima[row] += x->a.code == CCD_HIT || x->a.code == CCD_LIMIT;
+        limits[row] += x->a.code == CCD_LIMIT;
+        limits_at[t] += x->a.code == CCD_LIMIT;
     }
-    for (bit = 0; bit < FAULT_BITS; bit++)
+    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
         if (faults >> bit & 1)
             new |= wrong[row][x->call][bit]++ == 0;
     if (new) {
         printf("first seen in row %d (%s), pair %lu%s, tolerance %g, %s:", row, rows[row].name, (unsigned long)index,
-               x->moved ? ", moved" : "", x->tol, calls[x->call].name);
-        for (bit = 0; bit < FAULT_BITS; bit++)
-            if (faults >> bit & 1)
-                printf(" %s;", fault_names[bit]);
-        printf("\n  code %d depth %.17g lower %.17g supports %lu stack %lu dir %.17g %.17g %.17g; truth %.17g to %.17g, least known %.17g, noise %.2g\n",
-               x->code, x->depth, x->lower, x->supports, x->stack, x->dir[0], x->dir[1], x->dir[2], c->truth.lower, c->truth.upper,
-               c->least, c->noise);
-        if (x->points)
-            printf("  points %.17g %.17g %.17g, %.17g %.17g %.17g\n", x->at[0][0], x->at[0][1], x->at[0][2], x->at[1][0], x->at[1][1],
-                   x->at[1][2]);
+               x->moved ? ", moved" : "", x->tol, calls[x->call].entry.name);
+        printf(" ");
+        print_faults(stdout, faults);
+        printf("\n  ");
+        print_answer(stdout, &x->a);
+        printf(" supports %lu stack %lu; truth %.17g to %.17g, least known %.17g, noise %.2g\n", x->supports, x->stack, c->truth.lower,
+               c->truth.upper, c->least, c->noise);
         print_body("a", &p->body[0]);
         print_body("b", &p->body[1]);
     }
@@ -357,9 +261,9 @@ static case_t known(const wide_pair_t *p, const said_t *said, int count)
     c.least = c.truth.upper;
     memset(c.may_be_deep, 0, sizeof c.may_be_deep);
     for (i = 0; i < count; i++) {
-        if (said[i].normal[0] != 0 || said[i].normal[1] != 0 || said[i].normal[2] != 0)
-            c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].normal));
-        if (said[i].ask == ASK_PROVEN && calls[said[i].call].bare && said[i].code == CCD_LIMIT)
+        if (said[i].a.normal[0] != 0 || said[i].a.normal[1] != 0 || said[i].a.normal[2] != 0)
+            c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].a.normal));
+        if (said[i].ask == ASK_PROVEN && calls[said[i].call].bare && said[i].a.code == CCD_LIMIT)
             c.may_be_deep[i / CALLS % TOLERANCES] = 1;
     }
     return c;
@@ -420,36 +324,36 @@ int main(int argc, char **argv)
         for (i = 0; i < pairs && (only < 0 || row == only); i++)
             judge_pair(row, seed, first + (uint64_t)i);
     printf("\n| row | pairs |");
-    for (bit = 0; bit < FAULT_BITS; bit++)
-        printf(" %s |", fault_names[bit]);
+    for (bit = 0; bit < COLUMNS; bit++)
+        printf(" %s |", fault_text(columns[bit]));
     printf(" CCD_LIMIT of minima, %% |\n|---|---|");
-    for (bit = 0; bit <= FAULT_BITS; bit++)
+    for (bit = 0; bit <= COLUMNS; bit++)
         printf("---|");
     printf("\n");
     for (row = 0; row < (int)ROWS; row++) {
         if (!pairs_of[row])
             continue;
         printf("| %s | %lu |", rows[row].name, pairs_of[row]);
-        for (bit = 0; bit < FAULT_BITS; bit++) {
+        for (bit = 0; bit < COLUMNS; bit++) {
             for (sum = 0, k = 0; k < CALLS; k++)
-                sum += wrong[row][k][bit];
+                sum += wrong[row][k][columns[bit]];
             all += sum;
             printf(" %lu |", sum);
         }
         printf(" %.2f |\n", minima[row] ? 100. * (double)limits[row] / (double)minima[row] : 0);
     }
     printf("\n| call | most supports | most stack | CCD_LIMIT |");
-    for (bit = 0; bit < FAULT_BITS; bit++)
-        printf(" %s |", fault_names[bit]);
+    for (bit = 0; bit < COLUMNS; bit++)
+        printf(" %s |", fault_text(columns[bit]));
     printf("\n|---|---|---|---|");
-    for (bit = 0; bit < FAULT_BITS; bit++)
+    for (bit = 0; bit < COLUMNS; bit++)
         printf("---|");
     printf("\n");
     for (k = 0; k < CALLS; k++) {
-        printf("| %s | %lu | %lu | %lu |", calls[k].name, most_supports[k], most_stack[k], limits_of[k]);
-        for (bit = 0; bit < FAULT_BITS; bit++) {
+        printf("| %s | %lu | %lu | %lu |", calls[k].entry.name, most_supports[k], most_stack[k], limits_of[k]);
+        for (bit = 0; bit < COLUMNS; bit++) {
             for (sum = 0, row = 0; row < (int)ROWS; row++)
-                sum += wrong[row][k][bit];
+                sum += wrong[row][k][columns[bit]];
             printf(" %lu |", sum);
         }
         printf("\n");
