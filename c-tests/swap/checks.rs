@@ -9,7 +9,7 @@
 #![allow(dead_code, clippy::neg_cmp_op_on_partial_ord)]
 
 use crate::harness::{Executable, Program, fields};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 /// FCL's, ODE's and MuJoCo's setting, metres.
@@ -235,10 +235,26 @@ struct Query {
 }
 
 impl Query {
-    /// The kinds of the two shapes.
-    fn kinds(&self) -> Vec<String> {
-        let words = self.line.split(' ').skip(1).take(2);
-        words.map(String::from).collect()
+    fn hit(&self) -> bool {
+        self.outcome == HIT
+    }
+
+    fn threw(&self) -> bool {
+        self.outcome >= THREW
+    }
+
+    fn missed(&self) -> bool {
+        self.outcome == 0
+    }
+
+    /// Under a wrong callback, against the shape that was meant: a hit across a gap of more than
+    /// [`AGREE`], or a depth that is wrong by more than `verdict_tolerance`.
+    fn off(&self) -> bool {
+        let least = self.lower - AGREE;
+        let most = self.upper.max(0.0) + verdict_tolerance(self.upper);
+        // Negated, so that NaN counts.
+        let right = self.upper >= -AGREE && self.value >= least && self.value <= most;
+        self.hit() && !right
     }
 }
 
@@ -270,61 +286,80 @@ fn queries(lines: &[String], what: &str) -> BTreeMap<u64, Query> {
         .collect()
 }
 
-/// Counts over a set of static queries, for each library.
-#[derive(Clone, Debug, Default)]
+/// Counts over a set of static queries, for each library, by what is counted:
+///
+/// | | |
+/// |---|---|
+/// | missed, spurious | overlaps and gaps answered otherwise |
+/// | deep | deeper than the truth by more than `verdict_tolerance` |
+/// | unsound | depth below the truth by more than 2 tolerances |
+/// | broken | direction not unit, or depth not a number |
+/// | deeper | than libccd's answer, by more than two tolerances and [`MPR_GAP`] |
+/// | threw | the consumer threw, or an assertion of its own failed |
+/// | disagree | one library hits and the other misses; and of these, where the depth or gap is more than [`AGREE`] |
+/// | wrong | a callback of the consumer's own was wrong, so that the query is about no convex shape: no answer can be right, but a contact must not be lost (wrong missed), and libccd must not do better (wrong off) |
+/// | differ | signed distances that differ by more than 1e-6 |
+#[derive(Debug)]
 pub struct Static {
     pub consumer: &'static str,
     pub what: &'static str,
     pub kinds: usize,
     pub queries: usize,
-    pub hits: Both<usize>,
-    pub missed: Both<usize>,
-    pub spurious: Both<usize>,
-    /// Deeper than the truth by more than `verdict_tolerance`.
-    pub deep: Both<usize>,
-    /// Depth below the truth by more than 2 tolerances.
-    pub unsound: Both<usize>,
-    /// Direction not unit, or depth not a number.
-    pub broken: Both<usize>,
-    /// Deeper than libccd's answer, by more than two tolerances and [`MPR_GAP`].
-    pub deeper: usize,
-    /// The consumer threw, or an assertion of its own failed.
-    pub threw: Both<usize>,
-    /// One library hits and the other misses; and of these, where the depth or gap is
-    /// more than [`AGREE`].
-    pub disagree: [usize; 2],
-    /// A callback of the consumer's own was wrong, so that the query is about no convex
-    /// shape: judged by [`Wrong`] alone.
-    pub wrong: usize,
-    pub under_wrong: Both<Wrong>,
-    /// Signed distances that differ by more than 1e-6.
-    pub differ: usize,
+    counts: BTreeMap<&'static str, Both<usize>>,
     /// Why this library may not replace the other, one line each.
     pub against: Vec<String>,
 }
 
-/// Answers under a wrong callback, against the shape that was meant: no answer can be
-/// right, but a contact must not be lost, and libccd must not do better.
-#[derive(Clone, Debug, Default)]
-pub struct Wrong {
-    /// Overlaps deeper than [`AGREE`] that were missed.
-    pub missed: usize,
-    /// Hits across a gap of more than [`AGREE`], and depths that are wrong by more than
-    /// `verdict_tolerance`.
-    pub off: usize,
-}
+impl Static {
+    fn of(consumer: &'static str, what: &'static str, runs: &Both<BTreeMap<u64, Query>>) -> Static {
+        let same = runs[0].keys().eq(runs[1].keys());
+        assert!(same, "{consumer}: the two runs did not ask the same");
+        let kinds = |q: &Query| -> Vec<String> {
+            let words = q.line.split(' ').skip(1).take(2);
+            words.map(String::from).collect()
+        };
+        let kinds: BTreeSet<Vec<String>> = runs[1].values().map(kinds).collect();
+        Static {
+            consumer,
+            what,
+            kinds: kinds.len(),
+            queries: runs[1].len(),
+            counts: BTreeMap::new(),
+            against: Vec::new(),
+        }
+    }
 
-impl Wrong {
-    fn count(&mut self, q: &Query) {
-        let hit = q.outcome == HIT;
-        self.missed += usize::from(q.lower > AGREE && q.outcome == 0);
-        let (least, most) = (
-            q.lower - AGREE,
-            q.upper.max(0.0) + verdict_tolerance(q.upper),
-        );
-        // Negated, so that NaN counts.
-        let right = !hit || q.upper >= -AGREE && q.value >= least && q.value <= most;
-        self.off += usize::from(!right);
+    /// Of either library.
+    pub fn both(&self, key: &str) -> Both<usize> {
+        self.counts.get(key).copied().unwrap_or_default()
+    }
+
+    fn count(&mut self, key: &'static str, is: Both<bool>) {
+        let counts = self.counts.entry(key).or_default();
+        for (count, is) in counts.iter_mut().zip(is) {
+            *count += usize::from(is);
+        }
+    }
+
+    /// Counts what this library's answer is not to be.
+    fn forbid(&mut self, key: &'static str, is: Both<bool>, ours: &Query) {
+        self.count(key, is);
+        if is[1] {
+            self.against.push(format!("{key}: {}", ours.line));
+        }
+    }
+
+    pub fn verdict(&self) -> String {
+        match self.against.len() {
+            0 => "passes".to_owned(),
+            n => format!("**{n} against**"),
+        }
+    }
+
+    /// `libccd's / this library's`.
+    fn cell(&self, key: &str) -> String {
+        let [theirs, ours] = self.both(key);
+        format!("{theirs} / {ours}")
     }
 }
 
@@ -335,81 +370,45 @@ pub fn judge_collide(
     lines: &Both<Vec<String>>,
 ) -> Static {
     let runs = lines.each_ref().map(|l| queries(l, "collide"));
-    let mut s = Static {
-        consumer,
-        what,
-        ..Static::default()
-    };
-    assert!(
-        runs[0].keys().eq(runs[1].keys()),
-        "{consumer}: the two runs did not ask the same"
-    );
-    let mut kinds = std::collections::BTreeSet::new();
+    let mut s = Static::of(consumer, what, &runs);
     for (system, ours) in runs[0].values().zip(runs[1].values()) {
         let Query {
             size, lower, upper, ..
         } = *ours;
-        let mut against = |why: &str| s.against.push(format!("{why}: {}", ours.line));
-        kinds.insert(ours.kinds());
-        s.queries += 1;
-        for (i, q) in [system, ours].into_iter().enumerate() {
-            s.threw[i] += usize::from(q.outcome >= THREW);
-            // Negated, so that NaN counts.
-            let broken =
-                q.outcome == HIT && (!((q.normal - 1.0).abs() < 1e-9) || !q.value.is_finite());
-            s.broken[i] += usize::from(broken);
-            if i == 1 && broken {
-                against("broken");
-            }
-        }
-        if ours.outcome >= THREW && system.outcome < THREW {
-            against("threw");
-        }
+        let both = |is: &dyn Fn(&Query) -> bool| [is(system), is(ours)];
+        // Negated, so that NaN counts.
+        let broken = |q: &Query| !((q.normal - 1.0).abs() < 1e-9) || !q.value.is_finite();
+        s.forbid("broken", both(&|q| q.hit() && broken(q)), ours);
+        s.count("threw", both(&Query::threw));
+        s.forbid(
+            "threw alone",
+            [false, ours.threw() && !system.threw()],
+            ours,
+        );
         if system.callback_wrong || ours.callback_wrong {
-            s.wrong += 1;
-            s.under_wrong[0].count(system);
-            s.under_wrong[1].count(ours);
+            s.count("wrong", [true; 2]);
+            s.count("wrong missed", both(&|q| q.lower > AGREE && q.missed()));
+            s.count("wrong off", both(&Query::off));
             continue;
         }
-        if (system.outcome == HIT) != (ours.outcome == HIT) {
-            s.disagree[0] += 1;
-            if !(lower <= AGREE && upper >= -AGREE) {
-                s.disagree[1] += 1;
-                against(&format!("libccd's outcome {}", system.outcome));
-            }
-        }
-        let overlap = lower > TOUCH * size;
-        let apart = upper < -TOUCH * size;
-        for (i, q) in [system, ours].into_iter().enumerate() {
-            let hit = q.outcome == HIT;
-            s.hits[i] += usize::from(hit);
-            s.missed[i] += usize::from(overlap && q.outcome == 0);
-            s.spurious[i] += usize::from(apart && hit);
-            s.deep[i] += usize::from(hit && q.value > upper.max(0.0) + verdict_tolerance(upper));
-            s.unsound[i] += usize::from(hit && q.value < lower - 2.0 * MPR_TOLERANCE);
-        }
-        if overlap && ours.outcome == 0 {
-            against("missed");
-        }
-        if apart && ours.outcome == HIT {
-            against("spurious");
-        }
-        if ours.outcome == HIT && ours.value < lower - 2.0 * MPR_TOLERANCE {
-            against("unsound");
-        }
-        if ours.outcome == HIT
-            && system.outcome == HIT
-            && !(ours.value <= (1.0 + MPR_GAP) * system.value + 2.0 * MPR_TOLERANCE)
-        {
-            s.deeper += 1;
-            against(&format!("deeper than libccd's {}", system.value));
-        }
+        let disagree = system.hit() != ours.hit();
+        let clearly = disagree && !(lower <= AGREE && upper >= -AGREE);
+        s.forbid("disagree", [disagree, clearly], ours);
+        let (overlap, apart) = (lower > TOUCH * size, upper < -TOUCH * size);
+        let deep = upper.max(0.0) + verdict_tolerance(upper);
+        s.count("hits", both(&Query::hit));
+        s.count("deep", both(&|q| q.hit() && q.value > deep));
+        s.forbid("missed", both(&|q| overlap && q.missed()), ours);
+        s.forbid("spurious", both(&|q| apart && q.hit()), ours);
+        let unsound = lower - 2.0 * MPR_TOLERANCE;
+        s.forbid("unsound", both(&|q| q.hit() && q.value < unsound), ours);
+        let most = (1.0 + MPR_GAP) * system.value + 2.0 * MPR_TOLERANCE;
+        let deeper = ours.hit() && system.hit() && !(ours.value <= most);
+        s.forbid("deeper", [false, deeper], ours);
     }
-    s.kinds = kinds.len();
-    let [theirs, ours] = &s.under_wrong;
-    if ours.missed > 0 || ours.off > theirs.off {
-        let why = format!("wrong callbacks: libccd {theirs:?}, ours {ours:?}");
-        s.against.push(why);
+    let off = s.both("wrong off");
+    if s.both("wrong missed")[1] > 0 || off[1] > off[0] {
+        s.against.push(format!("wrong callbacks: {:?}", s.counts));
     }
     s
 }
@@ -419,48 +418,29 @@ const DISTANCE: &str = "signed distance";
 /// FCL's signed distance: GJK and EPA of its own on libccd's polytope functions.
 pub fn judge_distance(consumer: &'static str, lines: &Both<Vec<String>>) -> Static {
     let runs = lines.each_ref().map(|l| queries(l, "distance"));
-    let mut s = Static {
-        consumer,
-        what: DISTANCE,
-        ..Static::default()
-    };
-    assert!(
-        runs[0].keys().eq(runs[1].keys()),
-        "{consumer}: the two runs did not ask the same"
-    );
-    let mut kinds = std::collections::BTreeSet::new();
+    let mut s = Static::of(consumer, DISTANCE, &runs);
     for (system, ours) in runs[0].values().zip(runs[1].values()) {
+        let both = |is: &dyn Fn(&Query) -> bool| [is(system), is(ours)];
+        s.count("threw", both(&Query::threw));
+        s.forbid(
+            "threw alone",
+            [false, ours.threw() && !system.threw()],
+            ours,
+        );
+        s.forbid(
+            "broken",
+            both(&|q| !q.threw() && !q.value.is_finite()),
+            ours,
+        );
+        s.count("hits", both(&|q| !q.threw() && q.value < 0.0));
+        if system.threw() || ours.threw() {
+            continue;
+        }
+        let differ = !((ours.value - system.value).abs() <= 1e-6);
         let exact = -0.5 * (ours.lower + ours.upper);
-        kinds.insert(ours.kinds());
-        s.queries += 1;
-        for (i, q) in [system, ours].into_iter().enumerate() {
-            s.threw[i] += usize::from(q.outcome >= THREW);
-            s.broken[i] += usize::from(q.outcome < THREW && !q.value.is_finite());
-            s.hits[i] += usize::from(q.outcome < THREW && q.value < 0.0);
-        }
-        if ours.outcome >= THREW {
-            if system.outcome < THREW {
-                s.against.push(format!("threw: {}", ours.line));
-            }
-            continue;
-        }
-        if !ours.value.is_finite() {
-            s.against.push(format!("not a number: {}", ours.line));
-        }
-        if system.outcome >= THREW {
-            continue;
-        }
-        if !((ours.value - system.value).abs() <= 1e-6) {
-            s.differ += 1;
-            if !((ours.value - exact).abs() <= (system.value - exact).abs()) {
-                s.against.push(format!(
-                    "farther from the exact value than libccd's {}: {}",
-                    system.value, ours.line
-                ));
-            }
-        }
+        let farther = !((ours.value - exact).abs() <= (system.value - exact).abs());
+        s.forbid("differ", [differ, differ && farther], ours);
     }
-    s.kinds = kinds.len();
     s
 }
 
@@ -484,20 +464,6 @@ pub fn epa_time(program: &Swapped, args: &[String]) -> String {
     )
 }
 
-impl Static {
-    pub fn verdict(&self) -> String {
-        if self.against.is_empty() {
-            "passes".to_owned()
-        } else {
-            format!("**{} against**", self.against.len())
-        }
-    }
-}
-
-fn of_both(counts: Both<usize>) -> String {
-    format!("{} / {}", counts[0], counts[1])
-}
-
 /// The static half of the swap table.
 pub fn static_table(rows: &[Static]) -> String {
     let mut out = String::from(
@@ -507,28 +473,24 @@ pub fn static_table(rows: &[Static]) -> String {
          |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for s in rows {
-        let [system, ours] = &s.under_wrong;
-        let cells = if s.what == DISTANCE {
-            ["–"; 7].map(String::from)
-        } else {
-            [
-                of_both(s.missed),
-                of_both(s.spurious),
-                format!("{} ({})", s.disagree[0], s.disagree[1]),
-                of_both(s.deep),
-                s.deeper.to_string(),
-                of_both(s.unsound),
-                format!(
-                    "{}: {}, {}",
-                    s.wrong,
-                    of_both([system.missed, ours.missed]),
-                    of_both([system.off, ours.off])
-                ),
-            ]
+        let ([all, clear], [_, deeper]) = (s.both("disagree"), s.both("deeper"));
+        let wrong = s.both("wrong")[0];
+        let (missed, off) = (s.cell("wrong missed"), s.cell("wrong off"));
+        let cells = match s.what {
+            DISTANCE => ["–"; 7].map(String::from),
+            _ => [
+                s.cell("missed"),
+                s.cell("spurious"),
+                format!("{all} ({clear})"),
+                s.cell("deep"),
+                deeper.to_string(),
+                s.cell("unsound"),
+                format!("{wrong}: {missed}, {off}"),
+            ],
         };
         let [missed, spurious, disagree, deep, deeper, unsound, wrong] = cells;
         let differ = match s.what {
-            DISTANCE => s.differ.to_string(),
+            DISTANCE => s.both("differ")[0].to_string(),
             _ => "–".to_owned(),
         };
         let _ = writeln!(
@@ -539,9 +501,9 @@ pub fn static_table(rows: &[Static]) -> String {
             s.what,
             s.kinds,
             s.queries,
-            of_both(s.hits),
-            of_both(s.broken),
-            of_both(s.threw),
+            s.cell("hits"),
+            s.cell("broken"),
+            s.cell("threw"),
             s.verdict(),
         );
     }
@@ -588,17 +550,16 @@ pub fn piles(
     scene: &'static str,
     starts: usize,
     steps: usize,
-    after: &[&str],
-    progress: impl Fn(usize),
+    after: &str,
 ) -> Piles {
     let mut p = Piles::new(program.consumer, &program.names, scene, steps);
     for seed in 1..=starts {
+        eprintln!("{} {scene}: start {seed} of {starts}", program.consumer);
         let both = program.run(&pile_args(seed, steps, after));
         for (i, lines) in both.iter().enumerate() {
             let run = run_of(lines, p.side(i));
             p.runs[i].push(run);
         }
-        progress(seed);
     }
     p.judge();
     p
@@ -618,20 +579,19 @@ pub fn taken_over(
     scene: &'static str,
     starts: usize,
     steps: usize,
-    after: &[&str],
-    progress: impl Fn(usize),
+    after: &str,
 ) -> Piles {
     let mut p = Piles::new(program.consumer, &program.names, scene, steps);
     let file = tempfile::NamedTempFile::new().expect("a file for the state");
     let state = file.path().to_string_lossy();
     for seed in 1..=starts {
+        eprintln!("{} {scene}: start {seed} of {starts}", program.consumer);
         for (library, way) in ["save", "load"].into_iter().enumerate() {
             let mut args = pile_args(seed, steps, after);
             args.extend([way.to_owned(), state.to_string()]);
             let run = run_of(&program.lines(library, &args), p.side(library));
             p.runs[library].push(run);
         }
-        progress(seed);
     }
     p.judge();
     p
@@ -639,13 +599,7 @@ pub fn taken_over(
 
 /// An ODE scene through libccd as ODE asks it, and through this library behind ODE's own class of
 /// geoms, with one contact a pair and with several.
-pub fn worlds(
-    scene: &'static str,
-    starts: usize,
-    steps: usize,
-    bodies: usize,
-    progress: impl Fn(usize),
-) -> Piles {
+pub fn worlds(scene: &'static str, starts: usize, steps: usize, bodies: usize) -> Piles {
     let ode = ode_pile();
     let world = c("ode_world")
         .library("ode")
@@ -662,23 +616,22 @@ pub fn worlds(
     ];
     let mut p = Piles::new("ODE, a world", &names, scene, steps);
     for seed in 1..=starts {
-        let args = pile_args(seed, steps, &[&bodies.to_string(), scene]);
+        eprintln!("{scene}: start {seed} of {starts}");
+        let args = pile_args(seed, steps, &format!("{bodies} {scene}"));
         p.runs[0].push(run_of(&ode.lines(0, &args), "theirs"));
         for (way, contacts) in [(1, "one"), (2, "many")] {
             let said = world.run(args.iter().map(String::as_str).chain([contacts]));
             let lines: Vec<String> = said.stdout.lines().map(String::from).collect();
             p.runs[way].push(run_of(&lines, "ours"));
         }
-        progress(seed);
     }
     p.judge_several();
     p
 }
 
-fn pile_args(seed: usize, steps: usize, after: &[&str]) -> Vec<String> {
-    let mut args = vec![seed.to_string(), steps.to_string()];
-    args.extend(after.iter().map(|s| (*s).to_owned()));
-    args
+fn pile_args(seed: usize, steps: usize, after: &str) -> Vec<String> {
+    let all = format!("{seed} {steps} {after}");
+    all.split(' ').map(String::from).collect()
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

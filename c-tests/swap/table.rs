@@ -19,19 +19,7 @@ mod checks;
 #[path = "fcl_scene.rs"]
 mod fcl_scene;
 
-use checks::Swapped;
-
-fn piles(
-    program: &Swapped,
-    scene: &'static str,
-    starts: usize,
-    steps: usize,
-    after: &[&str],
-) -> checks::Piles {
-    checks::piles(program, scene, starts, steps, after, |seed| {
-        eprintln!("{} {scene}: start {seed} of {starts}", program.consumer);
-    })
-}
+use checks::{Piles, Swapped, piles};
 
 fn table() {
     let seed_and_poses = |poses: usize| vec!["2".to_owned(), poses.to_string()];
@@ -56,23 +44,15 @@ fn table() {
     }
     let dart = checks::dart_pile();
     let mujoco = checks::mujoco_pile();
-    let small = "small pile, second halves from libccd's first";
-    let taken_over = checks::taken_over(&mujoco, small, 10, 1500, &["20", "pile"], |seed| {
-        eprintln!("MuJoCo {small}: start {seed} of 10");
-    });
+    let halves = "small pile, second halves from libccd's first";
+    let taken_over = checks::taken_over(&mujoco, halves, 10, 1500, "20 pile");
     let simulations = [
-        piles(&checks::ode_pile(), "pile", 10, 1500, &["32", "pile"]),
-        piles(&mujoco, "pile", 10, 1500, &["30", "pile"]),
+        piles(&checks::ode_pile(), "pile", 10, 1500, "32 pile"),
+        piles(&mujoco, "pile", 10, 1500, "30 pile"),
         taken_over,
-        piles(
-            &mujoco.against_minimum(),
-            "small pile",
-            10,
-            1500,
-            &["20", "pile"],
-        ),
-        piles(&dart, "over FCL", 10, 800, &["12", "fcl"]),
-        piles(&dart, "over ODE", 10, 800, &["12", "ode"]),
+        piles(&mujoco.against_minimum(), "small pile", 10, 1500, "20 pile"),
+        piles(&dart, "over FCL", 10, 800, "12 fcl"),
+        piles(&dart, "over ODE", 10, 800, "12 ode"),
     ];
     println!("Static queries, libccd / this library:\n");
     println!("{}", checks::static_table(&rows));
@@ -82,43 +62,32 @@ fn table() {
 }
 
 fn long() {
-    let (ode, mujoco, dart) = (
-        checks::ode_pile(),
-        checks::mujoco_pile(),
-        checks::dart_pile(),
-    );
-    let rows = [
-        piles(&ode, "pile", 8, 5000, &["32", "pile"]),
-        piles(&ode, "convex hulls", 8, 5000, &["32", "hulls"]),
-        piles(
-            &ode,
-            "towers of boxes and hulls",
-            8,
-            10_000,
-            &["20", "stack"],
-        ),
-        piles(
-            &checks::ode_pile().against_minimum(),
-            "towers of boxes and hulls",
-            2,
-            10_000,
-            &["20", "stack"],
-        ),
-        piles(&ode, "a tower that touches", 1, 3000, &["6", "tower"]),
-        piles(&ode, "rolling cylinders", 8, 5000, &["12", "roll"]),
-        piles(&mujoco, "pile", 8, 3000, &["30", "pile"]),
-        piles(
+    let ode = checks::ode_pile();
+    let exact = checks::ode_pile().against_minimum();
+    let (mujoco, dart) = (checks::mujoco_pile(), checks::dart_pile());
+    let towers = "towers of boxes and hulls";
+    let rows: [(&Swapped, &'static str, usize, usize, &str); 12] = [
+        (&ode, "pile", 8, 5000, "32 pile"),
+        (&ode, "convex hulls", 8, 5000, "32 hulls"),
+        (&ode, towers, 8, 10_000, "20 stack"),
+        (&exact, towers, 2, 10_000, "20 stack"),
+        (&ode, "a tower that touches", 1, 3000, "6 tower"),
+        (&ode, "rolling cylinders", 8, 5000, "12 roll"),
+        (&mujoco, "pile", 8, 3000, "30 pile"),
+        (
             &mujoco,
             "pile, several contacts a pair",
             2,
             5000,
-            &["30", "multi"],
+            "30 multi",
         ),
-        piles(&mujoco, "on a height field", 8, 3000, &["20", "field"]),
-        piles(&dart, "over FCL", 8, 3000, &["15", "fcl"]),
-        piles(&dart, "over FCL, triangles", 1, 400, &["10", "triangles"]),
-        piles(&dart, "over ODE", 8, 3000, &["15", "ode"]),
+        (&mujoco, "on a height field", 8, 3000, "20 field"),
+        (&dart, "over FCL", 8, 3000, "15 fcl"),
+        (&dart, "over FCL, triangles", 1, 400, "10 triangles"),
+        (&dart, "over ODE", 8, 3000, "15 ode"),
     ];
+    let row = |(program, scene, starts, steps, after)| piles(program, scene, starts, steps, after);
+    let rows: Vec<Piles> = rows.into_iter().map(row).collect();
     println!("{}", checks::pile_table(&rows));
 }
 
@@ -146,9 +115,7 @@ fn between_marks(page: &str, text: &str) {
 fn world() {
     let rows = [("stack", 20), ("hulls", 32), ("roll", 12)].map(|(scene, bodies)| {
         let steps = if scene == "stack" { 10_000 } else { 3000 };
-        let row = checks::worlds(scene, 10, steps, bodies, |seed| {
-            eprintln!("{scene}: start {seed} of 10");
-        });
+        let row = checks::worlds(scene, 10, steps, bodies);
         for line in &row.against {
             eprintln!("{scene}: {line}");
         }
