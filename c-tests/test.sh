@@ -59,7 +59,7 @@ unseen="$unseen --skip memory --skip expanding"
 # shellcheck disable=SC2086  # one word each
 {
     run "gcc's sanitizers" sh c-tests/tools/check.sh address --test contract --test extension -- $unseen
-    run "valgrind, memory" sh c-tests/tools/check.sh memcheck --test contract -- $unseen --skip bad_input
+    run "valgrind, memory" sh c-tests/tools/check.sh memcheck --test contract -- $unseen
 }
 run "valgrind, threads" sh c-tests/tools/check.sh helgrind --test contract threads
 # Last: what the others run is compiled for double.

@@ -6,6 +6,8 @@
 #ifndef TESTS_CHECK_H
 #define TESTS_CHECK_H
 
+#include "uniform.h"
+
 #include <ccd/vec3.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -35,21 +37,10 @@ static inline int checks_end(void)
     return checks_made == 0 || checks_failed != 0;
 }
 
-/* Uniform in [0, 1): xorshift64*, the same numbers on every machine. */
-static uint64_t random_state = 88172645463325252u;
+/* Uniform in [0, 1). */
+static inline double random_unit(void) { return uniform(0, 1); }
 
-static inline double random_unit(void)
-{
-    random_state ^= random_state >> 12;
-    random_state ^= random_state << 25;
-    random_state ^= random_state >> 27;
-    return (double)((random_state * 2685821657736338717u) >> 11) / 9007199254740992.0;
-}
-
-static inline double random_in(double low, double high)
-{
-    return low + (high - low) * random_unit();
-}
+static inline double random_in(double low, double high) { return uniform(low, high); }
 
 static inline int random_below(int n)
 {

@@ -8,7 +8,6 @@
 mod harness;
 
 use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -48,13 +47,10 @@ fn compared() -> bool {
     Precision::CURRENT == Precision::Double && cfg!(target_arch = "x86_64")
 }
 
-fn output(command: &str, args: &[&OsStr]) -> String {
-    let output = harness::binutils(command)
-        .args(args)
-        .output()
-        .unwrap_or_else(|e| panic!("{command}: {e}; run `sh c-tests/setup.sh` first"));
-    assert!(output.status.success(), "{command} {args:?}");
-    String::from_utf8_lossy(&output.stdout).into_owned()
+/// What a tool says of a file.
+fn output(command: &str, args: &[&str], file: &Path) -> String {
+    let mut tool = harness::binutils(command);
+    harness::must_succeed(tool.args(args).arg(file), command).stdout
 }
 
 fn ours(file: &str) -> PathBuf {
@@ -75,12 +71,8 @@ fn installed() -> PathBuf {
 
 /// Name, kind and size of a library's dynamic symbols; the size of data only.
 fn dynamic_symbols(library: &Path) -> BTreeSet<String> {
-    output(
-        "readelf",
-        &["--dyn-syms".as_ref(), "-W".as_ref(), library.as_os_str()],
-    )
-    .lines()
-    .filter_map(|line| {
+    let symbols = output("readelf", &["--dyn-syms", "-W"], library);
+    let symbol = |line: &str| {
         let column: Vec<&str> = line.split_whitespace().collect();
         let &[_, _, size, kind, binding, visibility, section, name] = column.as_slice() else {
             return None;
@@ -88,8 +80,8 @@ fn dynamic_symbols(library: &Path) -> BTreeSet<String> {
         let defined = section.parse::<u32>().is_ok() && binding == "GLOBAL";
         let size = if kind == "OBJECT" { size } else { "" };
         defined.then(|| format!("{name} {kind} {visibility} {size}"))
-    })
-    .collect()
+    };
+    symbols.lines().filter_map(symbol).collect()
 }
 
 #[test]
@@ -143,16 +135,9 @@ fn archive_defines_no_other_ccd_symbol() {
             .map(String::from)
             .collect()
     };
-    let shared = ours("libccd.so");
-    let args: [&OsStr; 3] = ["-D".as_ref(), "--defined-only".as_ref(), shared.as_os_str()];
-    let exported = names(output("nm", &args));
-    let archive = ours("libccd.a");
-    let args: [&OsStr; 3] = [
-        "-g".as_ref(),
-        "--defined-only".as_ref(),
-        archive.as_os_str(),
-    ];
-    assert_eq!(names(output("nm", &args)), exported);
+    let exported = output("nm", &["-D", "--defined-only"], &ours("libccd.so"));
+    let archive = output("nm", &["-g", "--defined-only"], &ours("libccd.a"));
+    assert_eq!(names(archive), names(exported));
 }
 
 /// No function of the library can panic. With the first that could, Rust's messages and
@@ -160,17 +145,12 @@ fn archive_defines_no_other_ccd_symbol() {
 /// function it stands in, the test tells.
 #[test]
 fn no_panic_is_linked() {
-    let said = |command: &mut Command| harness::must_succeed(command, "binutils").stdout;
-    let symbols = said(harness::binutils("nm").arg(ours("libccd.so")));
+    let symbols = output("nm", &[], &ours("libccd.so"));
     assert!(symbols.contains(" t "), "no local symbols: nothing to see");
     if !symbols.contains("panicking") {
         return;
     }
-    let code = said(
-        harness::binutils("objdump")
-            .args(["-drC"])
-            .arg(ours("libccd.a")),
-    );
+    let code = output("objdump", &["-drC"], &ours("libccd.a"));
     let (mut ours, mut function, mut found) = (false, "", BTreeSet::new());
     for line in code.lines() {
         if line.contains("file format") {
@@ -190,7 +170,7 @@ fn no_panic_is_linked() {
 #[test]
 fn soname_is_libccd_s() {
     for library in [ours("libccd.so"), installed()] {
-        let dynamic = output("readelf", &["-d".as_ref(), library.as_os_str()]);
+        let dynamic = output("readelf", &["-d"], &library);
         assert!(
             dynamic.contains("Library soname: [libccd.so.2]"),
             "{dynamic}"
@@ -237,7 +217,7 @@ fn executables_reach_the_data_by_copy_relocations() {
             programs.push(system);
         }
         for program in programs {
-            let relocations = output("readelf", &["-rW".as_ref(), program.path.as_os_str()]);
+            let relocations = output("readelf", &["-rW"], &program.path);
             for object in [
                 "ccd_vec3_origin",
                 "ccd_points_on_sphere",
@@ -427,27 +407,23 @@ fn headers_and_layouts_compile_without_warnings() {
 
 // --- behaviour ------------------------------------------------------------------
 
+/// A program that runs on this library, beside libccd where they are compared.
+fn beside(name: &str) -> Program {
+    match compared() {
+        true => program(name).link_ours_renamed_and_system(),
+        false => alone(name),
+    }
+}
+
 #[test]
 fn nearest_points_of_segments_and_triangles() {
-    let nearest = if compared() {
-        program("nearest").link_ours_renamed_and_system()
-    } else {
-        alone("nearest")
-    };
-    nearest.build().run([harness::rounds(20_000)]);
+    beside("nearest").build().run([harness::rounds(20_000)]);
 }
 
 #[test]
 fn polytopes() {
-    let polytope = if compared() {
-        program("polytope").link_ours_renamed_and_system()
-    } else {
-        alone("polytope")
-    };
-    polytope
-        .standard("gnu99")
-        .build()
-        .run([harness::rounds(200)]);
+    let polytope = beside("polytope").standard("gnu99");
+    polytope.build().run([harness::rounds(200)]);
 }
 
 /// FCL's EPA runs on the polytope functions: instructions are exact, time is not.
@@ -503,13 +479,9 @@ fn callbacks() {
 }
 
 #[test]
-fn outputs() {
-    alone("outputs").build().run(NO_ARGS);
-}
-
-#[test]
-fn bad_input() {
-    alone("bad_input").build().run(NO_ARGS);
+fn answers_to_any_input() {
+    let questions = alone("questions").build();
+    questions.run([harness::rounds(100)]);
 }
 
 #[test]

@@ -10,6 +10,7 @@
 
 #include "contract/check.h"
 #include "ours.h"
+#include "stability/dice.h"
 #include "truth.h"
 
 enum { MOTIONS = 40, STEPS = 50 };
@@ -18,6 +19,7 @@ static const ccd_real_t icosahedron[36] = {
     0, 1, 1.618f, 0, -1, 1.618f, 0, 1, -1.618f, 0, -1, -1.618f, 1, 1.618f, 0, -1, 1.618f, 0,
     1, -1.618f, 0, -1, -1.618f, 0, 1.618f, 0, 1, 1.618f, 0, -1, -1.618f, 0, 1, -1.618f, 0, -1};
 static ccd_real_t p12[36];
+static dice_t motion;
 
 static shape_t shape_of(char c)
 {
@@ -32,26 +34,12 @@ static shape_t shape_of(char c)
     }
 }
 
-static void random_direction(double u[3])
-{
-    double l = 0;
-    int i;
-    while (!(l > 0.01 && l < 1)) {
-        for (i = 0, l = 0; i < 3; i++) {
-            u[i] = random_in(-1, 1);
-            l += u[i] * u[i];
-        }
-    }
-    for (i = 0, l = sqrt(l); i < 3; i++)
-        u[i] /= l;
-}
-
 /* Another direction near u. */
 static void wander(double u[3])
 {
     double v[3], l = 0;
     int i;
-    random_direction(v);
+    dice_unit(&motion, v);
     for (i = 0; i < 3; i++) {
         u[i] += 0.3 * v[i];
         l += u[i] * u[i];
@@ -104,10 +92,11 @@ int main(void)
         unsigned long intersect = 0, penetration = 0, most = 0;
         double nearest = 1e9;
         int m, frame;
+        motion = dice(8000, k);
         for (m = 0; m < MOTIONS; m++) {
             shape_t a = shape_of(pairs[k][0]), b = shape_of(pairs[k][1]);
             const double a_step = 1e-4 + 0.1 * 3.14159265358979 / 180 * shape_reach(&b);
-            const double gap = 2 * a_step, start = gap + random_in(0, 20) * a_step;
+            const double gap = 2 * a_step, start = gap + dice_in(&motion, 0, 20) * a_step;
             double along[3], about[3], out[3], rot[9], d;
             ccd_warm_t w1, w2;
             ccd_t ccd;
@@ -115,10 +104,10 @@ int main(void)
             ccd.mpr_tolerance = CCD_REAL(1e-6);
             memset(&w1, 0, sizeof w1);
             memset(&w2, 0, sizeof w2);
-            random_direction(along);
-            random_direction(about);
-            random_direction(out);
-            rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
+            dice_unit(&motion, along);
+            dice_unit(&motion, about);
+            dice_unit(&motion, out);
+            dice_rotation(&motion, rot);
             shape_turn(&b, rot);
             shape_move(&b, 3 * out[0], 3 * out[1], 3 * out[2]);
             /* nearer along out until the distance is start */

@@ -89,68 +89,59 @@ fn in_c(settings: &Settings, centred: bool) -> ccd_t {
 }
 
 const DIR: [Real; 3] = [1.0, 2.0, -2.0];
-const CALLS: usize = 6;
+type Object = *const c_void;
+type Answer = Result<Option<Penetration>, Error>;
 
-/// A penetration query by its number.
-fn in_rust(
-    call: usize,
-    a: &Rounded,
-    b: &Rounded,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    match call {
-        0 => ccd::penetration(a, b, settings, warm),
-        1 => ccd::penetration_local(a, b, settings, warm),
-        2 => ccd::penetration_proven(a, b, settings, warm),
-        3 => ccd::penetration_along(a, b, DIR, settings, warm),
-        4 => ccd::penetration_planar(a, b, DIR, settings, warm),
-        _ => ccd::penetration_incremental(a, b, settings, warm),
-    }
+/// A penetration query in Rust and in C.
+struct Call {
+    rust: fn(&Rounded, &Rounded, &Settings, Option<&mut Warm>) -> Answer,
+    c: fn(Object, Object, &ccd_t, *mut ccd_warm_t, c_uint, *mut ccd_penetration_t) -> c_int,
 }
 
-/// The same in C.
-fn asked_in_c(
-    call: usize,
+macro_rules! call {
+    ($rust:ident, $c:ident $(, $dir:ident)?) => {
+        Call {
+            rust: |a, b, settings, warm| ccd::$rust(a, b, $($dir,)? settings, warm),
+            // SAFETY: live objects of their types, and room for an answer.
+            c: |a, b, ccd, warm, want, out| unsafe { $c(a, b, ccd, $(&ccd_vec3_t { v: $dir },)? warm, want, out) },
+        }
+    };
+}
+
+const CALLS: [Call; 6] = [
+    call!(penetration, ccdPenetration),
+    call!(penetration_local, ccdPenetrationLocal),
+    call!(penetration_proven, ccdPenetrationProven),
+    call!(penetration_along, ccdPenetrationAlong, DIR),
+    call!(penetration_planar, ccdPenetrationPlanar, DIR),
+    call!(penetration_incremental, ccdPenetrationIncremental),
+];
+
+fn object(of: &Rounded) -> Object {
+    (&raw const *of).cast()
+}
+
+/// What the call says in C.
+fn in_c_of(
+    call: &Call,
     a: &Rounded,
     b: &Rounded,
     ccd: &ccd_t,
     warm: *mut ccd_warm_t,
     want: c_uint,
 ) -> (c_int, ccd_penetration_t) {
-    let (a, b) = (&raw const *a, &raw const *b);
-    let (a, b) = (a.cast::<c_void>(), b.cast::<c_void>());
-    let dir = ccd_vec3_t { v: DIR };
     let mut out = MaybeUninit::<ccd_penetration_t>::zeroed();
-    let p = out.as_mut_ptr();
-    // SAFETY: live objects of their types; zero is a value of the struct.
-    unsafe {
-        let code = match call {
-            0 => ccdPenetration(a, b, ccd, warm, want, p),
-            1 => ccdPenetrationLocal(a, b, ccd, warm, want, p),
-            2 => ccdPenetrationProven(a, b, ccd, warm, want, p),
-            3 => ccdPenetrationAlong(a, b, ccd, &dir, warm, want, p),
-            4 => ccdPenetrationPlanar(a, b, ccd, &dir, warm, want, p),
-            _ => ccdPenetrationIncremental(a, b, ccd, warm, want, p),
-        };
-        (code, out.assume_init())
-    }
+    let code = (call.c)(object(a), object(b), ccd, warm, want, out.as_mut_ptr());
+    // SAFETY: zero is a value of the struct.
+    (code, unsafe { out.assume_init() })
 }
 
-fn same(
-    call: usize,
-    rust: Result<Option<Penetration>, Error>,
-    (code, c): (c_int, ccd_penetration_t),
-) {
+fn same(rust: Result<Option<Penetration>, Error>, (code, c): (c_int, ccd_penetration_t)) {
     let Some(hit) = rust.expect("good input") else {
-        return assert_eq!(code, CCD_MISS, "call {call}");
+        return assert_eq!(code, CCD_MISS);
     };
     assert_eq!(code, if hit.limit { CCD_LIMIT } else { CCD_HIT });
-    assert_eq!(
-        (hit.depth, hit.depth_lower),
-        (c.depth, c.depth_lower),
-        "call {call}"
-    );
+    assert_eq!((hit.depth, hit.depth_lower), (c.depth, c.depth_lower));
     assert_eq!((hit.dir, hit.normal), (c.dir.v, c.normal.v));
     assert_eq!(
         [hit.pos, hit.point1, hit.point2],
@@ -188,19 +179,15 @@ fn same_bits_as_c() {
         };
         for frame in 0..3 {
             b.at[frame % 3] += 0.02;
-            for call in 0..CALLS {
-                let cold = asked_in_c(call, &a, &b, &c, std::ptr::null_mut(), bits);
+            for call in &CALLS {
+                let cold = in_c_of(call, &a, &b, &c, std::ptr::null_mut(), bits);
                 match cold.0 {
                     CCD_MISS => misses += 1,
                     _ => hits += 1,
                 }
-                same(call, in_rust(call, &a, &b, &settings, None), cold);
-                let kept = asked_in_c(call, &a, &b, &c, state, bits);
-                same(
-                    call,
-                    in_rust(call, &a, &b, &settings, Some(&mut warm)),
-                    kept,
-                );
+                same((call.rust)(&a, &b, &settings, None), cold);
+                let kept = in_c_of(call, &a, &b, &c, state, bits);
+                same((call.rust)(&a, &b, &settings, Some(&mut warm)), kept);
             }
             yes_or_no_and_distance(&a, &b, &settings, &mut warm, &c, state, bits);
             warm.flip();
@@ -222,8 +209,7 @@ fn yes_or_no_and_distance(
     state: &mut ccd_warm_t,
     want: c_uint,
 ) {
-    let (pa, pb) = (&raw const *a, &raw const *b);
-    let (pa, pb) = (pa.cast::<c_void>(), pb.cast::<c_void>());
+    let (pa, pb) = (object(a), object(b));
     let options = DistanceOptions {
         margin1: 0.1,
         margin2: 0.0,
@@ -254,22 +240,14 @@ fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
     let mut room = [Contact::default(); 4];
     let mut memory = ccd::Manifold::default();
     let found = ccd::contacts(a, b, DIR, 0.01, Some(&mut memory), &mut room).expect("good input");
-    let (a, b) = (&raw const *a, &raw const *b);
+    let (a, b) = (object(a), object(b));
     let dir = ccd_vec3_t { v: DIR };
     let mut out = [const { MaybeUninit::<ccd_contact_t>::uninit() }; 4];
     let mut manifold = MaybeUninit::<ccd_manifold_t>::zeroed();
     // SAFETY: live objects of their types, room for four.
     let count = unsafe {
-        ccdContacts(
-            a.cast(),
-            b.cast(),
-            c,
-            &dir,
-            0.01,
-            manifold.as_mut_ptr(),
-            out.as_mut_ptr().cast(),
-            4,
-        )
+        let (memory, room) = (manifold.as_mut_ptr(), out.as_mut_ptr().cast());
+        ccdContacts(a, b, c, &dir, 0.01, memory, room, 4)
     };
     assert_eq!(found.len(), count as usize);
     for (contact, out) in found.iter().zip(out) {
@@ -312,8 +290,8 @@ fn lengths_that_are_none() {
     let mut warm = before;
     for bad in NOT_LENGTHS {
         let settings = Settings::new(bad);
-        for call in 0..CALLS {
-            let answer = in_rust(call, &a, &b, &settings, Some(&mut warm));
+        for call in &CALLS {
+            let answer = (call.rust)(&a, &b, &settings, Some(&mut warm));
             is_bad(answer, &warm, &before, "tolerance");
         }
         let options = DistanceOptions::default();
@@ -343,10 +321,10 @@ fn lengths_that_are_none() {
     is_bad(answer, &warm, &before, "infinite margin");
     assert!(ccd::contacts(&a, &b, DIR, 0.0, None, &mut []).is_err());
     // Zero asks for the best there is, infinity for any answer.
-    for call in 0..CALLS {
+    for call in &CALLS {
         for tolerance in [0.0, Real::INFINITY] {
-            let answer = in_rust(call, &a, &b, &Settings::new(tolerance), None);
-            assert!(answer.expect("good input").is_some(), "call {call}");
+            let answer = (call.rust)(&a, &b, &Settings::new(tolerance), None);
+            assert!(answer.expect("good input").is_some(), "{tolerance}");
         }
     }
 }
@@ -383,8 +361,8 @@ fn shapes_that_are_none() {
             let mut lost = b;
             lost.radius = if point { bad } else { 0.0 };
             lost.at[1] = if centre { bad } else { 0.0 };
-            for call in 0..CALLS {
-                let answer = in_rust(call, &a, &lost, &settings, Some(&mut warm));
+            for call in &CALLS {
+                let answer = (call.rust)(&a, &lost, &settings, Some(&mut warm));
                 is_bad(answer, &warm, &before, "shape");
             }
             let answer = ccd::intersect(&a, &lost, Some(&mut warm));

@@ -10,28 +10,27 @@ use harness::Program;
 
 const NO_ARGS: [&str; 0] = [];
 
+/// A C program of this directory on this library.
+fn program(name: &str) -> Program {
+    let program = Program::c(name).source(format!("extension/{name}.c"));
+    strict(program).flag("-DOURS_ALONE")
+}
+
+/// The same in C++.
+fn cpp(name: &str) -> Program {
+    Program::cpp(name).source(format!("extension/{name}.cpp"))
+}
+
+fn strict(program: Program) -> Program {
+    program.flag("-pedantic").flag("-Werror").link_ours_shared()
+}
+
 #[test]
 fn cpp_wrapper() {
     for standard in ["c++17", "c++20"] {
-        Program::cpp("wrapper")
-            .source("extension/wrapper.cpp")
-            .standard(standard)
-            .flag("-pedantic")
-            .flag("-Werror")
-            .link_ours_shared()
-            .build()
-            .run(NO_ARGS);
+        let wrapper = strict(cpp("wrapper")).standard(standard);
+        wrapper.build().run(NO_ARGS);
     }
-}
-
-/// A C program of this directory on this library.
-fn program(name: &str) -> Program {
-    Program::c(name)
-        .source(format!("extension/{name}.c"))
-        .flag("-DOURS_ALONE")
-        .flag("-pedantic")
-        .flag("-Werror")
-        .link_ours_shared()
 }
 
 /// Every call with every argument that none can work with; and what is wanted.
@@ -82,14 +81,9 @@ fn signed_distance_beside_fcl() {
         sph_sph box_box_trajS cap_cap_trajS cyl_box_trajS ell_ell_trajS p162_p162_trajS p642_cap_trajS";
     let sets = sets.split_whitespace();
     let sets = sets.map(|set| dir.join(set).with_extension("bin"));
-    Program::cpp("distance_fcl")
-        .source("extension/distance_fcl.cpp")
-        .standard("c++17")
-        .flag("-isystem/usr/include/eigen3")
-        .flag("-Wno-unused-parameter")
-        .link_ours_shared()
-        .build()
-        .run(sets);
+    let program = cpp("distance_fcl").flag("-isystem/usr/include/eigen3");
+    let program = program.flag("-Wno-unused-parameter").link_ours_shared();
+    program.build().run(sets);
 }
 
 /// `<ccd/fcl.hpp>`. In single precision all of FCL is compiled here: it is made of templates.
@@ -103,17 +97,16 @@ fn fcl_header() {
         harness::Precision::Single => (&["c++11"], ["-O0", "-g0"]),
     };
     for standard in standards {
-        Program::cpp("fcl")
-            .source("extension/fcl.cpp")
-            .standard(standard)
-            .flag("-D_GNU_SOURCE")
-            .flag(flags[0])
-            .flag(flags[1])
-            .flag("-isystem/usr/include/eigen3")
-            .library("fcl")
-            .link_ours_shared()
-            .build()
-            .run(["2"]);
+        let mut program = cpp("fcl").standard(standard).library("fcl");
+        for flag in [
+            "-D_GNU_SOURCE",
+            flags[0],
+            flags[1],
+            "-isystem/usr/include/eigen3",
+        ] {
+            program = program.flag(flag);
+        }
+        program.link_ours_shared().build().run(["2"]);
     }
 }
 
@@ -169,15 +162,7 @@ fn states_in_a_hash_table() {
 #[test]
 fn small_worlds() {
     let c = program("world").build().run(NO_ARGS).stdout;
-    let cpp = Program::cpp("world")
-        .source("extension/world.cpp")
-        .standard("c++17")
-        .flag("-pedantic")
-        .flag("-Werror")
-        .link_ours_shared()
-        .build()
-        .run(NO_ARGS)
-        .stdout;
+    let cpp = strict(cpp("world")).build().run(NO_ARGS).stdout;
     assert_eq!(c, cpp);
     let lines: Vec<&str> = c.lines().collect();
     assert_eq!(

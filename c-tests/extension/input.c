@@ -442,7 +442,7 @@ static void wanted(void)
     setup();
 }
 
-/* A distance is an answer; what is not wanted of it is zero. (Other misses write nothing: contract/outputs.c.) */
+/* A distance is an answer; what is not wanted of it is zero. (Other misses write nothing: contract/questions.c.) */
 static void a_distance(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2;

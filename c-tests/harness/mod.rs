@@ -74,7 +74,6 @@ pub struct Built {
     pub dir: PathBuf,
     /// What a program linked with one of the archives needs, as rustc reports it.
     pub native_flags: Vec<String>,
-    pub precision: Precision,
 }
 
 /// The repository's root.
@@ -193,11 +192,7 @@ fn build_library(precision: Precision) -> Built {
     }
     rename_symbols(&dir.join("libccd.a"), &dir.join("librs_ccd.a"));
     drop(lock);
-    Built {
-        dir,
-        native_flags,
-        precision,
-    }
+    Built { dir, native_flags }
 }
 
 /// A tool for object files: as the environment names it, or by its own name.
@@ -405,24 +400,6 @@ impl Program {
         self
     }
 
-    /// The flags pkg-config gives for a package of the system's.
-    pub fn pkg_config(mut self, package: &str) -> Program {
-        let ask = |what: &str| -> Vec<String> {
-            must_succeed(
-                Command::new("pkg-config").args([what, package]),
-                "pkg-config",
-            )
-            .stdout
-            .split_whitespace()
-            .map(String::from)
-            .collect()
-        };
-        self.flags
-            .extend(ask("--cflags").into_iter().map(OsString::from));
-        self.libraries.extend(ask("--libs"));
-        self
-    }
-
     /// Which build of this library; [`Precision::CURRENT`] if not said.
     pub fn precision(mut self, precision: Precision) -> Program {
         self.precision = precision;
@@ -553,7 +530,6 @@ pub struct Executable {
     /// The words of a command that runs it, in place of itself.
     before: Vec<OsString>,
     library_path: Option<PathBuf>,
-    environment: Vec<(String, String)>,
     timeout: Duration,
     tools: bool,
     quiet: bool,
@@ -575,7 +551,6 @@ impl Executable {
             name: name.to_owned(),
             before: Vec::new(),
             library_path: None,
-            environment: Vec::new(),
             timeout: Duration::from_secs(300),
             tools: true,
             quiet: false,
@@ -617,11 +592,6 @@ impl Executable {
     /// With compare.sh's screen, on stderr, in place of that line.
     pub fn with_screen(mut self) -> Executable {
         self.before.retain(|word| word != "--fields");
-        self
-    }
-
-    pub fn env(mut self, name: &str, value: &str) -> Executable {
-        self.environment.push((name.to_owned(), value.to_owned()));
         self
     }
 
@@ -680,7 +650,6 @@ impl Executable {
         runner.extend(self.before.iter().map(|w| w.to_string_lossy().into_owned()));
         let mut command = run_by(&runner, &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
-        command.envs(self.environment.iter().map(|(name, value)| (name, value)));
         command
     }
 

@@ -91,16 +91,15 @@ int main(int argc, char **argv)
             put(f, pair, 4 * (size_t)pairs);
         head[3] += pairs;
         if (frame % 30 == 0)
-            fprintf(stderr, "frame %d: %u pairs, %ld contacts, mean depth %.2e, kinetic energy %.3g J\n", frame, pairs,
-                    scene.contact_count, scene.contact_count ? scene.depth_sum / scene.contact_count : 0, scene_energy(&scene, NULL));
+            fprintf(stderr, "frame %d: %u pairs, kinetic energy %.3g J\n", frame, pairs, scene_energy(&scene, NULL));
     }
     fseek(f, 8, SEEK_SET);
     put(f, head, sizeof head);
     i = scene_escaped(&scene);
     scene_free(&scene);
     dCloseODE();
-    if (fclose(f) || i || scene.bad_contacts) {
-        fprintf(stderr, "%d bodies escaped, %ld bad contacts\n", i, scene.bad_contacts);
+    if (fclose(f) || i || scene.pile.bad) {
+        fprintf(stderr, "%d bodies escaped, %ld bad contacts\n", i, scene.pile.bad);
         return 1;
     }
     printf("%u shapes, %u bodies, %u frames, %u pairs\n", head[0], head[1], head[2], head[3]);

@@ -12,13 +12,15 @@
 #define _POSIX_C_SOURCE 199309L
 #include "record/replay.h"
 
-static int mpr(const recording_query_t *q, recording_answer_t *out)
+static int mpr(const recording_query_t *q, const void *how, recording_answer_t *out)
 {
+    (void)how;
     return ccdMPRPenetration(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, &out->pos);
 }
 
-static int gjk_epa(const recording_query_t *q, recording_answer_t *out)
+static int gjk_epa(const recording_query_t *q, const void *how, recording_answer_t *out)
 {
+    (void)how;
     return ccdGJKPenetration(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, &out->pos);
 }
 

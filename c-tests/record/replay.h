@@ -25,11 +25,13 @@ typedef struct {
     ccd_vec3_t dir, pos;
 } recording_answer_t;
 
-typedef int (*recording_method_fn)(const recording_query_t *, recording_answer_t *);
+/* how: the method's own. */
+typedef int (*recording_method_fn)(const recording_query_t *, const void *how, recording_answer_t *);
 
 typedef struct {
     const char *name;
     recording_method_fn method;
+    const void *how;
     unsigned long queries, supports, judged;
     unsigned long wrong[VERDICTS];
     double error_sum, error_max; /* metres, of those judged: hits that are hits */
@@ -133,7 +135,7 @@ static inline int recording_pass(const recording_t *r, tally_t *tally)
             q.obj2 = &body[b];
             q.ccd = &ccd;
             q.pair = a * r->bodies + b;
-            answer[i].code = tally->method(&q, &answer[i]);
+            answer[i].code = tally->method(&q, tally->how, &answer[i]);
         }
         start = replay_clock() - start;
         if (first || start < tally->frame[f])
@@ -156,7 +158,7 @@ static inline int recording_pass(const recording_t *r, tally_t *tally)
 enum { REPLAY_SUPPORTS = 8 };
 
 /* What a query costs that only asks support points, one direction after another. */
-static inline int replay_supports(const recording_query_t *q, recording_answer_t *out)
+static inline int replay_supports(const recording_query_t *q, const void *how, recording_answer_t *out)
 {
     int i;
     for (i = 0; i < REPLAY_SUPPORTS; i++) {
@@ -166,6 +168,7 @@ static inline int replay_supports(const recording_query_t *q, recording_answer_t
         q->ccd->support1(q->obj1, &dir, &point);
         q->ccd->support2(q->obj2, &back, &point);
     }
+    (void)how;
     (void)out;
     return -1;
 }

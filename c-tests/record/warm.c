@@ -19,69 +19,37 @@ static void forget(void)
     memset(state, 0, states * sizeof *state);
 }
 
-static int mpr(const recording_query_t *q, recording_answer_t *out)
-{
-    return OURS(ccdMPRPenetration)(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, &out->pos);
-}
+typedef struct {
+    int ask; /* of call_by_number */
+    int warm, pos;
+} how_t;
 
-static int mpr_warm(const recording_query_t *q, recording_answer_t *out)
+static int asked(const recording_query_t *q, const void *how, recording_answer_t *out)
 {
-    return OURS(ccdMPRPenetrationWarm)(q->obj1, q->obj2, q->ccd, &state[q->pair], &out->depth, &out->dir, &out->pos);
-}
-
-/* For who moves bodies apart, or asks ccdContacts. */
-static int mpr_bare(const recording_query_t *q, recording_answer_t *out)
-{
-    return OURS(ccdMPRPenetration)(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, NULL);
-}
-
-static int mpr_warm_bare(const recording_query_t *q, recording_answer_t *out)
-{
-    return OURS(ccdMPRPenetrationWarm)(q->obj1, q->obj2, q->ccd, &state[q->pair], &out->depth, &out->dir, NULL);
-}
-
-typedef int (*extended_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned, ccd_penetration_t *);
-
-static int extended(extended_fn method, const recording_query_t *q, ccd_warm_t *warm, recording_answer_t *out)
-{
+    const how_t *h = (const how_t *)how;
     ccd_penetration_t p;
-    const int code = method(q->obj1, q->obj2, q->ccd, warm, CCD_WANT_ALL, &p);
-    if (code == CCD_HIT || code == CCD_LIMIT) {
-        out->depth = p.depth;
-        out->dir = p.dir;
-        out->pos = p.pos;
-        return 0;
-    }
-    return code;
-}
-
-static int local(const recording_query_t *q, recording_answer_t *out)
-{
-    return extended(OURS(ccdPenetrationLocal), q, NULL, out);
-}
-
-static int local_warm(const recording_query_t *q, recording_answer_t *out)
-{
-    return extended(OURS(ccdPenetrationLocal), q, &state[q->pair], out);
-}
-
-static int minimum(const recording_query_t *q, recording_answer_t *out)
-{
-    return extended(OURS(ccdPenetrationProven), q, NULL, out);
-}
-
-static int minimum_warm(const recording_query_t *q, recording_answer_t *out)
-{
-    return extended(OURS(ccdPenetrationProven), q, &state[q->pair], out);
+    call_rest_t rest = {.want = CCD_WANT_ALL, .depth = &out->depth, .dir = &out->dir, .full = &p};
+    int code;
+    rest.warm = h->warm ? &state[q->pair] : NULL;
+    rest.pos = h->pos ? &out->pos : NULL;
+    code = call_by_number(h->ask, q->obj1, q->obj2, q->ccd, &rest);
+    if (h->ask == ASK_MPR || h->ask == ASK_MPR_WARM || (code != CCD_HIT && code != CCD_LIMIT))
+        return code;
+    out->depth = p.depth;
+    out->dir = p.dir;
+    out->pos = p.pos;
+    return 0;
 }
 
 int main(int argc, char **argv)
 {
+    /* without pos: for who moves bodies apart, or asks ccdContacts */
+    static const how_t how[] = {{ASK_MPR, 0, 1}, {ASK_MPR_WARM, 1, 1}, {ASK_MPR, 0, 0}, {ASK_MPR_WARM, 1, 0},
+                                {ASK_LOCAL, 0, 1}, {ASK_LOCAL, 1, 1}, {ASK_PROVEN, 0, 1}, {ASK_PROVEN, 1, 1}};
     static tally_t tally[] = {
-        { .name = "MPR, cold", .method = mpr },         { .name = "MPR, warm", .method = mpr_warm },
-        { .name = "no pos, cold", .method = mpr_bare }, { .name = "no pos, warm", .method = mpr_warm_bare },
-        { .name = "local, cold", .method = local },     { .name = "local, warm", .method = local_warm },
-        { .name = "minimum, cold", .method = minimum }, { .name = "minimum, warm", .method = minimum_warm },
+        {"MPR, cold", asked, &how[0]}, {"MPR, warm", asked, &how[1]}, {"no pos, cold", asked, &how[2]},
+        {"no pos, warm", asked, &how[3]}, {"local, cold", asked, &how[4]}, {"local, warm", asked, &how[5]},
+        {"minimum, cold", asked, &how[6]}, {"minimum, warm", asked, &how[7]},
     };
     recording_t r;
     int passes, failed = 1;

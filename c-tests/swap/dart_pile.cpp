@@ -12,7 +12,8 @@
  *
  * usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode */
 
-#include "swap/uniform.h"
+#include "swap/pile.h"
+#include "uniform.h"
 #include "harness/identity.h"
 
 #include <dart/collision/fcl/FCLCollisionDetector.hpp>
@@ -119,41 +120,29 @@ int main(int argc, char **argv)
             joint->setPosition(j, joint->getPosition(j) + uniform(-1e-3, 1e-3));
     }
 
-    double kinetic = 0, depth = 0, deepest = 0, least = HUGE_VAL, gained = 0;
-    long contacts = 0, bad = 0, threw = 0;
-    int escaped = 0;
-    for (long step = 0; step < steps; step++) {
+    pile_t pile = pile_of(steps);
+    for (; pile.step < steps; pile.step++) {
         try {
             world->step();
         } catch (const std::exception &e) {
-            fprintf(stderr, "step %ld: %s\n", step, e.what());
-            threw++;
+            fprintf(stderr, "step %ld: %s\n", pile.step, e.what());
+            pile.bad++;
             break;
         }
-        double energy = 0, height = 0;
+        double moving = 0, height = 0;
         for (auto *body : falling) {
             const Eigen::Vector3d p = body->getTransform().translation();
-            escaped |= !(fabs(p[0]) < half_width && fabs(p[1]) < half_width && p[2] > 0 && p[2] < 20);
-            energy += body->computeKineticEnergy();
+            pile.escaped |= !(fabs(p[0]) < half_width && fabs(p[1]) < half_width && p[2] > 0 && p[2] < 20);
+            moving += body->computeKineticEnergy();
             height += 9.81 * body->getMass() * p[2];
         }
-        least = fmin(least, energy + height);
-        gained = fmax(gained, energy + height - least);
+        pile_energy(&pile, moving, height);
         for (const auto &contact : world->getLastCollisionResult().getContacts()) {
-            if (!(fabs(contact.normal.norm() - 1) < 1e-6) || !(fabs(contact.penetrationDepth) < 1e3) || !(contact.point.norm() < 1e6)) {
-                bad++;
-                continue;
-            }
-            deepest = fmax(deepest, contact.penetrationDepth);
-            if (2 * step >= steps) {
-                depth += contact.penetrationDepth;
-                contacts++;
-            }
+            const bool somewhere = contact.point.norm() < 1e6;
+            pile_contact(&pile, somewhere ? contact.normal.squaredNorm() : NAN, contact.penetrationDepth);
         }
-        if (2 * step >= steps)
-            kinetic += energy / (double)(steps - steps / 2);
     }
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g\n", kinetic,
-           contacts ? depth / (double)contacts : 0, deepest, contacts, escaped, bad + threw, gained);
+    pile_report(&pile);
+    printf("\n");
     return 0;
 }

@@ -6,7 +6,7 @@
 #ifndef SWAP_HULL_H
 #define SWAP_HULL_H
 
-#include "swap/uniform.h"
+#include "uniform.h"
 
 #include <ccd/vec3.h>
 #include <stdio.h>

@@ -10,7 +10,8 @@
  *   multi: MuJoCo's multi-point convex collision; field: on a height field
  *   save: the state in the middle of the run; load: run the second half from there */
 
-#include "swap/uniform.h"
+#include "swap/pile.h"
+#include "uniform.h"
 #include "harness/identity.h"
 
 #include <mujoco/mujoco.h>
@@ -113,9 +114,9 @@ int main(int argc, char **argv)
     char error[1000] = "";
     mjModel *m;
     mjData *d;
-    double kinetic = 0, depth = 0, deepest = 0, least = HUGE_VAL, gained = 0;
-    long step, steps, contacts = 0, bad = 0, warnings = 0;
-    int i, out = 0, field, multi, save, load;
+    pile_t pile;
+    long step, steps;
+    int i, field, multi, save, load;
     if (argc != 5 && argc != 7) {
         fprintf(stderr, "usage: mujoco_pile SEED STEPS BODIES pile|multi|field [save|load FILE]\n");
         return 2;
@@ -123,6 +124,7 @@ int main(int argc, char **argv)
     save = argc == 7 && !strcmp(argv[5], "save");
     load = argc == 7 && !save;
     steps = atol(argv[2]);
+    pile = pile_of(steps);
     multi = !strcmp(argv[4], "multi");
     field = !strcmp(argv[4], "field");
     tell_library();
@@ -152,35 +154,26 @@ int main(int argc, char **argv)
             fprintf(stderr, "no state\n");
             return 2;
         }
+        pile.step = step;
         mj_step(m, d);
-        out |= escaped(m, d);
-        if (2 * step >= steps) {
-            kinetic += d->energy[1] / (double)(steps - steps / 2);
-            /* not while bodies fall: what an impact stores in its contact counts as lost, and comes back */
-            least = fmin(least, d->energy[0] + d->energy[1]);
-            gained = fmax(gained, d->energy[0] + d->energy[1] - least);
-        }
+        pile.escaped |= escaped(m, d);
+        /* not while bodies fall: what an impact stores in its contact counts as lost, and comes back */
+        if (pile_is_late(&pile))
+            pile_energy(&pile, d->energy[1], d->energy[0]);
         for (i = 0; i < d->ncon; i++) {
             const mjContact *c = &d->contact[i];
             const mjtNum *n = c->frame;
-            if (!(fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-6) || !(fabs(c->dist) < 1e3)) {
-                bad++;
-                continue;
-            }
-            /* planes never reach libccd */
-            if (m->geom_type[c->geom1] == mjGEOM_PLANE || m->geom_type[c->geom2] == mjGEOM_PLANE || !(c->dist < 0))
-                continue;
-            deepest = fmax(deepest, -c->dist);
-            if (2 * step >= steps) {
-                depth -= c->dist;
-                contacts++;
-            }
+            /* planes never reach libccd, nor do gaps */
+            const int counts = m->geom_type[c->geom1] != mjGEOM_PLANE && m->geom_type[c->geom2] != mjGEOM_PLANE && c->dist < 0;
+            const double length2 = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+            if (counts || !(fabs(length2 - 1) < 1e-6) || !(fabs(c->dist) < 1e3))
+                pile_contact(&pile, length2, -c->dist);
         }
     }
     for (i = 0; i < mjNWARNING; i++)
-        warnings += d->warning[i].number;
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g\n", kinetic,
-           contacts ? depth / (double)contacts : 0, deepest, contacts, out, bad + warnings, gained);
+        pile.bad += d->warning[i].number;
+    pile_report(&pile);
+    printf("\n");
     mj_deleteData(d);
     mj_deleteModel(m);
     mj_deleteVFS(&vfs);

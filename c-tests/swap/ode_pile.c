@@ -93,7 +93,6 @@ static void judge(void *user, int a, int b, const dContact *contact, int contact
 
 int main(int argc, char **argv)
 {
-    run_t run = { 0, 0, 0, 0, 0, 0, 0 };
     long step;
     if (argc != 5) {
         fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower\n");
@@ -104,14 +103,14 @@ int main(int argc, char **argv)
     const int bodies = atoi(argv[3]);
     dInitODE2(0);
     tell_library();
-    run_scene(&scene, argv[4], bodies, seed);
+    run_scene(&scene, argv[4], bodies, seed, steps);
     scene.user = &found;
     for (step = 0; step < steps; step++) {
         scene.on_pair = step % 20 ? NULL : judge;
         found.queries = compare_queries();
-        run_step(&run, &scene, step, steps);
+        run_step(&scene, step);
     }
-    run_report(&run, &scene);
+    pile_report(&scene.pile);
     printf(" judged %ld lost %ld spurious %ld off %ld error %.9g wrong %ld wrong_lost %ld wrong_spurious %ld wrong_error %.9g\n",
            found.right.judged, found.right.lost, found.right.spurious, found.right.off, found.right.error, found.wrong.judged,
            found.wrong.lost, found.wrong.spurious, found.wrong.error);

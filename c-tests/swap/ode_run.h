@@ -2,28 +2,20 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* A run of one of the scenes pile, hulls, stack and roll (ode_pile.c says what they are):
- * its start, its steps, and what the second half of it looked like. */
+ * its start and its steps. */
 
 #ifndef ODE_RUN_H
 #define ODE_RUN_H
 
-#include <math.h>
-#include <stdio.h>
 #include "swap/ode_scene.h"
 
-typedef struct {
-    double kinetic, depth; /* sums over the second half */
-    double deepest, least, gained;
-    long contacts;
-    int escaped;
-} run_t;
-
 /* Makes the scene of that name, moved by the stream named seed. */
-static inline void run_scene(scene_t *scene, const char *name, int bodies, unsigned long seed)
+static inline void run_scene(scene_t *scene, const char *name, int bodies, unsigned long seed, long steps)
 {
     const int stack = !strcmp(name, "stack"), roll = !strcmp(name, "roll");
     int i;
     scene_world(scene, 11);
+    scene->pile = pile_of(steps);
     if (!strcmp(name, "tower")) {
         scene_tower(scene, bodies);
         return;
@@ -40,29 +32,14 @@ static inline void run_scene(scene_t *scene, const char *name, int bodies, unsig
     scene_nudge(scene, seed, stack || roll ? 1e-5 : 1e-3);
 }
 
-static inline void run_step(run_t *run, scene_t *scene, long step, long steps)
+static inline void run_step(scene_t *scene, long step)
 {
-    double height, moving, energy;
+    double height, moving;
+    scene->pile.step = step;
     scene_step(scene, 0.005);
-    run->escaped |= scene_escaped(scene);
-    run->deepest = fmax(run->deepest, scene->depth_max);
+    scene->pile.escaped |= scene_escaped(scene);
     moving = scene_energy(scene, &height);
-    energy = moving + height;
-    run->least = step ? fmin(run->least, energy) : energy;
-    run->gained = fmax(run->gained, energy - run->least);
-    if (2 * step >= steps) {
-        run->kinetic += moving / (double)(steps - steps / 2);
-        run->depth += scene->depth_sum;
-        run->contacts += scene->contact_count;
-    }
-}
-
-/* The line's start; the program adds what it counted. */
-static inline void run_report(const run_t *run, const scene_t *scene)
-{
-    printf("pile kinetic %.9g depth %.9g deepest %.9g contacts %ld escaped %d bad %ld gained %.9g", run->kinetic,
-           run->contacts ? run->depth / (double)run->contacts : 0, run->deepest, run->contacts, run->escaped,
-           scene->bad_contacts, run->gained);
+    pile_energy(&scene->pile, moving, height);
 }
 
 #endif

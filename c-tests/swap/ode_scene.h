@@ -12,6 +12,7 @@
 #include <string.h>
 #include <ode/ode.h>
 #include "swap/hull.h"
+#include "swap/pile.h"
 
 enum { SCENE_BODIES = 96, SCENE_SHAPES = 96 };
 
@@ -35,10 +36,7 @@ typedef struct {
     dBodyID body[SCENE_BODIES]; /* NULL for what stands still */
     double half_width;          /* the pen is 2 half_width wide */
     enum scene_kind kinds[4];   /* of a pile, by turns */
-    /* sums over the contacts of the last step */
-    long contact_count;
-    double depth_sum, depth_max;
-    long bad_contacts;          /* a normal or depth that is not finite, a normal that is not unit */
+    pile_t pile;
     /* where set, told every pair the broad phase lets through, and the contacts ODE made of it */
     void (*on_pair)(void *user, int a, int b, const dContact *contact, int contacts);
     void *user;
@@ -274,25 +272,17 @@ static inline void scene_near(void *data, dGeomID o1, dGeomID o2)
         scene->on_pair(scene->user, (int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2), contact, n);
     for (i = 0; i < n; i++) {
         const dContactGeom *g = &contact[i].geom;
-        const double length = dCalcVectorLength3(g->normal);
-        /* negated so that NaN counts as bad */
-        if (!(fabs(length - 1) < 1e-6) || !(g->depth < 1e3) || !(fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6)) {
-            scene->bad_contacts++;
+        const int somewhere = fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6;
+        if (!pile_contact(&scene->pile, somewhere ? dCalcVectorLengthSquare3(g->normal) : NAN, g->depth))
             continue;
-        }
         contact[i].surface.mode = dContactApprox1;
         contact[i].surface.mu = 0.6;
         dJointAttach(dJointCreateContact(scene->world, scene->contacts, &contact[i]), b1, b2);
-        scene->contact_count++;
-        scene->depth_sum += g->depth;
-        scene->depth_max = fmax(scene->depth_max, g->depth);
     }
 }
 
 static inline void scene_step(scene_t *scene, double h)
 {
-    scene->contact_count = 0;
-    scene->depth_sum = scene->depth_max = 0;
     dSpaceCollide(scene->space, scene, scene_near);
     dWorldQuickStep(scene->world, h);
     dJointGroupEmpty(scene->contacts);

@@ -93,7 +93,6 @@ static dGeomID make(const scene_shape_t *s)
 int main(int argc, char **argv)
 {
     dGeomClass class = { sizeof(const scene_shape_t *), collider, aabb, NULL, NULL };
-    run_t run = { 0, 0, 0, 0, 0, 0, 0 };
     long step;
     if (argc != 6) {
         fprintf(stderr, "usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many\n");
@@ -106,10 +105,10 @@ int main(int argc, char **argv)
     dInitODE2(0);
     convex = dCreateGeomClass(&class);
     scene_make_geom = make;
-    run_scene(&scene, argv[4], bodies, seed);
+    run_scene(&scene, argv[4], bodies, seed, steps);
     for (step = 0; step < steps; step++)
-        run_step(&run, &scene, step, steps);
-    run_report(&run, &scene);
+        run_step(&scene, step);
+    pile_report(&scene.pile);
     printf(" limits %lu\n", limits);
     printf("watched queries %lu supports %lu\n", queries, supports);
     scene_free(&scene);

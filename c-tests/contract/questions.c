@@ -1,7 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Ordinary input of every size, and input that no query can like: tolerances of every kind, no
+/* The same question gives the same bits, and nothing is read but what a call needs. Then ordinary
+ * input of every size, and input that no query can like: tolerances of every kind, no
  * iterations, an object against itself, objects without volume, sizes far from 1. (Points that are
  * no numbers, and callbacks that lie: extension/input.c.) Always a return code of the call's, outputs untouched
  * unless it is a hit, a hit sound, and an end: the number of support points is bounded. */
@@ -9,6 +10,8 @@
 #include "entries.h"
 #include <math.h>
 #include <time.h>
+
+static int share = 100; /* percent of all questions */
 
 static int may_return(const call_t *entry, int code)
 {
@@ -61,7 +64,7 @@ static void tolerances(const call_t *entry)
 {
     const ccd_real_t values[] = {0, -0.0f, (ccd_real_t)1e-30, (ccd_real_t)1e-12, 1, (ccd_real_t)HUGE_VAL};
     int round;
-    for (round = 0; round < 120; round++) {
+    for (round = 0; round < 120 * share / 100; round++) {
         const int kind = round % 6, overlapping = round / 6 % 2;
         shape_t a, b;
         ccd_t ccd;
@@ -77,7 +80,7 @@ static void iterations(const call_t *entry)
 {
     static const unsigned long limits[] = {0, 1, 2, 3, 5, 7, 10, 14, 20};
     int round;
-    for (round = 0; round < 900; round++) {
+    for (round = 0; round < 900 * share / 100; round++) {
         shape_t a, b;
         ccd_t ccd;
         int code;
@@ -108,7 +111,7 @@ static void degenerate(const call_t *entry)
     for (i = 0; i < PLAIN; i++)
         for (k = 0; k < PLAIN; k++)
             for (at = 0; at < 3; at++)
-                for (size = 0; size < 6; size++) {
+                for (size = 0; size < 6; size += share < 100 ? 6 : 1) {
                     static ccd_real_t scaled[2][12];
                     shape_t s[2];
                     ccd_t ccd;
@@ -147,7 +150,7 @@ static void anywhere(const call_t *entry)
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     int round;
-    for (round = 0; round < 1500; round++) {
+    for (round = 0; round < 1500 * share / 100; round++) {
         const double size = pow(10, random_in(-4, 4));
         const int aligned = random_below(4);
         ccd_real_t scaled[2][21];
@@ -177,16 +180,94 @@ static void anywhere(const call_t *entry)
     }
 }
 
-int main(void)
+/* The same objects, the same bits and calls; and nothing is read of ccd_t but what the call needs: the
+ * rest may be anything. */
+static void again(const call_t *entry)
+{
+    int round;
+    for (round = 0; round < 300 * share / 100; round++) {
+        const int overlapping = round % 2, wanted = overlapping ? entry->hit : entry->miss;
+        shape_t a, b, a2, b2;
+        outputs_t out, other;
+        ccd_t ccd, garbage;
+        random_pair(entry, overlapping, &a, &b, &ccd);
+        a2 = a;
+        b2 = b;
+        memset(&out, 0x5a, sizeof out);
+        other = out;
+        CHECK(run(entry, &a, &b, &ccd, &out) == wanted && run(entry, &a2, &b2, &ccd, &other) == wanted, "%s: codes", entry->name);
+        CHECK(same_bits(&out, &other, sizeof out), "%s: other bits the second time", entry->name);
+        CHECK(a.calls == a2.calls && b.calls == b2.calls, "%s: other supports the second time", entry->name);
+
+        memset(&garbage, round % 4 < 2 ? 0xff : 0x3c, sizeof garbage);
+        garbage.support1 = ccd.support1;
+        garbage.support2 = ccd.support2;
+        garbage.max_iterations = ccd.max_iterations;
+        if (!(entry->traits & FROM_CENTERS))
+            garbage.first_dir = ccd.first_dir;
+        if (!(entry->traits & FROM_FIRST_DIR)) {
+            garbage.center1 = ccd.center1;
+            garbage.center2 = ccd.center2;
+        }
+        if (entry->traits & FROM_FIRST_DIR || entry->number == ASK_PROVEN)
+            garbage.epa_tolerance = ccd.epa_tolerance;
+        else if (entry->number == ASK_DISTANCE)
+            garbage.dist_tolerance = ccd.dist_tolerance;
+        else
+            garbage.mpr_tolerance = ccd.mpr_tolerance;
+        memset(&other, 0x5a, sizeof other);
+        CHECK(run(entry, &a2, &b2, &garbage, &other) == wanted, "%s with garbage", entry->name);
+        CHECK(same_bits(&out, &other, sizeof out), "%s reads what it should not", entry->name);
+    }
+}
+
+/* Each output of libccd's calls may be NULL, and the others are the same without it; ccdGJKSeparate's
+ * is depth times direction of ccdGJKPenetration. */
+static void null_outputs(void)
+{
+    int round, i, skip;
+    for (round = 0; round < 2 * share; round++) {
+        static const int numbers[] = {ASK_MPR, ASK_GJK};
+        const int expected = round % 2 - 1;
+        ccd_real_t depth[2];
+        ccd_vec3_t dir[2], pos[2], sep;
+        call_rest_t rest = {.depth = &depth[0], .dir = &dir[0], .pos = &pos[0]};
+        shape_t a, b;
+        ccd_t ccd;
+        random_pair(&entries[2], round % 2, &a, &b, &ccd);
+        ccd.center1 = ccd.center2 = shape_center;
+        for (i = 0; i < 2; i++)
+            for (skip = 0; skip < 8; skip++) {
+                const call_rest_t some = {.depth = skip & 1 ? NULL : &depth[1], .dir = skip & 2 ? NULL : &dir[1],
+                                          .pos = skip & 4 ? NULL : &pos[1]};
+                memset(depth, 0x5a, sizeof depth);
+                memset(dir, 0x5a, sizeof dir);
+                memset(pos, 0x5a, sizeof pos);
+                CHECK(call_by_number(numbers[i], &a, &b, &ccd, &rest) == expected, "all outputs");
+                CHECK(call_by_number(numbers[i], &a, &b, &ccd, &some) == expected, "NULL outputs");
+                CHECK((skip & 1) || same_bits(&depth[0], &depth[1], sizeof depth[0]), "depth");
+                CHECK((skip & 2) || same_bits(&dir[0], &dir[1], sizeof dir[0]), "dir");
+                CHECK((skip & 4) || same_bits(&pos[0], &pos[1], sizeof pos[0]), "pos");
+            }
+        CHECK(ccdGJKSeparate(&a, &b, &ccd, NULL) == expected && ccdGJKSeparate(&a, &b, &ccd, &sep) == expected, "sep");
+        for (i = 0; i < 3 && expected == 0; i++)
+            CHECK(fabs((double)(sep.v[i] - depth[0] * dir[0].v[i])) <= 4 * (double)CCD_EPS * (double)depth[0], "sep = depth dir");
+    }
+}
+
+int main(int argc, char **argv)
 {
     int i;
+    share = argc > 1 ? atoi(argv[1]) : share;
     for (i = 0; i < ENTRIES; i++) {
         const unsigned long failed = checks_failed;
+        again(&entries[i]);
         tolerances(&entries[i]);
         iterations(&entries[i]);
         degenerate(&entries[i]);
         anywhere(&entries[i]);
         printf("%s: %lu failed\n", entries[i].name, checks_failed - failed);
     }
+    null_outputs();
     return checks_end();
 }

@@ -1,27 +1,27 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Repeatable random numbers and rotations for the swap programs. */
+/* Repeatable random numbers and rotations: one stream a program. (Of many streams: stability/dice.h.) */
 
-#ifndef SWAP_UNIFORM_H
-#define SWAP_UNIFORM_H
+#ifndef TESTS_UNIFORM_H
+#define TESTS_UNIFORM_H
 
 #include <math.h>
 #include <stdint.h>
 
 /* xorshift64*: the same numbers on every machine. */
-static uint64_t uniform_state = 1;
+static uint64_t random_state = 88172645463325252u;
 static inline double uniform(double low, double high)
 {
-    uniform_state ^= uniform_state >> 12;
-    uniform_state ^= uniform_state << 25;
-    uniform_state ^= uniform_state >> 27;
-    return low + (high - low) * (double)((uniform_state * 2685821657736338717ull) >> 11) * (1.0 / 9007199254740992.0);
+    random_state ^= random_state >> 12;
+    random_state ^= random_state << 25;
+    random_state ^= random_state >> 27;
+    return low + (high - low) * (double)((random_state * 2685821657736338717ull) >> 11) * (1.0 / 9007199254740992.0);
 }
 static inline void uniform_seed(uint64_t seed)
 {
     int i;
-    uniform_state = seed * 0x9E3779B97F4A7C15ull + 1;
+    random_state = seed * 0x9E3779B97F4A7C15ull + 1;
     for (i = 0; i < 8; i++)
         uniform(0, 1);
 }
