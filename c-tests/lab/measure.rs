@@ -60,7 +60,7 @@ pub struct Row {
 }
 
 /// The support value of D along `dir`.
-fn support_value(libraries: &Libraries, pair: &Pair, dir: &[f64; 3]) -> f64 {
+pub fn support_value(libraries: &Libraries, pair: &Pair, dir: &[f64; 3]) -> f64 {
     let n = Vector3::from(*dir);
     let at = |shape, d: Vector3<f64>| {
         let (d, mut v) = (ccd_vec3_t::from(d), ccd_vec3_t::default());

@@ -14,10 +14,11 @@ mod lab;
 use lab::csv;
 use lab::deep::{Deep, Polytope};
 use lab::libraries::Libraries;
+use lab::measure;
 use lab::methods::Start;
 use lab::recorded::{self, Recorded};
-use lab::scene::{Mesh, Scene};
-use nalgebra::{Matrix3, Vector3};
+use lab::scene::Scene;
+use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
@@ -50,109 +51,43 @@ fn no_set_needs_more_supports_or_errs_more() {
     assert!(lost.is_empty(), "{}", lost.join("\n"));
 }
 
-/// Every facet of D = A − B as (unit normal, distance of its plane from the origin):
-/// faces of A, faces of B turned round, and each pair of edges that is extremal along
-/// the normal of both.
-fn facets(a: &Mesh, b: &[V]) -> Vec<(V, f64)> {
-    let support = |n: &V| {
-        let far = |s: f64, v: &[V]| v.iter().map(|p| s * n.dot(p)).fold(f64::MIN, f64::max);
-        (far(1.0, &a.vertices), far(-1.0, b))
-    };
-    let edges = |v: &[V], mesh: &Mesh| -> Vec<(V, V)> {
-        let all = mesh
-            .triangles
-            .iter()
-            .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
-        all.filter(|(i, j)| i < j)
-            .map(|(i, j)| (v[i], v[j]))
-            .collect()
-    };
-    let mut found = Vec::new();
-    let mut add = |n: V, edge: Option<(V, V)>| {
-        for n in [n.normalize(), -n.normalize()] {
-            if !n.x.is_finite() {
-                continue;
-            }
-            let (ha, hb) = support(&n);
-            let touches = |p: &V, q: &V| ha - n.dot(p) < 1e-12 && hb + n.dot(q) < 1e-12;
-            if edge.is_none_or(|(p, q)| touches(&p, &q)) {
-                found.push((n, ha + hb));
-            }
-        }
-    };
-    for (v, _) in [(&a.vertices[..], 0), (b, 1)] {
-        for t in &a.triangles {
-            let n = (v[t[1]] - v[t[0]]).cross(&(v[t[2]] - v[t[0]]));
-            add(n, None);
-        }
-    }
-    let edges_b = edges(b, a);
-    for (p, q) in edges(&a.vertices, a) {
-        for (r, s) in &edges_b {
-            // Both ends of both edges are extremal when one end of each is: n is across both.
-            add((q - p).cross(&(s - r)), Some((p, *r)));
-        }
-    }
-    found
-}
-
-/// DEEP's answers are facets of D whose distance no neighbour undercuts, the global
-/// minimum where it starts there, and the enumeration agrees with the certified truth.
+/// DEEP's answers are planes that support D and that none a little beside is nearer than, never below
+/// the certified least; from the true normal they are that, and nearly always from 5° beside it.
 #[test]
-fn deep_walks_to_facets() {
+fn deep_walks_to_local_minima() {
     let libraries = Libraries::open();
-    for (name, poses) in [("box_box", 60), ("p12_p12", 60), ("p42_p42", 8)] {
+    for (name, poses) in [("box_box", 60), ("p12_p12", 60), ("p42_p42", 60)] {
         let scene = Scene::load(&libraries, name, poses);
-        let mesh = &scene.meshes[0];
         let [a, b] = [0, 1].map(|k| Polytope::new(&scene.meshes[k]));
         let (mut deep, mut global) = (Deep::default(), 0);
         for pair in &scene.pairs {
             let ((ra, pa), (rb, pb)) = (pair.pose(&libraries, 0), pair.pose(&libraries, 1));
-            let (turn, shift): (Matrix3<f64>, V) =
-                (ra.transpose() * rb, ra.transpose() * (pb - pa));
-            let placed: Vec<V> = scene.meshes[1]
-                .vertices
-                .iter()
-                .map(|v| turn * v + shift)
-                .collect();
-            let facets = facets(mesh, &placed);
-            let least = facets.iter().map(|f| f.1).fold(f64::MAX, f64::min);
-            assert!(
-                (least - pair.truth.depth).abs() < 1e-12,
-                "{name}: {least} {:?}",
-                pair.truth
-            );
+            let (turn, shift) = (ra.transpose() * rb, ra.transpose() * (pb - pa));
+            let truth = V::from(pair.truth.normal);
             let mut walk = |from: [f64; 3]| {
-                deep.penetration(&a, &b, turn, shift, ra.transpose() * V::from(from))
-                    .expect("a start that has hubs")
+                let walked = deep.penetration(&a, &b, turn, shift, ra.transpose() * V::from(from));
+                let (depth, n) = walked.expect("a start that has hubs");
+                (depth, ra * n)
             };
-            let (depth, n) = walk(pair.truth.normal);
-            assert!(
-                (depth - least).abs() < 1e-12,
-                "{name}: {depth} from the truth, {least}"
-            );
-            assert!(
-                (ra * n - V::from(pair.truth.normal)).norm() < 1e-6,
-                "{name}"
-            );
-            for start in Start::GUESSES {
-                let (depth, n) = walk(start.direction(&pair.truth).expect("a guess"));
-                let facet = facets
-                    .iter()
-                    .any(|f| (f.0 - n).norm() < 1e-9 && (f.1 - depth).abs() < 1e-12);
-                assert!(facet, "{name}: {depth} along {n} is no facet");
+            let h = |n: V| measure::support_value(&libraries, pair, &n.normalize().into());
+            let least = pair.truth.depth;
+            let guess = |start: Start| start.direction(&pair.truth).expect("a guess");
+            let [five, twenty_five, forty_five] = Start::GUESSES.map(guess);
+            let found = [truth.into(), five, twenty_five, forty_five].map(&mut walk);
+            for (depth, n) in found {
+                assert!((h(n) - depth).abs() < 1e-12, "{name}: {depth}, {}", h(n));
                 assert!(depth >= least - 1e-12, "{name}: {depth} below {least}");
-                // Nearer planes around would pass nearer than this one along nearby normals.
-                let h = |n: V| {
-                    let far = |v: &[V], n: V| v.iter().map(|p| n.dot(p)).fold(f64::MIN, f64::max);
-                    far(&mesh.vertices, n) + far(&placed, -n)
-                };
-                for around in &facets {
-                    let near = (n + (around.0 - n).cap_magnitude(1e-4)).normalize();
-                    assert!(h(near) >= depth - 1e-12, "{name}: not a local minimum");
+                // To each neighbour of the middle of a cube of 27.
+                for k in (0..27_i32).filter(|k| *k != 13) {
+                    let to = [k % 3, k / 3 % 3, k / 9].map(|x| f64::from(x - 1));
+                    let beside = h(n + 1e-4 * V::from(to));
+                    assert!(beside >= depth - 1e-12, "{name}: not a local minimum");
                 }
-                global += usize::from(start == Start::Five && depth < least + 1e-12);
             }
+            let [(depth, n), (from_five, _), ..] = found;
+            assert!((depth - least).abs() < 1e-12, "{name}: {depth}, {least}");
+            assert!((n - truth).norm() < 1e-6, "{name}");
+            global += usize::from(from_five < least + 1e-12);
         }
         assert!(
             global * 100 >= scene.pairs.len() * 95,

@@ -34,6 +34,13 @@ fn cmake(args: impl IntoIterator<Item = impl AsRef<OsStr>>) {
     must_succeed(Command::new("cmake").args(args), "cmake");
 }
 
+/// Configures a folder in another.
+fn configure(source: &Path, build: &Path) -> Command {
+    let mut cmake = Command::new("cmake");
+    cmake.arg("-S").arg(source).arg("-B").arg(build);
+    cmake
+}
+
 fn c_compiler() -> Command {
     harness::compile_with(&harness::compiler(false))
 }
@@ -84,16 +91,9 @@ impl Cargo {
 }
 
 fn build_library(build: &Path, prefix: &Path, cargo: Cargo, options: &[OsString]) {
-    let mut configure = Command::new("cmake");
-    configure
-        .arg("-S")
-        .arg(root().join("cmake"))
-        .arg("-B")
-        .arg(build)
-        .arg(define("CMAKE_INSTALL_PREFIX", prefix))
-        .args(cargo.options())
-        .args(options);
-    must_succeed(&mut configure, "cmake");
+    let mut configure = configure(&root().join("cmake"), build);
+    configure.arg(define("CMAKE_INSTALL_PREFIX", prefix));
+    must_succeed(configure.args(cargo.options()).args(options), "cmake");
     cargo.build(build);
 }
 
@@ -120,14 +120,8 @@ fn consumer(name: &str, options: &[OsString]) -> PathBuf {
 /// The same where the library is built as a part of it.
 fn consumer_with(name: &str, cargo: Cargo, options: &[OsString]) -> PathBuf {
     let build = fresh(name);
-    let mut configure = Command::new("cmake");
-    configure
-        .arg("-S")
-        .arg(root().join("c-tests/packaging/consumer"))
-        .arg("-B")
-        .arg(&build)
-        .args(options);
-    must_succeed(&mut configure, "cmake");
+    let source = root().join("c-tests/packaging/consumer");
+    must_succeed(configure(&source, &build).args(options), "cmake");
     cargo.build(&build);
     build
 }
@@ -310,20 +304,13 @@ fn a_missing_or_old_rust_is_named() {
             "no such toolchain",
         ),
     ] {
-        let mut configure = Command::new("cmake");
-        configure
-            .arg("-S")
-            .arg(root().join("cmake"))
-            .arg("-B")
-            .arg(dir.join(name))
-            // find_program finds nothing anywhere.
-            .args([
-                "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF",
-                "-DCMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH=OFF",
-            ])
-            .env("CARGO_HOME", &dir)
-            .env("HOME", &dir)
-            .arg(option);
+        let mut configure = configure(&root().join("cmake"), &dir.join(name));
+        // find_program finds nothing anywhere.
+        for place in ["CMAKE_SYSTEM_PATH", "SYSTEM_ENVIRONMENT_PATH"] {
+            configure.arg(define(&format!("CMAKE_FIND_USE_{place}"), "OFF"));
+        }
+        configure.env("CARGO_HOME", &dir).env("HOME", &dir);
+        configure.arg(option);
         let said = configure.output().expect("cmake runs");
         assert!(!said.status.success(), "{name}");
         let said = String::from_utf8_lossy(&said.stderr);
@@ -358,12 +345,7 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
             unpack.arg("-xf").arg(archive.trim()).arg("-C").arg(&place);
             must_succeed(unpack.arg("--strip-components=1"), "tar");
             let build = place.join("build");
-            let mut configure = Command::new("cmake");
-            configure
-                .arg("-S")
-                .arg(place.join("cmake"))
-                .arg("-B")
-                .arg(&build);
+            let mut configure = configure(&place.join("cmake"), &build);
             must_succeed(configure.arg(precision_option()), "cmake");
             let mut make = Command::new("cmake");
             make.arg("--build").arg(&build);

@@ -59,13 +59,11 @@ impl Results {
     }
 }
 
-fn markdown<const N: usize>(
-    head: [&str; N],
-    lines: impl IntoIterator<Item = [String; N]>,
-) -> String {
+/// The head's cells are between bars.
+fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
     let mut table = Table::new();
     table.load_style(ASCII_MARKDOWN);
-    table.set_header(head);
+    table.set_header(head.split('|'));
     for line in lines {
         table.add_row(line);
     }
@@ -110,18 +108,9 @@ fn times_faster(rows: &[Row]) -> String {
             faster.to_string(),
         ]
     });
-    markdown(
-        [
-            "pair",
-            "local, EPA 1e-6",
-            "local, EPA 1e-10",
-            "minimum, EPA 1e-6",
-            "Algorithm 4/5, EPA 1e-6",
-            "Algorithm 4/5, EPA 1e-10",
-            "*in the paper*",
-        ],
-        lines,
-    )
+    let head = "pair|local, EPA 1e-6|local, EPA 1e-10|minimum, EPA 1e-6|\
+                Algorithm 4/5, EPA 1e-6|Algorithm 4/5, EPA 1e-10|*in the paper*";
+    markdown(head, lines)
 }
 
 fn supports(row: Option<&Row>) -> String {
@@ -152,19 +141,9 @@ fn coherent(rows: &[Row]) -> String {
             until(set, "minimum"),
         ]
     });
-    markdown(
-        [
-            "pair",
-            "local, warm, 0.1°",
-            "1°",
-            "10°",
-            "local, cold",
-            "libccd EPA",
-            "local: warm costs as much as cold from",
-            "minimum: from",
-        ],
-        lines,
-    )
+    let head = "pair|local, warm, 0.1°|1°|10°|local, cold|libccd EPA|\
+                local: warm costs as much as cold from|minimum: from";
+    markdown(head, lines)
 }
 
 fn recorded(rows: &[Row]) -> String {
@@ -180,19 +159,9 @@ fn recorded(rows: &[Row]) -> String {
             format!("{:.2}", r.nonminimal + r.shallow + r.missed),
         ]
     });
-    markdown(
-        [
-            "method",
-            "queries",
-            "overlaps",
-            "supports",
-            "ns",
-            "mean error, m",
-            "largest, m",
-            "off by more than 1 mm, %",
-        ],
-        lines,
-    )
+    let head = "method|queries|overlaps|supports|ns|mean error, m|largest, m|\
+                off by more than 1 mm, %";
+    markdown(head, lines)
 }
 
 fn instructions(split: &[Split]) -> String {
@@ -207,17 +176,8 @@ fn instructions(split: &[Split]) -> String {
             format!("{:.0}", 100.0 * s.callbacks / total),
         ]
     });
-    markdown(
-        [
-            "pair",
-            "method",
-            "instructions",
-            "support functions",
-            "solver",
-            "support functions, %",
-        ],
-        lines,
-    )
+    let head = "pair|method|instructions|support functions|solver|support functions, %";
+    markdown(head, lines)
 }
 
 /// Writes the page's tables between their marks.
