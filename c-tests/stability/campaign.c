@@ -30,15 +30,6 @@ static int by_value(const void *x, const void *y)
     return (a > b) - (a < b);
 }
 
-static int count_fault(const row_t *r, int fault)
-{
-    int bit;
-    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
-        if (fault == 1 << bit)
-            return r->count[bit];
-    return 0;
-}
-
 static void tally(row_t *r, const answer_t *x, const pair_t *p, int faults)
 {
     int bit;
@@ -67,13 +58,14 @@ static void number(const char *format, double x)
 
 static void report(const char *name, const char *category, row_t *r)
 {
-    static const int columns[] = {FAULT_LOOP, FAULT_CRASH, FAULT_NAN, FAULT_DIR0, FAULT_MISS_DEEP, FAULT_MISS_SHALLOW,
-                                  FAULT_FALSE_HIT, FAULT_OVER, FAULT_UNDER, FAULT_ZERO, FAULT_UNSOUND, FAULT_DIR_BAD};
+    static const int columns[] = {FAULT_BIT_LOOP,      FAULT_BIT_CRASH,        FAULT_BIT_NAN,       FAULT_BIT_DIR0,
+                                  FAULT_BIT_MISS_DEEP, FAULT_BIT_MISS_SHALLOW, FAULT_BIT_FALSE_HIT, FAULT_BIT_OVER,
+                                  FAULT_BIT_UNDER,     FAULT_BIT_ZERO,         FAULT_BIT_UNSOUND,   FAULT_BIT_DIR_BAD};
     size_t i;
     double n = r->asked ? r->asked : 1;
     printf("| %s | %s |", category, name);
     for (i = 0; i < sizeof columns / sizeof columns[0]; i++)
-        printf(" %.1f |", 100 * count_fault(r, columns[i]) / n);
+        printf(" %.1f |", 100 * r->count[columns[i]] / n);
     qsort(r->errors, (size_t)r->overlaps, sizeof *r->errors, by_value);
     number(" %.2g |", r->most);
     number(" %.1e |", r->least);
@@ -118,18 +110,20 @@ int main(int argc, char **argv)
     /* [entry][category] at the default tolerance, and the fine one for ours */
     static row_t table[ENTRIES][CATEGORY_COUNT], fine[ENTRIES][CATEGORY_COUNT];
     static pair_t p;
+    double *errors;
     if (pairs < 1) {
         fprintf(stderr, "usage: campaign [pairs a category [tie rule [category [group]]]]\n");
         return 2;
     }
     judge_begin();
+    errors = (double *)malloc(sizeof(double) * 2 * ENTRIES * CATEGORY_COUNT * (size_t)pairs);
+    if (!errors)
+        return 2;
     for (k = 0; k < (int)ENTRIES; k++)
         for (category = 0; category < CATEGORY_COUNT; category++) {
             table[k][category].least = fine[k][category].least = HUGE_VAL;
-            table[k][category].errors = (double *)malloc(sizeof(double) * (size_t)pairs);
-            fine[k][category].errors = (double *)malloc(sizeof(double) * (size_t)pairs);
-            if (!table[k][category].errors || !fine[k][category].errors)
-                return 2;
+            table[k][category].errors = errors + 2 * (k * CATEGORY_COUNT + category) * (size_t)pairs;
+            fine[k][category].errors = table[k][category].errors + pairs;
         }
     for (category = 0; category < CATEGORY_COUNT; category++) {
         if (only >= 0 && category != only)
@@ -206,10 +200,6 @@ int main(int argc, char **argv)
                 broken += n + m;
             }
     printf("%d rows, %d broken promises\n", rows, broken);
-    for (k = 0; k < (int)ENTRIES; k++)
-        for (category = 0; category < CATEGORY_COUNT; category++) {
-            free(table[k][category].errors);
-            free(fine[k][category].errors);
-        }
+    free(errors);
     return broken > 0;
 }

@@ -33,14 +33,13 @@ static void describe(const answer_t *x, char text[32])
         snprintf(text, 32, "%.8g%s", x->depth, x->code == CCD_LIMIT ? " (limit)" : "");
 }
 
-static void check(const configuration_t *c, void *context)
+static void check(const configuration_t *c)
 {
     truth_t truth = truth_depth(&c->a, &c->b);
     double tol = tolerance(TOL_TIGHT) * pair_size(&c->a, &c->b);
     char text[ENTRIES][32], libccd[96] = "";
     int i, bad = 0, theirs = 0;
     question_t q;
-    (void)context;
     if (c->not_single && in_single())
         return;
     q = question(&c->a, &c->b, tol, &truth);
@@ -97,16 +96,13 @@ static void check(const configuration_t *c, void *context)
 
 int main(int argc, char **argv)
 {
-    configuration_run_t run;
     int i;
-    run.visit = check;
-    run.context = NULL;
     ledger = argc > 1 && strcmp(argv[1], "--ledger") == 0;
     group = argc > 1 && !ledger ? argv[1] : NULL;
     judge_begin();
     if (ledger)
         printf("| configuration | true depth | libccd MPR | libccd GJK | our MPR | our GJK |\n|---|---|---|---|---|---|\n");
-    configurations_all(&run);
+    configurations_all(check);
     if (!ledger) {
         for (i = 0; i < (int)ENTRIES; i++)
             if (!entries[i].system && entry_in(&entries[i], group))

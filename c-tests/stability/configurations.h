@@ -24,12 +24,7 @@ typedef struct {
     int not_single;  /* the difference is below float's resolution */
 } configuration_t;
 
-typedef void (*configuration_visitor_t)(const configuration_t *c, void *context);
-
-typedef struct {
-    configuration_visitor_t visit;
-    void *context;
-} configuration_run_t;
+typedef void configuration_visit_t(const configuration_t *c);
 
 /* --- a shape as data ----------------------------------------------------------- */
 
@@ -400,7 +395,7 @@ static inline configuration_t configuration(const char *id, const char *what, sh
     return c;
 }
 
-static inline void visit_row(const configuration_run_t *run, const configuration_row_t *row)
+static inline void visit_row(configuration_visit_t *visit, const configuration_row_t *row)
 {
     static const double offsets[] = {0, 60, 1e4};
     configuration_t c = configuration(row->id, row->what, body_shape(&row->a), body_shape(&row->b), row->expected,
@@ -422,12 +417,12 @@ static inline void visit_row(const configuration_run_t *run, const configuration
             /* the roundings of the positions themselves */
             moved.within += 4 * real_ulp() * offsets[i];
         }
-        run->visit(&moved, run->context);
+        visit(&moved);
     }
 }
 
 /* Millimetre cubes at every scale. */
-static inline void visit_scaled(const configuration_run_t *run)
+static inline void visit_scaled(configuration_visit_t *visit)
 {
     int i;
     for (i = -6; i <= 6; i++) {
@@ -438,13 +433,13 @@ static inline void visit_scaled(const configuration_run_t *run)
         snprintf(id, sizeof id, "T07 x1e%d", i);
         shape_move(&b, 8e-4 * s, 1e-4 * s, 5e-5 * s);
         c = configuration(id, "millimetre cubes", a, b, 2e-4 * s, (1e-15 + in_single() * 1e-9) * s);
-        run->visit(&c, run->context);
+        visit(&c);
     }
 }
 
 /* A cube and the same cube beside it along its own y, a gap of a few ulps between them:
  * `gaps` in metres, in cubes where those are larger than a metre, and the last always. */
-static inline void visit_kissing(const configuration_run_t *run, const char *name, const double frame[9], double lift,
+static inline void visit_kissing(configuration_visit_t *visit, const char *name, const double frame[9], double lift,
                                  const double *gaps, int n, double within)
 {
     static const double dims[] = {.01, .25, .5, 10, 1000};
@@ -463,11 +458,11 @@ static inline void visit_kissing(const configuration_run_t *run, const char *nam
             c = configuration(id, "kissing cubes", a, b, -gap, within * dim);
             c.touching = fabs(gap) < 10 * real_ulp() * dim;
             c.not_single = fabs(gaps[k]) > 1e-9;
-            run->visit(&c, run->context);
+            visit(&c);
         }
 }
 
-static inline void configurations_all(const configuration_run_t *run)
+static inline void configurations_all(configuration_visit_t *visit)
 {
     static const double gaps[] = {0, 1e-16, 2.5e-16, 1e-15, -1e-16, -2.5e-16, -1e-15, -1e-6};
     static const double fcl_frame[9] = {
@@ -476,11 +471,11 @@ static inline void configurations_all(const configuration_run_t *run)
     double frame[9];
     size_t i;
     for (i = 0; i < sizeof configuration_rows / sizeof configuration_rows[0]; i++)
-        visit_row(run, &configuration_rows[i]);
-    visit_scaled(run);
+        visit_row(visit, &configuration_rows[i]);
+    visit_scaled(visit);
     rotation_quaternion(.3, .5, -.2, .7, frame);
-    visit_kissing(run, "T15", frame, 0, gaps, 8, 1e-15 + in_single() * 1e-6);
-    visit_kissing(run, "FCL #493", fcl_frame, 5, gaps, 7, 20 * real_ulp());
+    visit_kissing(visit, "T15", frame, 0, gaps, 8, 1e-15 + in_single() * 1e-6);
+    visit_kissing(visit, "FCL #493", fcl_frame, 5, gaps, 7, 20 * real_ulp());
 }
 
 #endif
