@@ -501,6 +501,9 @@ static inline int judge_witness(const entry_t *e, const answer_t *x, const shape
  * may be above the least depth; MPR_POINTS support points later it is only LATE. */
 enum { MPR_POINTS = 160 };
 
+/* After so many a minimum is given up: the compatible calls cannot say so. */
+enum { MINIMUM_POINTS = 350 };
+
 static inline int mpr_within(double depth, double least, double tol, double noise, unsigned long supports)
 {
     least = fmax(least, 0);
@@ -624,7 +627,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (entry_is_minimum(e)) {
         if (faults & (FAULT_OVER | FAULT_UNDER))
             faults |= FAULT_NOT_MINIMUM;
-        const double within = q->surface == ALL_AROUND || x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_PROMISED) * t->depth) : q->tol;
+        const int at_limit = x->code == CCD_LIMIT || (!x->has_proof && x->calls / 2 >= MINIMUM_POINTS);
+        const double within = q->surface == ALL_AROUND || at_limit ? fmax(q->tol, tolerance(TOL_PROMISED) * t->depth) : q->tol;
         if (!(x->depth <= fmax(t->depth, 0) + within + gap + 2 * q->noise))
             faults |= FAULT_NOT_MINIMUM;
         if (e->ask == ASK_PROVEN && x->code == CCD_HIT

@@ -213,6 +213,12 @@ impl Cores {
         normalised(&n)
     }
 
+    /// Are both objects smooth, and neither a ball nor a disc? A hull has a ring for them.
+    #[inline(always)]
+    pub fn is_curved(&self) -> bool {
+        self.parts.iter().all(|part| part.radius < 0.0)
+    }
+
     /// What was foretold: has that come true?
     pub fn learn(&mut self, h: Real, before: Real) {
         self.is_at = h - self.foretold <= MISSED * (before - self.foretold);

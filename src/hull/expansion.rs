@@ -405,9 +405,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
     // Ends: a turn asks, up to the caps (outside, to the room or [`Progress::circles`]), or
     // moves the target, by a tenth of the error until that is half of what is allowed.
     loop {
-        if set.is_full() {
-            return Ok(End::NoRoom);
-        }
         if set.len() >= MANY && !progress.coarse {
             progress.coarsen();
         }
@@ -436,6 +433,9 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
                 Some(Inserted::NoRoom) => return Ok(End::NoRoom),
                 None => {}
             }
+        }
+        if set.is_full() {
+            return Ok(End::NoRoom);
         }
         let (dir, aim) = progress.aim(set, hull, &top, &inquiry.lowest);
         let Some(n) = normalised(&dir).or_else(|| unit(&hull.normal(top.face))) else {

@@ -24,7 +24,7 @@ use crate::gjk::overlap;
 use crate::hull::expansion::{self, End, Limits, Progress, expand};
 use crate::hull::polytope::Polytope;
 use crate::hull::shallow::{Handed, Try};
-use crate::hull::start::{self, Ball};
+use crate::hull::start;
 use crate::known::mark;
 use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
@@ -34,7 +34,7 @@ use crate::math::{Real, Vec3, larger, unit};
 ///
 /// In each room, a closed surface of V points has 2V − 4 faces, and some are left over for a
 /// fan, which is made before the faces that it replaces are freed.
-pub const FIRST: (usize, usize) = (24, 48);
+pub const FIRST: (usize, usize) = (26, 48);
 /// Of the second, 30 KB: enough for the 160 support points of an MPR query, of which a few make no
 /// corner. (Eight faces more, and the room that is lent after it ends beyond 44 KB of stack.)
 const SECOND: (usize, usize) = (162, 320);
@@ -170,10 +170,8 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
 /// A way to a first tetrahedron.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
-    /// The portal of the try without a hull, else [`start::known`].
+    /// [`start::ring`], else the portal of the try without a hull, else [`start::known`].
     Known,
-    /// [`start::ring`].
-    Ring,
     /// [`start::solid`].
     Solid,
     /// The corners around the origin that the distance algorithm finds.
@@ -181,7 +179,7 @@ enum Way {
 }
 
 /// In the order in which they are tried: what costs least comes first.
-const WAYS: [Way; 4] = [Way::Known, Way::Ring, Way::Solid, Way::Surround];
+const WAYS: [Way; 3] = [Way::Known, Way::Solid, Way::Surround];
 
 /// A query on its way.
 struct Search<'q, 'r, A, B> {
@@ -305,26 +303,14 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         way: Way,
         start: &mut Handed,
     ) -> Result<Option<[usize; 4]>, Stop> {
-        let Handed {
-            set,
-            names,
-            low,
-            radius,
-            ..
-        } = start;
+        let Handed { set, names, .. } = start;
         Ok(match way {
-            Way::Known if names[1] > 0 => Some(names.map(usize::from)),
-            Way::Known => start::known(&set.v(0), set.len() - 1, |k| set.v(k + 1))
-                .map(|[a, b, c]| [0, a + 1, b + 1, c + 1]),
-            Way::Ring if *low > 0 => {
-                let ball = Ball::known(set, usize::from(*low), *radius);
-                let within = larger(
-                    self.request.limits.gap * self.inquiry.lowest.depth,
-                    self.tolerance(),
-                );
-                Some(start::ring(&mut self.inquiry, set, &ball, within)?)
-            }
-            Way::Ring => None,
+            Way::Known => match start::ring(&mut self.inquiry, set, self.request.limits)? {
+                Some(ring) => Some(ring),
+                None if names[1] > 0 => Some(names.map(usize::from)),
+                None => start::known(&set.v(0), set.len() - 1, |k| set.v(k + 1))
+                    .map(|[a, b, c]| [0, a + 1, b + 1, c + 1]),
+            },
             Way::Solid => start::solid(&mut self.inquiry, set)?,
             Way::Surround => Some(self.surround(set)?),
         })
@@ -353,10 +339,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 ..
             } = &mut *start;
             // Of the hull from here on.
-            if names.is_some() || way == Way::Ring {
-                if let Some((n, point)) = opposite.take() {
-                    set.push(&n, &point);
-                }
+            if let Some((n, point)) = opposite.take() {
+                set.push(&n, &point);
             }
             let Some(names) = names else {
                 continue;
@@ -507,12 +491,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         let known = |k: usize| (k + 1 < set.len()).then(|| set.witnesses(k + 1));
         self.seen.rest(&known, self.hit);
-    }
-
-    fn tolerance(&self) -> Real {
-        self.inquiry
-            .precision
-            .tolerance(self.request.limits.tolerance)
     }
 
     /// Puts the apex into the set as point 0, `first` as point 1, and the points that the last

@@ -122,6 +122,13 @@ impl View {
         None
     }
 
+    /// Is the point on the ray, or so near to it that the minimum of a ball around the apex is no lower?
+    /// `far`: |c|.
+    #[inline(always)]
+    pub fn is_at(&self, tolerance: Real, far: Real) -> bool {
+        -self.from <= 0.5 * tolerance * far * far * far
+    }
+
     /// The way that the lowest direction is to be tilted by, as [`start::tilt`] has it, and
     /// whether there is any. `far`: |c|; `length`: from there to where the ray leaves D, about.
     #[inline(always)]

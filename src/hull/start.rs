@@ -13,7 +13,7 @@
 //! support plane by, for a ball both are ½ρ|n′ − n|², and ρ = (e + e′) / |n′ − n|². Where
 //! the next step promises less than a quarter of the tolerance, three points in a ring
 //! around the last direction are the face; the ring is as wide as a face may be that bounds
-//! a ball's distance to the tolerance. In a warm query the points of the last proof must tell of
+//! a ball's distance to the tolerance. The lowest point and the two that were found nearest to it must tell of
 //! one ball: else the pair is not round.
 //!
 //! *Else* a small portal ([`crate::hull::portal`]): seen along the axis from the apex through the
@@ -30,31 +30,28 @@
 //! does the objects are apart. That tilt is small where a contact is shallow, and where n is
 //! near the minimum, as a state has it.
 
+use crate::hull::expansion::Limits;
 use crate::known::support::SupportMap;
-use crate::known::support_set::{Asked, Inquiry, Stop, SupportSet};
+use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, lesser, normalised, perpendicular, unit};
 
 // Measured: support points of the MPR calls in the mean of sixteen pair sets and the recorded
 // contacts (`cargo bench -p charts -- record`), when one number changes alone.
 
-/// Steps on the ball. Measured: with 3 shallow ellipsoids take 11 % more, 10 change nothing.
+/// Steps on the ball. Measured: with 3 shallow ellipsoids take 5 % more.
 const STEPS: usize = 6;
-/// Steps on the ball that go no farther than the depth allows. Measured: with 1 misses take 5 %
-/// more, without a bound the shallowest contacts of a random mix 20 %.
-const ALLOWED: usize = 2;
 /// A direction is tilted by this much of what leaves the known points no support value: at 1
-/// itself a separation hardly shows. Measured: 1.05 to 1.3 are the same; without
-/// the bound on a step to the ball's minimum contacts take 8 % more, misses 17 %.
+/// itself a separation hardly shows. Measured: 1.05 to 1.3 are the same.
 const TILT: Real = 1.15;
-/// |n′ − n|² above which a first direction has nothing to do with the way from the apex: 31
-/// degrees. Measured for GJK: 0.6 costs hulls 2.5 % and contacts 1 %, 0.06 costs less than 1 %.
+/// |n′ − n|² above which two directions have nothing to do with each other: 31 degrees. Measured for GJK: 0.6
+/// costs hulls 2.5 % and contacts 1 %, 0.06 costs less than 1 %; for the ball 0.06 costs shallow
+/// ellipsoids 3 %.
 const AWAY: Real = 0.3;
 /// Relative difference of e and e′ up to which two samples are of one ball. Measured: with
-/// 0.03 shallow ellipsoids take 18 % more, with 0.3 the mean is 0.6 % more.
+/// 0.03 shallow ellipsoids take 5 % more, with 0.3 shallow capsules 7 %.
 const ALIKE: Real = 0.1;
 /// The square of the sine of the angle at one of three points below which they lie on a line.
-/// Measured: warm ellipsoids take 20 % more without the ball, contacts 6 % with it for pairs
-/// that it does not fit; 0.01 to 0.3 change neither by 0.3 %.
+/// Measured: with 0.01 capsules in motion take 2 % more, with 0.3 ellipsoids 3 %.
 const BROAD: Real = 0.1;
 /// The share of the size below which known points are no good measure of an extent. Insensitive: 0.01
 /// and 0.2 tried, no pair set takes 0.1 % more.
@@ -63,9 +60,9 @@ const LITTLE: Real = 0.05;
 /// plane. Measured: without the second and third misses take 4.6 % more, with a fourth the same.
 const GROWTH: [Real; 3] = [1.0, 1.5, 2.25];
 /// How wide a portal may be, for each unit of the origin's distance from its edge, and of the
-/// edge's length. Measured: 2 and 3 for the first cost deep boxes and small motions 0.5 and
-/// 2 %; 0.3 to 0.9 for the second change contacts by 0.7 %.
-const WIDE: [Real; 2] = [2.5, 0.6];
+/// edge's length. Measured: 2 and 2.5 for the first cost contacts 0.8 and 0.6 %; 0.45 and 0.8 for the second
+/// 1.9 and 0.7 %.
+const WIDE: [Real; 2] = [3.0, 0.6];
 
 /// Is a direction so far from another that samples along the two are no neighbours?
 #[inline(always)]
@@ -133,52 +130,47 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// With this lowest sample.
-    pub fn known<const P: usize>(set: &SupportSet<P>, low: usize, radius: Real) -> Self {
-        let low = Sample::of(set.direction(low), set.v(low));
-        Self { low, radius }
-    }
-
-    /// The lowest sample.
-    pub fn low(&self) -> &Sample {
-        &self.low
-    }
-
-    /// The radius, metres.
-    pub fn radius(&self) -> Real {
-        self.radius
-    }
-
-    /// Around the apex.
+    /// The one that known points tell of: the lowest, and the two whose directions are nearest, not where
+    /// these lie on a line: a capsule or an edge over an edge is round in one direction alone.
     #[inline(always)]
-    pub fn around(apex: &Vec3, low: Sample) -> Self {
+    pub fn seen(
+        samples: impl Iterator<Item = Sample> + Clone,
+        dir: &Vec3,
+        rounding: Real,
+    ) -> Option<Self> {
+        let low = samples.clone().find(|sample| sample.n == *dir)?;
+        let mut near = [(AWAY, Vec3::zeros(), 0.0); 2];
+        for Sample { n, s, .. } in samples {
+            let far2 = (n - low.n).norm_squared();
+            let between = s - low.s;
+            if far2 > 0.0 && far2 < near[1].0 {
+                near[1] = (
+                    far2,
+                    between,
+                    radius([&low.n, &n], &between, rounding).unwrap_or(0.0),
+                );
+                if far2 < near[0].0 {
+                    near.swap(0, 1);
+                }
+            }
+        }
+        let [(_, a, radius), (_, b, other)] = near;
+        let broad = a.cross(&b).norm_squared() > BROAD * (a.norm_squared() * b.norm_squared());
+        (radius > 0.0 && other > 0.0 && broad).then_some(Self { low, radius })
+    }
+
+    /// The one around the apex.
+    #[inline(always)]
+    fn around(apex: &Vec3, low: Sample) -> Self {
         let radius = low.n.dot(&(low.s - apex));
         Self { low, radius }
     }
 
-    /// Do these samples tell of a ball too, as one does with the lowest? Not where they lie on a line with
-    /// that: a capsule or an edge over an edge is round in one direction alone.
+    /// Is the ball's minimum no lower? It is by off² / 2 ahead, about.
     #[inline(always)]
-    pub fn is_known(&mut self, samples: impl Iterator<Item = Sample>, rounding: Real) -> bool {
-        let mut first = None;
-        let mut last = Vec3::zeros();
-        for Sample { n, s, .. } in samples {
-            last = s - self.low.s;
-            first = first.or(Some(last));
-            match radius([&self.low.n, &n], &last, rounding) {
-                Some(radius) => self.radius = radius,
-                None => return false,
-            }
-        }
-        first.is_some_and(|a| {
-            a.cross(&last).norm_squared() > BROAD * (a.norm_squared() * last.norm_squared())
-        })
-    }
-
-    /// Is this sample of one ball with the lowest?
-    #[inline(always)]
-    pub fn is_of(&self, n: &Vec3, s: &Vec3, rounding: Real) -> bool {
-        radius([&self.low.n, n], &(s - self.low.s), rounding).is_some()
+    fn is_lowest(&self, within: Real) -> bool {
+        let (across, ahead) = self.aside();
+        !(across.norm_squared() > 0.5 * within * ahead)
     }
 
     /// Across the direction of the lowest sample, from the origin; and how far the origin is from the
@@ -188,76 +180,53 @@ impl Ball {
         let Self { low, radius } = self;
         (low.s - low.n * low.h, radius - low.h)
     }
-
-    /// Is the ball's minimum no lower? It is by off² / 2 ahead, about.
-    #[inline(always)]
-    pub fn is_lowest(&self, within: Real) -> bool {
-        let (across, ahead) = self.aside();
-        !(across.norm_squared() > 0.5 * within * ahead)
-    }
-
-    /// Where to ask for the ball's minimum, in step number `step`; not unit.
-    #[inline(always)]
-    pub fn aim(&self, step: usize) -> Option<Vec3> {
-        let (across, ahead) = self.aside();
-        let off2 = across.norm_squared();
-        // Samples 45 degrees apart are no neighbours.
-        if step == 0 && off2 > ahead * ahead {
-            return None;
-        }
-        // From the ball's centre through the origin; the first steps, which may tell a miss, as
-        // far as the depth allows. (All: contacts of a micrometre take 20 % more.)
-        let least = if step < ALLOWED {
-            off2 / (TILT * self.low.h)
-        } else {
-            0.0
-        };
-        Some(self.low.n * larger(ahead, least) - across)
-    }
-
-    /// Goes to the minimum of the ball, and learns from where it is. `ask` answers along a direction,
-    /// or beside it, with the rounding there. The ball, if D is one.
-    #[inline(always)]
-    pub fn followed(
-        mut self,
-        within: impl Fn(Real) -> Real,
-        mut ask: impl FnMut(&Vec3) -> Result<Option<(Sample, Real)>, Stop>,
-    ) -> Result<Option<Self>, Stop> {
-        let mut smooth = false;
-        for step in 0..STEPS {
-            if self.is_lowest(within(self.low.h)) {
-                smooth = true;
-                break;
-            }
-            let Some(n) = self.aim(step).and_then(|way| normalised(&way)) else {
-                break;
-            };
-            let Some((new, rounding)) = ask(&n)? else {
-                return Ok(None);
-            };
-            let radius = radius([&self.low.n, &new.n], &(new.s - self.low.s), rounding);
-            smooth = radius.is_some();
-            self.radius = radius.unwrap_or(self.radius);
-            if new.h < self.low.h {
-                self.low = new;
-            }
-            if !(smooth && self.radius > 1.05 * self.low.h) {
-                break;
-            }
-        }
-        Ok(smooth.then_some(self))
-    }
 }
 
-/// The apex and three points around the ball's direction: the known point farthest aside,
-/// and two asked for; all three where none is known.
+/// The apex and three points around the direction of the ball that D looks like, if it does: the known point
+/// farthest aside, and two asked for; all three where none is known.
 #[inline(always)]
 pub fn ring<A: SupportMap, B: SupportMap, const P: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<P>,
-    ball: &Ball,
-    tolerance: Real,
-) -> Result<[usize; 4], Stop> {
+    limits: &Limits,
+) -> Result<Option<[usize; 4]>, Stop> {
+    let tie = inquiry.precision.tie();
+    let tolerance = inquiry.precision.tolerance(limits.tolerance);
+    let within = |depth| larger(limits.gap * depth, tolerance);
+    let Lowest { depth, dir } = inquiry.lowest;
+    let sample = |i: usize| Sample::of(set.direction(i), set.v(i));
+    let seen = match set.len() {
+        2 => Some(Ball::around(&set.v(0), sample(1))).filter(|ball| ball.is_lowest(within(depth))),
+        len => Ball::seen((1..len).map(sample), &dir, tie),
+    };
+    let Some(mut ball) = seen else {
+        return Ok(None);
+    };
+    let mut smooth = true;
+    for _ in 0..STEPS {
+        if ball.is_lowest(within(ball.low.h)) {
+            break;
+        }
+        let (across, ahead) = ball.aside();
+        // From the ball's centre through the origin.
+        let Some(n) = normalised(&(ball.low.n * ahead - across)).filter(|_| !set.is_full()) else {
+            return Ok(None);
+        };
+        let Asked { h, v: s, .. } = inquiry.ask(set, &n)?;
+        let radius = radius([&ball.low.n, &n], &(s - ball.low.s), tie);
+        smooth = radius.is_some();
+        ball.radius = radius.unwrap_or(ball.radius);
+        if h < ball.low.h {
+            ball.low = Sample { n, s, h };
+        }
+        if !(smooth && ball.radius > 1.05 * ball.low.h) {
+            break;
+        }
+    }
+    if !smooth {
+        return Ok(None);
+    }
+    let tolerance = within(inquiry.lowest.depth);
     // The middle of a triangle with corners at this angle lies a tolerance below the ball.
     let tilt = (2.0 * tolerance / (ball.low.h + tolerance)).sqrt();
     let tilt = tilt.clamp(2e-4, 0.3);
@@ -270,7 +239,6 @@ pub fn ring<A: SupportMap, B: SupportMap, const P: usize>(
             (aside, farthest, old) = (across, far2, i);
         }
     }
-    let tie = inquiry.precision.tie();
     if !(farthest > tie * tie) {
         old = 0;
     }
@@ -293,7 +261,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const P: usize>(
             *name = inquiry.ask(set, &n)?.i;
         }
     }
-    Ok(names)
+    Ok(Some(names))
 }
 
 /// How far the direction of the lowest support plane, of this depth, is tilted towards an origin that

@@ -11,10 +11,9 @@
 use crate::known::support::SupportPoint;
 use crate::math::{Real, Vec3, larger};
 
-/// Points of each object: a portal's, mostly four, and of the rounds after it. Derived; even, two are
-/// compared at a time. Measured on the recorded contacts: with 8 cold ones take 1.5 % more
-/// instructions, 12 cost warm ones 3 %.
-pub const ROOM: usize = 10;
+/// Points of each object: a portal's, mostly four, and of the rounds after it. Even, two are compared at a
+/// time. Measured on the recorded contacts: with 10 hits take 0.8 % more instructions.
+pub const ROOM: usize = 8;
 
 /// Points of one object, coordinate by coordinate. The first one is there in all places that are not
 /// taken.
