@@ -30,8 +30,8 @@ use crate::contacts::pressure::{self, Around, Aside};
 use crate::contacts::seen::Seen;
 use crate::gjk::barycentric;
 use crate::gjk::intersect;
-use crate::gjk::overlap::{self, Proof};
-use crate::gjk::proof::{inner_distance, is_around, proof};
+use crate::gjk::overlap;
+use crate::gjk::proof::{Apex, behind, is_around};
 use crate::gjk::separation;
 use crate::hull::expansion::Limits;
 use crate::hull::global::{self, Arena, Basis, Request};
@@ -117,23 +117,39 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         planar: bool,
     ) -> Result<(), Stop> {
         let mut inquiry = Inquiry::new(&self.md);
-        inquiry.precision.note(&SupportPoint {
+        let met = SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
             v2: hit.point2,
-        });
+        };
+        inquiry.precision.note(&met);
         // A touch within rounding is a miss, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
             return Err(Stop::Apart(hit.normal));
         }
         // A depth of a few times a touch's tells nothing of where.
         let tolerance = larger(settings.tolerance, 4.0 * inquiry.precision.touch());
-        if let (Some(c), true) = (&self.centre, !planar && hit.depth > tolerance) {
-            if is_around(&mut inquiry, c, known, &(hit.normal * hit.depth))? {
-                return Ok(());
-            }
+        // A touch within the tolerance is for support points to tell.
+        if !(hit.depth > tolerance || planar) {
+            return self.touching(&mut inquiry, self.centre.as_ref(), hit, known, tolerance);
         }
-        self.surround(&mut inquiry, self.centre, hit, known, tolerance, planar)
+        if known.points().is_empty() {
+            known.push(&met);
+        }
+        let apex = match self.centre {
+            Some(point) => Apex {
+                point,
+                inside: true,
+            },
+            None => Apex {
+                point: self.md.support(&behind(&hit.normal))?,
+                inside: planar,
+            },
+        };
+        if is_around(&mut inquiry, &apex, known, &(hit.normal * hit.depth))? {
+            return Ok(());
+        }
+        self.touching(&mut inquiry, self.centre.as_ref(), hit, known, tolerance)
     }
 
     /// The same of a solver's answer.
@@ -154,59 +170,36 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
     }
 
-    /// A depth within the tolerance, of which nothing is proven, may be a touch's. Then
-    /// [`Stop::Apart`].
+    /// Shows that the origin lies among support points, known ones and others, and the `centre`,
+    /// where it is trusted. Where a touch, within the tolerance, has witness points that do not
+    /// meet, the points that meet at the origin take their place.
     #[cold]
     #[inline(never)]
     fn touching(
         &self,
-        centre: Option<&SupportPoint>,
-        hit: &mut Penetration,
-        tolerance: Real,
-    ) -> Result<(), Stop> {
-        let mut inquiry = Inquiry::new(&self.md);
-        let known = Known::default();
-        self.surround(&mut inquiry, centre.copied(), hit, &known, tolerance, false)
-    }
-
-    /// Shows that the origin lies among points of D. Where a touch, within the tolerance, has
-    /// witness points that do not meet, the points that meet at the origin take their place.
-    #[inline(never)]
-    fn surround(
-        &self,
         inquiry: &mut Inquiry<'_, A, B>,
-        centre: Option<SupportPoint>,
+        centre: Option<&SupportPoint>,
         hit: &mut Penetration,
         known: &Known,
         tolerance: Real,
-        planar: bool,
     ) -> Result<(), Stop> {
-        let mut set = SupportSet::<PROOF>::EMPTY;
-        let start = match (centre, known.points().is_empty()) {
-            (Some(c), _) => Some(c),
-            (None, true) => Some(self.md.support(&hit.normal)?),
-            (None, false) => None,
-        };
-        for point in start.iter().chain(known.points()) {
+        let mut set = SupportSet::<{ Known::ROOM }>::EMPTY;
+        let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
+        let centre = centre.map(|c| set.push(&Vec3::zeros(), c));
+        for point in known.points() {
             inquiry.precision.note(point);
-            set.push(&Vec3::zeros(), point);
+            // All were asked for near there.
+            set.push(&hit.normal, point);
         }
-        let exit = hit.normal * hit.depth;
-        let kind = match centre {
-            _ if planar => Proof::Planar,
-            // A touch within the tolerance is for support points to tell.
-            Some(_) if hit.depth > tolerance => Proof::Centred,
-            _ => Proof::Solid,
+        let held = overlap::overlap(inquiry, &mut set, centre, &dir)?;
+        let corners = match held.between {
+            Some([p, q]) => [p, q, q, q],
+            None => held.corners.map(|i| set.point(i)),
         };
-        let corners = proof(inquiry, &mut set, kind, &exit)?;
-        let corners = corners.map(|i| set.point(i));
-        let [a, b, c, d] = corners.each_ref();
-        if centre.is_none() {
-            hit.depth_lower = inner_distance([a, b, c, d]).min(hit.depth);
-        }
         if unmet(hit, tolerance) {
-            let inside = barycentric::tetrahedron(&Vec3::zeros(), [&a.v, &b.v, &c.v, &d.v]);
-            let (p1, p2) = barycentric::witnesses(&inside.weights, [a, b, c, d]);
+            let corners = corners.each_ref();
+            let inside = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
+            let (p1, p2) = barycentric::witnesses(&inside.weights, corners);
             // What the rounding of the weights leaves between them.
             let rest = (p1 - p2) * 0.5;
             (hit.point1, hit.point2) = (p1 - rest, p2 + rest);
@@ -413,7 +406,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let found = found.and_then(|proven| {
             if hit.depth <= limits.tolerance && !(hit.depth_lower > 0.0) {
                 seen = Seen::Nothing;
-                self.touching(apex, &mut hit, limits.tolerance)?;
+                let mut inquiry = Inquiry::new(&self.md);
+                let known = Known::default();
+                self.touching(&mut inquiry, None, &mut hit, &known, limits.tolerance)?;
             }
             Ok(proven)
         });
@@ -597,9 +592,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(answer.in_the_middle())
     }
 }
-
-/// Points of the proof of an overlap: those known, the centre, and some more.
-const PROOF: usize = 2 * Known::ROOM;
 
 /// Support points of an MPR query, at most.
 const MPR_SUPPORTS: u64 = 160;

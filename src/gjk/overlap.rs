@@ -78,16 +78,7 @@ fn beyond_first<A: SupportMap, B: SupportMap>(
     let (touch, size2) = (inquiry.precision.touch(), inquiry.precision.size2());
     let way = simplex.add(w, first.v, touch, size2);
     let next = way.and_then(|(way, _)| direction(&way)).unwrap_or(*dir);
-    search(
-        inquiry,
-        &mut set,
-        simplex,
-        next,
-        Proof::Solid,
-        Simplex::add,
-        |_, _, _, _| Ok(None),
-    )?;
-    Ok(())
+    search(inquiry, &mut set, simplex, next, Simplex::add).map(|_| ())
 }
 
 /// Support points after which the portal decides: of a hundred thousand pairs of every kind
@@ -102,91 +93,64 @@ const STALLS: u32 = 3;
 /// at each but few; what is open then is rounding.
 const LAST: u64 = 200;
 
-/// Shows that the objects overlap: the origin is strictly inside D, beyond rounding, or no
-/// direction asked separates. Or [`Stop::Apart`]. Returns the corners of the tetrahedron
-/// that shows it, in the set; of the last simplex, where none did.
-///
-/// `centre` is the index of a point of D that is trusted to be one, and need not be a
-/// support point: the origin is looked for between it and others. `dir`, unit, is asked
-/// first. Other points in the set stand in for a support point where they do as well. The
-/// set has room for four points or more; where it is full, points out of use give way.
-#[inline]
-pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
-    inquiry: &mut Inquiry<'_, A, B>,
-    set: &mut SupportSet<N>,
-    centre: Option<usize>,
-    dir: &Vec3,
-) -> Result<[usize; 4], Stop> {
-    let simplex = match centre {
-        Some(c) => Simplex::around(c, &set.v(c)),
-        None => Simplex::new(),
-    };
-    let known = set.len() > simplex.len();
-    let stand_in = |inquiry: &mut Inquiry<'_, A, B>, set: &mut SupportSet<N>, _: &_, dir: &Vec3| {
-        let touch = inquiry.precision.touch();
-        Ok(if known { set.farther(dir, touch) } else { None })
-    };
-    let add = Simplex::add_called;
-    let held = search(inquiry, set, simplex, *dir, Proof::Solid, add, stand_in)?;
-    Ok(held.corners)
-}
-
-/// What shows that the origin is inside D.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Proof {
-    /// A tetrahedron that holds it.
-    Solid,
-    /// Also a segment or triangle that does, with a corner well inside D: point 0 of the set.
-    Centred,
-    /// Any segment or triangle that does: D lies in a plane, and has no other inside.
-    Planar,
-}
-
-/// What holds the origin.
+/// What shows that the origin is inside D, or that no direction asked separates.
 pub struct Held {
-    /// The indices of the corners in the set, the last one repeated where it is no tetrahedron.
+    /// The indices of the corners in the set of the tetrahedron that holds the origin; of the last
+    /// simplex, where none did, the last one repeated.
     pub corners: [usize; 4],
     /// Where a portal had the last word, and the corners need not hold it: two points that it
     /// lies between.
     pub between: Option<[SupportPoint; 2]>,
 }
 
-impl Held {
-    fn by(corners: [usize; 4]) -> Self {
-        Self {
-            corners,
-            between: None,
-        }
-    }
+/// Shows that the objects overlap: the origin is strictly inside D, beyond rounding, or no
+/// direction asked separates. Or [`Stop::Apart`].
+///
+/// `centre` is the index of a point of D that is trusted to be one, and need not be a
+/// support point: the origin is looked for between it and others. `dir`, unit, is asked
+/// first. Other points in the set stand in for a support point where they do as well. The
+/// set has room for more than four points; where it is full, points out of use give way.
+#[inline]
+pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<N>,
+    centre: Option<usize>,
+    dir: &Vec3,
+) -> Result<Held, Stop> {
+    let simplex = match centre {
+        Some(c) => Simplex::around(c, &set.v(c)),
+        None => Simplex::new(),
+    };
+    search(inquiry, set, simplex, *dir, Simplex::add_called)
 }
 
-/// [`overlap`], from a simplex and a direction to ask. `stand_in` may give the index of a point
-/// of the set that lies beyond the origin along a direction, by more than a touch. `add`:
-/// [`Simplex::add`], or its form that is called.
+/// [`overlap`], from a simplex and a direction to ask. `add`: [`Simplex::add`], or its form that is
+/// called.
 #[inline(always)]
-pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
-    inquiry: &mut Inquiry<'q, A, B>,
+fn search<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<N>,
     mut simplex: Simplex,
     mut dir: Vec3,
-    kind: Proof,
     add: impl Fn(&mut Simplex, usize, Vec3, Real, Real) -> Option<Added>,
-    mut stand_in: impl FnMut(
-        &mut Inquiry<'q, A, B>,
-        &mut SupportSet<N>,
-        &Simplex,
-        &Vec3,
-    ) -> Result<Option<usize>, Stop>,
 ) -> Result<Held, Stop> {
     // The square of the distance from the simplex; and whether points on the other side of
     // it, where it is a triangle, are known.
     let (mut nearest, mut backed) = (Real::INFINITY, false);
     let mut stalls = 0;
+    // A set of four holds no others.
+    let known = N > 4 && set.len() > simplex.len();
     for _ in 0..STEPS {
-        let (w, at, touch) = match stand_in(inquiry, set, &simplex, &dir)? {
+        let touch = inquiry.precision.touch();
+        let other = if known {
+            set.farther(&dir, touch)
+        } else {
+            None
+        };
+        let (w, at, touch) = match other {
             // A corner, by rounding.
             Some(w) if simplex.has(w) => break,
-            Some(w) => (w, set.v(w), inquiry.precision.touch()),
+            Some(w) => (w, set.v(w), touch),
             None => {
                 let place = room(set, &simplex);
                 match inquiry.ask_at(set, place, &dir)? {
@@ -207,12 +171,11 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
                 inquiry.ask_at(set, place, &-dir)?;
             }
             let [i, j, k] = simplex.ids();
-            return Ok(Held::by([i, j, k, w]));
+            return Ok(Held {
+                corners: [i, j, k, w],
+                between: None,
+            });
         };
-        if distance2 <= touch * touch && simplex.proves(kind) {
-            let [i, j, k] = simplex.ids();
-            return Ok(Held::by([i, j, k, k]));
-        }
         // Negated for NaN.
         if !(distance2 > touch * touch && distance2 < nearest) {
             stalls += 1;
@@ -480,9 +443,11 @@ mod tests {
                     let _ = inquiry.ask(&mut set, &r.direction());
                 }
                 let dir = r.direction();
-                let answer = super::overlap(&mut inquiry, &mut set, None, &dir);
+                let answer =
+                    super::overlap(&mut inquiry, &mut set, None, &dir).map(|held| held.corners);
                 let before = md.supports();
-                let again = super::overlap(&mut inquiry, &mut set, None, &dir);
+                let again =
+                    super::overlap(&mut inquiry, &mut set, None, &dir).map(|held| held.corners);
                 if let Some(hit) = truth(kind, gap) {
                     assert_eq!(answer.is_ok(), hit, "kind {kind} gap {gap}");
                     assert_eq!(again.is_ok(), hit, "kind {kind} gap {gap}");

@@ -16,7 +16,6 @@
 //! an origin within rounding of an edge counts as one in the face.
 
 use crate::gjk::barycentric;
-use crate::gjk::overlap::Proof;
 use crate::known::support_set::SupportSet;
 use crate::math::{EPSILON, Real, Vec3, normal, perpendicular, unit};
 
@@ -157,16 +156,6 @@ impl Simplex {
     #[allow(clippy::len_without_is_empty)]
     pub fn len(&self) -> usize {
         self.len
-    }
-
-    /// Does a simplex that holds the target, and is no tetrahedron, show that D does?
-    #[inline(always)]
-    pub fn proves(&self, kind: Proof) -> bool {
-        match kind {
-            Proof::Solid => false,
-            Proof::Centred => self.order.contains(&self.inner),
-            Proof::Planar => self.len > 1,
-        }
     }
 
     /// Adds a corner, one of at most three, wherever it is: [`Simplex::settle`] tells the rest.
