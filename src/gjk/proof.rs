@@ -160,8 +160,9 @@ pub fn behind(n: &Vec3) -> Vec3 {
     aslant / aslant.norm()
 }
 
-/// Tan of the angle of [`behind`].
-const ASLANT: Real = 0.4;
+/// Tan of the angle of [`behind`]. Insensitive: 0.01 to 0.15 tried on the recorded pair sets without
+/// centres, at most 0.7 % of a local minimum's support points; 0 takes 4 % more.
+const ASLANT: Real = 0.05;
 
 /// Steps of [`enclose`] before the distance algorithm takes over. Insensitive: 3 to 18 tried on the
 /// recorded contacts, where mostly it takes two.
