@@ -542,13 +542,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let way = match along::penetration(&self.md, &dir, state.portal(), settings)? {
+        let way = match along::penetration(&self.md, &dir, state.portal(), settings) {
             Ok(way) => way,
-            Err(n) => {
-                let answer = Answer::Miss(n);
-                self.remember(state, &answer)?;
-                return Ok(answer);
-            }
+            Err(stop) => return self.stopped(state, stop),
         };
         let mut known = Known::default();
         for plane in way.portal.iter().flat_map(|p| &p.planes) {

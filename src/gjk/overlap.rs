@@ -23,7 +23,7 @@ use crate::gjk::simplex::{Added, Simplex, direction, room};
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Beyond, Inquiry, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, unit};
-use crate::paper::portal::{Exit, Found, Measure, SupportPlane, find_portal, refine};
+use crate::paper::portal::{Exit, Search, SupportPlane, Until};
 
 /// Do the objects overlap? `centre`, an interior point of D, is trusted.
 #[inline]
@@ -227,35 +227,29 @@ fn decide<A: SupportMap, B: SupportMap>(
     }
     let ray = unit(&-inner.v).unwrap_or(*dir);
     let first = SupportPlane::of(inquiry.md, ray)?;
-    let (mut best, mut budget) = (first, LAST);
-    let found = find_portal(inquiry.md, &first, Some(&inner.v), &mut best, &mut budget)?;
-    let mut between = None;
-    let lowest = match found {
-        Found::Miss(plane) => plane,
+    let mut search = Search {
+        md: inquiry.md,
         // Any portal that has the origin on its inner side decides.
-        Found::Portal(portal) => {
-            let beyond = Real::INFINITY;
-            let normal = Measure::Normal;
-            match refine(
-                inquiry.md,
-                portal,
-                beyond,
-                normal,
-                false,
-                &mut best,
-                &mut budget,
-            )? {
-                Exit::Miss(plane) => plane,
-                Exit::Converged(last, _) | Exit::Limit(Some(last)) => {
-                    let (v1, v2) = last.witnesses();
-                    between = Some([inner, SupportPoint { v: v1 - v2, v1, v2 }]);
-                    best
-                }
-                _ => best,
-            }
-        }
-        Found::Vertex | Found::Touch | Found::Limit => best,
+        tolerance: Real::INFINITY,
+        until: Until::Normal,
+        flat: None,
+        budget: LAST,
+        best: first,
     };
+    let exit = match search.find_portal(&first, Some(&inner.v)) {
+        Ok(Ok(portal)) => search.refine(portal),
+        Ok(Err(exit)) => Ok(exit),
+        Err(stop) => Err(stop),
+    };
+    let between = match exit {
+        Ok(Exit::Converged(last, _) | Exit::Limit(Some(last))) => {
+            let (v1, v2) = last.witnesses();
+            Some([inner, SupportPoint { v: v1 - v2, v1, v2 }])
+        }
+        Err(Stop::Fault(fault)) => return Err(Stop::Fault(fault)),
+        _ => None,
+    };
+    let lowest = search.best;
     inquiry.precision.note(&lowest.point);
     let touch = inquiry.precision.touch();
     // A callback that contradicts itself separates nothing.
