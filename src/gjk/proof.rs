@@ -188,10 +188,12 @@ fn open_side(c: &Vec3, [u, v, w]: [&Vec3; 3], reach2: Real) -> Option<usize> {
     Some(if outside[1] >= most { 1 } else { 2 })
 }
 
-/// Of −c what is across `a`.
+/// Of −c what is across `a`: what rounding leaves along it is taken away.
 #[inline(always)]
 fn across(c: &Vec3, a: &Vec3) -> Vec3 {
-    a * (c.dot(a) / a.norm_squared()) - c
+    let a2 = a.norm_squared();
+    let way = a * (c.dot(a) / a2) - c;
+    way - a * (way.dot(a) / a2)
 }
 
 /// Is the origin in the plane of these, within a touch?
