@@ -66,6 +66,7 @@ mod math;
 mod paper;
 mod query;
 #[cfg(test)]
+#[path = "../c-tests/harness/shapes.rs"]
 mod shapes;
 mod state;
 
