@@ -56,10 +56,6 @@ mod contacts;
 mod ffi;
 mod gjk;
 mod hull;
-#[allow(
-    dead_code,
-    reason = "its callers move onto what is known of a pair one after the other"
-)]
 mod known;
 mod local;
 mod math;
