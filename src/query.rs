@@ -43,13 +43,6 @@ use crate::paper::incremental::{self, Shortcut};
 use crate::paper::planar;
 use crate::state::State;
 
-/// A touch, within the tolerance, whose witness points do not meet? There the points that
-/// meet at the origin of D, which a proof of the overlap knows, are witnesses.
-fn unmet(hit: &Penetration, tolerance: Real) -> bool {
-    let apart = || (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
-    hit.depth <= tolerance && apart() > tolerance
-}
-
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
     /// The Minkowski difference.
@@ -196,7 +189,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Some([p, q]) => [p, q, q, q],
             None => held.corners.map(|i| set.point(i)),
         };
-        if unmet(hit, tolerance) {
+        let apart = hit.point1 - hit.point2 - hit.dir * hit.depth;
+        if hit.depth <= tolerance && apart.norm() > tolerance {
             let corners = corners.each_ref();
             let inside = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
             let (p1, p2) = barycentric::witnesses(&inside.weights, corners);
@@ -238,11 +232,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline]
     pub fn intersect(&self, state: Option<&mut State>) -> Result<bool, Fault> {
         let Some(state) = state else {
-            let answer = match &self.centre {
-                Some(centre) => overlap::from_centre(&self.md, centre),
-                None => overlap::from_direction(&self.md, &self.cold_start()),
-            };
-            return match answer {
+            return match overlap::cold(&self.md, self.centre.as_ref(), || self.cold_start()) {
                 Ok(()) => Ok(true),
                 Err(Stop::Apart(_)) => Ok(false),
                 Err(Stop::Fault(fault)) => Err(fault),
@@ -300,12 +290,31 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         wants_pos: bool,
     ) -> Result<Answer, Fault> {
+        self.as_published(None, state, settings, wants_pos)
+    }
+
+    /// The same among the directions perpendicular to the unit vector `m`.
+    pub fn planar(&self, m: Vec3, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        self.as_published(Some(m), state, settings, false)
+    }
+
+    /// The paper's method; in the plane with unit normal `flat`, where there is one.
+    fn as_published(
+        &self,
+        flat: Option<Vec3>,
+        state: &mut State,
+        settings: &Settings,
+        wants_pos: bool,
+    ) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
         let start = state.leaving().unwrap_or_else(|| self.cold_start());
-        let found = incremental::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
-        let answer = self.proven(found, &mut Known::default(), settings, false)?;
+        let found = match flat {
+            None => incremental::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?,
+            Some(m) => planar::penetration(&self.md, &m, start, settings)?,
+        };
+        let answer = self.proven(found, &mut Known::default(), settings, flat.is_some())?;
         self.remember(state, &answer)?;
         match answer {
             Answer::Hit(mut hit) if wants_pos => {
@@ -568,23 +577,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let (Some(portal), Answer::Hit(_) | Answer::Limit(_)) = (way.portal, &answer) {
             state.keep_portal(portal.planes.map(|plane| plane.normal));
         }
-        Ok(answer.in_the_middle())
-    }
-
-    /// A local minimum among the directions perpendicular to the unit vector `m`.
-    pub fn planar(&self, m: Vec3, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
-            return Ok(Answer::Miss(n));
-        }
-        let start = state.leaving().unwrap_or_else(|| self.cold_start());
-        let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
-        let start = in_plane(start)
-            .or_else(|| in_plane(Vec3::x()))
-            .or_else(|| in_plane(Vec3::y()))
-            .unwrap_or(Vec3::y());
-        let found = planar::penetration(&self.md, &m, start, settings)?;
-        let answer = self.proven(found, &mut Known::default(), settings, true)?;
-        self.remember(state, &answer)?;
         Ok(answer.in_the_middle())
     }
 }

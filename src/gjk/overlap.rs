@@ -25,34 +25,18 @@ use crate::known::support_set::{Beyond, Inquiry, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, unit};
 use crate::paper::portal::{Exit, Search, SupportPlane, Until};
 
-/// Do the objects overlap? `centre`, an interior point of D, is trusted.
+/// Do the objects overlap? `centre`, an interior point of D, is trusted. Without one, from the unit
+/// vector that `first` gives.
 #[inline]
-pub fn from_centre<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    centre: &SupportPoint,
-) -> Result<(), Stop> {
-    // A centre at the origin is no corner to look from.
-    match direction(&-centre.v) {
-        Some(dir) => from(md, Some(centre), &dir),
-        None => from(md, None, &Vec3::x()),
-    }
-}
-
-/// Do the objects overlap? From unit `dir`.
-#[inline]
-pub fn from_direction<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    dir: &Vec3,
-) -> Result<(), Stop> {
-    from(md, None, dir)
-}
-
-#[inline(always)]
-fn from<A: SupportMap, B: SupportMap>(
+pub fn cold<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     centre: Option<&SupportPoint>,
-    dir: &Vec3,
+    first: impl FnOnce() -> Vec3,
 ) -> Result<(), Stop> {
+    // A centre at the origin is no corner to look from.
+    let from_centre = centre.and_then(|c| direction(&-c.v));
+    let centre = centre.filter(|_| from_centre.is_some());
+    let dir = &from_centre.unwrap_or_else(first);
     let mut inquiry = Inquiry::new(md);
     // Most misses are told here, and pay for nothing more.
     let first = inquiry.first(dir, None)?;
@@ -311,7 +295,7 @@ mod tests {
     fn either(a: &Shape, b: &Shape, dir: &Vec3, within_rounding: bool) -> bool {
         let ask = |a: &Shape, b: &Shape, dir: Vec3| {
             let md = MinkowskiDifference::new(a, b);
-            let answer = from_direction(&md, &dir);
+            let answer = cold(&md, None, || dir);
             assert!(md.supports() < 300, "{}", md.supports());
             match answer {
                 Ok(()) => true,
@@ -379,11 +363,11 @@ mod tests {
                     let md = MinkowskiDifference::new(&a, &b);
                     let larger = [scaled(&a, scale), scaled(&b, scale)];
                     let other = MinkowskiDifference::new(&larger[0], &larger[1]);
-                    let one = from_direction(&md, &dir);
+                    let one = cold(&md, None, || dir);
                     if let Some(hit) = truth(kind, gap) {
                         assert_eq!(one.is_ok(), hit);
                     }
-                    assert_eq!(one, from_direction(&other, &dir));
+                    assert_eq!(one, cold(&other, None, || dir));
                     assert_eq!(md.supports(), other.supports());
                 }
             }
@@ -475,7 +459,11 @@ mod tests {
                         v1: Vec3::zeros(),
                         v2: at,
                     };
-                    assert_eq!(from_centre(&md, &centre).is_ok(), gap < 0.0, "{gap}");
+                    assert_eq!(
+                        cold(&md, Some(&centre), Vec3::x).is_ok(),
+                        gap < 0.0,
+                        "{gap}"
+                    );
                 }
                 let at = up * (1.5 + gap);
                 let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
@@ -484,11 +472,15 @@ mod tests {
                     v1: Vec3::zeros(),
                     v2: at,
                 };
-                assert_eq!(from_centre(&md, &centre).is_ok(), gap < 0.0, "{gap}");
+                assert_eq!(
+                    cold(&md, Some(&centre), Vec3::x).is_ok(),
+                    gap < 0.0,
+                    "{gap}"
+                );
             }
         }
         // The same centre.
         let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
-        assert_eq!(from_centre(&md, &SupportPoint::default()), Ok(()));
+        assert_eq!(cold(&md, Some(&SupportPoint::default()), Vec3::x), Ok(()));
     }
 }

@@ -64,21 +64,13 @@ impl Simplex {
         }
     }
 
-    /// One point.
-    #[inline(always)]
-    pub fn of(id: usize, at: &Vec3) -> Self {
-        let mut simplex = Self::new();
-        simplex.add(id, *at, 0.0, 0.0);
-        simplex
-    }
-
     /// One point, well inside D.
     #[inline(always)]
     pub fn around(id: usize, at: &Vec3) -> Self {
-        Self {
-            inner: 0,
-            ..Self::of(id, at)
-        }
+        let mut simplex = Self::new();
+        simplex.add(id, *at, 0.0, 0.0);
+        simplex.inner = 0;
+        simplex
     }
 
     /// The corners' indices, as many as there are corners.
@@ -153,7 +145,6 @@ impl Simplex {
     }
 
     /// How many corners there are: at most three.
-    #[allow(clippy::len_without_is_empty)]
     pub fn len(&self) -> usize {
         self.len
     }
@@ -376,12 +367,6 @@ fn off(height: Real, p: &Vec3, q: &Vec3, w: &Vec3, slack: Real) -> bool {
         0.0
     };
     height > 2.0 * slack * normal(p, q, w).norm() + error
-}
-
-impl Default for Simplex {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 /// The unit vector along `way`, and `None` for none.

@@ -10,12 +10,12 @@
 
 use crate::contact::{Answer, Settings};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
-use crate::math::Vec3;
+use crate::math::{Vec3, unit};
 use crate::paper::incremental::descend;
 use crate::paper::portal::Until;
 
 /// A local minimum of the depth over the directions perpendicular to the unit vector
-/// `m`, searched from the unit direction `start`, itself perpendicular to `m`.
+/// `m`, searched from the part of `start` that is.
 ///
 /// # Errors
 /// A callback's answer that is not finite.
@@ -25,6 +25,11 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     start: Vec3,
     settings: &Settings,
 ) -> Result<Answer, Fault> {
+    let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
+    let start = in_plane(start)
+        .or_else(|| in_plane(Vec3::x()))
+        .or_else(|| in_plane(Vec3::y()))
+        .unwrap_or(Vec3::y());
     descend(md, start, Some(*m), Until::Shortcut, settings, |_| ())
 }
 
@@ -32,7 +37,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 mod tests {
     use super::*;
     use crate::contact::Penetration;
-    use crate::math::{EPSILON, Real, unit};
+    use crate::math::{EPSILON, Real};
     use crate::shapes::{Random, Rotation, hull};
 
     const TAU: Real = core::f64::consts::TAU as Real;

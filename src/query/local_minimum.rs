@@ -74,7 +74,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let ended = match last {
             // D reaches beyond that plane: a callback that errs must not separate.
             Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(false),
-            other => other.put(hit)?,
+            Answer::Miss(n) => return Err(Stop::Apart(n)),
+            Answer::Hit(found) | Answer::Limit(found) => {
+                *hit = found;
+                matches!(last, Answer::Hit(_))
+            }
         };
         hit.iterations += most - left;
         *memory = Memory::towards(hit.normal);
