@@ -79,7 +79,8 @@ pub mod internals {
     pub use crate::contact::{Answer, Settings};
     pub use crate::known::support::MinkowskiDifference;
     pub use crate::math::{EPSILON, Vec3};
-    pub use crate::paper::incremental::{Shortcut, penetration as incremental};
+    pub use crate::paper::incremental::penetration as incremental;
+    pub use crate::paper::portal::Until;
 
     /// The exported functions, called as C calls them.
     pub mod ffi {

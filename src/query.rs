@@ -37,10 +37,10 @@ use crate::hull::expansion::Limits;
 use crate::hull::global::{self, Arena, Basis, Request};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, unit};
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
 use crate::paper::along;
-use crate::paper::incremental::{self, Shortcut};
-use crate::paper::planar;
+use crate::paper::incremental;
+use crate::paper::portal::Until;
 use crate::state::State;
 
 /// A pair and what the caller knows of it besides the state.
@@ -309,11 +309,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let start = state.leaving().unwrap_or_else(|| self.cold_start());
-        let found = match flat {
-            None => incremental::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?,
-            Some(m) => planar::penetration(&self.md, &m, start, settings)?,
-        };
+        let mut start = state.leaving().unwrap_or_else(|| self.cold_start());
+        if let Some(m) = flat {
+            let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
+            start = in_plane(start).unwrap_or_else(|| perpendicular(&m));
+        }
+        let until = Until::Shortcut;
+        let found = incremental::penetration(&self.md, start, flat, until, settings, |_| ())?;
         let answer = self.proven(found, &mut Known::default(), settings, flat.is_some())?;
         self.remember(state, &answer)?;
         match answer {

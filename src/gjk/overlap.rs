@@ -205,9 +205,14 @@ fn decide<A: SupportMap, B: SupportMap>(
     }
     let last = seen.len();
     inquiry.ask_at(&mut seen, last, &-dir)?;
-    let mut inner = mean(&seen, last).middle(&seen.point(last));
+    // The mean of the corners, one after the other.
+    let mut inner = seen.point(0);
+    for (count, corner) in (1..).zip(corners).skip(1) {
+        inner = inner.towards(corner, 1.0 / count as Real);
+    }
+    inner = inner.towards(&seen.point(last), 0.5);
     if !(inner.v.norm() > inquiry.precision.touch()) {
-        inner = inner.middle(&seen.point(0));
+        inner = inner.towards(&seen.point(0), 0.5);
     }
     let ray = unit(&-inner.v).unwrap_or(*dir);
     let first = SupportPlane::of(inquiry.md, ray)?;
@@ -244,19 +249,6 @@ fn decide<A: SupportMap, B: SupportMap>(
     } else {
         Err(Stop::Apart(lowest.normal))
     }
-}
-
-/// The mean of the first points of a set.
-fn mean<const N: usize>(set: &SupportSet<N>, count: usize) -> SupportPoint {
-    let mut mean = SupportPoint::default();
-    let share = 1.0 / larger(count as Real, 1.0);
-    for i in 0..count {
-        let p = set.point(i);
-        mean.v1 += p.v1 * share;
-        mean.v2 += p.v2 * share;
-    }
-    mean.v = mean.v1 - mean.v2;
-    mean
 }
 
 #[cfg(test)]

@@ -270,7 +270,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             None => match attempt.opposite(&mut self.inquiry, self.request.cold())? {
                 Some(point) => {
                     opposite = point;
-                    middle = first.middle(&opposite);
+                    middle = first.towards(&opposite, 0.5);
                     (&middle, Some(&opposite))
                 }
                 None => {

@@ -42,13 +42,13 @@ impl SupportPoint {
         larger(largest(&self.v1), largest(&self.v2))
     }
 
-    /// The point half-way to another.
+    /// The point that share of the way to another.
     #[inline]
-    pub fn middle(&self, other: &Self) -> Self {
+    pub fn towards(&self, other: &Self, share: Real) -> Self {
         Self {
-            v: (self.v + other.v) * 0.5,
-            v1: (self.v1 + other.v1) * 0.5,
-            v2: (self.v2 + other.v2) * 0.5,
+            v: self.v.lerp(&other.v, share),
+            v1: self.v1.lerp(&other.v1, share),
+            v2: self.v2.lerp(&other.v2, share),
         }
     }
 }

@@ -29,38 +29,18 @@ use crate::known::support_set::Stop;
 use crate::math::{Real, Vec3, perpendicular};
 use crate::paper::portal::{Exit, Portal, Search, SupportPlane, Until, rounding};
 
-/// When a ray may be left before its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shortcut {
-    /// Never: Algorithm 3.
-    Never,
-    /// Whenever |z| ≤ |p|: Algorithms 4 and 5.
-    Always,
-}
-
 /// A step aside from a stationary direction: tan of about 6°, small enough to stay
 /// in the valley, large enough to see a slope. The two parts have no simple ratio,
 /// so that no symmetry of a shape hides the slope.
 const ASIDE: (Real, Real) = (0.093, 0.041);
 
 /// A local minimum of the penetration depth, searched from the unit direction
-/// `start`. `switched` is told |z| at each switch of the ray.
+/// `start`: Algorithm 3, or with [`Until::Shortcut`] Algorithms 4 and 5. `flat`: the unit normal of the
+/// plane that D and `start` lie in, where there is one. `switched` is told |z| at each switch of the ray.
+///
+/// # Errors
+/// A callback's answer that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    start: Vec3,
-    shortcut: Shortcut,
-    settings: &Settings,
-    switched: impl FnMut(Real),
-) -> Result<Answer, Fault> {
-    let until = match shortcut {
-        Shortcut::Never => Until::Normal,
-        Shortcut::Always => Until::Shortcut,
-    };
-    descend(md, start, None, until, settings, switched)
-}
-
-/// The same, in the plane with unit normal `flat`, which D and `start` lie in, where there is one.
-pub fn descend<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,
     flat: Option<Vec3>,
@@ -187,10 +167,10 @@ mod tests {
     fn solve<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         start: Vec3,
-        shortcut: Shortcut,
+        shortcut: Until,
         switched: impl FnMut(Real),
     ) -> Penetration {
-        match penetration(md, start, shortcut, &SETTINGS, switched).unwrap() {
+        match penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap() {
             Answer::Hit(hit) => hit,
             other => panic!("{other:?}"),
         }
@@ -317,7 +297,7 @@ mod tests {
             let cube = placed(&corners(half), &turn, r.vector(0.1));
             let md = MinkowskiDifference::new(hull(&cube), capsule(a, b, 0.3));
             let start = r.direction();
-            for (i, shortcut) in [Shortcut::Never, Shortcut::Always].into_iter().enumerate() {
+            for (i, shortcut) in [Until::Normal, Until::Shortcut].into_iter().enumerate() {
                 let before = md.supports();
                 let mut last = SupportPlane::of(&md, start).unwrap().depth;
                 let hit = solve(&md, start, shortcut, |z| {
@@ -330,7 +310,7 @@ mod tests {
                 assert!((h - hit.depth).abs() < 32.0 * EPSILON);
                 // From a degree beside it both come back to it, or lower.
                 let near = unit(&(hit.dir + r.vector(0.01))).unwrap();
-                for shortcut in [Shortcut::Never, Shortcut::Always] {
+                for shortcut in [Until::Normal, Until::Shortcut] {
                     let again = solve(&md, near, shortcut, |_| ());
                     assert!(again.depth <= hit.depth + 4.0 * SETTINGS.tolerance);
                 }
@@ -352,7 +332,7 @@ mod tests {
             ball(Vec3::z() * 0.2, 0.5),
             capsule(Vec3::z() * -0.5, Vec3::z() * 0.5, 0.5),
         );
-        for shortcut in [Shortcut::Never, Shortcut::Always] {
+        for shortcut in [Until::Normal, Until::Shortcut] {
             for md in [&md, &shifted] {
                 for start in [Vec3::z(), -Vec3::z()] {
                     let hit = solve(md, start, shortcut, |_| ());
@@ -377,7 +357,7 @@ mod tests {
         // Of the icosahedron with edge 2: the distance between two opposite faces.
         let inradius = (3.0 as Real).sqrt() * (3.0 + (5.0 as Real).sqrt()) / 6.0;
         for v in &points {
-            let hit = solve(&md, unit(v).unwrap(), Shortcut::Always, |_| ());
+            let hit = solve(&md, unit(v).unwrap(), Until::Shortcut, |_| ());
             assert!((hit.depth - 2.0 * inradius).abs() <= 1e-5, "{}", hit.depth);
         }
     }
@@ -389,7 +369,7 @@ mod tests {
         let md = MinkowskiDifference::new(hull(&cube), hull(&cube));
         let mut r = Random::new(5);
         for _ in 0..100 {
-            let hit = solve(&md, r.direction(), Shortcut::Always, |_| ());
+            let hit = solve(&md, r.direction(), Until::Shortcut, |_| ());
             let face = [1.0, 0.8, 0.6].map(|d| (hit.depth - d).abs() < 1e-6);
             assert!(face.contains(&true), "{}", hit.depth);
         }
@@ -407,7 +387,7 @@ mod tests {
                 tolerance: 1e-9,
             };
             let start = r.direction();
-            match penetration(&md, start, Shortcut::Always, &settings, |_| ()).unwrap() {
+            match penetration(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap() {
                 Answer::Limit(hit) => {
                     assert!(hit.iterations <= max_iterations);
                     let h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);

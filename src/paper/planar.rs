@@ -8,36 +8,13 @@
 //! For shapes that lie in a common plane, D lies in the plane through the origin with
 //! the same normal m, and so do all directions asked for here.
 
-use crate::contact::{Answer, Settings};
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
-use crate::math::{Vec3, unit};
-use crate::paper::incremental::descend;
-use crate::paper::portal::Until;
-
-/// A local minimum of the depth over the directions perpendicular to the unit vector
-/// `m`, searched from the part of `start` that is.
-///
-/// # Errors
-/// A callback's answer that is not finite.
-pub fn penetration<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    m: &Vec3,
-    start: Vec3,
-    settings: &Settings,
-) -> Result<Answer, Fault> {
-    let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
-    let start = in_plane(start)
-        .or_else(|| in_plane(Vec3::x()))
-        .or_else(|| in_plane(Vec3::y()))
-        .unwrap_or(Vec3::y());
-    descend(md, start, Some(*m), Until::Shortcut, settings, |_| ())
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::contact::Penetration;
-    use crate::math::{EPSILON, Real};
+    use crate::contact::{Answer, Penetration, Settings};
+    use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
+    use crate::math::{EPSILON, Real, Vec3, unit};
+    use crate::paper::incremental;
+    use crate::paper::portal::Until;
     use crate::shapes::{Random, Rotation, hull};
 
     const TAU: Real = core::f64::consts::TAU as Real;
@@ -53,6 +30,15 @@ mod tests {
         let [x, y, m] = [0, 1, 2].map(|i| turn * Vec3::ith(i, 1.0));
         let at = m * r.within(-3.0, 3.0);
         (turn, x, y, m, at)
+    }
+
+    fn penetration<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        m: &Vec3,
+        start: Vec3,
+        settings: &Settings,
+    ) -> Result<Answer, Fault> {
+        incremental::penetration(md, start, Some(*m), Until::Shortcut, settings, |_| ())
     }
 
     fn solve<A: SupportMap, B: SupportMap>(

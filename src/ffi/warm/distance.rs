@@ -9,7 +9,7 @@ use super::super::arena;
 use super::super::callbacks::{Call, Object, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
-use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS};
+use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, given};
 use super::state::{ccd_warm_t, store};
 use crate::contact::Settings;
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
@@ -42,16 +42,12 @@ pub struct ccd_distance_t {
 
 impl ccd_distance_t {
     fn new(distance: &Distance, want: c_uint, supports: u64) -> Self {
-        let given = |point: ccd_vec3_t| match want & CCD_WANT_POINTS {
-            0 => ccd_vec3_t::default(),
-            _ => point,
-        };
         Self {
             distance: distance.lower,
             distance_upper: distance.upper,
             normal: distance.normal.into(),
-            point1: given(distance.point1.into()),
-            point2: given(distance.point2.into()),
+            point1: given(want & CCD_WANT_POINTS, &distance.point1),
+            point2: given(want & CCD_WANT_POINTS, &distance.point2),
             support_calls: supports as c_ulong,
             iterations: distance.iterations as c_ulong,
         }

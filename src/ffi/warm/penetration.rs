@@ -11,7 +11,7 @@ use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::state::{ccd_warm_t, store};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::known::support::Fault;
-use crate::math::Real;
+use crate::math::{Real, Vec3};
 use crate::{query::Pair, state::State};
 
 /// Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
@@ -55,20 +55,24 @@ pub struct ccd_penetration_t {
     pub iterations: c_ulong,
 }
 
+/// A point where its flag is set, else zero.
+pub(in crate::ffi) fn given(flag: c_uint, point: &Vec3) -> ccd_vec3_t {
+    match flag {
+        0 => ccd_vec3_t::default(),
+        _ => (*point).into(),
+    }
+}
+
 impl ccd_penetration_t {
     fn new(hit: &Penetration, want: c_uint, supports: u64) -> Self {
-        let given = |flag, point: ccd_vec3_t| match want & flag {
-            0 => ccd_vec3_t::default(),
-            _ => point,
-        };
         Self {
             depth: hit.depth,
             depth_lower: hit.depth_lower,
             dir: hit.dir.into(),
             normal: hit.normal.into(),
-            pos: given(CCD_WANT_POS, hit.pos.into()),
-            point1: given(CCD_WANT_POINTS, hit.point1.into()),
-            point2: given(CCD_WANT_POINTS, hit.point2.into()),
+            pos: given(want & CCD_WANT_POS, &hit.pos),
+            point1: given(want & CCD_WANT_POINTS, &hit.point1),
+            point2: given(want & CCD_WANT_POINTS, &hit.point2),
             support_calls: supports as c_ulong,
             iterations: hit.iterations as c_ulong,
         }
