@@ -375,7 +375,7 @@ mod tests {
                 separate(&mut inquiry, &(up + r.direction() * 0.9).normalize()).unwrap();
             let h = n.dot(&md.support(&n).unwrap().v);
             assert!((margin + h).abs() <= 1e-6 && margin >= WIDE * gap - 1e-6);
-            assert!(md.supports() <= WIDENING as u64 + 1);
+            assert!(md.supports() <= WIDENING + 1);
         }
     }
 }
