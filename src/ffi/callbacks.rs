@@ -6,11 +6,10 @@
 use core::ffi::{c_ulong, c_void};
 
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
-use super::warm::state::{ccd_warm_t, read};
 use crate::contact::Settings;
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::math::{ITERATION_CAP, Real, Vec3};
-use crate::{query::Pair, state::State};
+use crate::query::Pair;
 
 /// One object behind libccd's support callback.
 #[derive(Clone, Copy)]
@@ -134,6 +133,7 @@ impl Query {
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
+    #[inline(always)]
     pub unsafe fn pair(&self, call: Call, lasting: bool) -> Option<Pair<Object, Object>> {
         // SAFETY: passed on.
         unsafe {
@@ -163,16 +163,17 @@ impl Query {
         }
     }
 
-    /// The pair, the settings, and the state, cold where there is none; `None` where there is no
+    /// The pair and the settings; `None` where there is no
     /// [`Query::pair`], or the tolerance is negative or NaN: libccd's calls then take their default.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
+    #[inline(always)]
     pub unsafe fn ready(
         &self,
         call: Call,
-        warm: *const ccd_warm_t,
-    ) -> Option<(Pair<Object, Object>, Settings, State)> {
+        lasting: bool,
+    ) -> Option<(Pair<Object, Object>, Settings)> {
         if self.ccd.is_null() {
             return None;
         }
@@ -190,7 +191,7 @@ impl Query {
                 }
                 tolerance = DEFAULT_TOLERANCE;
             }
-            let pair = self.pair(call, !warm.is_null())?;
+            let pair = self.pair(call, lasting)?;
             let max: c_ulong = (*self.ccd).max_iterations;
             #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
             let max_iterations = ITERATION_CAP.min(max as u64);
@@ -198,7 +199,7 @@ impl Query {
                 tolerance,
                 max_iterations,
             };
-            Some((pair, settings, read(warm)))
+            Some((pair, settings))
         }
     }
 }

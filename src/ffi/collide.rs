@@ -9,10 +9,10 @@ use super::arena;
 use super::callbacks::{Call, Query};
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
-use super::warm::intersect::intersect;
 use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
 use super::warm::penetration::run;
 use crate::contact::Penetration;
+use crate::gjk::overlap;
 use crate::math::Real;
 
 /// What libccd returns where the extension has this code.
@@ -72,9 +72,9 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     ccd: *const ccd_t,
 ) -> c_int {
     // SAFETY: passed on.
-    unsafe {
-        let pair = Query { obj1, obj2, ccd }.pair(Call::Gjk, false);
-        intersect(pair, core::ptr::null_mut())
+    match unsafe { Query { obj1, obj2, ccd }.pair(Call::Gjk, false) } {
+        Some(pair) => c_int::from(overlap::cold(&pair.md, None, || pair.cold_start()).is_ok()),
+        None => 0,
     }
 }
 

@@ -69,8 +69,10 @@ impl Simplex {
     pub fn around(id: usize, at: &Vec3) -> Self {
         let mut simplex = Self::new();
         simplex.add(id, *at, 0.0, 0.0);
-        simplex.inner = 0;
-        simplex
+        Self {
+            inner: 0,
+            ..simplex
+        }
     }
 
     /// The corners' indices, as many as there are corners.

@@ -10,7 +10,7 @@ use super::super::callbacks::{Call, Object, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, given};
-use super::state::{ccd_warm_t, store};
+use super::state::{ccd_warm_t, read, store};
 use crate::contact::Settings;
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
 use crate::known::support::Fault;
@@ -90,9 +90,10 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
     let query = Query { obj1, obj2, ccd };
     // SAFETY: [inputs], [outputs]; passed on.
     unsafe {
-        let Some((pair, settings, mut state)) = query.ready(Call::Distance, warm) else {
+        let Some((pair, settings)) = query.ready(Call::Distance, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
+        let mut state = read(warm);
         let wanted = Wanted {
             margin1,
             margin2,

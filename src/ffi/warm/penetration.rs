@@ -8,7 +8,7 @@ use core::ffi::{c_int, c_uint, c_ulong, c_void};
 use super::super::callbacks::{Call, Object, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
-use super::state::{ccd_warm_t, store};
+use super::state::{ccd_warm_t, read, store};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::known::support::Fault;
 use crate::math::{Real, Vec3};
@@ -94,9 +94,10 @@ pub(in crate::ffi) unsafe fn run(
 ) -> c_int {
     // SAFETY: [inputs]; `solve` runs callbacks, [callbacks].
     unsafe {
-        let Some((pair, settings, mut state)) = query.ready(call, warm) else {
+        let Some((pair, settings)) = query.ready(call, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
+        let mut state = read(warm);
         let code = match &solve(&pair, &mut state, &settings) {
             Ok(Answer::Hit(hit)) => {
                 put(hit, pair.md.supports());
