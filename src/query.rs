@@ -129,15 +129,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if known.points().is_empty() {
             known.push(&met);
         }
-        let apex = match self.centre {
+        let far;
+        let apex = match &self.centre {
             Some(point) => Apex {
                 point,
                 inside: true,
             },
-            None => Apex {
-                point: self.md.support(&behind(&hit.normal))?,
-                inside: planar,
-            },
+            None => {
+                far = self.md.support(&behind(&hit.normal))?;
+                Apex {
+                    point: &far,
+                    inside: planar,
+                }
+            }
         };
         if is_around(&mut inquiry, &apex, known, &(hit.normal * hit.depth))? {
             return Ok(());

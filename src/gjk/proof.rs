@@ -15,9 +15,9 @@ use crate::known::support_set::{Inquiry, Stop};
 use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
 
 /// A point of D to look from.
-pub struct Apex {
+pub struct Apex<'a> {
     /// The point.
-    pub point: SupportPoint,
+    pub point: &'a SupportPoint,
     /// Is it well inside D, or D flat? Then a segment or a triangle with it that holds the origin is
     /// a proof as well.
     pub inside: bool,
@@ -34,11 +34,11 @@ pub struct Apex {
 #[inline(always)]
 pub fn is_around<A: SupportMap, B: SupportMap>(
     inquiry: &mut Inquiry<'_, A, B>,
-    apex: &Apex,
+    apex: &Apex<'_>,
     known: &mut Known,
     exit: &Vec3,
 ) -> Result<bool, Stop> {
-    let point = &apex.point;
+    let point = apex.point;
     let face = match known.points() {
         [] => Cone::Empty,
         [p] => {
@@ -104,7 +104,7 @@ impl Cone {
 #[inline(never)]
 fn enclose<A: SupportMap, B: SupportMap>(
     inquiry: &mut Inquiry<'_, A, B>,
-    apex: &Apex,
+    apex: &Apex<'_>,
     known: &mut Known,
     mut cone: Cone,
     exit: &Vec3,
@@ -129,7 +129,7 @@ fn enclose<A: SupportMap, B: SupportMap>(
         let Some(n) = direction(&n) else {
             return Ok(false);
         };
-        let new = match (known.made_beyond(&apex.point, &n, touch), &cone) {
+        let new = match (known.made_beyond(apex.point, &n, touch), &cone) {
             (Some(made), _) => made,
             (None, Cone::Side(a, b)) if in_plane(c, a, b, touch) => return Ok(apex.inside),
             _ => {
