@@ -3,7 +3,6 @@
 
 //! What a query answers.
 
-use crate::known::support_set::Stop;
 use crate::math::{EPSILON, Real, Vec3};
 
 /// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
@@ -76,23 +75,5 @@ impl Answer {
             hit.pos = hit.middle();
         }
         self
-    }
-
-    /// Writes an overlap to `hit`: `true` where the cap did not come before the tolerance.
-    ///
-    /// # Errors
-    /// [`Stop::Apart`].
-    pub fn put(self, hit: &mut Penetration) -> Result<bool, Stop> {
-        match self {
-            Answer::Hit(found) => {
-                *hit = found;
-                Ok(true)
-            }
-            Answer::Limit(found) => {
-                *hit = found;
-                Ok(false)
-            }
-            Answer::Miss(n) => Err(Stop::Apart(n)),
-        }
     }
 }

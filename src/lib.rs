@@ -56,16 +56,13 @@ mod contacts;
 mod ffi;
 mod gjk;
 mod hull;
-#[allow(
-    dead_code,
-    reason = "its callers move onto what is known of a pair one after the other"
-)]
 mod known;
 mod local;
 mod math;
 mod paper;
 mod query;
 #[cfg(test)]
+#[path = "../c-tests/harness/shapes.rs"]
 mod shapes;
 mod state;
 
@@ -82,7 +79,8 @@ pub mod internals {
     pub use crate::contact::{Answer, Settings};
     pub use crate::known::support::MinkowskiDifference;
     pub use crate::math::{EPSILON, Vec3};
-    pub use crate::paper::incremental::{Shortcut, penetration as incremental};
+    pub use crate::paper::incremental::penetration as incremental;
+    pub use crate::paper::portal::Until;
 
     /// The exported functions, called as C calls them.
     pub mod ffi {

@@ -147,7 +147,8 @@ mod tests {
     use crate::contact::Answer;
     use crate::known::support::Fault;
     use crate::math::{EPSILON, Real, perpendicular};
-    use crate::paper::incremental::{self, Shortcut};
+    use crate::paper::incremental;
+    use crate::paper::portal::Until;
     use crate::shapes::Random;
     use nalgebra::Rotation3;
 
@@ -248,9 +249,9 @@ mod tests {
             Ok(true) => Ok(Answer::Hit(hit)),
             // What every caller does with a search that did not end in a minimum.
             Ok(false) => {
-                let shortcut = Shortcut::Always;
+                let until = Until::Shortcut;
                 let rest = settings(tolerance);
-                incremental::penetration(&md, hit.normal, shortcut, &rest, |_| ())
+                incremental::penetration(&md, hit.normal, None, until, &rest, |_| ())
             }
             Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
             Err(Stop::Fault(fault)) => Err(fault),

@@ -9,5 +9,6 @@
 
 pub mod along;
 pub mod incremental;
-pub mod planar;
+#[cfg(test)]
+mod planar;
 pub mod portal;

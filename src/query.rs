@@ -30,25 +30,18 @@ use crate::contacts::pressure::{self, Around, Aside};
 use crate::contacts::seen::Seen;
 use crate::gjk::barycentric;
 use crate::gjk::intersect;
-use crate::gjk::overlap::{self, Proof};
-use crate::gjk::proof::{inner_distance, is_around, proof};
+use crate::gjk::overlap;
+use crate::gjk::proof::{Apex, behind, is_around};
 use crate::gjk::separation;
 use crate::hull::expansion::Limits;
 use crate::hull::global::{self, Arena, Basis, Request};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, unit};
+use crate::math::{Real, Vec3, larger, perpendicular, unit};
 use crate::paper::along;
-use crate::paper::incremental::{self, Shortcut};
-use crate::paper::planar;
+use crate::paper::incremental;
+use crate::paper::portal::Until;
 use crate::state::State;
-
-/// A touch, within the tolerance, whose witness points do not meet? There the points that
-/// meet at the origin of D, which a proof of the overlap knows, are witnesses.
-fn unmet(hit: &Penetration, tolerance: Real) -> bool {
-    let apart = || (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
-    hit.depth <= tolerance && apart() > tolerance
-}
 
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
@@ -117,23 +110,43 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         planar: bool,
     ) -> Result<(), Stop> {
         let mut inquiry = Inquiry::new(&self.md);
-        inquiry.precision.note(&SupportPoint {
+        let met = SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
             v2: hit.point2,
-        });
+        };
+        inquiry.precision.note(&met);
         // A touch within rounding is a miss, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
             return Err(Stop::Apart(hit.normal));
         }
         // A depth of a few times a touch's tells nothing of where.
         let tolerance = larger(settings.tolerance, 4.0 * inquiry.precision.touch());
-        if let (Some(c), true) = (&self.centre, !planar && hit.depth > tolerance) {
-            if is_around(&mut inquiry, c, known, &(hit.normal * hit.depth))? {
-                return Ok(());
-            }
+        // A touch within the tolerance is for support points to tell.
+        if !(hit.depth > tolerance || planar) {
+            return self.touching(&mut inquiry, self.centre.as_ref(), hit, known, tolerance);
         }
-        self.surround(&mut inquiry, self.centre, hit, known, tolerance, planar)
+        if known.points().is_empty() {
+            known.push(&met);
+        }
+        let far;
+        let apex = match &self.centre {
+            Some(point) => Apex {
+                point,
+                inside: true,
+            },
+            None => {
+                far = self.md.support(&behind(&hit.normal))?;
+                Apex {
+                    point: &far,
+                    inside: planar,
+                }
+            }
+        };
+        if is_around(&mut inquiry, &apex, known, &(hit.normal * hit.depth))? {
+            return Ok(());
+        }
+        self.touching(&mut inquiry, self.centre.as_ref(), hit, known, tolerance)
     }
 
     /// The same of a solver's answer.
@@ -154,59 +167,37 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
     }
 
-    /// A depth within the tolerance, of which nothing is proven, may be a touch's. Then
-    /// [`Stop::Apart`].
+    /// Shows that the origin lies among support points, known ones and others, and the `centre`,
+    /// where it is trusted. Where a touch, within the tolerance, has witness points that do not
+    /// meet, the points that meet at the origin take their place.
     #[cold]
     #[inline(never)]
     fn touching(
         &self,
-        centre: Option<&SupportPoint>,
-        hit: &mut Penetration,
-        tolerance: Real,
-    ) -> Result<(), Stop> {
-        let mut inquiry = Inquiry::new(&self.md);
-        let known = Known::default();
-        self.surround(&mut inquiry, centre.copied(), hit, &known, tolerance, false)
-    }
-
-    /// Shows that the origin lies among points of D. Where a touch, within the tolerance, has
-    /// witness points that do not meet, the points that meet at the origin take their place.
-    #[inline(never)]
-    fn surround(
-        &self,
         inquiry: &mut Inquiry<'_, A, B>,
-        centre: Option<SupportPoint>,
+        centre: Option<&SupportPoint>,
         hit: &mut Penetration,
         known: &Known,
         tolerance: Real,
-        planar: bool,
     ) -> Result<(), Stop> {
-        let mut set = SupportSet::<PROOF>::EMPTY;
-        let start = match (centre, known.points().is_empty()) {
-            (Some(c), _) => Some(c),
-            (None, true) => Some(self.md.support(&hit.normal)?),
-            (None, false) => None,
-        };
-        for point in start.iter().chain(known.points()) {
+        let mut set = SupportSet::<{ Known::ROOM }>::EMPTY;
+        let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
+        let centre = centre.map(|c| set.push(&Vec3::zeros(), c));
+        for point in known.points() {
             inquiry.precision.note(point);
-            set.push(&Vec3::zeros(), point);
+            // All were asked for near there.
+            set.push(&hit.normal, point);
         }
-        let exit = hit.normal * hit.depth;
-        let kind = match centre {
-            _ if planar => Proof::Planar,
-            // A touch within the tolerance is for support points to tell.
-            Some(_) if hit.depth > tolerance => Proof::Centred,
-            _ => Proof::Solid,
+        let held = overlap::overlap(inquiry, &mut set, centre, &dir)?;
+        let corners = match held.between {
+            Some([p, q]) => [p, q, q, q],
+            None => held.corners.map(|i| set.point(i)),
         };
-        let corners = proof(inquiry, &mut set, kind, &exit)?;
-        let corners = corners.map(|i| set.point(i));
-        let [a, b, c, d] = corners.each_ref();
-        if centre.is_none() {
-            hit.depth_lower = inner_distance([a, b, c, d]).min(hit.depth);
-        }
-        if unmet(hit, tolerance) {
-            let inside = barycentric::tetrahedron(&Vec3::zeros(), [&a.v, &b.v, &c.v, &d.v]);
-            let (p1, p2) = barycentric::witnesses(&inside.weights, [a, b, c, d]);
+        let apart = hit.point1 - hit.point2 - hit.dir * hit.depth;
+        if hit.depth <= tolerance && apart.norm() > tolerance {
+            let corners = corners.each_ref();
+            let inside = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
+            let (p1, p2) = barycentric::witnesses(&inside.weights, corners);
             // What the rounding of the weights leaves between them.
             let rest = (p1 - p2) * 0.5;
             (hit.point1, hit.point2) = (p1 - rest, p2 + rest);
@@ -245,11 +236,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline]
     pub fn intersect(&self, state: Option<&mut State>) -> Result<bool, Fault> {
         let Some(state) = state else {
-            let answer = match &self.centre {
-                Some(centre) => overlap::from_centre(&self.md, centre),
-                None => overlap::from_direction(&self.md, &self.cold_start()),
-            };
-            return match answer {
+            return match overlap::cold(&self.md, self.centre.as_ref(), || self.cold_start()) {
                 Ok(()) => Ok(true),
                 Err(Stop::Apart(_)) => Ok(false),
                 Err(Stop::Fault(fault)) => Err(fault),
@@ -307,12 +294,33 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         wants_pos: bool,
     ) -> Result<Answer, Fault> {
+        self.as_published(None, state, settings, wants_pos)
+    }
+
+    /// The same among the directions perpendicular to the unit vector `m`.
+    pub fn planar(&self, m: Vec3, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
+        self.as_published(Some(m), state, settings, false)
+    }
+
+    /// The paper's method; in the plane with unit normal `flat`, where there is one.
+    fn as_published(
+        &self,
+        flat: Option<Vec3>,
+        state: &mut State,
+        settings: &Settings,
+        wants_pos: bool,
+    ) -> Result<Answer, Fault> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let start = state.leaving().unwrap_or_else(|| self.cold_start());
-        let found = incremental::penetration(&self.md, start, Shortcut::Always, settings, |_| ())?;
-        let answer = self.proven(found, &mut Known::default(), settings, false)?;
+        let mut start = state.leaving().unwrap_or_else(|| self.cold_start());
+        if let Some(m) = flat {
+            let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
+            start = in_plane(start).unwrap_or_else(|| perpendicular(&m));
+        }
+        let until = Until::Shortcut;
+        let found = incremental::penetration(&self.md, start, flat, until, settings, |_| ())?;
+        let answer = self.proven(found, &mut Known::default(), settings, flat.is_some())?;
         self.remember(state, &answer)?;
         match answer {
             Answer::Hit(mut hit) if wants_pos => {
@@ -413,7 +421,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let found = found.and_then(|proven| {
             if hit.depth <= limits.tolerance && !(hit.depth_lower > 0.0) {
                 seen = Seen::Nothing;
-                self.touching(apex, &mut hit, limits.tolerance)?;
+                let mut inquiry = Inquiry::new(&self.md);
+                let known = Known::default();
+                self.touching(&mut inquiry, None, &mut hit, &known, limits.tolerance)?;
             }
             Ok(proven)
         });
@@ -547,13 +557,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if let Some(n) = self.still_apart(state)? {
             return Ok(Answer::Miss(n));
         }
-        let way = match along::penetration(&self.md, &dir, state.portal(), settings)? {
+        let way = match along::penetration(&self.md, &dir, state.portal(), settings) {
             Ok(way) => way,
-            Err(n) => {
-                let answer = Answer::Miss(n);
-                self.remember(state, &answer)?;
-                return Ok(answer);
-            }
+            Err(stop) => return self.stopped(state, stop),
         };
         let mut known = Known::default();
         for plane in way.portal.iter().flat_map(|p| &p.planes) {
@@ -579,27 +585,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         Ok(answer.in_the_middle())
     }
-
-    /// A local minimum among the directions perpendicular to the unit vector `m`.
-    pub fn planar(&self, m: Vec3, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
-            return Ok(Answer::Miss(n));
-        }
-        let start = state.leaving().unwrap_or_else(|| self.cold_start());
-        let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
-        let start = in_plane(start)
-            .or_else(|| in_plane(Vec3::x()))
-            .or_else(|| in_plane(Vec3::y()))
-            .unwrap_or(Vec3::y());
-        let found = planar::penetration(&self.md, &m, start, settings)?;
-        let answer = self.proven(found, &mut Known::default(), settings, true)?;
-        self.remember(state, &answer)?;
-        Ok(answer.in_the_middle())
-    }
 }
-
-/// Points of the proof of an overlap: those known, the centre, and some more.
-const PROOF: usize = 2 * Known::ROOM;
 
 /// Support points of an MPR query, at most.
 const MPR_SUPPORTS: u64 = 160;

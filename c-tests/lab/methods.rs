@@ -9,9 +9,7 @@ use std::ptr::null_mut;
 use ccd::internals::ffi::{
     CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
 };
-use ccd::internals::{
-    Answer as Outcome, MinkowskiDifference, Settings, Shortcut, Vec3, incremental,
-};
+use ccd::internals::{Answer as Outcome, MinkowskiDifference, Settings, Until, Vec3, incremental};
 
 use super::deep::{Deep, Polytope};
 use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
@@ -295,9 +293,9 @@ pub fn paper<'a>(
         max_iterations: 10_000,
     };
     let (name, shortcut) = if shortcut {
-        ("Algorithm 4/5", Shortcut::Always)
+        ("Algorithm 4/5", Until::Shortcut)
     } else {
-        ("Algorithm 3", Shortcut::Never)
+        ("Algorithm 3", Until::Normal)
     };
     let support = libraries.callbacks.support;
     let mut last = None;
@@ -314,7 +312,7 @@ pub fn paper<'a>(
         let memory = if pair.frame == 0 { None } else { last };
         let from = start.direction(&pair.truth).map(Vec3::from).or(memory);
         let from = from.unwrap_or_else(|| pair.truth.cold.into());
-        let answer = incremental(&md, from, shortcut, &settings, |_| ());
+        let answer = incremental(&md, from, None, shortcut, &settings, |_| ());
         let (Ok(Outcome::Hit(found)) | Ok(Outcome::Limit(found))) = answer else {
             return None;
         };

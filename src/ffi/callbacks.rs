@@ -6,6 +6,7 @@
 use core::ffi::{c_ulong, c_void};
 
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
+use crate::contact::Settings;
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::math::{ITERATION_CAP, Real, Vec3};
 use crate::query::Pair;
@@ -40,8 +41,31 @@ impl SupportMap for Object {
     }
 }
 
-/// The Minkowski difference of two C objects.
-pub type Difference = MinkowskiDifference<Object, Object>;
+/// What a call needs and reads of a [`ccd_t`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Call {
+    /// libccd's MPR: the centres, mpr_tolerance.
+    Mpr,
+    /// libccd's GJK: first_dir, epa_tolerance; the centres are not asked for.
+    Gjk,
+    /// The extension's, from the centres, or where these are not given from first_dir, or from
+    /// anywhere; mpr_tolerance.
+    Refined,
+    /// The same with epa_tolerance.
+    Proven,
+    /// The same with dist_tolerance.
+    Distance,
+}
+
+impl Call {
+    /// Is it one of libccd's?
+    fn is_libccd(self) -> bool {
+        matches!(self, Call::Mpr | Call::Gjk)
+    }
+}
+
+/// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
+const DEFAULT_TOLERANCE: Real = 1e-4;
 
 /// A query as a C caller states it.
 #[derive(Clone, Copy)]
@@ -78,31 +102,11 @@ impl Query {
         ))
     }
 
-    /// The Minkowski difference; `None` when `ccd` or a support callback is NULL.
+    /// The difference of the objects' centres, finite or not; `None` when a callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
-    pub unsafe fn difference(&self) -> Option<Difference> {
-        // SAFETY: passed on.
-        let (obj1, obj2) = unsafe { self.objects()? };
-        Some(MinkowskiDifference::new(obj1, obj2))
-    }
-
-    /// The difference of the objects' centres, an interior point of D; `None` when
-    /// a centre callback is NULL or a centre not finite.
-    ///
-    /// # Safety
-    /// \[inputs\] of the module contract.
-    pub unsafe fn centre(&self) -> Option<SupportPoint> {
-        // SAFETY: passed on.
-        unsafe { self.any_centre() }.filter(|c| c.v.sum().is_finite())
-    }
-
-    /// The same, finite or not.
-    ///
-    /// # Safety
-    /// \[inputs\] of the module contract.
-    unsafe fn any_centre(&self) -> Option<SupportPoint> {
+    unsafe fn centre(&self) -> Option<SupportPoint> {
         // SAFETY: [inputs]; only the two fields are read.
         let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
         // SAFETY: [callbacks].
@@ -115,7 +119,7 @@ impl Query {
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
-    pub unsafe fn first_dir(&self) -> Option<Vec3> {
+    unsafe fn first_dir(&self) -> Option<Vec3> {
         // SAFETY: [inputs]; only the field is read.
         let first_dir = unsafe { (*self.ccd).first_dir? };
         let mut dir = ccd_vec3_t::default();
@@ -124,43 +128,34 @@ impl Query {
         Some(dir.into())
     }
 
-    /// Difference and centres; `None` when `ccd` or a callback for them is NULL or a centre is not
-    /// finite. `lasting`: whether the caller keeps a state.
+    /// The pair, and where to look first; `None` when `ccd` or a callback that the call needs is
+    /// NULL, or a centre is not finite. `lasting`: whether the caller keeps a state.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
-    pub unsafe fn pair(&self, lasting: bool) -> Option<Pair<Object, Object>> {
+    #[inline(always)]
+    pub unsafe fn pair(&self, call: Call, lasting: bool) -> Option<Pair<Object, Object>> {
         // SAFETY: passed on.
         unsafe {
-            Some(Pair {
-                md: self.difference()?,
-                centre: Some(self.centre()?),
-                first_dir: None,
-                lasting,
-            })
-        }
-    }
-
-    /// The difference, and where to look first: from the centres, or where these are not
-    /// given from first_dir; `None` when `ccd` or a support callback is NULL or a centre not finite.
-    /// `lasting`: whether the caller keeps a state.
-    ///
-    /// # Safety
-    /// \[inputs\] of the module contract.
-    pub unsafe fn asked(&self, lasting: bool) -> Option<Pair<Object, Object>> {
-        // SAFETY: passed on.
-        unsafe {
-            let md = self.difference()?;
-            let centre = self.any_centre();
-            if centre.is_some_and(|c| !c.v.sum().is_finite()) {
+            let (obj1, obj2) = self.objects()?;
+            let centre = match call {
+                Call::Gjk => None,
+                _ => self.centre(),
+            };
+            if centre.is_some_and(|c| !c.v.sum().is_finite())
+                || call == Call::Mpr && centre.is_none()
+            {
                 return None;
             }
             let first_dir = match centre {
                 Some(_) => None,
                 None => self.first_dir(),
             };
+            if call == Call::Gjk && first_dir.is_none() {
+                return None;
+            }
             Some(Pair {
-                md,
+                md: MinkowskiDifference::new(obj1, obj2),
                 centre,
                 first_dir,
                 lasting,
@@ -168,42 +163,44 @@ impl Query {
         }
     }
 
-    /// The caller's cap on iterations, or the library's own where that is lower.
+    /// The pair and the settings; `None` where there is no
+    /// [`Query::pair`], or the tolerance is negative or NaN: libccd's calls then take their default.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
-    pub unsafe fn max_iterations(&self) -> u64 {
-        // SAFETY: [inputs]; only the field is read.
-        let max: c_ulong = unsafe { (*self.ccd).max_iterations };
-        #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
-        ITERATION_CAP.min(max as u64)
-    }
-
-    /// mpr_tolerance as the caller set it.
-    ///
-    /// # Safety
-    /// \[inputs\] of the module contract.
-    pub unsafe fn mpr_tolerance(&self) -> Real {
-        // SAFETY: [inputs]; only the field is read.
-        unsafe { (*self.ccd).mpr_tolerance }
-    }
-
-    /// dist_tolerance as the caller set it.
-    ///
-    /// # Safety
-    /// \[inputs\] of the module contract.
-    pub unsafe fn dist_tolerance(&self) -> Real {
-        // SAFETY: [inputs]; only the field is read.
-        unsafe { (*self.ccd).dist_tolerance }
-    }
-
-    /// epa_tolerance as the caller set it.
-    ///
-    /// # Safety
-    /// \[inputs\] of the module contract.
-    pub unsafe fn epa_tolerance(&self) -> Real {
-        // SAFETY: [inputs]; only the field is read.
-        unsafe { (*self.ccd).epa_tolerance }
+    #[inline(always)]
+    pub unsafe fn ready(
+        &self,
+        call: Call,
+        lasting: bool,
+    ) -> Option<(Pair<Object, Object>, Settings)> {
+        if self.ccd.is_null() {
+            return None;
+        }
+        // SAFETY: [inputs]; only the fields named are read.
+        unsafe {
+            let mut tolerance = match call {
+                Call::Mpr | Call::Refined => (*self.ccd).mpr_tolerance,
+                Call::Gjk | Call::Proven => (*self.ccd).epa_tolerance,
+                Call::Distance => (*self.ccd).dist_tolerance,
+            };
+            // Negated for NaN.
+            if !(tolerance >= 0.0) {
+                if !call.is_libccd() {
+                    return None;
+                }
+                tolerance = DEFAULT_TOLERANCE;
+            }
+            let pair = self.pair(call, lasting)?;
+            let max: c_ulong = (*self.ccd).max_iterations;
+            #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
+            let max_iterations = ITERATION_CAP.min(max as u64);
+            let settings = Settings {
+                tolerance,
+                max_iterations,
+            };
+            Some((pair, settings))
+        }
     }
 }
 

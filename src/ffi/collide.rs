@@ -6,26 +6,21 @@
 use core::ffi::{c_int, c_void};
 
 use super::arena;
-use super::callbacks::Query;
+use super::callbacks::{Call, Query};
 use super::types::{ccd_t, ccd_vec3_t};
+use super::warm::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
-use crate::contact::{Answer, Penetration, Settings};
+use super::warm::penetration::run;
+use crate::contact::Penetration;
 use crate::gjk::overlap;
-use crate::known::support::Fault;
-use crate::known::support_set::Stop;
-use crate::math::{Real, Vec3, unit};
-use crate::{query::Pair, state::State};
+use crate::math::Real;
 
-/// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
-pub const DEFAULT_TOLERANCE: Real = 1e-4;
-
-/// The tolerance a compatible call works with.
-fn or_default(tolerance: Real) -> Real {
-    // False for NaN.
-    if tolerance >= 0.0 {
-        tolerance
-    } else {
-        DEFAULT_TOLERANCE
+/// What libccd returns where the extension has this code.
+pub fn libccd_s(code: c_int) -> c_int {
+    match code {
+        CCD_HIT | CCD_LIMIT => 0,
+        CCD_NO_MEMORY => -2,
+        _ => CCD_MISS,
     }
 }
 
@@ -67,18 +62,6 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, core::ptr::null_mut()) }
 }
 
-/// # Safety
-/// \[inputs\] of the module contract.
-unsafe fn gjk_intersect(query: Query) -> Option<Result<(), Stop>> {
-    // SAFETY: passed on.
-    unsafe {
-        let md = query.difference()?;
-        let first = query.first_dir()?;
-        let dir = unit(&first).unwrap_or(Vec3::x());
-        Some(overlap::from_direction(&md, &dir))
-    }
-}
-
 /// Do the objects overlap? Starts from first_dir; the centres are not asked for.
 ///
 /// Returns as [`ccdMPRIntersect`].
@@ -89,30 +72,9 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     ccd: *const ccd_t,
 ) -> c_int {
     // SAFETY: passed on.
-    match unsafe { gjk_intersect(Query { obj1, obj2, ccd }) } {
-        Some(Ok(_)) => 1,
-        _ => 0,
-    }
-}
-
-/// ccdMPRPenetration with a state; a fault when nothing was decided.
-///
-/// # Safety
-/// \[inputs\] of the module contract.
-pub unsafe fn mpr_penetration(
-    query: Query,
-    state: &mut State,
-    lasting: bool,
-    wants_pos: bool,
-) -> Result<Answer, Fault> {
-    // SAFETY: passed on.
-    unsafe {
-        let pair = query.pair(lasting).ok_or(Fault::NonFinite)?;
-        let settings = Settings {
-            tolerance: or_default(query.mpr_tolerance()),
-            max_iterations: query.max_iterations(),
-        };
-        pair.mpr(state, &settings, wants_pos)
+    match unsafe { Query { obj1, obj2, ccd }.pair(Call::Gjk, false) } {
+        Some(pair) => c_int::from(overlap::cold(&pair.md, None, || pair.cold_start()).is_ok()),
+        None => 0,
     }
 }
 
@@ -151,34 +113,17 @@ unsafe fn gjk_penetration(
     put: &mut dyn FnMut(&Penetration),
 ) -> c_int {
     // SAFETY: passed on.
-    unsafe {
-        let Some(md) = query.difference() else {
-            return -1;
-        };
-        let Some(first) = query.first_dir() else {
-            return -1;
-        };
-        let pair = Pair {
-            md,
-            centre: None,
-            first_dir: Some(first),
-            lasting: false,
-        };
-        let settings = Settings {
-            tolerance: or_default(query.epa_tolerance()),
-            max_iterations: query.max_iterations(),
-        };
-        let mut cold = State::default();
-        let answer = arena::with(|arena| pair.minimum(&mut cold, &settings, arena, wants_pos));
-        match &answer {
-            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => {
-                put(hit);
-                0
-            }
-            Ok(Answer::Miss(_)) | Err(Fault::NonFinite) => -1,
-            Err(Fault::NoMemory) => -2,
-        }
-    }
+    libccd_s(unsafe {
+        run(
+            query,
+            Call::Gjk,
+            core::ptr::null_mut(),
+            |pair, state, settings| {
+                arena::with(|arena| pair.minimum(state, settings, arena, wants_pos))
+            },
+            |hit, _| put(hit),
+        )
+    })
 }
 
 /// How deep do the objects overlap, which way out, where? The global minimum, within

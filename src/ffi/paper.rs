@@ -8,7 +8,7 @@
 
 use core::ffi::{c_int, c_uint, c_void};
 
-use super::callbacks::Query;
+use super::callbacks::{Call, Query};
 use super::types::ccd_t;
 use super::warm::penetration::{answer, ccd_penetration_t};
 use super::warm::state::ccd_warm_t;
@@ -31,7 +31,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
+    let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { answer(query, tolerance, warm, want, out, Pair::incremental) }
+    unsafe { answer(query, Call::Refined, warm, want, out, Pair::incremental) }
 }

@@ -39,13 +39,25 @@ pub unsafe extern "C-unwind" fn ccdPtDestroy(pt: *mut ccd_pt_t) {
     // SAFETY: [polytope]; an element is not looked at after it was deleted.
     unsafe {
         for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
-            delete_face(pt, face);
+            for edge in (*face).edge {
+                if (*edge).faces[0] == face {
+                    (*edge).faces[0] = (*edge).faces[1];
+                }
+                (*edge).faces[1] = null_mut();
+            }
+            delete(pt, &raw mut (*face).el);
         }
         for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
-            delete_edge(pt, edge);
+            if (*edge).faces[0].is_null() {
+                list_remove(&raw mut (*edge).vertex_list[0]);
+                list_remove(&raw mut (*edge).vertex_list[1]);
+                delete(pt, &raw mut (*edge).el);
+            }
         }
         for vertex in elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices) {
-            delete_vertex(pt, vertex);
+            if (*vertex).edges.next == &raw mut (*vertex).edges {
+                delete(pt, &raw mut (*vertex).el);
+            }
         }
     }
 }
@@ -222,42 +234,7 @@ fn allocate<T>() -> *mut T {
     unsafe { malloc(size_of::<T>()) }.cast()
 }
 
-/// Unlinks a face from its edges and the polytope and frees it.
-unsafe fn delete_face(pt: *mut ccd_pt_t, face: *mut ccd_pt_face_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        for edge in (*face).edge {
-            if (*edge).faces[0] == face {
-                (*edge).faces[0] = (*edge).faces[1];
-            }
-            (*edge).faces[1] = null_mut();
-        }
-        delete(pt, &raw mut (*face).el);
-    }
-}
-
-/// Unlinks an edge from its vertices and the polytope and frees it, unless it has a face.
-unsafe fn delete_edge(pt: *mut ccd_pt_t, edge: *mut ccd_pt_edge_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        if (*edge).faces[0].is_null() {
-            list_remove(&raw mut (*edge).vertex_list[0]);
-            list_remove(&raw mut (*edge).vertex_list[1]);
-            delete(pt, &raw mut (*edge).el);
-        }
-    }
-}
-
-/// Unlinks a vertex from the polytope and frees it, unless it has an edge.
-unsafe fn delete_vertex(pt: *mut ccd_pt_t, vertex: *mut ccd_pt_vertex_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        if (*vertex).edges.next == &raw mut (*vertex).edges {
-            delete(pt, &raw mut (*vertex).el);
-        }
-    }
-}
-
+/// Unlinks an element from the polytope's list and frees it.
 unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     // SAFETY: [polytope]; its elements are blocks of malloc.
     unsafe {

@@ -6,7 +6,8 @@
 //!
 //! For any unit n, −h(n) is a lower bound on the distance: D lies behind its support plane. The
 //! point of the simplex nearest to the origin is an upper one. [`Approach::step`] asks where the
-//! bounds are to meet. [`separate`] leaves off where they are near enough for a direction that is
+//! bounds are to meet, and [`Approach::run`] goes on until they do, or a [`Goal`] says otherwise:
+//! [`separate`] leaves off where they are near enough for a direction that is
 //! to separate for long; [`crate::gjk::signed_distance`] at its tolerance.
 //!
 //! **Balls are taken off to choose where to ask.** On a round part of D of radius ρ the points
@@ -35,15 +36,32 @@ const WORTH: Real = 0.3;
 /// Steps that bring the simplex no nearer before rounding is all that is left.
 const STALLS: u32 = 3;
 
-/// What a step came to.
+/// How near the bounds are to come.
+pub struct Goal {
+    /// The width between them, metres.
+    pub tolerance: Real,
+    /// The same as a share of the upper one, where that is more.
+    pub share: Real,
+    /// What is taken off the distance, metres: the tolerance does not tell a touch from a gap, and a
+    /// plane between the objects is wanted.
+    pub margin: Real,
+    /// What is farther apart than this, metres, need not be refined.
+    pub far: Real,
+    /// Support points, at most.
+    pub iterations: u64,
+}
+
+/// Where an approach ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// The bounds may have moved.
-    On,
+pub enum End {
+    /// Where the goal is.
+    Met,
     /// The new simplex holds the origin inside.
     Inside,
     /// There is no way to ask, or steps bring the simplex no nearer: what is left is rounding.
     Stalled,
+    /// The iterations were used up, or callbacks err by more than rounding.
+    Limit,
 }
 
 /// Two objects on their way to their distance.
@@ -99,9 +117,43 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
         }
     }
 
+    /// From support point to support point.
+    pub fn run(&mut self, goal: &Goal) -> Result<End, Fault> {
+        loop {
+            // In the plane of a touching face the last point was no nearer than others.
+            if self.has_met(goal) {
+                self.settle();
+                if self.has_met(goal) {
+                    return Ok(End::Met);
+                }
+            }
+            if self.iterations >= goal.iterations {
+                return Ok(End::Limit);
+            }
+            if let Some(end) = self.step(self.width(goal))? {
+                return Ok(end);
+            }
+        }
+    }
+
+    /// The width that the bounds are to have, metres; NaN is none.
+    fn width(&self, goal: &Goal) -> Real {
+        let least = self.inquiry.precision.tolerance(goal.tolerance);
+        larger(goal.share * self.upper, least)
+    }
+
+    /// Are the bounds near enough?
+    fn has_met(&self, goal: &Goal) -> bool {
+        let touch = self.inquiry.precision.touch();
+        let (lower, upper) = (self.lower - goal.margin, self.upper - goal.margin);
+        // A plane between the objects is wanted even where the width would not ask.
+        let told = lower > -touch || !(upper > touch);
+        lower > goal.far || told && self.upper - self.lower <= self.width(goal)
+    }
+
     /// One more support point, for bounds that are to come within `tolerance`, metres: where a ball
     /// foretells the distance, else along the way. Asks for none where that is stalled.
-    pub fn step(&mut self, tolerance: Real) -> Result<Step, Fault> {
+    fn step(&mut self, tolerance: Real) -> Result<Option<End>, Fault> {
         let aim = self.aim(tolerance);
         if aim.is_none() {
             if !(self.upper < self.nearest) {
@@ -111,13 +163,13 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
         }
         let plain = direction(&self.way).filter(|_| self.stalls <= STALLS);
         let Some(plain) = plain else {
-            return Ok(Step::Stalled);
+            return Ok(Some(End::Stalled));
         };
         let inside = match aim {
             Some((n, promise)) => self.try_out(&n, promise)?,
             None => self.ask(&plain)?,
         };
-        Ok(if inside { Step::Inside } else { Step::On })
+        Ok(inside.then_some(End::Inside))
     }
 
     /// Asks along unit `n`, and learns what there is to learn without the simplex.
@@ -257,22 +309,20 @@ pub fn separate<A: SupportMap, B: SupportMap>(
 ) -> Result<(Vec3, Real), Fault> {
     let mut approach = Approach::new(inquiry);
     approach.ask(separating)?;
-    for _ in 1..WIDENING {
-        // The distance is less than that of the simplex, and more than the margin.
-        if !(approach.lower < WIDE * approach.upper) {
-            break;
-        }
-        if approach.step((1.0 - WIDE) * approach.upper)? != Step::On {
-            break;
-        }
-    }
+    approach.run(&Goal {
+        tolerance: 0.0,
+        share: 1.0 - WIDE,
+        margin: 0.0,
+        far: Real::INFINITY,
+        iterations: WIDENING,
+    })?;
     Ok((approach.normal, larger(approach.lower, 0.0)))
 }
 
 /// The share of the distance that is wide enough.
 const WIDE: Real = 0.8;
 /// Support points that [`separate`] may ask for.
-const WIDENING: usize = 8;
+const WIDENING: u64 = 8;
 
 #[cfg(test)]
 mod tests {
@@ -302,7 +352,7 @@ mod tests {
             let mut approach = Approach::new(&mut inquiry);
             approach.ask(&r.direction()).unwrap();
             while approach.upper - approach.lower > 1e-6 && approach.iterations < 60 {
-                assert_ne!(approach.step(1e-6).unwrap(), Step::Inside);
+                assert_ne!(approach.step(1e-6).unwrap(), Some(End::Inside));
             }
             let (p, q) = approach.witnesses();
             assert!((approach.lower - gap).abs() <= 1e-5, "round {round}");
@@ -325,7 +375,7 @@ mod tests {
                 separate(&mut inquiry, &(up + r.direction() * 0.9).normalize()).unwrap();
             let h = n.dot(&md.support(&n).unwrap().v);
             assert!((margin + h).abs() <= 1e-6 && margin >= WIDE * gap - 1e-6);
-            assert!(md.supports() <= WIDENING as u64 + 1);
+            assert!(md.supports() <= WIDENING + 1);
         }
     }
 }

@@ -50,10 +50,10 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
         Err(stop) => Err(stop),
     };
     match answer {
-        Ok(corners) => {
+        Ok(held) => {
             // What a depth query left is worth more than this.
             if !state.overlapped() {
-                *state = State::surrounded(corners.map(|i| set.direction(i)));
+                *state = State::surrounded(held.corners.map(|i| set.direction(i)));
             }
             Ok(true)
         }

@@ -23,36 +23,20 @@ use crate::gjk::simplex::{Added, Simplex, direction, room};
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Beyond, Inquiry, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, unit};
-use crate::paper::portal::{Exit, Found, Measure, SupportPlane, find_portal, refine};
+use crate::paper::portal::{Exit, Search, SupportPlane, Until};
 
-/// Do the objects overlap? `centre`, an interior point of D, is trusted.
+/// Do the objects overlap? `centre`, an interior point of D, is trusted. Without one, from the unit
+/// vector that `first` gives.
 #[inline]
-pub fn from_centre<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    centre: &SupportPoint,
-) -> Result<(), Stop> {
-    // A centre at the origin is no corner to look from.
-    match direction(&-centre.v) {
-        Some(dir) => from(md, Some(centre), &dir),
-        None => from(md, None, &Vec3::x()),
-    }
-}
-
-/// Do the objects overlap? From unit `dir`.
-#[inline]
-pub fn from_direction<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    dir: &Vec3,
-) -> Result<(), Stop> {
-    from(md, None, dir)
-}
-
-#[inline(always)]
-fn from<A: SupportMap, B: SupportMap>(
+pub fn cold<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     centre: Option<&SupportPoint>,
-    dir: &Vec3,
+    first: impl FnOnce() -> Vec3,
 ) -> Result<(), Stop> {
+    // A centre at the origin is no corner to look from.
+    let from_centre = centre.and_then(|c| direction(&-c.v));
+    let centre = centre.filter(|_| from_centre.is_some());
+    let dir = &from_centre.unwrap_or_else(first);
     let mut inquiry = Inquiry::new(md);
     // Most misses are told here, and pay for nothing more.
     let first = inquiry.first(dir, None)?;
@@ -78,16 +62,7 @@ fn beyond_first<A: SupportMap, B: SupportMap>(
     let (touch, size2) = (inquiry.precision.touch(), inquiry.precision.size2());
     let way = simplex.add(w, first.v, touch, size2);
     let next = way.and_then(|(way, _)| direction(&way)).unwrap_or(*dir);
-    search(
-        inquiry,
-        &mut set,
-        simplex,
-        next,
-        Proof::Solid,
-        Simplex::add,
-        |_, _, _, _| Ok(None),
-    )?;
-    Ok(())
+    search(inquiry, &mut set, simplex, next, Simplex::add).map(|_| ())
 }
 
 /// Support points after which the portal decides: of a hundred thousand pairs of every kind
@@ -102,91 +77,64 @@ const STALLS: u32 = 3;
 /// at each but few; what is open then is rounding.
 const LAST: u64 = 200;
 
-/// Shows that the objects overlap: the origin is strictly inside D, beyond rounding, or no
-/// direction asked separates. Or [`Stop::Apart`]. Returns the corners of the tetrahedron
-/// that shows it, in the set; of the last simplex, where none did.
-///
-/// `centre` is the index of a point of D that is trusted to be one, and need not be a
-/// support point: the origin is looked for between it and others. `dir`, unit, is asked
-/// first. Other points in the set stand in for a support point where they do as well. The
-/// set has room for four points or more; where it is full, points out of use give way.
-#[inline]
-pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
-    inquiry: &mut Inquiry<'_, A, B>,
-    set: &mut SupportSet<N>,
-    centre: Option<usize>,
-    dir: &Vec3,
-) -> Result<[usize; 4], Stop> {
-    let simplex = match centre {
-        Some(c) => Simplex::around(c, &set.v(c)),
-        None => Simplex::new(),
-    };
-    let known = set.len() > simplex.len();
-    let stand_in = |inquiry: &mut Inquiry<'_, A, B>, set: &mut SupportSet<N>, _: &_, dir: &Vec3| {
-        let touch = inquiry.precision.touch();
-        Ok(if known { set.farther(dir, touch) } else { None })
-    };
-    let add = Simplex::add_called;
-    let held = search(inquiry, set, simplex, *dir, Proof::Solid, add, stand_in)?;
-    Ok(held.corners)
-}
-
-/// What shows that the origin is inside D.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Proof {
-    /// A tetrahedron that holds it.
-    Solid,
-    /// Also a segment or triangle that does, with a corner well inside D: point 0 of the set.
-    Centred,
-    /// Any segment or triangle that does: D lies in a plane, and has no other inside.
-    Planar,
-}
-
-/// What holds the origin.
+/// What shows that the origin is inside D, or that no direction asked separates.
 pub struct Held {
-    /// The indices of the corners in the set, the last one repeated where it is no tetrahedron.
+    /// The indices of the corners in the set of the tetrahedron that holds the origin; of the last
+    /// simplex, where none did, the last one repeated.
     pub corners: [usize; 4],
     /// Where a portal had the last word, and the corners need not hold it: two points that it
     /// lies between.
     pub between: Option<[SupportPoint; 2]>,
 }
 
-impl Held {
-    fn by(corners: [usize; 4]) -> Self {
-        Self {
-            corners,
-            between: None,
-        }
-    }
+/// Shows that the objects overlap: the origin is strictly inside D, beyond rounding, or no
+/// direction asked separates. Or [`Stop::Apart`].
+///
+/// `centre` is the index of a point of D that is trusted to be one, and need not be a
+/// support point: the origin is looked for between it and others. `dir`, unit, is asked
+/// first. Other points in the set stand in for a support point where they do as well. The
+/// set has room for more than four points; where it is full, points out of use give way.
+#[inline]
+pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    set: &mut SupportSet<N>,
+    centre: Option<usize>,
+    dir: &Vec3,
+) -> Result<Held, Stop> {
+    let simplex = match centre {
+        Some(c) => Simplex::around(c, &set.v(c)),
+        None => Simplex::new(),
+    };
+    search(inquiry, set, simplex, *dir, Simplex::add_called)
 }
 
-/// [`overlap`], from a simplex and a direction to ask. `stand_in` may give the index of a point
-/// of the set that lies beyond the origin along a direction, by more than a touch. `add`:
-/// [`Simplex::add`], or its form that is called.
+/// [`overlap`], from a simplex and a direction to ask. `add`: [`Simplex::add`], or its form that is
+/// called.
 #[inline(always)]
-pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
-    inquiry: &mut Inquiry<'q, A, B>,
+fn search<A: SupportMap, B: SupportMap, const N: usize>(
+    inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<N>,
     mut simplex: Simplex,
     mut dir: Vec3,
-    kind: Proof,
     add: impl Fn(&mut Simplex, usize, Vec3, Real, Real) -> Option<Added>,
-    mut stand_in: impl FnMut(
-        &mut Inquiry<'q, A, B>,
-        &mut SupportSet<N>,
-        &Simplex,
-        &Vec3,
-    ) -> Result<Option<usize>, Stop>,
 ) -> Result<Held, Stop> {
     // The square of the distance from the simplex; and whether points on the other side of
     // it, where it is a triangle, are known.
     let (mut nearest, mut backed) = (Real::INFINITY, false);
     let mut stalls = 0;
+    // A set of four holds no others.
+    let known = N > 4 && set.len() > simplex.len();
     for _ in 0..STEPS {
-        let (w, at, touch) = match stand_in(inquiry, set, &simplex, &dir)? {
+        let touch = inquiry.precision.touch();
+        let other = if known {
+            set.farther(&dir, touch)
+        } else {
+            None
+        };
+        let (w, at, touch) = match other {
             // A corner, by rounding.
             Some(w) if simplex.has(w) => break,
-            Some(w) => (w, set.v(w), inquiry.precision.touch()),
+            Some(w) => (w, set.v(w), touch),
             None => {
                 let place = room(set, &simplex);
                 match inquiry.ask_at(set, place, &dir)? {
@@ -207,12 +155,11 @@ pub fn search<'q, A: SupportMap, B: SupportMap, const N: usize>(
                 inquiry.ask_at(set, place, &-dir)?;
             }
             let [i, j, k] = simplex.ids();
-            return Ok(Held::by([i, j, k, w]));
+            return Ok(Held {
+                corners: [i, j, k, w],
+                between: None,
+            });
         };
-        if distance2 <= touch * touch && simplex.proves(kind) {
-            let [i, j, k] = simplex.ids();
-            return Ok(Held::by([i, j, k, k]));
-        }
         // Negated for NaN.
         if !(distance2 > touch * touch && distance2 < nearest) {
             stalls += 1;
@@ -258,41 +205,40 @@ fn decide<A: SupportMap, B: SupportMap>(
     }
     let last = seen.len();
     inquiry.ask_at(&mut seen, last, &-dir)?;
-    let mut inner = mean(&seen, last).middle(&seen.point(last));
+    // The mean of the corners, one after the other.
+    let mut inner = seen.point(0);
+    for (count, corner) in (1..).zip(corners).skip(1) {
+        inner = inner.towards(corner, 1.0 / count as Real);
+    }
+    inner = inner.towards(&seen.point(last), 0.5);
     if !(inner.v.norm() > inquiry.precision.touch()) {
-        inner = inner.middle(&seen.point(0));
+        inner = inner.towards(&seen.point(0), 0.5);
     }
     let ray = unit(&-inner.v).unwrap_or(*dir);
     let first = SupportPlane::of(inquiry.md, ray)?;
-    let (mut best, mut budget) = (first, LAST);
-    let found = find_portal(inquiry.md, &first, Some(&inner.v), &mut best, &mut budget)?;
-    let mut between = None;
-    let lowest = match found {
-        Found::Miss(plane) => plane,
+    let mut search = Search {
+        md: inquiry.md,
         // Any portal that has the origin on its inner side decides.
-        Found::Portal(portal) => {
-            let beyond = Real::INFINITY;
-            let normal = Measure::Normal;
-            match refine(
-                inquiry.md,
-                portal,
-                beyond,
-                normal,
-                false,
-                &mut best,
-                &mut budget,
-            )? {
-                Exit::Miss(plane) => plane,
-                Exit::Converged(last, _) | Exit::Limit(Some(last)) => {
-                    let (v1, v2) = last.witnesses();
-                    between = Some([inner, SupportPoint { v: v1 - v2, v1, v2 }]);
-                    best
-                }
-                _ => best,
-            }
-        }
-        Found::Vertex | Found::Touch | Found::Limit => best,
+        tolerance: Real::INFINITY,
+        until: Until::Normal,
+        flat: None,
+        budget: LAST,
+        best: first,
     };
+    let exit = match search.find_portal(&first, Some(&inner.v)) {
+        Ok(Ok(portal)) => search.refine(portal),
+        Ok(Err(exit)) => Ok(exit),
+        Err(stop) => Err(stop),
+    };
+    let between = match exit {
+        Ok(Exit::Converged(last, _) | Exit::Limit(Some(last))) => {
+            let (v1, v2) = last.witnesses();
+            Some([inner, SupportPoint { v: v1 - v2, v1, v2 }])
+        }
+        Err(Stop::Fault(fault)) => return Err(Stop::Fault(fault)),
+        _ => None,
+    };
+    let lowest = search.best;
     inquiry.precision.note(&lowest.point);
     let touch = inquiry.precision.touch();
     // A callback that contradicts itself separates nothing.
@@ -303,19 +249,6 @@ fn decide<A: SupportMap, B: SupportMap>(
     } else {
         Err(Stop::Apart(lowest.normal))
     }
-}
-
-/// The mean of the first points of a set.
-fn mean<const N: usize>(set: &SupportSet<N>, count: usize) -> SupportPoint {
-    let mut mean = SupportPoint::default();
-    let share = 1.0 / larger(count as Real, 1.0);
-    for i in 0..count {
-        let p = set.point(i);
-        mean.v1 += p.v1 * share;
-        mean.v2 += p.v2 * share;
-    }
-    mean.v = mean.v1 - mean.v2;
-    mean
 }
 
 #[cfg(test)]
@@ -354,7 +287,7 @@ mod tests {
     fn either(a: &Shape, b: &Shape, dir: &Vec3, within_rounding: bool) -> bool {
         let ask = |a: &Shape, b: &Shape, dir: Vec3| {
             let md = MinkowskiDifference::new(a, b);
-            let answer = from_direction(&md, &dir);
+            let answer = cold(&md, None, || dir);
             assert!(md.supports() < 300, "{}", md.supports());
             match answer {
                 Ok(()) => true,
@@ -422,11 +355,11 @@ mod tests {
                     let md = MinkowskiDifference::new(&a, &b);
                     let larger = [scaled(&a, scale), scaled(&b, scale)];
                     let other = MinkowskiDifference::new(&larger[0], &larger[1]);
-                    let one = from_direction(&md, &dir);
+                    let one = cold(&md, None, || dir);
                     if let Some(hit) = truth(kind, gap) {
                         assert_eq!(one.is_ok(), hit);
                     }
-                    assert_eq!(one, from_direction(&other, &dir));
+                    assert_eq!(one, cold(&other, None, || dir));
                     assert_eq!(md.supports(), other.supports());
                 }
             }
@@ -480,9 +413,11 @@ mod tests {
                     let _ = inquiry.ask(&mut set, &r.direction());
                 }
                 let dir = r.direction();
-                let answer = super::overlap(&mut inquiry, &mut set, None, &dir);
+                let answer =
+                    super::overlap(&mut inquiry, &mut set, None, &dir).map(|held| held.corners);
                 let before = md.supports();
-                let again = super::overlap(&mut inquiry, &mut set, None, &dir);
+                let again =
+                    super::overlap(&mut inquiry, &mut set, None, &dir).map(|held| held.corners);
                 if let Some(hit) = truth(kind, gap) {
                     assert_eq!(answer.is_ok(), hit, "kind {kind} gap {gap}");
                     assert_eq!(again.is_ok(), hit, "kind {kind} gap {gap}");
@@ -516,7 +451,11 @@ mod tests {
                         v1: Vec3::zeros(),
                         v2: at,
                     };
-                    assert_eq!(from_centre(&md, &centre).is_ok(), gap < 0.0, "{gap}");
+                    assert_eq!(
+                        cold(&md, Some(&centre), Vec3::x).is_ok(),
+                        gap < 0.0,
+                        "{gap}"
+                    );
                 }
                 let at = up * (1.5 + gap);
                 let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
@@ -525,11 +464,15 @@ mod tests {
                     v1: Vec3::zeros(),
                     v2: at,
                 };
-                assert_eq!(from_centre(&md, &centre).is_ok(), gap < 0.0, "{gap}");
+                assert_eq!(
+                    cold(&md, Some(&centre), Vec3::x).is_ok(),
+                    gap < 0.0,
+                    "{gap}"
+                );
             }
         }
         // The same centre.
         let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
-        assert_eq!(from_centre(&md, &SupportPoint::default()), Ok(()));
+        assert_eq!(cold(&md, Some(&SupportPoint::default()), Vec3::x), Ok(()));
     }
 }

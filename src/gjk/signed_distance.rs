@@ -18,7 +18,7 @@
 //! The centres and the state choose where to look first, and prove nothing.
 
 use crate::contact::{Answer, Penetration, Settings};
-use crate::gjk::distance::{Approach, Step};
+use crate::gjk::distance::{Approach, End, Goal};
 use crate::known::support::{Fault, SupportMap};
 use crate::known::support_set::Inquiry;
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
@@ -64,18 +64,12 @@ pub struct Distance {
     pub limit: bool,
 }
 
-/// What the distance algorithm leaves of two cores.
-enum Cores {
-    /// Apart, or touching within rounding.
-    Apart(Gap),
-    /// They overlap, or so nearly that only a proof tells. Along this unit direction the overlap
-    /// was least, and these points of the two are at most a touch apart.
-    Overlap(Vec3, [Vec3; 2]),
-}
-
-/// The gap between two cores.
+/// The gap between two cores, as the distance algorithm leaves them.
 #[derive(Clone, Copy)]
 struct Gap {
+    /// They overlap, or so nearly that only a proof tells: along the normal the overlap was least, and
+    /// the points are at most a touch apart.
+    overlap: bool,
     lower: Real,
     normal: Vec3,
     point1: Vec3,
@@ -94,44 +88,45 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
     wanted: &Wanted,
     minimum: impl Fn(&Pair<A, B>, &mut State, &Settings) -> Result<Answer, Fault>,
 ) -> Result<Distance, Fault> {
+    let depth = |state: &mut State| {
+        Ok(match minimum(pair, state, &wanted.settings)? {
+            Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
+            Answer::Limit(hit) => Ok(deep(&hit, wanted, true)),
+            Answer::Miss(normal) => Err(normal),
+        })
+    };
     // Cores that overlapped are asked for their depth at once.
-    let overlapped = state.overlapped();
-    if overlapped {
-        match minimum(pair, state, &wanted.settings)? {
-            Answer::Hit(hit) => return Ok(deep(&hit, wanted, false)),
-            Answer::Limit(hit) => return Ok(deep(&hit, wanted, true)),
-            Answer::Miss(_) => {}
+    if state.overlapped() {
+        if let Ok(distance) = depth(state)? {
+            return Ok(distance);
         }
     }
-    let (start, met) = match cores(pair, state, wanted)? {
-        Cores::Apart(gap) => return Ok(apart(&gap, wanted)),
-        Cores::Overlap(n, met) => (n, met),
-    };
-    *state = State::guess(&start);
-    match minimum(pair, state, &wanted.settings)? {
-        Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
-        Answer::Limit(hit) => Ok(deep(&hit, wanted, true)),
-        Answer::Miss(normal) => Ok(apart(&touching(pair, normal, met)?, wanted)),
+    let gap = cores(pair, state, wanted)?;
+    if !gap.overlap {
+        return Ok(apart(&gap, wanted));
+    }
+    *state = State::guess(&gap.normal);
+    match depth(state)? {
+        Ok(distance) => Ok(distance),
+        Err(normal) => Ok(apart(&touching(pair, normal, gap)?, wanted)),
     }
 }
 
 /// Where the cores touch: the proof's word, whatever one support value says of it. The points
-/// `met` where the search came upon the origin.
+/// are those where the search came upon the origin.
 fn touching<A: SupportMap, B: SupportMap>(
     pair: &Pair<A, B>,
     normal: Vec3,
-    [point1, point2]: [Vec3; 2],
+    met: Gap,
 ) -> Result<Gap, Fault> {
     let mut inquiry = Inquiry::new(&pair.md);
     let h = normal.dot(&inquiry.point(&normal)?.v);
     Ok(Gap {
         lower: -h,
         normal,
-        point1,
-        point2,
-        iterations: 0,
-        limit: false,
         touch: larger(inquiry.precision.touch(), h.abs()),
+        iterations: 0,
+        ..met
     })
 }
 
@@ -198,7 +193,7 @@ fn cores<A: SupportMap, B: SupportMap>(
     pair: &Pair<A, B>,
     state: &mut State,
     wanted: &Wanted,
-) -> Result<Cores, Fault> {
+) -> Result<Gap, Fault> {
     let mut inquiry = Inquiry::new(&pair.md);
     let mut search = Approach::new(&mut inquiry);
     let margin = wanted.margin();
@@ -206,50 +201,29 @@ fn cores<A: SupportMap, B: SupportMap>(
         let start = state.separating().unwrap_or_else(|| pair.cold_start());
         search.ask(&start)?;
     }
-    let limit = loop {
-        let touch = search.inquiry.precision.touch();
-        let tolerance = search
-            .inquiry
-            .precision
-            .tolerance(wanted.settings.tolerance);
-        // A plane between the objects is wanted even where the tolerance would not ask.
-        let far = search.lower - margin > wanted.max_distance;
-        let told = |search: &Approach<'_, '_, A, B>| {
-            (search.lower - margin > -touch || !(search.upper - margin > touch))
-                && search.upper - search.lower <= tolerance
-        };
-        if far || told(&search) {
-            // In the plane of a touching face the last point was no nearer than others.
-            search.settle();
-            if far || told(&search) {
-                break false;
-            }
-        }
-        // The cap on iterations, or callbacks that err by more than rounding.
-        if search.iterations >= wanted.settings.max_iterations {
-            break true;
-        }
-        let step = search.step(tolerance)?;
-        if step == Step::Inside || step == Step::Stalled && !(search.lower >= -touch) {
-            let (point1, point2) = search.witnesses();
-            return Ok(Cores::Overlap(search.normal, [point1, point2]));
-        }
-        if step == Step::Stalled {
-            break true;
-        }
-    };
+    let end = search.run(&Goal {
+        tolerance: wanted.settings.tolerance,
+        share: 0.0,
+        margin,
+        far: wanted.max_distance,
+        iterations: wanted.settings.max_iterations,
+    })?;
+    let touch = search.inquiry.precision.touch();
+    let overlap = end == End::Inside || end == End::Stalled && !(search.lower >= -touch);
     let (point1, point2) = search.witnesses();
-    let gap = Gap {
+    if !overlap {
+        *state = left_behind(&search);
+    }
+    Ok(Gap {
+        overlap,
         lower: search.lower,
         normal: search.normal,
         point1,
         point2,
         iterations: search.iterations,
-        limit,
-        touch: search.inquiry.precision.touch(),
-    };
-    *state = left_behind(&search);
-    Ok(Cores::Apart(gap))
+        limit: !overlap && end != End::Met,
+        touch,
+    })
 }
 
 /// Starts from the directions that the state holds, if it holds any.

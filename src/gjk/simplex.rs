@@ -16,7 +16,6 @@
 //! an origin within rounding of an edge counts as one in the face.
 
 use crate::gjk::barycentric;
-use crate::gjk::overlap::Proof;
 use crate::known::support_set::SupportSet;
 use crate::math::{EPSILON, Real, Vec3, normal, perpendicular, unit};
 
@@ -65,20 +64,14 @@ impl Simplex {
         }
     }
 
-    /// One point.
-    #[inline(always)]
-    pub fn of(id: usize, at: &Vec3) -> Self {
-        let mut simplex = Self::new();
-        simplex.add(id, *at, 0.0, 0.0);
-        simplex
-    }
-
     /// One point, well inside D.
     #[inline(always)]
     pub fn around(id: usize, at: &Vec3) -> Self {
+        let mut simplex = Self::new();
+        simplex.add(id, *at, 0.0, 0.0);
         Self {
             inner: 0,
-            ..Self::of(id, at)
+            ..simplex
         }
     }
 
@@ -154,19 +147,8 @@ impl Simplex {
     }
 
     /// How many corners there are: at most three.
-    #[allow(clippy::len_without_is_empty)]
     pub fn len(&self) -> usize {
         self.len
-    }
-
-    /// Does a simplex that holds the target, and is no tetrahedron, show that D does?
-    #[inline(always)]
-    pub fn proves(&self, kind: Proof) -> bool {
-        match kind {
-            Proof::Solid => false,
-            Proof::Centred => self.order.contains(&self.inner),
-            Proof::Planar => self.len > 1,
-        }
     }
 
     /// Adds a corner, one of at most three, wherever it is: [`Simplex::settle`] tells the rest.
@@ -387,12 +369,6 @@ fn off(height: Real, p: &Vec3, q: &Vec3, w: &Vec3, slack: Real) -> bool {
         0.0
     };
     height > 2.0 * slack * normal(p, q, w).norm() + error
-}
-
-impl Default for Simplex {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 /// The unit vector along `way`, and `None` for none.

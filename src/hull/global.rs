@@ -268,7 +268,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             None => match attempt.opposite(&mut self.inquiry, self.request.cold())? {
                 Some(point) => {
                     opposite = point;
-                    middle = first.middle(&opposite);
+                    middle = first.towards(&opposite, 0.5);
                     (&middle, Some(&opposite))
                 }
                 None => {
@@ -442,7 +442,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     fn surround<const P: usize>(&mut self, set: &mut SupportSet<P>) -> Result<[usize; 4], Stop> {
         set.truncate(START);
         let dir = self.inquiry.lowest.dir;
-        overlap::overlap(&mut self.inquiry, set, None, &dir)
+        Ok(overlap::overlap(&mut self.inquiry, set, None, &dir)?.corners)
     }
 
     /// The answer of an expansion: is it proven? `None` where the expansion has not shown the

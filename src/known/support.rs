@@ -42,13 +42,13 @@ impl SupportPoint {
         larger(largest(&self.v1), largest(&self.v2))
     }
 
-    /// The point half-way to another.
+    /// The point that share of the way to another.
     #[inline]
-    pub fn middle(&self, other: &Self) -> Self {
+    pub fn towards(&self, other: &Self, share: Real) -> Self {
         Self {
-            v: (self.v + other.v) * 0.5,
-            v1: (self.v1 + other.v1) * 0.5,
-            v2: (self.v2 + other.v2) * 0.5,
+            v: self.v.lerp(&other.v, share),
+            v1: self.v1.lerp(&other.v1, share),
+            v2: self.v2.lerp(&other.v2, share),
         }
     }
 }
@@ -64,37 +64,10 @@ pub struct Known {
 impl Known {
     /// How many points there is room for.
     pub const ROOM: usize = 8;
-    /// No point's place.
-    pub const NONE: usize = Self::ROOM;
 
     /// The points.
     pub fn points(&self) -> &[SupportPoint] {
         self.points.get(..self.len).unwrap_or(&[])
-    }
-
-    /// The point at that place, which [`Known::put`] named.
-    #[inline]
-    pub fn get(&self, at: usize) -> &SupportPoint {
-        &self.points[at % Self::ROOM]
-    }
-
-    /// Adds a point, unless it is there; where there is no room it takes the place of
-    /// the latest that is not `kept`. Returns its place.
-    #[inline]
-    pub fn put(&mut self, p: &SupportPoint, kept: &[usize]) -> usize {
-        let place = match self.points().iter().position(|k| k.v == p.v) {
-            Some(there) => return there,
-            None if self.len < Self::ROOM => {
-                self.len += 1;
-                self.len - 1
-            }
-            None => (0..Self::ROOM)
-                .rev()
-                .find(|i| !kept.contains(i))
-                .unwrap_or(Self::ROOM - 1),
-        };
-        self.points[place % Self::ROOM] = *p;
-        place
     }
 
     /// The point farthest along `n`, if it lies beyond the origin.
@@ -128,15 +101,10 @@ impl Known {
         }
     }
 
-    /// Makes the point at that place the first.
-    pub fn lead(&mut self, at: usize) {
-        self.points.swap(0, at % Self::ROOM);
-    }
-
     /// Adds a point, unless it is there or there is no room.
     pub fn add(&mut self, p: &SupportPoint) {
-        if self.len < Self::ROOM {
-            self.put(p, &[]);
+        if !self.points().iter().any(|k| k.v == p.v) {
+            self.push(p);
         }
     }
 }

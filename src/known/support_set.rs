@@ -89,11 +89,6 @@ impl<const N: usize> SupportSet<N> {
         self.len
     }
 
-    /// Is there no point?
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
     /// Is there no room for another point?
     #[inline(always)]
     pub fn is_full(&self) -> bool {
@@ -174,16 +169,6 @@ impl<const N: usize> SupportSet<N> {
         self.points[0][i] = point.v1;
         self.points[1][i] = point.v2;
         self.directions[i] = *direction;
-    }
-
-    /// Lets two points change places.
-    #[inline(always)]
-    pub fn swap(&mut self, i: usize, j: usize) {
-        let (i, j) = (Self::at(i), Self::at(j));
-        for points in &mut self.points {
-            points.swap(i, j);
-        }
-        self.directions.swap(i, j);
     }
 
     /// Forgets all points from this index on.

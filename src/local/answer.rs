@@ -24,7 +24,7 @@ impl Search {
     #[cold]
     pub fn lowest_met(&self, known: &mut Known) -> Penetration {
         let Sample { n, p, h } = self.best();
-        known.put(p, &[]);
+        known.add(p);
         for sample in self.samples.iter().take(self.asked) {
             known.add(&sample.p);
         }
@@ -155,7 +155,7 @@ impl Search {
             }
         }
         // The one here, which may be none of these.
-        known.put(&at.p, &[]);
+        known.add(&at.p);
         // Three active ones are mostly enough; of what is round they were seen elsewhere.
         if end.count == 1 || end.count == 2 && self.is_round() || self.is_curved() {
             for sample in self.samples.iter().take(self.asked) {

@@ -9,9 +9,11 @@
 //! where the ray crosses it is the lower bound, once the origin is known to be in D.
 
 use crate::contact::{Penetration, Settings};
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::known::support::{MinkowskiDifference, SupportMap};
+use crate::known::support_set::Stop;
 use crate::math::{Real, Vec3};
-use crate::paper::portal::{self, Exit, Found, Measure, Portal, SupportPlane, rounding};
+use crate::paper::incremental::answer;
+use crate::paper::portal::{Exit, Portal, Search, SupportPlane, Until, rounding};
 
 /// Where the ray leaves D, as long as the origin is in D.
 pub struct Way {
@@ -27,20 +29,17 @@ pub struct Way {
 
 /// Follows the ray along unit `dir`; `last` are the normals of the portal to begin with.
 ///
-/// `Err` holds a unit direction that separates.
-///
 /// # Errors
-/// A callback's answer that is not finite.
+/// [`Stop::Apart`]; a callback's answer that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     dir: &Vec3,
     last: Option<[Vec3; 3]>,
     settings: &Settings,
-) -> Result<Result<Way, Vec3>, Fault> {
+) -> Result<Way, Stop> {
     let mut budget = settings.max_iterations;
     let (exit, first) = follow(md, dir, last, settings.tolerance, &mut budget)?;
     let (limit, portal, plane) = match exit {
-        Exit::Miss(plane) => return Ok(Err(plane.normal)),
         Exit::Converged(portal, plane) => (false, Some(portal), plane),
         Exit::Limit(portal) => (true, portal, nearest(dir, first, portal.as_ref())),
         Exit::Vertex | Exit::Touch | Exit::Shortcut(_) => (false, None, first),
@@ -51,28 +50,20 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         None if matches!(exit, Exit::Vertex) => (depth, 0.0),
         None => (0.0, 0.0),
     };
-    let (point1, point2) = match &portal {
-        Some(portal) if !limit => portal.witnesses(),
-        _ => (plane.point.v1, plane.point.v2),
-    };
     let hit = Penetration {
         depth,
         // `max` passes over NaN.
         depth_lower: lower.max(0.0).min(depth),
         dir: *dir,
-        normal: plane.normal,
-        point1,
-        point2,
-        pos: Vec3::zeros(),
-        extent: [0.0; 2],
         iterations: settings.max_iterations - budget,
+        ..answer(&plane, portal.as_ref().filter(|_| !limit))
     };
-    Ok(Ok(Way {
+    Ok(Way {
         hit,
         error,
         limit,
         portal,
-    }))
+    })
 }
 
 /// After the cap, or a portal without area: every support plane is sound, and the one that
@@ -105,37 +96,33 @@ fn follow<A: SupportMap, B: SupportMap>(
     last: Option<[Vec3; 3]>,
     tolerance: Real,
     budget: &mut u64,
-) -> Result<(Exit, SupportPlane), Fault> {
-    let finish = |portal: Portal, best: &mut SupportPlane, budget: &mut u64| {
-        portal::refine(md, portal, tolerance, Measure::Ray, false, best, budget)
+) -> Result<(Exit, SupportPlane), Stop> {
+    let first = SupportPlane::of(md, last.map_or(*dir, |[a, _, _]| a))?;
+    let mut search = Search {
+        md,
+        tolerance,
+        until: Until::Ray,
+        flat: None,
+        budget: *budget,
+        best: first,
     };
     // The last portal, found again by its three directions.
-    if let Some([a, b, c]) = last {
-        let planes = [
-            SupportPlane::of(md, a)?,
-            SupportPlane::of(md, b)?,
-            SupportPlane::of(md, c)?,
-        ];
-        if let Some(out) = planes.iter().find(|p| p.depth < 0.0) {
-            return Ok((Exit::Miss(*out), *out));
+    if let Some([_, b, c]) = last {
+        if first.depth < 0.0 {
+            return Err(Stop::Apart(first.normal));
         }
+        let planes = [first, search.plane(b)?, search.plane(c)?];
         if let Some(portal) = Portal::of(*dir, planes) {
-            let mut best = planes[0];
-            let exit = finish(portal, &mut best, budget)?;
-            if matches!(exit, Exit::Converged(..) | Exit::Miss(_)) {
-                return Ok((exit, best));
+            let exit = search.refine(portal)?;
+            *budget = search.budget;
+            if matches!(exit, Exit::Converged(..)) {
+                return Ok((exit, first));
             }
         }
+        return follow(md, dir, None, tolerance, budget);
     }
-    let first = SupportPlane::of(md, *dir)?;
-    let mut best = first;
-    let exit = match portal::find_portal(md, &first, None, &mut best, budget)? {
-        Found::Portal(portal) => finish(portal, &mut best, budget)?,
-        Found::Vertex => Exit::Vertex,
-        Found::Touch => Exit::Touch,
-        Found::Miss(n) => Exit::Miss(n),
-        Found::Limit => Exit::Limit(None),
-    };
+    let exit = search.follow(&first)?;
+    *budget = search.budget;
     Ok((exit, first))
 }
 
@@ -162,9 +149,7 @@ mod tests {
             let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
             let mut last = None;
             for _ in 0..2 {
-                let Ok(way) = penetration(&md, &d, last, &settings).unwrap() else {
-                    panic!("the origin is inside");
-                };
+                let way = penetration(&md, &d, last, &settings).expect("the origin is inside");
                 let slack = 100.0 * EPSILON;
                 assert!(way.hit.depth >= exact - slack && way.hit.depth_lower <= exact + slack);
                 assert!(!way.limit && way.hit.depth - way.hit.depth_lower <= 2e-4);

@@ -8,7 +8,7 @@
 //! outward normal n the constraint "outside D" is linearised by the support plane
 //! of n, and the nearest point of that plane to the origin is z = h(n) n: so one
 //! step goes from the ray d, which leaves D through a face of normal n
-//! ([`portal::mpr`]), to the ray n. Since the ray n leaves D at or before z,
+//! ([`Search::follow`]), to the ray n. Since the ray n leaves D at or before z,
 //! |z| falls strictly from step to step until d and n agree within the tolerance:
 //! |q| − |z| ≤ tolerance, q the point where the ray meets the last support plane.
 //!
@@ -25,17 +25,9 @@
 use crate::contact::{Answer, Penetration, Settings};
 use crate::contacts::pressure;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::known::support_set::Stop;
 use crate::math::{Real, Vec3, perpendicular};
-use crate::paper::portal::{self, Exit, Portal, SupportPlane, rounding};
-
-/// When a ray may be left before its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shortcut {
-    /// Never: Algorithm 3.
-    Never,
-    /// Whenever |z| ≤ |p|: Algorithms 4 and 5.
-    Always,
-}
+use crate::paper::portal::{Exit, Portal, Search, SupportPlane, Until, rounding};
 
 /// A step aside from a stationary direction: tan of about 6°, small enough to stay
 /// in the valley, large enough to see a slope. The two parts have no simple ratio,
@@ -43,80 +35,102 @@ pub enum Shortcut {
 const ASIDE: (Real, Real) = (0.093, 0.041);
 
 /// A local minimum of the penetration depth, searched from the unit direction
-/// `start`. `switched` is told |z| at each switch of the ray.
+/// `start`: Algorithm 3, or with [`Until::Shortcut`] Algorithms 4 and 5. `flat`: the unit normal of the
+/// plane that D and `start` lie in, where there is one. `switched` is told |z| at each switch of the ray.
+///
+/// # Errors
+/// A callback's answer that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,
-    shortcut: Shortcut,
+    flat: Option<Vec3>,
+    until: Until,
     settings: &Settings,
-    mut switched: impl FnMut(Real),
+    switched: impl FnMut(Real),
 ) -> Result<Answer, Fault> {
-    let mut budget = settings.max_iterations;
-    let mut ray = SupportPlane::of(md, start)?;
-    let mut best = ray;
-    let may_leave = shortcut == Shortcut::Always;
+    let ray = SupportPlane::of(md, start)?;
+    let mut search = Search {
+        md,
+        tolerance: settings.tolerance,
+        until,
+        flat,
+        budget: settings.max_iterations,
+        best: ray,
+    };
+    let ended = from_ray_to_ray(&mut search, ray, switched);
+    let iterations = settings.max_iterations - search.budget;
+    match ended {
+        Ok(Some(hit)) => Ok(Answer::Hit(Penetration { iterations, ..hit })),
+        Ok(None) => {
+            let hit = answer(&search.best, None);
+            Ok(Answer::Limit(Penetration { iterations, ..hit }))
+        }
+        Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
+        Err(Stop::Fault(fault)) => Err(fault),
+    }
+}
+
+/// The loop of Algorithm 3. `None`: a cap came first.
+fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
+    search: &mut Search<'_, A, B>,
+    mut ray: SupportPlane,
+    mut switched: impl FnMut(Real),
+) -> Result<Option<Penetration>, Stop> {
     // The ray that was stepped aside from: stationary, its depth and witnesses exact.
     let mut aside: Option<SupportPlane> = None;
-    let used = |budget: u64| settings.max_iterations - budget;
     loop {
-        let exit = portal::mpr(
-            md,
-            &ray,
-            settings.tolerance,
-            may_leave,
-            &mut best,
-            &mut budget,
-        )?;
-        let next = match exit {
-            Exit::Miss(plane) => return Ok(Answer::Miss(plane.normal)),
-            Exit::Touch => return Ok(Answer::Hit(answer(best, None, used(budget)))),
-            Exit::Limit(_) => return Ok(Answer::Limit(answer(best, None, used(budget)))),
+        let next = match search.follow(&ray)? {
+            Exit::Touch => return Ok(Some(answer(&search.best, None))),
+            Exit::Limit(_) => return Ok(None),
             Exit::Shortcut(plane) => plane,
             Exit::Vertex => match aside {
                 None => {
                     aside = Some(ray);
-                    let e1 = perpendicular(&ray.normal);
-                    let e2 = ray.normal.cross(&e1);
-                    let n = ray.normal + e1 * ASIDE.0 + e2 * ASIDE.1;
-                    ray = SupportPlane::of(md, n / n.norm())?;
+                    let across = match search.flat {
+                        Some(m) => m.cross(&ray.normal) * ASIDE.0,
+                        None => {
+                            let e1 = perpendicular(&ray.normal);
+                            e1 * ASIDE.0 + ray.normal.cross(&e1) * ASIDE.1
+                        }
+                    };
+                    let n = ray.normal + across;
+                    ray = search.plane(n / n.norm())?;
                     // No switch: the depth may rise.
                     continue;
                 }
                 // Stationary again: as good as it gets, unless a plane seen on the
                 // way lies in a lower valley.
-                Some(_) if best.depth < ray.depth - settings.tolerance => best,
+                Some(_) if search.best.depth < ray.depth - search.tolerance => search.best,
                 Some(first) => {
                     let lower = if first.depth < ray.depth { first } else { ray };
-                    return Ok(Answer::Hit(answer(lower, None, used(budget))));
+                    return Ok(Some(answer(&lower, None)));
                 }
             },
             Exit::Converged(last, plane) => {
                 let along = plane.normal.dot(&ray.normal);
-                let floor = settings.tolerance.max(rounding(plane.point.magnitude()));
+                let floor = search.tolerance.max(rounding(plane.point.magnitude()));
                 // |q| − |z|; NaN and a plane that holds the ray go on to the next
                 // ray only while the best plane falls.
                 let stationary = plane.depth / along - plane.depth <= floor;
-                let lower_elsewhere = best.depth < plane.depth - floor;
+                let lower_elsewhere = search.best.depth < plane.depth - floor;
                 if stationary && !lower_elsewhere {
-                    let (lowest, portal) = match aside {
-                        Some(first) if first.depth <= plane.depth => (first, None),
-                        _ => (plane, Some(last)),
+                    let mut hit = match &aside {
+                        Some(first) if first.depth <= plane.depth => answer(first, None),
+                        _ => answer(&plane, Some(&last)),
                     };
-                    let mut hit = answer(lowest, portal, used(budget));
                     let points = last
                         .planes
                         .iter()
                         .map(|plane| [plane.point.v1, plane.point.v2]);
                     hit.extent = pressure::extent(points, [&hit.point1, &hit.point2]);
-                    return Ok(Answer::Hit(hit));
+                    return Ok(Some(hit));
                 }
-                if lower_elsewhere { best } else { plane }
+                if lower_elsewhere { search.best } else { plane }
             }
         };
-        if budget == 0 {
-            return Ok(Answer::Limit(answer(best, None, used(budget))));
+        if !search.spend() {
+            return Ok(None);
         }
-        budget -= 1;
         switched(next.depth);
         ray = next;
     }
@@ -124,21 +138,18 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 
 /// The answer of a support plane. The witness points are where its portal's ray crosses
 /// the portal; without one, the two of its support point.
-fn answer(plane: SupportPlane, portal: Option<Portal>, iterations: u64) -> Penetration {
+pub fn answer(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration {
     let (point1, point2) = match portal {
         Some(p) => p.witnesses(),
         None => (plane.point.v1, plane.point.v2),
     };
     Penetration {
         depth: plane.depth,
-        depth_lower: 0.0,
         dir: plane.normal,
         normal: plane.normal,
         point1,
         point2,
-        pos: Vec3::zeros(),
-        extent: [0.0; 2],
-        iterations,
+        ..Penetration::default()
     }
 }
 
@@ -156,10 +167,10 @@ mod tests {
     fn solve<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         start: Vec3,
-        shortcut: Shortcut,
+        shortcut: Until,
         switched: impl FnMut(Real),
     ) -> Penetration {
-        match penetration(md, start, shortcut, &SETTINGS, switched).unwrap() {
+        match penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap() {
             Answer::Hit(hit) => hit,
             other => panic!("{other:?}"),
         }
@@ -239,9 +250,15 @@ mod tests {
             let mut ray = SupportPlane::of(&md, r.direction()).unwrap();
             for _ in 0..20 {
                 let normal = e.normal(&e.exit(&ray.normal));
-                let mut best = ray;
-                let mut budget = 2000;
-                match portal::mpr(&md, &ray, tolerance, false, &mut best, &mut budget) {
+                let mut search = Search {
+                    md: &md,
+                    tolerance,
+                    until: Until::Normal,
+                    flat: None,
+                    budget: 2000,
+                    best: ray,
+                };
+                match search.follow(&ray) {
                     Ok(Exit::Converged(_, plane)) => {
                         // A gap of tol leaves an angle of sqrt(tol) to the normal.
                         let error = (plane.normal - normal).norm();
@@ -280,7 +297,7 @@ mod tests {
             let cube = placed(&corners(half), &turn, r.vector(0.1));
             let md = MinkowskiDifference::new(hull(&cube), capsule(a, b, 0.3));
             let start = r.direction();
-            for (i, shortcut) in [Shortcut::Never, Shortcut::Always].into_iter().enumerate() {
+            for (i, shortcut) in [Until::Normal, Until::Shortcut].into_iter().enumerate() {
                 let before = md.supports();
                 let mut last = SupportPlane::of(&md, start).unwrap().depth;
                 let hit = solve(&md, start, shortcut, |z| {
@@ -293,7 +310,7 @@ mod tests {
                 assert!((h - hit.depth).abs() < 32.0 * EPSILON);
                 // From a degree beside it both come back to it, or lower.
                 let near = unit(&(hit.dir + r.vector(0.01))).unwrap();
-                for shortcut in [Shortcut::Never, Shortcut::Always] {
+                for shortcut in [Until::Normal, Until::Shortcut] {
                     let again = solve(&md, near, shortcut, |_| ());
                     assert!(again.depth <= hit.depth + 4.0 * SETTINGS.tolerance);
                 }
@@ -315,7 +332,7 @@ mod tests {
             ball(Vec3::z() * 0.2, 0.5),
             capsule(Vec3::z() * -0.5, Vec3::z() * 0.5, 0.5),
         );
-        for shortcut in [Shortcut::Never, Shortcut::Always] {
+        for shortcut in [Until::Normal, Until::Shortcut] {
             for md in [&md, &shifted] {
                 for start in [Vec3::z(), -Vec3::z()] {
                     let hit = solve(md, start, shortcut, |_| ());
@@ -340,7 +357,7 @@ mod tests {
         // Of the icosahedron with edge 2: the distance between two opposite faces.
         let inradius = (3.0 as Real).sqrt() * (3.0 + (5.0 as Real).sqrt()) / 6.0;
         for v in &points {
-            let hit = solve(&md, unit(v).unwrap(), Shortcut::Always, |_| ());
+            let hit = solve(&md, unit(v).unwrap(), Until::Shortcut, |_| ());
             assert!((hit.depth - 2.0 * inradius).abs() <= 1e-5, "{}", hit.depth);
         }
     }
@@ -352,7 +369,7 @@ mod tests {
         let md = MinkowskiDifference::new(hull(&cube), hull(&cube));
         let mut r = Random::new(5);
         for _ in 0..100 {
-            let hit = solve(&md, r.direction(), Shortcut::Always, |_| ());
+            let hit = solve(&md, r.direction(), Until::Shortcut, |_| ());
             let face = [1.0, 0.8, 0.6].map(|d| (hit.depth - d).abs() < 1e-6);
             assert!(face.contains(&true), "{}", hit.depth);
         }
@@ -370,7 +387,7 @@ mod tests {
                 tolerance: 1e-9,
             };
             let start = r.direction();
-            match penetration(&md, start, Shortcut::Always, &settings, |_| ()).unwrap() {
+            match penetration(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap() {
                 Answer::Limit(hit) => {
                     assert!(hit.iterations <= max_iterations);
                     let h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);

@@ -19,7 +19,14 @@
 //! plane that excludes the origin ends the search with a proof that the objects
 //! are apart, wherever it is met; the best support plane seen is kept.
 
+//!
+//! **In a plane** (n = 2, Sec. II-A), for shapes that lie in one with unit normal m, the portal is a
+//! segment from v1 to v2 with the ray between them. It is kept as the triangle v1, v2, v2 + m: that
+//! has the segment's normal in the plane, and the ray crosses it on the segment.
+
+use crate::gjk::barycentric;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support_set::Stop;
 use crate::math::{self, EPSILON, Real, Vec3, larger, largest, unit};
 
 /// A support plane of D: unit normal, support point, support value.
@@ -68,25 +75,33 @@ impl Portal {
         unit(&math::normal(a, b, c))
     }
 
+    /// The weights of the vertices where the ray crosses, times six volumes.
+    fn weights(&self) -> [Real; 3] {
+        let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
+        [
+            triple(&self.ray, b, c),
+            triple(&self.ray, c, a),
+            triple(&self.ray, a, b),
+        ]
+    }
+
     /// The portal of three support planes, if the ray crosses their triangle from
     /// the origin's side, in either order of the vertices.
     pub fn of(ray: Vec3, planes: [SupportPlane; 3]) -> Option<Self> {
-        let [a, b, c] = planes.map(|p| p.point.v);
-        let t = [
-            triple(&ray, &a, &b),
-            triple(&ray, &b, &c),
-            triple(&ray, &c, &a),
-        ];
-        if t.iter().all(|&t| t > 0.0) {
-            Some(Self { ray, planes })
-        } else if t.iter().all(|&t| t < 0.0) {
-            let [a, b, c] = planes;
-            Some(Self {
-                ray,
-                planes: [a, c, b],
-            })
-        } else {
-            None
+        let [a, b, c] = planes;
+        let orders = [planes, [a, c, b]].map(|planes| Self { ray, planes });
+        let crossed = |portal: &Self| portal.weights().iter().all(|t| *t > 0.0);
+        orders.into_iter().find(crossed)
+    }
+
+    /// The portal in the plane with normal m, from one side of the ray to the other.
+    fn segment(ray: Vec3, left: SupportPlane, right: SupportPlane, m: &Vec3) -> Self {
+        let mut beside = right;
+        beside.point.v += m;
+        beside.point.v1 += m;
+        Self {
+            ray,
+            planes: [left, right, beside],
         }
     }
 
@@ -113,37 +128,21 @@ impl Portal {
     /// Where along the ray the triangle is: |p|, negative behind the origin. A mean of
     /// the vertices with weights T, which rounding does not move out of the triangle.
     pub fn reach(&self) -> Real {
-        let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
-        let t = [
-            triple(&self.ray, b, c),
-            triple(&self.ray, c, a),
-            triple(&self.ray, a, b),
-        ];
-        let along = t[0] * self.ray.dot(a) + t[1] * self.ray.dot(b) + t[2] * self.ray.dot(c);
-        along / (t[0] + t[1] + t[2])
+        let t = self.weights();
+        let at = self.planes.each_ref().map(|p| self.ray.dot(&p.point.v));
+        (t[0] * at[0] + t[1] * at[1] + t[2] * at[2]) / (t[0] + t[1] + t[2])
     }
 
     /// The points of obj1 and obj2 whose difference is where the ray crosses the
     /// triangle: both are convex combinations of the objects' own support points.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
-        let [a, b, c] = self.planes.each_ref().map(|p| &p.point);
-        let weights = [
-            triple(&self.ray, &b.v, &c.v),
-            triple(&self.ray, &c.v, &a.v),
-            triple(&self.ray, &a.v, &b.v),
-        ]
-        .map(|t| t.max(0.0));
+        let points = self.planes.each_ref().map(|p| &p.point);
+        let weights = self.weights().map(|t| t.max(0.0));
         let sum: Real = weights.iter().sum();
         if !(sum > 0.0) {
-            return (a.v1, a.v2);
+            return (points[0].v1, points[0].v2);
         }
-        let mut p1 = Vec3::zeros();
-        let mut p2 = Vec3::zeros();
-        for (p, t) in [a, b, c].into_iter().zip(weights) {
-            p1 += p.v1 * (t / sum);
-            p2 += p.v2 * (t / sum);
-        }
-        (p1, p2)
+        barycentric::witnesses(&weights.map(|t| t / sum), points)
     }
 }
 
@@ -158,110 +157,7 @@ pub fn rounding(size: Real) -> Real {
     8.0 * EPSILON * size
 }
 
-/// What portal discovery came to.
-pub enum Found {
-    /// A portal.
-    Portal(Portal),
-    /// The ray passes through its own support point: it leaves D there, and its
-    /// direction is the normal of a support plane there (stationary).
-    Vertex,
-    /// `best` has depth zero within rounding: no direction is shallower.
-    Touch,
-    /// This plane separates.
-    Miss(SupportPlane),
-    /// The iterations were used up.
-    Limit,
-}
-
-/// Portal discovery (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
-/// Game Programming Gems 7), for the ray along `first.normal`.
-///
-/// `behind` is the original algorithm's interior point, where one is known: a point of D
-/// on the line of the ray, behind the origin. Else `v0 = -d`, scaled to the portal's size,
-/// stands in for it.
-/// `budget` counts iterations down; `best` keeps the lowest plane seen.
-pub fn find_portal<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    first: &SupportPlane,
-    behind: Option<&Vec3>,
-    best: &mut SupportPlane,
-    budget: &mut u64,
-) -> Result<Found, Fault> {
-    let d = first.normal;
-    if first.depth < 0.0 {
-        return Ok(Found::Miss(*first));
-    }
-    let size = first.point.magnitude();
-    let side = first.point.v.cross(&d);
-    // Also true for NaN: a ray whose own support point cannot be told from it.
-    if !(side.norm() > rounding(size)) {
-        return Ok(Found::Vertex);
-    }
-    let Some(side) = unit(&side) else {
-        return Ok(Found::Vertex);
-    };
-    let second = match probe(md, side, best)? {
-        Probe::Plane(p) => p,
-        Probe::Miss(plane) => return Ok(Found::Miss(plane)),
-    };
-    if !(second.depth > rounding(size.max(second.point.magnitude()))) {
-        return Ok(Found::Touch);
-    }
-    // T(v2, v1) = side · v2 · |v1 × d| > 0: with the two in this order a third
-    // point beyond the plane (v0, v1, v2) closes the cone.
-    let mut portal = Portal {
-        ray: d,
-        planes: [second, *first, *first],
-    };
-    while *budget > 0 {
-        *budget -= 1;
-        let [a, b, _] = portal.planes.each_ref().map(|p| p.point.v);
-        let v0 = match behind {
-            Some(inner) => *inner,
-            None => -d * larger(largest(&a), largest(&b)),
-        };
-        let Some(n) = unit(&(a - v0).cross(&(b - v0))) else {
-            return Ok(Found::Touch);
-        };
-        let third = match probe(md, n, best)? {
-            Probe::Plane(p) => p,
-            Probe::Miss(plane) => return Ok(Found::Miss(plane)),
-        };
-        let w = third.point.v;
-        if triple(&d, &a, &w) > 0.0 {
-            portal.planes[1] = third;
-        } else if triple(&d, &w, &b) > 0.0 {
-            portal.planes[0] = third;
-        } else {
-            portal.planes[2] = third;
-            return Ok(Found::Portal(portal));
-        }
-    }
-    Ok(Found::Limit)
-}
-
-enum Probe {
-    Plane(SupportPlane),
-    Miss(SupportPlane),
-}
-
-#[inline]
-fn probe<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    n: Vec3,
-    best: &mut SupportPlane,
-) -> Result<Probe, Fault> {
-    let plane = SupportPlane::of(md, n)?;
-    if plane.depth < 0.0 {
-        return Ok(Probe::Miss(plane));
-    }
-    if plane.depth < best.depth {
-        *best = plane;
-    }
-    Ok(Probe::Plane(plane))
-}
-
-/// Where [`mpr`] stopped.
+/// Where a ray's search stopped.
 pub enum Exit {
     /// The ray leaves D between the portal and this support plane, which are no
     /// farther apart than the tolerance.
@@ -269,96 +165,206 @@ pub enum Exit {
     /// Algorithm 5's shortcut: the support value of this plane is no greater than
     /// the distance |p| to the portal along the ray.
     Shortcut(SupportPlane),
-    /// See [`Found`].
+    /// The ray passes through its own support point: it leaves D there, and its
+    /// direction is the normal of a support plane there (stationary).
     Vertex,
-    /// See [`Found`].
+    /// The lowest plane has depth zero within rounding: no direction is shallower.
     Touch,
-    /// See [`Found`].
-    Miss(SupportPlane),
     /// The iterations were used up; the last portal if there was one.
     Limit(Option<Portal>),
 }
 
-/// How the distance between portal and support plane is measured.
+/// Where portal refinement ends.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
-    /// Along the normal (Algorithm 1).
+pub enum Until {
+    /// The bounds meet along the normal (Algorithm 1).
     Normal,
-    /// Along the ray (directed penetration).
+    /// The same, or Algorithm 5's shortcut.
+    Shortcut,
+    /// The bounds meet along the ray (directed penetration).
     Ray,
 }
 
-/// Follows the origin ray along `first.normal` to the boundary of D: Algorithm 1,
-/// and with `shortcut` Algorithm 5 of the paper.
-pub fn mpr<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    first: &SupportPlane,
-    tolerance: Real,
-    shortcut: bool,
-    best: &mut SupportPlane,
-    budget: &mut u64,
-) -> Result<Exit, Fault> {
-    match find_portal(md, first, None, best, budget)? {
-        Found::Portal(p) => refine(md, p, tolerance, Measure::Normal, shortcut, best, budget),
-        Found::Vertex => Ok(Exit::Vertex),
-        Found::Touch => Ok(Exit::Touch),
-        Found::Miss(plane) => Ok(Exit::Miss(plane)),
-        Found::Limit => Ok(Exit::Limit(None)),
-    }
+/// A query on its way from ray to ray. A direction that separates ends it: [`Stop::Apart`].
+pub struct Search<'q, A, B> {
+    /// Who is asked.
+    pub md: &'q MinkowskiDifference<A, B>,
+    /// Of the bounds, metres.
+    pub tolerance: Real,
+    /// Where they are to meet.
+    pub until: Until,
+    /// The normal of the plane that D lies in, if it is in one.
+    pub flat: Option<Vec3>,
+    /// Iterations that are left.
+    pub budget: u64,
+    /// The lowest support plane met, one that separates included.
+    pub best: SupportPlane,
 }
 
-/// Portal refinement: the loop of Algorithms 1 and 5, from a portal on.
-pub fn refine<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    mut portal: Portal,
-    tolerance: Real,
-    measure: Measure,
-    shortcut: bool,
-    best: &mut SupportPlane,
-    budget: &mut u64,
-) -> Result<Exit, Fault> {
-    while *budget > 0 {
-        *budget -= 1;
-        // Three points on a line, or so near that rounding turns their triangle over:
-        // the arithmetic cannot split it further.
-        let Some(n) = portal.normal().filter(|n| n.dot(&portal.ray) > 0.0) else {
-            return Ok(Exit::Limit(Some(portal)));
+impl<A: SupportMap, B: SupportMap> Search<'_, A, B> {
+    /// Counts an iteration, if one is left.
+    pub fn spend(&mut self) -> bool {
+        let left = self.budget > 0;
+        self.budget = self.budget.saturating_sub(1);
+        left
+    }
+
+    /// The support plane of unit `n`.
+    #[inline]
+    pub fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
+        let plane = SupportPlane::of(self.md, n)?;
+        if plane.depth < self.best.depth {
+            self.best = plane;
+        }
+        if plane.depth < 0.0 {
+            return Err(Stop::Apart(n));
+        }
+        Ok(plane)
+    }
+
+    /// Follows the origin ray along `first.normal` to the boundary of D: Algorithm 1,
+    /// or Algorithm 5 of the paper.
+    pub fn follow(&mut self, first: &SupportPlane) -> Result<Exit, Stop> {
+        let found = match self.flat {
+            Some(m) => self.find_segment(first, &m)?,
+            None => self.find_portal(first, None)?,
         };
-        let along = n.dot(&portal.ray);
-        let inner = n.dot(&portal.planes[0].point.v);
-        let size = (portal.planes.iter()).fold(0.0, |m, p| larger(m, p.point.magnitude()));
-        let floor = rounding(size);
-        let plane = match probe(md, n, best)? {
-            Probe::Plane(p) => p,
-            // D holds the portal: a callback that answers less than it is wrong.
-            Probe::Miss(_) if inner > floor => {
-                let plane = SupportPlane {
+        match found {
+            Ok(portal) => self.refine(portal),
+            Err(exit) => Ok(exit),
+        }
+    }
+
+    /// Portal discovery (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
+    /// Game Programming Gems 7), for the ray along `first.normal`. `Err`: there is none.
+    ///
+    /// `behind` is the original algorithm's interior point, where one is known: a point of D
+    /// on the line of the ray, behind the origin. Else `v0 = -d`, scaled to the portal's size,
+    /// stands in for it.
+    pub fn find_portal(
+        &mut self,
+        first: &SupportPlane,
+        behind: Option<&Vec3>,
+    ) -> Result<Result<Portal, Exit>, Stop> {
+        let d = first.normal;
+        if first.depth < 0.0 {
+            return Err(Stop::Apart(d));
+        }
+        let size = first.point.magnitude();
+        let side = first.point.v.cross(&d);
+        // Negated for NaN: a ray whose own support point cannot be told from it.
+        let side = match unit(&side) {
+            Some(unit) if side.norm() > rounding(size) => unit,
+            _ => return Ok(Err(Exit::Vertex)),
+        };
+        let second = self.plane(side)?;
+        if !(second.depth > rounding(size.max(second.point.magnitude()))) {
+            return Ok(Err(Exit::Touch));
+        }
+        // T(v2, v1) = side · v2 · |v1 × d| > 0: with the two in this order a third
+        // point beyond the plane (v0, v1, v2) closes the cone.
+        let mut portal = Portal {
+            ray: d,
+            planes: [second, *first, *first],
+        };
+        while self.spend() {
+            let [a, b, _] = portal.planes.each_ref().map(|p| p.point.v);
+            let v0 = match behind {
+                Some(inner) => *inner,
+                None => -d * larger(largest(&a), largest(&b)),
+            };
+            let Some(n) = unit(&(a - v0).cross(&(b - v0))) else {
+                return Ok(Err(Exit::Touch));
+            };
+            let third = self.plane(n)?;
+            let w = third.point.v;
+            if triple(&d, &a, &w) > 0.0 {
+                portal.planes[1] = third;
+            } else if triple(&d, &w, &b) > 0.0 {
+                portal.planes[0] = third;
+            } else {
+                portal.planes[2] = third;
+                return Ok(Ok(portal));
+            }
+        }
+        Ok(Err(Exit::Limit(None)))
+    }
+
+    /// The same in the plane with unit normal m. With side = m × d, T(d, v) = side · v: the left end
+    /// has a negative one, the right end a positive.
+    fn find_segment(
+        &mut self,
+        first: &SupportPlane,
+        m: &Vec3,
+    ) -> Result<Result<Portal, Exit>, Stop> {
+        if first.depth < 0.0 {
+            return Err(Stop::Apart(first.normal));
+        }
+        let side = m.cross(&first.normal);
+        let off = side.dot(&first.point.v);
+        if !(off.abs() > rounding(first.point.magnitude())) {
+            return Ok(Err(Exit::Vertex));
+        }
+        let other = self.plane(side * -off.signum())?;
+        let (left, right) = if off < 0.0 {
+            (*first, other)
+        } else {
+            (other, *first)
+        };
+        Ok(Ok(Portal::segment(first.normal, left, right, m)))
+    }
+
+    /// Portal refinement: the loop of Algorithms 1 and 5, from a portal on.
+    pub fn refine(&mut self, mut portal: Portal) -> Result<Exit, Stop> {
+        while self.spend() {
+            // Three points on a line, or so near that rounding turns their triangle over:
+            // the arithmetic cannot split it further.
+            let Some(n) = portal.normal().filter(|n| n.dot(&portal.ray) > 0.0) else {
+                break;
+            };
+            let along = n.dot(&portal.ray);
+            let inner = n.dot(&portal.planes[0].point.v);
+            let size = (portal.planes.iter()).fold(0.0, |m, p| larger(m, p.point.magnitude()));
+            let floor = rounding(size);
+            let plane = match self.plane(n) {
+                // D holds the portal: a callback that answers less than it is wrong.
+                Err(Stop::Apart(_)) if inner > floor => SupportPlane {
                     normal: n,
                     point: portal.planes[0].point,
                     depth: inner,
-                };
+                },
+                answer => answer?,
+            };
+            let mut gap = plane.depth - inner;
+            let mut least = floor;
+            if self.until == Until::Ray {
+                gap /= along;
+                least /= along;
+            }
+            // Within the tolerance and the origin on the inner side of the portal beyond
+            // doubt: a support plane that may still exclude the origin is no answer yet.
+            // NaN (a plane that holds the ray) ends the loop.
+            if !(gap > least) || (gap <= self.tolerance && inner > floor) {
                 return Ok(Exit::Converged(portal, plane));
             }
-            Probe::Miss(plane) => return Ok(Exit::Miss(plane)),
-        };
-        let mut gap = plane.depth - inner;
-        let mut least = floor;
-        if measure == Measure::Ray {
-            gap /= along;
-            least /= along;
+            if self.until == Until::Shortcut && plane.depth * along <= inner {
+                return Ok(Exit::Shortcut(plane));
+            }
+            match &self.flat {
+                None => portal.update(plane),
+                Some(m) => {
+                    let [left, right, _] = portal.planes;
+                    let (left, right) = if m.cross(&portal.ray).dot(&plane.point.v) < 0.0 {
+                        (plane, right)
+                    } else {
+                        (left, plane)
+                    };
+                    portal = Portal::segment(portal.ray, left, right, m);
+                }
+            }
         }
-        // Within the tolerance and the origin on the inner side of the portal beyond
-        // doubt: a support plane that may still exclude the origin is no answer yet.
-        // NaN (a plane that holds the ray) ends the loop.
-        if !(gap > least) || (gap <= tolerance && inner > floor) {
-            return Ok(Exit::Converged(portal, plane));
-        }
-        if shortcut && plane.depth * along <= inner {
-            return Ok(Exit::Shortcut(plane));
-        }
-        portal.update(plane);
+        Ok(Exit::Limit(Some(portal)))
     }
-    Ok(Exit::Limit(Some(portal)))
 }
 
 #[cfg(test)]
@@ -371,6 +377,24 @@ mod tests {
     /// D itself, as the difference to a point.
     fn alone<A: SupportMap>(d: A) -> MinkowskiDifference<A, fn(&Vec3) -> Vec3> {
         MinkowskiDifference::new(d, |_| Vec3::zeros())
+    }
+
+    /// A search that begins with this plane.
+    fn search<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        best: SupportPlane,
+        tolerance: Real,
+        until: Until,
+        budget: u64,
+    ) -> Search<'_, A, B> {
+        Search {
+            md,
+            tolerance,
+            until,
+            flat: None,
+            budget,
+            best,
+        }
     }
 
     /// The three products T of a portal; none is negative by more than rounding.
@@ -395,10 +419,9 @@ mod tests {
     fn check<A: SupportMap>(support: A, d: Vec3, exact: Real, tolerance: Real) {
         let md = alone(support);
         let first = SupportPlane::of(&md, d).unwrap();
-        let mut best = first;
-        let mut budget = 1000;
-        match find_portal(&md, &first, None, &mut best, &mut budget).unwrap() {
-            Found::Portal(found) => {
+        let mut search = search(&md, first, tolerance, Until::Ray, 1000);
+        match search.find_portal(&first, None).unwrap() {
+            Ok(found) => {
                 assert!(crosses(&found));
                 // Each vertex is the support point of its own plane.
                 for p in &found.planes {
@@ -421,15 +444,7 @@ mod tests {
                     portal.update(plane);
                     assert!(crosses(&portal));
                 }
-                let exit = refine(
-                    &md,
-                    found,
-                    tolerance,
-                    Measure::Ray,
-                    false,
-                    &mut best,
-                    &mut budget,
-                );
+                let exit = search.refine(found);
                 let Ok(Exit::Converged(portal, plane)) = exit else {
                     panic!("no exit");
                 };
@@ -439,7 +454,7 @@ mod tests {
                 let (w1, w2) = portal.witnesses();
                 assert!((w1 - w2 - d * p).norm() <= 10.0 * ULPS);
             }
-            Found::Vertex => assert!((first.depth - exact).abs() <= ULPS),
+            Err(Exit::Vertex) => assert!((first.depth - exact).abs() <= ULPS),
             _ => panic!("no portal"),
         }
     }
@@ -489,11 +504,8 @@ mod tests {
             let md = alone(hull(&points));
             // From the centre through the origin, as from the centres of two objects.
             let first = SupportPlane::of(&md, -way).unwrap();
-            let mut best = first;
-            let mut budget = 1000;
-            match mpr(&md, &first, 1e-6, false, &mut best, &mut budget).unwrap() {
-                Exit::Miss(plane) => {
-                    let n = plane.normal;
+            match search(&md, first, 1e-6, Until::Normal, 1000).follow(&first) {
+                Err(Stop::Apart(n)) => {
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
                 _ => panic!("the origin is outside"),
@@ -509,13 +521,12 @@ mod tests {
             let radii = Vec3::new(1.0, 0.7, 0.5);
             let md = alone(ellipsoid(radii, r.rotation(), Vec3::zeros()));
             let first = SupportPlane::of(&md, r.direction()).unwrap();
-            let mut best = first;
-            let mut budget = given;
-            let exit = mpr(&md, &first, 0.0, false, &mut best, &mut budget).unwrap();
+            let mut search = search(&md, first, 0.0, Until::Normal, given);
+            let exit = search.follow(&first).unwrap();
             assert!(matches!(exit, Exit::Limit(_)));
-            assert_eq!(budget, 0);
+            assert_eq!(search.budget, 0);
             assert!(md.supports() <= given + 2);
-            assert!(best.depth <= first.depth);
+            assert!(search.best.depth <= first.depth);
         }
     }
 }

@@ -11,8 +11,8 @@ use crate::known::support::{Fault, Known, SupportMap, SupportPoint};
 use crate::known::support_set::Stop;
 use crate::local::{self, Memory};
 use crate::math::{Real, Vec3, larger};
-use crate::paper::incremental::{self, Shortcut};
-use crate::paper::portal::rounding;
+use crate::paper::incremental;
+use crate::paper::portal::{Until, rounding};
 
 /// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty.
 const BUDGET: u64 = 64;
@@ -70,11 +70,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             ..*settings
         };
         let start = hit.normal;
-        let last = incremental::penetration(&self.md, start, Shortcut::Always, &rest, |_| ())?;
+        let until = Until::Shortcut;
+        let last = incremental::penetration(&self.md, start, None, until, &rest, |_| ())?;
         let ended = match last {
             // D reaches beyond that plane: a callback that errs must not separate.
             Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(false),
-            other => other.put(hit)?,
+            Answer::Miss(n) => return Err(Stop::Apart(n)),
+            Answer::Hit(found) | Answer::Limit(found) => {
+                *hit = found;
+                matches!(last, Answer::Hit(_))
+            }
         };
         hit.iterations += most - left;
         *memory = Memory::towards(hit.normal);

@@ -6,10 +6,10 @@
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
 use super::super::arena;
-use super::super::callbacks::{Object, Query};
+use super::super::callbacks::{Call, Object, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
-use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS};
+use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, given};
 use super::state::{ccd_warm_t, read, store};
 use crate::contact::Settings;
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
@@ -42,16 +42,12 @@ pub struct ccd_distance_t {
 
 impl ccd_distance_t {
     fn new(distance: &Distance, want: c_uint, supports: u64) -> Self {
-        let given = |point: ccd_vec3_t| match want & CCD_WANT_POINTS {
-            0 => ccd_vec3_t::default(),
-            _ => point,
-        };
         Self {
             distance: distance.lower,
             distance_upper: distance.upper,
             normal: distance.normal.into(),
-            point1: given(distance.point1.into()),
-            point2: given(distance.point2.into()),
+            point1: given(want & CCD_WANT_POINTS, &distance.point1),
+            point2: given(want & CCD_WANT_POINTS, &distance.point2),
             support_calls: supports as c_ulong,
             iterations: distance.iterations as c_ulong,
         }
@@ -88,29 +84,22 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
     let margins = margin1 + margin2;
     // Negated for NaN.
     let given = margin1 >= 0.0 && margin2 >= 0.0 && max_distance >= 0.0 && margins < Real::INFINITY;
-    if ccd.is_null() || out.is_null() || want & !CCD_WANT_ALL != 0 || !given {
+    if out.is_null() || want & !CCD_WANT_ALL != 0 || !given {
         return CCD_BAD_INPUT;
     }
     let query = Query { obj1, obj2, ccd };
     // SAFETY: [inputs], [outputs]; passed on.
     unsafe {
-        let tolerance = query.dist_tolerance();
-        if !(tolerance >= 0.0) {
-            return CCD_BAD_INPUT;
-        }
-        let Some(pair) = query.asked(!warm.is_null()) else {
+        let Some((pair, settings)) = query.ready(Call::Distance, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
+        let mut state = read(warm);
         let wanted = Wanted {
             margin1,
             margin2,
             max_distance,
-            settings: Settings {
-                tolerance,
-                max_iterations: query.max_iterations(),
-            },
+            settings,
         };
-        let mut state = read(warm);
         let minimum = |pair: &Pair<Object, Object>, state: &mut State, settings: &Settings| {
             arena::with(|arena| pair.minimum(state, settings, arena, want & CCD_WANT_POINTS != 0))
         };

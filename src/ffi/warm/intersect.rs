@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{Object, Query};
+use super::super::callbacks::{Call, Object, Query};
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, read, store};
 use crate::query::Pair;
@@ -55,5 +55,5 @@ pub unsafe extern "C-unwind" fn ccdIntersect(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { intersect(query.asked(!warm.is_null()), warm) }
+    unsafe { intersect(query.pair(Call::Refined, !warm.is_null()), warm) }
 }

@@ -6,13 +6,12 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::Query;
-use super::super::collide::{mpr_penetration, write};
+use super::super::callbacks::{Call, Query};
+use super::super::collide::{libccd_s, write};
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::{CCD_HIT, CCD_MISS};
 use super::intersect::intersect;
-use super::state::{ccd_warm_t, read, store};
-use crate::contact::Answer;
+use super::penetration::run;
+use super::state::ccd_warm_t;
 use crate::math::Real;
 
 /// ccdMPRPenetration with memory: ccdPenetration with libccd's outputs and codes.
@@ -30,26 +29,16 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: passed on.
-    unsafe {
-        let mut state = read(warm);
-        let answer = mpr_penetration(
+    // SAFETY: passed on; [outputs].
+    libccd_s(unsafe {
+        run(
             Query { obj1, obj2, ccd },
-            &mut state,
-            !warm.is_null(),
-            !pos.is_null(),
-        );
-        if answer.is_ok() {
-            store(warm, &state);
-        }
-        match &answer {
-            Ok(Answer::Hit(hit) | Answer::Limit(hit)) => {
-                write(hit, depth, dir, pos);
-                CCD_HIT
-            }
-            _ => CCD_MISS,
-        }
-    }
+            Call::Mpr,
+            warm,
+            |pair, state, settings| pair.mpr(state, settings, !pos.is_null()),
+            |hit, _| write(hit, depth, dir, pos),
+        )
+    })
 }
 
 /// ccdMPRIntersect with memory: ccdIntersect where centres are given.
@@ -64,5 +53,5 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { intersect(query.pair(!warm.is_null()), warm) }
+    unsafe { intersect(query.pair(Call::Mpr, !warm.is_null()), warm) }
 }

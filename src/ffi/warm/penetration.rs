@@ -5,13 +5,13 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{Object, Query};
+use super::super::callbacks::{Call, Object, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::state::{ccd_warm_t, read, store};
 use crate::contact::{Answer, Penetration, Settings};
 use crate::known::support::Fault;
-use crate::math::Real;
+use crate::math::{Real, Vec3};
 use crate::{query::Pair, state::State};
 
 /// Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
@@ -55,72 +55,93 @@ pub struct ccd_penetration_t {
     pub iterations: c_ulong,
 }
 
+/// A point where its flag is set, else zero.
+pub(in crate::ffi) fn given(flag: c_uint, point: &Vec3) -> ccd_vec3_t {
+    match flag {
+        0 => ccd_vec3_t::default(),
+        _ => (*point).into(),
+    }
+}
+
 impl ccd_penetration_t {
     fn new(hit: &Penetration, want: c_uint, supports: u64) -> Self {
-        let given = |flag, point: ccd_vec3_t| match want & flag {
-            0 => ccd_vec3_t::default(),
-            _ => point,
-        };
         Self {
             depth: hit.depth,
             depth_lower: hit.depth_lower,
             dir: hit.dir.into(),
             normal: hit.normal.into(),
-            pos: given(CCD_WANT_POS, hit.pos.into()),
-            point1: given(CCD_WANT_POINTS, hit.point1.into()),
-            point2: given(CCD_WANT_POINTS, hit.point2.into()),
+            pos: given(want & CCD_WANT_POS, &hit.pos),
+            point1: given(want & CCD_WANT_POINTS, &hit.point1),
+            point2: given(want & CCD_WANT_POINTS, &hit.point2),
             support_calls: supports as c_ulong,
             iterations: hit.iterations as c_ulong,
         }
     }
 }
 
-/// A penetration query of the extension: runs `solve` with the caller's state, or with a cold
-/// one where there is none, and writes what comes of it. `solve` is told whether witness points
-/// are wanted.
+/// A penetration query: runs `solve` with the caller's state, or with a cold one where there is none,
+/// and tells `put` of an overlap, with the support points that it took. Returns the extension's code.
 ///
 /// # Safety
 /// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
 /// with a destructor is alive here.
+pub(in crate::ffi) unsafe fn run(
+    query: Query,
+    call: Call,
+    warm: *mut ccd_warm_t,
+    solve: impl FnOnce(&Pair<Object, Object>, &mut State, &Settings) -> Result<Answer, Fault>,
+    put: impl FnOnce(&Penetration, u64),
+) -> c_int {
+    // SAFETY: [inputs]; `solve` runs callbacks, [callbacks].
+    unsafe {
+        let Some((pair, settings)) = query.ready(call, !warm.is_null()) else {
+            return CCD_BAD_INPUT;
+        };
+        let mut state = read(warm);
+        let code = match &solve(&pair, &mut state, &settings) {
+            Ok(Answer::Hit(hit)) => {
+                put(hit, pair.md.supports());
+                CCD_HIT
+            }
+            Ok(Answer::Limit(hit)) => {
+                put(hit, pair.md.supports());
+                CCD_LIMIT
+            }
+            Ok(Answer::Miss(_)) => CCD_MISS,
+            Err(Fault::NoMemory) => return CCD_NO_MEMORY,
+            Err(Fault::NonFinite) => return CCD_BAD_INPUT,
+        };
+        store(warm, &state);
+        code
+    }
+}
+
+/// A penetration query of the extension: writes what comes of `solve`, which is told whether the
+/// position is wanted.
+///
+/// # Safety
+/// As [`run`].
 pub(in crate::ffi) unsafe fn answer(
     query: Query,
-    tolerance: unsafe fn(&Query) -> Real,
+    call: Call,
     warm: *mut ccd_warm_t,
     want: c_uint,
     out: *mut ccd_penetration_t,
     solve: impl FnOnce(&Pair<Object, Object>, &mut State, &Settings, bool) -> Result<Answer, Fault>,
 ) -> c_int {
-    if query.ccd.is_null() || out.is_null() || want & !CCD_WANT_ALL != 0 {
+    if out.is_null() || want & !CCD_WANT_ALL != 0 {
         return CCD_BAD_INPUT;
     }
-    // SAFETY: [inputs], [outputs]; `solve` runs callbacks, [callbacks].
+    let wants_pos = want & CCD_WANT_POS != 0;
+    // SAFETY: [outputs]; passed on.
     unsafe {
-        let tolerance = tolerance(&query);
-        // Negated for NaN.
-        if !(tolerance >= 0.0) {
-            return CCD_BAD_INPUT;
-        }
-        let Some(pair) = query.asked(!warm.is_null()) else {
-            return CCD_BAD_INPUT;
-        };
-        let settings = Settings {
-            tolerance,
-            max_iterations: query.max_iterations(),
-        };
-        let mut state = read(warm);
-        let result = solve(&pair, &mut state, &settings, want & CCD_WANT_POS != 0);
-        let (code, hit) = match result {
-            Ok(Answer::Hit(hit)) => (CCD_HIT, Some(hit)),
-            Ok(Answer::Limit(hit)) => (CCD_LIMIT, Some(hit)),
-            Ok(Answer::Miss(_)) => (CCD_MISS, None),
-            Err(Fault::NoMemory) => return CCD_NO_MEMORY,
-            Err(Fault::NonFinite) => return CCD_BAD_INPUT,
-        };
-        if let Some(hit) = hit {
-            *out = ccd_penetration_t::new(&hit, want, pair.md.supports());
-        }
-        store(warm, &state);
-        code
+        run(
+            query,
+            call,
+            warm,
+            |pair, state, settings| solve(pair, state, settings, wants_pos),
+            |hit, supports| *out = ccd_penetration_t::new(hit, want, supports),
+        )
     }
 }
 
@@ -145,7 +166,7 @@ pub unsafe extern "C-unwind" fn ccdPenetration(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
+    let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { answer(query, tolerance, warm, want, out, Pair::mpr) }
+    unsafe { answer(query, Call::Refined, warm, want, out, Pair::mpr) }
 }

@@ -6,13 +6,14 @@
 use core::ffi::{c_int, c_uint, c_void};
 
 use super::super::arena;
-use super::super::callbacks::Query;
+use super::super::callbacks::{Call, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use super::penetration::{answer, ccd_penetration_t};
 use super::state::ccd_warm_t;
 use super::unit_of;
-use crate::query::Pair;
+use crate::contact::Settings;
+use crate::{query::Pair, state::State};
 
 /// A local minimum of the penetration depth, by the fastest search there is: cutting planes
 /// with curvature. For who has a direction that is roughly right, or follows one valley; from far
@@ -31,9 +32,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
+    let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { answer(query, tolerance, warm, want, out, Pair::local) }
+    unsafe { answer(query, Call::Refined, warm, want, out, Pair::local) }
 }
 
 /// The least penetration depth with its proof: depth - depth_lower <= epa_tolerance on CCD_HIT.
@@ -53,20 +54,12 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::epa_tolerance);
+    let query = Query { obj1, obj2, ccd };
+    let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, wants| {
+        arena::with(|arena| pair.minimum(state, settings, arena, wants))
+    };
     // SAFETY: passed on.
-    unsafe {
-        answer(
-            query,
-            tolerance,
-            warm,
-            want,
-            out,
-            |pair, state, settings, wants| {
-                arena::with(|arena| pair.minimum(state, settings, arena, wants))
-            },
-        )
-    }
+    unsafe { answer(query, Call::Proven, warm, want, out, solve) }
 }
 
 /// How far obj2 must move along `dir` to separate (directional penetration depth).
@@ -91,15 +84,11 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
         let Some(dir) = unit_of(dir) else {
             return CCD_BAD_INPUT;
         };
-        let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
-        answer(
-            query,
-            tolerance,
-            warm,
-            want,
-            out,
-            |pair, state, settings, _| pair.along(dir, state, settings),
-        )
+        let query = Query { obj1, obj2, ccd };
+        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _| {
+            pair.along(dir, state, settings)
+        };
+        answer(query, Call::Refined, warm, want, out, solve)
     }
 }
 
@@ -126,14 +115,10 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
         let Some(m) = unit_of(plane_normal) else {
             return CCD_BAD_INPUT;
         };
-        let (query, tolerance) = (Query { obj1, obj2, ccd }, Query::mpr_tolerance);
-        answer(
-            query,
-            tolerance,
-            warm,
-            want,
-            out,
-            |pair, state, settings, _| pair.planar(m, state, settings),
-        )
+        let query = Query { obj1, obj2, ccd };
+        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _| {
+            pair.planar(m, state, settings)
+        };
+        answer(query, Call::Refined, warm, want, out, solve)
     }
 }
