@@ -3,7 +3,7 @@
 
 //! The end of a search: its answer, witness points, and what is handed on.
 
-use super::memory::{EDGES, Memory};
+use super::memory::{EDGES, Kind, Memory};
 use super::search::{HAIR, LATEST, Sample, Search};
 use super::walk::{End, ROOM};
 use crate::contact::{INSIDE, Penetration};
@@ -81,7 +81,7 @@ impl Search {
             for o in 0..2 {
                 let (object, own) = (&self.objects[o], &own[o]);
                 let off = object.point(end.active[o], n, out) - own.p;
-                if !object.curved.is_there() && off.norm_squared() > same * same {
+                if object.kind != Kind::Curved && off.norm_squared() > same * same {
                     return false;
                 }
             }

@@ -3,6 +3,7 @@
 
 //! What is not certain at the model's minimum, and where to ask for it.
 
+use super::memory::Kind;
 use super::search::{SAME, Search};
 use super::trust_region::{ASIDE, FIRST};
 use super::walk::ROOM;
@@ -37,8 +38,10 @@ impl Search {
             return None;
         }
         for object in &mut self.objects {
-            if let Some(across) = object.curved.across(b) {
-                object.curved.spread = true;
+            let curved = &mut object.curved;
+            let across = curved.across(b).filter(|_| object.kind == Kind::Curved);
+            if let Some(across) = across {
+                curved.spread = true;
                 let way = unit(&across).unwrap_or_else(|| perpendicular(b));
                 let slope = self.best().p.v.dot(&way);
                 let d = b + way * ASIDE.copysign(-slope);

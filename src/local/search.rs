@@ -7,9 +7,9 @@
 //! ask there; done, if the objects are as deep as the model foretold; else their two new points join
 //! it.
 
-use super::learn::{Shown, Smooth};
-use super::memory::{Memory, Queue};
-use super::object::{Found, Object};
+use super::learn::Shown;
+use super::memory::{Kind, Memory};
+use super::object::Object;
 use super::trust_region::{FIRST, TrustRegion};
 use super::walk::{End, Model, ROOM};
 use crate::contact::{Penetration, Settings};
@@ -136,27 +136,27 @@ pub struct Search {
 impl Search {
     /// The directions to ask first: what the memory leads to, else `start`'s.
     #[inline]
-    pub fn recall(&mut self, memory: &Memory, start: impl Fn() -> Vec3) -> Queue {
+    pub fn recall(&mut self, memory: &Memory, start: impl Fn() -> Vec3) -> [Option<Vec3>; 3] {
         let Some(dir) = unit(&memory.dir) else {
-            return Queue::of(start());
+            return [Some(start()), None, None];
         };
         if memory.curved != 0 {
-            for (object, round) in self.objects.iter_mut().zip(memory.round()) {
+            for (object, round) in self.objects.iter_mut().zip(&memory.round()) {
                 object.recall(round);
             }
         }
         self.recalled = memory.count > 0 || memory.curved != 0;
-        let (queue, angle) = memory.recall(&dir);
-        if queue.is_empty() {
-            return Queue::of(dir);
+        let (first, angle) = memory.recall(&dir);
+        if first == [None; 3] {
+            return [Some(dir), None, None];
         }
         self.trust.recall(angle);
-        queue
+        first
     }
 
     #[inline(always)]
     pub(super) fn rho(&self) -> Real {
-        self.objects[0].radius + self.objects[1].radius
+        self.objects[0].ball() + self.objects[1].ball()
     }
 
     #[inline(always)]
@@ -166,7 +166,9 @@ impl Search {
 
     #[inline(always)]
     pub(super) fn is_curved(&self) -> bool {
-        self.objects.iter().any(|object| object.curved.is_there())
+        self.objects
+            .iter()
+            .any(|object| object.kind == Kind::Curved)
     }
 
     #[inline(always)]
@@ -178,7 +180,7 @@ impl Search {
         }
     }
 
-    /// Searches, from the queued directions on.
+    /// Searches, from these directions on.
     ///
     /// `centre`: any inner point of D, its distance is the size of what was not seen.
     /// `known` gains the points of a minimum: the active ones, the one there, the others.
@@ -189,13 +191,14 @@ impl Search {
         &mut self,
         md: &MinkowskiDifference<A, B>,
         centre: &Vec3,
-        mut queue: Queue,
+        first: [Option<Vec3>; 3],
         settings: &Settings,
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<Outcome, Fault> {
+        let mut first = first.into_iter().flatten();
         loop {
-            let n = match queue.pop() {
+            let n = match first.next() {
                 Some(n) => n,
                 None => match self.next(known, hit) {
                     Continue(n) => n,
@@ -337,8 +340,9 @@ impl Search {
             match object.learn(&mut self.places[o], &points[o], same) {
                 Shown::Nothing => (),
                 Shown::Twin(k) => twins[o] = Some(k),
-                Shown::Ball(radius) => {
-                    self.places[o] = object.take_ball(radius, self.places[o], same);
+                Shown::Ball(found) => {
+                    let best = &mut self.places[o];
+                    *best = object.take_off((&found, true), self.asked, *best, same.round);
                 }
                 Shown::Smooth => smooth = true,
                 Shown::Contradiction => return None,
@@ -383,39 +387,41 @@ impl Search {
     /// Looks for discs of the objects whose points look smooth. What is none has R.
     #[inline(never)]
     fn learn_discs(&mut self, points: &[Seen; 2], same: &Same) {
-        let mut maybe: [Option<(Found, bool, bool)>; 2] = [None, None];
-        for o in 0..2 {
-            match self.objects[o].learn_disc(self.places[o], &points[o], same) {
-                Smooth::None => (),
-                Smooth::Disc(found, confirmed, aside) => maybe[o] = Some((found, confirmed, aside)),
-                Smooth::Other(k) => self.objects[o].curve(k, &points[o]),
-            }
+        let shown = [0, 1].map(|o| {
+            let object = &self.objects[o];
+            object.learn_disc(self.places[o], &points[o], same)
+        });
+        let curved = [0, 1].map(|o| {
+            let none = shown[o]
+                .as_ref()
+                .is_some_and(|smooth| smooth.found.is_none());
+            none || self.objects[o].kind == Kind::Curved
+        });
+        // Any surface shows two discs at first: the next sample is to tell, where it may be.
+        let both = shown
+            .iter()
+            .flatten()
+            .filter(|smooth| !smooth.confirmed)
+            .count()
+            == 2
+            && curved == [false; 2];
+        let wait = both && self.asked == 2 && shown.iter().flatten().any(|smooth| smooth.aside);
+        if wait {
+            let (old, new) = (self.best(), &self.samples[self.newest % LATEST]);
+            let dn = new.n - old.n;
+            self.slope = (new.p.v - old.p.v).dot(&dn) / dn.norm_squared();
         }
-        // Beside what is curved a suspicion is not enough.
-        for o in 0..2 {
-            if matches!(maybe[o], Some((_, false, _))) && self.objects[1 - o].curved.is_there() {
-                self.objects[o].curve(self.places[o], &points[o]);
-                maybe[o] = None;
-            }
-        }
-        let both = matches!(&maybe, [Some((_, false, _)), Some((_, false, _))]);
-        if let ([Some(p), Some(q)], true) = (&maybe, both) {
-            // Any surface shows two of them at first: the next sample is to tell, where it may be.
-            if self.asked > 2 || !p.2 && !q.2 {
-                for ((object, new), best) in self.objects.iter_mut().zip(points).zip(self.places) {
-                    object.curve(best, new);
+        for (o, smooth) in shown.into_iter().enumerate() {
+            let Some(smooth) = smooth else { continue };
+            // Beside what is curved a suspicion is not enough.
+            let enough = smooth.confirmed || wait || !(both || curved[1 - o]);
+            match smooth.found.filter(|_| enough) {
+                Some(found) => {
+                    let found = (&found, smooth.confirmed);
+                    let best = &mut self.places[o];
+                    *best = self.objects[o].take_off(found, self.asked, *best, same.round);
                 }
-                return;
-            }
-            let [d, e] = [0, 1].map(|o| points[o].p - self.objects[o].at[0].p);
-            let dn = points[0].n - self.best().n;
-            self.slope = (d + e).dot(&dn) / dn.norm_squared();
-        }
-        for (o, maybe) in maybe.iter().enumerate() {
-            if let Some((found, confirmed, _)) = maybe {
-                let found = (found, *confirmed);
-                let object = &mut self.objects[o];
-                self.places[o] = object.take_disc(found, self.asked, self.places[o], same);
+                None => self.objects[o].curve(smooth.with, &points[o]),
             }
         }
     }
@@ -482,7 +488,7 @@ impl Search {
     #[cold]
     fn refute(&mut self) {
         for object in &mut self.objects {
-            if self.recalled || object.curved.is_there() {
+            if self.recalled || object.kind == Kind::Curved {
                 object.forget();
             } else {
                 object.unround();
@@ -570,7 +576,14 @@ mod tests {
         let n = start.normalize();
         let mut hit = Penetration::default();
         let mut exact = Search::default();
-        let outcome = exact.run(&md, centre, Queue::of(n), &settings, &mut known, &mut hit);
+        let outcome = exact.run(
+            &md,
+            centre,
+            [Some(n), None, None],
+            &settings,
+            &mut known,
+            &mut hit,
+        );
         let end = match outcome.unwrap() {
             Outcome::Found => End::Found(hit),
             Outcome::Apart(n) => End::Apart(n),
