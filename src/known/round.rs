@@ -376,20 +376,6 @@ impl Symmetric {
 /// along them as it was seen to be. Measured: 1 +0.5 %, +7 % (ellipsoids); ÷2 −0.1 %.
 const SQUARE: Real = 0.9;
 
-/// What is round of an object.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Round {
-    /// Nothing that was seen.
-    #[default]
-    None,
-    /// A ball of this radius, metres.
-    Ball(Real),
-    /// A disc.
-    Disc(Disc),
-    /// Something else that is smooth, by the second derivative of its support function, metres.
-    Curved(Symmetric),
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -25,7 +25,7 @@
 
 use super::curved::Curved;
 use super::memory::{Kind, Round};
-use super::walk::{Cuts, LANES, ROOM, Row};
+use super::walk::{Cuts, ROOM, Row, each};
 use crate::known::round::{ALIKE, Disc, Seen, Symmetric, fits};
 use crate::math::{Real, Vec3, ZERO, larger, unit};
 
@@ -329,16 +329,12 @@ impl Object {
     #[inline(always)]
     pub fn chart(&self, b: &Vec3, [e1, e2]: [&Vec3; 2], cuts: &mut Cuts) {
         let [px, py, pz] = &self.core;
-        let mut of = |k: usize| {
+        each(self.len, |k| {
             let [x, y, z] = [px[k], py[k], pz[k]];
             cuts.a[k] = x * b.x + y * b.y + z * b.z;
             cuts.x[k] = x * e1.x + y * e1.y + z * e1.z;
             cuts.y[k] = x * e2.x + y * e2.y + z * e2.z;
-        };
-        (0..LANES).for_each(&mut of);
-        if self.len > LANES {
-            (LANES..ROOM).for_each(of);
-        }
+        });
         (cuts.len, cuts.carried, cuts.bend) = (self.len, 0, [0.0; 3]);
         match self.kind {
             Kind::Disc => self.carry(b, [e1, e2], cuts),
