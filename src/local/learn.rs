@@ -6,10 +6,10 @@
 
 use super::curved::Curved;
 use super::memory::Kind;
-use super::object::{Found, Object};
+use super::object::{Found, Object, Told};
 use super::walk::ROOM;
-use crate::known::round::{ALIKE, BLUNT, Disc, Move, Pair, Same, Seen, Symmetric, TOLD, fits};
-use crate::math::{EPSILON, Real, Vec3, ZERO, larger};
+use crate::known::round::{ALIKE, BLUNT, Disc, Move, Pair, Same, Seen, TOLD, fits};
+use crate::math::{EPSILON, Real, Vec3, larger};
 
 /// Relative difference of a remembered disc's radius and that of a pair that shows it again.
 /// Measured: ×2, ÷2 nothing; 1e-9 +0.1 %, +3 %.
@@ -25,8 +25,8 @@ pub enum Shown {
     Nothing,
     /// The vertex in that place.
     Twin(usize),
-    /// A ball.
-    Ball(Found),
+    /// A ball of this radius, metres.
+    Ball(Real),
     /// A smooth surface that is no ball.
     Smooth,
     /// One of them is no support point.
@@ -39,8 +39,8 @@ pub struct Smooth {
     pub with: usize,
     /// Maybe a disc, …
     pub found: Option<Found>,
-    /// … by another point than the pair too, …
-    pub confirmed: bool,
+    /// … by what, …
+    pub told: Told,
     /// … and moved more aside than along.
     pub aside: bool,
 }
@@ -67,6 +67,18 @@ impl Object {
         if self.kind == Kind::Curved {
             return self.learn_curved(best, new, same);
         }
+        if self.kind == Kind::Disc && self.told == Told::Before {
+            let core = |at: &Seen| at.p - self.disc().point(&at.n);
+            let apart = self
+                .disc()
+                .across(&(core(new) - core(&self.at[*best % ROOM])));
+            if apart.norm_squared() > same.round * same.round {
+                // The axis has turned with the object: a pair is to show it.
+                let radius = self.disc().radius;
+                self.forget();
+                self.found.disc.radius = radius;
+            }
+        }
         if self.is_round() {
             return Shown::Nothing;
         }
@@ -75,12 +87,8 @@ impl Object {
         }
         let mut shown = Shown::Nothing;
         for k in self.others(*best) {
-            let old = &self.at[k % ROOM];
-            match Pair::of(old, new, same) {
-                Pair::Ball(radius) => {
-                    let disc = Disc { radius, axis: ZERO };
-                    return Shown::Ball(Found::of(disc, old, new));
-                }
+            match Pair::of(&self.at[k % ROOM], new, same) {
+                Pair::Ball(radius) => return Shown::Ball(radius),
                 Pair::Smooth => shown = Shown::Smooth,
                 _ => (),
             }
@@ -183,40 +191,22 @@ impl Object {
             let disc = Disc::of(old, new).filter(|disc| fits(disc.radius, same.extent2));
             let found = disc.map(|disc| Found::of(disc, old, new));
             let points = || self.at.iter().take(self.len);
-            let confirmed = found.is_some_and(|found| points().any(|at| found.is_shown_by(at)));
+            let confirmed = found.is_some_and(|found| {
+                let (radius, before) = (found.disc.radius, self.disc().radius);
+                (radius - before).abs() <= BALL * radius || points().any(|at| found.is_shown_by(at))
+            });
             if k == best || confirmed {
                 let aside = 2.0 * by.along * by.along < by.d2 * by.dn2;
+                let told = if confirmed { Told::More } else { Told::Pair };
                 return Some(Smooth {
                     with: k,
                     found,
-                    confirmed,
+                    told,
                     aside,
                 });
             }
         }
         None
-    }
-
-    /// Turns a remembered disc to where two points show it.
-    #[inline(never)]
-    pub fn turn(&mut self, k: usize, new: &Seen, same: &Same, asked: usize) -> usize {
-        let disc = *self.disc();
-        if self.kind != Kind::Disc || self.found_at > 0 || self.confirmed {
-            return k;
-        }
-        let old = self.at[k % ROOM];
-        let d = new.p - old.p;
-        let moved = disc.point(&new.n) - disc.point(&old.n);
-        if (d - moved).norm_squared() <= same.round * same.round {
-            return k;
-        }
-        let anew = Disc::of(&old, new)
-            .filter(|anew| (anew.radius - disc.radius).abs() <= BALL * disc.radius);
-        if let Some(disc) = anew.or_else(|| disc.turned(&old, new, same.round)) {
-            let found = Found::of(disc, &old, new);
-            return self.take_off((&found, anew.is_some()), asked, k, same.round);
-        }
-        k
     }
 
     /// The point whose vertex is a new one's. Notes which were seen again from another direction: not
@@ -228,7 +218,6 @@ impl Object {
         core: &Vec3,
         carries: bool,
         same: Real,
-        asked: usize,
     ) -> Option<Option<usize>> {
         let len = self.len.min(ROOM);
         let (disc, doubted) = (self.found.disc, self.is_doubted());
@@ -236,7 +225,7 @@ impl Object {
         let height = |n: &Vec3| disc.radius * disc.across(n).norm();
         let (mut twin, mut turned, mut refuted) = (None, 0.0, false);
         for k in 0..len {
-            let old = &self.at[k];
+            let old = self.at[k];
             let e = core - self.core(k);
             let differ = carries != self.carries(k);
             if !differ && e.norm_squared() <= same * same {
@@ -245,8 +234,11 @@ impl Object {
                 if carries && moved2 > least {
                     turned = (new.n - old.n).norm_squared();
                     // A remembered one, whose axis has not turned.
-                    self.confirmed |=
-                        self.found_at == 0 && e.norm_squared() <= ALIKE * ALIKE * turned * moved2;
+                    if self.told == Told::Before
+                        && e.norm_squared() <= ALIKE * ALIKE * turned * moved2
+                    {
+                        (self.found, self.told) = (Found::of(disc, &old, new), Told::More);
+                    }
                 }
                 continue;
             }
@@ -269,8 +261,8 @@ impl Object {
         if refuted {
             return None;
         }
-        if doubted && self.found_at != asked && self.found.is_shown_by(new) {
-            self.confirmed = true;
+        if doubted && self.found.is_shown_by(new) {
+            self.told = Told::More;
             // The pair's vertex was seen twice.
             let [a, b] = self.found.pair;
             for k in 0..len {
@@ -280,29 +272,10 @@ impl Object {
                 }
             }
         }
-        if let (Some(k), true) = (twin, self.confirmed) {
+        if let (Some(k), true) = (twin, self.told == Told::More) {
             self.see(k, turned);
         }
         Some(twin)
-    }
-
-    /// A ball or disc that was refuted is no more than a curvature.
-    #[cold]
-    pub fn unround(&mut self) {
-        let (kind, disc, [a, b]) = (self.kind, *self.disc(), self.found.pair);
-        let (found, span) = (self.found_at > 0, self.span);
-        self.forget();
-        if kind == Kind::Ball {
-            self.curved = Curved::recall(Symmetric::scaled_identity(disc.radius));
-        } else if kind == Kind::Disc && found {
-            self.curved = Curved::first(&(disc.point(&b) - disc.point(&a)), &(b - a));
-        } else {
-            return;
-        }
-        self.kind = Kind::Curved;
-        // The points that were seen to be of it bend.
-        let bends = (0..ROOM).filter(|k| span[*k] > 0.0);
-        self.carried = bends.fold(0, |bits, k| bits | 1 << k);
     }
 
     /// Nothing of it is round, but the points as they were seen are its.
@@ -331,15 +304,14 @@ impl Object {
         best: &Vec3,
         kept: &mut usize,
         same: &Same,
-        asked: usize,
     ) -> Option<usize> {
         let (mut core, mut carries) = (new.p, false);
         if self.is_cored() {
             (core, carries) = self.vertex(new, same.round);
-            if let Some(known) = self.agrees(new, &core, carries, same.round, asked) {
+            if let Some(known) = self.agrees(new, &core, carries, same.round) {
                 twin = known;
             } else {
-                self.unround();
+                self.forget();
                 (core, carries) = (new.p, false);
                 twin = match self.learn_curved(kept, new, same) {
                     Shown::Contradiction => return None,

@@ -45,6 +45,7 @@ impl Search {
     pub(super) fn lowest(&mut self) {
         let b = self.best().n;
         let discs = self.objects.iter().any(|object| object.kind == Kind::Disc);
+        self.model.level = self.tolerance;
         self.middle = [0.0; 2];
         self.chart(&b);
         for _ in 0..CHARTS {

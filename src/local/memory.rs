@@ -140,11 +140,11 @@ impl Memory {
         }
     }
 
-    /// The directions to ask first, around the remembered unit vector `dir`, and the angle between
-    /// them and it: for each remembered cut where it is above the others by as much as it can; or
-    /// two that show both ends of two edges, in the middle between their ways and opposite.
+    /// The directions to ask first, around the remembered unit vector `dir`: for each remembered cut
+    /// where it is above the others by as much as it can; or two that show both ends of two edges,
+    /// in the middle between their ways and opposite.
     #[inline]
-    pub fn recall(&self, dir: &Vec3) -> ([Option<Vec3>; 3], Real) {
+    pub fn recall(&self, dir: &Vec3) -> [Option<Vec3>; 3] {
         // Farther aside than the pair moved, and not as far where R or balls alone are known, which
         // serve the better the nearer the samples are (in double precision); a disc's axis is told
         // by samples that are not as near. NaN becomes the least angle. Measured in motion: ×2, ÷2
@@ -174,7 +174,7 @@ impl Memory {
             let way = normalised(&way)?;
             normalised(&(dir + way * (far * angle)))
         };
-        let dirs = match self.count {
+        match self.count {
             2 => [aside(b - a, 1.0), aside(a - b, 1.0), None],
             3 => [(c, a, b), (b, c, a), (a, b, c)].map(|(g, h, k)| aside(corner(g, h, k), 1.0)),
             EDGES => {
@@ -183,8 +183,7 @@ impl Memory {
                 [aside(way, WIDER), aside(way, OPPOSITE * WIDER), None]
             }
             _ => [None; 3],
-        };
-        (dirs, angle)
+        }
     }
 }
 
@@ -209,13 +208,13 @@ mod tests {
             });
             let mut memory = Memory::default();
             memory.keep(&dir, &slopes, 3, &[NOTHING; 2]);
-            let (dirs, angle) = memory.recall(&dir);
+            let dirs = memory.recall(&dir);
             // Last one first.
             for (i, n) in [2, 1, 0].into_iter().zip(dirs) {
                 let n = n.unwrap();
                 assert!((n.norm() - 1.0).abs() < 4.0 * EPSILON);
                 let tangent = n - dir * dir.dot(&n);
-                assert!((tangent.norm() - angle).abs() < 0.01 * angle);
+                assert!((tangent.norm() - 0.004).abs() < 1e-4);
                 let slope = |k: usize| memory.slopes[k % 3].dot(&tangent);
                 assert!(slope(i) > slope(i + 1) && slope(i) > slope(i + 2));
             }
@@ -289,8 +288,7 @@ mod tests {
             count: 77,
             curved: u32::MAX,
         };
-        let (dirs, angle) = memory.recall(&Vec3::z());
-        assert!(dirs == [None; 3] && angle > 0.0 && angle < ASIDE);
+        assert!(memory.recall(&Vec3::z()) == [None; 3]);
         for round in memory.round() {
             object.recall(&round);
             assert!(!object.is_round());

@@ -9,7 +9,7 @@
 
 use super::learn::Shown;
 use super::memory::{Kind, Memory};
-use super::object::Object;
+use super::object::{Found, Object, Told};
 use super::trust_region::{FIRST, TrustRegion};
 use super::walk::{End, Model, ROOM};
 use crate::contact::{Penetration, Settings};
@@ -32,9 +32,6 @@ const JOINT: Real = 2.0;
 /// Support points that were asked for what they tell, after which the search has lost its way.
 /// Measured: ÷2 −0.1 %, ×2 +0.2 %, +2 %.
 const DOUBTS: u32 = 4;
-/// Support points after which what is remembered and was not seen is forgotten. None of the sets comes
-/// to it.
-const GUESS: usize = 5;
 /// Support points of one search. Measured: ÷2 +0.3 %, 4 more answers that are no global minimum; ×2
 /// +0.3 %.
 pub(super) const MOST: usize = 24;
@@ -126,9 +123,6 @@ pub struct Search {
     pub(super) newest: usize,
     pub(super) asked: usize,
     pub(super) doubts: u32,
-    /// Did the search before find what is round?
-    pub(super) recalled: bool,
-    pub(super) levelled: bool,
     pub(super) slopes: [Vec3; 3],
     pub(super) count: usize,
 }
@@ -145,13 +139,10 @@ impl Search {
                 object.recall(round);
             }
         }
-        self.recalled = memory.count > 0 || memory.curved != 0;
-        let (first, angle) = memory.recall(&dir);
-        if first == [None; 3] {
-            return [Some(dir), None, None];
+        match memory.recall(&dir) {
+            [None, None, None] => [Some(dir), None, None],
+            first => first,
         }
-        self.trust.recall(angle);
-        first
     }
 
     #[inline(always)]
@@ -286,20 +277,7 @@ impl Search {
                 object.forget_unless_fits(self.extent2);
             }
         } else {
-            self.trust.compare(&n, h, before);
-            if self.recalled && self.asked == GUESS {
-                // What the samples have not shown again is another's.
-                for object in &mut self.objects {
-                    if object.is_guess() {
-                        object.forget();
-                    }
-                }
-            }
-            if self.recalled {
-                for (o, object) in self.objects.iter_mut().enumerate() {
-                    self.places[o] = object.turn(self.places[o], &points[o], &same, self.asked);
-                }
-            }
+            self.trust.compare(h, before);
             match self.learn(&points, &same) {
                 Some(known) => twins = known,
                 None => return false,
@@ -311,7 +289,7 @@ impl Search {
         for o in 0..2 {
             let object = &mut self.objects[o];
             let kept = &mut self.places[o];
-            let place = object.take(&points[o], twins[o], &best, kept, &same, self.asked);
+            let place = object.take(&points[o], twins[o], &best, kept, &same);
             match place {
                 Some(place) => places[o] = place,
                 None => return false,
@@ -340,9 +318,9 @@ impl Search {
             match object.learn(&mut self.places[o], &points[o], same) {
                 Shown::Nothing => (),
                 Shown::Twin(k) => twins[o] = Some(k),
-                Shown::Ball(found) => {
+                Shown::Ball(radius) => {
                     let best = &mut self.places[o];
-                    *best = object.take_off((&found, true), self.asked, *best, same.round);
+                    *best = object.take_off((&Found::ball(radius), Told::More), *best, same.round);
                 }
                 Shown::Smooth => smooth = true,
                 Shown::Contradiction => return None,
@@ -401,7 +379,7 @@ impl Search {
         let both = shown
             .iter()
             .flatten()
-            .filter(|smooth| !smooth.confirmed)
+            .filter(|smooth| smooth.told == Told::Pair)
             .count()
             == 2
             && curved == [false; 2];
@@ -414,12 +392,12 @@ impl Search {
         for (o, smooth) in shown.into_iter().enumerate() {
             let Some(smooth) = smooth else { continue };
             // Beside what is curved a suspicion is not enough.
-            let enough = smooth.confirmed || wait || !(both || curved[1 - o]);
+            let enough = smooth.told == Told::More || wait || !(both || curved[1 - o]);
             match smooth.found.filter(|_| enough) {
                 Some(found) => {
-                    let found = (&found, smooth.confirmed);
+                    let found = (&found, smooth.told);
                     let best = &mut self.places[o];
-                    *best = self.objects[o].take_off(found, self.asked, *best, same.round);
+                    *best = self.objects[o].take_off(found, *best, same.round);
                 }
                 None => self.objects[o].curve(smooth.with, &points[o]),
             }
@@ -450,10 +428,6 @@ impl Search {
         if round && self.gain() < -self.tolerance {
             self.refute();
         }
-        if round && self.gain().abs() <= self.tolerance && self.step.end.on_border && !self.levelled
-        {
-            self.level();
-        }
         if self.gain() <= self.tolerance && !self.step.end.on_border && !self.is_lowest() {
             self.look_around();
         }
@@ -463,7 +437,7 @@ impl Search {
             return Break(Outcome::Open);
         }
         let inside = !self.step.end.on_border;
-        self.trust.foretell(self.step.depth, !inside, &b);
+        self.trust.foretell(self.step.depth, !inside);
         self.told = inside;
         let mut n = self.step.n;
         if gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST) {
@@ -483,31 +457,11 @@ impl Search {
         self.best().h - self.step.depth
     }
 
-    /// The model is above what was seen: what it took for round is not, or not any more; a ball or
-    /// disc that was just seen still is a curvature.
+    /// The model is above what was seen: what it took for round is not, or not any more.
     #[cold]
     fn refute(&mut self) {
-        for object in &mut self.objects {
-            if self.recalled || object.kind == Kind::Curved {
-                object.forget();
-            } else {
-                object.unround();
-            }
-        }
-        self.recalled = false;
+        self.objects.iter_mut().for_each(Object::forget);
         self.lowest();
-    }
-
-    /// Level so far: is it as far as the first radius?
-    #[cold]
-    fn level(&mut self) {
-        self.levelled = true;
-        self.trust.radius = FIRST;
-        let near = self.step;
-        self.lowest();
-        if !(self.step.depth <= near.depth) {
-            self.step = near;
-        }
     }
 
     /// The best direction `b` is as deep as the model's minimum: the answer, or what is to be asked

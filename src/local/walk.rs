@@ -131,6 +131,14 @@ pub struct End {
 }
 
 impl End {
+    /// The points that are active there, each after its object.
+    #[inline(always)]
+    pub fn points(&self) -> impl Iterator<Item = (usize, usize)> {
+        let ([i, j], [p, q]) = (self.active, &self.kinks);
+        let all = [(0, i), (1, j), (p.object, p.point), (q.object, q.point)];
+        all.into_iter().take(2 + self.count)
+    }
+
     /// Of two kinks: is φ nowhere lower within the radius, as far as the active points tell? Around
     /// it φ is φ₀ + max g·x − ½ φ₀ x² with the slopes g of the active points: max g·x is
     /// at least |x| times the distance from the origin to the nearest side of their hull, which
@@ -161,6 +169,8 @@ impl End {
 #[derive(Debug, Default)]
 pub struct Model {
     pub cuts: [Cuts; 2],
+    /// By how much level ground may fall, metres.
+    pub level: Real,
 }
 
 /// A way from x, and how far it goes, as a quotient: without an end, where that is infinite.
@@ -289,6 +299,13 @@ impl Model {
                 let (uu, xu) = (dot(&u, &u), dot(&off, &u));
                 let room = larger(radius * radius - dot(&off, &off), 0.0);
                 t = ((xu * xu + uu * room).sqrt() - xu) / uu;
+            }
+            if BENT && end.on_border {
+                let to = [x[0] + t * u[0], x[1] + t * u[1]];
+                let there = Place::of::<BENT>(&to, linear + t * dot(&beta, &u), &beta, &bend);
+                let fall = here.value / here.one.sqrt() - there.value / there.one.sqrt();
+                // On level ground what bends is known best near by.
+                t = if fall <= self.level { 0.0 } else { t };
             }
             // Not NaN, of no way.
             if t > 0.0 {
