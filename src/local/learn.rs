@@ -8,7 +8,7 @@ use super::curved::Curved;
 use super::memory::Kind;
 use super::object::{Found, Object, Told};
 use super::walk::ROOM;
-use crate::known::round::{ALIKE, BLUNT, Disc, Move, Pair, Same, Seen, TOLD, fits};
+use crate::known::round::{ALIKE, BLUNT, Disc, Move, Pair, Same, Seen, Symmetric, TOLD, fits};
 use crate::math::{EPSILON, Real, Vec3, larger};
 
 /// Relative difference of a remembered disc's radius and that of a pair that shows it again.
@@ -278,6 +278,25 @@ impl Object {
         Some(twin)
     }
 
+    /// A ball or disc that was refuted is no more than a curvature; a remembered disc, or R, nothing.
+    #[cold]
+    pub fn unround(&mut self) {
+        let (kind, told, span) = (self.kind, self.told, self.span);
+        let (disc, [a, b]) = (*self.disc(), self.found.pair);
+        self.forget();
+        self.curved = match kind {
+            Kind::Ball => Curved::recall(Symmetric::scaled_identity(disc.radius)),
+            Kind::Disc if told != Told::Before => {
+                Curved::first(&(disc.point(&b) - disc.point(&a)), &(b - a))
+            }
+            _ => return,
+        };
+        self.kind = Kind::Curved;
+        // The points that were seen to be of it bend.
+        let bend = (0..ROOM).filter(|k| span[*k] > 0.0);
+        self.carried = bend.fold(0, |bits, k| bits | 1 << k);
+    }
+
     /// Nothing of it is round, but the points as they were seen are its.
     #[cold]
     pub fn forget(&mut self) {
@@ -311,7 +330,7 @@ impl Object {
             if let Some(known) = self.agrees(new, &core, carries, same.round) {
                 twin = known;
             } else {
-                self.forget();
+                self.unround();
                 (core, carries) = (new.p, false);
                 twin = match self.learn_curved(kept, new, same) {
                     Shown::Contradiction => return None,

@@ -71,13 +71,6 @@ impl Search {
         };
     }
 
-    /// Is the last step's minimum the lowest within the trust radius, as far as it tells by itself?
-    #[inline(always)]
-    pub(super) fn is_lowest(&self) -> bool {
-        let end = &self.step.end;
-        end.count < 2 || end.is_lowest(self.trust.radius)
-    }
-
     /// Walks from the sides of the trust region: the lowest end stays.
     #[inline(never)]
     pub(super) fn look_around(&mut self) {

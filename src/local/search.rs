@@ -61,12 +61,6 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    #[inline(always)]
-    pub(super) fn new(n: &Vec3, p: SupportPoint) -> Self {
-        let h = n.dot(&p.v);
-        Self { n: *n, p, h }
-    }
-
     /// Rounding error of the support value, metres.
     #[inline(always)]
     fn rounding(&self) -> Real {
@@ -123,6 +117,7 @@ pub struct Search {
     pub(super) newest: usize,
     pub(super) asked: usize,
     pub(super) doubts: u32,
+    pub(super) levelled: bool,
     pub(super) slopes: [Vec3; 3],
     pub(super) count: usize,
 }
@@ -196,7 +191,9 @@ impl Search {
                     Break(end) => return Ok(end),
                 },
             };
-            let new = Sample::new(&n, md.support(&n)?);
+            let p = md.support(&n)?;
+            let h = n.dot(&p.v);
+            let new = Sample { n, p, h };
             if new.h < 0.0 {
                 // D holds what was seen: where that lies beyond, a callback errs.
                 let mut seen = self.samples.iter().take(self.asked);
@@ -214,7 +211,7 @@ impl Search {
             }
             if told
                 && !self.is_curved()
-                && self.is_lowest()
+                && self.step.end.is_lowest(self.trust.radius)
                 && !self.is_doubtful(&n, HAIR * self.tolerance)
                 && self.conclude(place, known, hit)
             {
@@ -426,9 +423,25 @@ impl Search {
         let b = best.n;
         self.lowest();
         if round && self.gain() < -self.tolerance {
-            self.refute();
+            // Above what was seen: what it took for round is not, or not any more.
+            self.objects.iter_mut().for_each(Object::unround);
+            self.lowest();
         }
-        if self.gain() <= self.tolerance && !self.step.end.on_border && !self.is_lowest() {
+        if round && self.gain().abs() <= self.tolerance && self.step.end.on_border && !self.levelled
+        {
+            // Level so far: is it as far as the first radius?
+            self.levelled = true;
+            self.trust.radius = FIRST;
+            let near = self.step;
+            self.lowest();
+            if !(self.step.depth <= near.depth) {
+                self.step = near;
+            }
+        }
+        if self.gain() <= self.tolerance
+            && !self.step.end.on_border
+            && !self.step.end.is_lowest(self.trust.radius)
+        {
             self.look_around();
         }
         let gain = self.gain();
@@ -438,13 +451,15 @@ impl Search {
         }
         let inside = !self.step.end.on_border;
         self.trust.foretell(self.step.depth, !inside);
-        self.told = inside;
-        let mut n = self.step.n;
-        if gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST) {
-            n = self.settle(&b, known, hit)?;
+        let settled = gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST);
+        self.told = inside && !settled;
+        let n = if settled {
+            self.settle(&b, known, hit)?
         } else if inside && round {
-            n = self.towards_unseen();
-        }
+            self.towards_unseen()
+        } else {
+            self.step.n
+        };
         if (n - b).norm_squared() < EPSILON * EPSILON {
             return Break(Outcome::Open);
         }
@@ -457,45 +472,27 @@ impl Search {
         self.best().h - self.step.depth
     }
 
-    /// The model is above what was seen: what it took for round is not, or not any more.
-    #[cold]
-    fn refute(&mut self) {
-        self.objects.iter_mut().for_each(Object::forget);
-        self.lowest();
-    }
-
     /// The best direction `b` is as deep as the model's minimum: the answer, or what is to be asked
-    /// before it is.
+    /// before it is, if that was not done too often.
     #[inline(always)]
     fn settle(&mut self, b: &Vec3, known: &mut Known, hit: &mut Penetration) -> Next {
-        if let Some(next) = self.open(b) {
-            self.told = false;
-            return self.doubt(next);
-        }
-        if !self.is_doubtful(b, HAIR * self.tolerance) {
-            if self.conclude(self.best, known, hit) {
-                return Break(Outcome::Found);
-            }
-        } else {
+        let n = if let Some(n) = self.open(b) {
+            n
+        } else if self.is_doubtful(b, HAIR * self.tolerance) {
             self.trust.no_forecast();
-            self.told = false;
-            let next = self.beside();
-            return self.doubt(next);
-        }
-        // Shallow, the best direction is near enough for the depth and not for witness points: the
-        // minimum itself is, if the model is right.
-        self.doubt(self.step.n)
-    }
-
-    /// Asks for what it tells, if that was not done too often.
-    #[inline(always)]
-    fn doubt(&mut self, n: Vec3) -> Next {
+            self.beside()
+        } else if self.conclude(self.best, known, hit) {
+            return Break(Outcome::Found);
+        } else {
+            // Shallow, the best direction is near enough for the depth and not for witness points:
+            // the minimum itself is, if the model is right.
+            self.step.n
+        };
         self.doubts += 1;
         if self.doubts > DOUBTS {
-            Break(Outcome::Open)
-        } else {
-            Continue(n)
+            return Break(Outcome::Open);
         }
+        Continue(n)
     }
 }
 

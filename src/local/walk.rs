@@ -139,13 +139,13 @@ impl End {
         all.into_iter().take(2 + self.count)
     }
 
-    /// Of two kinks: is φ nowhere lower within the radius, as far as the active points tell? Around
+    /// Is φ nowhere lower within the radius, as far as the active points tell? Of two kinks: around
     /// it φ is φ₀ + max g·x − ½ φ₀ x² with the slopes g of the active points: max g·x is
     /// at least |x| times the distance from the origin to the nearest side of their hull, which
     /// must be ½ φ₀ times the radius.
     #[inline]
     pub fn is_lowest(&self, radius: Real) -> bool {
-        if !(self.value > 0.0) {
+        if self.count < 2 || !(self.value > 0.0) {
             return true;
         }
         let least = 0.5 * self.value * radius;
