@@ -308,8 +308,8 @@ impl Object {
             pieces,
             ..Self::default()
         };
-        for k in 0..len.min(ROOM) {
-            self.set(k, &at[k].p, false);
+        for (k, seen) in at.iter().enumerate().take(len) {
+            self.set(k, &seen.p, false);
         }
     }
 

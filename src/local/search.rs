@@ -274,7 +274,7 @@ impl Search {
                 object.forget_unless_fits(self.extent2);
             }
         } else {
-            self.trust.compare(h, before);
+            self.trust.compare(&n, h, before);
             match self.learn(&points, &same) {
                 Some(known) => twins = known,
                 None => return false,
@@ -450,7 +450,7 @@ impl Search {
             return Break(Outcome::Open);
         }
         let inside = !self.step.end.on_border;
-        self.trust.foretell(self.step.depth, !inside);
+        self.trust.foretell(self.step.depth, !inside, &b);
         let settled = gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST);
         self.told = inside && !settled;
         let n = if settled {
