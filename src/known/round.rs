@@ -247,34 +247,6 @@ impl Disc {
         // False for NaN.
         (moved2 < 2.0 && radius > 0.0 && radius < Real::INFINITY).then_some(Self { radius, axis })
     }
-
-    /// This disc, of which the radius is known, turned by as little as may be to have `old` and
-    /// `new` for points, but for `error`, metres. `None`: it has not.
-    ///
-    /// As in [`Disc::of`]; but from d = r (m′ − m) alone |n⊥| = −2 r p / |d|, which needs no
-    /// difference of nearly equal squares.
-    pub fn turned(&self, old: &Seen, new: &Seen, error: Real) -> Option<Self> {
-        let d = new.p - old.p;
-        let length = d.norm();
-        let f0 = d * (1.0 / length);
-        let p = old.n.dot(&f0);
-        let f1 = old.n - f0 * p;
-        let alpha2 = f1.norm_squared();
-        let f1 = f1 * (1.0 / alpha2.sqrt());
-        let f2 = f0.cross(&f1);
-        let across = 2.0 * self.radius * p / length;
-        let c2 = larger(1.0 - across * across, 0.0) / alpha2;
-        let s2 = larger(1.0 - c2, 0.0);
-        let axis = f1 * c2.sqrt().copysign(self.axis.dot(&f1))
-            + f2 * s2.sqrt().copysign(self.axis.dot(&f2));
-        let turned = Self {
-            axis: axis * (1.0 / axis.norm()),
-            ..*self
-        };
-        let off = d - (turned.point(&new.n) - turned.point(&old.n));
-        // False for NaN.
-        (off.norm_squared() <= error * error && length > 4.0 * error).then_some(turned)
-    }
 }
 
 /// A symmetric matrix: xx, xy, xz, yy, yz, zz.
@@ -375,20 +347,6 @@ impl Symmetric {
 /// Squared cosine of the angle between the first pair's differences up to which R is as large
 /// along them as it was seen to be. Measured: 1 +0.5 %, +7 % (ellipsoids); ÷2 −0.1 %.
 const SQUARE: Real = 0.9;
-
-/// What is round of an object.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Round {
-    /// Nothing that was seen.
-    #[default]
-    None,
-    /// A ball of this radius, metres.
-    Ball(Real),
-    /// A disc.
-    Disc(Disc),
-    /// Something else that is smooth, by the second derivative of its support function, metres.
-    Curved(Symmetric),
-}
 
 #[cfg(test)]
 mod tests {
@@ -511,32 +469,6 @@ mod tests {
         assert!(met.iter().all(|met| *met > 50), "{met:?}");
     }
 
-    /// A remembered disc is found again by a pair too narrow to tell it from another.
-    #[test]
-    fn a_disc_that_turned_is_found_again() {
-        let mut r = Random::new(3);
-        let mut met = 0;
-        for _ in 0..500 {
-            let [m, n] = two(&mut r, if EPSILON > 1e-10 { 0.1 } else { 0.01 });
-            let [a, b] = [m, n].map(|n| ask(&cylinder, n));
-            let across = (b.p - a.p).cross(&Vec3::z()).norm();
-            if m.z * n.z < 0.0 || m.z.abs() > 0.9 || m.z.abs() < 0.1 || across < 2e-3 {
-                continue;
-            }
-            let before = Disc {
-                radius: 0.5,
-                axis: (Vec3::z() + r.vector(0.02)).normalize(),
-            };
-            let Some(disc) = before.turned(&a, &b, NEAR) else {
-                continue;
-            };
-            met += 1;
-            let (is, was) = (disc.axis.z.abs(), before.axis.z.abs());
-            assert!(1.0 - is < 1e-4 && is > was.min(1.0 - 1e-4), "{disc:?}");
-        }
-        assert!(met > 100, "{met}");
-    }
-
     /// Where a piece ends, the next one shows none of it: a corner is a vertex, and its point
     /// carries neither the arc nor the ball.
     #[test]
@@ -574,7 +506,6 @@ mod tests {
         };
         assert_eq!(Pair::of(&good, &bad, &SAME), Pair::Close);
         assert!(Disc::of(&good, &good).is_none());
-        assert!(Disc::default().turned(&good, &good, 0.0).is_none());
         let mut r = Symmetric::scaled_identity(1.0);
         r.reduce(&Vec3::x(), 0.25);
         assert!((r.times(&Vec3::x()) - Vec3::x() * 0.25).norm() < 4.0 * EPSILON);

@@ -36,7 +36,6 @@ const ALONG: Real = 0.0025;
 #[derive(Clone, Copy, Debug)]
 pub struct Curved {
     r: Symmetric,
-    there: bool,
     /// Relative error, by the last pair; 1 where one alone has told, meaningless where R is not there.
     pub error: Real,
     /// Did R foretell the last pair to within [`FORETOLD`]?
@@ -50,7 +49,6 @@ pub struct Curved {
 impl Curved {
     pub const NONE: Self = Self {
         r: Symmetric([0.0; 6]),
-        there: false,
         error: 0.0,
         foretold: false,
         line: ZERO,
@@ -62,21 +60,15 @@ impl Curved {
     pub fn recall(r: Symmetric) -> Self {
         Self {
             r,
-            there: true,
             error: BELIEVED,
             ..Self::NONE
         }
     }
 
-    #[inline(always)]
-    pub fn is_there(&self) -> bool {
-        self.there
-    }
-
     /// Does it move cuts?
     #[inline(always)]
     pub fn is_believed(&self) -> bool {
-        self.there && self.error <= BELIEVED
+        self.error <= BELIEVED
     }
 
     pub fn r(&self) -> &Symmetric {
@@ -88,18 +80,18 @@ impl Curved {
         self.r.0.iter().map(|entry| entry.abs()).sum::<Real>() / BLUNT
     }
 
-    /// Learns from a smooth pair: a point that moved by `d` where its direction turned by `dn`.
-    pub fn learn(&mut self, d: &Vec3, dn: &Vec3) {
-        if !self.there {
-            *self = Self {
-                r: Symmetric::first(d, dn),
-                there: true,
-                error: 1.0,
-                line: *dn,
-                ..Self::NONE
-            };
-            return;
+    /// Of the first smooth pair: a point moved by `d` where its direction turned by `dn`.
+    pub fn first(d: &Vec3, dn: &Vec3) -> Self {
+        Self {
+            r: Symmetric::first(d, dn),
+            error: 1.0,
+            line: *dn,
+            ..Self::NONE
         }
+    }
+
+    /// Learns from another smooth pair.
+    pub fn learn(&mut self, d: &Vec3, dn: &Vec3) {
         let w = d - self.r.times(dn);
         let dn2 = dn.norm_squared();
         self.error = (w.norm_squared() / d.norm_squared()).sqrt();
@@ -134,7 +126,7 @@ impl Curved {
     /// Does it lead to witness points, of a point seen along unit `n`? Not where it was measured along
     /// one direction alone, and is a guess across that.
     pub fn is_certain(&self, n: &Vec3) -> bool {
-        self.there && self.spread && self.foretold && !self.is_edge(n)
+        self.spread && self.foretold && !self.is_edge(n)
     }
 
     /// Does it bend along one direction across `n` alone? By its eigenvalues there, through their sum
@@ -149,24 +141,18 @@ impl Curved {
         !(0.5 * (sum * sum - squares) >= EDGE * squares)
     }
 
-    /// A kink along `dn` leaves R no more than this `room`. What no second pair confirmed ends.
-    pub fn refute(&mut self, dn: &Vec3, room: Real) {
-        let bend = self.r.times(dn).dot(dn);
-        if bend > room {
-            self.there = self.error <= BELIEVED;
-            self.r.reduce(dn, room);
+    /// A kink along `dn` leaves R no more than this `room`. What no second pair confirmed ends: `false`.
+    pub fn refute(&mut self, dn: &Vec3, room: Real) -> bool {
+        if !(self.r.times(dn).dot(dn) > room) {
+            return true;
         }
-    }
-
-    /// A vertex seen along two directions: what no second pair confirmed ends.
-    pub fn doubt(&mut self) {
-        self.there &= self.error <= BELIEVED;
+        self.r.reduce(dn, room);
+        self.is_believed()
     }
 
     /// Across the one direction in which R was measured, and unit `n`.
     pub fn across(&self, n: &Vec3) -> Option<Vec3> {
-        let alone = self.there && !self.spread;
-        alone.then(|| self.line.cross(n))
+        (!self.spread).then(|| self.line.cross(n))
     }
 }
 
@@ -194,8 +180,9 @@ mod tests {
             let t = perpendicular(&n);
             let u = n.cross(&t);
             let at = ask(n);
-            let mut curved = Curved::NONE;
-            for way in [t, u, t + u, t, u, t - u] {
+            let first = ask(n + t * step);
+            let mut curved = Curved::first(&(first.p - at.p), &(first.n - at.n));
+            for way in [u, t + u, t, u, t - u] {
                 let to = ask(n + way * step);
                 curved.learn(&(to.p - at.p), &(to.n - at.n));
             }
@@ -214,18 +201,11 @@ mod tests {
     fn a_kink_refutes_it() {
         let dn = Vec3::x() * 0.1;
         let mut curved = Curved::recall(Symmetric::scaled_identity(1.0));
-        curved.refute(&dn, 0.0025);
-        assert!(curved.is_there());
+        assert!(curved.refute(&dn, 0.0025));
         assert!((curved.r().times(&dn).dot(&dn) - 0.0025).abs() < 8.0 * EPSILON);
         assert!((curved.r().times(&Vec3::y()) - Vec3::y()).norm() < 8.0 * EPSILON);
-        let mut once = Curved::NONE;
-        once.learn(&dn, &dn);
-        let mut twice = once;
-        once.refute(&dn, 0.0025);
-        assert!(!once.is_there());
-        assert!(twice.is_there() && !twice.is_believed());
-        assert!(twice.across(&Vec3::z()).is_some());
-        twice.doubt();
-        assert!(!twice.is_there());
+        let mut once = Curved::first(&dn, &dn);
+        assert!(!once.is_believed() && once.across(&Vec3::z()).is_some());
+        assert!(!once.refute(&dn, 0.0025));
     }
 }

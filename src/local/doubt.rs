@@ -3,6 +3,7 @@
 
 //! What is not certain at the model's minimum, and where to ask for it.
 
+use super::memory::Kind;
 use super::search::{SAME, Search};
 use super::trust_region::{ASIDE, FIRST};
 use super::walk::ROOM;
@@ -13,11 +14,8 @@ impl Search {
     /// Are the round parts of an active point in doubt at unit `n`?
     #[inline(always)]
     pub(super) fn is_doubtful(&self, n: &Vec3, hair: Real) -> bool {
-        let end = &self.step.end;
-        let unseen = |o: usize, k: usize| self.objects[o % 2].is_unseen(k, n, hair);
-        unseen(0, end.active[0])
-            || unseen(1, end.active[1])
-            || (end.kinks.iter().take(end.count)).any(|k| unseen(k.object, k.point))
+        let unseen = |(o, k): (usize, usize)| self.objects[o % 2].is_unseen(k, n, hair);
+        self.step.end.points().any(unseen)
     }
 
     /// What R leaves open at the best direction, whose depth is the model's least: where it was
@@ -37,8 +35,10 @@ impl Search {
             return None;
         }
         for object in &mut self.objects {
-            if let Some(across) = object.curved.across(b) {
-                object.curved.spread = true;
+            let curved = &mut object.curved;
+            let across = curved.across(b).filter(|_| object.kind == Kind::Curved);
+            if let Some(across) = across {
+                curved.spread = true;
                 let way = unit(&across).unwrap_or_else(|| perpendicular(b));
                 let slope = self.best().p.v.dot(&way);
                 let d = b + way * ASIDE.copysign(-slope);
@@ -82,25 +82,15 @@ impl Search {
     #[cold]
     pub(super) fn beside(&self) -> Vec3 {
         let n = self.step.n;
-        let end = &self.step.end;
-        let places = [(0, end.active[0]), (1, end.active[1])];
-        let kinks = end
-            .kinks
-            .iter()
-            .take(end.count)
-            .map(|k| (k.object, k.point));
-        let mut side = Vec3::zeros();
-        let mut worst = -1.0;
-        let mut size: Real = 0.0;
-        for (o, k) in places.into_iter().chain(kinks) {
+        let (mut side, mut worst) = (Vec3::zeros(), -1.0);
+        for (o, k) in self.step.end.points() {
             let object = &self.objects[o % 2];
-            let doubted = object.is_unseen(k, &self.best().n, 0.0);
-            let off = object.at[k % ROOM].n - n;
             let lift = object.lift(k, &n);
-            if doubted && lift > worst {
-                (side, worst, size) = (off, lift, 2.0 * lift / off.norm_squared());
+            if lift > worst && object.is_unseen(k, &self.best().n, 0.0) {
+                (side, worst) = (object.at[k % ROOM].n - n, lift);
             }
         }
+        let size = 2.0 * worst / side.norm_squared();
         let side = side - n * n.dot(&side);
         let side = unit(&side).unwrap_or_else(|| perpendicular(&n));
         let same = self.same().round;

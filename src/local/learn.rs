@@ -5,7 +5,8 @@
 //! not.
 
 use super::curved::Curved;
-use super::object::{Found, Object};
+use super::memory::Kind;
+use super::object::{Found, Object, Told};
 use super::walk::ROOM;
 use crate::known::round::{ALIKE, BLUNT, Disc, Move, Pair, Same, Seen, Symmetric, TOLD, fits};
 use crate::math::{EPSILON, Real, Vec3, larger};
@@ -33,13 +34,15 @@ pub enum Shown {
 }
 
 /// What a point of a smooth surface shows.
-pub enum Smooth {
-    /// It is none.
-    None,
-    /// Maybe a disc; by another point than the pair too; and moved more aside than along.
-    Disc(Found, bool, bool),
-    /// No disc; the point that it makes a smooth pair with.
-    Other(usize),
+pub struct Smooth {
+    /// The point that it makes a smooth pair with.
+    pub with: usize,
+    /// Maybe a disc, …
+    pub found: Option<Found>,
+    /// … by what, …
+    pub told: Told,
+    /// … and moved more aside than along.
+    pub aside: bool,
 }
 
 impl Object {
@@ -49,11 +52,32 @@ impl Object {
         self.pieces |= kept.map_or(0, |k| 1 << k);
     }
 
+    /// The points that a new one may make a smooth pair with: of what seems a polytope the `best` alone.
+    fn others(&self, best: usize) -> core::ops::Range<usize> {
+        if self.flat {
+            best..best + 1
+        } else {
+            0..self.len
+        }
+    }
+
     /// What a new point shows with those before.
     #[inline(never)]
     pub fn learn(&mut self, best: &mut usize, new: &Seen, same: &Same) -> Shown {
-        if self.curved.is_there() {
+        if self.kind == Kind::Curved {
             return self.learn_curved(best, new, same);
+        }
+        if self.kind == Kind::Disc && self.told == Told::Before {
+            let core = |at: &Seen| at.p - self.disc().point(&at.n);
+            let apart = self
+                .disc()
+                .across(&(core(new) - core(&self.at[*best % ROOM])));
+            if apart.norm_squared() > same.round * same.round {
+                // The axis has turned with the object: a pair is to show it.
+                let radius = self.disc().radius;
+                self.forget();
+                self.found.disc.radius = radius;
+            }
         }
         if self.is_round() {
             return Shown::Nothing;
@@ -61,24 +85,15 @@ impl Object {
         if let Some(k) = self.twin(&new.p, false, same.rounding) {
             return Shown::Twin(k);
         }
-        let others = if self.flat {
-            *best..*best + 1
-        } else {
-            0..self.len
-        };
-        let mut smooth = false;
-        for k in others {
+        let mut shown = Shown::Nothing;
+        for k in self.others(*best) {
             match Pair::of(&self.at[k % ROOM], new, same) {
                 Pair::Ball(radius) => return Shown::Ball(radius),
-                Pair::Smooth => smooth = true,
+                Pair::Smooth => shown = Shown::Smooth,
                 _ => (),
             }
         }
-        if smooth {
-            Shown::Smooth
-        } else {
-            Shown::Nothing
-        }
+        shown
     }
 
     /// What a new point of a curved object shows with those before: its R, and the point of the same
@@ -115,24 +130,22 @@ impl Object {
             }
         }
         if room < Real::INFINITY {
-            self.curved
-                .refute(&(new.n - self.at[*best % ROOM].n), larger(room, 0.0));
+            let dn = new.n - self.at[*best % ROOM].n;
+            let believed = self.curved.refute(&dn, larger(room, 0.0));
+            self.believe(believed);
         }
         let k = twin;
         if k < ROOM && nearest > TOLD * TOLD {
             if vertex {
+                // What no second pair confirmed ends.
                 self.flat = true;
-                self.curved.doubt();
+                self.believe(self.curved.is_believed());
                 self.carried &= !(1 << k);
             } else {
-                let old = &self.at[k % ROOM];
-                self.curved.learn(&(new.p - old.p), &(new.n - old.n));
-                self.carried |= 1 << k;
+                self.curve(k, new);
             }
-            self.seen |= 1 << k;
-            self.span[k % ROOM] = larger(nearest, self.span[k % ROOM]);
+            self.see(k, nearest);
         }
-        self.note();
         if twin < ROOM {
             Shown::Twin(twin)
         } else {
@@ -140,206 +153,164 @@ impl Object {
         }
     }
 
+    /// R ends, unless it is believed.
+    fn believe(&mut self, believed: bool) {
+        if self.kind == Kind::Curved && !believed {
+            self.kind = Kind::None;
+        }
+    }
+
     /// What is smooth and no disc: R, by the point in that place and a new one.
     #[cold]
     pub fn curve(&mut self, k: usize, new: &Seen) {
         let old = &self.at[k % ROOM];
-        self.curved.learn(&(new.p - old.p), &(new.n - old.n));
+        let (d, dn) = (new.p - old.p, new.n - old.n);
+        if self.kind == Kind::Curved {
+            self.curved.learn(&d, &dn);
+        } else {
+            (self.kind, self.curved) = (Kind::Curved, Curved::first(&d, &dn));
+        }
         self.carried |= 1 << k;
         self.pieces |= 1 << k;
-        self.note();
     }
 
     /// Looks for a disc that a new point shows with those before. Of others than the `best` one only
     /// what a third point confirms: corners far from each other look smooth by chance.
     #[inline(never)]
-    pub fn learn_disc(&self, best: usize, new: &Seen, same: &Same) -> Smooth {
+    pub fn learn_disc(&self, best: usize, new: &Seen, same: &Same) -> Option<Smooth> {
         if self.is_round() {
-            return Smooth::None;
+            return None;
         }
-        let others = if self.flat {
-            best..best + 1
-        } else {
-            0..self.len
-        };
-        for k in others {
-            match self.disc_of(k, best, new, same) {
-                Smooth::None => (),
-                Smooth::Other(_) | Smooth::Disc(_, false, _) if k != best => (),
-                shown => return shown,
+        for k in self.others(best) {
+            let old = &self.at[k % ROOM];
+            let by = Move::of(old, new);
+            let one = k == best && self.pieces >> k & 1 != 0;
+            if !(one || by.is_smooth(same, self.alike())) {
+                continue;
+            }
+            let disc = Disc::of(old, new).filter(|disc| fits(disc.radius, same.extent2));
+            let found = disc.map(|disc| Found::of(disc, old, new));
+            let points = || self.at.iter().take(self.len);
+            let confirmed = found.is_some_and(|found| {
+                let (radius, before) = (found.disc.radius, self.disc().radius);
+                (radius - before).abs() <= BALL * radius || points().any(|at| found.is_shown_by(at))
+            });
+            if k == best || confirmed {
+                let aside = 2.0 * by.along * by.along < by.d2 * by.dn2;
+                let told = if confirmed { Told::More } else { Told::Pair };
+                return Some(Smooth {
+                    with: k,
+                    found,
+                    told,
+                    aside,
+                });
             }
         }
-        Smooth::None
+        None
     }
 
-    pub(super) fn disc_of(&self, k: usize, best: usize, new: &Seen, same: &Same) -> Smooth {
-        let old = &self.at[k % ROOM];
-        let by = Move::of(old, new);
-        let one = k == best && self.pieces >> k & 1 != 0;
-        if !(one || by.is_smooth(same, self.alike())) {
-            return Smooth::None;
-        }
-        let Some(disc) = Disc::of(old, new).filter(|disc| fits(disc.radius, same.extent2)) else {
-            return Smooth::Other(k);
-        };
-        let found = Found::of(disc, old, new);
-        let third = |at: &Seen| found.is_shown_by(at);
-        let confirmed = self.at.iter().take(self.len).any(third);
-        Smooth::Disc(found, confirmed, 2.0 * by.along * by.along < by.d2 * by.dn2)
-    }
-
-    /// Turns a remembered disc to where two points show it.
-    #[inline(never)]
-    pub fn turn(&mut self, k: usize, new: &Seen, same: &Same, asked: usize) -> usize {
-        let disc = *self.disc();
-        if !disc.is_there() || self.found_at > 0 || self.confirmed {
-            return k;
-        }
-        let old = self.at[k % ROOM];
-        let d = new.p - old.p;
-        let moved = disc.point(&new.n) - disc.point(&old.n);
-        if (d - moved).norm_squared() <= same.round * same.round {
-            return k;
-        }
-        let anew = Disc::of(&old, new)
-            .filter(|anew| (anew.radius - disc.radius).abs() <= BALL * disc.radius);
-        if let Some(disc) = anew.or_else(|| disc.turned(&old, new, same.round)) {
-            let found = Found::of(disc, &old, new);
-            return self.take_disc((&found, anew.is_some()), asked, k, same);
-        }
-        k
-    }
-
-    /// Does a new point agree with the disc? Notes which vertices it shows again from another
-    /// direction: not before the disc is confirmed.
-    #[inline(never)]
-    pub(super) fn agrees(
+    /// The point whose vertex is a new one's. Notes which were seen again from another direction: not
+    /// before the disc is confirmed. `None`: the new one lies beyond a cut, or another beyond its.
+    #[inline(always)]
+    fn agrees(
         &mut self,
         new: &Seen,
         core: &Vec3,
         carries: bool,
         same: Real,
-        asked: usize,
-    ) -> bool {
+    ) -> Option<Option<usize>> {
         let len = self.len.min(ROOM);
-        let disc = *self.disc();
+        let (disc, doubted) = (self.found.disc, self.is_doubted());
         let least = larger(TOLD * TOLD * disc.radius * disc.radius, 16.0 * same * same);
-        let height = |carries: bool, n: &Vec3| {
-            if carries {
-                disc.radius * disc.across(n).norm()
-            } else {
-                0.0
-            }
-        };
-        let (value, here) = (new.p.dot(&new.n), height(true, &new.n));
-        let at = disc.point(&new.n);
-        let (mut shown, mut again): (u32, bool) = (0, false);
-        let mut refuted = false;
+        let height = |n: &Vec3| disc.radius * disc.across(n).norm();
+        let (mut twin, mut turned, mut refuted) = (None, 0.0, false);
         for k in 0..len {
-            let (old, old_core) = (self.at[k], self.core(k));
-            let old_carries = self.carries(k);
-            let ahead = value - old_core.dot(&new.n) - if old_carries { here } else { 0.0 };
-            let behind = (old.p - core).dot(&old.n) - height(carries, &old.n);
-            // A cut above a support value.
-            if !(ahead >= -same && behind >= -same) {
-                return false;
+            let old = self.at[k];
+            let e = core - self.core(k);
+            let differ = carries != self.carries(k);
+            if !differ && e.norm_squared() <= same * same {
+                let moved2 = (new.p - old.p - e).norm_squared();
+                twin = Some(k);
+                if carries && moved2 > least {
+                    turned = (new.n - old.n).norm_squared();
+                    // A remembered one, whose axis has not turned.
+                    if self.told == Told::Before
+                        && e.norm_squared() <= ALIKE * ALIKE * turned * moved2
+                    {
+                        (self.found, self.told) = (Found::of(disc, &old, new), Told::More);
+                    }
+                }
+                continue;
             }
-            let d = new.p - old.p;
-            if self.is_doubted() && !carries {
+            let (mut ahead, mut behind) = (e.dot(&new.n), -e.dot(&old.n));
+            if differ {
+                let sign = if carries { 1.0 } else { -1.0 };
+                ahead += sign * height(&new.n);
+                behind -= sign * height(&old.n);
+            }
+            // A cut above a support value; also NaN.
+            if !(ahead >= -same && behind >= -same) {
+                return None;
+            }
+            if doubted && !carries {
+                let d = new.p - old.p;
                 let (e, f) = (d.dot(&new.n), -d.dot(&old.n));
                 refuted |= (e - f).abs() <= OWN * (e + f);
             }
-            if !old_carries || !carries {
-                continue;
-            }
-            let moved = at - (old.p - old_core);
-            let off2 = (d - moved).norm_squared();
-            if moved.norm_squared() > least && off2 <= same * same {
-                shown |= 1 << k;
-                // A remembered one, whose axis has not turned.
-                let turned = (new.n - old.n).norm_squared();
-                again |= off2 <= ALIKE * ALIKE * turned * moved.norm_squared();
-            }
         }
         if refuted {
-            return false;
+            return None;
         }
-        let mut pair = 0;
-        self.confirmed |= self.found_at == 0 && again;
-        if self.is_doubted() && self.found_at != asked && self.found.is_shown_by(new) {
-            self.confirmed = true;
+        if doubted && self.found.is_shown_by(new) {
+            self.told = Told::More;
             // The pair's vertex was seen twice.
-            for k in (0..len).filter(|k| self.carries(*k)) {
+            let [a, b] = self.found.pair;
+            for k in 0..len {
                 let apart = disc.across(&(self.core(k) - self.found.carrier));
-                pair |= u32::from(apart.norm_squared() <= same * same) << k;
-            }
-        }
-        if !self.confirmed {
-            return true;
-        }
-        self.seen |= shown | pair;
-        let [a, b] = self.found.pair;
-        for k in 0..len {
-            if shown >> k & 1 != 0 {
-                self.span[k] = larger((new.n - self.at[k].n).norm_squared(), self.span[k]);
-            }
-            if pair >> k & 1 != 0 {
-                self.span[k] = larger((a - b).norm_squared(), self.span[k]);
-            }
-        }
-        true
-    }
-
-    /// The point whose vertex in the ball is a new one's, which was seen again then. `None`: the new
-    /// one lies beyond a cut, or another beyond its.
-    #[inline(always)]
-    pub(super) fn among(&mut self, new: &Seen, core: &Vec3, same: Real) -> Option<Option<usize>> {
-        for k in 0..self.len.min(ROOM) {
-            let e = core - self.core(k);
-            if e.norm_squared() <= same * same {
-                let turned = (new.n - self.at[k].n).norm_squared();
-                let moved2 = self.radius * self.radius * turned;
-                if turned > TOLD * TOLD && moved2 > 16.0 * same * same {
-                    self.seen |= 1 << k;
-                    self.span[k] = larger(turned, self.span[k]);
+                if self.carries(k) && apart.norm_squared() <= same * same {
+                    self.see(k, (a - b).norm_squared());
                 }
-                return Some(Some(k));
-            }
-            // Also NaN.
-            if !(e.dot(&new.n) >= -same && e.dot(&self.at[k].n) <= same) {
-                return None;
             }
         }
-        Some(None)
+        if let (Some(k), true) = (twin, self.told == Told::More) {
+            self.see(k, turned);
+        }
+        Some(twin)
     }
 
-    /// A ball or disc that was refuted is no more than a curvature.
+    /// A ball or disc that was refuted is no more than a curvature; a remembered disc, or R, nothing.
     #[cold]
     pub fn unround(&mut self) {
-        let (radius, disc, [a, b]) = (self.radius, *self.disc(), self.found.pair);
-        let (carried, found) = (self.seen, disc.is_there() && self.found_at > 0);
+        let (kind, told, span) = (self.kind, self.told, self.span);
+        let (disc, [a, b]) = (*self.disc(), self.found.pair);
         self.forget();
-        if radius > 0.0 {
-            self.curved = Curved::recall(Symmetric::scaled_identity(radius));
-        } else if found {
-            self.curved
-                .learn(&(disc.point(&b) - disc.point(&a)), &(b - a));
-        }
+        self.curved = match kind {
+            Kind::Ball => Curved::recall(Symmetric::scaled_identity(disc.radius)),
+            Kind::Disc if told != Told::Before => {
+                Curved::first(&(disc.point(&b) - disc.point(&a)), &(b - a))
+            }
+            _ => return,
+        };
+        self.kind = Kind::Curved;
         // The points that were seen to be of it bend.
-        self.carried = carried;
-        self.note();
+        let bend = (0..ROOM).filter(|k| span[*k] > 0.0);
+        self.carried = bend.fold(0, |bits, k| bits | 1 << k);
     }
 
     /// Nothing of it is round, but the points as they were seen are its.
     #[cold]
     pub fn forget(&mut self) {
-        (self.radius, self.found, self.confirmed) = (0.0, Found::NONE, false);
-        (self.curved, self.carried, self.seen) = (Curved::NONE, 0, 0);
-        for k in 0..self.len.min(ROOM) {
-            let p = self.at[k].p;
-            self.set(k, &p, false);
+        let (at, len, flat, pieces) = (self.at, self.len, self.flat, self.pieces);
+        *self = Self {
+            at,
+            len,
+            flat,
+            pieces,
+            ..Self::default()
+        };
+        for (k, seen) in at.iter().enumerate().take(len) {
+            self.set(k, &seen.p, false);
         }
-        self.note();
     }
 
     /// Takes a new point, the vertex in place `twin` if known; returns its place. `best`: the best
@@ -352,40 +323,28 @@ impl Object {
         best: &Vec3,
         kept: &mut usize,
         same: &Same,
-        asked: usize,
     ) -> Option<usize> {
         let (mut core, mut carries) = (new.p, false);
-        if self.is_round() && !self.curved.is_there() {
-            let near = same.round;
-            (core, carries) = self.vertex(new, near);
-            let agreed = if !self.disc().is_there() {
-                self.among(new, &core, near)
-            } else if self.agrees(new, &core, carries, near, asked) {
-                Some(self.twin(&core, carries, near))
+        if self.is_cored() {
+            (core, carries) = self.vertex(new, same.round);
+            if let Some(known) = self.agrees(new, &core, carries, same.round) {
+                twin = known;
             } else {
-                None
-            };
-            match agreed {
-                Some(known) => twin = known,
-                None => {
-                    self.unround();
-                    core = new.p;
-                    twin = match self.learn_curved(kept, new, same) {
-                        Shown::Contradiction => return None,
-                        Shown::Twin(k) => Some(k),
-                        _ => None,
-                    };
-                }
+                self.unround();
+                (core, carries) = (new.p, false);
+                twin = match self.learn_curved(kept, new, same) {
+                    Shown::Contradiction => return None,
+                    Shown::Twin(k) => Some(k),
+                    _ => None,
+                };
             }
         }
-        let curved = self.curved.is_there();
+        let curved = self.kind == Kind::Curved;
         if curved {
             // The first one is as R is remembered.
-            let k = twin.unwrap_or(ROOM);
-            carries = if k < ROOM {
-                self.carries(k)
-            } else {
-                self.pieces != 0 || self.len == 0
+            carries = match twin {
+                Some(k) => self.carries(k),
+                None => self.pieces != 0 || self.len == 0,
             };
         }
         if let Some(place) = twin {
@@ -407,7 +366,7 @@ impl Object {
         }
         self.at[place % ROOM] = *new;
         self.set(place, &core, carries);
-        self.seen &= !(1 << place);
+        self.span[place % ROOM] = 0.0;
         Some(place)
     }
 }

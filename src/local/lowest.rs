@@ -8,6 +8,7 @@
 //! direction only, and so is one walk. Along its axis a disc's support function has its least value
 //! and a kink, which no chart knows: there the rim's own points, which are a polytope's, lead on.
 
+use super::memory::Kind;
 use super::search::Search;
 use super::walk::End;
 use crate::contacts::polygon::{Flat, dot};
@@ -43,7 +44,7 @@ impl Search {
     #[inline(never)]
     pub(super) fn lowest(&mut self) {
         let b = self.best().n;
-        let discs = self.objects.iter().any(|object| object.disc().is_there());
+        let discs = self.objects.iter().any(|object| object.kind == Kind::Disc);
         self.model.level = self.tolerance;
         self.middle = [0.0; 2];
         self.chart(&b);
@@ -70,13 +71,6 @@ impl Search {
         };
     }
 
-    /// Is the last step's minimum the lowest within the trust radius, as far as it tells by itself?
-    #[inline(always)]
-    pub(super) fn is_lowest(&self) -> bool {
-        let end = &self.step.end;
-        end.count < 2 || end.is_lowest(self.trust.radius)
-    }
-
     /// Walks from the sides of the trust region: the lowest end stays.
     #[inline(never)]
     pub(super) fn look_around(&mut self) {
@@ -96,13 +90,13 @@ impl Search {
 
     /// The model's depth along unit `n`.
     pub(super) fn depth(&self, n: &Vec3) -> Real {
-        self.objects[0].height(n) + self.objects[1].height(n) + self.rho()
+        self.objects[0].height(n) + self.objects[1].height(n)
     }
 
     /// How much lower than the best sample the model is, metres, if R bends by its error less.
     pub(super) fn gain_by_less(&mut self) -> Real {
         for (object, cuts) in self.objects.iter().zip(&mut self.model.cuts) {
-            if object.curved.is_there() {
+            if object.kind == Kind::Curved {
                 let left = larger(1.0 - object.curved.worst(), 0.0);
                 cuts.bend = cuts.bend.map(|g| g * left);
             }

@@ -4,9 +4,7 @@
 //! What a search leaves behind for the next one of the pair.
 
 use super::trust_region::ASIDE;
-use crate::contacts::polygon::{Flat, dot, length, side};
-use crate::known::round::{Disc, Round, Symmetric};
-use crate::math::{EPSILON, Real, Vec3, basis, unit};
+use crate::math::{EPSILON, Real, Vec3, ZERO, normalised};
 
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
 /// any other bits are harmless, since they only choose where to look first.
@@ -29,45 +27,25 @@ pub struct Memory {
     pub curved: u32,
 }
 
-/// Bits of [`Memory::curved`] for the kind of one object's round part: nothing, a ball, a disc, R.
+/// The kind of what is round of an object: nothing, a ball, a disc, R.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    #[default]
+    None,
+    Ball,
+    Disc,
+    Curved,
+}
+
+/// What is round of an object, in numbers: a ball's radius; a disc's axis times its radius; or R.
+pub type Round = (Kind, [Real; FEW]);
+
+/// Bits of [`Memory::curved`] for the kind of one object's round part.
 const KIND: u32 = 2;
-const DISC: u32 = 2;
-const CURVED: usize = 3;
-/// The numbers of each kind: nothing, a radius, an axis times a radius, a matrix.
-const NUMBERS: [usize; 4] = [0, 1, 3, FEW];
+/// The kinds.
+const KINDS: [Kind; 4] = [Kind::None, Kind::Ball, Kind::Disc, Kind::Curved];
 /// Room for numbers in [`Memory::curvature`].
 const FEW: usize = 6;
-
-/// The kind of a round part, and its numbers.
-fn numbers(round: &Round) -> (usize, [Real; FEW]) {
-    match round {
-        Round::None => (0, [0.0; FEW]),
-        Round::Ball(radius) => (1, [*radius, 0.0, 0.0, 0.0, 0.0, 0.0]),
-        Round::Disc(disc) => {
-            let axis = disc.axis * disc.radius;
-            (2, [axis.x, axis.y, axis.z, 0.0, 0.0, 0.0])
-        }
-        Round::Curved(Symmetric(r)) => (CURVED, *r),
-    }
-}
-
-/// The round part of that kind with these numbers, if they make sense.
-fn round(kind: usize, numbers: &[Real; FEW]) -> Round {
-    let [x, y, z, ..] = *numbers;
-    let axis = Vec3::new(x, y, z);
-    let size: Real = numbers.iter().map(|number| number.abs()).sum();
-    match (kind, unit(&axis)) {
-        // Also NaN.
-        _ if !(size > 0.0 && size < Real::INFINITY) => Round::None,
-        (1, _) => Round::Ball(x),
-        (2, Some(unit)) => Round::Disc(Disc {
-            radius: axis.norm(),
-            axis: unit,
-        }),
-        (CURVED, _) => Round::Curved(Symmetric(*numbers)),
-        _ => Round::None,
-    }
-}
 
 /// [`Memory::count`] where an edge of each object crosses the other's: the slopes at one end of both,
 /// at the other end of the one, and of the other.
@@ -78,46 +56,6 @@ const WIDER: Real = 1.4;
 /// … and the second of the two directions, to the other side: not opposite to the first, where both
 /// could show the same ends. Measured: ÷2 +0.1 %, +3 %; −1 +0.9 %, +12 % (boxes in motion).
 const OPPOSITE: Real = -0.7;
-
-/// Directions to ask before the first model, last one first.
-pub struct Queue {
-    dirs: [Vec3; 3],
-    len: usize,
-}
-
-impl Queue {
-    pub const EMPTY: Self = Self {
-        dirs: [Vec3::new(0.0, 0.0, 0.0); 3],
-        len: 0,
-    };
-
-    /// One direction.
-    #[inline]
-    pub fn of(n: Vec3) -> Self {
-        let mut queue = Self::EMPTY;
-        queue.push(n);
-        queue
-    }
-
-    #[inline]
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
-    #[inline]
-    fn push(&mut self, n: Vec3) {
-        if let Some(place) = self.dirs.get_mut(self.len) {
-            *place = n;
-            self.len += 1;
-        }
-    }
-
-    #[inline]
-    pub fn pop(&mut self) -> Option<Vec3> {
-        self.len = self.len.checked_sub(1)?;
-        self.dirs.get(self.len).copied()
-    }
-}
 
 impl Memory {
     /// Nothing but a direction.
@@ -132,74 +70,62 @@ impl Memory {
     /// many these are, and what is round of each object.
     #[inline]
     pub fn keep(&mut self, dir: &Vec3, slopes: &[Vec3; 3], count: usize, round: &[Round; 2]) {
-        let drift = if self.count > 0 || self.curved != 0 {
-            (dir - self.dir).norm()
-        } else {
-            0.0
+        let moved = (dir - self.dir).norm();
+        let known = self.count > 0 || self.curved != 0;
+        *self = Self {
+            drift: if known { moved } else { 0.0 },
+            ..Self::towards(*dir)
         };
         // One cut has no others to be found again.
-        let several = count > 1;
-        *self = Self {
-            dir: *dir,
-            slopes: if several { *slopes } else { [Vec3::zeros(); 3] },
-            curvature: [0.0; 6],
-            drift,
-            count: if several { count as u32 } else { 0 },
-            curved: 0,
-        };
-        self.put(round);
+        if count > 1 {
+            (self.slopes, self.count) = (*slopes, count as u32);
+        }
+        if round.iter().any(|(kind, _)| *kind != Kind::None) {
+            self.put(round);
+        }
     }
 
-    /// Notes what is round of each object; of R what there is room for.
+    /// Notes what is round of each object. Beside several cuts there is room for one R alone.
     fn put(&mut self, round: &[Round; 2]) {
-        let [one, two] = round.map(|round| numbers(&round));
-        let (mut kinds, mut at) = ([one.0, two.0], 0);
-        if kinds == [0; 2] {
-            return;
-        }
-        if self.count > 1 && NUMBERS[kinds[0] % 4] + NUMBERS[kinds[1] % 4] > FEW {
-            let second = usize::from(kinds[1] == CURVED);
-            kinds[second] = 0;
-        }
-        let mut all = [0.0; FEW + 9];
-        for (kind, (_, own)) in kinds.into_iter().zip([one, two]) {
-            for (place, number) in all.iter_mut().skip(at).zip(own).take(NUMBERS[kind % 4]) {
-                *place = number;
-            }
-            at += NUMBERS[kind % 4];
-        }
-        let mut all = all.into_iter();
-        self.curvature = self.curvature.map(|_| all.next().unwrap_or(0.0));
+        let [(mut one, p), (mut two, q)] = *round;
         if self.count < 2 {
-            self.slopes = self.slopes.map(|v| v.map(|_| all.next().unwrap_or(0.0)));
+            self.curvature = p;
+            self.slopes = [
+                Vec3::new(q[0], q[1], q[2]),
+                Vec3::new(q[3], q[4], q[5]),
+                ZERO,
+            ];
+        } else if one == Kind::Curved && matches!(two, Kind::None | Kind::Curved) {
+            (self.curvature, two) = (p, Kind::None);
+        } else if two == Kind::Curved && one == Kind::None {
+            self.curvature = q;
+        } else {
+            one = if one == Kind::Curved { Kind::None } else { one };
+            two = if two == Kind::Curved { Kind::None } else { two };
+            self.curvature = [p[0], p[1], p[2], q[0], q[1], q[2]];
         }
-        self.curved = (kinds[0] | kinds[1] << KIND) as u32;
+        self.curved = one as u32 | (two as u32) << KIND;
     }
 
-    /// What was round of each object and still makes sense.
+    /// What is round of obj1 and of obj2.
+    fn kinds(&self) -> [Kind; 2] {
+        [0, KIND].map(|shift| KINDS[(self.curved >> shift & 3) as usize])
+    }
+
+    /// What was round of each object.
     #[inline]
     pub fn round(&self) -> [Round; 2] {
-        // Of several cuts there is no room beside them.
-        let slopes: &[Vec3] = if self.count < 2 { &self.slopes } else { &[] };
-        let others = slopes.iter().flatten();
-        let mut all = [0.0; FEW + 9];
-        for (place, number) in all.iter_mut().zip(self.curvature.iter().chain(others)) {
-            *place = *number;
-        }
-        let mut at = 0;
-        [0, KIND].map(|shift| {
-            let kind = (self.curved >> shift) as usize % 4;
-            let mut own = [0.0; FEW];
-            for (own, number) in own
-                .iter_mut()
-                .zip(all.iter().skip(at))
-                .take(NUMBERS[kind % 4])
-            {
-                *own = *number;
-            }
-            at += NUMBERS[kind % 4];
-            round(kind, &own)
-        })
+        let [one, two] = self.kinds();
+        let [a, b, c, d, e, f] = self.curvature;
+        let [p, q] = if self.count < 2 {
+            let [p, q, _] = self.slopes;
+            [self.curvature, [p.x, p.y, p.z, q.x, q.y, q.z]]
+        } else if one == Kind::Curved || two == Kind::Curved {
+            [self.curvature; 2]
+        } else {
+            [[a, b, c, 0.0, 0.0, 0.0], [d, e, f, 0.0, 0.0, 0.0]]
+        };
+        [(one, p), (two, q)]
     }
 
     /// The memory of the same objects in the other order, whose D is this one's mirror image
@@ -214,16 +140,17 @@ impl Memory {
         }
     }
 
-    /// What still makes sense of the directions to ask first, around the remembered unit
-    /// vector `dir`, and the angle between them and it.
+    /// The directions to ask first, around the remembered unit vector `dir`: for each remembered cut
+    /// where it is above the others by as much as it can; or two that show both ends of two edges,
+    /// in the middle between their ways and opposite.
     #[inline]
-    pub fn recall(&self, dir: &Vec3) -> (Queue, Real) {
+    pub fn recall(&self, dir: &Vec3) -> [Option<Vec3>; 3] {
         // Farther aside than the pair moved, and not as far where R or balls alone are known, which
         // serve the better the nearer the samples are (in double precision); a disc's axis is told
         // by samples that are not as near. NaN becomes the least angle. Measured in motion: ×2, ÷2
         // of the factors up to 12 % and 4 % of one set, of the least angles 5 % and 2 %; the same
         // two numbers for both 10 to 23 %.
-        let alone = self.curved != 0 && !self.has_disc();
+        let alone = self.curved != 0 && !self.kinds().contains(&Kind::Disc);
         let (times, least) = if alone && EPSILON < 1e-10 {
             (2.0, 0.0005)
         } else {
@@ -235,73 +162,34 @@ impl Memory {
         } else {
             least
         };
-        (self.towards_cuts(dir, angle), angle)
-    }
-
-    fn has_disc(&self) -> bool {
-        self.curved & 3 == DISC || self.curved >> KIND & 3 == DISC
-    }
-
-    /// Two directions that show both ends of the two edges: in the middle between their ways, and
-    /// opposite.
-    #[inline(never)]
-    fn towards_edges(&self, dir: &Vec3, angle: Real) -> Queue {
-        let mut queue = Queue::EMPTY;
         let [a, b, c] = self.slopes;
-        if let (Some(e), Some(f)) = (unit(&(b - a)), unit(&(c - a))) {
-            let way = if e.dot(&f) > 0.0 { e + f } else { e - f };
-            if let Some(way) = unit(&(way - dir * dir.dot(&way))) {
-                for share in [OPPOSITE, 1.0] {
-                    let n = dir + way * (share * WIDER * angle);
-                    queue.push(n * (1.0 / n.norm()));
-                }
-            }
-        }
-        queue
-    }
-
-    /// A direction for each remembered cut, where it is above the others by as much as it
-    /// can, this far aside.
-    fn towards_cuts(&self, dir: &Vec3, angle: Real) -> Queue {
-        let mut queue = Queue::EMPTY;
-        if self.count < 2 {
-            return queue;
-        }
-        if self.count == EDGES {
-            return self.towards_edges(dir, angle);
-        }
-        let (e1, e2) = basis(dir);
-        let [a, b, c] = self.slopes.map(|g| [e1.dot(&g), e2.dot(&g)]);
-        // All as long.
-        let scale = 1.0 / (1.0 + angle * angle).sqrt();
-        let (centre, e1, e2) = (dir * scale, e1 * (angle * scale), e2 * (angle * scale));
-        let mut push = |side: Flat| {
-            let length2 = dot(&side, &side);
-            if length2 > Real::MIN_POSITIVE && length2 < Real::INFINITY {
-                let [x, y] = side.map(|x| x * (1.0 / length2.sqrt()));
-                queue.push(centre + e1 * x + e2 * y);
-            }
-        };
-        if self.count == 2 {
-            push(side(&b, &a));
-            push(side(&a, &b));
-            return queue;
-        }
         // Across the line on which the other two are equal, and, since a face may have a
         // fourth vertex there, towards the vertex itself.
-        for (g, h, k) in [(&a, &b, &c), (&b, &c, &a), (&c, &a, &b)] {
-            let line = side(h, k);
-            let across = [-line[1], line[0]];
-            let sign = (1.0 as Real).copysign(dot(&across, &side(h, g)));
-            let share = length(&line) / length(g);
-            push([0, 1].map(|i| across[i] * sign + g[i] * share));
+        let corner = |g: Vec3, h: Vec3, k: Vec3| {
+            let across = dir.cross(&(k - h));
+            let way = across * (1.0 as Real).copysign(across.dot(&(g - h)));
+            way + g * (across.norm() / g.norm())
+        };
+        let aside = |way: Vec3, far: Real| {
+            let way = normalised(&way)?;
+            normalised(&(dir + way * (far * angle)))
+        };
+        match self.count {
+            2 => [aside(b - a, 1.0), aside(a - b, 1.0), None],
+            3 => [(c, a, b), (b, c, a), (a, b, c)].map(|(g, h, k)| aside(corner(g, h, k), 1.0)),
+            EDGES => {
+                let (e, f) = (b - a, c - a);
+                let way = e + f * (e.norm() / f.norm()).copysign(e.dot(&f));
+                [aside(way, WIDER), aside(way, OPPOSITE * WIDER), None]
+            }
+            _ => [None; 3],
         }
-        queue
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::object::Object;
     use super::*;
     use crate::shapes::Random;
 
@@ -311,7 +199,7 @@ mod tests {
         let mut r = Random::new(9);
         for _ in 0..1000 {
             let dir = r.direction();
-            let (e1, e2) = basis(&dir);
+            let (e1, e2) = crate::math::basis(&dir);
             // Three slopes around the origin.
             let turn = r.within(0.0, 6.0);
             let slopes = [0.0, 2.1, 4.2].map(|at: Real| {
@@ -319,23 +207,25 @@ mod tests {
                 (e1 * c + e2 * s) * r.within(0.5, 1.0)
             });
             let mut memory = Memory::default();
-            memory.keep(&dir, &slopes, 3, &[Round::None; 2]);
-            let (mut queue, angle) = memory.recall(&dir);
+            memory.keep(&dir, &slopes, 3, &[NOTHING; 2]);
+            let dirs = memory.recall(&dir);
             // Last one first.
-            for i in (0..3).rev() {
-                let n = queue.pop().unwrap();
+            for (i, n) in [2, 1, 0].into_iter().zip(dirs) {
+                let n = n.unwrap();
                 assert!((n.norm() - 1.0).abs() < 4.0 * EPSILON);
                 let tangent = n - dir * dir.dot(&n);
-                assert!((tangent.norm() - angle).abs() < 0.01 * angle);
+                assert!((tangent.norm() - 0.004).abs() < 1e-4);
                 let slope = |k: usize| memory.slopes[k % 3].dot(&tangent);
                 assert!(slope(i) > slope(i + 1) && slope(i) > slope(i + 2));
             }
-            assert!(queue.pop().is_none());
         }
     }
 
-    const R: Symmetric = Symmetric([0.5, 0.1, 0.0, 0.4, -0.1, 0.3]);
-    const S: Symmetric = Symmetric([0.25, 0.0, 0.1, 0.2, 0.0, 0.7]);
+    const NOTHING: Round = (Kind::None, [0.0; FEW]);
+    const BALL: Round = (Kind::Ball, [0.25, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    const DISC: Round = (Kind::Disc, [0.0, 0.3, 0.4, 0.0, 0.0, 0.0]);
+    const R: Round = (Kind::Curved, [0.5, 0.1, 0.0, 0.4, -0.1, 0.3]);
+    const S: Round = (Kind::Curved, [0.25, 0.0, 0.1, 0.2, 0.0, 0.7]);
 
     fn kept(count: usize, round: &[Round; 2]) -> Memory {
         let mut memory = Memory::default();
@@ -346,17 +236,7 @@ mod tests {
     /// What is round changes sides with the objects, and the slopes their signs.
     #[test]
     fn round_parts_change_sides_with_the_objects() {
-        let disc = Disc {
-            radius: 0.5,
-            axis: Vec3::z(),
-        };
-        let all = [
-            Round::None,
-            Round::Ball(0.25),
-            Round::Disc(disc),
-            Round::Curved(R),
-            Round::Curved(S),
-        ];
+        let all = [NOTHING, BALL, DISC, R, S];
         for one in all {
             for two in all {
                 let mut memory = kept(1, &[one, two]);
@@ -366,45 +246,40 @@ mod tests {
                 assert_eq!((memory.dir, memory.count), (-Vec3::z(), 0));
             }
         }
-        let mut memory = kept(2, &[Round::Disc(disc), Round::Ball(0.25)]);
+        let mut memory = kept(2, &[DISC, BALL]);
         memory.flip();
-        assert_eq!(memory.round(), [Round::Ball(0.25), Round::Disc(disc)]);
+        assert_eq!(memory.round(), [BALL, DISC]);
         assert_eq!((memory.dir, memory.slopes[1]), (-Vec3::z(), -Vec3::x()));
     }
 
     /// Several cuts need the room: of R one has it, if the other object has nothing.
     #[test]
     fn several_cuts_leave_room_for_one_matrix() {
-        assert_eq!(
-            kept(2, &[Round::None, Round::Curved(R)]).round(),
-            [Round::None, Round::Curved(R)]
-        );
-        assert_eq!(
-            kept(3, &[Round::Curved(R), Round::Curved(S)]).round(),
-            [Round::Curved(R), Round::None]
-        );
-        assert_eq!(
-            kept(2, &[Round::Curved(R), Round::Ball(0.5)]).round(),
-            [Round::None, Round::Ball(0.5)]
-        );
+        let kinds = |count, round: [Round; 2]| kept(count, &round).round().map(|(kind, _)| kind);
+        assert_eq!(kept(2, &[NOTHING, R]).round()[1], R);
+        assert_eq!(kept(3, &[R, S]).round()[0], R);
+        assert_eq!(kinds(3, [R, S]), [Kind::Curved, Kind::None]);
+        assert_eq!(kinds(2, [NOTHING, R]), [Kind::None, Kind::Curved]);
+        assert_eq!(kept(2, &[R, BALL]).round()[1], BALL);
+        assert_eq!(kinds(2, [R, BALL]), [Kind::None, Kind::Ball]);
     }
 
     #[test]
     fn what_makes_no_sense_is_not_recalled() {
-        let disc = Disc {
-            radius: 0.5,
-            axis: Vec3::new(0.0, 0.6, 0.8),
-        };
         for (place, lost) in [(0, 0), (2, 0), (3, 1)] {
-            let mut memory = kept(2, &[Round::Disc(disc), Round::Ball(0.5)]);
+            let mut memory = kept(2, &[DISC, BALL]);
             memory.curvature[place] = Real::NAN;
-            let round = memory.round();
-            assert!(round[lost] == Round::None && round[1 - lost] != Round::None);
+            let kinds = memory.round().map(|round| {
+                let mut object = Object::default();
+                object.recall(&round);
+                object.kind
+            });
+            assert!(kinds[lost] == Kind::None && kinds[1 - lost] != Kind::None);
         }
         // An axis of no length is no disc's.
-        let mut memory = kept(2, &[Round::Disc(disc), Round::None]);
-        memory.curvature = [0.0; 6];
-        assert_eq!(memory.round(), [Round::None; 2]);
+        let mut object = Object::default();
+        object.recall(&(Kind::Disc, [0.0; FEW]));
+        assert!(!object.is_round());
         let memory = Memory {
             dir: Vec3::z(),
             slopes: [Vec3::repeat(Real::NAN), Vec3::zeros(), Vec3::z()],
@@ -413,8 +288,10 @@ mod tests {
             count: 77,
             curved: u32::MAX,
         };
-        let (mut queue, angle) = memory.recall(&Vec3::z());
-        assert!(queue.pop().is_none() && memory.round() == [Round::None; 2]);
-        assert!(angle > 0.0 && angle < ASIDE);
+        assert!(memory.recall(&Vec3::z()) == [None; 3]);
+        for round in memory.round() {
+            object.recall(&round);
+            assert!(!object.is_round());
+        }
     }
 }

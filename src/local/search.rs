@@ -7,9 +7,9 @@
 //! ask there; done, if the objects are as deep as the model foretold; else their two new points join
 //! it.
 
-use super::learn::{Shown, Smooth};
-use super::memory::{Memory, Queue};
-use super::object::{Found, Object};
+use super::learn::Shown;
+use super::memory::{Kind, Memory};
+use super::object::{Found, Object, Told};
 use super::trust_region::{FIRST, TrustRegion};
 use super::walk::{End, Model, ROOM};
 use crate::contact::{Penetration, Settings};
@@ -32,9 +32,6 @@ const JOINT: Real = 2.0;
 /// Support points that were asked for what they tell, after which the search has lost its way.
 /// Measured: ÷2 −0.1 %, ×2 +0.2 %, +2 %.
 const DOUBTS: u32 = 4;
-/// Support points after which what is remembered and was not seen is forgotten. None of the sets comes
-/// to it.
-const GUESS: usize = 5;
 /// Support points of one search. Measured: ÷2 +0.3 %, 4 more answers that are no global minimum; ×2
 /// +0.3 %.
 pub(super) const MOST: usize = 24;
@@ -64,12 +61,6 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    #[inline(always)]
-    pub(super) fn new(n: &Vec3, p: SupportPoint) -> Self {
-        let h = n.dot(&p.v);
-        Self { n: *n, p, h }
-    }
-
     /// Rounding error of the support value, metres.
     #[inline(always)]
     fn rounding(&self) -> Real {
@@ -126,8 +117,6 @@ pub struct Search {
     pub(super) newest: usize,
     pub(super) asked: usize,
     pub(super) doubts: u32,
-    /// Did the search before find what is round?
-    pub(super) recalled: bool,
     pub(super) levelled: bool,
     pub(super) slopes: [Vec3; 3],
     pub(super) count: usize,
@@ -136,27 +125,24 @@ pub struct Search {
 impl Search {
     /// The directions to ask first: what the memory leads to, else `start`'s.
     #[inline]
-    pub fn recall(&mut self, memory: &Memory, start: impl Fn() -> Vec3) -> Queue {
+    pub fn recall(&mut self, memory: &Memory, start: impl Fn() -> Vec3) -> [Option<Vec3>; 3] {
         let Some(dir) = unit(&memory.dir) else {
-            return Queue::of(start());
+            return [Some(start()), None, None];
         };
         if memory.curved != 0 {
-            for (object, round) in self.objects.iter_mut().zip(memory.round()) {
+            for (object, round) in self.objects.iter_mut().zip(&memory.round()) {
                 object.recall(round);
             }
         }
-        self.recalled = memory.count > 0 || memory.curved != 0;
-        let (queue, angle) = memory.recall(&dir);
-        if queue.is_empty() {
-            return Queue::of(dir);
+        match memory.recall(&dir) {
+            [None, None, None] => [Some(dir), None, None],
+            first => first,
         }
-        self.trust.recall(angle);
-        queue
     }
 
     #[inline(always)]
     pub(super) fn rho(&self) -> Real {
-        self.objects[0].radius + self.objects[1].radius
+        self.objects[0].ball() + self.objects[1].ball()
     }
 
     #[inline(always)]
@@ -166,7 +152,9 @@ impl Search {
 
     #[inline(always)]
     pub(super) fn is_curved(&self) -> bool {
-        self.objects.iter().any(|object| object.curved.is_there())
+        self.objects
+            .iter()
+            .any(|object| object.kind == Kind::Curved)
     }
 
     #[inline(always)]
@@ -178,7 +166,7 @@ impl Search {
         }
     }
 
-    /// Searches, from the queued directions on.
+    /// Searches, from these directions on.
     ///
     /// `centre`: any inner point of D, its distance is the size of what was not seen.
     /// `known` gains the points of a minimum: the active ones, the one there, the others.
@@ -189,20 +177,23 @@ impl Search {
         &mut self,
         md: &MinkowskiDifference<A, B>,
         centre: &Vec3,
-        mut queue: Queue,
+        first: [Option<Vec3>; 3],
         settings: &Settings,
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<Outcome, Fault> {
+        let mut first = first.into_iter().flatten();
         loop {
-            let n = match queue.pop() {
+            let n = match first.next() {
                 Some(n) => n,
                 None => match self.next(known, hit) {
                     Continue(n) => n,
                     Break(end) => return Ok(end),
                 },
             };
-            let new = Sample::new(&n, md.support(&n)?);
+            let p = md.support(&n)?;
+            let h = n.dot(&p.v);
+            let new = Sample { n, p, h };
             if new.h < 0.0 {
                 // D holds what was seen: where that lies beyond, a callback errs.
                 let mut seen = self.samples.iter().take(self.asked);
@@ -220,7 +211,7 @@ impl Search {
             }
             if told
                 && !self.is_curved()
-                && self.is_lowest()
+                && self.step.end.is_lowest(self.trust.radius)
                 && !self.is_doubtful(&n, HAIR * self.tolerance)
                 && self.conclude(place, known, hit)
             {
@@ -284,19 +275,6 @@ impl Search {
             }
         } else {
             self.trust.compare(&n, h, before);
-            if self.recalled && self.asked == GUESS {
-                // What the samples have not shown again is another's.
-                for object in &mut self.objects {
-                    if object.is_guess() {
-                        object.forget();
-                    }
-                }
-            }
-            if self.recalled {
-                for (o, object) in self.objects.iter_mut().enumerate() {
-                    self.places[o] = object.turn(self.places[o], &points[o], &same, self.asked);
-                }
-            }
             match self.learn(&points, &same) {
                 Some(known) => twins = known,
                 None => return false,
@@ -308,7 +286,7 @@ impl Search {
         for o in 0..2 {
             let object = &mut self.objects[o];
             let kept = &mut self.places[o];
-            let place = object.take(&points[o], twins[o], &best, kept, &same, self.asked);
+            let place = object.take(&points[o], twins[o], &best, kept, &same);
             match place {
                 Some(place) => places[o] = place,
                 None => return false,
@@ -338,7 +316,8 @@ impl Search {
                 Shown::Nothing => (),
                 Shown::Twin(k) => twins[o] = Some(k),
                 Shown::Ball(radius) => {
-                    self.places[o] = object.take_ball(radius, self.places[o], same);
+                    let best = &mut self.places[o];
+                    *best = object.take_off((&Found::ball(radius), Told::More), *best, same.round);
                 }
                 Shown::Smooth => smooth = true,
                 Shown::Contradiction => return None,
@@ -383,39 +362,41 @@ impl Search {
     /// Looks for discs of the objects whose points look smooth. What is none has R.
     #[inline(never)]
     fn learn_discs(&mut self, points: &[Seen; 2], same: &Same) {
-        let mut maybe: [Option<(Found, bool, bool)>; 2] = [None, None];
-        for o in 0..2 {
-            match self.objects[o].learn_disc(self.places[o], &points[o], same) {
-                Smooth::None => (),
-                Smooth::Disc(found, confirmed, aside) => maybe[o] = Some((found, confirmed, aside)),
-                Smooth::Other(k) => self.objects[o].curve(k, &points[o]),
-            }
+        let shown = [0, 1].map(|o| {
+            let object = &self.objects[o];
+            object.learn_disc(self.places[o], &points[o], same)
+        });
+        let curved = [0, 1].map(|o| {
+            let none = shown[o]
+                .as_ref()
+                .is_some_and(|smooth| smooth.found.is_none());
+            none || self.objects[o].kind == Kind::Curved
+        });
+        // Any surface shows two discs at first: the next sample is to tell, where it may be.
+        let both = shown
+            .iter()
+            .flatten()
+            .filter(|smooth| smooth.told == Told::Pair)
+            .count()
+            == 2
+            && curved == [false; 2];
+        let wait = both && self.asked == 2 && shown.iter().flatten().any(|smooth| smooth.aside);
+        if wait {
+            let (old, new) = (self.best(), &self.samples[self.newest % LATEST]);
+            let dn = new.n - old.n;
+            self.slope = (new.p.v - old.p.v).dot(&dn) / dn.norm_squared();
         }
-        // Beside what is curved a suspicion is not enough.
-        for o in 0..2 {
-            if matches!(maybe[o], Some((_, false, _))) && self.objects[1 - o].curved.is_there() {
-                self.objects[o].curve(self.places[o], &points[o]);
-                maybe[o] = None;
-            }
-        }
-        let both = matches!(&maybe, [Some((_, false, _)), Some((_, false, _))]);
-        if let ([Some(p), Some(q)], true) = (&maybe, both) {
-            // Any surface shows two of them at first: the next sample is to tell, where it may be.
-            if self.asked > 2 || !p.2 && !q.2 {
-                for ((object, new), best) in self.objects.iter_mut().zip(points).zip(self.places) {
-                    object.curve(best, new);
+        for (o, smooth) in shown.into_iter().enumerate() {
+            let Some(smooth) = smooth else { continue };
+            // Beside what is curved a suspicion is not enough.
+            let enough = smooth.told == Told::More || wait || !(both || curved[1 - o]);
+            match smooth.found.filter(|_| enough) {
+                Some(found) => {
+                    let found = (&found, smooth.told);
+                    let best = &mut self.places[o];
+                    *best = self.objects[o].take_off(found, *best, same.round);
                 }
-                return;
-            }
-            let [d, e] = [0, 1].map(|o| points[o].p - self.objects[o].at[0].p);
-            let dn = points[0].n - self.best().n;
-            self.slope = (d + e).dot(&dn) / dn.norm_squared();
-        }
-        for (o, maybe) in maybe.iter().enumerate() {
-            if let Some((found, confirmed, _)) = maybe {
-                let found = (found, *confirmed);
-                let object = &mut self.objects[o];
-                self.places[o] = object.take_disc(found, self.asked, self.places[o], same);
+                None => self.objects[o].curve(smooth.with, &points[o]),
             }
         }
     }
@@ -442,13 +423,25 @@ impl Search {
         let b = best.n;
         self.lowest();
         if round && self.gain() < -self.tolerance {
-            self.refute();
+            // Above what was seen: what it took for round is not, or not any more.
+            self.objects.iter_mut().for_each(Object::unround);
+            self.lowest();
         }
         if round && self.gain().abs() <= self.tolerance && self.step.end.on_border && !self.levelled
         {
-            self.level();
+            // Level so far: is it as far as the first radius?
+            self.levelled = true;
+            self.trust.radius = FIRST;
+            let near = self.step;
+            self.lowest();
+            if !(self.step.depth <= near.depth) {
+                self.step = near;
+            }
         }
-        if self.gain() <= self.tolerance && !self.step.end.on_border && !self.is_lowest() {
+        if self.gain() <= self.tolerance
+            && !self.step.end.on_border
+            && !self.step.end.is_lowest(self.trust.radius)
+        {
             self.look_around();
         }
         let gain = self.gain();
@@ -458,13 +451,15 @@ impl Search {
         }
         let inside = !self.step.end.on_border;
         self.trust.foretell(self.step.depth, !inside, &b);
-        self.told = inside;
-        let mut n = self.step.n;
-        if gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST) {
-            n = self.settle(&b, known, hit)?;
+        let settled = gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST);
+        self.told = inside && !settled;
+        let n = if settled {
+            self.settle(&b, known, hit)?
         } else if inside && round {
-            n = self.towards_unseen();
-        }
+            self.towards_unseen()
+        } else {
+            self.step.n
+        };
         if (n - b).norm_squared() < EPSILON * EPSILON {
             return Break(Outcome::Open);
         }
@@ -477,65 +472,27 @@ impl Search {
         self.best().h - self.step.depth
     }
 
-    /// The model is above what was seen: what it took for round is not, or not any more; a ball or
-    /// disc that was just seen still is a curvature.
-    #[cold]
-    fn refute(&mut self) {
-        for object in &mut self.objects {
-            if self.recalled || object.curved.is_there() {
-                object.forget();
-            } else {
-                object.unround();
-            }
-        }
-        self.recalled = false;
-        self.lowest();
-    }
-
-    /// Level so far: is it as far as the first radius?
-    #[cold]
-    fn level(&mut self) {
-        self.levelled = true;
-        self.trust.radius = FIRST;
-        let near = self.step;
-        self.lowest();
-        if !(self.step.depth <= near.depth) {
-            self.step = near;
-        }
-    }
-
     /// The best direction `b` is as deep as the model's minimum: the answer, or what is to be asked
-    /// before it is.
+    /// before it is, if that was not done too often.
     #[inline(always)]
     fn settle(&mut self, b: &Vec3, known: &mut Known, hit: &mut Penetration) -> Next {
-        if let Some(next) = self.open(b) {
-            self.told = false;
-            return self.doubt(next);
-        }
-        if !self.is_doubtful(b, HAIR * self.tolerance) {
-            if self.conclude(self.best, known, hit) {
-                return Break(Outcome::Found);
-            }
-        } else {
+        let n = if let Some(n) = self.open(b) {
+            n
+        } else if self.is_doubtful(b, HAIR * self.tolerance) {
             self.trust.no_forecast();
-            self.told = false;
-            let next = self.beside();
-            return self.doubt(next);
-        }
-        // Shallow, the best direction is near enough for the depth and not for witness points: the
-        // minimum itself is, if the model is right.
-        self.doubt(self.step.n)
-    }
-
-    /// Asks for what it tells, if that was not done too often.
-    #[inline(always)]
-    fn doubt(&mut self, n: Vec3) -> Next {
+            self.beside()
+        } else if self.conclude(self.best, known, hit) {
+            return Break(Outcome::Found);
+        } else {
+            // Shallow, the best direction is near enough for the depth and not for witness points:
+            // the minimum itself is, if the model is right.
+            self.step.n
+        };
         self.doubts += 1;
         if self.doubts > DOUBTS {
-            Break(Outcome::Open)
-        } else {
-            Continue(n)
+            return Break(Outcome::Open);
         }
+        Continue(n)
     }
 }
 
@@ -570,7 +527,14 @@ mod tests {
         let n = start.normalize();
         let mut hit = Penetration::default();
         let mut exact = Search::default();
-        let outcome = exact.run(&md, centre, Queue::of(n), &settings, &mut known, &mut hit);
+        let outcome = exact.run(
+            &md,
+            centre,
+            [Some(n), None, None],
+            &settings,
+            &mut known,
+            &mut hit,
+        );
         let end = match outcome.unwrap() {
             Outcome::Found => End::Found(hit),
             Outcome::Apart(n) => End::Apart(n),

@@ -51,12 +51,6 @@ impl Default for TrustRegion {
 }
 
 impl TrustRegion {
-    /// Directions this angle aside of the remembered one are asked first.
-    #[inline]
-    pub fn recall(&mut self, angle: Real) {
-        self.radius = self.radius.min(GROW * angle);
-    }
-
     /// From the first sample (n, v), with nothing but the `size` of D to go by: down the
     /// gradient as on a ball, at least far enough to see curvature. Unit.
     #[inline]

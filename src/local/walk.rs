@@ -24,7 +24,7 @@
 //!
 //! The walk ends at a minimum, on the border of the trust region, or, by rounding, nowhere.
 
-use crate::contacts::polygon::{Flat, cross, dot};
+use crate::contacts::polygon::{Flat, cross, dot, side};
 use crate::math::{Real, larger};
 
 /// Points of an object that a search keeps. Measured: ten take as many support points, from 45° too.
@@ -38,8 +38,15 @@ const STEPS: usize = 32;
 /// A weight as negative as this is rounding. Insensitive: 0 to 1e-9 on the sets; at 0 some boxes take
 /// four support points more.
 const NEGATIVE: Real = -1e-12;
-/// The squared slope of a cut, as a share of its height, that is rounding. Insensitive: 0 to 1e-20.
-const LEVEL: Real = 1e-28;
+
+/// Does this for each place that so many points take.
+#[inline(always)]
+pub fn each(len: usize, mut of: impl FnMut(usize)) {
+    (0..LANES).for_each(&mut of);
+    if len > LANES {
+        (LANES..ROOM).for_each(of);
+    }
+}
 
 /// The cuts of one object in the chart.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,22 +71,16 @@ impl Cuts {
     #[inline(always)]
     fn levels(&self, x: &Flat) -> Row {
         let mut levels = [0.0; ROOM];
-        let mut of = |k: usize| levels[k] = self.a[k] + self.x[k] * x[0] + self.y[k] * x[1];
-        (0..LANES).for_each(&mut of);
-        if self.len > LANES {
-            (LANES..ROOM).for_each(of);
-        }
+        each(self.len, |k| {
+            levels[k] = self.a[k] + self.x[k] * x[0] + self.y[k] * x[1]
+        });
         levels
     }
 
     /// How fast each rises along u.
     #[inline(always)]
     fn rises(&self, u: &Flat, rises: &mut Row) {
-        let mut of = |k: usize| rises[k] = self.x[k] * u[0] + self.y[k] * u[1];
-        (0..LANES).for_each(&mut of);
-        if self.len > LANES {
-            (LANES..ROOM).for_each(of);
-        }
+        each(self.len, |k| rises[k] = self.x[k] * u[0] + self.y[k] * u[1]);
     }
 
     #[inline(always)]
@@ -130,13 +131,21 @@ pub struct End {
 }
 
 impl End {
-    /// Of two kinks: is φ nowhere lower within the radius, as far as the active points tell? Around
+    /// The points that are active there, each after its object.
+    #[inline(always)]
+    pub fn points(&self) -> impl Iterator<Item = (usize, usize)> {
+        let ([i, j], [p, q]) = (self.active, &self.kinks);
+        let all = [(0, i), (1, j), (p.object, p.point), (q.object, q.point)];
+        all.into_iter().take(2 + self.count)
+    }
+
+    /// Is φ nowhere lower within the radius, as far as the active points tell? Of two kinks: around
     /// it φ is φ₀ + max g·x − ½ φ₀ x² with the slopes g of the active points: max g·x is
     /// at least |x| times the distance from the origin to the nearest side of their hull, which
     /// must be ½ φ₀ times the radius.
     #[inline]
     pub fn is_lowest(&self, radius: Real) -> bool {
-        if !(self.value > 0.0) {
+        if self.count < 2 || !(self.value > 0.0) {
             return true;
         }
         let least = 0.5 * self.value * radius;
@@ -164,45 +173,51 @@ pub struct Model {
     pub level: Real,
 }
 
-/// A way from x: `num` / `den` times `u`; without an end, where that is infinite.
-struct Way {
-    u: Flat,
-    num: Real,
-    den: Real,
+/// A way from x, and how far it goes, as a quotient: without an end, where that is infinite.
+type Way = (Flat, Real, Real);
+
+/// To where a fall of this rate, which rises by that, ends.
+#[inline(always)]
+fn to_the_least(u: Flat, fall: Real, rise: Real) -> Way {
+    if rise > 0.0 {
+        (u, fall, rise)
+    } else {
+        (u, Real::INFINITY, 1.0)
+    }
 }
 
-impl Way {
-    #[inline(always)]
-    fn endless(u: Flat) -> Self {
-        Self {
-            u,
-            num: Real::INFINITY,
-            den: 1.0,
-        }
-    }
+/// φ at a place of the chart, on one cut of each object.
+struct Place {
+    /// Their height, and its slope.
+    value: Real,
+    slope: Flat,
+    /// 1 + x².
+    one: Real,
+    /// (1 + x²) M.
+    up: Flat,
+}
 
-    /// To where a fall of this rate, which rises by that, ends.
+impl Place {
     #[inline(always)]
-    fn to_the_least(u: Flat, fall: Real, rise: Real) -> Self {
-        if rise > 0.0 {
-            Self {
-                u,
-                num: fall,
-                den: rise,
-            }
-        } else {
-            Self::endless(u)
+    fn of<const BENT: bool>(x: &Flat, linear: Real, beta: &Flat, bend: &[Real; 3]) -> Self {
+        let (mut value, mut slope) = (linear, *beta);
+        if BENT {
+            let gx = times(bend, x);
+            value += 0.5 * dot(&gx, x);
+            slope = [beta[0] + gx[0], beta[1] + gx[1]];
+        }
+        let one = 1.0 + dot(x, x);
+        let up = [slope[0] * one - value * x[0], slope[1] * one - value * x[1]];
+        Self {
+            value,
+            slope,
+            one,
+            up,
         }
     }
 }
 
 impl Model {
-    #[inline(always)]
-    pub fn bend(&self, of: [Real; 2]) -> [Real; 3] {
-        let [p, q] = [&self.cuts[0].bend, &self.cuts[1].bend];
-        [0, 1, 2].map(|i| p[i] * of[0] + q[i] * of[1])
-    }
-
     /// From x within `radius` of `middle`, down.
     #[inline(always)]
     pub fn walk(&self, from: &Flat, middle: &Flat, radius: Real, end: &mut End) {
@@ -218,7 +233,7 @@ impl Model {
         let cuts = &self.cuts;
         let mut x = *from;
         let mut levels = [cuts[0].levels(&x), cuts[1].levels(&x)];
-        (end.on_border, end.lost, end.count) = (false, true, 0);
+        (end.lost, end.count) = (true, 0);
         end.active = [0, 1].map(|o| cuts[o].highest(&levels[o]));
         let mut rises = [[0.0; ROOM]; 2];
         // The point just left, of which object.
@@ -228,46 +243,31 @@ impl Model {
             let linear = levels[0][i % ROOM] + levels[1][j % ROOM];
             let (g, h) = (cuts[0].slope(i), cuts[1].slope(j));
             let beta = [g[0] + h[0], g[1] + h[1]];
-            let (mut bend, mut value, mut slope) = ([0.0; 3], linear, beta);
+            let mut bend = [0.0; 3];
             if BENT {
-                let carry = [cuts[0].carries(i), cuts[1].carries(j)];
-                bend = if end.count == 1 {
-                    self.shared(end, carry, &x, &beta, linear)
-                } else {
-                    self.bend(carry)
-                };
-                let gx = times(&bend, &x);
-                value += 0.5 * dot(&gx, &x);
-                slope = [beta[0] + gx[0], beta[1] + gx[1]];
+                bend = self.bend(end, &x, &beta, linear);
             }
-            let one = 1.0 + dot(&x, &x);
-            end.value = value;
-            // (1 + x²) M.
-            let down = [slope[0] * one - value * x[0], slope[1] * one - value * x[1]];
-            let way = match end.count {
-                0 => Self::on_one::<BENT>(&x, &beta, &bend, linear, &down, middle, radius),
-                1 => along::<BENT>(&end.kinks[0].e, &x, &slope, &bend, value, &down),
-                _ => match self.weigh(end, &down, one, &mut left) {
+            let here = Place::of::<BENT>(&x, linear, &beta, &bend);
+            end.value = here.value;
+            let mut way = match end.count {
+                0 => on_one::<BENT>(&x, linear, &beta, &bend, &here.up, middle, radius),
+                1 => along::<BENT>(&end.kinks[0].e, &x, &bend, &here),
+                _ => match weigh(end, &here, &mut left) {
                     true => break,
                     false => continue,
                 },
             };
-            let mut way = way;
             if BENT && end.count == 0 && left.0 < 2 {
                 let of = &cuts[left.0 % 2];
-                let (there, here) = (of.slope(left.1), of.slope(end.active[left.0 % 2]));
-                if dot(&way.u, &there) > dot(&way.u, &here) {
+                let (old, new) = (of.slope(left.1), of.slope(end.active[left.0 % 2]));
+                if dot(&way.0, &old) > dot(&way.0, &new) {
                     // The valley is across the kink that was just left: straight down first.
-                    let u = [-down[0], -down[1]];
-                    let rise = dot(&times(&bend, &u), &u) - value * dot(&u, &u);
-                    way = Way::to_the_least(u, dot(&u, &u), rise);
+                    let u = [-here.up[0], -here.up[1]];
+                    let rise = dot(&times(&bend, &u), &u) - end.value * dot(&u, &u);
+                    way = to_the_least(u, dot(&u, &u), rise);
                 }
             }
-            let Way {
-                u,
-                mut num,
-                mut den,
-            } = way;
+            let (u, mut num, mut den) = way;
             cuts[0].rises(&u, &mut rises[0]);
             cuts[1].rises(&u, &mut rises[1]);
             let mut met = None;
@@ -290,208 +290,88 @@ impl Model {
                 }
             }
             left = (2, 0);
-            let t = num / den;
-            let to = [x[0] + t * u[0], x[1] + t * u[1]];
-            let off = [to[0] - middle[0], to[1] - middle[1]];
+            let mut t = num / den;
+            let off = [0, 1].map(|a| x[a] + t * u[a] - middle[a]);
             // Also where there is no end at all.
-            if !(dot(&off, &off) <= radius * radius) {
+            end.on_border = !(dot(&off, &off) <= radius * radius);
+            if end.on_border {
                 let off = [x[0] - middle[0], x[1] - middle[1]];
                 let (uu, xu) = (dot(&u, &u), dot(&off, &u));
                 let room = larger(radius * radius - dot(&off, &off), 0.0);
-                let t = ((xu * xu + uu * room).sqrt() - xu) / uu;
-                if uu > 0.0 {
-                    let to = [x[0] + t * u[0], x[1] + t * u[1]];
-                    let mut there = linear + t * dot(&beta, &u);
-                    if BENT {
-                        there += 0.5 * dot(&times(&bend, &to), &to);
-                    }
-                    let fall = value / one.sqrt() - there / (1.0 + dot(&to, &to)).sqrt();
-                    // On level ground what bends is known best near by.
-                    if !(BENT && fall <= self.level) {
-                        (x, end.value) = (to, there);
-                    }
+                t = ((xu * xu + uu * room).sqrt() - xu) / uu;
+            }
+            if BENT && end.on_border {
+                let to = [x[0] + t * u[0], x[1] + t * u[1]];
+                let there = Place::of::<BENT>(&to, linear + t * dot(&beta, &u), &beta, &bend);
+                let fall = here.value / here.one.sqrt() - there.value / there.one.sqrt();
+                // On level ground what bends is known best near by.
+                t = if fall <= self.level { 0.0 } else { t };
+            }
+            // Not NaN, of no way.
+            if t > 0.0 {
+                x = [x[0] + t * u[0], x[1] + t * u[1]];
+                for o in 0..2 {
+                    each(cuts[o].len, |k| levels[o][k] += t * rises[o][k]);
                 }
-                (end.on_border, end.lost) = (true, false);
-                if end.count == 1 {
-                    // The share where it began; nearly level on the way.
-                    let e = &end.kinks[0].e;
-                    end.weights[0] = (-dot(&down, e) / (dot(e, e) * one)).clamp(0.0, 1.0);
+            }
+            let linear = levels[0][i % ROOM] + levels[1][j % ROOM];
+            let there = Place::of::<BENT>(&x, linear, &beta, &bend);
+            end.value = there.value;
+            if let (Some((o, k)), false) = (
+                met.map(|(o, k): (usize, usize)| (o % 2, k % ROOM)),
+                end.on_border,
+            ) {
+                let (new, old) = (cuts[o].slope(k), cuts[o].slope(end.active[o]));
+                let e = [new[0] - old[0], new[1] - old[1]];
+                if end.count == 0 && -dot(&there.up, &e) >= dot(&e, &e) * there.one {
+                    // It goes down on the other side as well.
+                    left = (o, core::mem::replace(&mut end.active[o], k));
+                } else {
+                    let kink = Kink {
+                        object: o,
+                        point: k,
+                        e,
+                    };
+                    end.kinks[end.count % 2] = kink;
+                    end.count += 1;
                 }
+                continue;
+            }
+            end.lost = false;
+            if end.count == 0 {
                 break;
             }
-            if t > 0.0 {
-                x = to;
-                for (o, cuts) in cuts.iter().enumerate() {
-                    let (levels, rises) = (&mut levels[o], &rises[o]);
-                    for k in 0..LANES {
-                        levels[k] += t * rises[k];
-                    }
-                    if cuts.len > LANES {
-                        for k in LANES..ROOM {
-                            levels[k] += t * rises[k];
-                        }
-                    }
-                }
+            // Least on a kink, of which both points must hold.
+            let kink = end.kinks[0];
+            let share = -dot(&there.up, &kink.e) / (dot(&kink.e, &kink.e) * there.one);
+            end.weights[0] = share.clamp(0.0, 1.0);
+            if end.on_border || share == end.weights[0] {
+                break;
             }
-            // (1 + x²) M there.
-            let mut value = levels[0][i % ROOM] + levels[1][j % ROOM];
-            let mut slope = beta;
-            if BENT {
-                let gx = times(&bend, &x);
-                value += 0.5 * dot(&gx, &x);
-                slope = [beta[0] + gx[0], beta[1] + gx[1]];
+            end.lost = true;
+            left = (kink.object, kink.point);
+            if share > 1.0 {
+                left.1 = core::mem::replace(&mut end.active[kink.object % 2], kink.point);
             }
-            end.value = value;
-            let one = 1.0 + dot(&x, &x);
-            let m = [slope[0] * one - value * x[0], slope[1] * one - value * x[1]];
-            let Some((o, k)) = met.map(|(o, k): (usize, usize)| (o % 2, k % ROOM)) else {
-                // Least on one cut, or on a kink: of which both points must hold.
-                if end.count == 0 {
-                    end.lost = false;
-                    break;
-                }
-                let kink = end.kinks[0];
-                let (share, e2) = (-dot(&m, &kink.e), dot(&kink.e, &kink.e) * one);
-                if share >= 0.0 && share <= e2 {
-                    end.weights[0] = share / e2;
-                    end.lost = false;
-                    break;
-                }
-                let active = &mut end.active[kink.object % 2];
-                left = (kink.object, kink.point);
-                if share > e2 {
-                    left.1 = core::mem::replace(active, kink.point);
-                }
-                end.count = 0;
-                continue;
-            };
-            let (new, old) = (cuts[o].slope(k), cuts[o].slope(end.active[o]));
-            let e = [new[0] - old[0], new[1] - old[1]];
-            let kink = Kink {
-                object: o,
-                point: k,
-                e,
-            };
-            if end.count == 1 {
-                (end.kinks[1], end.count) = (kink, 2);
-            } else if -dot(&m, &e) >= dot(&e, &e) * one {
-                // It goes down on the other side as well.
-                left = (o, core::mem::replace(&mut end.active[o % 2], k));
-            } else {
-                (end.kinks[0], end.count) = (kink, 1);
-            }
+            end.count = 0;
         }
         end.x = x;
         end.value /= (1.0 + dot(&x, &x)).sqrt();
     }
 
-    /// On one cut of each object: where φ is least, else down.
+    /// The bend of the active points; along a kink of its two as they share the slope.
     #[inline(always)]
-    fn on_one<const BENT: bool>(
-        x: &Flat,
-        beta: &Flat,
-        bend: &[Real; 3],
-        linear: Real,
-        down: &Flat,
-        middle: &Flat,
-        radius: Real,
-    ) -> Way {
-        let base = linear - dot(beta, x);
-        if !BENT || *bend == [0.0; 3] {
-            if base < 0.0 {
-                return Way {
-                    u: [base * x[0] - beta[0], base * x[1] - beta[1]],
-                    num: 1.0,
-                    den: -base,
-                };
-            }
-            // No slope but rounding: one way is as good as another.
-            let level = dot(down, down) <= LEVEL * linear * linear;
-            return Way::endless(if level {
-                [1.0, 0.0]
-            } else {
-                [-down[0], -down[1]]
-            });
+    fn bend(&self, end: &End, x: &Flat, beta: &Flat, linear: Real) -> [Real; 3] {
+        let mut of = [0, 1].map(|o: usize| self.cuts[o % 2].carries(end.active[o % 2]));
+        if end.count == 1 {
+            let Kink { object, point, e } = &end.kinks[0];
+            let m = [0, 1].map(|a| beta[a] - linear * x[a]);
+            let share = (-dot(&m, e) / dot(e, e)).clamp(0.0, 1.0);
+            let o = object % 2;
+            of[o] += share * (self.cuts[o].carries(*point) - of[o]);
         }
-        let to = valley(beta, bend, base, middle, radius);
-        Way {
-            u: [to[0] - x[0], to[1] - x[1]],
-            num: 1.0,
-            den: 1.0,
-        }
-    }
-
-    /// The bend along a kink: of its two points as they share the slope.
-    #[inline(never)]
-    fn shared(
-        &self,
-        end: &End,
-        carry: [Real; 2],
-        x: &Flat,
-        beta: &Flat,
-        linear: Real,
-    ) -> [Real; 3] {
-        let Kink { object, point, e } = &end.kinks[0];
-        let m = [0, 1].map(|a| beta[a] - linear * x[a]);
-        let share = (-dot(&m, e) / dot(e, e)).clamp(0.0, 1.0);
-        let mut carry = carry;
-        let other = self.cuts[object % 2].carries(*point);
-        carry[object % 2] += share * (other - carry[object % 2]);
-        self.bend(carry)
-    }
-
-    /// At two kinks: are they a minimum? Else one is left.
-    #[inline(always)]
-    fn weigh(&self, end: &mut End, down: &Flat, one: Real, left: &mut (usize, usize)) -> bool {
-        let [p, q] = end.kinks;
-        // All of them (1 + x²) times as large.
-        let area = cross(&p.e, &q.e) * one;
-        let (sign, area) = ((1.0 as Real).copysign(area), area.abs());
-        let (s, t) = (-cross(down, &q.e) * sign, -cross(&p.e, down) * sign);
-        let same = p.object == q.object;
-        let mut least = NEGATIVE * area;
-        let mut out = 4;
-        let rest = if same { area - s - t } else { area - s };
-        for (i, w) in [s, t, rest].into_iter().enumerate() {
-            if w < least {
-                (least, out) = (w, i);
-            }
-        }
-        if !same && area - t < least {
-            out = 3;
-        }
-        match out {
-            0 => {
-                *left = (p.object, p.point);
-                end.kinks[0] = q;
-            }
-            1 => *left = (q.object, q.point),
-            // The active point of the first kink's object.
-            2 => {
-                let active = core::mem::replace(&mut end.active[p.object % 2], p.point);
-                *left = (p.object, active);
-                end.kinks[0] = if same {
-                    Kink {
-                        e: [q.e[0] - p.e[0], q.e[1] - p.e[1]],
-                        ..q
-                    }
-                } else {
-                    q
-                };
-            }
-            3 => {
-                let active = core::mem::replace(&mut end.active[q.object % 2], q.point);
-                *left = (q.object, active);
-            }
-            _ => {
-                let inverse = 1.0 / area;
-                end.weights = [s * inverse, t * inverse];
-                end.lost = !(area > 0.0);
-                return true;
-            }
-        }
-        end.count = 1;
-        false
+        let [p, q] = [&self.cuts[0].bend, &self.cuts[1].bend];
+        [0, 1, 2].map(|i| p[i] * of[0] + q[i] * of[1])
     }
 }
 
@@ -500,28 +380,83 @@ fn times(a: &[Real; 3], x: &Flat) -> Flat {
     [a[0] * x[0] + a[1] * x[1], a[1] * x[0] + a[2] * x[1]]
 }
 
+/// On one cut of each object: where φ is least, else down.
+#[inline(always)]
+fn on_one<const BENT: bool>(
+    x: &Flat,
+    linear: Real,
+    beta: &Flat,
+    bend: &[Real; 3],
+    up: &Flat,
+    middle: &Flat,
+    radius: Real,
+) -> Way {
+    let base = linear - dot(beta, x);
+    if BENT {
+        let to = valley(beta, bend, base, middle, radius);
+        ([to[0] - x[0], to[1] - x[1]], 1.0, 1.0)
+    } else if base < 0.0 {
+        ([base * x[0] - beta[0], base * x[1] - beta[1]], 1.0, -base)
+    } else if *up == [0.0; 2] {
+        // One way is as good as another.
+        ([1.0, 0.0], Real::INFINITY, 1.0)
+    } else {
+        ([-up[0], -up[1]], Real::INFINITY, 1.0)
+    }
+}
+
 /// Along a kink, down, to where φ is least. With φ = L/√(1+x²) and x + t u its derivative is
 /// proportional to (g·u)(1 + x²) − L x·u + t ((g·u)(x·u) − L u² + u'Gu (1 + x²)), exact where G = 0.
 #[inline(always)]
-fn along<const BENT: bool>(
-    e: &Flat,
-    x: &Flat,
-    slope: &Flat,
-    bend: &[Real; 3],
-    value: Real,
-    down: &Flat,
-) -> Way {
+fn along<const BENT: bool>(e: &Flat, x: &Flat, bend: &[Real; 3], here: &Place) -> Way {
     let mut u = [-e[1], e[0]];
-    let mut fall = dot(down, &u);
-    if fall > 0.0 {
-        u = [e[1], -e[0]];
-        fall = -fall;
+    let mut fall = -dot(&here.up, &u);
+    if fall < 0.0 {
+        (u, fall) = ([e[1], -e[0]], -fall);
     }
-    let mut rise = dot(slope, &u) * dot(x, &u) - value * dot(&u, &u);
+    let mut rise = dot(&here.slope, &u) * dot(x, &u) - here.value * dot(&u, &u);
     if BENT {
-        rise += dot(&times(bend, &u), &u) * (1.0 + dot(x, x));
+        rise += dot(&times(bend, &u), &u) * here.one;
     }
-    Way::to_the_least(u, -fall, rise)
+    to_the_least(u, fall, rise)
+}
+
+/// At two kinks: are they a minimum? Else one is left.
+#[inline(always)]
+fn weigh(end: &mut End, here: &Place, left: &mut (usize, usize)) -> bool {
+    let [p, q] = end.kinks;
+    // All of them (1 + x²) times as large.
+    let area = cross(&p.e, &q.e) * here.one;
+    let (sign, area) = ((1.0 as Real).copysign(area), area.abs());
+    let (s, t) = (-cross(&here.up, &q.e) * sign, -cross(&p.e, &here.up) * sign);
+    let same = p.object == q.object;
+    // Of the kinks, and of the active points of their objects.
+    let weights = if same {
+        [s, t, area - s - t, area]
+    } else {
+        [s, t, area - s, area - t]
+    };
+    let (mut least, mut out) = (NEGATIVE * area, weights.len());
+    for (i, weight) in weights.into_iter().enumerate() {
+        if weight < least {
+            (least, out) = (weight, i);
+        }
+    }
+    if out == weights.len() {
+        end.weights = [s / area, t / area];
+        end.lost = !(area > 0.0);
+        return true;
+    }
+    let [gone, mut stays] = if out % 2 == 0 { [p, q] } else { [q, p] };
+    *left = (gone.object, gone.point);
+    if out >= 2 {
+        left.1 = core::mem::replace(&mut end.active[gone.object % 2], gone.point);
+        if same {
+            stays.e = side(&gone.e, &stays.e);
+        }
+    }
+    (end.kinks[0], end.count) = (stays, 1);
+    false
 }
 
 /// Where α + β·x + ½ x'Kx, K = G − α I, is least within the radius: the minimum along what bends
