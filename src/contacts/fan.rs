@@ -75,11 +75,34 @@ impl Fan {
         places.skip(i).for_each(|place| swap(place, &mut corner));
     }
 
+    /// Adds a corner after the last; without room nothing happens.
+    #[inline(always)]
+    pub fn push(&mut self, corner: Corner) {
+        if let Some(place) = self.corners.get_mut(self.len) {
+            *place = corner;
+            self.len += 1;
+        }
+    }
+
+    /// The same fan without corners.
+    fn empty(&self) -> Self {
+        Self {
+            level: self.level,
+            ..Self::default()
+        }
+    }
+
     /// A corner, counted around.
     #[inline(always)]
     fn corner(&self, i: usize) -> &Corner {
         let i = if i < self.len { i } else { i - self.len };
         &self.corners[i.min(ROOM - 1)]
+    }
+
+    /// How far the object reaches towards its corners, as far as the depth goes.
+    #[inline(always)]
+    pub fn ends(&self) -> impl Iterator<Item = Flat> + '_ {
+        self.corners().iter().map(|c| c.outer().at)
     }
 
     /// Does the object end within `far`, metres, around the deepest place, as far as the depth goes?
@@ -96,52 +119,61 @@ impl Fan {
     #[inline(never)]
     pub fn settle(&mut self, share: Real, hair: Real) {
         let low = self.corners().iter().map(|corner| corner.low);
-        let level = low.fold(1.0, lesser) * share;
-        for corner in self.corners.iter_mut().take(self.len) {
-            corner.low -= level;
-        }
-        // Mostly they lie around the deepest place, in the order in which they were asked for.
+        self.level = low.fold(1.0, lesser) * share;
         let part2 = PART * PART * hair * hair;
-        let is_around = |i| {
-            let (p, q) = (&self.corner(i).at, &self.corner(i + 1).at);
-            let (area, way) = (cross(p, q), side(p, q));
-            area > 0.0 && area * area > part2 * dot(&way, &way)
-        };
-        if !(0..self.len).all(is_around) {
-            *self = self.in_order(hair, part2).closed(hair);
+        // Mostly they lie around the deepest place, in the order in which they were asked for.
+        let (mut p, mut is_around) = (self.corner(self.len.wrapping_sub(1)).at, true);
+        for corner in self.corners.iter_mut().take(self.len) {
+            corner.low -= self.level;
+            let q = corner.at;
+            let (area, way) = (cross(&p, &q), side(&p, &q));
+            is_around &= area > 0.0 && area * area > part2 * dot(&way, &way);
+            p = q;
         }
-        self.level = level;
+        if !is_around {
+            *self = self.in_order(hair * hair, part2).closed(hair);
+        }
     }
 
     /// Its corners in order around the deepest place, of those in one direction the farthest.
     /// `part2`, m²: what is aside by less than its root is not.
     #[cold]
     #[inline(never)]
-    fn in_order(&self, hair: Real, part2: Real) -> Self {
-        let mut fan = Self::default();
+    fn in_order(&self, hair2: Real, part2: Real) -> Self {
         // What is the deepest place, but beside it, has no direction.
         let is_here = |c: &Corner| {
-            let far2 = dot(&c.at, &c.at) / (hair * hair);
-            far2 > 4.0 && far2 <= HERE * HERE
+            let far2 = dot(&c.at, &c.at);
+            far2 > 4.0 * hair2 && far2 <= HERE * HERE * hair2
         };
+        let is_same = |p: &Flat, q: &Flat| {
+            let aside = cross(p, q);
+            let most2 = part2 * larger(dot(p, p), dot(q, q));
+            dot(p, q) > 0.0 && !(aside * aside > most2)
+        };
+        let mut fan = self.empty();
+        let mut turns = [0.0; ROOM];
         let all = self.corners().iter().all(is_here);
         for corner in self.corners().iter().filter(|c| all || !is_here(c)) {
-            let far2 = dot(&corner.at, &corner.at);
-            let is_same = |p: &Corner| {
-                let aside = cross(&p.at, &corner.at);
-                let most2 = part2 * larger(dot(&p.at, &p.at), far2);
-                dot(&p.at, &corner.at) > 0.0 && !(aside * aside > most2)
-            };
-            let mut places = fan.corners.iter_mut().take(fan.len);
-            if let Some(place) = places.find(|p| is_same(p)) {
-                if far2 > dot(&place.at, &place.at) {
+            let turn = turn(&corner.at);
+            let i = turns.iter().take(fan.len).filter(|t| **t <= turn).count();
+            // Those before and after it, around.
+            let before = if i > 0 { i } else { fan.len }.wrapping_sub(1);
+            let after = if i < fan.len { i } else { 0 };
+            let mut beside = [before, after].into_iter();
+            let places = fan.len;
+            let same = beside.find(|k| *k < places && is_same(&fan.corner(*k).at, &corner.at));
+            match same.and_then(|k| fan.corners.get_mut(k)) {
+                Some(place) if dot(&corner.at, &corner.at) > dot(&place.at, &place.at) => {
                     *place = *corner;
                 }
-                continue;
+                Some(_) => (),
+                None => {
+                    fan.insert(i, *corner);
+                    let mut turn = turn;
+                    let later = turns.iter_mut().take(fan.len).skip(i);
+                    later.for_each(|place| swap(place, &mut turn));
+                }
             }
-            let mut later = fan.corners().iter().map(|p| is_before(&corner.at, &p.at));
-            let i = later.position(|is| is).unwrap_or(fan.len);
-            fan.insert(i, *corner);
         }
         fan
     }
@@ -151,18 +183,19 @@ impl Fan {
     #[cold]
     #[inline(never)]
     fn closed(&self, hair: Real) -> Self {
-        let mut fan = Self::default();
+        let mut fan = self.empty();
         for i in 0..self.len {
             let (p, q) = (self.corner(i), self.corner(i + 1).at);
-            fan.insert(fan.len, *p);
+            fan.push(*p);
             if cross(&p.at, &q) > 0.0 {
                 continue;
             }
             // A quarter of a turn from p, a half, three quarters, as far as q is.
-            let mut at = p.at.map(|x| x * hair / length(&p.at));
+            let share = hair / length(&p.at);
+            let mut at = p.at.map(|x| x * share);
             for _ in 1..4 {
                 at = [-at[1], at[0]];
-                fan.insert(fan.len, Corner { at, low: 0.0 });
+                fan.push(Corner { at, low: 0.0 });
                 let (across, along) = (cross(&at, &q), dot(&at, &q));
                 // Not where the rest is nearly half a turn: it would be no region.
                 if across > 0.0 && across > -along {
@@ -191,10 +224,36 @@ impl Fan {
         if self.len == 0 {
             return Some(0);
         }
-        (0..self.len).find(|i| {
-            let (p, q) = (self.corner(*i), self.corner(i + 1));
-            cross(&p.at, r) >= 0.0 && cross(r, &q.at) > 0.0
-        })
+        let mut last = self.len - 1;
+        let mut left = cross(&self.corner(last).at, r);
+        for (i, corner) in self.corners().iter().enumerate() {
+            let next = cross(&corner.at, r);
+            if left >= 0.0 && next < 0.0 {
+                return Some(last);
+            }
+            (last, left) = (i, next);
+        }
+        None
+    }
+
+    /// The centre of pressure on a level plane, from the deepest place; `rim`: d / 2 s.
+    #[inline(never)]
+    fn pressed_on_plane(&self, rim: Real) -> Flat {
+        let mut p = self.corner(self.len.wrapping_sub(1));
+        let mut sum = Sum {
+            rim,
+            last: p.outer(),
+            ..Sum::default()
+        };
+        for q in self.corners() {
+            if (p.low > 1.0) != (q.low > 1.0) {
+                let at = between(&p.at, &q.at, (1.0 - p.low) / (q.low - p.low));
+                sum.to(Outer { at, depth: 0.0 });
+            }
+            sum.to(q.outer());
+            p = q;
+        }
+        sum.centroid()
     }
 
     /// How far the object is below its plane at a place, in units of the depth; `None` where that is
@@ -207,14 +266,10 @@ impl Fan {
     }
 }
 
-/// Does a direction come before another, around from the first axis?
-fn is_before(p: &Flat, q: &Flat) -> bool {
-    let is_below = |r: &Flat| r[1] < 0.0 || r[1] == 0.0 && r[0] < 0.0;
-    match (is_below(p), is_below(q)) {
-        (false, true) => true,
-        (true, false) => false,
-        _ => cross(p, q) > 0.0,
-    }
+/// What grows with a direction's angle, around from the first axis: 0 to 4.
+fn turn([x, y]: &Flat) -> Real {
+    let along = x / larger(x.abs() + y.abs(), Real::MIN_POSITIVE);
+    if *y < 0.0 { 3.0 + along } else { 1.0 - along }
 }
 
 /// The ray to a corner of either fan, and what is at most 1 in the region there: w of both, and f.
@@ -263,10 +318,22 @@ impl Ray {
     }
 }
 
+impl Corner {
+    /// How far the region reaches towards it, where it lies on a level plane.
+    #[inline(always)]
+    pub fn outer(&self) -> Outer {
+        let share = 1.0 / larger(self.low, 1.0);
+        Outer {
+            at: self.at.map(|x| x * share),
+            depth: larger(1.0 - self.low, 0.0),
+        }
+    }
+}
+
 /// A corner of the region's outline, and the local depth there in units of the depth.
 #[derive(Clone, Copy, Debug, Default)]
-struct Outer {
-    at: Flat,
+pub struct Outer {
+    pub at: Flat,
     depth: Real,
 }
 
@@ -327,6 +394,9 @@ impl Sum {
 /// not close.
 #[inline(always)]
 pub fn pressed(one: &Fan, two: &Fan, rim: Real) -> Option<Flat> {
+    if two.is_plane() {
+        return Some(one.pressed_on_plane(rim));
+    }
     let ray = |corner: &Corner, other: &Fan, sector: usize, is_first: bool| {
         let [wall, low] = other.within(sector, &corner.at);
         let (a, b) = if is_first { (1.0, wall) } else { (wall, 1.0) };

@@ -39,7 +39,7 @@
 use crate::contact::Penetration;
 use crate::contacts::fan::{Fan, pressed};
 use crate::contacts::plane::Plane;
-use crate::contacts::polygon::{Corner, Flat, side};
+use crate::contacts::polygon::{Flat, side};
 use crate::contacts::seen::Seen;
 use crate::contacts::view::{FOUR, Four, View};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -85,7 +85,7 @@ impl Around {
                 self.directions = [Vec3::zeros(); FOUR];
                 return;
             }
-            self.directions[k] = view.direction(0, 2 * k);
+            self.directions[k] = view.directions[k];
             self.points[k] = side(&q.at, &p.at);
         }
     }
@@ -124,45 +124,60 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     }
     let far = lesser(far2[0], far2[1]).sqrt();
     let hair = larger(depth * HAIR, 64.0 * EPSILON * far);
+    let floor = match aside.seen {
+        Seen::Floor(floor) => Some(floor),
+        _ => None,
+    };
+    let plane = match floor {
+        Some(floor) => floor.plane,
+        None => Plane::upright(&hit.normal, &middle),
+    };
+    let tilt = lesser(TILT * (depth / far).sqrt(), MOST);
     let view = View {
         md,
         seen: aside.seen,
         others: aside.others,
-        plane: Plane::upright(&hit.normal, &middle),
+        plane,
         half: 0.5 * hit.depth,
         depth,
-        tilt: lesser(TILT * (depth / far).sqrt(), MOST),
+        tilt,
+        directions: plane.around(tilt),
         hair,
     };
     // The smaller one first, or that on the floor.
-    let (first, floor) = match aside.seen {
-        Seen::Floor(floor) => (1 - floor.object % 2, Some(floor)),
-        _ => (usize::from(far2[1] < far2[0]), None),
+    let first = match floor {
+        Some(floor) => 1 - floor.object % 2,
+        None => usize::from(far2[1] < far2[0]),
     };
+    let other = 1 - first;
     let mut four = [Four::default(); 2];
-    let mut fans = [Fan::default(), Fan::default()];
-    for object in [first, 1 - first] {
-        // What is lower than the depth is on the way to it.
-        let shared = |c: &Corner| c.at.map(|x| x / larger(c.low, 1.0));
-        let mut corners = fans[first % 2].corners().iter();
-        if object != first && floor.is_some_and(|floor| corners.all(|c| floor.holds(&shared(c)))) {
-            break;
-        }
-        let (four, fan) = (&mut four[object % 2], &mut fans[object % 2]);
-        view.look(object, four, fan)?;
-        if fan.is_point(POINT * far) {
+    let [mut one, mut two] = [Fan::default(), Fan::default()];
+    view.look(first, &mut four[first % 2], &mut one, None)?;
+    if one.is_point(POINT * far) {
+        return Ok(middle);
+    }
+    view.complete(first, &four[first % 2], &mut one)?;
+    one.settle(LEVEL, hair);
+    if floor.is_none_or(|floor| floor.lacks(one.ends()).is_some()) {
+        view.look(
+            other,
+            &mut four[other % 2],
+            &mut two,
+            floor.map(|floor| (floor, &one)),
+        )?;
+    }
+    if !two.is_plane() {
+        if two.is_point(POINT * far) {
             return Ok(middle);
         }
-        view.complete(object, four, fan)?;
-        fan.settle(LEVEL, hair);
-    }
-    let [one, two] = &fans;
-    if let (Some(around), true) = (aside.around, !one.is_plane() && !two.is_plane()) {
-        around.fill(&view, &four);
+        view.complete(other, &four[other % 2], &mut two)?;
+        two.settle(LEVEL, hair);
+        if let Some(around) = aside.around {
+            around.fill(&view, &four);
+        }
     }
     // Rounding may have it elsewhere, where a fan is a line; it is NaN where nothing is shared.
-    let (one, two) = if first == 0 { (one, two) } else { (two, one) };
-    let Some(c) = pressed(one, two, depth * 0.5 / FLANK) else {
+    let Some(c) = pressed(&one, &two, depth * 0.5 / FLANK) else {
         return Ok(middle);
     };
     let Some((low, other)) = one.low(&c).zip(two.low(&c)) else {
