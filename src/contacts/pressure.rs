@@ -25,8 +25,8 @@
 //! round one they lie evenly around, so that c leaves r* as little as the truth does. Where they are
 //! not the whole face more is asked: [`crate::contacts::view`]. Other points enter only as a floor
 //! ([`crate::contacts::seen`]): where known points of one object lie in its support plane all around what
-//! the other has there, no corner of that floor matters, and that object is not asked. As corners they
-//! would not do: they lie where the search came from, and would pull c there.
+//! the other has there, no corner of that floor matters, and that object is not asked; where they leave
+//! something out it is asked towards that, until they do. As corners they would not do: they lie where the search came from, and would pull c there.
 //!
 //! *Fans.* The points of an object, seen from r*, are the corners of a fan of triangles, in each of
 //! which low is linear. The integrals over two fans are in closed form: [`crate::contacts::fan`].
@@ -104,7 +104,7 @@ pub struct Aside<'a> {
 }
 
 /// The centre of pressure of a hit, in the middle of the chord there. Two support points where the search
-/// has seen a floor, else four, and a half more where a face has more than four corners.
+/// has seen a floor that holds what is on it, else up to four, and a half more where a face has more than four corners.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -140,6 +140,7 @@ pub fn centre<A: SupportMap, B: SupportMap>(
         plane,
         half: 0.5 * hit.depth,
         depth,
+        share: 1.0 / depth,
         tilt,
         directions: plane.around(tilt),
         hair,
@@ -158,14 +159,8 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     }
     view.complete(first, &four[first % 2], &mut one)?;
     one.settle(LEVEL, hair);
-    if floor.is_none_or(|floor| floor.lacks(one.ends()).is_some()) {
-        view.look(
-            other,
-            &mut four[other % 2],
-            &mut two,
-            floor.map(|floor| (floor, &one)),
-        )?;
-    }
+    let floor = floor.map(|floor| (*floor, &one));
+    view.look(other, &mut four[other % 2], &mut two, floor)?;
     if !two.is_plane() {
         if two.is_point(POINT * far) {
             return Ok(middle);

@@ -75,8 +75,9 @@ pub struct View<'q, A, B> {
     pub plane: Plane,
     /// How far these are from there, metres.
     pub half: Real,
-    /// The unit of lows, metres.
+    /// The unit of lows, metres, and one over it.
     pub depth: Real,
+    pub share: Real,
     /// Of the directions asked: the tangent of the angle to the normal.
     pub tilt: Real,
     /// Those of D in which obj1 is asked for its four corners; obj2 is for the opposite ones.
@@ -103,14 +104,14 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
     }
 
     /// The corner of an object in a direction of D.
-    #[inline(never)]
+    #[inline(always)]
     fn ask(&self, object: usize, d: &Vec3) -> Result<Corner, Fault> {
         let point = match self.found(d) {
             Some(points) => points[object % 2],
             None => self.md.point_of(object, d),
         };
         let mut corner = self.plane.corner(sign(object), &point)?;
-        corner.low = larger((corner.low + self.half) / self.depth, 0.0);
+        corner.low = larger((corner.low + self.half) * self.share, 0.0);
         Ok(corner)
     }
 
@@ -129,9 +130,8 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         object: usize,
         four: &mut Four,
         fan: &mut Fan,
-        floor: Option<(&Floor, &Fan)>,
+        mut floor: Option<(Floor, &Fan)>,
     ) -> Result<(), Fault> {
-        let mut floor = floor.map(|(floor, on)| (*floor, on));
         let mut left = [0, 1, 2, 3];
         for asked in 0..FOUR {
             if let Some((floor, on)) = &floor {
@@ -142,16 +142,16 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
                 let far = |i: usize| dot(&CIRCLE[2 * left[i % FOUR] % WAYS], &at);
                 let next =
                     (asked + 1..FOUR).fold(asked, |k, i| if far(i) > far(k) { i } else { k });
-                left.swap(asked, next);
+                left.swap(asked % FOUR, next % FOUR);
             }
-            let k = left[asked] % FOUR;
+            let k = left[asked % FOUR] % FOUR;
             four[k] = self.ask(object, &self.directions[(k + 2 * object) % FOUR])?;
             if let Some((floor, _)) = &mut floor {
                 floor.add(&four[k]);
             }
         }
         for (corner, way) in four.iter().zip(CIRCLE.iter().step_by(2)) {
-            fan.push(self.moved(corner, way));
+            fan.corners.push(self.moved(corner, way));
         }
         Ok(())
     }
@@ -169,7 +169,8 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
             None
         } {
             for (i, corner) in rim.iter().enumerate() {
-                fan.insert(2 * i + 1, self.moved(corner, &CIRCLE[(2 * i + 1) % WAYS]));
+                fan.corners
+                    .insert(2 * i + 1, self.moved(corner, &CIRCLE[(2 * i + 1) % WAYS]));
             }
             return Ok(());
         }
@@ -204,7 +205,7 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         let corner = self.ask(object, &(self.plane.direction(sign, &aside) * sign))?;
         let is_beyond = dot(&out, &side(&p.at, &corner.at)) > 2.0 * self.hair;
         if is_beyond && corner.low <= self.low(o, &slope, &corner.at) + SAME_FACE {
-            fan.insert(i + 1, self.moved(&corner, &out));
+            fan.corners.insert(i + 1, self.moved(&corner, &out));
         }
         Ok(())
     }
