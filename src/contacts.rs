@@ -10,6 +10,7 @@
 
 pub mod face;
 pub mod fan;
+pub mod list;
 pub mod manifold;
 pub mod memory;
 pub mod plane;

@@ -36,6 +36,7 @@
 //! directions that found it. Unless the corners are as far from each other as they were, and all of them on
 //! the face, the search begins from nothing.
 
+use crate::contacts::list::List;
 use crate::contacts::memory::{Known, Motion, Ring, long, short};
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{
@@ -146,7 +147,7 @@ impl Face {
     /// for a line that is long for that: what looks round along a curved rim is not so across.
     pub fn reach(&self) -> Real {
         let round = self.round();
-        match self.corners.corners() {
+        match &*self.corners {
             [a, b] if length(&side(&a.at, &b.at)) > 2.0 * round => larger(round, 0.5 * self.slop),
             _ => 0.5 * self.slop,
         }
@@ -167,8 +168,7 @@ struct Search<'a, S> {
     tilt: Real,
     rounding: Real,
     asked: u32,
-    ring: [Sample; CORNERS],
-    len: usize,
+    ring: List<Sample, CORNERS>,
     /// The largest radius of a corner.
     radius: Real,
 }
@@ -186,8 +186,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
             tilt: 0.0,
             rounding: 0.0,
             asked: 0,
-            ring: [Sample::default(); CORNERS],
-            len: 0,
+            ring: List::default(),
             radius: 0.0,
         }
     }
@@ -258,81 +257,79 @@ impl<'a, S: SupportMap> Search<'a, S> {
                     self.corner(way.map(|x| self.tilt * x))?
                 };
                 match found {
-                    Some(new) if !self.known(&new) => self.put(self.len, new),
+                    Some(new) if !self.known(&new) => self.ring.push(new),
                     _ => {}
                 }
             }
         }
-        if self.len == 0 {
-            self.put(0, top);
+        if self.ring.is_empty() {
+            self.ring.push(top);
         }
         self.known(&top);
-        let [a, b, c] = [0, 1, 2].map(|i| self.ring[i].found.at);
-        if self.len == 3 && cross(&side(&a, &b), &side(&a, &c)) < 0.0 {
-            self.ring.swap(1, 2);
+        if let [a, b, c] = &mut *self.ring {
+            if cross(
+                &side(&a.found.at, &b.found.at),
+                &side(&a.found.at, &c.found.at),
+            ) < 0.0
+            {
+                swap(b, c);
+            }
         }
         Ok(())
     }
 
-    /// Puts a sample into the ring; those from there on move up.
-    fn put(&mut self, i: usize, mut sample: Sample) {
-        let places = self.ring.iter_mut().take(self.len + 1);
-        places.skip(i).for_each(|p| swap(p, &mut sample));
-        self.len = (self.len + 1).min(CORNERS);
-    }
-
     /// Is the point one of those known? From another direction that tells it to be sharp.
     fn known(&mut self, new: &Sample) -> bool {
-        for i in 0..self.len.min(CORNERS) {
-            if self.same(&self.ring[i], new) {
-                let turned = length(&side(&self.ring[i].aside, &new.aside));
-                self.ring[i].settled |= turned >= 0.25 * self.tilt;
-                return true;
-            }
+        let known = (0..self.ring.len()).find(|i| self.same(self.ring.at(*i), new));
+        if let Some(i) = known {
+            let (least, known) = (0.25 * self.tilt, self.ring.at_mut(i));
+            known.settled |= length(&side(&known.aside, &new.aside)) >= least;
         }
-        false
+        known.is_some()
     }
 
     /// Finds the corners between those known, in passes around the face.
     fn refine(&mut self) -> Result<(), Fault> {
         loop {
-            let before = self.len;
+            let before = self.ring.len();
             let mut i = 0;
-            while i < self.len {
-                if self.ring.get(i).is_some_and(|s| !s.closed) {
-                    let next = if i + 1 < self.len { i + 1 } else { 0 };
-                    if let Some(new) = self.beyond(i, next)? {
-                        self.put(i + 1, new);
+            while i < self.ring.len() {
+                if !self.ring.at(i).closed {
+                    if let Some(new) = self.beyond(i)? {
+                        self.ring.insert(i + 1, new);
                         i += 1;
-                    } else if let Some(sample) = self.ring.get_mut(i) {
-                        sample.closed = true;
+                    } else {
+                        self.ring.at_mut(i).closed = true;
                     }
                 }
                 i += 1;
             }
-            if self.len == before {
+            if self.ring.len() == before {
                 return Ok(());
             }
         }
     }
 
-    /// The corner beyond the side from sample `i` to sample `j`, if there is one.
-    fn beyond(&mut self, i: usize, j: usize) -> Result<Option<Sample>, Fault> {
-        let (i, j) = (place(i), place(j));
-        let apart = |s: &Self| length(&side(&s.ring[i].corner.at, &s.ring[j].corner.at));
+    /// The corner beyond the side from sample `i` to the next, if there is one.
+    fn beyond(&mut self, i: usize) -> Result<Option<Sample>, Fault> {
+        let ends = |s: &Self| [*s.ring.at(i), *s.ring.at(i + 1)];
+        let apart = |s: &Self| {
+            let [a, b] = ends(s);
+            length(&side(&a.corner.at, &b.corner.at))
+        };
         if apart(self) <= NEAR * self.tilt * self.size {
             self.settle(i)?;
-            self.settle(j)?;
+            self.settle(i + 1)?;
             if apart(self) <= self.slop {
                 return Ok(None);
             }
         }
         // A new corner costs up to two, and one to settle it.
         let limit = SUPPORTS.saturating_sub(self.owed() + 1).min(self.limit());
-        if self.len == CORNERS || self.asked + 2 > limit {
+        if self.ring.len() == CORNERS || self.asked + 2 > limit {
             return Ok(None);
         }
-        let (a, b) = (self.ring[i].found, self.ring[j].found);
+        let [a, b] = ends(self).map(|sample| sample.found);
         let whole = length(&side(&a.at, &b.at));
         let bias = 2.0 * self.rounding / whole;
         let bias = bias.max(BIAS * self.tilt).min(self.tilt / 64.0);
@@ -354,7 +351,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
     /// Support points that the face is worth: few corners, all of them sharp, are known
     /// before.
     fn limit(&self) -> u32 {
-        if self.len > 4 || self.radius > 0.0 {
+        if self.ring.len() > 4 || self.radius > 0.0 {
             SUPPORTS
         } else {
             SUPPORTS / 2
@@ -363,7 +360,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
 
     /// Support points that it takes to settle the samples.
     fn owed(&self) -> u32 {
-        let open = self.ring.iter().take(self.len).filter(|s| !s.settled);
+        let open = self.ring.iter().filter(|s| !s.settled);
         open.map(|s| 1 + u32::from(self.is_wide(s))).sum()
     }
 
@@ -373,13 +370,12 @@ impl<'a, S: SupportMap> Search<'a, S> {
 
     /// Takes off what moves in proportion to the tilt.
     fn settle(&mut self, i: usize) -> Result<(), Fault> {
-        let i = place(i);
-        let mut full = self.ring[i];
+        let mut full = *self.ring.at(i);
         let wide = self.is_wide(&full);
         if full.settled || self.asked + 1 + u32::from(wide) > self.limit() {
             return Ok(());
         }
-        self.ring[i].settled = true;
+        self.ring.at_mut(i).settled = true;
         if wide {
             let share = self.tilt / length(&full.aside);
             let near = self.ask(full.aside.map(|x| share * x))?;
@@ -388,7 +384,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
             }
             full = near;
         }
-        self.ring[i].corner = full.found;
+        self.ring.at_mut(i).corner = full.found;
         let mut aside = full.aside.map(|x| 0.5 * x);
         for _ in 0..2 {
             if self.asked >= self.limit() {
@@ -405,14 +401,19 @@ impl<'a, S: SupportMap> Search<'a, S> {
             let smooth = (there - back).abs() <= 0.5 * (there + back) + self.rounding;
             if moved * moved <= 0.5 * self.slop * self.size && smooth {
                 self.radius = larger(self.radius, radius);
-                (self.ring[i].aside, self.ring[i].radius) = (full.aside, radius);
-                self.ring[i].corner = self.inside(
+                let corner = self.inside(
                     Corner {
                         at: between(&full.found.at, &near.found.at, 2.0),
                         low: larger((4.0 * near.found.low - full.found.low) / 3.0, 0.0),
                     },
                     &near.found,
                 );
+                *self.ring.at_mut(i) = Sample {
+                    aside: full.aside,
+                    radius,
+                    corner,
+                    ..*self.ring.at(i)
+                };
                 break;
             }
             // Another corner; of two round ends of a line the half tilt finds the higher one.
@@ -436,32 +437,32 @@ impl<'a, S: SupportMap> Search<'a, S> {
     /// The face, of which nothing is known.
     fn anew(mut self, slop: Real) -> Result<Face, Fault> {
         self.start(slop)?;
-        if self.len > 1 {
+        if self.ring.len() > 1 {
             self.refine()?;
         }
-        for i in 0..self.len {
+        for i in 0..self.ring.len() {
             self.settle(i)?;
         }
-        let samples = self.ring.get(..self.len).unwrap_or(&[]);
+        let samples = &self.ring;
         let mut corners = Polygon::default();
-        samples.iter().for_each(|s| corners.add(s.corner));
+        samples.iter().for_each(|s| corners.push(s.corner));
         let corners = corners.tidy(self.slop, self.flat());
-        let least = corners.corners().iter().map(|c| c.low);
+        let least = corners.iter().map(|c| c.low);
         let least = least.fold(Real::INFINITY, lesser);
         let mut ring = Ring {
             tilt: short(self.tilt),
             slop: short(self.slop),
-            len: corners.corners().len() as f32,
+            len: corners.len() as f32,
             // Of a full ring nobody knows what is between its corners.
-            inscribed: f32::from(u8::from(self.len == CORNERS)),
+            inscribed: f32::from(u8::from(self.ring.len() == CORNERS)),
             own: f32::from(u8::from(self.radius > 0.0 || least > 0.0625 * self.slop)),
             ..Ring::default()
         };
-        for (known, corner) in ring.corners.iter_mut().zip(corners.corners()) {
+        for (known, corner) in ring.corners.iter_mut().zip(&*corners) {
             let apart = |s: &Sample| length(&side(&s.corner.at, &corner.at));
             let here = || samples.iter().filter(|s| apart(s) <= self.slop);
             let asides = here().filter(|s| s.corner == *corner).map(|s| s.aside);
-            let radius = match corners.corners() {
+            let radius = match &*corners {
                 [_] => self.radius,
                 _ => here().map(|s| s.radius).fold(0.0, larger),
             };
@@ -563,7 +564,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
                 return Ok(None);
             }
             let low = larger(low, 0.0);
-            corners.add(Corner { low, ..*corner });
+            corners.push(Corner { low, ..*corner });
             known.at = corner.at.map(short);
             known.low = short(low);
             known.aside = motion.turned(&known.aside.map(long)).map(short);
@@ -582,9 +583,4 @@ fn mean(three: &[Corner; 3], across: Real, along: Real) -> Option<Corner> {
     let is_one =
         |c: &Corner| length(&side(&c.at, &mean.at)) <= across && (c.low - mean.low).abs() <= along;
     three.iter().all(is_one).then_some(mean)
-}
-
-/// A place in the ring that is in range whatever `i` is.
-fn place(i: usize) -> usize {
-    i.min(CORNERS - 1)
 }

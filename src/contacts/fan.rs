@@ -32,9 +32,9 @@
 //! it is cancels out. Where the outline is at depth 0 it is nothing. So faces, edges and corners are
 //! one case, and what is between them is between them.
 
-use crate::contacts::polygon::{Corner, Flat, between, cross, dot, length, side};
+use crate::contacts::list::List;
+use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, dot, length, side};
 use crate::math::{Real, larger, lesser};
-use core::mem::swap;
 
 /// Corners of a fan, at most: eight that are asked for, and those that close it.
 const ROOM: usize = 11;
@@ -49,43 +49,27 @@ const PART: Real = 0.25;
 /// depth. Without corners it is a level plane that reaches farther than all.
 #[derive(Clone, Debug, Default)]
 pub struct Fan {
-    corners: [Corner; ROOM],
-    len: usize,
+    pub corners: Polygon<ROOM>,
     /// What is taken off all lows.
     level: Real,
 }
 
 impl Fan {
-    /// The corners.
-    #[inline(always)]
-    pub fn corners(&self) -> &[Corner] {
-        self.corners.get(..self.len).unwrap_or(&[])
-    }
-
     /// Does it stand for a level plane?
     pub fn is_plane(&self) -> bool {
-        self.len == 0
+        self.corners.is_empty()
     }
 
-    /// Puts a corner in its place; those from there on move up.
+    /// How far the object reaches towards its corners, as far as the depth goes.
     #[inline(always)]
-    pub fn insert(&mut self, i: usize, mut corner: Corner) {
-        self.len = lesser(self.len + 1, ROOM);
-        let places = self.corners.iter_mut().take(self.len);
-        places.skip(i).for_each(|place| swap(place, &mut corner));
-    }
-
-    /// A corner, counted around.
-    #[inline(always)]
-    fn corner(&self, i: usize) -> &Corner {
-        let i = if i < self.len { i } else { i - self.len };
-        &self.corners[i.min(ROOM - 1)]
+    pub fn ends(&self) -> impl Iterator<Item = Flat> + '_ {
+        self.corners.iter().map(|c| c.outer().at)
     }
 
     /// Does the object end within `far`, metres, around the deepest place, as far as the depth goes?
     #[inline(always)]
     pub fn is_point(&self, far: Real) -> bool {
-        self.corners().iter().all(|c| {
+        self.corners.iter().all(|c| {
             let most = far * larger(c.low, 1.0);
             dot(&c.at, &c.at) <= most * most
         })
@@ -95,126 +79,158 @@ impl Fan {
     /// metres: what is nearer is the same.
     #[inline(never)]
     pub fn settle(&mut self, share: Real, hair: Real) {
-        let low = self.corners().iter().map(|corner| corner.low);
-        let level = low.fold(1.0, lesser) * share;
-        for corner in self.corners.iter_mut().take(self.len) {
-            corner.low -= level;
-        }
-        // Mostly they lie around the deepest place, in the order in which they were asked for.
+        let low = self.corners.iter().map(|corner| corner.low);
+        self.level = low.fold(1.0, lesser) * share;
         let part2 = PART * PART * hair * hair;
-        let is_around = |i| {
-            let (p, q) = (&self.corner(i).at, &self.corner(i + 1).at);
-            let (area, way) = (cross(p, q), side(p, q));
-            area > 0.0 && area * area > part2 * dot(&way, &way)
-        };
-        if !(0..self.len).all(is_around) {
-            *self = self.in_order(hair, part2).closed(hair);
+        // Mostly they lie around the deepest place, in the order in which they were asked for.
+        let (mut p, mut is_around) = (self.corners.at(self.corners.len().max(1) - 1).at, true);
+        for corner in self.corners.iter_mut() {
+            corner.low -= self.level;
+            let q = corner.at;
+            let (area, way) = (cross(&p, &q), side(&p, &q));
+            is_around &= area > 0.0 && area * area > part2 * dot(&way, &way);
+            p = q;
         }
-        self.level = level;
+        if !is_around {
+            self.corners = closed(&self.in_order(hair * hair, part2), hair);
+        }
     }
 
     /// Its corners in order around the deepest place, of those in one direction the farthest.
     /// `part2`, m²: what is aside by less than its root is not.
     #[cold]
     #[inline(never)]
-    fn in_order(&self, hair: Real, part2: Real) -> Self {
-        let mut fan = Self::default();
+    fn in_order(&self, hair2: Real, part2: Real) -> List<(Real, Corner), ROOM> {
         // What is the deepest place, but beside it, has no direction.
         let is_here = |c: &Corner| {
-            let far2 = dot(&c.at, &c.at) / (hair * hair);
-            far2 > 4.0 && far2 <= HERE * HERE
+            let far2 = dot(&c.at, &c.at);
+            far2 > 4.0 * hair2 && far2 <= HERE * HERE * hair2
         };
-        let all = self.corners().iter().all(is_here);
-        for corner in self.corners().iter().filter(|c| all || !is_here(c)) {
-            let far2 = dot(&corner.at, &corner.at);
-            let is_same = |p: &Corner| {
-                let aside = cross(&p.at, &corner.at);
-                let most2 = part2 * larger(dot(&p.at, &p.at), far2);
-                dot(&p.at, &corner.at) > 0.0 && !(aside * aside > most2)
-            };
-            let mut places = fan.corners.iter_mut().take(fan.len);
-            if let Some(place) = places.find(|p| is_same(p)) {
-                if far2 > dot(&place.at, &place.at) {
+        let is_same = |p: &Flat, q: &Flat| {
+            let aside = cross(p, q);
+            let most2 = part2 * larger(dot(p, p), dot(q, q));
+            dot(p, q) > 0.0 && !(aside * aside > most2)
+        };
+        let mut order: List<(Real, Corner), ROOM> = List::default();
+        let all = self.corners.iter().all(is_here);
+        for corner in self.corners.iter().filter(|c| all || !is_here(c)) {
+            let turn = turn(&corner.at);
+            let i = order.iter().filter(|(t, _)| *t <= turn).count();
+            let beside = [(i + order.len()).max(1) - 1, i];
+            let mut same = beside
+                .into_iter()
+                .filter(|k| is_same(&order.at(*k).1.at, &corner.at));
+            if let Some(k) = same.next() {
+                let place = &mut order.at_mut(k).1;
+                if dot(&corner.at, &corner.at) > dot(&place.at, &place.at) {
                     *place = *corner;
                 }
-                continue;
-            }
-            let mut later = fan.corners().iter().map(|p| is_before(&corner.at, &p.at));
-            let i = later.position(|is| is).unwrap_or(fan.len);
-            fan.insert(i, *corner);
-        }
-        fan
-    }
-
-    /// The same where the corners leave out half a turn or more, because the deepest place is a
-    /// corner itself: others a hair beyond it close the fan.
-    #[cold]
-    #[inline(never)]
-    fn closed(&self, hair: Real) -> Self {
-        let mut fan = Self::default();
-        for i in 0..self.len {
-            let (p, q) = (self.corner(i), self.corner(i + 1).at);
-            fan.insert(fan.len, *p);
-            if cross(&p.at, &q) > 0.0 {
-                continue;
-            }
-            // A quarter of a turn from p, a half, three quarters, as far as q is.
-            let mut at = p.at.map(|x| x * hair / length(&p.at));
-            for _ in 1..4 {
-                at = [-at[1], at[0]];
-                fan.insert(fan.len, Corner { at, low: 0.0 });
-                let (across, along) = (cross(&at, &q), dot(&at, &q));
-                // Not where the rest is nearly half a turn: it would be no region.
-                if across > 0.0 && across > -along {
-                    break;
-                }
+            } else {
+                order.insert(i, (turn, *corner));
             }
         }
-        fan
+        order
     }
 
-    /// Of a place in the sector from corner `i` to the next: w and low.
+    /// The sector from corner `i`, counted around, to the next.
     #[inline(always)]
-    fn within(&self, i: usize, r: &Flat) -> [Real; 2] {
-        if self.len == 0 {
-            return [0.0; 2];
-        }
-        let (p, q) = (self.corner(i), self.corner(i + 1));
-        let share = 1.0 / cross(&p.at, &q.at);
-        let (one, two) = (cross(r, &q.at) * share, cross(&p.at, r) * share);
-        [one + two, one * p.low + two * q.low]
+    fn at(&self, i: usize) -> [&Corner; 2] {
+        let i = if i < self.corners.len() {
+            i
+        } else {
+            i - self.corners.len()
+        };
+        [self.corners.at(i), self.corners.at(i + 1)]
     }
 
     /// The sector that a ray is in.
     #[inline(always)]
     fn sector(&self, r: &Flat) -> Option<usize> {
-        if self.len == 0 {
-            return Some(0);
+        let mut last = self.corners.len().max(1) - 1;
+        let mut left = cross(&self.corners.at(last).at, r);
+        for (i, corner) in self.corners.iter().enumerate() {
+            let next = cross(&corner.at, r);
+            if left >= 0.0 && next < 0.0 {
+                return Some(last);
+            }
+            (last, left) = (i, next);
         }
-        (0..self.len).find(|i| {
-            let (p, q) = (self.corner(*i), self.corner(i + 1));
-            cross(&p.at, r) >= 0.0 && cross(r, &q.at) > 0.0
-        })
+        None
+    }
+
+    /// The centre of pressure on a level plane, from the deepest place; `rim`: d / 2 s.
+    #[inline(never)]
+    fn pressed_on_plane(&self, rim: Real) -> Flat {
+        let mut p = self.corners.at(self.corners.len().max(1) - 1);
+        let mut sum = Sum {
+            rim,
+            last: p.outer(),
+            ..Sum::default()
+        };
+        for q in self.corners.iter() {
+            if (p.low > 1.0) != (q.low > 1.0) {
+                let at = between(&p.at, &q.at, (1.0 - p.low) / (q.low - p.low));
+                sum.to(Outer { at, depth: 0.0 });
+            }
+            sum.to(q.outer());
+            p = q;
+        }
+        sum.centroid()
     }
 
     /// How far the object is below its plane at a place, in units of the depth; `None` where that is
     /// no place of the fan, but for a hundredth.
     #[inline(never)]
     pub fn low(&self, r: &Flat) -> Option<Real> {
-        let [wall, low] = self.within(self.sector(r)?, r);
+        if self.is_plane() {
+            return Some(0.0);
+        }
+        let [wall, low] = within(&self.at(self.sector(r)?), r);
         // Not where it is NaN.
         (wall <= 1.01).then_some(low + self.level * wall)
     }
 }
 
-/// Does a direction come before another, around from the first axis?
-fn is_before(p: &Flat, q: &Flat) -> bool {
-    let is_below = |r: &Flat| r[1] < 0.0 || r[1] == 0.0 && r[0] < 0.0;
-    match (is_below(p), is_below(q)) {
-        (false, true) => true,
-        (true, false) => false,
-        _ => cross(p, q) > 0.0,
+/// Corners in order, closed where they leave out half a turn or more, because the deepest place is a
+/// corner itself: by others a hair beyond it.
+#[cold]
+#[inline(never)]
+fn closed(order: &List<(Real, Corner), ROOM>, hair: Real) -> Polygon<ROOM> {
+    let mut fan = Polygon::default();
+    for (i, (_, p)) in order.iter().enumerate() {
+        let q = order.at(i + 1).1.at;
+        fan.push(*p);
+        if cross(&p.at, &q) > 0.0 {
+            continue;
+        }
+        // A quarter of a turn from p, a half, three quarters, as far as q is.
+        let share = hair / length(&p.at);
+        let mut at = p.at.map(|x| x * share);
+        for _ in 1..4 {
+            at = [-at[1], at[0]];
+            fan.push(Corner { at, low: 0.0 });
+            let (across, along) = (cross(&at, &q), dot(&at, &q));
+            // Not where the rest is nearly half a turn: it would be no region.
+            if across > 0.0 && across > -along {
+                break;
+            }
+        }
     }
+    fan
+}
+
+/// Of a place in a sector: w and low.
+#[inline(always)]
+fn within([p, q]: &[&Corner; 2], r: &Flat) -> [Real; 2] {
+    let share = 1.0 / cross(&p.at, &q.at);
+    let (one, two) = (cross(r, &q.at) * share, cross(&p.at, r) * share);
+    [one + two, one * p.low + two * q.low]
+}
+
+/// What grows with a direction's angle, around from the first axis: 0 to 4.
+fn turn([x, y]: &Flat) -> Real {
+    let along = x / larger(x.abs() + y.abs(), Real::MIN_POSITIVE);
+    if *y < 0.0 { 3.0 + along } else { 1.0 - along }
 }
 
 /// The ray to a corner of either fan, and what is at most 1 in the region there: w of both, and f.
@@ -263,10 +279,22 @@ impl Ray {
     }
 }
 
+impl Corner {
+    /// How far the region reaches towards it, where it lies on a level plane.
+    #[inline(always)]
+    pub fn outer(&self) -> Outer {
+        let share = 1.0 / larger(self.low, 1.0);
+        Outer {
+            at: self.at.map(|x| x * share),
+            depth: larger(1.0 - self.low, 0.0),
+        }
+    }
+}
+
 /// A corner of the region's outline, and the local depth there in units of the depth.
 #[derive(Clone, Copy, Debug, Default)]
-struct Outer {
-    at: Flat,
+pub struct Outer {
+    pub at: Flat,
     depth: Real,
 }
 
@@ -307,7 +335,7 @@ impl Sum {
     }
 
     /// The outline from one ray, whose largest is the `i`th, to the next, whose largest is the `j`th.
-    #[inline(never)]
+    #[inline(always)]
     fn cone(&mut self, s: &Ray, i: usize, e: &Ray, j: usize) {
         if i != j {
             let cut = s.between(e, i, j);
@@ -327,41 +355,43 @@ impl Sum {
 /// not close.
 #[inline(always)]
 pub fn pressed(one: &Fan, two: &Fan, rim: Real) -> Option<Flat> {
-    let ray = |corner: &Corner, other: &Fan, sector: usize, is_first: bool| {
-        let [wall, low] = other.within(sector, &corner.at);
+    if two.is_plane() {
+        return Some(one.pressed_on_plane(rim));
+    }
+    let ray = |corner: &Corner, sector: &[&Corner; 2], is_first: bool| {
+        let [wall, low] = within(sector, &corner.at);
         let (a, b) = if is_first { (1.0, wall) } else { (wall, 1.0) };
         Ray {
             at: corner.at,
             most: [a, b, corner.low + low],
         }
     };
-    // The sectors that the last ray is in; the second fan's are counted from the first ray's, and
-    // left in order until that comes again.
-    let first = two.sector(&one.corner(0).at)?;
-    let sector = |j: usize| {
-        let j = first + j;
-        if j < two.len { j } else { j - two.len }
-    };
-    let start = ray(one.corner(0), two, first, true);
-    let (mut last, mut top, mut i, mut j) = (start, start.top(), 0, 0);
+    // The sectors that the last ray is in: the second fan's are counted from the first ray's, and left in
+    // order until that comes again.
+    let (first, mut i, mut j) = (two.sector(&one.corners.at(0).at)?, 0, 0);
+    let mut sectors = [one.at(0), two.at(first)];
+    let start = ray(sectors[0][0], &sectors[1], true);
+    let (mut last, mut top) = (start, start.top());
     let mut sum = Sum {
         rim,
         last: start.outer(top),
         ..Sum::default()
     };
     // Ends: each round takes a corner.
-    while i < one.len {
-        let (p, q) = (one.corner(i + 1), two.corner(sector(j) + 1));
-        let next = if cross(&p.at, &q.at) > 0.0 || j == two.len {
+    while i < one.corners.len() {
+        let [[_, p], [_, q]] = sectors;
+        let next = if cross(&p.at, &q.at) > 0.0 || j == two.corners.len() {
             i += 1;
-            if i < one.len {
-                ray(p, two, sector(j), true)
+            sectors[0] = one.at(i);
+            if i < one.corners.len() {
+                ray(p, &sectors[1], true)
             } else {
                 start
             }
         } else {
             j += 1;
-            ray(q, one, i, false)
+            sectors[1] = two.at(first + j);
+            ray(q, &sectors[0], false)
         };
         let next_top = next.top();
         sum.cone(&last, top, &next, next_top);
@@ -384,7 +414,7 @@ mod tests {
         };
         let mut fan = Fan::default();
         for (i, c) in corners.iter().enumerate() {
-            fan.insert(i, corner(c));
+            fan.corners.insert(i, corner(c));
         }
         fan.settle(0.0, HAIR);
         fan
@@ -397,7 +427,7 @@ mod tests {
         for x in -N..N {
             for y in -N..N {
                 let r = [x, y].map(|x| (x as Real + 0.5) * 1.5 / N as Real);
-                let of = |f: &Fan| f.sector(&r).map_or([9.0; 2], |i| f.within(i, &r));
+                let of = |f: &Fan| f.sector(&r).map_or([9.0; 2], |i| within(&f.at(i), &r));
                 let ([w1, l1], [w2, l2]) = (of(one), of(two));
                 let depth = 1.0 - l1 - l2;
                 if w1 <= 1.0 && w2 <= 1.0 && depth > 0.0 {

@@ -18,9 +18,10 @@
 //! *Reduction.* The deepest point stays; with it, those that span the largest area.
 
 use crate::contacts::face::{CORNERS, Face};
+use crate::contacts::list::List;
 use crate::contacts::memory::{Memory, Names};
 use crate::contacts::plane::Plane;
-use crate::contacts::polygon::{Flat, Polygon, between, cross, length, onto, side};
+use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, length, onto, side};
 use crate::known::support::{Fault, SupportMap};
 use crate::math::{Real, Vec3, larger};
 
@@ -43,16 +44,13 @@ pub const ROOM: usize = 2 * CORNERS;
 const PARALLEL: Real = 0.17;
 
 /// The points of a contact.
-#[derive(Clone, Copy)]
-pub struct Manifold {
-    contacts: [Contact; ROOM],
-    len: usize,
-}
+#[derive(Clone, Copy, Default)]
+pub struct Manifold(List<Contact, ROOM>);
 
 impl Manifold {
     /// The points, the deepest first.
     pub fn contacts(&self) -> &[Contact] {
-        self.contacts.get(..self.len).unwrap_or(&[])
+        &self.0
     }
 }
 
@@ -78,44 +76,38 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     let (one, motion1) = Face::of(obj1, &mut plane, 1.0, slop, ring1)?;
     let (two, motion2) = Face::of(obj2, &mut plane, -1.0, slop, ring2)?;
     let (mut region, beside) = shared(&one, &two);
-    for corner in region.corners_mut() {
+    for corner in region.iter_mut() {
         corner.low = one.low(&corner.at) + two.low(&corner.at);
     }
     let names = known.as_ref().map_or(Names::default(), |known| {
         let slop = larger(one.slop, two.slop);
-        known.names([motion1, motion2], region.corners(), slop)
+        known.names([motion1, motion2], &region, slop)
     });
     let chosen = chosen(&region, &names, max, one.rounding + two.rounding);
-    let mut manifold = Manifold {
-        contacts: [Contact::default(); ROOM],
-        len: 0,
-    };
-    let mut named = [([0.0; 2], 0); ROOM];
-    let places = manifold.contacts.iter_mut().zip(&mut named);
-    for ((contact, named), corner) in places.zip(chosen.corners()) {
+    let mut manifold = Manifold::default();
+    let mut named: List<(Flat, u32), ROOM> = List::default();
+    for corner in chosen.iter() {
         let [at1, at2] = beside.unwrap_or([corner.at; 2]);
         let lows = [one.low(&at1), two.low(&at2)];
         let point1 = plane.point(&at1, one.top - lows[0]);
         let depth = one.top + two.top - lows[0] - lows[1];
         let across = plane.point(&side(&at1, &at2), 0.0) - plane.origin;
-        let mut all = region.corners().iter();
+        let mut all = region.iter();
         let name = names.of(all.position(|c| c.at == corner.at).unwrap_or(ROOM));
         let name = match &mut known {
             Some(known) if name == 0 => known.name(),
             _ => name,
         };
-        *named = (corner.at, name);
-        *contact = Contact {
+        named.push((corner.at, name));
+        manifold.0.push(Contact {
             point1,
             point2: point1 - plane.n * depth + across,
             depth,
             name,
-        };
-        manifold.len += 1;
+        });
     }
     if let (Some(memory), Some(mut known)) = (memory, known) {
-        let named = named.get(..manifold.len).unwrap_or(&[]);
-        known.keep(&plane, slop, [one.ring, two.ring], named);
+        known.keep(&plane, slop, [one.ring, two.ring], &named);
         *memory = known;
     }
     Ok(manifold)
@@ -124,7 +116,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
 /// At most `max` corners of the region, the deepest first. Those that have names stay while
 /// they span nine tenths of the largest area; differences by `tie` are rounding.
 fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: Real) -> Polygon<ROOM> {
-    let corners = region.corners();
+    let corners: &[Corner] = region;
     // Rounding alone makes no corner the deepest.
     let (mut deepest, mut least) = (0, corners.first().map_or(0.0, |corner| corner.low));
     for (i, corner) in corners.iter().enumerate() {
@@ -143,14 +135,14 @@ fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: Real) -> Polyg
     let mut kept = Polygon::default();
     for i in (deepest..corners.len()).chain(0..deepest) {
         if names.of(i) != 0 {
-            kept.extend(corners.get(i..=i).unwrap_or(&[]));
+            kept.push(*region.at(i));
         }
     }
-    let size = |p: &Polygon<ROOM>| match p.corners() {
+    let size = |p: &Polygon<ROOM>| match &**p {
         [a, b] => length(&side(&a.at, &b.at)),
         _ => p.area(),
     };
-    if kept.corners().len() == best.corners().len() && size(&kept) >= 0.9 * size(&best) {
+    if kept.len() == best.len() && size(&kept) >= 0.9 * size(&best) {
         return kept;
     }
     best
@@ -170,17 +162,17 @@ fn shared(one: &Face, two: &Face) -> (Polygon<ROOM>, Option<[Flat; 2]>) {
     // A point between the two is to be on both: the rounder one reaches farther.
     let share = own / slack;
     let mut region: Polygon<ROOM> = Polygon::default();
-    let lines = match (small.corners(), large.corners()) {
+    let lines = match (&**small, &**large) {
         ([a, b], [c, d]) => Some([[a.at, b.at], [c.at, d.at]]),
         _ => None,
     };
     if let Some(sides) = &lines {
-        crossing(sides).iter().for_each(|at| region.push(*at));
-    } else if large.corners().len() > 2 {
-        region.extend(small.corners());
+        region = crossing(sides).map_or(region, Polygon::point);
+    } else if large.len() > 2 {
+        small.iter().for_each(|corner| region.push(*corner));
         region = region.inside(large, rounding);
     }
-    if !region.corners().is_empty() {
+    if !region.is_empty() {
         return (region.tidy(rounding, rounding), None);
     }
     let Some((sides, [a, b])) = small.nearest(large) else {
@@ -189,10 +181,10 @@ fn shared(one: &Face, two: &Face) -> (Polygon<ROOM>, Option<[Flat; 2]>) {
     if lines.is_some() || one.round() + two.round() > 0.0 {
         region = strip(&sides, slack, share, rounding);
     }
-    if !region.corners().is_empty() {
+    if !region.is_empty() {
         return (region, None);
     }
-    region.push(between(&a, &b, 0.5));
+    region = Polygon::point(between(&a, &b, 0.5));
     let far = length(&side(&a, &b)) > one.slop.min(two.slop);
     let points = if swapped { [b, a] } else { [a, b] };
     (region, far.then_some(points))
@@ -224,12 +216,13 @@ fn strip(
     if !(cross(&u, &v).abs() <= PARALLEL * whole && whole > 0.0) {
         return ends;
     }
-    ends.push(*p);
-    ends.push(*q);
+    for at in [*p, *q] {
+        ends.push(Corner { at, low: 0.0 });
+    }
     let (back, left, right) = (v.map(|x| -x), [-v[1], v[0]], [v[1], -v[0]]);
     let ends = ends.cut(r, &left, slack).cut(r, &right, slack);
     let mut ends = ends.cut(r, &v, rounding).cut(s, &back, rounding);
-    for end in ends.corners_mut() {
+    for end in ends.iter_mut() {
         end.at = between(&end.at, &onto(&end.at, r, s), share);
     }
     ends.tidy(rounding, 0.0)

@@ -4,11 +4,12 @@
 //! The plane across the normal of a contact, in which the faces of both objects are seen.
 
 use crate::contacts::polygon::{Corner, Flat};
+use crate::contacts::view::{CIRCLE, FOUR};
 use crate::known::support::Fault;
 use crate::math::{POLE, Real, Vec3, axes};
 
 /// The plane through `origin` across the unit vector `n`.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Plane {
     pub n: Vec3,
     /// Unit, across n and each other.
@@ -40,8 +41,17 @@ impl Plane {
     #[inline(always)]
     pub fn direction(&self, sign: Real, aside: &Flat) -> Vec3 {
         let [e1, e2] = &self.axes;
-        let d = self.n * sign + (e1 * aside[0] + e2 * aside[1]);
-        d / d.norm()
+        let share = 1.0 / (1.0 + aside[0] * aside[0] + aside[1] * aside[1]).sqrt();
+        (self.n * sign + (e1 * aside[0] + e2 * aside[1])) * share
+    }
+
+    /// The four unit directions of this tilt that [`CIRCLE`] tells.
+    pub fn around(&self, tilt: Real) -> [Vec3; FOUR] {
+        let share = 1.0 / (1.0 + tilt * tilt).sqrt();
+        let [x, y] = CIRCLE[0].map(|x| x * tilt * share);
+        let ([e1, e2], n) = (&self.axes, self.n * share);
+        let (a, b) = (e1 * x + e2 * y, e2 * x - e1 * y);
+        [n + a, n + b, n - a, n - b]
     }
 
     /// A point of the object whose face looks along the normal or against it: where it is in the plane, and

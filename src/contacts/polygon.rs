@@ -4,6 +4,7 @@
 //! Convex polygons in a plane, whose corners lie a little below it; segments and points
 //! are polygons of two corners and of one.
 
+use crate::contacts::list::List;
 use crate::math::{Real, larger, lesser};
 use core::mem::swap;
 
@@ -75,60 +76,24 @@ pub fn across(a: &Corner, b: &Corner, tilt: Real, lean: Real) -> Flat {
 }
 
 /// A convex polygon of at most `ROOM` corners, counterclockwise.
-#[derive(Clone, Copy, Debug)]
-pub struct Polygon<const ROOM: usize> {
-    corners: [Corner; ROOM],
-    len: usize,
-}
-
-impl<const ROOM: usize> Default for Polygon<ROOM> {
-    fn default() -> Self {
-        Self {
-            corners: [Corner::default(); ROOM],
-            len: 0,
-        }
-    }
-}
+pub type Polygon<const ROOM: usize> = List<Corner, ROOM>;
 
 impl<const ROOM: usize> Polygon<ROOM> {
-    /// The corners.
-    #[inline]
-    pub fn corners(&self) -> &[Corner] {
-        self.corners.get(..self.len).unwrap_or(&[])
-    }
-
-    /// The corners, to be changed.
-    pub fn corners_mut(&mut self) -> &mut [Corner] {
-        self.corners.get_mut(..self.len).unwrap_or(&mut [])
-    }
-
-    /// Adds a corner after the last; without room nothing happens.
-    pub fn add(&mut self, corner: Corner) {
-        if let Some(place) = self.corners.get_mut(self.len) {
-            *place = corner;
-            self.len += 1;
-        }
-    }
-
-    /// Adds a place of the plane.
-    pub fn push(&mut self, at: Flat) {
-        self.add(Corner { at, low: 0.0 });
-    }
-
-    /// Adds corners after the last, as many as there is room for.
-    pub fn extend(&mut self, corners: &[Corner]) {
-        corners.iter().for_each(|c| self.add(*c));
+    /// A place of the plane.
+    pub fn point(at: Flat) -> Self {
+        let mut point = Self::default();
+        point.push(Corner { at, low: 0.0 });
+        point
     }
 
     /// Its sides, from corner to corner; a point has one without length.
     pub fn sides(&self) -> impl Iterator<Item = (Corner, Corner)> + Clone + '_ {
-        let corners = self.corners().iter().copied();
-        corners.clone().zip(corners.cycle().skip(1))
+        (0..self.len()).map(|i| (*self.at(i), *self.at(i + 1)))
     }
 
     /// Twice its area.
     pub fn area(&self) -> Real {
-        let Some(first) = self.corners().first() else {
+        let Some(first) = self.first() else {
             return 0.0;
         };
         // About a corner: far from the origin the products would round.
@@ -141,26 +106,27 @@ impl<const ROOM: usize> Polygon<ROOM> {
     /// what sticks out by `flat` or less goes.
     pub fn tidy(&self, merged: Real, flat: Real) -> Self {
         let mut rest = Self::default();
-        for p in self.corners() {
+        for p in self.iter() {
             let near = |k: &Corner| length(&side(&k.at, &p.at)) <= merged;
-            if !rest.corners().iter().any(near) {
-                rest.add(*p);
+            if !rest.iter().any(near) {
+                rest.push(*p);
             }
         }
         // As long as one goes.
         let mut i = 0;
-        while i < rest.len && rest.len > 2 {
+        while i < rest.len() && rest.len() > 2 {
             // The first one becomes the last.
-            let mut first = rest.corners.first().copied().unwrap_or_default();
-            let places = rest.corners_mut().iter_mut();
-            places.rev().for_each(|place| swap(place, &mut first));
+            let mut first = *rest.at(0);
+            let places = rest.iter_mut().rev();
+            places.for_each(|place| swap(place, &mut first));
             i += 1;
-            if let [q, .., p, r] = rest.corners() {
+            if let [q, .., p, r] = &*rest {
                 let t = nearest_to(&r.at, &p.at, &q.at);
                 let out = side(&between(&p.at, &q.at, t), &r.at);
                 let is_inside = cross(&side(&p.at, &q.at), &out) > 0.0;
                 if length(&out) <= flat || is_inside && t > 0.0 && t < 1.0 {
-                    (rest.len, i) = (rest.len - 1, 0);
+                    rest.pop();
+                    i = 0;
                 }
             }
         }
@@ -184,10 +150,11 @@ impl<const ROOM: usize> Polygon<ROOM> {
         for (a, b) in self.sides() {
             let (at_a, at_b) = (within(&a), within(&b));
             if at_a >= 0.0 {
-                rest.add(a);
+                rest.push(a);
             }
             if (at_a >= 0.0) != (at_b >= 0.0) {
-                rest.push(between(&a.at, &b.at, at_a / (at_a - at_b)));
+                let at = between(&a.at, &b.at, at_a / (at_a - at_b));
+                rest.push(Corner { at, low: 0.0 });
             }
         }
         rest
@@ -196,11 +163,11 @@ impl<const ROOM: usize> Polygon<ROOM> {
     /// How far below the plane it is at a point of it: between its corners, as triangles
     /// about the first of them span it. Differences by `rounding` are none.
     pub fn low(&self, at: &Flat, rounding: Real) -> Real {
-        let Some(first) = self.corners().first() else {
+        let Some(first) = self.first() else {
             return 0.0;
         };
         let (mut least, mut most) = (first.low, first.low);
-        for corner in self.corners() {
+        for corner in self.iter() {
             (least, most) = (lesser(corner.low, least), larger(corner.low, most));
         }
         if most - least <= rounding {
@@ -217,7 +184,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
             } else {
                 // A segment; the sides of a polygon at its first corner.
                 let t = nearest_to(at, &a.at, &b.at);
-                let least = if self.len > 2 {
+                let least = if self.len() > 2 {
                     Real::NEG_INFINITY
                 } else {
                     0.0
@@ -262,56 +229,42 @@ impl<const ROOM: usize> Polygon<ROOM> {
     /// An inscribed polygon is a fan of triangles about `first`, so the best that ends at a
     /// corner is the best that ends at the one before, and a triangle.
     pub fn reduced(&self, first: usize, most: usize) -> Self {
-        let mut turned = *self;
-        let corners = turned.corners_mut();
-        if first < corners.len() {
-            corners.rotate_left(first);
-        }
-        if turned.len <= most || most == 0 {
+        let mut turned = Self::default();
+        (first..first + self.len()).for_each(|i| turned.push(*self.at(i)));
+        if turned.len() <= most || most == 0 {
             return turned;
         }
-        let len = turned.len.min(ROOM);
-        let root = turned.corners[0].at;
-        let spoke = turned.corners.map(|c| side(&root, &c.at));
-        // The best area of a fan that ends at a corner, and the corner before: after one
-        // triangle less. A fan of no triangle is a spoke.
-        let mut best = [0.0; ROOM];
-        let mut before = [[0; ROOM]; ROOM];
-        for chosen in before.iter_mut().take(most).skip(2) {
+        let spoke = |j: usize| side(&turned.at(0).at, &turned.at(j).at);
+        // The best area of a fan that ends at a corner, and its corners, a bit each: a fan of no triangle
+        // is a spoke, and then of one triangle more.
+        let mut best: [(Real, u32); ROOM] = core::array::from_fn(|j| (0.0, 1 | 1 << j));
+        for _ in 2..most {
             let shorter = best;
-            for j in 1..len {
-                best[j] = Real::NEG_INFINITY;
-                for i in 1..j {
-                    let area = shorter[i] + cross(&spoke[i], &spoke[j]);
-                    if area > best[j] {
-                        (best[j], chosen[j]) = (area, i);
+            for (j, best) in best.iter_mut().enumerate().skip(1) {
+                *best = (Real::NEG_INFINITY, 0);
+                for (i, (area, fan)) in shorter.iter().enumerate().take(j).skip(1) {
+                    let area = area + cross(&spoke(i), &spoke(j));
+                    if area > best.0 {
+                        *best = (area, fan | 1 << j);
                     }
                 }
             }
         }
-        let score = |j: usize| {
-            if most == 2 {
-                length(&spoke[j])
-            } else {
-                best[j]
+        let (mut largest, mut taken) = (Real::NEG_INFINITY, 1);
+        for (j, (area, fan)) in best.into_iter().enumerate().take(turned.len()).skip(1) {
+            let score = if most == 2 { length(&spoke(j)) } else { area };
+            if score > largest {
+                (largest, taken) = (score, fan);
             }
-        };
-        let (mut at, mut largest) = (1, score(1));
-        for j in 2..len {
-            if score(j) > largest {
-                (at, largest) = (j, score(j));
-            }
-        }
-        let mut taken = [0; ROOM];
-        let fans = taken.iter_mut().zip(&before).take(most).skip(1);
-        for (place, before) in fans.rev() {
-            *place = at;
-            at = before.get(at).copied().unwrap_or_default();
         }
         let mut rest = Self::default();
-        for place in taken.iter().take(most) {
-            rest.extend(turned.corners.get(*place..=*place).unwrap_or(&[]));
-        }
+        let corners = turned
+            .iter()
+            .enumerate()
+            .filter(|(j, _)| taken >> j & 1 != 0);
+        corners
+            .take(most)
+            .for_each(|(_, corner)| rest.push(*corner));
         rest
     }
 }
@@ -334,7 +287,7 @@ mod tests {
 
     fn polygon(points: &[Flat]) -> Eight {
         let mut p = Eight::default();
-        p.extend(&corners(points));
+        corners(points).iter().for_each(|c| p.push(*c));
         p
     }
 
@@ -362,19 +315,19 @@ mod tests {
             let mut turned = points;
             turned.rotate_left(k);
             let tidy = polygon(&turned).tidy(1e-6, 1e-6);
-            assert_eq!(tidy.corners().len(), 4);
+            assert_eq!(tidy.len(), 4);
             assert!((tidy.area() - 2.0).abs() < 1e-8);
             let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
             turned[0] = line[k % 3];
             turned[1] = line[(k + 1) % 3];
             turned[2] = line[(k + 2) % 3];
             let ends = polygon(turned.get(..3).unwrap()).tidy(1e-6, 1e-6);
-            assert_eq!(ends.corners().len(), 2);
-            let apart = side(&ends.corners()[0].at, &ends.corners()[1].at);
+            assert_eq!(ends.len(), 2);
+            let apart = side(&ends[0].at, &ends[1].at);
             assert_eq!(length(&apart), (8.0 as Real).sqrt());
         }
-        assert_eq!(polygon(&[[3.0, 3.0]; 5]).tidy(0.0, 0.0).corners().len(), 1);
-        assert!(Eight::default().tidy(0.0, 0.0).corners().is_empty());
+        assert_eq!(polygon(&[[3.0, 3.0]; 5]).tidy(0.0, 0.0).len(), 1);
+        assert!(Eight::default().tidy(0.0, 0.0).is_empty());
     }
 
     #[test]
@@ -384,13 +337,12 @@ mod tests {
         let segment = polygon(&[[-3.0, 0.5], [0.5, 0.5]]).inside(&square(0.0, 0.0, 1.0), 0.0);
         let ends = segment.tidy(EPSILON, 0.0);
         assert_eq!(
-            ends.corners().iter().map(|c| c.at).collect::<Vec<_>>(),
+            ends.iter().map(|c| c.at).collect::<Vec<_>>(),
             [[-1.0, 0.5], [0.5, 0.5]]
         );
         assert!(
             polygon(&[[3.0, 0.0]])
                 .inside(&square(0.0, 0.0, 1.0), 0.0)
-                .corners()
                 .is_empty()
         );
     }
@@ -437,8 +389,8 @@ mod tests {
         for first in 0..7 {
             for most in 1..=7 {
                 let rest = whole.reduced(first, most);
-                assert_eq!(rest.corners().len(), most);
-                assert_eq!(rest.corners()[0].at, points[first]);
+                assert_eq!(rest.len(), most);
+                assert_eq!(rest[0].at, points[first]);
                 let mut best: Real = 0.0;
                 for set in 0..128_usize {
                     if set & (1 << first) != 0 && set.count_ones() as usize == most {
@@ -455,7 +407,7 @@ mod tests {
                 );
             }
             let two = whole.reduced(first, 2);
-            let far = length(&side(&two.corners()[0].at, &two.corners()[1].at));
+            let far = length(&side(&two[0].at, &two[1].at));
             let longest = points
                 .iter()
                 .map(|p| length(&side(&points[first], p)))

@@ -25,8 +25,8 @@
 //! round one they lie evenly around, so that c leaves r* as little as the truth does. Where they are
 //! not the whole face more is asked: [`crate::contacts::view`]. Other points enter only as a floor
 //! ([`crate::contacts::seen`]): where known points of one object lie in its support plane all around what
-//! the other has there, no corner of that floor matters, and that object is not asked. As corners they
-//! would not do: they lie where the search came from, and would pull c there.
+//! the other has there, no corner of that floor matters, and that object is not asked; where they leave
+//! something out it is asked towards that, until they do. As corners they would not do: they lie where the search came from, and would pull c there.
 //!
 //! *Fans.* The points of an object, seen from r*, are the corners of a fan of triangles, in each of
 //! which low is linear. The integrals over two fans are in closed form: [`crate::contacts::fan`].
@@ -39,7 +39,7 @@
 use crate::contact::Penetration;
 use crate::contacts::fan::{Fan, pressed};
 use crate::contacts::plane::Plane;
-use crate::contacts::polygon::{Corner, Flat, side};
+use crate::contacts::polygon::{Flat, side};
 use crate::contacts::seen::Seen;
 use crate::contacts::view::{FOUR, Four, View};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -85,7 +85,7 @@ impl Around {
                 self.directions = [Vec3::zeros(); FOUR];
                 return;
             }
-            self.directions[k] = view.direction(0, 2 * k);
+            self.directions[k] = view.directions[k];
             self.points[k] = side(&q.at, &p.at);
         }
     }
@@ -104,7 +104,7 @@ pub struct Aside<'a> {
 }
 
 /// The centre of pressure of a hit, in the middle of the chord there. Two support points where the search
-/// has seen a floor, else four, and a half more where a face has more than four corners.
+/// has seen a floor that holds what is on it, else up to four, and a half more where a face has more than four corners.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support mapping.
@@ -124,45 +124,55 @@ pub fn centre<A: SupportMap, B: SupportMap>(
     }
     let far = lesser(far2[0], far2[1]).sqrt();
     let hair = larger(depth * HAIR, 64.0 * EPSILON * far);
+    let floor = match aside.seen {
+        Seen::Floor(floor) => Some(floor),
+        _ => None,
+    };
+    let plane = match floor {
+        Some(floor) => floor.plane,
+        None => Plane::upright(&hit.normal, &middle),
+    };
+    let tilt = lesser(TILT * (depth / far).sqrt(), MOST);
     let view = View {
         md,
         seen: aside.seen,
         others: aside.others,
-        plane: Plane::upright(&hit.normal, &middle),
+        plane,
         half: 0.5 * hit.depth,
         depth,
-        tilt: lesser(TILT * (depth / far).sqrt(), MOST),
+        share: 1.0 / depth,
+        tilt,
+        directions: plane.around(tilt),
         hair,
     };
     // The smaller one first, or that on the floor.
-    let (first, floor) = match aside.seen {
-        Seen::Floor(floor) => (1 - floor.object % 2, Some(floor)),
-        _ => (usize::from(far2[1] < far2[0]), None),
+    let first = match floor {
+        Some(floor) => 1 - floor.object % 2,
+        None => usize::from(far2[1] < far2[0]),
     };
+    let other = 1 - first;
     let mut four = [Four::default(); 2];
-    let mut fans = [Fan::default(), Fan::default()];
-    for object in [first, 1 - first] {
-        // What is lower than the depth is on the way to it.
-        let shared = |c: &Corner| c.at.map(|x| x / larger(c.low, 1.0));
-        let mut corners = fans[first % 2].corners().iter();
-        if object != first && floor.is_some_and(|floor| corners.all(|c| floor.holds(&shared(c)))) {
-            break;
-        }
-        let (four, fan) = (&mut four[object % 2], &mut fans[object % 2]);
-        view.look(object, four, fan)?;
-        if fan.is_point(POINT * far) {
+    let [mut one, mut two] = [Fan::default(), Fan::default()];
+    view.look(first, &mut four[first % 2], &mut one, None)?;
+    if one.is_point(POINT * far) {
+        return Ok(middle);
+    }
+    view.complete(first, &four[first % 2], &mut one)?;
+    one.settle(LEVEL, hair);
+    let floor = floor.map(|floor| (*floor, &one));
+    view.look(other, &mut four[other % 2], &mut two, floor)?;
+    if !two.is_plane() {
+        if two.is_point(POINT * far) {
             return Ok(middle);
         }
-        view.complete(object, four, fan)?;
-        fan.settle(LEVEL, hair);
-    }
-    let [one, two] = &fans;
-    if let (Some(around), true) = (aside.around, !one.is_plane() && !two.is_plane()) {
-        around.fill(&view, &four);
+        view.complete(other, &four[other % 2], &mut two)?;
+        two.settle(LEVEL, hair);
+        if let Some(around) = aside.around {
+            around.fill(&view, &four);
+        }
     }
     // Rounding may have it elsewhere, where a fan is a line; it is NaN where nothing is shared.
-    let (one, two) = if first == 0 { (one, two) } else { (two, one) };
-    let Some(c) = pressed(one, two, depth * 0.5 / FLANK) else {
+    let Some(c) = pressed(&one, &two, depth * 0.5 / FLANK) else {
         return Ok(middle);
     };
     let Some((low, other)) = one.low(&c).zip(two.low(&c)) else {

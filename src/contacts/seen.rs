@@ -5,7 +5,7 @@
 
 use crate::contact::Penetration;
 use crate::contacts::plane::Plane;
-use crate::contacts::polygon::{Flat, cross, side};
+use crate::contacts::polygon::{Corner, Flat, cross, side};
 use crate::contacts::view::{CIRCLE, FOUR};
 use crate::known::points::Points;
 use crate::math::{EPSILON, Real, Vec3};
@@ -110,8 +110,12 @@ impl Seen {
 pub struct Floor {
     /// Whose: 0 or 1.
     pub object: usize,
-    /// In the hit's plane, [`Plane::upright`].
+    /// The hit's.
+    pub plane: Plane,
+    /// In the plane.
     corners: [Flat; FOUR],
+    /// How far in their directions.
+    most: [Real; FOUR],
 }
 
 impl Floor {
@@ -125,40 +129,58 @@ impl Floor {
         if level.count_ones() < 3 {
             return None;
         }
-        let [e1, e2] = Plane::upright(&n, &middle).axes;
-        let [x, y] = CIRCLE[0];
-        let mut most = [Real::NEG_INFINITY; FOUR];
-        let mut corners = [[0.0; 2]; FOUR];
+        let mut floor = Self {
+            object,
+            plane: Plane::upright(&hit.normal, &middle),
+            corners: [[0.0; 2]; FOUR],
+            most: [Real::NEG_INFINITY; FOUR],
+        };
+        let [e1, e2] = floor.plane.axes;
         while level != 0 {
             let p = known.point_of(object, level.trailing_zeros() as usize) - middle;
             level &= level - 1;
-            let at = [e1.dot(&p), e2.dot(&p)];
-            let (a, b) = (x * at[0] + y * at[1], x * at[1] - y * at[0]);
-            for ((corner, most), reach) in corners.iter_mut().zip(&mut most).zip([a, b, -a, -b]) {
-                (*corner, *most) = if reach > *most {
-                    (at, reach)
-                } else {
-                    (*corner, *most)
-                };
-            }
+            floor.widen([e1.dot(&p), e2.dot(&p)]);
         }
-        let floor = Self { object, corners };
-        floor.holds(&[0.0; 2]).then_some(floor)
+        floor
+            .lacks([[0.0; 2]].into_iter())
+            .is_none()
+            .then_some(floor)
     }
 
-    /// Does this place lie within?
-    #[inline]
-    pub fn holds(&self, at: &Flat) -> bool {
+    /// Adds what is known to be as high.
+    #[inline(always)]
+    fn widen(&mut self, at: Flat) {
+        let [x, y] = CIRCLE[0];
+        let (a, b) = (x * at[0] + y * at[1], x * at[1] - y * at[0]);
+        let places = self.corners.iter_mut().zip(&mut self.most);
+        for ((corner, most), reach) in places.zip([a, b, -a, -b]) {
+            (*corner, *most) = if reach > *most {
+                (at, reach)
+            } else {
+                (*corner, *most)
+            };
+        }
+    }
+
+    /// Adds a corner that was found, if it is as high.
+    pub fn add(&mut self, corner: &Corner) {
+        if corner.low <= LEVEL {
+            self.widen(corner.at);
+        }
+    }
+
+    /// The first of these places that does not lie within.
+    #[inline(always)]
+    pub fn lacks(&self, mut places: impl Iterator<Item = Flat>) -> Option<Flat> {
         let [a, b, c, d] = &self.corners;
-        let is_inside = |p: &Flat, q: &Flat| {
+        let sides = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| {
             let along = side(p, q);
-            cross(&along, &side(p, at)) > 0.0 || along == [0.0; 2]
-        };
-        is_inside(a, b)
-            && is_inside(b, c)
-            && is_inside(c, d)
-            && is_inside(d, a)
-            && (a != c || b != d)
+            // A corner that is two has all within.
+            let least = if p == q { -1.0 } else { cross(&along, p) };
+            (along, least)
+        });
+        let is_line = a == c && b == d;
+        places.find(|at| is_line || !sides.iter().all(|(along, least)| cross(along, at) > *least))
     }
 }
 
@@ -190,8 +212,9 @@ mod tests {
         let [e1, e2] = Plane::upright(&hit.normal, &hit.middle()).axes;
         let at = |v: Vec3| [e1.dot(&v), e2.dot(&v)];
         let floor = outline(&three).unwrap();
-        assert!(floor.holds(&at(corner(0.9, 0.95))));
-        assert!(!floor.holds(&at(corner(0.9, 0.7))));
+        let holds = |v: Vec3| floor.lacks([at(v)].into_iter()).is_none();
+        assert!(holds(corner(0.9, 0.95)));
+        assert!(!holds(corner(0.9, 0.7)));
         // One is lower, or the place is beyond a side, or on it.
         let lower = Vec3::new(0.0, -1.0, -0.001);
         assert!(outline(&[three[0], three[1], lower]).is_none());

@@ -18,7 +18,7 @@
 use crate::contacts::fan::Fan;
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Corner, Flat, cross, dot, length, side};
-use crate::contacts::seen::Seen;
+use crate::contacts::seen::{Floor, Seen};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::math::{EPSILON, Real, Vec3, larger, lesser};
 
@@ -75,10 +75,13 @@ pub struct View<'q, A, B> {
     pub plane: Plane,
     /// How far these are from there, metres.
     pub half: Real,
-    /// The unit of lows, metres.
+    /// The unit of lows, metres, and one over it.
     pub depth: Real,
+    pub share: Real,
     /// Of the directions asked: the tangent of the angle to the normal.
     pub tilt: Real,
+    /// Those of D in which obj1 is asked for its four corners; obj2 is for the opposite ones.
+    pub directions: [Vec3; FOUR],
     /// By how much corners are moved outwards, metres: two that are nearer than twice that are one.
     pub hair: Real,
 }
@@ -87,18 +90,6 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
     /// What the `k`th direction is tilted by.
     fn way(&self, k: usize) -> Flat {
         CIRCLE[k % WAYS].map(|x| x * self.tilt)
-    }
-
-    /// The direction of D with this tilt, as seen by an object.
-    #[inline(always)]
-    pub fn direction(&self, object: usize, k: usize) -> Vec3 {
-        self.towards(object, &self.way(k))
-    }
-
-    #[inline(always)]
-    fn towards(&self, object: usize, aside: &Flat) -> Vec3 {
-        let sign = sign(object);
-        self.plane.direction(sign, aside) * sign
     }
 
     /// What the search found about there.
@@ -112,16 +103,15 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         found.get(self.others.iter().position(is_same)?).copied()
     }
 
-    /// The corner of an object that is farthest along the normal with this tilt in the plane.
-    #[inline(never)]
-    fn ask(&self, object: usize, aside: &Flat) -> Result<Corner, Fault> {
-        let d = self.towards(object, aside);
-        let point = match self.found(&d) {
+    /// The corner of an object in a direction of D.
+    #[inline(always)]
+    fn ask(&self, object: usize, d: &Vec3) -> Result<Corner, Fault> {
+        let point = match self.found(d) {
             Some(points) => points[object % 2],
-            None => self.md.point_of(object, &d),
+            None => self.md.point_of(object, d),
         };
         let mut corner = self.plane.corner(sign(object), &point)?;
-        corner.low = larger((corner.low + self.half) / self.depth, 0.0);
+        corner.low = larger((corner.low + self.half) * self.share, 0.0);
         Ok(corner)
     }
 
@@ -133,11 +123,35 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         }
     }
 
-    /// The corners of an object in the four directions, and their fan.
-    pub fn look(&self, object: usize, four: &mut Four, fan: &mut Fan) -> Result<(), Fault> {
-        for (i, corner) in four.iter_mut().enumerate() {
-            *corner = self.ask(object, &self.way(2 * i))?;
-            fan.insert(i, self.moved(corner, &CIRCLE[2 * i % WAYS]));
+    /// The corners of an object in the four directions, and their fan. Of one of which a floor is known no
+    /// more than until that holds what the other has there: then it has no corners.
+    pub fn look(
+        &self,
+        object: usize,
+        four: &mut Four,
+        fan: &mut Fan,
+        mut floor: Option<(Floor, &Fan)>,
+    ) -> Result<(), Fault> {
+        let mut left = [0, 1, 2, 3];
+        for asked in 0..FOUR {
+            if let Some((floor, on)) = &floor {
+                let Some(at) = floor.lacks(on.ends()) else {
+                    return Ok(());
+                };
+                // Where it lacks most is asked first.
+                let far = |i: usize| dot(&CIRCLE[2 * left[i % FOUR] % WAYS], &at);
+                let next =
+                    (asked + 1..FOUR).fold(asked, |k, i| if far(i) > far(k) { i } else { k });
+                left.swap(asked % FOUR, next % FOUR);
+            }
+            let k = left[asked % FOUR] % FOUR;
+            four[k] = self.ask(object, &self.directions[(k + 2 * object) % FOUR])?;
+            if let Some((floor, _)) = &mut floor {
+                floor.add(&four[k]);
+            }
+        }
+        for (corner, way) in four.iter().zip(CIRCLE.iter().step_by(2)) {
+            fan.corners.push(self.moved(corner, way));
         }
         Ok(())
     }
@@ -145,15 +159,36 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
     /// Puts into the fan of the four what else the object has there.
     #[inline(never)]
     pub fn complete(&self, object: usize, four: &Four, fan: &mut Fan) -> Result<(), Fault> {
-        if let Some(rim) = self.rim(four) {
+        let sides = [0, 1, 2, 3].map(|i| side(&four[i].at, &four[(i + 1) % FOUR].at));
+        let lengths2 = sides.map(|s| dot(&s, &s));
+        let least2 = 4.0 * self.hair * self.hair;
+        let twice = lengths2.iter().position(|l| *l <= least2);
+        if let Some(rim) = if twice.is_none() {
+            self.rim(four)
+        } else {
+            None
+        } {
             for (i, corner) in rim.iter().enumerate() {
-                fan.insert(2 * i + 1, self.moved(corner, &CIRCLE[(2 * i + 1) % WAYS]));
+                fan.corners
+                    .insert(2 * i + 1, self.moved(corner, &CIRCLE[(2 * i + 1) % WAYS]));
             }
             return Ok(());
         }
-        // The side from corner `i` to the next.
-        let Some((i, third)) = self.open(four) else {
-            return Ok(());
+        // The side beyond which there may be another, from corner `i` to the next, and a corner across from it.
+        let (i, third) = if let Some(twice) = twice {
+            // The longest of the three; across is what is neither of its ends.
+            let longest = (1..FOUR).fold(0, |k, j| if lengths2[j] > lengths2[k] { j } else { k });
+            (
+                longest,
+                longest + if (longest + 1) % FOUR == twice { 3 } else { 2 },
+            )
+        } else {
+            let areas = [0, 1, 2, 3].map(|i| cross(&four[i].at, &four[(i + 1) % FOUR].at));
+            let least = (1..FOUR).fold(0, |k, j| if areas[j] < areas[k] { j } else { k });
+            if !(areas[least] < -BEYOND * areas.iter().sum::<Real>()) {
+                return Ok(());
+            }
+            (least, least + 2)
         };
         let [o, p, q] = [third, i, i + 1].map(|j| &four[j % FOUR]);
         let along = side(&p.at, &q.at);
@@ -166,30 +201,13 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         let slope = self.slope([o, p, q]);
         let out = [along[1] / whole, -along[0] / whole];
         let aside = [slope[0] + out[0] * self.tilt, slope[1] + out[1] * self.tilt];
-        let corner = self.ask(object, &aside)?;
+        let sign = sign(object);
+        let corner = self.ask(object, &(self.plane.direction(sign, &aside) * sign))?;
         let is_beyond = dot(&out, &side(&p.at, &corner.at)) > 2.0 * self.hair;
         if is_beyond && corner.low <= self.low(o, &slope, &corner.at) + SAME_FACE {
-            fan.insert(i + 1, self.moved(&corner, &out));
+            fan.corners.insert(i + 1, self.moved(&corner, &out));
         }
         Ok(())
-    }
-
-    /// The side of four corners beyond which there may be another, and a corner across from it.
-    fn open(&self, four: &Four) -> Option<(usize, usize)> {
-        let sides = [0, 1, 2, 3].map(|i| side(&four[i].at, &four[(i + 1) % FOUR].at));
-        let lengths2 = sides.map(|s| dot(&s, &s));
-        if let Some(twice) = lengths2
-            .iter()
-            .position(|l| *l <= 4.0 * self.hair * self.hair)
-        {
-            // The longest of the three; across is what is neither of its ends.
-            let longest = (1..FOUR).fold(0, |k, j| if lengths2[j] > lengths2[k] { j } else { k });
-            let third = longest + if (longest + 1) % FOUR == twice { 3 } else { 2 };
-            return Some((longest, third));
-        }
-        let areas = [0, 1, 2, 3].map(|i| cross(&four[i].at, &four[(i + 1) % FOUR].at));
-        let least = (1..FOUR).fold(0, |k, j| if areas[j] < areas[k] { j } else { k });
-        (areas[least] < -BEYOND * areas.iter().sum::<Real>()).then_some((least, least + 2))
     }
 
     /// The slope of the plane of three corners: how much lower it is a metre along each axis.
