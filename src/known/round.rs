@@ -185,11 +185,6 @@ impl Disc {
         axis: ZERO,
     };
 
-    #[inline(always)]
-    pub fn is_there(&self) -> bool {
-        self.radius > 0.0
-    }
-
     /// What a vector has across the axis.
     #[inline(always)]
     pub fn across(&self, v: &Vec3) -> Vec3 {
