@@ -234,8 +234,8 @@ static void from_states(int call)
     printf("%s: %d hits, %.1f supports, %.1f when asked again; from a flipped state %.2f for %.2f, %d differ; %d pairs at the cap\n",
            calls[call].name, n.hits, n.first / 2. / n.hits, n.again / 2. / n.hits, n.flipped / 2. / PAIRS, n.own / 2. / PAIRS, n.apart,
            n.limited);
-    /* Of a distance another of two ties is asked first: 5 % more. */
-    CHECK(100 * n.flipped <= (ask == ASK_DISTANCE ? 106 : 102) * n.own, "%s: a flipped state is worth less", calls[call].name);
+    /* Of a distance another of two ties is asked first: 5 % more. In single precision more are ties. */
+    CHECK(100 * n.flipped <= (ask == ASK_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103) * n.own, "%s: a flipped state is worth less", calls[call].name);
     if (ask == ASK_LOCAL || ask == ASK_ALONG || ask == ASK_PLANAR)
         CHECK(n.apart <= PAIRS / 50, "%s: %d differ", calls[call].name, n.apart);
     if (ask == ASK_LOCAL || ask == ASK_ALONG)

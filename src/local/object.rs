@@ -225,10 +225,10 @@ impl Object {
         self.kind == Kind::Disc && self.told == Told::Pair
     }
 
-    /// A round part larger than the object was another's.
-    pub fn forget_unless_fits(&mut self, extent2: Real) {
+    /// A round part larger than the object was another's; one of no more than `least`, metres, is none.
+    pub fn forget_unless_fits(&mut self, extent2: Real, least: Real) {
         let size = larger(self.curved.size(), self.disc().radius);
-        if self.is_round() && !fits(size, extent2) {
+        if self.is_round() && !(fits(size, extent2) && size > least) {
             *self = Self::default();
         }
     }

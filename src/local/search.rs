@@ -271,7 +271,7 @@ impl Search {
         let mut twins = [None; 2];
         if first {
             for object in &mut self.objects {
-                object.forget_unless_fits(self.extent2);
+                object.forget_unless_fits(self.extent2, larger(same.round, tolerance));
             }
         } else {
             self.trust.compare(&n, h, before);
