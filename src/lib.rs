@@ -78,7 +78,7 @@ pub use api::{
 pub mod internals {
     pub use crate::contact::{Answer, Settings};
     pub use crate::known::support::MinkowskiDifference;
-    pub use crate::math::{EPSILON, Vec3};
+    pub use crate::math::Vec3;
     pub use crate::paper::incremental::penetration as incremental;
     pub use crate::paper::portal::Until;
 

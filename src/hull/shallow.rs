@@ -42,8 +42,9 @@ const START: usize = Basis::ROOM - 1;
 /// instructions, warm 7 % more; with more 0.3 % fewer, but ODE's cylinder errs along its axis more often.
 const ROUNDS: [u64; 2] = [4, 5];
 /// Points before a ball is looked for instead of a portal, and round parts ahead of the first question beyond
-/// it. Measured: with 2 shallow capsules take 22 % more support points, warm contacts 1 %, ellipsoids 3 %
-/// fewer; without the ball these take 3 %, in motion 8 % more, without the round parts contacts 1 %.
+/// it. Measured: for the ball with 2 shallow capsules take 22 % more support points, warm contacts 1 %,
+/// ellipsoids 3 % fewer, and without one these 3 %, in motion 9 % more; for the round parts with 2 boxes take
+/// a tenth more instructions.
 const EARLY: usize = 3;
 
 /// What a hull keeps its points in.
