@@ -5,12 +5,13 @@
 //! nearest to the origin, until the bounds meet.
 //!
 //! [`global`] is the query, and its head has the steps in order; [`shallow`] proves a shallow contact
-//! without a polytope, from what is known of each object; [`start`] makes the first
+//! without a polytope, from what is known of each object, and [`face`] finds a local minimum so; [`start`] makes the first
 //! tetrahedron, [`expansion`] chooses where to ask, [`polytope`] and [`plane`] are the
 //! polytope.
 
 pub mod cores;
 pub mod expansion;
+pub mod face;
 pub mod global;
 pub mod plane;
 pub mod polytope;

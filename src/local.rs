@@ -67,8 +67,9 @@
 //!
 //! A face that is still there is found again by three directions aside of
 //! the last answer, each towards one active cut and farther than the pair moved, two edges by two
-//! directions, and both proven by one more; a smooth contact by the last direction and one step with
-//! R. The radii of balls and discs stay; a disc's axis turns with its object, and is found anew by
+//! directions, and both proven by one more: without this search, where nothing round bends them by more than
+//! the tolerance (`hull/face.rs`); what has been asked there in vain it begins with. A smooth contact is
+//! found by the last direction and one step with R. The radii of balls and discs stay; a disc's axis turns with its object, and is found anew by
 //! two samples beside each other. What no longer fits is forgotten where the model is above a
 //! sample.
 //!
@@ -100,6 +101,7 @@ mod walk;
 pub use memory::Memory;
 
 use crate::contact::{Penetration, Settings};
+use crate::known::points::Points;
 use crate::known::support::{Known, MinkowskiDifference, SupportMap};
 use crate::known::support_set::Stop;
 use crate::math::Vec3;
@@ -111,7 +113,8 @@ use search::{Outcome, Search};
 /// Writes a `hit`, whose overlap is not proven; `true`: at a local minimum to within the
 /// tolerance, `false`: at the lowest direction met. `inner`: any inner point of D; how far the
 /// support points lie from it is what curvature is first guessed from. `known`: gains support
-/// points for the proof, the active ones or else the best one first.
+/// points for the proof, the active ones or else the best one first. `seen`: what was asked already, to
+/// begin with.
 ///
 /// # Errors
 /// [`Stop::Apart`]; [`Stop::Fault`], where a support mapping answers no number.
@@ -121,13 +124,16 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     start: impl Fn() -> Vec3,
     memory: &mut Memory,
     settings: &Settings,
-    known: &mut Known,
-    hit: &mut Penetration,
+    seen: Option<&Points>,
+    (known, hit): (&mut Known, &mut Penetration),
 ) -> Result<bool, Stop> {
     let mut search = Search::default();
-    let queue = search.recall(memory, &start);
+    let queue = match seen {
+        None => search.recall(memory, &start),
+        Some(_) => [None; 3],
+    };
     let centre = inner.copied().unwrap_or_default();
-    match search.run(md, &centre, queue, settings, known, hit)? {
+    match search.run(md, &centre, (seen, queue), settings, known, hit)? {
         Outcome::Found => {
             search.leave(&hit.dir, memory);
             Ok(true)
@@ -242,8 +248,8 @@ mod tests {
             || start.normalize(),
             memory,
             &settings(tolerance),
-            &mut known,
-            &mut hit,
+            None,
+            (&mut known, &mut hit),
         );
         let answer: Result<Answer, Fault> = match found {
             Ok(true) => Ok(Answer::Hit(hit)),

@@ -678,7 +678,7 @@ fn mark_rest(
 
 /// The objects' points where these corners of a face have these weights.
 #[inline(always)]
-fn mixed(weights: &[Real; 3], corners: [[Vec3; 2]; 3]) -> [Vec3; 2] {
+pub fn mixed(weights: &[Real; 3], corners: [[Vec3; 2]; 3]) -> [Vec3; 2] {
     let [a, b, c] = &corners;
     let point1 = barycentric::mix(weights, [&a[0], &b[0], &c[0]]);
     let point2 = barycentric::mix(weights, [&a[1], &b[1], &c[1]]);

@@ -27,10 +27,10 @@ use crate::math::{EPSILON, Real, Vec3, as_unit, larger, normalised};
 
 /// A portal is where it belongs within this share of the tolerance. Insensitive: 0.02 to 0.2 tried, within
 /// 1 % of the instructions.
-const LEVEL: Real = 0.05;
+pub(super) const LEVEL: Real = 0.05;
 /// Steps of a portal between two questions. Measured on the recorded contacts: with 2 of them 1.6 % more
 /// support points, with more than 3 no fewer.
-const STEPS: usize = 3;
+pub(super) const STEPS: usize = 3;
 /// A hull does not begin with a corner that one question found and so many after it did not. Measured on
 /// ODE's cylinder, whose faults stay corners: with 3, 2 % more contacts are wrong; with 1 as many, and hits
 /// take 0.4 % more instructions.
@@ -51,9 +51,9 @@ const EARLY: usize = 3;
 type Known = SupportSet<{ FIRST.0 }>;
 
 /// What counts for nothing.
-struct Sizes {
+pub(super) struct Sizes {
     /// The gap allowed, metres.
-    tolerance: Real,
+    pub(super) tolerance: Real,
     /// [`Precision::tie`].
     tie: Real,
     /// What three products of lengths round by.
@@ -62,9 +62,9 @@ struct Sizes {
 
 impl Sizes {
     #[inline(always)]
-    fn of(precision: &Precision, limits: &Limits) -> Self {
+    pub(super) fn of(precision: &Precision, tolerance: Real) -> Self {
         Self {
-            tolerance: precision.tolerance(limits.tolerance),
+            tolerance: precision.tolerance(tolerance),
             tie: precision.tie(),
             tiny: 64.0 * EPSILON * (precision.size2() * precision.size()),
         }
@@ -83,7 +83,7 @@ fn least(lowest: &Lowest, c: &Vec3, sizes: &Sizes) -> Option<Real> {
 
 /// A try at a proof: what is known of the pair.
 pub struct Try {
-    c: Vec3,
+    pub(super) c: Vec3,
     /// What is known.
     pub points: Points,
     /// The number of the lowest direction.
@@ -97,7 +97,7 @@ pub struct Try {
     /// Support points beyond the portal.
     pub rounds: u64,
     /// The direction whose point the portal is looked for from.
-    from: usize,
+    pub(super) from: usize,
     /// Does a callback contradict itself?
     pub lies: bool,
 }
@@ -195,7 +195,7 @@ impl Try {
         let at_origin = !(c.norm_squared() > rounding * rounding);
         self.c = if at_origin { -dir * depth } else { *c };
         let hull = hull || at_origin;
-        let sizes = Sizes::of(&inquiry.precision, limits);
+        let sizes = Sizes::of(&inquiry.precision, limits.tolerance);
         if hull && !cold {
             let points = &self.points;
             let names = |k| points.names(k);
@@ -225,7 +225,7 @@ impl Try {
     /// Asks along `n`: the point of D, and its support value. `None`: the callback contradicts
     /// itself.
     #[inline(always)]
-    fn ask<A: SupportMap, B: SupportMap>(
+    pub(super) fn ask<A: SupportMap, B: SupportMap>(
         &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
         n: &Vec3,
@@ -275,7 +275,7 @@ impl Try {
     /// Finds the portal: in P, else by support points along the lowest direction tilted to where P
     /// ends. Not where D looks like a ball, which a hull has a ring for.
     #[inline(always)]
-    fn find<A: SupportMap, B: SupportMap>(
+    pub(super) fn find<A: SupportMap, B: SupportMap>(
         &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
         cold: bool,

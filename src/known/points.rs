@@ -198,6 +198,13 @@ impl Points {
         self.directions[k.min(ROOM - 1)]
     }
 
+    /// The support point that it found.
+    #[inline(always)]
+    pub fn asked_point(&self, k: usize) -> SupportPoint {
+        let [v1, v2] = self.witnesses(self.names(k));
+        SupportPoint { v: v1 - v2, v1, v2 }
+    }
+
     /// The places of the points that it found.
     #[inline(always)]
     pub fn names(&self, k: usize) -> [usize; 2] {

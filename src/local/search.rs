@@ -14,6 +14,7 @@ use super::trust_region::{FIRST, TrustRegion};
 use super::walk::{End, Model, ROOM};
 use crate::contact::{Penetration, Settings};
 use crate::contacts::polygon::Flat;
+use crate::known::points::Points;
 use crate::known::round::{ALIKE, Move, Same, Seen};
 use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::math::{self, EPSILON, Real, Vec3, larger, unit};
@@ -166,7 +167,7 @@ impl Search {
         }
     }
 
-    /// Searches, from these directions on.
+    /// Searches, from what was `seen` already, then from these directions on.
     ///
     /// `centre`: any inner point of D, its distance is the size of what was not seen.
     /// `known` gains the points of a minimum: the active ones, the one there, the others.
@@ -177,21 +178,26 @@ impl Search {
         &mut self,
         md: &MinkowskiDifference<A, B>,
         centre: &Vec3,
-        first: [Option<Vec3>; 3],
+        (seen, first): (Option<&Points>, [Option<Vec3>; 3]),
         settings: &Settings,
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<Outcome, Fault> {
         let mut first = first.into_iter().flatten();
         loop {
-            let n = match first.next() {
-                Some(n) => n,
-                None => match self.next(known, hit) {
-                    Continue(n) => n,
-                    Break(end) => return Ok(end),
-                },
+            let k = self.asked;
+            let (n, p) = if let Some(seen) = seen.filter(|seen| k < seen.asked()) {
+                (seen.direction(k), seen.asked_point(k))
+            } else {
+                let n = match first.next() {
+                    Some(n) => n,
+                    None => match self.next(known, hit) {
+                        Continue(n) => n,
+                        Break(end) => return Ok(end),
+                    },
+                };
+                (n, md.support(&n)?)
             };
-            let p = md.support(&n)?;
             let h = n.dot(&p.v);
             let new = Sample { n, p, h };
             if new.h < 0.0 {
@@ -530,7 +536,7 @@ mod tests {
         let outcome = exact.run(
             &md,
             centre,
-            [Some(n), None, None],
+            (None, [Some(n), None, None]),
             &settings,
             &mut known,
             &mut hit,

@@ -7,8 +7,10 @@ use super::Pair;
 use crate::contact::{Answer, INSIDE, Penetration, Settings};
 use crate::gjk::barycentric;
 use crate::hull::expansion::Limits;
+use crate::hull::shallow::Try;
+use crate::known::points::{Points, ROOM};
 use crate::known::support::{Fault, Known, SupportMap, SupportPoint};
-use crate::known::support_set::Stop;
+use crate::known::support_set::{Inquiry, Stop};
 use crate::local::{self, Memory};
 use crate::math::{Real, Vec3, larger};
 use crate::paper::incremental;
@@ -18,7 +20,8 @@ use crate::paper::portal::{Until, rounding};
 const BUDGET: u64 = 64;
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// A local minimum, its overlap not proven: mostly the first search ends at one.
+    /// A local minimum, its overlap not proven: in the face that the pair touched in before, where that is
+    /// still there; else mostly the first search ends at one.
     pub(super) fn local_minimum(
         &self,
         memory: &mut Memory,
@@ -26,8 +29,41 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
-        let first = settings.max_iterations.min(BUDGET);
-        Ok(self.search(memory, first, settings, known, hit)?
+        let most = settings.max_iterations;
+        if let Some(directions) = memory
+            .face(settings.tolerance)
+            .filter(|_| most >= ROOM as u64)
+        {
+            return self.in_face(memory, &directions, settings, known, hit);
+        }
+        Ok(self.search(memory, None, most, settings, known, hit)?
+            || self.search_on(memory, settings, known, hit)?)
+    }
+
+    /// The same from [`Memory::face`].
+    #[inline(never)]
+    fn in_face(
+        &self,
+        memory: &mut Memory,
+        [dir, others @ .., last]: &[Vec3; 4],
+        settings: &Settings,
+        known: &mut Known,
+        hit: &mut Penetration,
+    ) -> Result<bool, Stop> {
+        let mut inquiry = Inquiry::new(&self.md);
+        let first = inquiry.first(dir, None)?;
+        let mut face = Try::new(dir, &first);
+        if face.recall(&mut inquiry, others)?
+            && face.face(&mut inquiry, last, settings.tolerance)?
+        {
+            face.conclude(&inquiry.lowest, known, hit);
+            memory.touch(&hit.dir, known.points());
+            return Ok(true);
+        }
+        // A callback that contradicts itself is asked anew.
+        let seen = Some(&face.points).filter(|_| !face.lies);
+        let most = settings.max_iterations;
+        Ok(self.search(memory, seen, most, settings, known, hit)?
             || self.search_on(memory, settings, known, hit)?)
     }
 
@@ -56,7 +92,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             before = hit.depth;
             *memory = Memory::towards(hit.normal);
-            if self.search(memory, left.min(BUDGET), settings, known, hit)? {
+            if self.search(memory, None, left, settings, known, hit)? {
                 hit.iterations += most - left;
                 return Ok(true);
             }
@@ -86,18 +122,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(ended)
     }
 
-    /// One local search, of so many iterations at most.
+    /// One local search, of so many iterations at most, or [`BUDGET`]; `seen`: what has been asked already.
     #[inline(never)]
     fn search(
         &self,
         memory: &mut Memory,
+        seen: Option<&Points>,
         max_iterations: u64,
         settings: &Settings,
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
         let settings = Settings {
-            max_iterations,
+            max_iterations: max_iterations.min(BUDGET),
             ..*settings
         };
         local::penetration(
@@ -106,8 +143,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             || self.cold_start(),
             memory,
             &settings,
-            known,
-            hit,
+            seen,
+            (known, hit),
         )
     }
 
