@@ -72,6 +72,15 @@ pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
+/// Puts a number in the place of another, by a mask: for what no processor foretells. Measured on the recorded
+/// contacts, where it chooses a portal's corners and the lowest direction: 2 % more instructions and 8 %
+/// less time a hit than with branches.
+#[inline(always)]
+pub fn replace_if(yes: bool, old: &mut Real, new: Real) {
+    let mask = (Real::to_bits(0.0)).wrapping_sub(yes.into());
+    *old = Real::from_bits(new.to_bits() & mask | old.to_bits() & !mask);
+}
+
 /// The same number as an `f64`.
 #[inline(always)]
 #[allow(clippy::useless_conversion, reason = "it is one in single precision")]

@@ -19,7 +19,7 @@ use crate::gjk::barycentric;
 use crate::hull::start;
 use crate::known::points::Points;
 use crate::known::support_set::Lowest;
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular};
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, replace_if};
 
 /// Steps of a portal that is looked for. Insensitive: 5 to 16 tried on the recorded contacts.
 const FOUND: usize = 8;
@@ -267,21 +267,19 @@ impl Portal {
     pub fn replace(&mut self, names: [usize; 2], p: &Vec3, c: &Vec3) {
         // The side of the plane through c, the origin and p that a corner is on.
         let m = p.cross(c);
-        // Places that are no numbers: the corners stay in registers.
-        let [first, second, third] = &mut self.names;
-        let [a, b, c] = &mut self.points;
-        let (name, corner) = if m.dot(a) > 0.0 {
-            if m.dot(b) > 0.0 {
-                (first, a)
-            } else {
-                (third, c)
+        // By masks: which corner it is nothing foretells.
+        let above = |corner: &Vec3| m.dot(corner) > 0.0;
+        let [a, b, c] = self.points.each_ref().map(above);
+        let takes = [a & b | !a & !c, !a & c, a & !b];
+        for ((corner, name), takes) in self.points.iter_mut().zip(&mut self.names).zip(takes) {
+            for (x, p) in corner.iter_mut().zip(p.iter()) {
+                replace_if(takes, x, *p);
             }
-        } else if m.dot(c) > 0.0 {
-            (second, b)
-        } else {
-            (first, a)
-        };
-        (*name, *corner) = (names, *p);
+            let mask = 0_usize.wrapping_sub(takes.into());
+            for (x, p) in name.iter_mut().zip(names) {
+                *x = p & mask | *x & !mask;
+            }
+        }
     }
 
     /// Is the ball of this radius, metres, inside, if the portal's plane reaches so far? Else the normal of

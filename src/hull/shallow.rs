@@ -23,7 +23,7 @@ use crate::known::points::Points;
 use crate::known::precision::Precision;
 use crate::known::support::{SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet};
-use crate::math::{EPSILON, Real, Vec3, as_unit, larger, normalised};
+use crate::math::{EPSILON, Real, Vec3, as_unit, larger, normalised, replace_if};
 
 /// A portal is where it belongs within this share of the tolerance. Insensitive: 0.02 to 0.2 tried, within
 /// 1 % of the instructions.
@@ -237,10 +237,14 @@ impl Try {
             self.apart(inquiry, n, &point)?;
             return Ok(None);
         }
-        if h < inquiry.lowest.depth {
-            inquiry.lowest = Lowest { depth: h, dir: *n };
-            self.lowest = self.points.asked();
+        let Lowest { depth, dir } = &mut inquiry.lowest;
+        let lower = h < *depth;
+        replace_if(lower, depth, h);
+        for (x, y) in dir.iter_mut().zip(n.iter()) {
+            replace_if(lower, x, *y);
         }
+        let asked = self.points.asked();
+        self.lowest = if lower { asked } else { self.lowest };
         self.points.add(n, &point);
         Ok(Some((point.v, h)))
     }
