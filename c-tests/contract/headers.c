@@ -3,7 +3,8 @@
 
 /* Prints the value of every macro and inline function of the headers, over random and
  * special numbers, bit for bit. Compiled against libccd's headers and against ours: the
- * two must print the same. C99 and C++11; the driver checks that no name is missing. */
+ * two must print the same. C99 and C++11; the driver checks that no name is missing. (That the library
+ * has the same layouts is asserted in src/ffi/types.rs.) */
 
 #include <ccd/ccd.h>
 #include <ccd/ccd_export.h>
@@ -75,6 +76,24 @@ static void center(const void *obj, ccd_vec3_t *c)
     ccdVec3Copy(c, ccd_vec3_origin);
 }
 
+/* Declared once more: another type is an error. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+void ccdFirstDirDefault(const void *, const void *, ccd_vec3_t *);
+int ccdGJKIntersect(const void *, const void *, const ccd_t *);
+int ccdMPRIntersect(const void *, const void *, const ccd_t *);
+int ccdGJKSeparate(const void *, const void *, const ccd_t *, ccd_vec3_t *);
+int ccdGJKPenetration(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
+int ccdMPRPenetration(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
+ccd_real_t ccdVec3PointSegmentDist2(const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, ccd_vec3_t *);
+ccd_real_t ccdVec3PointTriDist2(const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, ccd_vec3_t *);
+extern ccd_vec3_t *ccd_vec3_origin, *ccd_points_on_sphere;
+extern size_t ccd_points_on_sphere_len;
+#ifdef __cplusplus
+}
+#endif
+
 /* The typedefs, and the tags behind them. */
 static ccd_support_fn support_fn = support;
 static ccd_first_dir_fn first_dir_fn = ccdFirstDirDefault;
@@ -117,6 +136,10 @@ int main(void)
     printf("%lu %lu %d\n", (unsigned long)included, (unsigned long)ccd_offsetof(struct outer, member),
            (ccd_container_of(&outer.member, struct outer, member))->first);
     printf("%d %d\n", inlined(), exported());
+#define BYTES(member) (int)offsetof(ccd_t, member)
+    printf("%d %d %d: %d %d %d %d %d %d %d %d %d\n", (int)sizeof(ccd_vec3_t), (int)sizeof(ccd_quat_t), (int)sizeof(ccd_t),
+           BYTES(first_dir), BYTES(support1), BYTES(support2), BYTES(center1), BYTES(center2), BYTES(max_iterations),
+           BYTES(epa_tolerance), BYTES(mpr_tolerance), BYTES(dist_tolerance));
     _ccd_prefetch(&outer);
     _ccd_prefetchw(&outer);
     show("CCD_EPS", CCD_EPS);

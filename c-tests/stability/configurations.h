@@ -138,6 +138,16 @@ static const configuration_row_t configuration_rows[] = {
     {"U06 cylinders", "", {CYLINDER(.5, .5)}, {CYLINDER(.5, .25), AT(1, 0, 0)}, 0, 1e-12, 1e-6, MISSED},
     {"U06 cone", "and sphere", {CONE(.5, .5)}, {SPHERE(.5), AT(0, 0, 1)}, 0, 1e-12, 1e-6, MISSED},
 
+    /* Objects without area. */
+    {"U13 points", "apart", {HULL(origin_point)}, {HULL(origin_point), AT(0, 0, .5)}, -.5, 1e-12, 1e-6, 0},
+    {"U13 rods", "crossed, apart", {HULL(flat_rod)}, {HULL(flat_rod), AT(0, 0, .5), ABOUT(0, 0, 1, 1)}, -.5, 1e-12, 1e-6, 0},
+    {"U13 rods", "through each other", {HULL(flat_rod)}, {HULL(flat_rod), ABOUT(0, 0, 1, 1)}, 0, 1e-12, 1e-6, MISSED},
+    {"U13 rod", "in a square", {HULL(flat_square)}, {HULL(flat_rod)}, 0, 1e-12, 1e-6, MISSED},
+    {"U13 point", "on a rod", {HULL(origin_point)}, {HULL(flat_rod)}, 0, 1e-12, 1e-6, MISSED},
+    {"U13 squares", "one over the other", {HULL(flat_square)}, {HULL(flat_square), AT(.3, .2, .5)}, -.5, 1e-12, 1e-6, 0},
+    {"U13 squares", "on each other", {HULL(flat_square)}, {HULL(flat_square)}, 0, 1e-12, 1e-6, MISSED},
+    {"U13 squares", "side by side", {HULL(flat_square)}, {HULL(flat_square), AT(2.5, 0, 0)}, -.5, 1e-12, 1e-6, 0},
+
     /* FCL, test_fcl_signed_distance */
     {"FCL spheres 1", "apart", {SPHERE(20)}, {SPHERE(10), AT(40, 0, 0)}, -10, 1e-9, 0, 0},
     {"FCL spheres 2", "overlap", {SPHERE(20)}, {SPHERE(10), AT(25, 0, 0)}, 5, 1e-9, 0, 0},

@@ -8,11 +8,9 @@
  *
  *   costs [ID]             exit code 1 if a promise is not as the table at the end marks it */
 
-#define _GNU_SOURCE /* MAP_ANONYMOUS */
+#define _GNU_SOURCE /* ucontext.h */
 #include "categories.h"
 
-#include <sys/mman.h>
-#include <sys/wait.h>
 #include <ucontext.h>
 
 typedef struct {
@@ -30,33 +28,24 @@ static ccd_t query(void)
     ccd_t ccd;
     shape_query(&ccd);
     ccd.support1 = ccd.support2 = judge_support;
-    ccd.mpr_tolerance = ccd.epa_tolerance = tol;
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     return ccd;
 }
 
-/* Support points of one call. */
-static unsigned long supports(int what, const shape_t *a, const shape_t *b, ccd_warm_t *warm)
+/* Support points of one call; state: how else a distance is asked. */
+static unsigned long supports_as(int what, int state, const shape_t *a, const shape_t *b, ccd_warm_t *warm)
 {
-    entry_t e = {"", 0, 0, STATE_NONE};
+    const entry_t e = {"", 0, what, state};
     shape_t sa = *a, sb = *b;
     const ccd_t ccd = query();
     answer_t x;
-    e.ask = what;
     x = ask_guarded(&e, &sa, &sb, &ccd, warm, NULL, no_end);
     return x.calls / 2;
 }
 
-/* The same of ccdMPRPenetrationWarm where nobody reads the position. */
-static unsigned long supports_unread(const shape_t *a, const shape_t *b, ccd_warm_t *warm)
+static unsigned long supports(int what, const shape_t *a, const shape_t *b, ccd_warm_t *warm)
 {
-    shape_t sa = *a, sb = *b;
-    const ccd_t ccd = query();
-    ccd_real_t depth;
-    ccd_vec3_t dir;
-    judge_limit = no_end;
-    judge_calls = 0;
-    OURS(ccdMPRPenetrationWarm)(&sa, &sb, &ccd, warm, &depth, &dir, NULL);
-    return judge_calls / 2;
+    return supports_as(what, STATE_NONE, a, b, warm);
 }
 
 static ccd_warm_t fresh(void)
@@ -189,12 +178,13 @@ static int unchanged(int which)
         else
             overlapping(&d, &p, round_kind, 3, which == UNCHANGED_ROUND ? dice_log(&d, 1e-5, 1e-2) : .1);
         for (k = 0; k < 3; k++) {
-            n = which == UNCHANGED_FACES_UNREAD ? supports_unread(&p.a, &p.b, &warm)
-                                                : supports(ASK_MPR_WARM, &p.a, &p.b, &warm);
+            judge_want = which == UNCHANGED_FACES_UNREAD ? 0 : CCD_WANT_ALL;
+            n = supports(ASK_MPR_WARM, &p.a, &p.b, &warm);
             cold += k ? 0 : n;
         }
         again += n;
     }
+    judge_want = CCD_WANT_ALL;
     printf("%.2f supports asked again, cold %.2f", (double)again / i, (double)cold / i);
     return which < UNCHANGED_ROUND ? (double)again <= 4.5 * i : (double)again <= .7 * (double)cold;
 }
@@ -224,6 +214,77 @@ static int sliding(int what)
     }
     printf("%.2f callbacks a query", 2. * (double)all / frames);
     return all <= 6UL * (unsigned long)frames;
+}
+
+/* --- U14: pairs that stay apart ------------------------------------------------------------------- */
+
+/* b wanders, a tenth of a millimetre and of a degree a frame, and is never nearer than twice the way of
+ * the point that moves most: one support point a query. What the first one asks more than one without a
+ * state is for the others. */
+static int staying_apart(int what)
+{
+    const double turn = .1 * 3.14159265358979323846 / 180;
+    unsigned long all = 0;
+    int i, k, m, frames = 0;
+    for (i = 0; i < 200; i++) {
+        static pair_t p;
+        dice_t d = dice(4400, (uint64_t)i);
+        ccd_warm_t warm = fresh();
+        double way[3], about[3], gap, rot[9], old[9], all_of_it[9];
+        overlapping(&d, &p, any_kind, 7, 1e-2);
+        gap = 2 * (1e-4 + turn * shape_reach(&p.b));
+        move_along(&p.b, p.truth.n, 1e-2 * pair_size(&p.a, &p.b) + gap * dice_in(&d, 1, 10));
+        dice_unit(&d, way);
+        dice_unit(&d, about);
+        for (k = 0; k < 50; k++, frames++) {
+            const unsigned long n = supports(what, &p.a, &p.b, &warm), cold = k ? 0 : supports(what, &p.a, &p.b, NULL);
+            truth_t t;
+            double aside[3];
+            all += n > cold ? n - cold : 0;
+            dice_unit(&d, aside);
+            for (m = 0; m < 3; m++) {
+                way[m] += .3 * aside[m];
+                about[m] += .3 * aside[(m + 1) % 3];
+            }
+            for (m = 0; m < 9; m++)
+                old[m] = (double)p.b.rot[m];
+            rotation_about(about[0], about[1], about[2], turn, rot);
+            rotation_times(rot, old, all_of_it);
+            shape_turn(&p.b, all_of_it);
+            move_along(&p.b, way, 1e-4 / sqrt(truth_dot3(way, way)));
+            t = truth_depth_within(&p.a, &p.b, 1e-5);
+            if (-t.depth < gap)
+                move_along(&p.b, t.n, 1.01 * (gap + t.depth));
+        }
+    }
+    printf("%.3f supports a query", (double)all / frames);
+    return (double)all <= 1.05 * frames;
+}
+
+/* --- U15: distances --------------------------------------------------------------------------------- */
+
+/* Cold, warm and no farther than a tenth of the size; and of balls and capsules, as they are and as
+ * points and segments with margins. */
+static int distances(int of_cores)
+{
+    unsigned long cold = 0, other = 0, near = 0;
+    int i;
+    for (i = 0; i < 300; i++) {
+        static pair_t p;
+        dice_t d = dice(4500, (uint64_t)i);
+        ccd_warm_t warm = fresh();
+        overlapping(&d, &p, of_cores ? round_kind : any_kind, of_cores ? 2 : 7, 1e-2);
+        move_along(&p.b, p.truth.n, dice_log(&d, 2e-2, 1) * pair_size(&p.a, &p.b));
+        judge_size = pair_size(&p.a, &p.b);
+        supports(ASK_DISTANCE, &p.a, &p.b, &warm);
+        cold += supports(ASK_DISTANCE, &p.a, &p.b, NULL);
+        near += supports_as(ASK_DISTANCE, STATE_NEAR, &p.a, &p.b, NULL);
+        if (of_cores)
+            p.a.p[0] = p.b.p[0] = 0;
+        other += of_cores ? supports_as(ASK_DISTANCE, STATE_MARGINS, &p.a, &p.b, NULL) : supports(ASK_DISTANCE, &p.a, &p.b, &warm);
+    }
+    printf("%.2f supports cold, %.2f %s, %.2f if near", (double)cold / i, (double)other / i, of_cores ? "as cores" : "again", (double)near / i);
+    return near <= cold && (double)other <= (of_cores ? 2.5 : 3) * i && (double)cold <= 10 * i;
 }
 
 /* --- U03: stack --------------------------------------------------------------------------------------- */
@@ -340,57 +401,10 @@ static int stack_of(int class)
     return deepest <= limit;
 }
 
-/* A clear miss on a fiber of 48 KB with a guard page below. */
-static int small_fiber(int which)
-{
-    const size_t page = (size_t)sysconf(_SC_PAGESIZE), room = 48 * 1024;
-    shape_t a = shape_box(.5, .4, .3), b = shape_cylinder(.3, .4);
-    int broken = 0, k;
-    (void)which;
-    shape_move(&b, 5, 0, 0);
-    for (k = 0; k < (int)ENTRIES; k++) {
-        int status = 0;
-        pid_t child;
-        if (entries[k].system)
-            continue;
-        fflush(stdout);
-        child = fork();
-        if (child == 0) {
-            unsigned char *memory = (unsigned char *)mmap(NULL, room + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-            ccd_warm_t warm = fresh();
-            signal(SIGSEGV, SIG_DFL);
-            signal(SIGBUS, SIG_DFL);
-            if (memory == MAP_FAILED || mprotect(memory, page, PROT_NONE) != 0)
-                _exit(2);
-            judge_limit = no_end;
-            stack_entry = &entries[k];
-            stack_a = &a;
-            stack_b = &b;
-            stack_query = query();
-            stack_warm = &warm;
-            stack_dir = &stack_along;
-            getcontext(&stack_inner);
-            stack_inner.uc_stack.ss_sp = memory + page;
-            stack_inner.uc_stack.ss_size = room;
-            stack_inner.uc_link = &stack_outer;
-            makecontext(&stack_inner, on_the_stack, 0);
-            swapcontext(&stack_outer, &stack_inner);
-            _exit(0);
-        }
-        if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-            printf("%s dies; ", entries[k].name);
-            broken++;
-        }
-    }
-    printf("%d entry points die", broken);
-    return broken == 0;
-}
-
 int main(int argc, char **argv)
 {
     enum { HOLDS = 0, BROKEN = 1 };
     static const promise_t listed[] = {
-        {"U03", "a clear miss on a fiber of 48 KB", small_fiber, 0, HOLDS},
         {"U03", "stack of any call", stack_of, STACK_ANY, HOLDS},
         {"U03", "stack of a depth by up to 22 support points", stack_of, STACK_FEW, HOLDS},
         {"U03", "stack of yes or no", stack_of, STACK_VERDICT, HOLDS},
@@ -405,6 +419,10 @@ int main(int argc, char **argv)
         {"U11", "the same, its position not read", unchanged, UNCHANGED_FACES_UNREAD, HOLDS},
         {"V11", "faces that slide", sliding, ASK_MPR_WARM, HOLDS},
         {"V11", "faces that slide, by ccdPenetration", sliding, ASK_PENETRATION, HOLDS},
+        {"U14", "yes or no, staying apart", staying_apart, ASK_MPR_INTERSECT_WARM, HOLDS},
+        {"U14", "MPR, staying apart", staying_apart, ASK_MPR_WARM, HOLDS},
+        {"U15", "distances", distances, 0, HOLDS},
+        {"U15", "distances of cores with margins", distances, 1, HOLDS},
         {"U11", "shallow polytopes, unchanged", unchanged, UNCHANGED_FLAT, HOLDS},
         {"U11", "shallow round pairs, unchanged", unchanged, UNCHANGED_ROUND, HOLDS},
         {"U11", "deep round pairs, unchanged", unchanged, UNCHANGED_ROUND_DEEP, BROKEN},

@@ -70,6 +70,8 @@ static const ccd_real_t fcl_convex8_b[][3] = {
 
 static const ccd_real_t huge_triangle[][3] = {{0, 0, 0}, {100, 320, 0}, {0, 320, 0}};
 static const ccd_real_t origin_point[][3] = {{0, 0, 0}};
+static const ccd_real_t flat_rod[][3] = {{-1, 0, 0}, {1, 0, 0}};
+static const ccd_real_t flat_square[][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
 static const ccd_real_t corner_points[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /* parry #253 */
