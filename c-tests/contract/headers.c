@@ -109,6 +109,10 @@ _ccd_inline int inlined(void) { return 5; }
 CCD_EXPORT int exported(void);
 CCD_EXPORT int exported(void) { return 7; }
 
+/* What a call leaves in c, in r. */
+#define VEC3(call) (call, show_vec3(#call, &c))
+#define QUAT(call) (call, show_quat(#call, &r))
+
 int main(void)
 {
     int round;
@@ -181,42 +185,29 @@ int main(void)
         show("ccdVec3Dist2", ccdVec3Dist2(&a, &b));
         show("ccdVec3Dot", ccdVec3Dot(&a, &b));
         ccdVec3Copy(&c, &a);
-        ccdVec3Sub(&c, &b);
-        show_vec3("ccdVec3Sub", &c);
-        ccdVec3Add(&c, &b);
-        show_vec3("ccdVec3Add", &c);
-        ccdVec3Sub2(&c, &b, &a);
-        show_vec3("ccdVec3Sub2", &c);
-        ccdVec3Scale(&c, x);
-        show_vec3("ccdVec3Scale", &c);
+        VEC3(ccdVec3Sub(&c, &b));
+        VEC3(ccdVec3Add(&c, &b));
+        VEC3(ccdVec3Sub2(&c, &b, &a));
+        VEC3(ccdVec3Scale(&c, x));
         ccdVec3Copy(&c, &b);
-        ccdVec3Normalize(&c);
-        show_vec3("ccdVec3Normalize", &c);
-        ccdVec3Cross(&c, &a, &b);
-        show_vec3("ccdVec3Cross", &c);
+        VEC3(ccdVec3Normalize(&c));
+        VEC3(ccdVec3Cross(&c, &a, &b));
 
         quat(&p);
         quat(&q);
         show("ccdQuatLen2", ccdQuatLen2(&p));
         show("ccdQuatLen", ccdQuatLen(&p));
         ccdQuatCopy(&r, &p);
-        printf("%d\n", ccdQuatNormalize(&r));
-        show_quat("ccdQuatNormalize", &r);
-        ccdQuatSetAngleAxis(&r, x, &a);
-        show_quat("ccdQuatSetAngleAxis", &r);
-        ccdQuatScale(&r, y);
-        show_quat("ccdQuatScale", &r);
-        ccdQuatMul2(&r, &p, &q);
-        show_quat("ccdQuatMul2", &r);
+        QUAT(printf("%d\n", ccdQuatNormalize(&r)));
+        QUAT(ccdQuatSetAngleAxis(&r, x, &a));
+        QUAT(ccdQuatScale(&r, y));
+        QUAT(ccdQuatMul2(&r, &p, &q));
         ccdQuatCopy(&r, &p);
-        ccdQuatMul(&r, &q);
-        show_quat("ccdQuatMul", &r);
-        printf("%d\n", ccdQuatInvert(&r));
-        show_quat("ccdQuatInvert", &r);
-        printf("%d\n", ccdQuatInvert2(&r, &q));
-        show_quat("ccdQuatInvert2", &r);
-        ccdQuatRotVec(&b, &p);
-        show_vec3("ccdQuatRotVec", &b);
+        QUAT(ccdQuatMul(&r, &q));
+        QUAT(printf("%d\n", ccdQuatInvert(&r)));
+        QUAT(printf("%d\n", ccdQuatInvert2(&r, &q)));
+        ccdVec3Copy(&c, &b);
+        VEC3(ccdQuatRotVec(&c, &p));
     }
     return 0;
 }

@@ -13,7 +13,7 @@
 enum { ROOM = 32 };
 
 static const int single = sizeof(ccd_real_t) == sizeof(float);
-static const double zero[3] = {0, 0, 0}, pi = 3.14159265358979323846;
+static const double pi = 3.14159265358979323846;
 
 static unsigned long most_asked, most_box_asked;
 static ccd_manifold_t *memory_in_use; /* NULL: none */
@@ -94,9 +94,9 @@ static flats_t flats_of(const contacts_t *c, const frame_t *f)
     int i, k;
     flats.n = 0;
     for (i = 0; i < c->n; i++) {
-        double p[3];
+        truth_real p[3];
         for (k = 0; k < 3; k++)
-            p[k] = (double)c->c[i].point1.v[k];
+            p[k] = c->c[i].point1.v[k];
         flats.p[flats.n++] = manifold_flat(f, p);
     }
     return flats;
@@ -280,20 +280,6 @@ static double blocks(scene_t *s)
     return half;
 }
 
-/* Turns and moves the shape by what it has and then by this. */
-static void turn_by(shape_t *s, const double rot[9], const double by[3])
-{
-    double old[9], all[9], pos[3];
-    int i;
-    for (i = 0; i < 9; i++)
-        old[i] = (double)s->rot[i];
-    rotation_times(rot, old, all);
-    shape_turn(s, all);
-    for (i = 0; i < 3; i++)
-        pos[i] = rot[3 * i] * (double)s->pos[0] + rot[3 * i + 1] * (double)s->pos[1] + rot[3 * i + 2] * (double)s->pos[2] + by[i];
-    shape_move(s, pos[0], pos[1], pos[2]);
-}
-
 /* Where the scene is in the world. */
 static double scene_rot[9], scene_at[3];
 
@@ -301,8 +287,8 @@ static double scene_rot[9], scene_at[3];
 static void put(scene_t *s)
 {
     int k;
-    turn_by(&s->a, scene_rot, scene_at);
-    turn_by(&s->b, scene_rot, scene_at);
+    shape_turn_by(&s->a, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
+    shape_turn_by(&s->b, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
     for (k = 0; k < 3; k++)
         s->n[k] = (double)(ccd_real_t)scene_rot[3 * k + 2];
 }
@@ -326,7 +312,7 @@ static void yaw(shape_t *s)
 {
     double rot[9];
     rotation_about(0, 0, 1, random_in(0, 6.28), rot);
-    turn_by(s, rot, zero);
+    shape_turn_by(s, rot, 0, 0, 0);
 }
 
 static double slop_of(void)
@@ -348,7 +334,7 @@ static void rest(void)
         yaw(&s.b);
         if (i % 2) { /* tilted, by what the slop forgives or not */
             rotation_about(cos(angle), sin(angle), 0, i % 4 == 1 ? s.slop * random_in(0, 3) : pow(10, random_in(-4, -0.3)), rot);
-            turn_by(&s.b, rot, zero);
+            shape_turn_by(&s.b, rot, 0, 0, 0);
         }
         shape_move(&s.b, random_in(-1, 1), random_in(-1, 1), -depth - reach(&s.b, up, -1));
         place(&s, i % 3 ? 1 : 30);
@@ -531,7 +517,7 @@ static void discs(void)
         flats_t found;
         contacts_t c;
         scene_t s;
-        double axis[3];
+        truth_real axis[3];
         s.slop = pow(10, random_in(single ? -4 : -6, -3));
         s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
         s.b = i % 3 ? shape_cylinder(radius, 0.5) : shape_cone(radius, 0.5);
@@ -542,7 +528,7 @@ static void discs(void)
         judge_contacts(&s, &c, "disc");
         found = flats_of(&c, &f);
         for (j = 0; j < 3; j++)
-            axis[j] = (double)s.b.pos[j];
+            axis[j] = s.b.pos[j];
         for (j = 0; j < found.n; j++) {
             const flat_t o = manifold_flat(&f, axis);
             const double from = (double)hypotl(found.p[j].x - o.x, found.p[j].y - o.y);
@@ -607,7 +593,7 @@ static void next_frame(scene_t *s, const motion_t *m)
         scene_at[k] += m->drift * (k + 1);
     }
     shape_move(&s->b, 0, 0, 0);
-    turn_by(&s->b, m->turn, to);
+    shape_turn_by(&s->b, m->turn, to[0], to[1], to[2]);
     memcpy(old, scene_rot, sizeof old);
     rotation_times(m->world, old, scene_rot);
 }

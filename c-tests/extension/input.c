@@ -518,38 +518,28 @@ static void reentrant(void)
     }
 }
 
-static void flip(void)
+/* Guesses that are none leave a cold state; NULL is no error; a guess flipped is the opposite one. */
+static void guesses(void)
 {
-    const ccd_vec3_t back = {{-1, -2, 2}};
+    const ccd_real_t inf = CCD_REAL_MAX * 2;
+    const ccd_vec3_t back = {{-1, -2, 2}}, none[] = {{{0, 0, 0}}, {{inf, 0, 0}}, {{0, inf - inf, 1}}};
     ccd_warm_t warm, other_way, cold;
+    int i;
     memset(&cold, 0, sizeof cold);
-    warm = cold;
+    CHECK(sizeof cold <= 256, "a state of %lu bytes", (unsigned long)sizeof cold);
+    OURS(ccdWarmGuess)(NULL, &way);
     OURS(ccdWarmFlip)(NULL);
+    for (i = 0; i < 4; i++) {
+        memset(&warm, 0x77, sizeof warm);
+        OURS(ccdWarmGuess)(&warm, i < 3 ? &none[i] : NULL);
+        CHECK(same_bits(&warm, &cold, sizeof warm), "a guess that is none");
+    }
     OURS(ccdWarmFlip)(&warm);
     CHECK(same_bits(&warm, &cold, sizeof warm), "a cold state flipped");
     OURS(ccdWarmGuess)(&warm, &way);
     OURS(ccdWarmGuess)(&other_way, &back);
     OURS(ccdWarmFlip)(&warm);
     CHECK(same_bits(&warm, &other_way, sizeof warm), "a guess flipped");
-}
-
-static void guess(void)
-{
-    const ccd_real_t inf = CCD_REAL_MAX * 2;
-    const ccd_vec3_t none[] = {{{0, 0, 0}}, {{inf, 0, 0}}, {{0, inf - inf, 1}}};
-    ccd_warm_t warm, cold;
-    size_t i;
-    memset(&cold, 0, sizeof cold);
-    CHECK(sizeof cold <= 256, "a state of %lu bytes", (unsigned long)sizeof cold);
-    for (i = 0; i < 3; i++) {
-        memset(&warm, 0x77, sizeof warm);
-        OURS(ccdWarmGuess)(&warm, &none[i]);
-        CHECK(same_bits(&warm, &cold, sizeof warm), "a guess that is none");
-    }
-    memset(&warm, 0x77, sizeof warm);
-    OURS(ccdWarmGuess)(&warm, NULL);
-    CHECK(same_bits(&warm, &cold, sizeof warm), "a guess of NULL");
-    OURS(ccdWarmGuess)(NULL, &way);
 }
 
 int main(void)
@@ -560,7 +550,6 @@ int main(void)
     a_distance();
     freedoms();
     reentrant();
-    guess();
-    flip();
+    guesses();
     return checks_end();
 }

@@ -8,7 +8,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{Real, Vec3, unit};
 
 pub type Rotation = nalgebra::Rotation3<Real>;
 
@@ -162,99 +162,4 @@ pub fn pair(kind: usize, gap: Real, r: &mut Random) -> (Shape, Shape) {
             (side(up, Vec3::zeros()), side(-up, up * gap))
         }
     }
-}
-
-/// Boxes a million times longer than thick (single: a thousand), one across the other.
-pub fn needles_and_plates(overlap: impl Fn(&Shape, &Shape, &Vec3) -> bool) {
-    let mut r = Random::new(3);
-    // In single precision 1e-6 would be a few ulps of the length.
-    let thin: Real = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
-    for round in 0..300 {
-        let rot = r.rotation();
-        let mut half = || Vec3::new(r.within(0.1, 1.0), r.within(1e2, 1e3) * thin, thin);
-        let (one, other) = (half(), half());
-        // Turned about the thin axis.
-        let turned = rot * nalgebra::Rotation3::new(Vec3::z() * r.within(-3.0, 3.0));
-        let long = placed(&corners(one), &rot, Vec3::zeros());
-        for gap in [0.1 * thin, -0.1 * thin] {
-            let at = rot * Vec3::z() * (2.0 * thin + gap);
-            let across = placed(&corners(other), &turned, at);
-            let hit = overlap(&hull(&long), &hull(&across), &r.direction());
-            assert_eq!(hit, gap < 0.0, "{round}");
-        }
-    }
-}
-
-/// Polygons, segments and points, alone and against each other, in a common plane
-/// and across it: apart by a tenth, or overlapping by that much.
-pub fn flat_shapes(overlap: impl Fn(&Shape, &Shape, &Vec3) -> bool) {
-    let mut r = Random::new(4);
-    for round in 0..500 {
-        let rot = r.rotation();
-        let at = r.vector(3.0);
-        let [x, y, z] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
-        let triangle = [at, at + x, at + x * 0.3 + y];
-        let inner = at + x * 0.45 + y * 0.3;
-        let shifted = |by: Vec3| triangle.map(|p| p + by);
-        // In one plane: overlap is exact in the plane only, within rounding across
-        // it; so only what is apart can be told for certain.
-        for by in [y * 1.1, y * -1.1, x * 1.1, x * -1.1] {
-            let (a, b) = (hull(&triangle), hull(&shifted(by)));
-            assert!(!overlap(&a, &b, &r.direction()), "side by side, {round}");
-        }
-        // Across the plane.
-        let segment = hull(&[inner - z * 0.5, inner + z * 0.4]);
-        assert!(
-            overlap(&hull(&triangle), &segment, &r.direction()),
-            "{round}"
-        );
-        let short = hull(&[inner + z * 0.1, inner + z * 0.4]);
-        assert!(
-            !overlap(&hull(&triangle), &short, &r.direction()),
-            "{round}"
-        );
-        let outside = at + x * 0.45 - y * 0.1;
-        let beside = hull(&[outside - z, outside + z]);
-        assert!(
-            !overlap(&hull(&triangle), &beside, &r.direction()),
-            "{round}"
-        );
-        // Points in and out of a solid.
-        let cube = hull(&placed(&corners(Vec3::new(0.5, 0.6, 0.7)), &rot, at));
-        let point = |p: Vec3| hull(&[p]);
-        assert!(
-            overlap(&cube, &point(at + x * 0.4), &r.direction()),
-            "{round}"
-        );
-        assert!(
-            !overlap(&cube, &point(at + x * 0.6), &r.direction()),
-            "{round}"
-        );
-        // Segments that miss each other by a tenth, and parallel ones.
-        let a = hull(&[at - x, at + x]);
-        let lifted = at + z * 0.1;
-        for b in [[lifted - y, lifted + y], [lifted - x, lifted + x * 0.5]] {
-            assert!(!overlap(&a, &hull(&b), &r.direction()), "{round}");
-        }
-        // Two points.
-        let (a, b) = (point(at), point(at + x * 1e-3));
-        assert!(!overlap(&a, &b, &r.direction()), "{round}");
-    }
-}
-
-/// Boxes that touch exactly, on a grid where nothing is rounded, and directions to start
-/// from: a face on a face, on a part of it, along an edge, at a corner.
-pub fn touching() -> impl Iterator<Item = (Shape, Shape, Vec3)> {
-    let cube = corners(Vec3::new(0.5, 0.25, 0.5));
-    let mut r = Random::new(5);
-    let by = [
-        Vec3::new(1.0, 0.0, 0.0),
-        Vec3::new(1.0, 0.125, -0.25),
-        Vec3::new(1.0, 0.5, 0.0),
-        Vec3::new(1.0, 0.5, 1.0),
-    ];
-    by.into_iter().cycle().take(200).map(move |by| {
-        let other = placed(&cube, &Rotation::identity(), by);
-        (hull(&cube), hull(&other), r.direction())
-    })
 }

@@ -142,9 +142,7 @@ static const double pos_speed = 2;
 static double angle_between(const double a[3], const double b[3])
 {
     double c[3];
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
+    truth_cross3(a, b, c);
     return atan2(sqrt(truth_dot3(c, c)), truth_dot3(a, b)) * 57.29577951308232;
 }
 

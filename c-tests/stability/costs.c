@@ -59,24 +59,15 @@ static ccd_warm_t fresh(void)
 static void overlapping(dice_t *d, pair_t *p, const int *kinds, int n, double part)
 {
     do {
-        p->a = pair_shape(d, p->verts[0], kinds[dice_below(d, n)], .1, 1);
-        p->b = pair_shape(d, p->verts[1], kinds[dice_below(d, n)], .1, 1);
-        pair_turn(d, &p->a);
-        pair_turn(d, &p->b);
+        pair_of(d, p, kinds, n, 1);
         pair_scatter(d, p, 1, 1e-3);
         p->truth = truth_depth(&p->a, &p->b);
     } while (!(p->truth.lower > part * pair_size(&p->a, &p->b)));
     pair_pull_out(p, part * pair_size(&p->a, &p->b));
 }
 
-static const int any_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
 static const int flat_kind[] = {SHAPE_BOX, SHAPE_POLYTOPE};
 static const int round_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_ELLIPSOID};
-
-static void move_along(shape_t *s, const double n[3], double by)
-{
-    shape_move(s, (double)s->pos[0] + by * n[0], (double)s->pos[1] + by * n[1], (double)s->pos[2] + by * n[2]);
-}
 
 /* --- U07: pairs that overlap pay nothing for having been apart ------------------------------ */
 
@@ -91,7 +82,7 @@ static int having_been_apart(int what)
         shape_t away;
         overlapping(&d, &p, any_kind, 7, 1e-2);
         away = p.b;
-        move_along(&away, p.truth.n, 2e-2 * pair_size(&p.a, &p.b));
+        shape_shift(&away, 2e-2 * pair_size(&p.a, &p.b), p.truth.n);
         supports(what, &p.a, &away, &first);
         supports(what, &p.a, &p.b, &first); /* the old direction is found to be none */
         apart += supports(what, &p.a, &p.b, &first);
@@ -118,14 +109,12 @@ static int asked_once(int which)
         double axis[3], rot[9], n[3];
         int k;
         overlapping(&d, &p, any_kind, 7, 1e-2);
-        move_along(&p.b, p.truth.n, gap * pair_size(&p.a, &p.b));
+        shape_shift(&p.b, gap * pair_size(&p.a, &p.b), p.truth.n);
         if (what == ASK_LOCAL) {
             /* a guess ten degrees off */
             ccd_vec3_t guess;
             dice_unit(&d, axis);
-            n[0] = axis[1] * p.truth.n[2] - axis[2] * p.truth.n[1];
-            n[1] = axis[2] * p.truth.n[0] - axis[0] * p.truth.n[2];
-            n[2] = axis[0] * p.truth.n[1] - axis[1] * p.truth.n[0];
+            truth_cross3(axis, p.truth.n, n);
             rotation_about(n[0], n[1], n[2], 3.14159265358979323846 / 18, rot);
             for (k = 0; k < 3; k++)
                 guess.v[k] = (ccd_real_t)truth_dot3(rot + 3 * k, p.truth.n);
@@ -143,8 +132,7 @@ static int asked_once(int which)
 /* A box that rests on a box, turned about the vertical: faces over each other. */
 static void resting_boxes(dice_t *d, pair_t *p)
 {
-    double rot[9], turned[9], about[9], v[3], pos[3];
-    int k;
+    double rot[9], turned[9], about[9], v[3];
     p->a = pair_shape(d, p->verts[0], SHAPE_BOX, .3, 1);
     p->b = pair_shape(d, p->verts[1], SHAPE_BOX, .1, .3);
     dice_rotation(d, rot);
@@ -153,11 +141,9 @@ static void resting_boxes(dice_t *d, pair_t *p)
     v[0] = dice_in(d, -.5, .5) * (double)p->a.p[0];
     v[1] = dice_in(d, -.5, .5) * (double)p->a.p[1];
     v[2] = (double)p->a.p[2] + (double)p->b.p[2] - dice_log(d, 1e-5, 1e-3);
-    for (k = 0; k < 3; k++)
-        pos[k] = truth_dot3(rot + 3 * k, v);
     shape_turn(&p->a, rot);
     shape_turn(&p->b, turned);
-    shape_move(&p->b, pos[0], pos[1], pos[2]);
+    shape_move(&p->b, truth_dot3(rot, v), truth_dot3(rot + 3, v), truth_dot3(rot + 6, v));
 }
 
 enum { UNCHANGED_FACES, UNCHANGED_FACES_UNREAD, UNCHANGED_FLAT, UNCHANGED_ROUND, UNCHANGED_ROUND_DEEP };
@@ -230,10 +216,10 @@ static int staying_apart(int what)
         static pair_t p;
         dice_t d = dice(4400, (uint64_t)i);
         ccd_warm_t warm = fresh();
-        double way[3], about[3], gap, rot[9], old[9], all_of_it[9];
+        double way[3], about[3], at[3], gap, rot[9];
         overlapping(&d, &p, any_kind, 7, 1e-2);
         gap = 2 * (1e-4 + turn * shape_reach(&p.b));
-        move_along(&p.b, p.truth.n, 1e-2 * pair_size(&p.a, &p.b) + gap * dice_in(&d, 1, 10));
+        shape_shift(&p.b, 1e-2 * pair_size(&p.a, &p.b) + gap * dice_in(&d, 1, 10), p.truth.n);
         dice_unit(&d, way);
         dice_unit(&d, about);
         for (k = 0; k < 50; k++, frames++) {
@@ -246,15 +232,15 @@ static int staying_apart(int what)
                 way[m] += .3 * aside[m];
                 about[m] += .3 * aside[(m + 1) % 3];
             }
-            for (m = 0; m < 9; m++)
-                old[m] = (double)p.b.rot[m];
             rotation_about(about[0], about[1], about[2], turn, rot);
-            rotation_times(rot, old, all_of_it);
-            shape_turn(&p.b, all_of_it);
-            move_along(&p.b, way, 1e-4 / sqrt(truth_dot3(way, way)));
+            for (m = 0; m < 3; m++)
+                at[m] = (double)p.b.pos[m];
+            shape_move(&p.b, 0, 0, 0);
+            shape_turn_by(&p.b, rot, at[0], at[1], at[2]);
+            shape_shift(&p.b, 1e-4 / sqrt(truth_dot3(way, way)), way);
             t = truth_depth_within(&p.a, &p.b, 1e-5);
             if (-t.depth < gap)
-                move_along(&p.b, t.n, 1.01 * (gap + t.depth));
+                shape_shift(&p.b, 1.01 * (gap + t.depth), t.n);
         }
     }
     printf("%.3f supports a query", (double)all / frames);
@@ -274,7 +260,7 @@ static int distances(int of_cores)
         dice_t d = dice(4500, (uint64_t)i);
         ccd_warm_t warm = fresh();
         overlapping(&d, &p, of_cores ? round_kind : any_kind, of_cores ? 2 : 7, 1e-2);
-        move_along(&p.b, p.truth.n, dice_log(&d, 2e-2, 1) * pair_size(&p.a, &p.b));
+        shape_shift(&p.b, dice_log(&d, 2e-2, 1) * pair_size(&p.a, &p.b), p.truth.n);
         judge_size = pair_size(&p.a, &p.b);
         supports(ASK_DISTANCE, &p.a, &p.b, &warm);
         cold += supports(ASK_DISTANCE, &p.a, &p.b, NULL);

@@ -218,25 +218,16 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     ccd_distance_t distance;
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
-    call_rest_t rest;
+    const ccd_real_t margin = (ccd_real_t)(e->state == STATE_MARGINS ? .1 * judge_size : 0);
+    const call_rest_t rest = {.warm = warm, .along = along, .want = judge_want, .depth = &depth, .dir = &dir,
+                              .pos = judge_want & CCD_WANT_POS ? &pos : NULL, .full = &p, .margin1 = margin, .margin2 = margin / 3,
+                              .max_distance = (ccd_real_t)(e->state == STATE_NEAR ? .1 * judge_size : HUGE_VAL), .distance = &distance};
     const int full = e->ask >= ASK_PENETRATION;
     int code, i;
     memset(&p, judge_blank, sizeof p);
     memset(&depth, judge_blank, sizeof depth);
     memset(&dir, judge_blank, sizeof dir);
     memset(&pos, judge_blank, sizeof pos);
-    memset(&rest, 0, sizeof rest);
-    rest.warm = warm;
-    rest.along = along;
-    rest.want = judge_want;
-    rest.depth = &depth;
-    rest.dir = &dir;
-    rest.pos = judge_want & CCD_WANT_POS ? &pos : NULL;
-    rest.full = &p;
-    rest.margin1 = (ccd_real_t)(e->state == STATE_MARGINS ? .1 * judge_size : 0);
-    rest.margin2 = rest.margin1 / 3;
-    rest.max_distance = (ccd_real_t)(e->state == STATE_NEAR ? .1 * judge_size : HUGE_VAL);
-    rest.distance = &distance;
     code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
     if (entry_is_verdict(e))
         code = code ? CCD_HIT : CCD_MISS;

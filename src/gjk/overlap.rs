@@ -256,7 +256,7 @@ mod tests {
     use super::*;
     use crate::known::precision::Precision;
     use crate::math::EPSILON;
-    use crate::shapes::{self, KINDS, Random, Shape, ball, corners, hull, pair, placed, scaled};
+    use crate::shapes::{KINDS, Random, Shape, ball, corners, hull, pair, placed, scaled};
 
     /// The points that a portal's last word gives have the origin between them.
     #[test]
@@ -363,36 +363,6 @@ mod tests {
                     assert_eq!(md.supports(), other.supports());
                 }
             }
-        }
-    }
-
-    #[test]
-    fn needles_and_plates() {
-        shapes::needles_and_plates(overlap);
-    }
-
-    #[test]
-    fn flat_shapes() {
-        shapes::flat_shapes(overlap);
-        let mut r = Random::new(5);
-        for _ in 0..500 {
-            let (rot, at) = (r.rotation(), r.vector(3.0));
-            // A point on itself is a touch; so is what is flat, whatever it shares.
-            assert!(!overlap(&hull(&[at]), &hull(&[at]), &r.direction()));
-            let triangle = [
-                at,
-                at + rot * Vec3::x(),
-                at + rot * Vec3::new(0.3, 1.0, 0.0),
-            ];
-            let other = triangle.map(|p| p + rot * Vec3::x() * 0.2);
-            assert!(!overlap(&hull(&triangle), &hull(&other), &r.direction()));
-        }
-    }
-
-    #[test]
-    fn exact_touch_is_a_miss() {
-        for (a, b, dir) in shapes::touching() {
-            assert!(!overlap(&a, &b, &dir));
         }
     }
 
