@@ -452,18 +452,14 @@ static inline void truth_enumerate(truth_search_t *t)
     }
     /* a core that is a segment or a point has directions across it that no pair of
      * edges names */
-    for (i = 0; i < a->ne && (b->nn == 0 || a->nn == 0); i++)
-        for (k = 0; k < 3; k++) {
-            truth_minus(a->v[a->e[i][1]], a->v[a->e[i][0]], d);
-            if (truth_cross(d, axes[k], n))
+    for (j = 0; j < 2 && (a->nn == 0 || b->nn == 0); j++) {
+        const truth_core_t *c = j ? b : a;
+        for (i = 0; i < 3 * c->ne; i++) {
+            truth_minus(c->v[c->e[i / 3][1]], c->v[c->e[i / 3][0]], d);
+            if (truth_cross(d, axes[i % 3], n))
                 truth_try_both(t, n);
         }
-    for (j = 0; j < b->ne && (b->nn == 0 || a->nn == 0); j++)
-        for (k = 0; k < 3; k++) {
-            truth_minus(b->v[b->e[j][1]], b->v[b->e[j][0]], e);
-            if (truth_cross(e, axes[k], n))
-                truth_try_both(t, n);
-        }
+    }
     /* origin outside the core: along its nearest edge or vertex */
     for (i = 0; i < a->nv; i++) {
         for (j = 0; j < b->nv; j++) {

@@ -31,14 +31,11 @@ typedef struct {
 static answer_t ask_pair(case_t *c, int swap, ccd_warm_t *warm)
 {
     shape_t a = swap ? c->pair.b : c->pair.a, b = swap ? c->pair.a : c->pair.b;
+    const ccd_t ccd = judge_query(c->question.tol);
     ccd_vec3_t dir;
-    ccd_t ccd;
     int k;
     for (k = 0; k < 3; k++)
         dir.v[k] = (ccd_real_t)(swap ? -c->dir[k] : c->dir[k]);
-    shape_query(&ccd);
-    ccd.support1 = ccd.support2 = judge_support;
-    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)c->question.tol;
     return ask_guarded(&c->call, &a, &b, &ccd, warm, &dir, most_calls(&c->call));
 }
 
@@ -50,12 +47,8 @@ static answer_t answer(case_t *c, int swap, ccd_warm_t *warm, const char *state)
         & FAULTS_NEVER & ~FAULT_LIMIT;
     double across = truth_dot3(x.dir, c->dir);
     CHECK(!faults, "%s from %s", c->call.name, state);
-    if (faults) {
-        print_faults(stdout, faults);
-        printf(": ");
-        print_answer(stdout, &x);
-        printf(", truth %.17g\n", c->question.truth.depth);
-    }
+    if (faults)
+        print_wrong(&c->call, &x, faults, &c->question.truth);
     CHECK(c->call.ask != ASK_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_ulp(), "planar: %g out of the plane", across);
     c->limited |= x.code == CCD_LIMIT;
     return x;

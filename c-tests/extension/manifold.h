@@ -58,7 +58,7 @@ static inline truth_real flat_cross(flat_t a, flat_t b, flat_t c)
 static inline flats_t flat_hull(const flats_t *points)
 {
     flats_t sorted = *points, hull;
-    int i, j, half, n = 0;
+    int i, j, half = 2, n = 0;
     for (i = 1; i < sorted.n; i++) {
         const flat_t p = sorted.p[i];
         for (j = i; j > 0 && (p.x < sorted.p[j - 1].x || (p.x == sorted.p[j - 1].x && p.y < sorted.p[j - 1].y)); j--)
@@ -67,15 +67,13 @@ static inline flats_t flat_hull(const flats_t *points)
     }
     if (sorted.n < 2)
         return sorted;
-    for (i = 0; i < sorted.n; i++) {
-        while (n >= 2 && !(flat_cross(hull.p[n - 2], hull.p[n - 1], sorted.p[i]) > 0))
+    /* along the lower side, and back along the upper one */
+    for (i = 0; i < 2 * sorted.n - 1; i++) {
+        const flat_t p = sorted.p[i < sorted.n ? i : 2 * sorted.n - 2 - i];
+        half = i == sorted.n ? n + 1 : half;
+        while (n >= half && !(flat_cross(hull.p[n - 2], hull.p[n - 1], p) > 0))
             n--;
-        hull.p[n++] = sorted.p[i];
-    }
-    for (i = sorted.n - 2, half = n + 1; i >= 0; i--) {
-        while (n >= half && !(flat_cross(hull.p[n - 2], hull.p[n - 1], sorted.p[i]) > 0))
-            n--;
-        hull.p[n++] = sorted.p[i];
+        hull.p[n++] = p;
     }
     hull.n = n - 1;
     return hull;

@@ -72,13 +72,9 @@ static void check(const configuration_t *c)
         if (faults && ledger) {
             bad++;
         } else if (faults) {
-            if (!bad++)
-                printf("%-28s truth %.17g\n", c->id, truth.depth);
-            printf("    FAILED %-22s ", e->name);
-            print_faults(stdout, faults);
-            printf(": ");
-            print_answer(stdout, &x);
-            printf("\n");
+            printf("FAILED %s, ", c->id);
+            print_wrong(e, &x, faults, &truth);
+            bad++;
             broken[i]++;
         }
     }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a query may cost, as promises: support points of warm queries, bytes of stack. (How many
+/* What a query may cost, as promises: support points, bytes of stack. (How many
  * support points the slowest may ask for is most_calls in judge.h.) A promise that is broken and
  * not marked so fails the test; one that is marked and holds fails it too, so that the mark goes
  * when the fault does.
@@ -23,21 +23,12 @@ typedef struct {
 static const double tol = 1e-6; /* metres */
 static const unsigned long no_end = 400000;
 
-static ccd_t query(void)
-{
-    ccd_t ccd;
-    shape_query(&ccd);
-    ccd.support1 = ccd.support2 = judge_support;
-    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
-    return ccd;
-}
-
 /* Support points of one call; state: how else a distance is asked. */
 static unsigned long supports_as(int what, int state, const shape_t *a, const shape_t *b, ccd_warm_t *warm)
 {
     const entry_t e = {"", 0, what, state};
     shape_t sa = *a, sb = *b;
-    const ccd_t ccd = query();
+    const ccd_t ccd = judge_query(tol);
     answer_t x;
     x = ask_guarded(&e, &sa, &sb, &ccd, warm, NULL, no_end);
     return x.calls / 2;
@@ -270,7 +261,7 @@ static int distances(int of_cores)
         other += of_cores ? supports_as(ASK_DISTANCE, STATE_MARGINS, &p.a, &p.b, NULL) : supports(ASK_DISTANCE, &p.a, &p.b, &warm);
     }
     printf("%.2f supports cold, %.2f %s, %.2f if near", (double)cold / i, (double)other / i, of_cores ? "as cores" : "again", (double)near / i);
-    return near <= cold && (double)other <= (of_cores ? 2.5 : 3) * i && (double)cold <= 10 * i;
+    return 3 * near <= 2 * cold && (double)other <= (of_cores ? 2.5 : 3) * i && (double)cold <= 10 * i;
 }
 
 /* --- U03: stack --------------------------------------------------------------------------------------- */
@@ -340,7 +331,7 @@ static int stack_of(int class)
     static pair_t p;
     size_t empty, most[ENTRIES] = {0}, limit = stack_limits[class] * 1024, deepest = 0;
     int i, k;
-    stack_query = query();
+    stack_query = judge_query(tol);
     if (!stack_floor)
         stack_floor = (uint64_t *)malloc(STACK_WORDS * sizeof *stack_floor);
     if (!stack_floor)

@@ -316,15 +316,22 @@ static inline answer_t ask_objects(const entry_t *e, const void *a, const void *
     return ask_guarded(e, a, b, ccd, e->state == STATE_NONE || e->state >= STATE_MARGINS ? NULL : &warm, &along, limit);
 }
 
-/* The question about two shapes. limit: support calls until it is a loop. */
-static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
-                           const double normal[3], unsigned long limit)
+/* Of shapes, whose support points are counted, to one tolerance for every call. */
+static inline ccd_t judge_query(double tol)
 {
-    shape_t sa = *a, sb = *b;
     ccd_t ccd;
     shape_query(&ccd);
     ccd.support1 = ccd.support2 = judge_support;
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
+    return ccd;
+}
+
+/* The question about two shapes. limit: support calls until it is a loop. */
+static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
+                           const double normal[3], unsigned long limit)
+{
+    const ccd_t ccd = judge_query(tol);
+    shape_t sa = *a, sb = *b;
     judge_size = pair_size(a, b);
     return ask_objects(e, &sa, &sb, &ccd, normal, limit);
 }
@@ -681,6 +688,16 @@ static inline void print_answer(FILE *file, const answer_t *x)
         fprintf(file, " lower %.17g normal %.9g %.9g %.9g point1 %.9g %.9g %.9g point2 %.9g %.9g %.9g supports %lu",
                 x->lower, x->normal[0], x->normal[1], x->normal[2], x->point1[0], x->point1[1], x->point1[2],
                 x->point2[0], x->point2[1], x->point2[2], x->supports);
+}
+
+/* An answer that is wrong, on one line. */
+static inline void print_wrong(const entry_t *e, const answer_t *x, int faults, const truth_t *truth)
+{
+    printf("%s: ", e->name);
+    print_faults(stdout, faults);
+    printf(": ");
+    print_answer(stdout, x);
+    printf(", truth %.17g (lower %.17g) along %.17g %.17g %.17g\n", truth->depth, truth->lower, truth->n[0], truth->n[1], truth->n[2]);
 }
 
 /* A pair as C that makes it again. */
