@@ -95,7 +95,6 @@ if [ "$job" != main ]; then
     want_command ninja ninja-build
     want_command git git
     want_command xz xz-utils
-    want_command abidiff abigail-tools
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then
         want_package libccd-dev libfcl-dev libode-dev libmujoco-dev \

@@ -56,7 +56,6 @@ typedef struct {
     ccd_real_t rot[9];
     int last;                /* where the next hill climb starts */
     unsigned long calls;     /* support calls so far */
-    unsigned long not_unit;  /* calls with a direction that was not unit (with SHAPES_CHECK_UNIT) */
 } shape_t;
 
 /* --- making and placing ---------------------------------------------------- */
@@ -149,6 +148,20 @@ static inline void rotation_times(const double a[9], const double b[9], double o
     for (i = 0; i < 3; i++)
         for (j = 0; j < 3; j++)
             out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+/* Turned about the world's origin from where it is, and then moved. */
+static inline void shape_turn_by(shape_t *s, const double rot[9], double x, double y, double z)
+{
+    double old[9], all[9], p[3];
+    int i;
+    for (i = 0; i < 9; i++)
+        old[i] = (double)s->rot[i];
+    rotation_times(rot, old, all);
+    shape_turn(s, all);
+    for (i = 0; i < 3; i++)
+        p[i] = rot[3 * i] * (double)s->pos[0] + rot[3 * i + 1] * (double)s->pos[1] + rot[3 * i + 2] * (double)s->pos[2];
+    shape_move(s, p[0] + x, p[1] + y, p[2] + z);
 }
 
 /* The edge graph of a triangle mesh over nverts vertices, for hill climbing: the
@@ -334,10 +347,6 @@ static inline void shape_support(const void *obj, const ccd_vec3_t *dir, ccd_vec
     const ccd_real_t *r = s->rot, *w = dir->v;
     ccd_real_t d[3], v[3] = {0, 0, 0};
     s->calls++;
-#ifdef SHAPES_CHECK_UNIT
-    if (!(fabs((double)(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) - 1) <= (sizeof(ccd_real_t) == 8 ? 1e-14 : 1e-6)))
-        s->not_unit++;
-#endif
     d[0] = r[0] * w[0] + r[3] * w[1] + r[6] * w[2];
     d[1] = r[1] * w[0] + r[4] * w[1] + r[7] * w[2];
     d[2] = r[2] * w[0] + r[5] * w[1] + r[8] * w[2];

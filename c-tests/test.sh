@@ -54,8 +54,7 @@ run "double precision" cargo test --no-fail-fast
 # The same C programs where errors that leave no trace show, without what no tool sees:
 # headers and symbols, counts of supports, programs with a malloc of their own or under
 # callgrind.
-unseen="--skip headers_ --skip abidiff --skip archive_defines --skip stay_apart --skip beside_fcl"
-unseen="$unseen --skip memory --skip expanding"
+unseen="--skip headers_ --skip archive_defines --skip memory --skip take_no_more"
 # shellcheck disable=SC2086  # one word each
 {
     run "gcc's sanitizers" sh c-tests/tools/check.sh address --test contract --test extension -- $unseen

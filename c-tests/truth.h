@@ -25,7 +25,7 @@
  * error of that bound falls with the square of the triangle. Triangles are split
  * in four, the one with the least bound first, until the bounds meet.
  *
- * Also here: the depth along a given direction, by the same two methods. */
+ * Also here: the depth along a given direction, by Newton's steps. */
 
 #ifndef TESTS_TRUTH_H
 #define TESTS_TRUTH_H
@@ -45,6 +45,15 @@ typedef struct {
 
 typedef long double truth_real;
 
+static inline double truth_dot3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static inline void truth_cross3(const double a[3], const double b[3], double out[3])
+{
+    int i;
+    for (i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
 /* --- support in full precision ---------------------------------------------- */
 
 /* Support point of one shape in double, relative to origin, for unit w. */
@@ -59,7 +68,7 @@ static inline void truth_point(const shape_t *s, const double origin[3], const d
     switch (s->type) {
     case SHAPE_SPHERE:
     case SHAPE_CAPSULE:
-        l = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        l = sqrt(truth_dot3(d, d));
         for (i = 0; i < 3; i++)
             v[i] = p[0] * d[i] / l;
         if (s->type == SHAPE_CAPSULE)
@@ -130,12 +139,12 @@ static inline void truth_difference(const shape_t *a, const shape_t *b, const do
 /* h(n) for a direction of any length but zero, per unit length. */
 static inline double truth_value(const shape_t *a, const shape_t *b, const double dir[3])
 {
-    double n[3], s[3], l = sqrt(dir[0] * dir[0] + dir[1] * dir[1] + dir[2] * dir[2]);
+    double n[3], s[3], l = sqrt(truth_dot3(dir, dir));
     int i;
     for (i = 0; i < 3; i++)
         n[i] = dir[i] / l;
     truth_difference(a, b, n, s);
-    return n[0] * s[0] + n[1] * s[1] + n[2] * s[2];
+    return truth_dot3(n, s);
 }
 
 /* Radius of a ball about the shape's position that holds it. */
@@ -276,8 +285,8 @@ static inline void truth_faces(truth_core_t *c)
                 truth_add_edge(c, i, j);
 }
 
-/* The shape as core plus ball; 0 when it is none. */
-static inline int truth_core(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
+/* The vertices and the ball of a shape that is both together; 0 when it is none. */
+static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
 {
     truth_real local[TRUTH_ENUMERATED][3];
     int i, k, m;
@@ -320,6 +329,15 @@ static inline int truth_core(const shape_t *s, const ccd_real_t origin[3], truth
             for (m = 0; m < 3; m++)
                 c->v[i][k] += s->rot[3 * k + m] * local[i][m];
         }
+    return 1;
+}
+
+/* And the faces and edges of their hull. */
+static inline int truth_core(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
+{
+    int i, k, m;
+    if (!truth_vertices(s, origin, c))
+        return 0;
     if (s->type == SHAPE_BOX) {
         truth_real axis[3][3];
         for (k = 0; k < 3; k++)
@@ -340,21 +358,15 @@ static inline int truth_core(const shape_t *s, const ccd_real_t origin[3], truth
 
 typedef struct {
     const truth_core_t *a, *b;
-    const truth_real *along; /* NULL, or minimise h(n) / (n . along) */
     truth_real best, n[3], rho;
 } truth_search_t;
 
 /* Takes n (unit) as a candidate. Leaves early once it cannot be the best. */
 static inline void truth_try(truth_search_t *t, const truth_real n[3])
 {
-    truth_real most = -LDBL_MAX, least = LDBL_MAX, x, scale = 1, limit;
+    const truth_real limit = t->best - t->rho;
+    truth_real most = -LDBL_MAX, least = LDBL_MAX, x;
     int i;
-    if (t->along) {
-        scale = truth_dot(n, t->along);
-        if (!(scale > 0))
-            return;
-    }
-    limit = t->best * scale - t->rho;
     for (i = 0; i < t->a->nv; i++) {
         x = truth_dot(n, t->a->v[i]);
         if (x > most)
@@ -368,7 +380,7 @@ static inline void truth_try(truth_search_t *t, const truth_real n[3])
                 return;
         }
     }
-    t->best = (most - least + t->rho) / scale;
+    t->best = most - least + t->rho;
     memcpy(t->n, n, sizeof t->n);
 }
 
@@ -424,9 +436,9 @@ static inline void truth_enumerate(truth_search_t *t)
                 x = truth_dot(p, n);
                 for (k = 0; k < 3; k++)
                     q[k] = -n[k];
-                if (t->along || x < t->best - t->rho)
+                if (x < t->best - t->rho)
                     truth_try(t, n);
-                if (t->along || -x < t->best - t->rho)
+                if (-x < t->best - t->rho)
                     truth_try(t, q);
             }
             /* parallel edges of a core that is itself flat: across their plane */
@@ -440,18 +452,14 @@ static inline void truth_enumerate(truth_search_t *t)
     }
     /* a core that is a segment or a point has directions across it that no pair of
      * edges names */
-    for (i = 0; i < a->ne && (b->nn == 0 || a->nn == 0); i++)
-        for (k = 0; k < 3; k++) {
-            truth_minus(a->v[a->e[i][1]], a->v[a->e[i][0]], d);
-            if (truth_cross(d, axes[k], n))
+    for (j = 0; j < 2 && (a->nn == 0 || b->nn == 0); j++) {
+        const truth_core_t *c = j ? b : a;
+        for (i = 0; i < 3 * c->ne; i++) {
+            truth_minus(c->v[c->e[i / 3][1]], c->v[c->e[i / 3][0]], d);
+            if (truth_cross(d, axes[i % 3], n))
                 truth_try_both(t, n);
         }
-    for (j = 0; j < b->ne && (b->nn == 0 || a->nn == 0); j++)
-        for (k = 0; k < 3; k++) {
-            truth_minus(b->v[b->e[j][1]], b->v[b->e[j][0]], e);
-            if (truth_cross(e, axes[k], n))
-                truth_try_both(t, n);
-        }
+    }
     /* origin outside the core: along its nearest edge or vertex */
     for (i = 0; i < a->nv; i++) {
         for (j = 0; j < b->nv; j++) {
@@ -486,11 +494,6 @@ typedef struct {
     double bound;
 } truth_triangle_t;
 
-static inline double truth_dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Value of the 3 x 3 game: over convex weights of the rows, the largest least
  * column. Candidates: single rows, two rows where two columns meet, all three
  * where all columns meet; the largest valid one is a bound, whichever it is. */
@@ -520,9 +523,7 @@ static inline double truth_game(double m[3][3])
             d[k] = m[k][0] - m[k][1];
             e[k] = m[k][0] - m[k][2];
         }
-        w[0] = d[1] * e[2] - d[2] * e[1];
-        w[1] = d[2] * e[0] - d[0] * e[2];
-        w[2] = d[0] * e[1] - d[1] * e[0];
+        truth_cross3(d, e, w);
         sum = w[0] + w[1] + w[2];
         if (sum != 0) {
             for (k = 0; k < 3; k++)
@@ -544,41 +545,22 @@ static inline double truth_edge2(const truth_triangle_t *t)
     double most = 0;
     int k, i;
     for (k = 0; k < 3; k++) {
-        double l = 0;
+        double e[3];
         for (i = 0; i < 3; i++)
-            l += (t->n[k][i] - t->n[(k + 1) % 3][i]) * (t->n[k][i] - t->n[(k + 1) % 3][i]);
-        most = fmax(most, l);
+            e[i] = t->n[k][i] - t->n[(k + 1) % 3][i];
+        most = fmax(most, truth_dot3(e, e));
     }
     return most;
 }
 
-/* Least value that the objective can have inside the triangle. */
-static inline double truth_bound(const truth_triangle_t *t, const double *along)
+/* Least value that h can have inside the triangle. */
+static inline double truth_bound(const truth_triangle_t *t)
 {
     double m[3][3], value;
     int i, k;
     for (k = 0; k < 3; k++)
         for (i = 0; i < 3; i++)
             m[k][i] = truth_dot3(t->s[k], t->n[i]);
-    if (along) {
-        /* (sum l_i g.n_i) / (sum l_i along.n_i) >= the least ratio of a corner */
-        double most = -1, least = 1, c[3];
-        for (i = 0; i < 3; i++) {
-            c[i] = truth_dot3(along, t->n[i]);
-            most = fmax(most, c[i]);
-            least = fmin(least, c[i]);
-        }
-        if (!(most > 0))
-            return HUGE_VAL;
-        if (least > 0) {
-            for (k = 0; k < 3; k++)
-                for (i = 0; i < 3; i++)
-                    m[k][i] /= c[i];
-            return truth_game(m);
-        }
-        value = truth_game(m);
-        return value > 0 ? value / most : -HUGE_VAL;
-    }
     value = truth_game(m);
     if (value < 0)
         /* then |sum l_i n_i| counts: its square is 1 - sum l_i l_j |n_i - n_j|^2 over
@@ -618,47 +600,32 @@ static inline void truth_pop(truth_heap_t *h, truth_triangle_t *top)
     h->heap[i] = *last;
 }
 
-typedef struct {
-    const shape_t *a, *b;
-    const double *along;
-    truth_t *out;
-} truth_descent_t;
-
 /* Support point in direction n (any length but zero, made unit); keeps the best. */
-static inline void truth_sample(truth_descent_t *t, double n[3], double s[3])
+static inline void truth_sample(const shape_t *a, const shape_t *b, truth_t *out, double n[3], double s[3])
 {
-    double l = sqrt(truth_dot3(n, n)), h, c;
+    double l = sqrt(truth_dot3(n, n)), h;
     int i;
     for (i = 0; i < 3; i++)
         n[i] /= l;
-    truth_difference(t->a, t->b, n, s);
+    truth_difference(a, b, n, s);
     h = truth_dot3(n, s);
-    if (t->along) {
-        c = truth_dot3(n, t->along);
-        h = c > 0 ? h / c : HUGE_VAL;
-    }
-    if (h < t->out->depth) {
-        t->out->depth = h;
-        memcpy(t->out->n, n, sizeof t->out->n);
+    if (h < out->depth) {
+        out->depth = h;
+        memcpy(out->n, n, sizeof out->n);
     }
 }
 
 /* Splits until the bounds are closer than width, or budget triangles are in use. */
-static inline truth_t truth_branch(const shape_t *a, const shape_t *b, const double *along, double width, int budget)
+static inline truth_t truth_branch(const shape_t *a, const shape_t *b, double width, int budget)
 {
     static const double octahedron[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
     truth_t out;
     truth_heap_t heap;
     truth_triangle_t t, child;
-    truth_descent_t descent;
     int i, k, m;
     memset(&out, 0, sizeof out);
     out.depth = HUGE_VAL;
     out.lower = -HUGE_VAL;
-    descent.a = a;
-    descent.b = b;
-    descent.along = along;
-    descent.out = &out;
     heap.n = 0;
     heap.room = budget + 16;
     heap.heap = (truth_triangle_t *)malloc(sizeof *heap.heap * (size_t)heap.room);
@@ -667,9 +634,9 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, const dou
     for (m = 0; m < 8; m++) {
         for (i = 0; i < 3; i++) {
             memcpy(t.n[i], octahedron[i + (m >> i & 1 ? 3 : 0)], sizeof t.n[i]);
-            truth_sample(&descent, t.n[i], t.s[i]);
+            truth_sample(a, b, &out, t.n[i], t.s[i]);
         }
-        t.bound = truth_bound(&t, along);
+        t.bound = truth_bound(&t);
         truth_push(&heap, &t);
     }
     for (;;) {
@@ -687,19 +654,17 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, const dou
             u[i] = t.s[1][i] - t.s[0][i];
             v[i] = t.s[2][i] - t.s[0][i];
         }
-        x[0] = u[1] * v[2] - u[2] * v[1];
-        x[1] = u[2] * v[0] - u[0] * v[2];
-        x[2] = u[0] * v[1] - u[1] * v[0];
+        truth_cross3(u, v, x);
         c = truth_dot3(x, t.n[0]) + truth_dot3(x, t.n[1]) + truth_dot3(x, t.n[2]);
         if (truth_dot3(x, x) > 0) {
             for (i = 0; i < 3 && c < 0; i++)
                 x[i] = -x[i];
-            truth_sample(&descent, x, s);
+            truth_sample(a, b, &out, x, s);
         }
         for (k = 0; k < 3; k++) {
             for (i = 0; i < 3; i++)
                 mid[k][i] = t.n[k][i] + t.n[(k + 1) % 3][i];
-            truth_sample(&descent, mid[k], point[k]);
+            truth_sample(a, b, &out, mid[k], point[k]);
         }
         for (m = 0; m < 4; m++) {
             for (k = 0; k < 3; k++) {
@@ -709,7 +674,7 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, const dou
                 memcpy(child.n[k], corner ? t.n[k] : mid[edge], sizeof child.n[k]);
                 memcpy(child.s[k], corner ? t.s[k] : point[edge], sizeof child.s[k]);
             }
-            child.bound = fmax(t.bound, truth_bound(&child, along));
+            child.bound = fmax(t.bound, truth_bound(&child));
             if (child.bound < out.depth)
                 truth_push(&heap, &child);
         }
@@ -720,42 +685,28 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, const dou
 
 /* --- the two questions -------------------------------------------------------- */
 
-static inline truth_t truth_ask(const shape_t *a, const shape_t *b, const double *along, double width, int budget)
-{
-    truth_core_t *core = (truth_core_t *)malloc(2 * sizeof *core);
-    truth_search_t t;
-    truth_t out;
-    if (core && truth_core(a, a->pos, &core[0]) && truth_core(b, a->pos, &core[1])) {
-        truth_real d[3];
-        int i;
-        t.a = &core[0];
-        t.b = &core[1];
-        t.rho = core[0].rho + core[1].rho;
-        t.along = NULL;
-        if (along && t.rho == 0) {
-            for (i = 0; i < 3; i++)
-                d[i] = along[i];
-            t.along = d;
-        }
-        if (!along || t.along) {
-            truth_enumerate(&t);
-            out.depth = out.lower = (double)t.best;
-            for (i = 0; i < 3; i++)
-                out.n[i] = (double)t.n[i];
-            out.enumerated = 1;
-            free(core);
-            return out;
-        }
-    }
-    free(core);
-    return truth_branch(a, b, along, width, budget);
-}
-
 /* The signed depth; width is what the bounds should close to where they must be
  * searched (1e-12 of the size is about what double can). */
 static inline truth_t truth_depth_within(const shape_t *a, const shape_t *b, double width)
 {
-    return truth_ask(a, b, NULL, width, 40000);
+    truth_core_t *core = (truth_core_t *)malloc(2 * sizeof *core);
+    truth_t out;
+    if (core && truth_core(a, a->pos, &core[0]) && truth_core(b, a->pos, &core[1])) {
+        truth_search_t t;
+        int i;
+        t.a = &core[0];
+        t.b = &core[1];
+        t.rho = core[0].rho + core[1].rho;
+        truth_enumerate(&t);
+        out.depth = out.lower = (double)t.best;
+        for (i = 0; i < 3; i++)
+            out.n[i] = (double)t.n[i];
+        out.enumerated = 1;
+    } else {
+        out = truth_branch(a, b, width, 40000);
+    }
+    free(core);
+    return out;
 }
 
 static inline truth_t truth_depth(const shape_t *a, const shape_t *b)
@@ -763,11 +714,24 @@ static inline truth_t truth_depth(const shape_t *a, const shape_t *b)
     return truth_depth_within(a, b, 1e-12 * pair_size(a, b));
 }
 
-/* How far b must move along the unit vector dir until it is apart: the least
- * h(n) / (n . dir). The shapes must overlap. */
+/* How far b must move along the unit vector dir until it is apart: the root of the signed
+ * depth over the way, which is concave, so that steps from beyond it never pass it. The
+ * shapes must overlap. */
 static inline truth_t truth_along(const shape_t *a, const shape_t *b, const double dir[3])
 {
-    return truth_ask(a, b, dir, 1e-12 * pair_size(a, b), 40000);
+    double way = 2 * pair_size(a, b), step;
+    truth_t t;
+    int tries = 0;
+    do {
+        shape_t moved = *b;
+        shape_move(&moved, (double)b->pos[0] + way * dir[0], (double)b->pos[1] + way * dir[1], (double)b->pos[2] + way * dir[2]);
+        t = truth_depth(a, &moved);
+        step = t.depth / truth_dot3(t.n, dir);
+        way += step;
+    } while (++tries < 50 && -step > 1e-13 * pair_size(a, b));
+    t.lower = way - (t.depth - t.lower) / truth_dot3(t.n, dir);
+    t.depth = way;
+    return t;
 }
 
 #endif

@@ -14,7 +14,7 @@
 
 typedef struct {
     ccd_real_t depth;
-    ccd_vec3_t dir, pos;
+    ccd_vec3_t dir, pos, normal; /* normal: of the extension's alone */
     support_t support;
 } outputs_t;
 
@@ -48,6 +48,7 @@ static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
     if (code == CCD_HIT || code == CCD_LIMIT) {
         out->depth = p->depth;
         out->dir = p->dir;
+        out->normal = p->normal;
         out->pos = p->pos;
         return CCD_HIT;
     }

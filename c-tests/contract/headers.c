@@ -3,7 +3,8 @@
 
 /* Prints the value of every macro and inline function of the headers, over random and
  * special numbers, bit for bit. Compiled against libccd's headers and against ours: the
- * two must print the same. C99 and C++11; the driver checks that no name is missing. */
+ * two must print the same. C99 and C++11; the driver checks that no name is missing. (That the library
+ * has the same layouts is asserted in src/ffi/types.rs.) */
 
 #include <ccd/ccd.h>
 #include <ccd/ccd_export.h>
@@ -75,6 +76,24 @@ static void center(const void *obj, ccd_vec3_t *c)
     ccdVec3Copy(c, ccd_vec3_origin);
 }
 
+/* Declared once more: another type is an error. */
+#ifdef __cplusplus
+extern "C" {
+#endif
+void ccdFirstDirDefault(const void *, const void *, ccd_vec3_t *);
+int ccdGJKIntersect(const void *, const void *, const ccd_t *);
+int ccdMPRIntersect(const void *, const void *, const ccd_t *);
+int ccdGJKSeparate(const void *, const void *, const ccd_t *, ccd_vec3_t *);
+int ccdGJKPenetration(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
+int ccdMPRPenetration(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
+ccd_real_t ccdVec3PointSegmentDist2(const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, ccd_vec3_t *);
+ccd_real_t ccdVec3PointTriDist2(const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, const ccd_vec3_t *, ccd_vec3_t *);
+extern ccd_vec3_t *ccd_vec3_origin, *ccd_points_on_sphere;
+extern size_t ccd_points_on_sphere_len;
+#ifdef __cplusplus
+}
+#endif
+
 /* The typedefs, and the tags behind them. */
 static ccd_support_fn support_fn = support;
 static ccd_first_dir_fn first_dir_fn = ccdFirstDirDefault;
@@ -89,6 +108,10 @@ _ccd_inline int inlined(void) { return 5; }
 
 CCD_EXPORT int exported(void);
 CCD_EXPORT int exported(void) { return 7; }
+
+/* What a call leaves in c, in r. */
+#define VEC3(call) (call, show_vec3(#call, &c))
+#define QUAT(call) (call, show_quat(#call, &r))
 
 int main(void)
 {
@@ -117,6 +140,10 @@ int main(void)
     printf("%lu %lu %d\n", (unsigned long)included, (unsigned long)ccd_offsetof(struct outer, member),
            (ccd_container_of(&outer.member, struct outer, member))->first);
     printf("%d %d\n", inlined(), exported());
+#define BYTES(member) (int)offsetof(ccd_t, member)
+    printf("%d %d %d: %d %d %d %d %d %d %d %d %d\n", (int)sizeof(ccd_vec3_t), (int)sizeof(ccd_quat_t), (int)sizeof(ccd_t),
+           BYTES(first_dir), BYTES(support1), BYTES(support2), BYTES(center1), BYTES(center2), BYTES(max_iterations),
+           BYTES(epa_tolerance), BYTES(mpr_tolerance), BYTES(dist_tolerance));
     _ccd_prefetch(&outer);
     _ccd_prefetchw(&outer);
     show("CCD_EPS", CCD_EPS);
@@ -158,42 +185,29 @@ int main(void)
         show("ccdVec3Dist2", ccdVec3Dist2(&a, &b));
         show("ccdVec3Dot", ccdVec3Dot(&a, &b));
         ccdVec3Copy(&c, &a);
-        ccdVec3Sub(&c, &b);
-        show_vec3("ccdVec3Sub", &c);
-        ccdVec3Add(&c, &b);
-        show_vec3("ccdVec3Add", &c);
-        ccdVec3Sub2(&c, &b, &a);
-        show_vec3("ccdVec3Sub2", &c);
-        ccdVec3Scale(&c, x);
-        show_vec3("ccdVec3Scale", &c);
+        VEC3(ccdVec3Sub(&c, &b));
+        VEC3(ccdVec3Add(&c, &b));
+        VEC3(ccdVec3Sub2(&c, &b, &a));
+        VEC3(ccdVec3Scale(&c, x));
         ccdVec3Copy(&c, &b);
-        ccdVec3Normalize(&c);
-        show_vec3("ccdVec3Normalize", &c);
-        ccdVec3Cross(&c, &a, &b);
-        show_vec3("ccdVec3Cross", &c);
+        VEC3(ccdVec3Normalize(&c));
+        VEC3(ccdVec3Cross(&c, &a, &b));
 
         quat(&p);
         quat(&q);
         show("ccdQuatLen2", ccdQuatLen2(&p));
         show("ccdQuatLen", ccdQuatLen(&p));
         ccdQuatCopy(&r, &p);
-        printf("%d\n", ccdQuatNormalize(&r));
-        show_quat("ccdQuatNormalize", &r);
-        ccdQuatSetAngleAxis(&r, x, &a);
-        show_quat("ccdQuatSetAngleAxis", &r);
-        ccdQuatScale(&r, y);
-        show_quat("ccdQuatScale", &r);
-        ccdQuatMul2(&r, &p, &q);
-        show_quat("ccdQuatMul2", &r);
+        QUAT(printf("%d\n", ccdQuatNormalize(&r)));
+        QUAT(ccdQuatSetAngleAxis(&r, x, &a));
+        QUAT(ccdQuatScale(&r, y));
+        QUAT(ccdQuatMul2(&r, &p, &q));
         ccdQuatCopy(&r, &p);
-        ccdQuatMul(&r, &q);
-        show_quat("ccdQuatMul", &r);
-        printf("%d\n", ccdQuatInvert(&r));
-        show_quat("ccdQuatInvert", &r);
-        printf("%d\n", ccdQuatInvert2(&r, &q));
-        show_quat("ccdQuatInvert2", &r);
-        ccdQuatRotVec(&b, &p);
-        show_vec3("ccdQuatRotVec", &b);
+        QUAT(ccdQuatMul(&r, &q));
+        QUAT(printf("%d\n", ccdQuatInvert(&r)));
+        QUAT(printf("%d\n", ccdQuatInvert2(&r, &q)));
+        ccdVec3Copy(&c, &b);
+        VEC3(ccdQuatRotVec(&c, &p));
     }
     return 0;
 }

@@ -61,31 +61,6 @@ fn contacts_are_the_exact_ones() {
     program("contacts").build().run(NO_ARGS);
 }
 
-/// Signed distance against exact truth.
-#[test]
-fn signed_distance() {
-    let dir = harness::root().join("c-tests/pairs");
-    let sets = [
-        "box_box", "p42_p42", "cone_cyl", "cyl_box", "ell_ell", "cap_cap", "p162_cap", "sph_cap",
-    ];
-    let sets = sets.map(|set| dir.join(set).with_extension("bin"));
-    program("distance").build().run(sets);
-}
-
-/// Supports beside FCL's own GJK, on the eleven random sets and six motions.
-#[test]
-#[cfg(not(feature = "single"))]
-fn signed_distance_beside_fcl() {
-    let dir = harness::root().join("c-tests/pairs");
-    let sets = "box_box p12_p12 p162_p162 p642_p642 cyl_box cone_cyl p162_cap cap_cap sph_cap ell_ell \
-        sph_sph box_box_trajS cap_cap_trajS cyl_box_trajS ell_ell_trajS p162_p162_trajS p642_cap_trajS";
-    let sets = sets.split_whitespace();
-    let sets = sets.map(|set| dir.join(set).with_extension("bin"));
-    let program = cpp("distance_fcl").flag("-isystem/usr/include/eigen3");
-    let program = program.flag("-Wno-unused-parameter").link_ours_shared();
-    program.build().run(sets);
-}
-
 /// `<ccd/fcl.hpp>`. In single precision all of FCL is compiled here: it is made of templates.
 /// A tool looks at memory, which is the same in both standards, and takes gcc half a minute
 /// for each.
@@ -108,11 +83,6 @@ fn fcl_header() {
         }
         program.link_ours_shared().build().run(["2"]);
     }
-}
-
-#[test]
-fn pairs_that_stay_apart_cost_one_support() {
-    program("apart").build().run(NO_ARGS);
 }
 
 /// What the example prints: two frames apart, then the depth by which the box has sunk,

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Every call with every argument that no query can work with: the code is the documented one, and
- * nothing is written then. What may be NULL; what is wanted; max_iterations; queries asked from
- * inside of a query. */
+ * nothing is written then. What may be NULL; what is wanted; queries asked from inside of a query.
+ * (max_iterations: contract/questions.c.) */
 
 #include "contract/check.h"
 #include "ours.h"
@@ -53,16 +53,6 @@ static void setup(void)
 
 /* --- the walk --------------------------------------------------------------------- */
 
-/* What a call takes besides objects, ccd_t and state. */
-typedef struct {
-    ccd_vec3_t dir;
-    const ccd_vec3_t *dir_at;
-    ccd_real_t margin1, margin2, max_distance, slop;
-    int max;
-    unsigned want;
-    int no_out;
-} rest_t;
-
 /* What a call may write. */
 typedef struct {
     ccd_penetration_t penetration;
@@ -101,11 +91,12 @@ static const struct {
 enum { CALLS = sizeof calls / sizeof calls[0] };
 typedef char every_call_is_there[(int)CALLS == (int)ASKS ? 1 : -1];
 
-static int ask_number(int number, const ccd_t *ccd, const rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+/* With these outputs; NULL: with none. */
+static int ask_number(int number, const ccd_t *ccd, const call_rest_t *rest, ccd_warm_t *warm, outputs_t *out)
 {
-    call_rest_t x = {.warm = warm, .along = rest->dir_at, .margin1 = rest->margin1, .margin2 = rest->margin2,
-                     .max_distance = rest->max_distance, .slop = rest->slop, .want = rest->want, .max = rest->max};
-    if (!rest->no_out) {
+    call_rest_t x = *rest;
+    x.warm = warm;
+    if (out) {
         x.depth = &out->depth;
         x.dir = &out->dir;
         x.pos = &out->pos;
@@ -116,21 +107,20 @@ static int ask_number(int number, const ccd_t *ccd, const rest_t *rest, ccd_warm
     return call_by_number(number, &one, &other, ccd, &x);
 }
 
+static int no_out;
+
 /* Asks, with a state and without: the code, and nothing written where that is the bad one. */
-static void expect(int call, const ccd_t *ccd, const rest_t *rest, int code, const char *why)
+static void expect(int call, const ccd_t *ccd, const call_rest_t *rest, int code, const char *why)
 {
     static outputs_t out, before; /* static: no padding differs */
     ccd_warm_t warm, warm_before;
-    rest_t r = *rest;
     int answer, i;
     memset(&before, 0x5a, sizeof before);
     OURS(ccdWarmGuess)(&warm_before, &way);
-    if (r.dir_at == &rest->dir)
-        r.dir_at = &r.dir;
     for (i = 0; i < 2; i++) {
         memcpy(&out, &before, sizeof out);
         warm = warm_before;
-        answer = ask_number(calls[call].ask, ccd, &r, i ? NULL : &warm, &out);
+        answer = ask_number(calls[call].ask, ccd, rest, i ? NULL : &warm, no_out ? NULL : &out);
         CHECK(answer == code, "%s, %s%s: %d", calls[call].name, why, i ? ", without a state" : "", answer);
         if (code == calls[call].bad) {
             CHECK(same_bits(&out, &before, sizeof out), "%s, %s: an output was written", calls[call].name, why);
@@ -156,7 +146,7 @@ static void bad_center(const void *obj, ccd_vec3_t *out)
 }
 
 /* Points of obj1 or of obj2 that are no number: from the first call on, from the second on, ... */
-static void bad_points(int call, const rest_t *rest, int of_obj2)
+static void bad_points(int call, const call_rest_t *rest, int of_obj2)
 {
     static outputs_t out, before;
     ccd_warm_t warm, good_state;
@@ -181,18 +171,17 @@ static void bad_points(int call, const rest_t *rest, int of_obj2)
     CHECK(0, "%s: no end", calls[call].name);
 }
 
-static void bad_objects(int call, const rest_t *rest, const ccd_real_t strange[3])
+static void bad_objects(int call, const call_rest_t *rest, const ccd_real_t strange[3])
 {
     const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
     ccd_t ccd;
-    int i;
+    int i, k;
     expect(call, NULL, rest, bad, "no ccd");
-    ccd = good;
-    ccd.support1 = NULL;
-    expect(call, &ccd, rest, bad, "no support1");
-    ccd = good;
-    ccd.support2 = NULL;
-    expect(call, &ccd, rest, bad, "no support2");
+    for (i = 0; i < 2; i++) {
+        ccd = good;
+        *(i ? &ccd.support2 : &ccd.support1) = NULL;
+        expect(call, &ccd, rest, bad, "a support function is missing");
+    }
     for (i = 1; i < 4; i++) {
         ccd = good;
         if (i & 1)
@@ -203,19 +192,17 @@ static void bad_objects(int call, const rest_t *rest, const ccd_real_t strange[3
         ccd.first_dir = NULL;
         expect(call, &ccd, rest, traits & (NEEDS_CENTRES | NEEDS_FIRST_DIR) ? bad : good_code, "no centre, no first_dir");
     }
-    for (i = 0; i < 3; i++) {
-        int k;
-        bad_value = strange[i];
+    for (i = 0; i < 3; i++)
         for (k = 0; k < 2; k++) {
+            bad_value = strange[i];
             ccd = good;
             *(k ? &ccd.center2 : &ccd.center1) = bad_center;
             expect(call, &ccd, rest, traits & NO_CENTRES ? good_code : bad, "a centre that is no number");
             bad_points(call, rest, k);
         }
-    }
 }
 
-static void bad_tolerances(int call, const rest_t *rest, ccd_real_t inf)
+static void bad_tolerances(int call, const call_rest_t *rest, ccd_real_t inf)
 {
     const ccd_real_t none[3] = {inf - inf, CCD_REAL(-1e-9), -inf};
     const int traits = calls[call].traits;
@@ -235,54 +222,53 @@ static void bad_tolerances(int call, const rest_t *rest, ccd_real_t inf)
     }
 }
 
-static void bad_arguments(int call, const rest_t *good_rest, const ccd_real_t strange[3])
+static void bad_arguments(int call, const call_rest_t *good_rest, const ccd_real_t strange[3])
 {
+    static const struct { size_t at; int taken_by; const char *why; } lengths[] = {
+        {offsetof(call_rest_t, margin1), TAKES_MARGINS, "margin1 that is none"},
+        {offsetof(call_rest_t, margin2), TAKES_MARGINS, "margin2 that is none"},
+        {offsetof(call_rest_t, max_distance), TAKES_MARGINS, "max_distance that is none"},
+        {offsetof(call_rest_t, slop), TAKES_SLOP, "slop that is none"},
+    };
+    const ccd_real_t no_length[] = {strange[0], CCD_REAL(-1e-9), strange[2]};
     const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
-    rest_t rest = *good_rest;
+    call_rest_t rest = *good_rest;
+    ccd_vec3_t dir = {{0, 0, 0}};
     int i;
-    rest.no_out = 1;
+    no_out = 1;
     expect(call, &good, &rest, traits & NEEDS_OUT ? bad : good_code, "no out");
+    no_out = 0;
     for (i = 0; i < 32; i++) {
-        rest = *good_rest;
-        rest.dir_at = &rest.dir;
         rest.want = 1u << i;
         expect(call, &good, &rest, traits & TAKES_WANT && i > 1 ? bad : good_code, "a flag");
     }
     rest = *good_rest;
-    rest.dir_at = NULL;
+    rest.along = NULL;
     expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "no direction");
-    rest.dir_at = &rest.dir;
-    memset(&rest.dir, 0, sizeof rest.dir);
+    rest.along = &dir;
     expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "zero direction");
     for (i = 0; i < 9; i++) {
-        rest.dir = good_rest->dir;
-        rest.dir.v[i % 3] = strange[i / 3];
+        dir = *good_rest->along;
+        dir.v[i % 3] = strange[i / 3];
         expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "a direction that is no number");
     }
-    for (i = 0; i < 3; i++) {
-        const ccd_real_t none = i ? i == 1 ? CCD_REAL(-1e-9) : strange[2] : strange[0];
-        rest_t margin1 = *good_rest, margin2 = *good_rest, max_distance = *good_rest, slop = *good_rest;
-        margin1.margin1 = margin2.margin2 = max_distance.max_distance = slop.slop = none;
-        expect(call, &good, &margin1, traits & TAKES_MARGINS ? bad : good_code, "margin1 that is none");
-        expect(call, &good, &margin2, traits & TAKES_MARGINS ? bad : good_code, "margin2 that is none");
-        expect(call, &good, &max_distance, traits & TAKES_MARGINS ? bad : good_code, "max_distance that is none");
-        expect(call, &good, &slop, traits & TAKES_SLOP ? bad : good_code, "slop that is none");
+    for (i = 0; i < 12; i++) {
+        rest = *good_rest;
+        memcpy((char *)&rest + lengths[i % 4].at, &no_length[i / 4], sizeof(ccd_real_t));
+        expect(call, &good, &rest, traits & lengths[i % 4].taken_by ? bad : good_code, lengths[i % 4].why);
     }
     rest = *good_rest;
-    rest.max = 2147483647;
-    expect(call, &good, &rest, good_code, "any room");
+    rest.margin2 = strange[1];
+    expect(call, &good, &rest, traits & TAKES_MARGINS ? bad : good_code, "an infinite margin");
     for (i = 0; i < 2; i++) {
         rest = *good_rest;
         rest.slop = i ? strange[1] : 0;
         expect(call, &good, &rest, i && traits & TAKES_SLOP ? 1 : good_code, i ? "any slop" : "no slop");
     }
-    rest = *good_rest;
-    rest.margin2 = strange[1];
-    expect(call, &good, &rest, traits & TAKES_MARGINS ? bad : good_code, "an infinite margin");
-    for (i = -1; i < 1; i++) {
+    for (i = -1; i < 2; i++) {
         rest = *good_rest;
-        rest.max = i;
-        expect(call, &good, &rest, traits & TAKES_SLOP ? bad : good_code, "no room");
+        rest.max = i > 0 ? 2147483647 : i;
+        expect(call, &good, &rest, i < 1 && traits & TAKES_SLOP ? bad : good_code, "room");
     }
 }
 
@@ -333,7 +319,7 @@ static void draw_lie(void)
 
 /* Objects that answer anything, from any state: each call ends, with a code of its own; what it
  * claims is finite; there is no answer from points that are none, and nothing written without one. */
-static void lies(int call, const rest_t *rest)
+static void lies(int call, const call_rest_t *rest)
 {
     const int libccd = calls[call].bad != CCD_BAD_INPUT, number = calls[call].ask;
     int round, i;
@@ -386,15 +372,10 @@ static void lies(int call, const rest_t *rest)
 static void bad_input(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2, strange[3] = {inf - inf, inf, -inf};
-    static rest_t rest;
+    call_rest_t rest = {.max_distance = inf, .slop = CCD_REAL(1e-3), .want = CCD_WANT_ALL, .max = 4};
     int call;
-    rest.max_distance = inf;
-    rest.slop = CCD_REAL(1e-3);
-    rest.max = 4;
-    rest.want = CCD_WANT_ALL;
-    rest.dir_at = &rest.dir;
     for (call = 0; call < CALLS; call++) {
-        rest.dir = calls[call].ask == ASK_ALONG ? way : calls[call].ask == ASK_PLANAR ? up : across;
+        rest.along = calls[call].ask == ASK_ALONG ? &way : calls[call].ask == ASK_PLANAR ? &up : &across;
         expect(call, &good, &rest, calls[call].good, "the good question");
         bad_objects(call, &rest, strange);
         bad_tolerances(call, &rest, inf);
@@ -494,46 +475,6 @@ static void freedoms(void)
     }
 }
 
-/* Whatever max_iterations is, the answer is sound, and the cap is told. */
-static void iterations(void)
-{
-    const unsigned long caps[] = {0, 1, 2, 3, 5, 10, 100, (unsigned long)-1};
-    shape_t a = shape_box(0.5, 0.4, 0.3), b = shape_cylinder(0.5, 0.5);
-    int query, far_off;
-    size_t i;
-    for (far_off = 0; far_off < 2; far_off++) {
-        shape_move(&b, 0.3 + 2 * far_off, 0.2, 0.1);
-        for (query = 0; query < PLANAR; query++)
-            for (i = 0; i < sizeof caps / sizeof caps[0]; i++) {
-                ccd_penetration_t out;
-                ccd_t ccd = good;
-                int code, k;
-                double h = 0;
-                ccd_vec3_t s1, s2, back;
-                ccd.max_iterations = caps[i];
-                a.calls = 0;
-                code = ask(query, &a, &b, &ccd, &way, NULL, &out);
-                CHECK(a.calls < 1000, "%s: %lu calls", name[query], a.calls);
-                if (caps[i] > 100)
-                    CHECK(code == (far_off ? CCD_MISS : CCD_HIT), "%s: %d", name[query], code);
-                if (code == CCD_MISS) {
-                    CHECK(far_off, "%s: a miss of an overlap at cap %lu", name[query], caps[i]);
-                    continue;
-                }
-                CHECK(code == CCD_LIMIT || (code == CCD_HIT && !far_off), "%s: %d at cap %lu", name[query], code,
-                      caps[i]);
-                for (k = 0; k < 3; k++)
-                    back.v[k] = -out.normal.v[k];
-                shape_support(&a, &out.normal, &s1);
-                shape_support(&b, &back, &s2);
-                for (k = 0; k < 3; k++)
-                    h += (double)out.normal.v[k] * ((double)s1.v[k] - (double)s2.v[k]);
-                CHECK((double)(out.depth * ccdVec3Dot(&out.dir, &out.normal)) >= h - 1e-6, "%s: not sound at cap %lu",
-                      name[query], caps[i]);
-            }
-    }
-}
-
 /* A callback that asks a query of its own, with another state, on the same objects. */
 static int nested;
 
@@ -577,38 +518,28 @@ static void reentrant(void)
     }
 }
 
-static void flip(void)
+/* Guesses that are none leave a cold state; NULL is no error; a guess flipped is the opposite one. */
+static void guesses(void)
 {
-    const ccd_vec3_t back = {{-1, -2, 2}};
+    const ccd_real_t inf = CCD_REAL_MAX * 2;
+    const ccd_vec3_t back = {{-1, -2, 2}}, none[] = {{{0, 0, 0}}, {{inf, 0, 0}}, {{0, inf - inf, 1}}};
     ccd_warm_t warm, other_way, cold;
+    int i;
     memset(&cold, 0, sizeof cold);
-    warm = cold;
+    CHECK(sizeof cold <= 256, "a state of %lu bytes", (unsigned long)sizeof cold);
+    OURS(ccdWarmGuess)(NULL, &way);
     OURS(ccdWarmFlip)(NULL);
+    for (i = 0; i < 4; i++) {
+        memset(&warm, 0x77, sizeof warm);
+        OURS(ccdWarmGuess)(&warm, i < 3 ? &none[i] : NULL);
+        CHECK(same_bits(&warm, &cold, sizeof warm), "a guess that is none");
+    }
     OURS(ccdWarmFlip)(&warm);
     CHECK(same_bits(&warm, &cold, sizeof warm), "a cold state flipped");
     OURS(ccdWarmGuess)(&warm, &way);
     OURS(ccdWarmGuess)(&other_way, &back);
     OURS(ccdWarmFlip)(&warm);
     CHECK(same_bits(&warm, &other_way, sizeof warm), "a guess flipped");
-}
-
-static void guess(void)
-{
-    const ccd_real_t inf = CCD_REAL_MAX * 2;
-    const ccd_vec3_t none[] = {{{0, 0, 0}}, {{inf, 0, 0}}, {{0, inf - inf, 1}}};
-    ccd_warm_t warm, cold;
-    size_t i;
-    memset(&cold, 0, sizeof cold);
-    CHECK(sizeof cold <= 256, "a state of %lu bytes", (unsigned long)sizeof cold);
-    for (i = 0; i < 3; i++) {
-        memset(&warm, 0x77, sizeof warm);
-        OURS(ccdWarmGuess)(&warm, &none[i]);
-        CHECK(same_bits(&warm, &cold, sizeof warm), "a guess that is none");
-    }
-    memset(&warm, 0x77, sizeof warm);
-    OURS(ccdWarmGuess)(&warm, NULL);
-    CHECK(same_bits(&warm, &cold, sizeof warm), "a guess of NULL");
-    OURS(ccdWarmGuess)(NULL, &way);
 }
 
 int main(void)
@@ -618,9 +549,7 @@ int main(void)
     wanted();
     a_distance();
     freedoms();
-    iterations();
     reentrant();
-    guess();
-    flip();
+    guesses();
     return checks_end();
 }

@@ -9,16 +9,12 @@
 #ifndef TESTS_MANIFOLD_H
 #define TESTS_MANIFOLD_H
 
-#include "shapes.h"
-
-#include <float.h>
+#include "truth.h"
 
 enum { MANIFOLD_ROOM = 64 };
 
-typedef long double manifold_real;
-
 typedef struct {
-    manifold_real x, y;
+    truth_real x, y;
 } flat_t;
 
 typedef struct {
@@ -27,50 +23,33 @@ typedef struct {
 } flats_t;
 
 typedef struct {
-    manifold_real n[3], e1[3], e2[3]; /* unit, right-handed */
+    truth_real n[3], e1[3], e2[3]; /* unit, right-handed */
 } frame_t;
-
-static inline manifold_real manifold_dot(const manifold_real a[3], const manifold_real b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static inline frame_t manifold_frame(const double normal[3])
 {
+    truth_real axis[3] = {0, 0, 0}, l;
     frame_t f;
-    manifold_real l = 0, axis[3] = {0, 0, 0};
     int i, least = 0;
     for (i = 0; i < 3; i++) {
-        f.n[i] = (manifold_real)normal[i];
-        l += f.n[i] * f.n[i];
-        if (fabs(normal[i]) < fabs(normal[least]))
-            least = i;
+        f.n[i] = normal[i];
+        least = fabs(normal[i]) < fabs(normal[least]) ? i : least;
     }
-    for (i = 0, l = sqrtl(l); i < 3; i++)
+    for (i = 0, l = sqrtl(truth_dot(f.n, f.n)); i < 3; i++)
         f.n[i] /= l;
     axis[least] = 1;
-    for (i = 0; i < 3; i++)
-        f.e1[i] = f.n[(i + 1) % 3] * axis[(i + 2) % 3] - f.n[(i + 2) % 3] * axis[(i + 1) % 3];
-    for (i = 0, l = sqrtl(manifold_dot(f.e1, f.e1)); i < 3; i++)
-        f.e1[i] /= l;
-    for (i = 0; i < 3; i++)
-        f.e2[i] = f.n[(i + 1) % 3] * f.e1[(i + 2) % 3] - f.n[(i + 2) % 3] * f.e1[(i + 1) % 3];
+    truth_cross(f.n, axis, f.e1);
+    truth_cross(f.n, f.e1, f.e2);
     return f;
 }
 
-static inline flat_t manifold_flat(const frame_t *f, const double p[3])
+static inline flat_t manifold_flat(const frame_t *f, const truth_real p[3])
 {
-    manifold_real v[3];
-    flat_t q;
-    int i;
-    for (i = 0; i < 3; i++)
-        v[i] = (manifold_real)p[i];
-    q.x = manifold_dot(f->e1, v);
-    q.y = manifold_dot(f->e2, v);
+    const flat_t q = {truth_dot(f->e1, p), truth_dot(f->e2, p)};
     return q;
 }
 
-static inline manifold_real flat_cross(flat_t a, flat_t b, flat_t c)
+static inline truth_real flat_cross(flat_t a, flat_t b, flat_t c)
 {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -79,7 +58,7 @@ static inline manifold_real flat_cross(flat_t a, flat_t b, flat_t c)
 static inline flats_t flat_hull(const flats_t *points)
 {
     flats_t sorted = *points, hull;
-    int i, j, half, n = 0;
+    int i, j, half = 2, n = 0;
     for (i = 1; i < sorted.n; i++) {
         const flat_t p = sorted.p[i];
         for (j = i; j > 0 && (p.x < sorted.p[j - 1].x || (p.x == sorted.p[j - 1].x && p.y < sorted.p[j - 1].y)); j--)
@@ -88,32 +67,30 @@ static inline flats_t flat_hull(const flats_t *points)
     }
     if (sorted.n < 2)
         return sorted;
-    for (i = 0; i < sorted.n; i++) {
-        while (n >= 2 && !(flat_cross(hull.p[n - 2], hull.p[n - 1], sorted.p[i]) > 0))
+    /* along the lower side, and back along the upper one */
+    for (i = 0; i < 2 * sorted.n - 1; i++) {
+        const flat_t p = sorted.p[i < sorted.n ? i : 2 * sorted.n - 2 - i];
+        half = i == sorted.n ? n + 1 : half;
+        while (n >= half && !(flat_cross(hull.p[n - 2], hull.p[n - 1], p) > 0))
             n--;
-        hull.p[n++] = sorted.p[i];
-    }
-    for (i = sorted.n - 2, half = n + 1; i >= 0; i--) {
-        while (n >= half && !(flat_cross(hull.p[n - 2], hull.p[n - 1], sorted.p[i]) > 0))
-            n--;
-        hull.p[n++] = sorted.p[i];
+        hull.p[n++] = p;
     }
     hull.n = n - 1;
     return hull;
 }
 
-static inline manifold_real flat_area(const flats_t *f)
+static inline truth_real flat_area(const flats_t *f)
 {
-    manifold_real sum = 0;
+    truth_real sum = 0;
     int i;
     for (i = 1; i + 1 < f->n; i++)
         sum += flat_cross(f->p[0], f->p[i], f->p[i + 1]) / 2;
     return sum;
 }
 
-static inline manifold_real flat_perimeter(const flats_t *f)
+static inline truth_real flat_perimeter(const flats_t *f)
 {
-    manifold_real sum = 0;
+    truth_real sum = 0;
     int i;
     for (i = 0; i < f->n; i++) {
         const flat_t a = f->p[i], b = f->p[(i + 1) % f->n];
@@ -123,14 +100,14 @@ static inline manifold_real flat_perimeter(const flats_t *f)
 }
 
 /* How far q is from a convex polygon, a segment or a point. */
-static inline manifold_real flat_distance(const flats_t *f, flat_t q)
+static inline truth_real flat_distance(const flats_t *f, flat_t q)
 {
-    manifold_real least = HUGE_VALL;
+    truth_real least = HUGE_VALL;
     int i, in = f->n > 2;
     for (i = 0; i < f->n; i++) {
         const flat_t a = f->p[i], b = f->p[(i + 1) % f->n];
-        const manifold_real l = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
-        manifold_real t = l > 0 ? ((q.x - a.x) * (b.x - a.x) + (q.y - a.y) * (b.y - a.y)) / l : 0;
+        const truth_real l = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
+        truth_real t = l > 0 ? ((q.x - a.x) * (b.x - a.x) + (q.y - a.y) * (b.y - a.y)) / l : 0;
         t = t < 0 ? 0 : t > 1 ? 1 : t;
         least = fminl(least, hypotl(a.x + t * (b.x - a.x) - q.x, a.y + t * (b.y - a.y) - q.y));
         if (flat_cross(a, b, q) < 0)
@@ -140,9 +117,9 @@ static inline manifold_real flat_distance(const flats_t *f, flat_t q)
 }
 
 /* The largest distance from a corner of the one to the other. */
-static inline manifold_real flat_apart(const flats_t *a, const flats_t *b)
+static inline truth_real flat_apart(const flats_t *a, const flats_t *b)
 {
-    manifold_real most = 0;
+    truth_real most = 0;
     int i;
     for (i = 0; i < a->n; i++)
         most = fmaxl(most, flat_distance(b, a->p[i]));
@@ -162,11 +139,11 @@ static inline flats_t flat_clip(const flats_t *a, const flats_t *b)
         next.n = 0;
         for (k = 0; k < rest.n; k++) {
             const flat_t u = rest.p[k], v = rest.p[(k + 1) % rest.n];
-            const manifold_real at_u = flat_cross(p, q, u), at_v = flat_cross(p, q, v);
+            const truth_real at_u = flat_cross(p, q, u), at_v = flat_cross(p, q, v);
             if (at_u >= 0)
                 next.p[next.n++] = u;
             if ((at_u >= 0) != (at_v >= 0)) {
-                const manifold_real t = at_u / (at_u - at_v);
+                const truth_real t = at_u / (at_u - at_v);
                 next.p[next.n].x = u.x + t * (v.x - u.x);
                 next.p[next.n++].y = u.y + t * (v.y - u.y);
             }
@@ -176,21 +153,6 @@ static inline flats_t flat_clip(const flats_t *a, const flats_t *b)
     return flat_hull(&rest);
 }
 
-/* A vertex of a box or a polytope, in the world. */
-static inline int manifold_vertex(const shape_t *s, int i, double out[3])
-{
-    double v[3];
-    int k;
-    if (i >= (s->type == SHAPE_BOX ? 8 : s->nverts))
-        return 0;
-    for (k = 0; k < 3; k++)
-        v[k] = s->type == SHAPE_BOX ? (i >> k & 1 ? 1 : -1) * (double)s->p[k] : (double)s->verts[3 * i + k];
-    for (k = 0; k < 3; k++)
-        out[k] = (double)s->rot[3 * k] * v[0] + (double)s->rot[3 * k + 1] * v[1] + (double)s->rot[3 * k + 2] * v[2] +
-                 (double)s->pos[k];
-    return 1;
-}
-
 /* The face that looks along sign * n: its hull, the height of its support plane along n; 0
  * when a vertex lies where the library may take it or leave it: between half the slop and the
  * slop low, or as steeply below the highest vertices as half the slop over the whole object.
@@ -198,31 +160,31 @@ static inline int manifold_vertex(const shape_t *s, int i, double out[3])
 static inline int manifold_face(const shape_t *s, const frame_t *f, int sign, double slop, double noise, flats_t *face,
                                 double *top)
 {
-    manifold_real most = -HUGE_VALL, size = 0;
-    double low[MANIFOLD_ROOM], p[3];
+    static const ccd_real_t origin[3];
+    static truth_core_t c;
+    truth_real most = -HUGE_VALL, size = 0;
+    double low[MANIFOLD_ROOM];
     flats_t all, in;
     int i, k, clear = 1;
     slop = fmax(slop, 2 * noise);
-    for (i = 0; manifold_vertex(s, i, p); i++) {
-        const manifold_real v[3] = {(manifold_real)p[0], (manifold_real)p[1], (manifold_real)p[2]};
-        most = fmaxl(most, sign * manifold_dot(f->n, v));
-    }
-    all.n = in.n = 0;
-    for (i = 0; manifold_vertex(s, i, p); i++) {
-        const manifold_real v[3] = {(manifold_real)p[0], (manifold_real)p[1], (manifold_real)p[2]};
-        low[i] = (double)(most - sign * manifold_dot(f->n, v));
-        all.p[all.n++] = manifold_flat(f, p);
+    truth_vertices(s, origin, &c);
+    for (i = 0; i < c.nv; i++)
+        most = fmaxl(most, sign * truth_dot(f->n, c.v[i]));
+    in.n = 0;
+    for (all.n = i = 0; i < c.nv; i++) {
+        low[i] = (double)(most - sign * truth_dot(f->n, c.v[i]));
+        all.p[all.n++] = manifold_flat(f, c.v[i]);
         if (low[i] <= slop)
             in.p[in.n++] = all.p[i];
         for (k = 0; k < i; k++)
             size = fmaxl(size, hypotl(all.p[i].x - all.p[k].x, all.p[i].y - all.p[k].y));
     }
     for (i = 0; i < all.n; i++) {
-        manifold_real aside = HUGE_VALL;
+        truth_real aside = HUGE_VALL;
         for (k = 0; k < all.n; k++)
             if (low[k] <= noise)
                 aside = fminl(aside, hypotl(all.p[i].x - all.p[k].x, all.p[i].y - all.p[k].y));
-        if (low[i] > noise && low[i] < slop + 2 * noise && (manifold_real)low[i] > (manifold_real)(0.5 * slop) * aside / size)
+        if (low[i] > noise && low[i] < slop + 2 * noise && (truth_real)low[i] > (truth_real)(0.5 * slop) * aside / size)
             clear = 0;
     }
     *face = flat_hull(&in);

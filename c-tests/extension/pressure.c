@@ -46,23 +46,6 @@ static void rotate(const double rot[9], const double v[3], double out[3])
         out[i] = rot[3 * i] * v[0] + rot[3 * i + 1] * v[1] + rot[3 * i + 2] * v[2];
 }
 
-/* The shape and the whole world turned. */
-static shape_t turned(const shape_t *s, const double world[9])
-{
-    shape_t t = *s;
-    double rot[9], pos[3], all[9], moved[3];
-    int i;
-    for (i = 0; i < 9; i++)
-        rot[i] = (double)s->rot[i];
-    for (i = 0; i < 3; i++)
-        pos[i] = (double)s->pos[i];
-    rotation_times(world, rot, all);
-    rotate(world, pos, moved);
-    shape_turn(&t, all);
-    shape_move(&t, moved[0], moved[1], moved[2]);
-    return t;
-}
-
 /* Body and floor at an angle, `depth` deep. */
 static void pose(const sweep_t *s, double angle, double depth, shape_t *body, shape_t *floor)
 {
@@ -89,18 +72,11 @@ static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, c
     ccd_t ccd;
     ccd_real_t depth;
     ccd_penetration_t p;
-    call_rest_t x;
+    const call_rest_t x = {.warm = warm, .want = CCD_WANT_POS, .depth = &depth, .dir = dir, .pos = pos, .full = &p};
     int code;
     shape_query(&ccd);
     ccd.max_iterations = 500;
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-7);
-    memset(&x, 0, sizeof x);
-    x.warm = warm;
-    x.want = CCD_WANT_POS;
-    x.depth = &depth;
-    x.dir = dir;
-    x.pos = pos;
-    x.full = &p;
     code = call_by_number(call, a, b, &ccd, &x);
     if (code >= 0 && call != ASK_MPR && call != ASK_GJK && call != ASK_MPR_WARM) {
         *dir = p.dir;
@@ -144,67 +120,79 @@ static double angle_at(const sweep_t *s, double depth, int k)
     return deg(0.05 * (k - STEPS) * (k - STEPS) + 0.05);
 }
 
-static void sweep(const sweep_t *s, double depth, int call, const double world[9], errors_t *e)
+/* The poses of a sweep at a depth, and where their centre of pressure is. */
+typedef struct {
+    shape_t body, floor;
+    double truth[3];
+    int overlap; /* at the place looked at */
+} pose_t;
+static pose_t poses[STEPS + COARSE];
+static int pose_count;
+
+static void set_poses(const sweep_t *s, double depth)
 {
-    double last[3] = {0, 0, 0}, last_truth[3] = {0, 0, 0};
-    ccd_warm_t warm;
-    int k;
-    memset(&warm, 0, sizeof warm);
-    memset(e, 0, sizeof *e);
-    for (k = 0; k < STEPS + COARSE; k++) {
-        const double angle = angle_at(s, depth, k);
-        shape_t body, floor, a, b;
-        double place[3], truth[3], up[3] = {0, 0, 1}, n[3], p[3], t[3];
-        ccd_vec3_t dir, pos;
+    const double up[3] = {0, 0, 1};
+    const ccd_vec3_t down = {{0, 0, -1}};
+    for (pose_count = 0; pose_count < STEPS + COARSE; pose_count++) {
+        const double angle = angle_at(s, depth, pose_count);
+        pose_t *p = &poses[pose_count];
+        double place[3];
         ccd_vec3_t low;
-        int i, code;
-        const ccd_vec3_t down = {{0, 0, -1}};
+        int i;
         if (angle < 0 && (s->slide != 0 || s->rolls > 0))
             break;
-        pose(s, angle, depth, &body, &floor);
-        shape_support(&body, &down, &low);
+        pose(s, angle, depth, &p->body, &p->floor);
+        shape_support(&p->body, &down, &low);
         for (i = 0; i < 3; i++)
             place[i] = (double)low.v[i];
-        if (s->slide != 0) {
-            /* The deepest place may be beyond the edge. */
+        if (s->slide != 0) /* the deepest place may be beyond the edge */
             place[0] = fmin(place[0], 0.1 - 1e-9);
-        }
         if (s->ground != FLOOR)
-            shared_place(&body, &floor, place);
-        if (!(pressure_centre(&body, &floor, up, place, truth) > 0))
+            shared_place(&p->body, &p->floor, place);
+        p->overlap = pressure_centre(&p->body, &p->floor, up, place, p->truth) > 0;
+    }
+}
+
+static errors_t sweep(const sweep_t *s, double depth, int call, const double world[9])
+{
+    double last[3] = {0, 0, 0}, last_truth[3] = {0, 0, 0};
+    errors_t e;
+    ccd_warm_t warm;
+    int k, i;
+    memset(&warm, 0, sizeof warm);
+    memset(&e, 0, sizeof e);
+    for (k = 0; k < pose_count; k++) {
+        shape_t a = k % 2 ? poses[k].body : poses[k].floor, b = k % 2 ? poses[k].floor : poses[k].body;
+        double p[3], t[3], along = 0, off;
+        ccd_vec3_t dir, pos;
+        int code;
+        if (!poses[k].overlap)
             continue;
-        a = turned(k % 2 ? &body : &floor, world);
-        b = turned(k % 2 ? &floor : &body, world);
+        shape_turn_by(&a, world, 0, 0, 0);
+        shape_turn_by(&b, world, 0, 0, 0);
         code = ask(call, &a, &b, call == ASK_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
         if (code != 0 && code != CCD_LIMIT) {
-            CHECK(0, "%s at %g: code %d", s->name, angle, code);
+            CHECK(0, "%s, pose %d: code %d", s->name, k, code);
             continue;
         }
-        rotate(world, truth, t);
-        for (i = 0; i < 3; i++) {
-            n[i] = (double)dir.v[i];
-            p[i] = (double)pos.v[i];
-        }
-        {
-            /* across dir */
-            double off = 0, along = 0;
-            for (i = 0; i < 3; i++)
-                along += n[i] * (p[i] - t[i]);
-            for (i = 0; i < 3; i++)
-                p[i] -= along * n[i];
-            CHECK(fabs(along) <= 1.5 * depth, "%s at %g: %g along dir", s->name, angle, along);
-            off = apart(p, t);
-            e->square += off * off;
-            e->worst = fmax(e->worst, off);
-            e->poses++;
-        }
+        rotate(world, poses[k].truth, t);
+        for (i = 0; i < 3; i++)
+            along += (double)dir.v[i] * ((double)pos.v[i] - t[i]);
+        for (i = 0; i < 3; i++)
+            p[i] = (double)pos.v[i] - along * (double)dir.v[i]; /* across dir */
+        CHECK(fabs(along) <= 1.5 * depth, "%s, pose %d: %g along dir", s->name, k, along);
+        off = apart(p, t);
+        e.square += off * off;
+        e.worst = fmax(e.worst, off);
+        e.poses++;
         if (k > 0 && k < STEPS) {
-            e->jump = fmax(e->jump, apart(p, last) - 2 * apart(t, last_truth));
-            e->truth = fmax(e->truth, apart(t, last_truth));
+            e.jump = fmax(e.jump, apart(p, last) - 2 * apart(t, last_truth));
+            e.truth = fmax(e.truth, apart(t, last_truth));
         }
         memcpy(last, p, sizeof last);
         memcpy(last_truth, t, sizeof last_truth);
     }
+    return e;
 }
 
 #ifndef OURS_ALONE
@@ -299,20 +287,20 @@ int main(int argc, char **argv)
     }
     for (i = 0; i < sizeof all / sizeof *all; i++) {
         int d, c, w;
-        for (d = 0; d < (single ? 1 : 2); d++)
+        for (d = 0; d < (single ? 1 : 2); d++) {
+            const double depth = d ? 1e-5 : 1e-3;
+            set_poses(&all[i], depth);
             for (w = 0; w < 2; w++)
                 for (c = 0; c < CALL_COUNT; c++) {
-                    const double depth = d ? 1e-5 : 1e-3;
-                    errors_t e;
-                    double rms;
-                    sweep(&all[i], depth, CALLS[c], world[w], &e);
-                    rms = sqrt(e.square / e.poses);
+                    const errors_t e = sweep(&all[i], depth, CALLS[c], world[w]);
+                    const double rms = sqrt(e.square / e.poses);
                     if (c == 0)
                         printf("%-35s %g m deep, world %d: rms %6.3f mm, worst %7.3f, step beyond twice the truth's %7.3f (%.3f)\n",
                                all[i].name, depth, w, 1e3 * rms, 1e3 * e.worst, 1e3 * e.jump, 1e3 * e.truth);
                     CHECK(rms <= all[i].rms, "%s, %g deep, world %d, call %d: rms %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * rms);
                     CHECK(e.jump <= all[i].step, "%s, %g deep, world %d, call %d: a step of %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * e.jump);
                 }
+        }
     }
     return checks_end();
 }

@@ -8,7 +8,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{Real, Vec3, unit};
 
 pub type Rotation = nalgebra::Rotation3<Real>;
 
@@ -80,11 +80,6 @@ pub fn corners(half: Vec3) -> Vec<Vec3> {
         .collect()
 }
 
-/// The shape as seen from `1 / scale` as far: borrowed, so that its type is the same.
-pub fn scaled(shape: &Shape, scale: Real) -> Box<dyn Fn(&Vec3) -> Vec3 + '_> {
-    Box::new(move |d| shape(d) * scale)
-}
-
 /// Points moved rigidly.
 pub fn placed(points: &[Vec3], rotation: &Rotation, at: Vec3) -> Vec<Vec3> {
     points.iter().map(|p| rotation * p + at).collect()
@@ -103,158 +98,5 @@ pub fn ellipsoid(radii: Vec3, rotation: Rotation, at: Vec3) -> Shape {
     Box::new(move |d| {
         let e = radii.component_mul(&(rotation.inverse() * d));
         rotation * radii.component_mul(&(e / e.norm())) + at
-    })
-}
-
-/// How many kinds of [`pair`] there are.
-pub const KINDS: usize = 10;
-
-/// A pair of unit size whose distance is `gap` (less than zero: the depth).
-pub fn pair(kind: usize, gap: Real, r: &mut Random) -> (Shape, Shape) {
-    let rot = r.rotation();
-    let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
-    let cube = placed(&corners(half), &rot, Vec3::zeros());
-    let [x, y, up] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
-    // A point of the cube's upper face.
-    let top = x * r.within(-0.9, 0.9) * half.x + y * r.within(-0.9, 0.9) * half.y + up * half.z;
-    let lifted = |points: &[Vec3], by: Vec3| points.iter().map(|p| p + by).collect::<Vec<_>>();
-    match kind {
-        // A vertex over a face.
-        0 => {
-            let points = r.points(12, 1.0);
-            let low = hull(&points)(&-up);
-            let points = lifted(&points, top + up * gap - low);
-            (hull(&cube), hull(&points))
-        }
-        // A face on the same face, on a part of it, along an edge, at a corner.
-        1..=4 => {
-            let shift = match kind {
-                1 => Vec3::zeros(),
-                2 => x * (0.8 * half.x) + y * (0.3 * half.y),
-                3 => x * (2.0 * half.x),
-                _ => x * (2.0 * half.x) + y * (2.0 * half.y),
-            };
-            let other = lifted(&cube, shift + up * (2.0 * half.z + gap));
-            (hull(&cube), hull(&other))
-        }
-        // An edge across an edge.
-        5 => {
-            let n = unit(&(x + y)).unwrap();
-            let edge = n.cross(&up) + up * 0.5;
-            let at = x * half.x + y * half.y + n * gap + up * r.within(-0.2, 0.2);
-            let other = [at - edge, at + edge, at + n + up, at + n - up];
-            (hull(&cube), hull(&other))
-        }
-        6 => (hull(&cube), ball(top + up * (gap + 0.5), 0.5)),
-        7 => (ball(Vec3::zeros(), 1.0), ball(up * (1.5 + gap), 0.5)),
-        8 => {
-            let at = up * (1.0 + gap) + x * r.within(-0.5, 0.5) + y * r.within(-0.5, 0.5);
-            (capsule(-x, x, 0.5), capsule(at - y, at + y, 0.5))
-        }
-        // Two ellipsoids with a common normal.
-        _ => {
-            let mut side = |n: Vec3, at: Vec3| {
-                let radii = Vec3::from_fn(|_, _| r.within(0.2, 1.0));
-                let turn = r.rotation();
-                let extreme = ellipsoid(radii, turn, Vec3::zeros())(&n);
-                ellipsoid(radii, turn, at - extreme)
-            };
-            (side(up, Vec3::zeros()), side(-up, up * gap))
-        }
-    }
-}
-
-/// Boxes a million times longer than thick (single: a thousand), one across the other.
-pub fn needles_and_plates(overlap: impl Fn(&Shape, &Shape, &Vec3) -> bool) {
-    let mut r = Random::new(3);
-    // In single precision 1e-6 would be a few ulps of the length.
-    let thin: Real = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
-    for round in 0..300 {
-        let rot = r.rotation();
-        let mut half = || Vec3::new(r.within(0.1, 1.0), r.within(1e2, 1e3) * thin, thin);
-        let (one, other) = (half(), half());
-        // Turned about the thin axis.
-        let turned = rot * nalgebra::Rotation3::new(Vec3::z() * r.within(-3.0, 3.0));
-        let long = placed(&corners(one), &rot, Vec3::zeros());
-        for gap in [0.1 * thin, -0.1 * thin] {
-            let at = rot * Vec3::z() * (2.0 * thin + gap);
-            let across = placed(&corners(other), &turned, at);
-            let hit = overlap(&hull(&long), &hull(&across), &r.direction());
-            assert_eq!(hit, gap < 0.0, "{round}");
-        }
-    }
-}
-
-/// Polygons, segments and points, alone and against each other, in a common plane
-/// and across it: apart by a tenth, or overlapping by that much.
-pub fn flat_shapes(overlap: impl Fn(&Shape, &Shape, &Vec3) -> bool) {
-    let mut r = Random::new(4);
-    for round in 0..500 {
-        let rot = r.rotation();
-        let at = r.vector(3.0);
-        let [x, y, z] = [0, 1, 2].map(|i| rot * Vec3::ith(i, 1.0));
-        let triangle = [at, at + x, at + x * 0.3 + y];
-        let inner = at + x * 0.45 + y * 0.3;
-        let shifted = |by: Vec3| triangle.map(|p| p + by);
-        // In one plane: overlap is exact in the plane only, within rounding across
-        // it; so only what is apart can be told for certain.
-        for by in [y * 1.1, y * -1.1, x * 1.1, x * -1.1] {
-            let (a, b) = (hull(&triangle), hull(&shifted(by)));
-            assert!(!overlap(&a, &b, &r.direction()), "side by side, {round}");
-        }
-        // Across the plane.
-        let segment = hull(&[inner - z * 0.5, inner + z * 0.4]);
-        assert!(
-            overlap(&hull(&triangle), &segment, &r.direction()),
-            "{round}"
-        );
-        let short = hull(&[inner + z * 0.1, inner + z * 0.4]);
-        assert!(
-            !overlap(&hull(&triangle), &short, &r.direction()),
-            "{round}"
-        );
-        let outside = at + x * 0.45 - y * 0.1;
-        let beside = hull(&[outside - z, outside + z]);
-        assert!(
-            !overlap(&hull(&triangle), &beside, &r.direction()),
-            "{round}"
-        );
-        // Points in and out of a solid.
-        let cube = hull(&placed(&corners(Vec3::new(0.5, 0.6, 0.7)), &rot, at));
-        let point = |p: Vec3| hull(&[p]);
-        assert!(
-            overlap(&cube, &point(at + x * 0.4), &r.direction()),
-            "{round}"
-        );
-        assert!(
-            !overlap(&cube, &point(at + x * 0.6), &r.direction()),
-            "{round}"
-        );
-        // Segments that miss each other by a tenth, and parallel ones.
-        let a = hull(&[at - x, at + x]);
-        let lifted = at + z * 0.1;
-        for b in [[lifted - y, lifted + y], [lifted - x, lifted + x * 0.5]] {
-            assert!(!overlap(&a, &hull(&b), &r.direction()), "{round}");
-        }
-        // Two points.
-        let (a, b) = (point(at), point(at + x * 1e-3));
-        assert!(!overlap(&a, &b, &r.direction()), "{round}");
-    }
-}
-
-/// Boxes that touch exactly, on a grid where nothing is rounded, and directions to start
-/// from: a face on a face, on a part of it, along an edge, at a corner.
-pub fn touching() -> impl Iterator<Item = (Shape, Shape, Vec3)> {
-    let cube = corners(Vec3::new(0.5, 0.25, 0.5));
-    let mut r = Random::new(5);
-    let by = [
-        Vec3::new(1.0, 0.0, 0.0),
-        Vec3::new(1.0, 0.125, -0.25),
-        Vec3::new(1.0, 0.5, 0.0),
-        Vec3::new(1.0, 0.5, 1.0),
-    ];
-    by.into_iter().cycle().take(200).map(move |by| {
-        let other = placed(&cube, &Rotation::identity(), by);
-        (hull(&cube), hull(&other), r.direction())
     })
 }

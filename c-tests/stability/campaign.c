@@ -149,15 +149,10 @@ int main(int argc, char **argv)
                     tally(t ? &fine[k][category] : &table[k][category], &x, &p, faults);
                     if (!e->system && faults & FAULTS_NEVER & ~shown[k]) {
                         shown[k] |= faults;
-                        printf("first seen: %s, pair %d, tolerance %g, %s: ", category_text(category), i, tols[t], e->name);
-                        print_faults(stdout, faults & FAULTS_NEVER);
-                        printf("\n  truth %.17g (lower %.17g) along %.17g %.17g %.17g%s\n  ", p.truth.depth, p.truth.lower,
-                               p.truth.n[0], p.truth.n[1], p.truth.n[2], q.surface ? ", surface" : "");
-                        print_answer(stdout, &x);
-                        printf("\n  ");
-                        print_shape(stdout, "a", &p.a);
-                        printf("  ");
-                        print_shape(stdout, "b", &p.b);
+                        printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t], q.surface ? ", surface" : "");
+                        print_wrong(e, &x, faults & FAULTS_NEVER, &p.truth);
+                        print_shape(stdout, "  a", &p.a);
+                        print_shape(stdout, "  b", &p.b);
                     }
                 }
             }

@@ -23,6 +23,11 @@ typedef struct {
     double growth[2]; /* of h from the true normal: (h - depth) / angle^2, least and across */
 } pair_t;
 
+static inline shape_t *pair_side(pair_t *p, int k) { return k ? &p->b : &p->a; }
+
+/* b to so far along n. */
+static inline void pair_place(pair_t *p, double at, const double n[3]) { shape_move(&p->b, at * n[0], at * n[1], at * n[2]); }
+
 static inline void pair_turn(dice_t *d, shape_t *s)
 {
     double r[9];
@@ -65,20 +70,35 @@ static inline shape_t pair_shape(dice_t *d, ccd_real_t *verts, shape_type_t type
     return type == SHAPE_POLYTOPE ? pair_hull(d, verts, x) : shape_make(type, x, y, z);
 }
 
+static const int any_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
+
+/* One of these kinds. */
+static inline void pair_one(dice_t *d, pair_t *p, int side, const int *kinds, int n, double low, double high)
+{
+    *pair_side(p, side) = pair_shape(d, p->verts[side], (shape_type_t)kinds[dice_below(d, n)], low, high);
+}
+
+/* Two of these kinds, turned. */
+static inline void pair_of(dice_t *d, pair_t *p, const int *kinds, int n, double scale)
+{
+    int k;
+    for (k = 0; k < 2; k++)
+        pair_one(d, p, k, kinds, n, .1 * scale, scale);
+    for (k = 0; k < 2; k++)
+        pair_turn(d, pair_side(p, k));
+}
+
 /* Two shapes of any kind in random poses that overlap, or (apart) do not. */
 static inline void pair_generic(dice_t *d, pair_t *p, double scale, int apart)
 {
     double u[3];
     int tries;
-    p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
-    p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
-    pair_turn(d, &p->a);
-    pair_turn(d, &p->b);
+    pair_of(d, p, any_kind, SHAPE_TYPES, scale);
     for (tries = 0; tries < 60; tries++) {
-        double at = pair_size(&p->a, &p->b) * dice_in(d, 0, apart ? 1.5 : 1);
+        const double at = pair_size(&p->a, &p->b) * dice_in(d, 0, apart ? 1.5 : 1);
         truth_t t;
         dice_unit(d, u);
-        shape_move(&p->b, at * u[0], at * u[1], at * u[2]);
+        pair_place(p, at, u);
         t = truth_depth(&p->a, &p->b);
         if (apart ? t.depth < -1e-3 * scale : t.lower > 1e-3 * scale)
             return;
@@ -87,20 +107,18 @@ static inline void pair_generic(dice_t *d, pair_t *p, double scale, int apart)
     shape_move(&p->b, apart ? 10 * scale : .01 * scale, 0, 0);
 }
 
+/* By so much further along n. */
+static inline void shape_shift(shape_t *s, double by, const double n[3])
+{
+    shape_move(s, (double)s->pos[0] + by * n[0], (double)s->pos[1] + by * n[1], (double)s->pos[2] + by * n[2]);
+}
+
 /* Moves b along the true normal until only depth is left: exact, because the
  * minimum of h(n) - s n.m over n stays where it was. */
 static inline void pair_pull_out(pair_t *p, double depth)
 {
-    truth_t t = truth_depth(&p->a, &p->b);
-    double by = t.depth - depth;
-    shape_move(&p->b, (double)p->b.pos[0] + by * t.n[0], (double)p->b.pos[1] + by * t.n[1],
-               (double)p->b.pos[2] + by * t.n[2]);
-}
-
-static inline void pair_offset(pair_t *p, double x, double y, double z)
-{
-    shape_move(&p->a, (double)p->a.pos[0] + x, (double)p->a.pos[1] + y, (double)p->a.pos[2] + z);
-    shape_move(&p->b, (double)p->b.pos[0] + x, (double)p->b.pos[1] + y, (double)p->b.pos[2] + z);
+    const truth_t t = truth_depth(&p->a, &p->b);
+    shape_shift(&p->b, t.depth - depth, t.n);
 }
 
 /* h on a circle of directions about n, at angle psi of it. */
@@ -120,13 +138,11 @@ static inline void pair_grow(pair_t *p)
     double u[3], v[3], axis[3] = {0, 0, 0}, l, psi, best = 0, least = HUGE_VAL;
     int i, k;
     axis[fabs(n[0]) < .6 ? 0 : fabs(n[1]) < .6 ? 1 : 2] = 1;
-    for (k = 0; k < 3; k++)
-        u[k] = n[(k + 1) % 3] * axis[(k + 2) % 3] - n[(k + 2) % 3] * axis[(k + 1) % 3];
+    truth_cross3(n, axis, u);
     l = sqrt(truth_dot3(u, u));
     for (k = 0; k < 3; k++)
         u[k] /= l;
-    for (k = 0; k < 3; k++)
-        v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
+    truth_cross3(n, u, v);
     for (psi = 0; psi < 6.3; psi += step)
         if (pair_around(p, u, v, angle, psi) < least) {
             least = pair_around(p, u, v, angle, psi);
@@ -207,20 +223,15 @@ static inline const char *category_text(int category)
     return texts[category];
 }
 
-static inline void pair_solid(dice_t *d, pair_t *p)
-{
-    p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .1, 1);
-    pair_turn(d, &p->b);
-}
-
 /* Moves b by up to part of both reaches, until they overlap by more than depth. */
 static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
 {
     int tries;
     for (tries = 0; tries < 60; tries++) {
-        double u[3], at = part * pair_size(&p->a, &p->b) * dice_in(d, 0, 1);
+        double u[3];
+        const double at = part * pair_size(&p->a, &p->b) * dice_in(d, 0, 1);
         dice_unit(d, u);
-        shape_move(&p->b, at * u[0], at * u[1], at * u[2]);
+        pair_place(p, at, u);
         if (truth_depth(&p->a, &p->b).lower > depth)
             return;
     }
@@ -231,19 +242,17 @@ static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
  * at most a thousandth of the size: corners and rims meet. */
 static inline void pair_corners(dice_t *d, pair_t *p)
 {
-    static const shape_type_t kinds[4] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE};
+    static const int kinds[] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE};
     double part = dice_log(d, 1e-5, 1e-3), deep;
-    p->a = pair_shape(d, p->verts[0], kinds[dice_below(d, 4)], .1, 1);
-    p->b = pair_shape(d, p->verts[1], kinds[dice_below(d, 4)], .1, 1);
-    pair_turn(d, &p->a);
-    pair_turn(d, &p->b);
+    pair_of(d, p, kinds, 4, 1);
     do {
         double u[3], s[3];
         deep = part * pair_size(&p->a, &p->b);
         dice_unit(d, u);
         shape_move(&p->b, 0, 0, 0);
         truth_difference(&p->a, &p->b, u, s);
-        shape_move(&p->b, s[0] - deep * u[0], s[1] - deep * u[1], s[2] - deep * u[2]);
+        pair_place(p, 1, s);
+        shape_shift(&p->b, -deep, u);
         part *= 1.01; /* a thin edge may be thinner than that */
     } while (!(truth_depth(&p->a, &p->b).lower > deep / 10));
 }
@@ -266,7 +275,7 @@ static inline void pair_concentric(dice_t *d, pair_t *p)
     if (which == 3)
         memcpy(p->b.rot, p->a.rot, sizeof p->b.rot);
     dice_unit(d, u);
-    shape_move(&p->b, at * u[0], at * u[1], at * u[2]);
+    pair_place(p, at, u);
 }
 
 /* Any two shapes, 1e-6 to 1e6 m large: apart to deep, on a shared axis, about one centre. */
@@ -277,8 +286,8 @@ static inline void pair_scaled(dice_t *d, pair_t *p)
     const int place = dice_below(d, PLACES);
     double u[3], x;
     int k;
-    p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
-    p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .1 * scale, scale);
+    for (k = 0; k < 2; k++)
+        pair_one(d, p, k, any_kind, SHAPE_TYPES, .1 * scale, scale);
     if (place != ON_AXIS || dice_below(d, 2))
         pair_turn(d, &p->a);
     if (place == ON_AXIS)
@@ -302,25 +311,54 @@ static inline void pair_scaled(dice_t *d, pair_t *p)
         break;
     case NEARLY_CENTRED:
         dice_unit(d, u);
-        x = scale * dice_log(d, 1e-18, 1e-4);
-        shape_move(&p->b, x * u[0], x * u[1], x * u[2]);
+        pair_place(p, scale * dice_log(d, 1e-18, 1e-4), u);
         break;
     default:
         break;
     }
 }
 
+/* Two capsules: parallel, coaxial, crossing or nearly. */
+static inline void pair_capsules(dice_t *d, pair_t *p)
+{
+    double x, r[9];
+    p->a = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
+    p->b = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
+    x = (double)p->a.p[0] + (double)p->b.p[0];
+    switch (dice_below(d, 3)) {
+    case 0:
+        shape_move(&p->b, dice_in(d, .1, .9) * x, 0, dice_in(d, -.3, .3));
+        break;
+    case 1:
+        shape_move(&p->b, 0, 0, dice_in(d, 0, (double)p->a.p[1]));
+        break;
+    default:
+        rotation_about(1, 0, 0, dice_in(d, .1, 1.5707963267949), r);
+        shape_turn(&p->b, r);
+        shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, 0, .9) * x, 0, 0);
+        break;
+    }
+}
+
+/* A length of the grid. */
+static inline double pair_eighths(dice_t *d, int least, int n) { return (least + dice_below(d, n)) / 8.; }
+
+/* On or off the middle of what it stands on. */
+static inline double pair_aside(dice_t *d, double by) { return dice_below(d, 2) ? 0 : dice_in(d, -by, by); }
+
 /* Pair number index of a category, with its truth. */
 static inline void category_pair(int category, uint64_t index, int tie, pair_t *p)
 {
+    static const int solid[] = {SHAPE_CYLINDER, SHAPE_POLYTOPE, SHAPE_BOX};
     static const double pi = 3.14159265358979323846;
     dice_t dd = dice((uint64_t)category + 1, index), *d = &dd;
-    double u[3], x, y, z;
+    double u[3], r[9], x, y, z;
     int k;
     memset(p, 0, sizeof *p);
     switch (category) {
     case CATEGORY_GENERIC:
-        pair_generic(d, p, 1, 0);
+    case CATEGORY_APART:
+        pair_generic(d, p, 1, category == CATEGORY_APART);
         break;
     case CATEGORY_SHALLOW3:
     case CATEGORY_SHALLOW5:
@@ -331,42 +369,35 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_COINCIDENT:
     case CATEGORY_NEAR_COINCIDENT:
-        p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .1, 1);
-        pair_turn(d, &p->a);
-        pair_solid(d, p);
+        pair_of(d, p, any_kind, SHAPE_TYPES, 1);
         if (category == CATEGORY_NEAR_COINCIDENT) {
             dice_unit(d, u);
-            x = dice_log(d, 1e-18, 1e-8);
-            shape_move(&p->b, x * u[0], x * u[1], x * u[2]);
+            pair_place(p, dice_log(d, 1e-18, 1e-8), u);
         }
         break;
     case CATEGORY_GRID:
-        p->a = shape_box((1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8.);
-        p->b = shape_box((1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8., (1 + dice_below(d, 8)) / 8.);
-        shape_move(&p->b, dice_below(d, 9) / 8. - .5, dice_below(d, 9) / 8. - .5, dice_below(d, 9) / 8. - .5);
+        for (k = 0; k < 2; k++)
+            *pair_side(p, k) = shape_box(pair_eighths(d, 1, 8), pair_eighths(d, 1, 8), pair_eighths(d, 1, 8));
+        shape_move(&p->b, pair_eighths(d, -4, 9), pair_eighths(d, -4, 9), pair_eighths(d, -4, 9));
         break;
     case CATEGORY_KISSING: {
-        double r[9], half[3], gap = dice_sign(d) * dice_log(d, 1e-15, 1e-6);
-        int axis = dice_below(d, 3);
+        const double gap = dice_sign(d) * dice_log(d, 1e-15, 1e-6);
+        const int axis = dice_below(d, 3);
         dice_rotation(d, r);
-        for (k = 0; k < 3; k++)
-            half[k] = dice_in(d, .1, 1);
-        p->a = shape_box(half[0], half[1], half[2]);
-        p->b = shape_box(half[axis == 0 ? 0 : 1], half[1], half[2]);
-        p->b.p[0] = p->a.p[0];
+        p->a = pair_shape(d, NULL, SHAPE_BOX, .1, 1);
         shape_turn(&p->a, r);
-        shape_turn(&p->b, r);
-        x = 2 * half[axis] + gap;
-        shape_move(&p->b, r[axis] * x, r[3 + axis] * x, r[6 + axis] * x);
+        p->b = p->a;
+        for (k = 0; k < 3; k++)
+            u[k] = r[3 * k + axis];
+        pair_place(p, 2 * (double)p->a.p[axis] + gap, u);
         break;
     }
     case CATEGORY_AXIS: {
-        int kind = dice_below(d, SHAPE_POLYTOPE); /* all types before it: no hull */
-        p->a = pair_shape(d, p->verts[0], kind, .1, 1);
-        p->b = pair_shape(d, p->verts[1], dice_below(d, 2) ? kind : dice_below(d, SHAPE_POLYTOPE), .1, 1);
+        const int kind = dice_below(d, SHAPE_POLYTOPE); /* all types before it: no hull */
+        p->a = pair_shape(d, NULL, kind, .1, 1);
+        p->b = pair_shape(d, NULL, dice_below(d, 2) ? kind : dice_below(d, SHAPE_POLYTOPE), .1, 1);
         x = dice_in(d, 0, .9) * .3;
-        k = dice_below(d, 3);
-        shape_move(&p->b, k == 0 ? x : 0, k == 1 ? x : 0, k == 2 ? x : 0);
+        p->b.pos[dice_below(d, 3)] = (ccd_real_t)x;
         break;
     }
     case CATEGORY_TIES:
@@ -375,49 +406,43 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         p->a = shape_box(x, x, x);
         p->b = dice_below(d, 3) ? shape_box(y, y, y) : shape_sphere(y);
         z = dice_in(d, 0, x);
-        switch (dice_below(d, 3)) {
-        case 0: shape_move(&p->b, z, z, z); break;
-        case 1: shape_move(&p->b, z, z, 0); break;
-        default: shape_move(&p->b, z, 0, 0); break;
-        }
+        k = dice_below(d, 3);
+        shape_move(&p->b, z, k < 2 ? z : 0, k < 1 ? z : 0);
         break;
     case CATEGORY_INSIDE:
-        p->a = pair_shape(d, p->verts[0], dice_below(d, SHAPE_TYPES), .5, 1);
-        pair_turn(d, &p->a);
-        p->b = pair_shape(d, p->verts[1], dice_below(d, SHAPE_TYPES), .01, .1);
-        pair_turn(d, &p->b);
+        for (k = 0; k < 2; k++) {
+            pair_one(d, p, k, any_kind, SHAPE_TYPES, k ? .01 : .5, k ? .1 : 1);
+            pair_turn(d, pair_side(p, k));
+        }
         pair_scatter(d, p, .3, 2 * shape_reach(&p->b));
         break;
     case CATEGORY_THIN_BOXES:
         for (k = 0; k < 2; k++) {
             x = dice_log(d, 1e2, 1e6);
-            if (dice_below(d, 2))
-                *(k ? &p->b : &p->a) = shape_box(1, dice_in(d, .3, 1), 1 / x);
-            else
-                *(k ? &p->b : &p->a) = shape_box(1, 1 / x, dice_in(d, .5, 2) / x);
-            pair_turn(d, k ? &p->b : &p->a);
+            *pair_side(p, k) = dice_below(d, 2) ? shape_box(1, dice_in(d, .3, 1), 1 / x) : shape_box(1, 1 / x, dice_in(d, .5, 2) / x);
+            pair_turn(d, pair_side(p, k));
         }
         pair_scatter(d, p, .1, 0);
         break;
-    case CATEGORY_THIN_CAPSULES: {
+    case CATEGORY_THIN_CAPSULES:
         x = dice_log(d, 1e2, 1e5);
         p->a = shape_capsule(1 / x, 1);
         p->b = shape_capsule(dice_in(d, .5, 2) / x, dice_in(d, .5, 1));
         pair_turn(d, &p->a);
         pair_turn(d, &p->b);
         dice_unit(d, u);
-        y = dice_in(d, 0, 1) / x;
-        /* their axes pass at y or less; then slid along a's axis */
-        z = dice_in(d, -.5, .5);
-        shape_move(&p->b, y * u[0] + z * (double)p->a.rot[2], y * u[1] + z * (double)p->a.rot[5],
-                   y * u[2] + z * (double)p->a.rot[8]);
+        /* their axes pass at this or less; then slid along a's axis */
+        pair_place(p, dice_in(d, 0, 1) / x, u);
+        for (k = 0; k < 3; k++)
+            u[k] = (double)p->a.rot[3 * k + 2];
+        shape_shift(&p->b, dice_in(d, -.5, .5), u);
         break;
-    }
     case CATEGORY_FLAT:
     case CATEGORY_FLAT_CENTRED:
         p->a = pair_polygon(d, p->verts[0], dice_in(d, .1, 1));
         pair_turn(d, &p->a);
-        pair_solid(d, p);
+        pair_one(d, p, 1, any_kind, SHAPE_TYPES, .1, 1);
+        pair_turn(d, &p->b);
         if (category == CATEGORY_FLAT) {
             pair_scatter(d, p, .7, 1e-4);
         } else {
@@ -433,101 +458,71 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         p->verts[0][5] = (ccd_real_t)x;
         p->a = shape_polytope(p->verts[0], x > 0 ? 2 : 1);
         pair_turn(d, &p->a);
-        pair_solid(d, p);
+        pair_one(d, p, 1, any_kind, SHAPE_TYPES, .1, 1);
+        pair_turn(d, &p->b);
         pair_scatter(d, p, .5, 1e-4);
         break;
     case CATEGORY_CAPSULES:
-        p->a = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
-        p->b = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
-        x = (double)p->a.p[0] + (double)p->b.p[0];
-        switch (dice_below(d, 3)) {
-        case 0: /* parallel */
-            shape_move(&p->b, dice_in(d, .1, .9) * x, 0, dice_in(d, -.3, .3));
-            break;
-        case 1: /* coaxial */
-            shape_move(&p->b, 0, 0, dice_in(d, 0, (double)p->a.p[1]));
-            break;
-        default: { /* crossing, or nearly */
-            double r[9];
-            rotation_about(1, 0, 0, dice_in(d, .1, pi / 2), r);
-            shape_turn(&p->b, r);
-            shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, 0, .9) * x, 0, 0);
-            break;
-        }
-        }
+        pair_capsules(d, p);
         break;
     case CATEGORY_CAPS:
         p->a = shape_cylinder(dice_in(d, .2, 1), dice_in(d, .1, 1));
         p->b = shape_cylinder(dice_in(d, .2, 1), dice_in(d, .1, 1));
         x = dice_log(d, 1e-4, .05);
-        shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, -.1, .1), dice_below(d, 2) ? 0 : dice_in(d, -.1, .1),
-                   (double)p->a.p[1] + (double)p->b.p[1] - x);
+        shape_move(&p->b, pair_aside(d, .1), pair_aside(d, .1), (double)p->a.p[1] + (double)p->b.p[1] - x);
         break;
     case CATEGORY_APEX:
         p->a = dice_below(d, 2) ? shape_box(dice_in(d, .3, 1), dice_in(d, .3, 1), dice_in(d, .1, 1))
                                 : shape_cylinder(dice_in(d, .3, 1), dice_in(d, .1, 1));
         p->b = shape_cone(dice_in(d, .1, 1), dice_in(d, .1, 1));
-        {
-            double r[9];
-            rotation_about(1, 0, 0, pi, r);
-            shape_turn(&p->b, r);
-        }
+        rotation_about(1, 0, 0, pi, r);
+        shape_turn(&p->b, r);
         x = dice_log(d, 1e-6, .3);
         z = (double)p->a.p[p->a.type == SHAPE_BOX ? 2 : 1];
-        shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, -.2, .2), dice_below(d, 2) ? 0 : dice_in(d, -.2, .2),
-                   z + (double)p->b.p[1] - x);
+        shape_move(&p->b, pair_aside(d, .2), pair_aside(d, .2), z + (double)p->b.p[1] - x);
         break;
-    case CATEGORY_EDGES: {
-        double r[9];
+    case CATEGORY_EDGES:
         x = dice_in(d, .2, 1);
         y = dice_in(d, .2, 1);
         p->a = shape_box(x, x, dice_in(d, .5, 1));
         p->b = shape_box(y, dice_in(d, .5, 1), y);
-        rotation_about(0, 0, 1, pi / 4, r);
-        shape_turn(&p->a, r);
-        rotation_about(0, 1, 0, pi / 4, r);
-        shape_turn(&p->b, r);
+        for (k = 0; k < 2; k++) {
+            rotation_about(0, k, !k, pi / 4, r);
+            shape_turn(pair_side(p, k), r);
+        }
         shape_move(&p->b, (x + y) * sqrt(2) - dice_log(d, 1e-6, .1), dice_in(d, -.2, .2), dice_in(d, -.2, .2));
         break;
-    }
     case CATEGORY_ELLIPSOIDS:
         for (k = 0; k < 2; k++) {
             x = dice_in(d, .3, 1);
-            *(k ? &p->b : &p->a) = shape_ellipsoid(x, x / dice_log(d, 1, 20), x / dice_log(d, 1, 20));
-            pair_turn(d, k ? &p->b : &p->a);
+            *pair_side(p, k) = shape_ellipsoid(x, x / dice_log(d, 1, 20), x / dice_log(d, 1, 20));
+            pair_turn(d, pair_side(p, k));
         }
         pair_scatter(d, p, .7, 1e-4);
         break;
     case CATEGORY_CORNERS:
         pair_corners(d, p);
         break;
-    case CATEGORY_DISCS: {
-        double r[9], turned[3];
-        p->a = (dice_below(d, 2) ? shape_cylinder : shape_cone)(dice_in(d, .1, 1), dice_in(d, .1, 1));
-        p->b = (dice_below(d, 2) ? shape_cylinder : shape_cone)(dice_in(d, .1, 1), dice_in(d, .1, 1));
+    case CATEGORY_DISCS:
+        for (k = 0; k < 2; k++)
+            *pair_side(p, k) = (dice_below(d, 2) ? shape_cylinder : shape_cone)(dice_in(d, .1, 1), dice_in(d, .1, 1));
         x = dice_in(d, 0, 6.28);
         y = dice_in(d, 0, (double)p->a.p[0]);
         u[0] = y * cos(x);
         u[1] = y * sin(x);
         u[2] = (double)p->a.p[1] + (double)p->b.p[1] - dice_sign(d) * dice_log(d, 1e-12, 1e-2);
         dice_rotation(d, r);
-        for (k = 0; k < 3; k++)
-            turned[k] = truth_dot3(r + 3 * k, u);
         shape_turn(&p->a, r);
         shape_turn(&p->b, r);
-        shape_move(&p->b, turned[0], turned[1], turned[2]);
+        shape_move(&p->b, truth_dot3(r, u), truth_dot3(r + 3, u), truth_dot3(r + 6, u));
         break;
-    }
-    case CATEGORY_CENTRED_SPHERE: {
-        static const shape_type_t kinds[3] = {SHAPE_CYLINDER, SHAPE_POLYTOPE, SHAPE_BOX};
-        p->a = pair_shape(d, p->verts[0], kinds[dice_below(d, 3)], .1, 1);
+    case CATEGORY_CENTRED_SPHERE:
+        pair_one(d, p, 0, solid, 3, .1, 1);
         pair_turn(d, &p->a);
         p->b = shape_sphere(dice_in(d, .1, 1));
         dice_unit(d, u);
-        x = dice_log(d, 1e-3, .3) * shape_reach(&p->a);
-        shape_move(&p->b, x * u[0], x * u[1], x * u[2]);
+        pair_place(p, dice_log(d, 1e-3, .3) * shape_reach(&p->a), u);
         break;
-    }
     case CATEGORY_SCALED:
         pair_scaled(d, p);
         break;
@@ -535,11 +530,8 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     case CATEGORY_FAR_8:
         pair_generic(d, p, 1, 0);
         dice_unit(d, u);
-        x = category == CATEGORY_FAR_6 ? 1e6 : 1e8;
-        pair_offset(p, x * u[0], x * u[1], x * u[2]);
-        break;
-    case CATEGORY_APART:
-        pair_generic(d, p, 1, 1);
+        for (k = 0; k < 2; k++)
+            shape_shift(pair_side(p, k), category == CATEGORY_FAR_6 ? 1e6 : 1e8, u);
         break;
     default:
         pair_concentric(d, p);

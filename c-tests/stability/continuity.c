@@ -142,9 +142,7 @@ static const double pos_speed = 2;
 static double angle_between(const double a[3], const double b[3])
 {
     double c[3];
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
+    truth_cross3(a, b, c);
     return atan2(sqrt(truth_dot3(c, c)), truth_dot3(a, b)) * 57.29577951308232;
 }
 
@@ -193,9 +191,7 @@ int main(int argc, char **argv)
                 t = truth_depth(&a, &b);
                 q = question(&a, &b, tol, &t);
                 memset(&unused, 0, sizeof unused);
-                shape_query(&ccd);
-                ccd.support1 = ccd.support2 = judge_support;
-                ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)tol;
+                ccd = judge_query(tol);
                 x = ask_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
                 calls += x.calls;
                 if (!e->system) {
@@ -203,11 +199,8 @@ int main(int argc, char **argv)
                     /* the bare local method may be in another valley, and leave it */
                     faults &= FAULTS_NEVER;
                     if (faults && wrong++ < 3) {
-                        printf("FAILED %s, %s, frame %d, truth %.17g: ", motions[m].name, e->name, f, t.depth);
-                        print_faults(stdout, faults);
-                        printf(": ");
-                        print_answer(stdout, &x);
-                        printf("\n");
+                        printf("FAILED %s, frame %d, ", motions[m].name, f);
+                        print_wrong(e, &x, faults, &t);
                     }
                 }
                 error = fmax(error, fabs(x.depth - t.depth));

@@ -22,13 +22,15 @@
 
 /* --- asking ------------------------------------------------------------------ */
 
-enum { /* what the warm state holds */
+enum { /* what the warm state holds, or how else a distance is asked */
     STATE_NONE,  /* NULL */
     STATE_ZERO,  /* all bytes 0 */
     STATE_AGAIN, /* left by the same question asked a moment ago */
     STATE_SWAPPED, /* the same of the swapped pair */
     STATE_AGAINST, /* a guess opposite to the true normal */
-    STATE_BESIDE   /* one up to 120 degrees off: its coordinates in another order */
+    STATE_BESIDE,  /* one up to 120 degrees off: its coordinates in another order */
+    STATE_MARGINS, /* none: a ball all around each object */
+    STATE_NEAR     /* none: what is farther apart than a part of the size is not refined */
 };
 
 typedef struct {
@@ -46,6 +48,7 @@ typedef struct {
     int has_pos, has_proof;
     int touched; /* an output was written though there was no answer */
     double lower, normal[3], point1[3], point2[3]; /* with has_proof */
+    double distance, margins, near; /* of ccdSignedDistance: the first as it is said, depth and lower without margins */
     unsigned long calls;                           /* of both support functions */
     unsigned long supports;                        /* as reported, with has_proof */
 } answer_t;
@@ -60,6 +63,7 @@ static const entry_t entries[] = {
     {"separate", 0, ASK_SEPARATE, STATE_NONE},
     {"MPR intersect", 0, ASK_MPR_INTERSECT, STATE_NONE},
     {"GJK intersect", 0, ASK_GJK_INTERSECT, STATE_NONE},
+    {"intersect", 0, ASK_INTERSECT, STATE_NONE},
     {"penetration", 0, ASK_PENETRATION, STATE_NONE},
     {"local", 0, ASK_LOCAL, STATE_NONE},
     {"minimum", 0, ASK_PROVEN, STATE_NONE},
@@ -82,6 +86,8 @@ static const entry_t entries[] = {
     {"distance", 0, ASK_DISTANCE, STATE_NONE},
     {"distance, again", 0, ASK_DISTANCE, STATE_AGAIN},
     {"distance, wrong guess", 0, ASK_DISTANCE, STATE_AGAINST},
+    {"distance, margins", 0, ASK_DISTANCE, STATE_MARGINS},
+    {"distance, if near", 0, ASK_DISTANCE, STATE_NEAR},
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
@@ -107,7 +113,7 @@ static inline int entry_is_mpr(const entry_t *e)
 
 static inline int entry_is_verdict(const entry_t *e)
 {
-    return e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM;
+    return e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM || e->ask == ASK_INTERSECT;
 }
 
 /* From so many calls of both support functions on it counts as looping: no query is slower. */
@@ -118,8 +124,9 @@ static inline unsigned long most_calls(const entry_t *e)
     return entry_is_mpr(e) ? 2 * 400 : 2 * 1500;
 }
 
-/* What of an answer is wanted: CCD_WANT_ flags. */
+/* What of an answer is wanted: CCD_WANT_ flags; and the size of the pair, metres. */
 static unsigned judge_want = CCD_WANT_ALL;
+static double judge_size = 1;
 
 static sigjmp_buf judge_back;
 static volatile unsigned long judge_calls, judge_limit;
@@ -186,13 +193,17 @@ static inline int judge_libccd(const entry_t *e, const void *a, const void *b, c
 }
 
 /* A signed distance, as a depth: its upper and lower bound change places with the sign. */
-static inline void judge_distance(const ccd_distance_t *d, answer_t *out)
+static inline void judge_distance(const ccd_distance_t *d, const call_rest_t *x, answer_t *out)
 {
     out->has_proof = out->code == CCD_HIT || out->code == CCD_MISS || out->code == CCD_LIMIT;
     if (!out->has_proof)
         return;
-    out->depth = -(double)d->distance;
-    out->lower = -(double)d->distance_upper;
+    out->distance = (double)d->distance;
+    out->margins = (double)x->margin1 + (double)x->margin2;
+    out->near = (double)x->max_distance;
+    out->supports = d->support_calls;
+    out->depth = -(double)d->distance - out->margins;
+    out->lower = -(double)d->distance_upper - out->margins;
     judge_vec(&d->normal, out->dir);
     judge_vec(&d->normal, out->normal);
     judge_vec(&d->point1, out->point1);
@@ -207,23 +218,16 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     ccd_distance_t distance;
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
-    call_rest_t rest;
+    const ccd_real_t margin = (ccd_real_t)(e->state == STATE_MARGINS ? .1 * judge_size : 0);
+    const call_rest_t rest = {.warm = warm, .along = along, .want = judge_want, .depth = &depth, .dir = &dir,
+                              .pos = judge_want & CCD_WANT_POS ? &pos : NULL, .full = &p, .margin1 = margin, .margin2 = margin / 3,
+                              .max_distance = (ccd_real_t)(e->state == STATE_NEAR ? .1 * judge_size : HUGE_VAL), .distance = &distance};
     const int full = e->ask >= ASK_PENETRATION;
     int code, i;
     memset(&p, judge_blank, sizeof p);
     memset(&depth, judge_blank, sizeof depth);
     memset(&dir, judge_blank, sizeof dir);
     memset(&pos, judge_blank, sizeof pos);
-    memset(&rest, 0, sizeof rest);
-    rest.warm = warm;
-    rest.along = along;
-    rest.want = judge_want;
-    rest.depth = &depth;
-    rest.dir = &dir;
-    rest.pos = judge_want & CCD_WANT_POS ? &pos : NULL;
-    rest.full = &p;
-    rest.max_distance = (ccd_real_t)HUGE_VAL;
-    rest.distance = &distance;
     code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
     if (entry_is_verdict(e))
         code = code ? CCD_HIT : CCD_MISS;
@@ -238,7 +242,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     }
     out->code = code;
     if (e->ask == ASK_DISTANCE) {
-        judge_distance(&distance, out);
+        judge_distance(&distance, &rest, out);
         return;
     }
     if (code != CCD_HIT && code != CCD_LIMIT) {
@@ -309,18 +313,26 @@ static inline answer_t ask_objects(const entry_t *e, const void *a, const void *
         ask_guarded(e, a, b, ccd, &warm, &along, limit);
     if (e->state == STATE_SWAPPED)
         ask_guarded(e, b, a, &swapped, &warm, &along, limit);
-    return ask_guarded(e, a, b, ccd, e->state == STATE_NONE ? NULL : &warm, &along, limit);
+    return ask_guarded(e, a, b, ccd, e->state == STATE_NONE || e->state >= STATE_MARGINS ? NULL : &warm, &along, limit);
+}
+
+/* Of shapes, whose support points are counted, to one tolerance for every call. */
+static inline ccd_t judge_query(double tol)
+{
+    ccd_t ccd;
+    shape_query(&ccd);
+    ccd.support1 = ccd.support2 = judge_support;
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
+    return ccd;
 }
 
 /* The question about two shapes. limit: support calls until it is a loop. */
 static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
                            const double normal[3], unsigned long limit)
 {
+    const ccd_t ccd = judge_query(tol);
     shape_t sa = *a, sb = *b;
-    ccd_t ccd;
-    shape_query(&ccd);
-    ccd.support1 = ccd.support2 = judge_support;
-    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
+    judge_size = pair_size(a, b);
     return ask_objects(e, &sa, &sb, &ccd, normal, limit);
 }
 
@@ -511,15 +523,18 @@ static inline int mpr_within(double depth, double least, double tol, double nois
         || (supports >= MPR_POINTS && depth <= least + fmax(tol, tolerance(TOL_LATE) * least) + noise);
 }
 
-/* A signed distance, overlapping or not: the sign is the code's, the plane is as far as it says and the
- * bounds close about the truth; at the cap, where minima form a surface, the distance is right all the
+/* A signed distance, overlapping or not: the sign is the code's, the plane is as far as it says, the
+ * bounds close about the truth, but of what is too far, and the points are in the objects, of a gap as
+ * far apart as its upper bound; at the cap, where minima form a surface, the distance is right all the
  * same. */
-static inline int judge_signed(const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
     const truth_t *t = &q->truth;
     const double rounding = 2 * q->noise + t->depth - t->lower, floor = tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b);
     const double within = x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_PROMISED) * fabs(t->depth)) : q->tol;
-    int faults = 0;
+    const double bound = judge_bound(e, x, q) + x->margins;
+    double origin[3], p[2][3], apart = 0;
+    int faults = 0, i;
     if (!x->has_proof)
         return FAULT_CODE;
     if (x->code == CCD_LIMIT && !q->surface)
@@ -528,16 +543,26 @@ static inline int judge_signed(const answer_t *x, const shape_t *a, const shape_
         return faults | FAULT_NAN;
     if (!(fabs(sqrt(truth_dot3(x->normal, x->normal)) - 1) <= tolerance(TOL_UNIT)))
         faults |= FAULT_NOT_UNIT;
-    if (x->code != CCD_LIMIT && (x->code == CCD_HIT) != (x->depth > 0))
+    if ((x->code != CCD_LIMIT && (x->code == CCD_HIT) != (x->distance < 0)) || (x->distance == 0 && signbit(x->distance)))
         faults |= FAULT_CODE;
     if (x->depth < truth_value(a, b, x->normal) - 2 * q->noise)
         faults |= FAULT_UNSOUND;
     if (x->lower > x->depth || x->lower > t->depth + rounding)
         faults |= FAULT_FALSE_PROOF;
-    if (x->code != CCD_LIMIT && x->depth - x->lower > q->tol + floor + 2 * q->noise)
+    if (x->code != CCD_LIMIT && x->distance <= x->near && x->depth - x->lower > q->tol + floor + 2 * q->noise)
         faults |= FAULT_NO_PROOF;
-    if (x->depth > t->depth + within + rounding)
+    if (x->distance <= x->near && x->depth > t->depth + within + rounding)
         faults |= FAULT_NOT_MINIMUM;
+    for (i = 0; i < 3; i++) {
+        origin[i] = (double)a->pos[i];
+        p[0][i] = x->point1[i] - origin[i];
+        p[1][i] = x->point2[i] - origin[i];
+        apart += (p[0][i] - p[1][i]) * (p[0][i] - p[1][i]);
+    }
+    if (judge_outside(a, origin, p[0], bound) || judge_outside(b, origin, p[1], bound))
+        faults |= FAULT_WITNESS_INSIDE;
+    if (x->distance > 0 && !(fabs(sqrt(apart) + x->lower + x->margins) <= 2 * q->noise + tolerance(TOL_INSIDE) * q->size))
+        faults |= FAULT_WITNESS_DEPTH;
     return faults;
 }
 
@@ -552,7 +577,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (x->code == ANSWER_CRASH)
         return FAULT_CRASH;
     if (e->ask == ASK_DISTANCE)
-        return judge_signed(x, a, b, q);
+        return judge_signed(e, x, a, b, q);
     if (x->touched)
         faults |= FAULT_TOUCHED;
     if (x->code == CCD_MISS) {
@@ -663,6 +688,16 @@ static inline void print_answer(FILE *file, const answer_t *x)
         fprintf(file, " lower %.17g normal %.9g %.9g %.9g point1 %.9g %.9g %.9g point2 %.9g %.9g %.9g supports %lu",
                 x->lower, x->normal[0], x->normal[1], x->normal[2], x->point1[0], x->point1[1], x->point1[2],
                 x->point2[0], x->point2[1], x->point2[2], x->supports);
+}
+
+/* An answer that is wrong, on one line. */
+static inline void print_wrong(const entry_t *e, const answer_t *x, int faults, const truth_t *truth)
+{
+    printf("%s: ", e->name);
+    print_faults(stdout, faults);
+    printf(": ");
+    print_answer(stdout, x);
+    printf(", truth %.17g (lower %.17g) along %.17g %.17g %.17g\n", truth->depth, truth->lower, truth->n[0], truth->n[1], truth->n[2]);
 }
 
 /* A pair as C that makes it again. */

@@ -9,32 +9,13 @@
 
 #include <ccd/ccd.h>
 
-/* Convex meshes of FCL's signed-distance tests (reports drake#21673, drake#21234): prisms, of
- * which the first of each pair reaches along x, the second along z, from -0.5 to 0.5. The second is
- * given in the world. */
+/* Convex meshes of FCL's signed-distance tests (reports drake#21673, drake#21234): of the eight there
+ * the first of seven pairs of prisms, which reach along x and along z from -0.5 to 0.5, and the eighth.
+ * The second of a pair is given in the world. */
 static const ccd_real_t fcl_convex1_a[][2] = {
     {0.707107, -0.707107}, {0, -1}, {1, 0}, {-1, 0},
     {-0.707107, -0.707107}, {0, 1}, {0.707107, 0.707107}, {-0.707107, 0.707107}};
 static const ccd_real_t fcl_convex1_b[][2] = {{10.294759, 8.932157}, {11.452373, 8.227672}, {11.618371, 9.456563}};
-static const ccd_real_t fcl_convex2_a[][2] = {
-    {0.5, -0.866025}, {-0.5, -0.866025}, {1, 0},
-    {-0.5, 0.866025}, {-1, 0}, {0.5, 0.866025}};
-static const ccd_real_t fcl_convex2_b[][2] = {{4.149402, 8.493709}, {3.931647, 7.374503}, {5.188451, 7.476263}};
-static const ccd_real_t fcl_convex3_a[][2] = {
-    {1, 0}, {0.62349, -0.781831}, {-0.222521, -0.974928}, {0.62349, 0.781831},
-    {-0.900969, 0.433884}, {-0.900969, -0.433884}, {-0.222521, 0.974928}};
-static const ccd_real_t fcl_convex3_b[][2] = {{14.835101, 13.06041}, {14.767995, 13.150248}, {13.785037, 12.890524}};
-static const ccd_real_t fcl_convex4_a[][2] = {
-    {-0.92388, 0.382683}, {0.92388, -0.382683},
-    {0.92388, 0.382683}, {-0.92388, -0.382683}};
-static const ccd_real_t fcl_convex4_b[][2] = {{15.417082, 9.698621}, {16.22432, 8.915849}, {16.236605, 9.233231}};
-static const ccd_real_t fcl_convex5_b[][2] = {{5.242363, 9.122811}, {5.670377, 7.598539}, {6.359664, 8.28526}};
-static const ccd_real_t fcl_convex6_a[][2] = {
-    {0.309017, -0.951057}, {1, 0}, {-0.809017, 0.587785},
-    {-0.809017, -0.587785}, {0.309017, 0.951057}};
-static const ccd_real_t fcl_convex6_b[][2] = {{10.924769, 5.670102}, {11.452507, 5.520981}, {10.839257, 4.83299}};
-static const ccd_real_t fcl_convex7_a[][2] = {{-0.5, -0.866025}, {1, 0}, {-0.5, 0.866025}};
-static const ccd_real_t fcl_convex7_b[][2] = {{7.502455, 3.992667}, {8.674382, 3.710847}, {7.91275, 2.73346}};
 static const ccd_real_t fcl_convex8_a[][3] = {
     {7.70479041, 5.37839115, 2.58445293}, {7.70236491, 5.37839115, 2.58307685}, {7.69850516, 5.37839115, 2.58014443},
     {7.69825508, 5.37839115, 2.57987584}, {7.69930284, 5.41850125, 2.58096861}, {7.69901378, 5.41850125, 2.57540177},
@@ -70,6 +51,8 @@ static const ccd_real_t fcl_convex8_b[][3] = {
 
 static const ccd_real_t huge_triangle[][3] = {{0, 0, 0}, {100, 320, 0}, {0, 320, 0}};
 static const ccd_real_t origin_point[][3] = {{0, 0, 0}};
+static const ccd_real_t flat_rod[][3] = {{-1, 0, 0}, {1, 0, 0}};
+static const ccd_real_t flat_square[][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
 static const ccd_real_t corner_points[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /* parry #253 */

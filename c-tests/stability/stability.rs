@@ -48,18 +48,36 @@ fn configurations_of_the_local_query() {
 /// What a query may cost in support points and stack. A broken promise that is repaired fails this
 /// too: take its mark out of the table at the program's end.
 #[test]
-#[cfg(not(feature = "single"))]
 fn known_costs() {
-    program("costs").run([""; 0]);
+    let costs = program("costs");
+    match Precision::CURRENT {
+        Precision::Double => costs.run([""; 0]),
+        Precision::Single => costs.run(["U14"]),
+    };
 }
 
-/// A sample of every category of pairs, both tie rules, on libccd's entry points, cold
-/// and warm.
+/// A sample of every category of pairs, both tie rules.
+fn sample(pairs: &str, group: &str) {
+    let campaign = program("campaign");
+    for tie in ["0", "1"] {
+        campaign.run([pairs, tie, "-1", group]);
+    }
+}
+
+/// On libccd's entry points, cold and warm.
 #[test]
 fn categories() {
-    let campaign = program("campaign");
-    campaign.run(["300", "0", "-1", "compatible"]);
-    campaign.run(["300", "1", "-1", "compatible"]);
+    sample("300", "compatible");
+}
+
+#[test]
+fn categories_of_the_extension() {
+    sample("100", "proven");
+}
+
+#[test]
+fn categories_of_the_local_query() {
+    sample("100", "local");
 }
 
 /// Every call on bodies that are hard for one method or another, judged in 128 bits: a
@@ -68,22 +86,6 @@ fn categories() {
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 fn judged_in_128_bits() {
     wide().run([harness::rounds(60)]);
-}
-
-/// The same on the extension's own.
-#[test]
-fn categories_of_the_extension() {
-    let campaign = program("campaign");
-    campaign.run(["100", "0", "-1", "proven"]);
-    campaign.run(["100", "1", "-1", "proven"]);
-}
-
-/// The same on the local query.
-#[test]
-fn categories_of_the_local_query() {
-    let campaign = program("campaign");
-    campaign.run(["100", "0", "-1", "local"]);
-    campaign.run(["100", "1", "-1", "local"]);
 }
 
 /// Sliding, rolling, rocking: directions and depths.

@@ -41,7 +41,7 @@ static void methods_agree(int pairs)
         at = dice_in(&d, 0, 1) * pair_size(&p.a, &p.b);
         shape_move(&p.b, at * u[0], at * u[1], at * u[2]);
         t = truth_depth(&p.a, &p.b);
-        s = truth_branch(&p.a, &p.b, NULL, 1e-9, 40000);
+        s = truth_branch(&p.a, &p.b, 1e-9, 40000);
         eps = 64 * real_ulp() * pair_size(&p.a, &p.b);
         compared += t.enumerated;
         if (!t.enumerated)
@@ -57,12 +57,9 @@ static void methods_agree(int pairs)
             s = truth_depth(&p.a, &moved);
             if (!(fabs(s.depth) <= eps))
                 fail("not touching after the move", &p.a, &moved, s.depth, 0, 0);
-            /* along a random direction: both methods, and touching after that move too */
+            /* along a random direction: touching after that move too */
             dice_unit(&d, u);
             t = truth_along(&p.a, &p.b, u);
-            s = truth_branch(&p.a, &p.b, u, 1e-9, 40000);
-            if (!(t.depth >= s.lower - eps * 100 && t.depth <= s.depth + eps * 100))
-                fail("along: methods differ", &p.a, &p.b, t.depth, s.lower, s.depth);
             shape_move(&moved, (double)p.b.pos[0] + t.depth * u[0], (double)p.b.pos[1] + t.depth * u[1],
                        (double)p.b.pos[2] + t.depth * u[2]);
             s = truth_depth(&p.a, &moved);

@@ -22,6 +22,7 @@ typedef struct {
 /* --- shapes, about 1 large ---------------------------------------------------------- */
 
 typedef void make_t(dice_t *d, body_t *s, double *points);
+#pragma GCC diagnostic ignored "-Wunused-parameter" /* few have points of their own */
 
 static void set_part(part_t *s, part_kind_t kind, double p0, double p1, double p2, double p3)
 {
@@ -30,6 +31,13 @@ static void set_part(part_t *s, part_kind_t kind, double p0, double p1, double p
     s->p[1] = p1;
     s->p[2] = p2;
     s->p[3] = p3;
+}
+
+static void set_points(body_t *s, const double *points, int n)
+{
+    set_part(&s->part, PART_POINTS, 2, 0, 0, 0);
+    s->part.points = points;
+    s->part.count = n;
 }
 
 static double some(dice_t *d) { return dice_in(d, .1, 1); }
@@ -57,33 +65,28 @@ static void make_thin(dice_t *d, body_t *s, double aspect, int needle)
 
 static void make_needle(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     make_thin(d, s, dice_log(d, 1e2, 1e4), 1);
 }
 
 static void make_fine_needle(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     make_thin(d, s, dice_log(d, 1e4, 1e6), 1);
 }
 
 static void make_plate(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     make_thin(d, s, dice_log(d, 1e2, 1e6), 0);
 }
 
 static void make_frustum_plate(dice_t *d, body_t *s, double *points)
 {
     const double x = dice_log(d, 1e-5, 1e-2);
-    (void)points;
     set_part(&s->part, PART_FRUSTUM, some(d), -x, some(d), x);
 }
 
 static void make_frustum(dice_t *d, body_t *s, double *points)
 {
     const double x = some(d);
-    (void)points;
     set_part(&s->part, PART_FRUSTUM, some(d), -x, dice_below(d, 4) ? some(d) : 0, x);
 }
 
@@ -93,9 +96,7 @@ static void make_star(dice_t *d, body_t *s, double *points)
     const int arms = 3 + dice_below(d, 10);
     const double inner = dice_in(d, .2, .9), top = some(d), turn = dice_in(d, 0, 1), high = dice_log(d, 1e-3, 1);
     int i, k;
-    set_part(&s->part, PART_POINTS, 2, 0, 0, 0);
-    s->part.points = points;
-    s->part.count = 4 * arms;
+    set_points(s, points, 4 * arms);
     for (i = 0; i < 4 * arms; i++) {
         const int up = i >= 2 * arms;
         const double angle = 3.14159265358979323846 * i / arms + up * turn, r = (i % 2 ? inner : 1) * (up ? top : 1);
@@ -108,7 +109,6 @@ static void make_star(dice_t *d, body_t *s, double *points)
 static void make_teardrop(dice_t *d, body_t *s, double *points)
 {
     const double r = dice_in(d, .1, .7);
-    (void)points;
     set_part(&s->part, PART_TEARDROP, r, r * dice_in(d, 1.1, 4), 0, 0);
     s->centre[2] = dice_in(d, 0, .2) * r;
 }
@@ -116,7 +116,6 @@ static void make_teardrop(dice_t *d, body_t *s, double *points)
 static void make_half_disc(dice_t *d, body_t *s, double *points)
 {
     const double r = some(d);
-    (void)points;
     set_part(&s->part, PART_HALF_DISC, r, 0, 0, 0);
     s->centre[1] = .3 * r;
 }
@@ -124,7 +123,6 @@ static void make_half_disc(dice_t *d, body_t *s, double *points)
 static void make_half_ball(dice_t *d, body_t *s, double *points)
 {
     const double r = some(d);
-    (void)points;
     set_part(&s->part, PART_HALF_BALL, r, dice_below(d, 2) ? r * dice_in(d, .1, 2) : 0, 0, 0);
     s->centre[2] = -.3 * r;
 }
@@ -132,45 +130,37 @@ static void make_half_ball(dice_t *d, body_t *s, double *points)
 static void make_cut_ball(dice_t *d, body_t *s, double *points)
 {
     const double r = some(d);
-    (void)points;
     set_part(&s->part, PART_CUT_BALL, r, r * (1 - dice_log(d, 1e-3, .1)), 0, 0);
 }
 
 static void make_superellipsoid(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     set_part(&s->part, PART_SUPERELLIPSOID, some(d), some(d), some(d), dice_log(d, 1.05, 8));
 }
 
 static void make_rounded_box(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     set_part(&s->part, PART_BOX, some(d), some(d), some(d), 0);
     s->margin = dice_log(d, 1e-6, .5);
 }
 
 static void make_ball(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
-    (void)d;
     s->margin = some(d);
 }
 
 static void make_ellipsoid(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     set_part(&s->part, PART_ELLIPSOID, some(d), some(d), some(d), 0);
 }
 
 static void make_box(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     set_part(&s->part, PART_BOX, some(d), some(d), some(d), 0);
 }
 
 static void make_capsule(dice_t *d, body_t *s, double *points)
 {
-    (void)points;
     set_part(&s->part, PART_SEGMENT, some(d), 0, 0, 0);
     s->margin = some(d);
 }
@@ -193,9 +183,7 @@ static void make_bent(dice_t *d, body_t *s, double *points)
     const int n = (int)dice_log(d, 100, BODY_POINTS);
     const double bend = dice_log(d, 1e-12, 1e-2);
     int i;
-    set_part(&s->part, PART_POINTS, 2, 0, 0, 0);
-    s->part.points = points;
-    s->part.count = n;
+    set_points(s, points, n);
     for (i = 0; i < n; i++, points += 3) {
         points[0] = dice_in(d, -1, 1);
         points[1] = dice_in(d, -1, 1);
@@ -208,9 +196,7 @@ static void make_hull(dice_t *d, body_t *s, double *points)
     const int n = 5 + dice_below(d, 60);
     const double x = some(d), y = some(d), z = some(d);
     int i;
-    set_part(&s->part, PART_POINTS, 2, 0, 0, 0);
-    s->part.points = points;
-    s->part.count = n;
+    set_points(s, points, n);
     for (i = 0; i < n; i++, points += 3) {
         dice_unit(d, points);
         points[0] *= x;
@@ -237,9 +223,7 @@ static void make_grid(dice_t *d, body_t *s, double *points)
 {
     const int n = 2 + dice_below(d, 8);
     int i;
-    set_part(&s->part, PART_POINTS, 2, 0, 0, 0);
-    s->part.points = points;
-    s->part.count = n;
+    set_points(s, points, n);
     s->margin = dice_below(d, 2) ? dice_in(d, 0, 1) : 0;
     for (i = 0; i < 3 * n; i++) {
         points[i] = on_grid(d);

@@ -342,22 +342,9 @@ int main(int argc, char **argv)
         }
         printf(" %.2f |\n", minima[row] ? 100. * (double)limits[row] / (double)minima[row] : 0);
     }
-    printf("\n| call | most supports | most stack | CCD_LIMIT |");
-    for (bit = 0; bit < COLUMNS; bit++)
-        printf(" %s |", fault_text(columns[bit]));
-    printf("\n|---|---|---|---|");
-    for (bit = 0; bit < COLUMNS; bit++)
-        printf("---|");
-    printf("\n");
-    for (k = 0; k < CALLS; k++) {
-        printf("| %s | %lu | %lu | %lu |", calls[k].entry.name, most_supports[k], most_stack[k], limits_of[k]);
-        for (bit = 0; bit < COLUMNS; bit++) {
-            for (sum = 0, row = 0; row < (int)ROWS; row++)
-                sum += wrong[row][k][columns[bit]];
-            printf(" %lu |", sum);
-        }
-        printf("\n");
-    }
+    printf("\n| call | most supports | most stack | CCD_LIMIT |\n|---|---|---|---|\n");
+    for (k = 0; k < CALLS; k++)
+        printf("| %s | %lu | %lu | %lu |\n", calls[k].entry.name, most_supports[k], most_stack[k], limits_of[k]);
     printf("\nCCD_LIMIT of the minimum by tolerance:");
     for (i = 0; i < TOLERANCES; i++)
         printf(" %lu (%g)%s", limits_at[i], shares[i], i + 1 < TOLERANCES ? "," : "\n");
