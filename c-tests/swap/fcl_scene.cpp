@@ -16,7 +16,7 @@
  * `missed`, `spurious`, `off` (beyond the promised depth) and `error` (largest, metres) are
  * those of pairs put to libccd or this library, `own_` of pairs that FCL has closed forms for.
  *
- * usage: fcl_scene FRAMES BODIES CONTACTS EXACT   (CONTACTS: of a pair, with BY_HEADER) */
+ * usage: fcl_scene FRAMES BODIES EXACT CONTACTS   (CONTACTS: of a pair, with BY_HEADER) */
 
 #include "swap/fcl_shapes.h"
 #include "harness/identity.h"
@@ -298,14 +298,14 @@ static void run(scene_t &scene, long frames, long every)
 int main(int argc, char **argv)
 {
     if (argc != 5) {
-        fprintf(stderr, "usage: fcl_scene FRAMES BODIES CONTACTS EXACT\n");
+        fprintf(stderr, "usage: fcl_scene FRAMES BODIES EXACT CONTACTS\n");
         return 2;
     }
     tell_library();
 #ifdef BY_HEADER
-    settings.contacts_per_pair = (size_t)atol(argv[3]);
+    settings.contacts_per_pair = (size_t)atol(argv[4]);
 #endif
     scene_t scene(atoi(argv[2]));
-    run(scene, atol(argv[1]), atol(argv[4]));
+    run(scene, atol(argv[1]), atol(argv[3]));
     return 0;
 }

@@ -9,6 +9,7 @@
 
 #include "swap/ode_run.h"
 #include "swap/ode_shape.h"
+#include "harness/identity.h"
 
 #include <ccd/warm.h>
 
@@ -103,6 +104,7 @@ int main(int argc, char **argv)
     const int bodies = atoi(argv[3]);
     most = strcmp(argv[5], "many") ? 1 : 8;
     dInitODE2(0);
+    tell_library();
     convex = dCreateGeomClass(&class);
     scene_make_geom = make;
     run_scene(&scene, argv[4], bodies, seed, steps);
