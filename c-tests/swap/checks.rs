@@ -248,6 +248,7 @@ fn told_of(run: &Run, keys: &str) -> Vec<String> {
 pub struct Static {
     pub what: &'static str,
     pub collide: [Run; 2],
+    asked: [Run; 2],
     /// Where a callback of the consumer's own was wrong, so that no answer can be right.
     pub astray: [Run; 2],
     /// Why this library may not replace the other, one line each.
@@ -256,9 +257,9 @@ pub struct Static {
 
 pub fn judge_collide(what: &'static str, lines: &[Vec<String>]) -> Static {
     let both = |name: &str| [0, 1].map(|i| fields(&lines[i], name));
-    let (collide, astray) = (both("collide"), both("astray"));
-    let asked = [0, 1].map(|i| collide[i]["queries"] + collide[i]["threw"] + astray[i]["queries"]);
-    assert_eq!(asked[0], asked[1], "{what}: not the same was asked");
+    let (collide, astray, asked) = (both("collide"), both("astray"), both("asked"));
+    let all = |i: usize| collide[i]["queries"] + astray[i]["queries"] + asked[i]["threw"];
+    assert_eq!(all(0), all(1), "{what}: not the same was asked");
     let wrong = lines[1].iter().filter(|line| line.starts_with("wrong: "));
     let mut against: Vec<String> = wrong.cloned().collect();
     // Of the program's own answers, before FCL or ODE has read them.
@@ -266,8 +267,8 @@ pub fn judge_collide(what: &'static str, lines: &[Vec<String>]) -> Static {
         &fields(&lines[1], "watched"),
         "zero not_finite not_unit",
     ));
-    if collide[1]["threw"] > collide[0]["threw"] {
-        against.push(format!("threw: {collide:?}"));
+    if asked[1]["threw"] > asked[0]["threw"] {
+        against.push(format!("threw: {asked:?}"));
     }
     if !(collide[0]["lost"] <= LOST) {
         against.push(format!("libccd loses {} m", collide[0]["lost"]));
@@ -287,6 +288,7 @@ pub fn judge_collide(what: &'static str, lines: &[Vec<String>]) -> Static {
         what,
         collide,
         astray,
+        asked,
         against,
     }
 }
@@ -329,15 +331,15 @@ pub fn head(columns: &[&str]) -> String {
 
 /// The static half of the swap table, libccd's / this library's.
 pub fn static_table(rows: &[Static]) -> String {
-    let keys = "hits missed spurious deep unsound broken threw";
+    let keys = "queries hits missed spurious deep unsound broken";
     let keys: Vec<&str> = keys.split(' ').collect();
-    let first = ["query", "pairs of kinds", "queries"];
+    let first = ["query", "pairs of kinds", "threw"];
     let last = ["wrong callbacks: queries", "missed", "swap"];
     let mut out = head(&[&first[..], &keys, &last].concat());
     for s in rows {
         let both = |of: &[Run; 2], key: &str| format!("{} / {}", of[0][key], of[1][key]);
-        let mut cells = vec![s.what.to_owned(), s.collide[1]["kinds"].to_string()];
-        cells.push(both(&s.collide, "queries"));
+        let mut cells = vec![s.what.to_owned(), s.asked[1]["kinds"].to_string()];
+        cells.push(both(&s.asked, "threw"));
         cells.extend(keys.iter().map(|key| both(&s.collide, key)));
         cells.extend(["queries", "missed"].map(|key| both(&s.astray, key)));
         cells.push(verdict(&s.against));
@@ -368,6 +370,17 @@ fn run_of(lines: &[String], side: &str) -> Run {
     let asked = run.get("judged").unwrap_or(&run["queries"]);
     run.insert("supports a query".to_owned(), run["supports"] / asked);
     run.extend(fields(lines, "pile"));
+    // ODE's contacts against exact truth; those apart where a callback was wrong.
+    if lines.iter().any(|line| line.starts_with("right ")) {
+        let (right, astray) = (fields(lines, "right"), fields(lines, "astray"));
+        let off = right["deep"] + right["unsound"];
+        let told = [("judged", right["queries"]), ("lost", right["missed"])];
+        let told = told
+            .into_iter()
+            .chain([("spurious", right["spurious"]), ("off", off)]);
+        run.extend(told.map(|(key, n)| (key.to_owned(), n)));
+        run.insert("wrong_lost".to_owned(), astray["missed"]);
+    }
     run
 }
 

@@ -55,7 +55,7 @@ static void collide(const known_t &known)
     if (compare_queries() == before)
         return; /* FCL has a closed form for these two, or its boxes excluded them */
     if (!answered)
-        tally[0].threw++;
+        threw++;
     else if (result.numContacts() == 0)
         pose_judge(&a, &b, &known, 0, 0, 0, 0);
     else

@@ -12,7 +12,6 @@
 
 #include "compare/hooks.h"
 #include "harness/identity.h"
-#include "swap/callback_errors.h"
 
 #include <ode/ode.h>
 
@@ -49,12 +48,14 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
 {
     ccd_vec3_t centre;
     const placed_t *p;
+    const double *at;
     double point[3];
     if (first.answered)
         return;
     center(obj, &centre);
     /* a's centre is where a is; that of a triangle is where ODE puts it */
-    p = from(&a.body.shape, &centre) < 1e-12 ? &a : &b;
+    at = a.body.shape.pos;
+    p = hypot(hypot(at[0] - centre.v[0], at[1] - centre.v[1]), at[2] - centre.v[2]) < 1e-12 ? &a : &b;
     if (right_point(&p->body.shape, dir, v, point) < 1e-10 * pair_size(&a.body.shape, &b.body.shape))
         return;
     if (corrected)

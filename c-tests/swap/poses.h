@@ -14,8 +14,7 @@
 #define SWAP_POSES_H
 
 #include "swap/hull.h"
-#include "truth.h"
-#include "verdict.h"
+#include "swap/tally.h"
 
 /* Kinds of shape; those of shapes.h first, then special sizes of them. */
 enum {
@@ -123,31 +122,18 @@ enum { DEPTH_COUNT = sizeof DEPTHS / sizeof DEPTHS[0] };
 /* FCL's and ODE's, metres. */
 static const double POSE_TOLERANCE = 1e-6;
 
-typedef struct {
-    long queries, hits, threw, wrong[VERDICTS];
-    double lost;   /* the deepest overlap missed */
-    double excess; /* the largest part of the truth by which a depth is beyond it and two tolerances */
-} tally_t;
-
-/* The second: about no convex shape, for a callback was wrong. There is no right answer then, and
- * what is within two tolerances of the meant one will do. */
+/* The second: where a callback was wrong. There is no right answer then, and what is within two
+ * tolerances of the meant one will do. */
 static tally_t tally[2];
+static long threw; /* queries in which FCL did */
 
 static inline void pose_judge(const body_t *a, const body_t *b, const known_t *known, int astray, int hit, double depth,
                               double length)
 {
     static const char *const name[VERDICTS] = { "right", "missed", "spurious", "broken", "deep", "unsound" };
-    const verdict_answer_t answer = { hit, 1, depth, length * length };
-    const verdict_truth_t truth = { known->lower, known->upper, POSE_TOLERANCE, astray ? 2 * POSE_TOLERANCE : 1e-9 * known->size };
-    const verdict_t v = verdict(&answer, &truth);
-    tally_t *t = &tally[astray];
-    t->queries++;
-    t->hits += hit;
-    t->wrong[v]++;
-    if (v == VERDICT_MISSED)
-        t->lost = fmax(t->lost, known->lower);
-    if (hit && known->upper > 0)
-        t->excess = fmax(t->excess, (depth - known->upper - 2 * POSE_TOLERANCE) / known->upper);
+    const double touch = astray ? 2 * POSE_TOLERANCE : 1e-9 * known->size;
+    const verdict_truth_t truth = { known->lower, known->upper, POSE_TOLERANCE, touch };
+    const verdict_t v = tally_add(&tally[astray], &truth, hit, depth, length);
     if (v != VERDICT_RIGHT && !astray)
         printf("wrong: %s %s %s, signed depth %.9g to %.9g, answered %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], name[v],
                known->lower, known->upper, depth);
@@ -178,11 +164,9 @@ static inline void pose_all(const int *kinds, int count, long poses, body_t *a, 
             }
             asked += tally[0].queries + tally[1].queries > before;
         }
-    for (i = 0; i < 2; i++)
-        printf("%s kinds %ld queries %ld hits %ld threw %ld missed %ld spurious %ld broken %ld deep %ld unsound %ld lost %.9g excess %.9g\n",
-               i ? "astray" : "collide", asked, tally[i].queries, tally[i].hits, tally[i].threw,
-               tally[i].wrong[VERDICT_MISSED], tally[i].wrong[VERDICT_SPURIOUS], tally[i].wrong[VERDICT_BROKEN],
-               tally[i].wrong[VERDICT_DEEP], tally[i].wrong[VERDICT_UNSOUND], tally[i].lost, tally[i].excess);
+    printf("asked kinds %ld threw %ld\n", asked, threw);
+    tally_print("collide", &tally[0]);
+    tally_print("astray", &tally[1]);
 }
 
 #endif
