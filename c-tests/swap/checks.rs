@@ -367,8 +367,8 @@ fn run_of(lines: &[String], side: &str) -> Run {
         }
     }
     // Support points are counted of those that were judged, where not all were.
-    let asked = run.get("judged").unwrap_or(&run["queries"]);
-    run.insert("supports a query".to_owned(), run["supports"] / asked);
+    let asked = *run.get("judged").unwrap_or(&run["queries"]);
+    run.insert("asked".to_owned(), asked);
     run.extend(fields(lines, "pile"));
     // ODE's contacts against exact truth; those apart where a callback was wrong.
     if lines.iter().any(|line| line.starts_with("right ")) {
@@ -538,18 +538,21 @@ impl Piles {
 /// What every simulation did, in each way; lengths in millimetres. A dash: the program does not
 /// tell.
 pub fn pile_table(rows: &[Piles]) -> String {
-    let spreads = [("supports a query", 1.0), ("gained", 1.0), ("deepest", 1e3)];
-    let sums = "queries bad not_unit escaped judged lost spurious off";
+    let spreads = [("gained", 1.0), ("deepest", 1e3)];
+    let sums = "queries bad zero not_finite not_unit escaped judged lost spurious off";
     let sums: Vec<&str> = sums.split(' ').collect();
-    let first = ["consumer", "scene", "starts × steps", "library"];
+    let first = "consumer|scene|starts × steps|library|supports a query";
+    let first: Vec<&str> = first.split('|').collect();
     let middle = spreads.map(|(key, _)| key);
     let mut out = head(&[&first[..], &middle, &sums, &["swap"]].concat());
     for p in rows {
         for (way, name) in p.names.iter().enumerate() {
             let start = format!("{} × {}", p.runs[way].len(), p.steps);
-            let mut cells = [p.consumer, p.scene, &start, name]
-                .map(String::from)
-                .to_vec();
+            let [supports, asked] =
+                ["supports", "asked"].map(|key| p.told(way, key).iter().sum::<f64>());
+            let supports = format!("{:.1}", supports / asked);
+            let cells = [p.consumer, p.scene, &start, name, &supports];
+            let mut cells = cells.map(String::from).to_vec();
             cells.extend(spreads.map(|(key, unit)| {
                 let (least, most) = p.range(way, key);
                 let all = [median(p.told(way, key)), least, most].map(|x| x * unit);
