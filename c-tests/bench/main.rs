@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The benchmark: `cargo bench -p charts -- charts` measures supports, times and errors beside
-//! system libccd's and other libraries'; `-- phases` prints instructions of each query by phase,
+//! system libccd's and other libraries'; `-- instructions` prints those of each query,
 //! beside libccd's and Bullet's; `-- record` writes the support counts of every pair set.
 
 mod charts;
@@ -35,8 +35,8 @@ enum Command {
     Charts(charts::Options),
     /// The pictures and their page again, from the CSV that is there.
     Redraw(charts::Options),
-    /// Instructions of a query by phase, as Markdown; runs this program under valgrind.
-    Phases(charts::instructions::Options),
+    /// Instructions of a query, as Markdown; runs this program under valgrind.
+    Instructions(charts::instructions::Options),
 }
 
 fn main() {
@@ -44,6 +44,6 @@ fn main() {
         Command::Record => lab::recorded::record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),
-        Command::Phases(options) => charts::instructions::run(&options),
+        Command::Instructions(options) => charts::instructions::run(&options),
     }
 }

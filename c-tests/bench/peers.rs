@@ -69,9 +69,8 @@ pub fn parry<'a>(libraries: &'a Libraries) -> Method<'a> {
 
 /// The solvers of Debian's packages, compiled when the program starts.
 pub struct Compiled {
-    bullet: Option<Classic>,
-    fcl: Option<Classic>,
-    coal: Option<Classic>,
+    /// With their names and the tolerance that they are asked for.
+    found: Vec<(&'static str, f64, Classic)>,
     /// What is not here, and why.
     pub missing: Vec<(&'static str, String)>,
 }
@@ -89,28 +88,19 @@ fn peer(libraries: &Libraries, flags: &[&str], with: &[&str]) -> Result<Classic,
 
 const BULLET: [&str; 3] = ["-DPEER_BULLET", "-isystem", "/usr/include/bullet"];
 
-/// Bullet's btGjkEpa3 alone, or why it is not here.
-pub fn bullet<'a>(libraries: &Libraries) -> Result<Method<'a>, String> {
-    peer(libraries, &BULLET, &[]).map(|of| bullet_of(libraries, of))
+fn method<'a>(libraries: &Libraries, name: &str, tolerance: f64, of: Classic) -> Method<'a> {
+    let settings = of.settings(&libraries.callbacks, tolerance);
+    Method::new(name, classic(of.gjk, settings, true))
 }
 
-fn bullet_of<'a>(libraries: &Libraries, of: Classic) -> Method<'a> {
-    Method::new(
-        "Bullet EPA",
-        classic(of.gjk, of.settings(&libraries.callbacks, 1e-4), true),
-    )
+/// Bullet's btGjkEpa3, double, or why it is not here. Its tolerance is built in.
+pub fn bullet<'a>(libraries: &Libraries) -> Result<Method<'a>, String> {
+    let of = peer(libraries, &BULLET, &[])?;
+    Ok(method(libraries, "Bullet EPA", 1e-4, of))
 }
 
 impl Compiled {
     pub fn build(libraries: &Libraries) -> Self {
-        let mut missing = Vec::new();
-        let mut build = |name, flags: &[&str], with: &[&str]| match peer(libraries, flags, with) {
-            Ok(of) => Some(of),
-            Err(why) => {
-                missing.push((name, why));
-                None
-            }
-        };
         // Coal is in no Debian package: `pip install --target DIR coal-library`, then
         // COAL_PREFIX=DIR/cmeel.prefix names its headers and libraries.
         let prefix = std::env::var("COAL_PREFIX").unwrap_or_default();
@@ -120,34 +110,30 @@ impl Compiled {
             format!("-Wl,-rpath,{prefix}/lib"),
         ];
         let eigen = "/usr/include/eigen3";
-        Self {
-            bullet: build("Bullet", &BULLET, &[]),
-            fcl: build("FCL", &["-DPEER_FCL", "-isystem", eigen], &["-lfcl"]),
-            coal: build(
-                "Coal",
-                &["-DPEER_COAL", &headers, "-isystem", eigen],
-                &[&folder, &search, "-lcoal"],
-            ),
-            missing,
+        let coal = ["-DPEER_COAL", &headers, "-isystem", eigen];
+        let fcl = ["-DPEER_FCL", "-isystem", eigen];
+        let (mut found, mut missing) = (Vec::new(), Vec::new());
+        for (name, tolerance, flags, with) in [
+            ("Bullet EPA", 1e-4, &BULLET[..], &[][..]),
+            ("Coal EPA", 1e-6, &coal, &[&*folder, &search, "-lcoal"]),
+            // Its own default: an assertion in it ends the process at others.
+            ("FCL EPA", 1e-6, &fcl, &["-lfcl"]),
+        ] {
+            match peer(libraries, flags, with) {
+                Ok(of) => found.push((name, tolerance, of)),
+                Err(why) => missing.push((name, why)),
+            }
         }
+        Self { found, missing }
     }
 
-    /// Bullet's btGjkEpa3, double.
-    pub fn bullet<'a>(&self, libraries: &Libraries) -> Option<Method<'a>> {
-        Some(bullet_of(libraries, self.bullet?))
-    }
-
-    /// FCL's own EPA.
-    pub fn fcl<'a>(&self, libraries: &Libraries, tolerance: f64) -> Option<Method<'a>> {
-        let of = self.fcl?;
-        let settings = of.settings(&libraries.callbacks, tolerance);
-        Some(Method::new("FCL EPA", classic(of.gjk, settings, true)).within(tolerance))
-    }
-
-    /// Coal's EPA.
-    pub fn coal<'a>(&self, libraries: &Libraries, tolerance: f64) -> Option<Method<'a>> {
-        let of = self.coal?;
-        let settings = of.settings(&libraries.callbacks, tolerance);
-        Some(Method::new("Coal EPA", classic(of.gjk, settings, true)).within(tolerance))
+    pub fn all<'a>(&self, libraries: &Libraries) -> impl Iterator<Item = Method<'a>> {
+        self.found.iter().map(|&(name, tolerance, of)| {
+            let method = method(libraries, name, tolerance, of);
+            match name {
+                "Bullet EPA" => method,
+                _ => method.within(tolerance),
+            }
+        })
     }
 }

@@ -62,24 +62,17 @@ pub fn random_rounded(
     let reach: f64 = forms.iter().map(|f| f.rounded().0 + f.rounded().1).sum();
     let mut poses = Vec::with_capacity(n);
     while poses.len() < n {
-        let pose = [
-            Pose {
-                position: Vector3::from_fn(|_, _| rng.random_range(-0.5..0.5)),
-                rotation: rotation(&mut rng),
-            },
-            Pose {
-                position: Vector3::zeros(),
-                rotation: rotation(&mut rng),
-            },
-        ];
+        let still = Pose {
+            position: Vector3::from_fn(|_, _| rng.random_range(-0.5..0.5)),
+            rotation: rotation(&mut rng),
+        };
+        let turn = rotation(&mut rng);
         let away = Vector3::from_fn(|_, _| rng.random_range(-reach..reach));
-        let pose = [
-            pose[0],
-            Pose {
-                position: pose[0].position + away,
-                ..pose[1]
-            },
-        ];
+        let moved = Pose {
+            position: still.position + away,
+            rotation: turn,
+        };
+        let pose = [still, moved];
         if let Some(truth) = rounded_truth(forms, &pose, &mut rng) {
             poses.push((pose, truth));
         }

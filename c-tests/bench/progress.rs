@@ -3,14 +3,11 @@
 
 //! What a run shows while it lasts.
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressIterator, ProgressStyle};
 
-/// A progress bar on standard error.
-pub fn bar(steps: u64, what: &str) -> ProgressBar {
-    let style =
-        ProgressStyle::with_template("{prefix} [{elapsed_precise}] {wide_bar} {pos}/{len} {msg}")
-            .expect("a fixed template");
-    ProgressBar::new(steps)
-        .with_style(style)
-        .with_prefix(what.to_owned())
+/// The items one by one, with a bar on standard error.
+pub fn over<'a, T>(items: &'a [T], what: &str) -> impl Iterator<Item = &'a T> + use<'a, T> {
+    let template = format!("{what} [{{elapsed_precise}}] {{wide_bar}} {{pos}}/{{len}}");
+    let style = ProgressStyle::with_template(&template).expect("a template");
+    items.iter().progress_with_style(style)
 }

@@ -51,8 +51,7 @@ fn front<'a>(rows: &'a [Row], set: &str) -> Vec<&'a Row> {
 fn quick_charts_are_whole_and_ours_on_the_front() {
     let out = tempfile::tempdir().expect("a temporary directory");
     charts::run(&charts::Options {
-        models: false,
-        position: false,
+        only: None,
         quick: true,
         no_instructions: true,
         out: out.path().to_owned(),

@@ -57,21 +57,32 @@ double query_tolerance(const query_t *q)
     return t >= 0 && t < HUGE_VAL ? t : 1e-4;
 }
 
+int ask_call(const library_t *library, int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
+             ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    switch (call) {
+    case COMPARE_PENETRATION_MPR: return library->mpr_penetration(obj1, obj2, ccd, depth, dir, pos);
+    case COMPARE_PENETRATION_GJK: return library->gjk_penetration(obj1, obj2, ccd, depth, dir, pos);
+    case COMPARE_INTERSECT_MPR: return library->mpr_intersect(obj1, obj2, ccd);
+    case COMPARE_INTERSECT_GJK: return library->gjk_intersect(obj1, obj2, ccd);
+    default: return library->separate(obj1, obj2, ccd, dir);
+    }
+}
+
 static void ask(const library_t *library, int call, const void *obj1, const void *obj2, const ccd_t *ccd, answer_t *out)
 {
     memset(out, 0, sizeof *out);
-    switch (call) {
-    case COMPARE_PENETRATION_MPR: out->code = library->mpr_penetration(obj1, obj2, ccd, &out->depth, &out->dir, &out->pos); break;
-    case COMPARE_PENETRATION_GJK: out->code = library->gjk_penetration(obj1, obj2, ccd, &out->depth, &out->dir, &out->pos); break;
-    case COMPARE_INTERSECT_MPR: out->code = library->mpr_intersect(obj1, obj2, ccd); break;
-    case COMPARE_INTERSECT_GJK: out->code = library->gjk_intersect(obj1, obj2, ccd); break;
-    default:
-        out->code = library->separate(obj1, obj2, ccd, &out->dir);
-        out->depth = (ccd_real_t)sqrt((double)ccdVec3Len2(&out->dir));
-        if (out->depth > 0)
-            ccdVec3Scale(&out->dir, 1 / out->depth);
-    }
+    out->code = ask_call(library, call, obj1, obj2, ccd, &out->depth, &out->dir, &out->pos);
     out->hit = is_hit(call, out->code);
+    if (call == COMPARE_SEPARATE)
+        answer_by_length(out);
+}
+
+void answer_by_length(answer_t *out)
+{
+    out->depth = (ccd_real_t)sqrt((double)ccdVec3Len2(&out->dir));
+    if (out->depth > 0)
+        ccdVec3Scale(&out->dir, 1 / out->depth);
 }
 
 void ask_plainly(const library_t *library, const query_t *q, answer_t *out) { ask(library, q->call, q->obj[0], q->obj[1], q->ccd, out); }

@@ -73,6 +73,13 @@ int library_open(library_t *library, const char *path, int ours);
 
 int is_hit(int call, int code);
 
+/* By its number. */
+int ask_call(const library_t *library, int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
+             ccd_vec3_t *dir, ccd_vec3_t *pos);
+
+/* Makes depth and direction of the vector that ccdGJKSeparate answers. */
+void answer_by_length(answer_t *out);
+
 /* As the program asks: its callbacks and objects, no detour. */
 void ask_plainly(const library_t *library, const query_t *q, answer_t *out);
 

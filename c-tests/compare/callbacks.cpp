@@ -15,7 +15,6 @@
  *   within    the callbacks jump and throw within themselves
  *   lie       one answers with points that are not the farthest
  *   drift     one object moves a little with every call
- *   counter   an object counts its calls, and no answer depends on it
  *   threads   four threads, 500 queries each
  *   nested    the callbacks make queries themselves
  *   fork      a child makes half of the queries

@@ -8,9 +8,8 @@
  * neither way is not kept. */
 
 #define CASE_KEEPS
-#include "compare/keep.h"
+#include "compare/sample.h"
 #include "compare/case.h"
-#include "compare/guard.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -132,35 +131,17 @@ static void work_points(void *argument)
 
 /* --- the case, and whether it shows the fault ------------------------------------------ */
 
-typedef struct {
-    const library_t *library;
-    query_t q;
-    asked_t asked;
-    answer_t answer;
-} shown_t;
-
-static void work_shown(void *argument)
-{
-    shown_t *w = (shown_t *)argument;
-    ask_watched(w->library, &w->q, &w->asked, &w->answer);
-}
-
 /* Asks the library about the case; with hulls the truth is made anew. */
 static int shows(const compare_t *compare, const sample_t *s, int side, case_t *c)
 {
     case_object_t object[2];
-    shown_t w;
+    answer_t answer;
+    asked_t asked;
     verdict_t v;
     ccd_t ccd;
+    const query_t q = { s->q->call, { &object[0], &object[1] }, &ccd };
     case_prepare(c, object, &ccd);
-    memset(&w, 0, sizeof w);
-    w.asked.most = ENDLESS;
-    w.library = &compare->library[side];
-    w.q.call = s->q->call;
-    w.q.obj[0] = &object[0];
-    w.q.obj[1] = &object[1];
-    w.q.ccd = &ccd;
-    if (guard_run(work_shown, &w) != GUARD_RETURNED)
+    if (sample_ask(&compare->library[side], &q, NULL, &asked, &answer) != GUARD_RETURNED)
         return 0;
     if (c->columns == 3) {
         seen_t *seen = (seen_t *)malloc(sizeof *seen);
@@ -170,7 +151,7 @@ static int shows(const compare_t *compare, const sample_t *s, int side, case_t *
         if (!seen)
             return 0;
         seen_clear(seen);
-        bad = sample_truth(&compare->library[COMPARE_OURS], &w.q, seen, &again, &calls);
+        bad = sample_truth(&compare->library[COMPARE_OURS], &q, seen, &again, &calls);
         free(seen);
         if (bad)
             return 0;
@@ -178,9 +159,9 @@ static int shows(const compare_t *compare, const sample_t *s, int side, case_t *
         for (k = 0; k < 3; k++)
             c->truth_dir[k] = (double)again.truth_dir.v[k];
     }
-    v = sample_verdict(&w.q, &w.answer, &c->truth);
-    if (v == VERDICT_RIGHT && sample_has_depth(&w.q, &w.answer)
-        && case_moved_overlap(c, compare->library[side].mpr_intersect, (double)w.answer.depth, &w.answer.dir))
+    v = sample_verdict(&q, &answer, &c->truth);
+    if (v == VERDICT_RIGHT && sample_has_depth(&q, &answer)
+        && case_moved_overlap(c, compare->library[side].mpr_intersect, (double)answer.depth, &answer.dir))
         v = VERDICT_UNSOUND;
     return v == s->verdict[side];
 }

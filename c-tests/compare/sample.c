@@ -9,8 +9,6 @@
 
 #define _GNU_SOURCE
 #include "compare/sample.h"
-#include "compare/guard.h"
-#include "compare/keep.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -59,16 +57,50 @@ typedef struct {
     int code;
 } work_t;
 
+static work_t work_on(const library_t *library, const query_t *q, asked_t *asked, answer_t *answer)
+{
+    work_t w;
+    memset(&w, 0, sizeof w);
+    w.library = library;
+    w.q = q;
+    w.asked = asked;
+    w.answer = answer;
+    w.tolerance = FINER * query_tolerance(q);
+    return w;
+}
+
+static asked_t asked_for(seen_t *seen)
+{
+    asked_t asked;
+    memset(&asked, 0, sizeof asked);
+    asked.seen = seen;
+    asked.most = ENDLESS;
+    return asked;
+}
+
 static void work_watched(void *argument)
 {
     work_t *w = (work_t *)argument;
     ask_watched(w->library, w->q, w->asked, w->answer);
 }
 
+guard_t sample_ask(const library_t *library, const query_t *q, seen_t *seen, asked_t *asked, answer_t *answer)
+{
+    work_t w = work_on(library, q, asked, answer);
+    *asked = asked_for(seen);
+    return guard_run(work_watched, &w);
+}
+
 static void work_minimum(void *argument)
 {
     work_t *w = (work_t *)argument;
     w->code = ask_minimum(w->library, w->q, w->tolerance, w->asked, 0, &w->least);
+}
+
+static void work_value(void *argument)
+{
+    work_t *w = (work_t *)argument;
+    w->value = ask_value(w->q, w->asked, &w->answer->dir);
 }
 
 static double extent(const seen_t *seen, int which, double *largest)
@@ -90,17 +122,9 @@ static double extent(const seen_t *seen, int which, double *largest)
 
 int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t *s, uint64_t *calls)
 {
-    asked_t asked;
-    work_t w;
+    asked_t asked = asked_for(seen);
+    work_t w = work_on(ours, q, &asked, NULL);
     double largest = 0, size[2];
-    memset(&asked, 0, sizeof asked);
-    memset(&w, 0, sizeof w);
-    asked.seen = seen;
-    asked.most = ENDLESS;
-    w.library = ours;
-    w.q = q;
-    w.asked = &asked;
-    w.tolerance = FINER * query_tolerance(q);
     if (guard_run(work_minimum, &w) != GUARD_RETURNED)
         return -1;
     *calls = asked.calls;
@@ -166,12 +190,6 @@ int sample_has_depth(const query_t *q, const answer_t *a)
     return a->hit && a->depth > 0 && q->call != COMPARE_INTERSECT_MPR && q->call != COMPARE_INTERSECT_GJK;
 }
 
-static void work_value(void *argument)
-{
-    work_t *w = (work_t *)argument;
-    w->value = ask_value(w->q, w->asked, &w->answer->dir);
-}
-
 /* An answer that is deep enough may still point elsewhere: where its direction is not the
  * normal of a plane that the move brings apart, the moved obj2 is asked about. */
 static void check_move(const compare_t *compare, sample_t *s, int side)
@@ -179,17 +197,8 @@ static void check_move(const compare_t *compare, sample_t *s, int side)
     const verdict_truth_t *t = &s->truth;
     answer_t *a = &s->answer[side];
     ccd_vec3_t shift = a->dir;
-    asked_t asked;
-    work_t w;
-    memset(&asked, 0, sizeof asked);
-    memset(&w, 0, sizeof w);
-    asked.seen = s->seen;
-    asked.most = ENDLESS;
-    w.library = &compare->library[COMPARE_OURS];
-    w.q = s->q;
-    w.asked = &asked;
-    w.answer = a;
-    w.tolerance = FINER * t->tolerance;
+    asked_t asked = asked_for(s->seen);
+    work_t w = work_on(&compare->library[COMPARE_OURS], s->q, &asked, a);
     if (guard_run(work_value, &w) != GUARD_RETURNED || (double)a->depth >= w.value - t->tolerance - t->touch)
         return;
     count_add(&compare->counts->call[s->q->call].side[side].slanted, 1);
@@ -207,47 +216,36 @@ static void check_move(const compare_t *compare, sample_t *s, int side)
 
 enum { ROUNDS = 3, PAIRS = 8 };
 
+enum { TIME_MINIMUM = COMPARE_SIDES, TIME_CALLBACKS, TIMES };
+
 typedef struct {
     const compare_t *compare;
     const query_t *q;
     const seen_t *seen;
-    double least[COMPARE_SIDES], minimum, callbacks; /* nanoseconds of one */
+    double least[TIMES]; /* nanoseconds of one: of either library, of the proven minimum, of PAIRS support points */
 } timing_t;
 
-static double timed_query(const library_t *library, const query_t *q, int times)
+static void ask_timed(const timing_t *t, int what)
 {
-    answer_t answer;
-    uint64_t start;
-    int i;
-    start = clock_now(CLOCK_MONOTONIC);
-    for (i = 0; i < times; i++)
-        ask_plainly(library, q, &answer);
-    return (double)(clock_now(CLOCK_MONOTONIC) - start) / times;
-}
-
-static double timed_minimum(const library_t *ours, const query_t *q)
-{
-    ccd_penetration_t out;
-    ccd_t ccd = *q->ccd;
-    uint64_t start;
-    ccd.epa_tolerance = (ccd_real_t)query_tolerance(q);
-    start = clock_now(CLOCK_MONOTONIC);
-    ours->minimum(q->obj[0], q->obj[1], &ccd, NULL, CCD_WANT_POS, &out);
-    return (double)(clock_now(CLOCK_MONOTONIC) - start);
-}
-
-/* Support points alone, in the directions that the queries asked. */
-static double timed_callbacks(const query_t *q, const seen_t *seen)
-{
-    ccd_vec3_t point;
-    uint64_t start;
-    int i;
-    start = clock_now(CLOCK_MONOTONIC);
-    for (i = 0; i < PAIRS; i++) {
-        q->ccd->support1(q->obj[0], &seen->point[0][i % seen->count[0]].dir, &point);
-        q->ccd->support2(q->obj[1], &seen->point[1][i % seen->count[1]].dir, &point);
+    const library_t *const library = t->compare->library;
+    const query_t *q = t->q;
+    if (what < COMPARE_SIDES) {
+        answer_t answer;
+        ask_plainly(&library[what], q, &answer);
+    } else if (what == TIME_MINIMUM) {
+        ccd_penetration_t out;
+        ccd_t ccd = *q->ccd;
+        ccd.epa_tolerance = (ccd_real_t)query_tolerance(q);
+        library[COMPARE_OURS].minimum(q->obj[0], q->obj[1], &ccd, NULL, CCD_WANT_POS, &out);
+    } else {
+        /* in the directions that the queries asked */
+        ccd_vec3_t point;
+        int i;
+        for (i = 0; i < PAIRS; i++) {
+            q->ccd->support1(q->obj[0], &t->seen->point[0][i % t->seen->count[0]].dir, &point);
+            q->ccd->support2(q->obj[1], &t->seen->point[1][i % t->seen->count[1]].dir, &point);
+        }
     }
-    return (double)(clock_now(CLOCK_MONOTONIC) - start) / PAIRS;
 }
 
 /* The least of several rounds, in turn, so that all meet the same moments of the machine.
@@ -255,15 +253,16 @@ static double timed_callbacks(const query_t *q, const seen_t *seen)
 static void work_timing(void *argument)
 {
     timing_t *t = (timing_t *)argument;
-    int round, side, times = 1;
-    for (side = 0; side < COMPARE_SIDES; side++)
-        t->least[side] = HUGE_VAL;
-    t->minimum = t->callbacks = HUGE_VAL;
+    int round, what, i, times = 1;
+    for (what = 0; what < TIMES; what++)
+        t->least[what] = HUGE_VAL;
     for (round = 0; round < ROUNDS; round++) {
-        for (side = 0; side < COMPARE_SIDES; side++)
-            t->least[side] = fmin(t->least[side], timed_query(&t->compare->library[side], t->q, times));
-        t->minimum = fmin(t->minimum, timed_minimum(&t->compare->library[COMPARE_OURS], t->q));
-        t->callbacks = fmin(t->callbacks, timed_callbacks(t->q, t->seen));
+        for (what = 0; what < TIMES; what++) {
+            const uint64_t start = clock_now(CLOCK_MONOTONIC);
+            for (i = 0; i < times; i++)
+                ask_timed(t, what);
+            t->least[what] = fmin(t->least[what], (double)(clock_now(CLOCK_MONOTONIC) - start) / times);
+        }
         times = t->least[0] + t->least[1] < 20e3 ? 4 : 1;
     }
 }
@@ -281,9 +280,9 @@ static void take_times(const compare_t *compare, const sample_t *s)
     count_add(&c->timed, 1);
     for (side = 0; side < COMPARE_SIDES; side++)
         count_add(&c->side[side].nanoseconds, (uint64_t)t.least[side]);
-    count_add(&c->minimum_nanoseconds, (uint64_t)t.minimum);
+    count_add(&c->minimum_nanoseconds, (uint64_t)t.least[TIME_MINIMUM]);
     count_add(&compare->counts->callback_pairs, PAIRS);
-    count_add(&compare->counts->callback_nanoseconds, (uint64_t)(PAIRS * t.callbacks));
+    count_add(&compare->counts->callback_nanoseconds, (uint64_t)t.least[TIME_CALLBACKS]);
 }
 
 /* --- counting ----------------------------------------------------------------------- */
@@ -321,21 +320,6 @@ static void count_change(compare_call_t *to, const sample_t *s)
 
 /* --- one query ---------------------------------------------------------------------- */
 
-/* What the program asked, of one side; through wrappers. */
-static guard_t ask_side(const compare_t *compare, sample_t *s, int side, answer_t *answer)
-{
-    work_t w;
-    memset(&w, 0, sizeof w);
-    memset(&s->asked[side], 0, sizeof s->asked[side]);
-    s->asked[side].seen = s->seen;
-    s->asked[side].most = ENDLESS;
-    w.library = &compare->library[side];
-    w.q = s->q;
-    w.asked = &s->asked[side];
-    w.answer = answer;
-    return guard_run(work_watched, &w);
-}
-
 /* Asks all; returns 0 where the query can be judged, and counts why where not. */
 static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
 {
@@ -344,9 +328,9 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
     guard_t how[COMPARE_SIDES];
     uint64_t calls = 0;
     const int base = compare->base, other = 1 - base;
-    sample_t unused;
-    how[base] = ask_side(compare, s, base, &s->answer[base]);
-    how[other] = ask_side(compare, s, other, &s->answer[other]);
+    asked_t unused;
+    how[base] = sample_ask(&compare->library[base], s->q, s->seen, &s->asked[base], &s->answer[base]);
+    how[other] = sample_ask(&compare->library[other], s->q, s->seen, &s->asked[other], &s->answer[other]);
     if (how[base] == GUARD_ENDED || how[other] == GUARD_ENDED) {
         count_add(&c->endless, 1);
         return -1;
@@ -357,8 +341,7 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
         return -1;
     }
     /* Once more: what all these questions have changed. */
-    unused = *s;
-    if (ask_side(compare, &unused, base, &again) != GUARD_RETURNED || !same_answer(s->q->call, own, &s->answer[base])
+    if (sample_ask(&compare->library[base], s->q, s->seen, &unused, &again) != GUARD_RETURNED || !same_answer(s->q->call, own, &s->answer[base])
         || !same_answer(s->q->call, own, &again))
         count_add(&c->memory, 1);
     s->truth.upper = s->seen->least;

@@ -8,6 +8,7 @@
 #define COMPARE_SAMPLE_H
 
 #include "compare/ask.h"
+#include "compare/guard.h"
 
 typedef struct {
     compare_counts_t *counts;
@@ -37,6 +38,9 @@ enum { ENDLESS = 100000 };
 /* own: what the program got; fields that it did not ask for are NaN. */
 void sample_query(const compare_t *compare, const query_t *q, const answer_t *own);
 
+/* Puts a query to a library, through wrappers, and stays with the tool whatever the callbacks do. */
+guard_t sample_ask(const library_t *library, const query_t *q, seen_t *seen, asked_t *asked, answer_t *answer);
+
 /* Bounds on the signed depth. Returns 0, or -1 where callbacks left or did not end. */
 int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t *s, uint64_t *calls);
 
@@ -44,6 +48,10 @@ verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict
 
 /* A hit by a call that answers how deep. */
 int sample_has_depth(const query_t *q, const answer_t *a);
+
+/* keep.c: keeps the answer of one library as a C file, where it is among its worst and its file
+ * shows it again. */
+void keep_case(const compare_t *compare, const sample_t *s, int side);
 
 void seen_clear(seen_t *seen);
 

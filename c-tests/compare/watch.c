@@ -194,11 +194,8 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
         return;
     start = processor_time(CLOCK_THREAD_CPUTIME_ID);
     read_outputs(q, code, depth, dir, &own);
-    if (q->call == COMPARE_SEPARATE && own.hit && dir) {
-        own.depth = (ccd_real_t)sqrt((double)ccdVec3Len2(dir));
-        if (own.depth > 0)
-            ccdVec3Scale(&own.dir, 1 / own.depth);
-    }
+    if (q->call == COMPARE_SEPARATE && own.hit && dir)
+        answer_by_length(&own);
     sample_query(&compare, q, &own);
     count_process_time();
     count_add(&compare.counts->watch_nanoseconds, processor_time(CLOCK_THREAD_CPUTIME_ID) - start);
@@ -233,17 +230,6 @@ static int answer_otherwise(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir
     return answer.code;
 }
 
-static int plain(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
-{
-    switch (q->call) {
-    case COMPARE_PENETRATION_MPR: return base->mpr_penetration(q->obj[0], q->obj[1], q->ccd, depth, dir, pos);
-    case COMPARE_PENETRATION_GJK: return base->gjk_penetration(q->obj[0], q->obj[1], q->ccd, depth, dir, pos);
-    case COMPARE_INTERSECT_MPR: return base->mpr_intersect(q->obj[0], q->obj[1], q->ccd);
-    case COMPARE_INTERSECT_GJK: return base->gjk_intersect(q->obj[0], q->obj[1], q->ccd);
-    default: return base->separate(q->obj[0], q->obj[1], q->ccd, dir);
-    }
-}
-
 static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
     query_t q;
@@ -256,9 +242,10 @@ static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd,
     q.ccd = ccd;
     /* a callback that asks while the tool asks it is the tool's doing */
     if (guard_active())
-        return plain(&q, depth, dir, pos);
+        return ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
     number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
-    code = ask_audit || with_minimum ? answer_otherwise(&q, depth, dir, pos) : plain(&q, depth, dir, pos);
+    code = ask_audit || with_minimum ? answer_otherwise(&q, depth, dir, pos)
+                                   : ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
     watch(&q, number, code, depth, dir);
     return code;
 }

@@ -30,24 +30,29 @@
 // Every driver uses a part of this module.
 #![allow(dead_code)]
 
-use std::collections::BTreeMap;
 use std::collections::hash_map::DefaultHasher;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::hash::{Hash, Hasher};
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The scalar of a build of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Precision {
     Double,
     Single,
+}
+
+impl Default for Precision {
+    fn default() -> Precision {
+        Precision::CURRENT
+    }
 }
 
 impl Precision {
@@ -154,11 +159,9 @@ fn build_library(precision: Precision) -> Built {
         .unwrap_or_else(|e| panic!("cannot lock {}: {e}", lock_path.display()));
 
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo
-        .args(["rustc", "--release", "--lib", "--manifest-path"])
-        .arg(root().join("Cargo.toml"))
-        .arg("--target-dir")
-        .arg(&target);
+    cargo.args(["rustc", "--release", "--lib", "--manifest-path"]);
+    cargo.arg(root().join("Cargo.toml"));
+    cargo.arg("--target-dir").arg(&target);
     if precision == Precision::Single {
         cargo.args(["--features", "single"]);
     }
@@ -181,14 +184,9 @@ fn build_library(precision: Precision) -> Built {
 
     let dir = target.join("lib");
     fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
-    for (name, file) in [
-        ("libccd.so", "libccd.so"),
-        ("libccd.so.2", "libccd.so"),
-        ("libccd.a", "libccd.a"),
-    ] {
-        replace(&dir.join(name), |new| {
-            std::os::unix::fs::symlink(release.join(file), new)
-        });
+    for name in ["libccd.so", "libccd.so.2", "libccd.a"] {
+        let file = release.join(name.trim_end_matches(".2"));
+        replace(&dir.join(name), |new| std::os::unix::fs::symlink(file, new));
     }
     rename_symbols(&dir.join("libccd.a"), &dir.join("librs_ccd.a"));
     drop(lock);
@@ -232,34 +230,23 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
     if time(renamed) > time(archive) {
         return;
     }
-    let symbols = must_succeed(
-        binutils("nm").args(["-g", "--defined-only"]).arg(archive),
-        "nm (Debian: binutils)",
-    )
-    .stdout;
-    let mut names: Vec<&str> = symbols
+    let mut nm = binutils("nm");
+    nm.args(["-g", "--defined-only"]).arg(archive);
+    let symbols = must_succeed(&mut nm, "nm (Debian: binutils)").stdout;
+    let names = symbols
         .lines()
-        .filter_map(|line| line.split_whitespace().nth(2))
-        .filter(|name| name.starts_with("ccd") || name.starts_with("__ccd"))
-        .collect();
-    names.sort_unstable();
-    names.dedup();
-    assert!(
-        !names.is_empty(),
-        "{} defines no symbol of libccd's",
-        archive.display()
-    );
+        .filter_map(|line| line.split_whitespace().nth(2));
+    let ours = names.filter(|name| name.starts_with("ccd") || name.starts_with("__ccd"));
+    let lines: BTreeSet<String> = ours.map(|n| format!("{n} rs_{n}\n")).collect();
+    assert!(!lines.is_empty(), "{}: no libccd", archive.display());
     let table = renamed.with_extension("syms");
-    let lines: String = names.iter().map(|n| format!("{n} rs_{n}\n")).collect();
+    let lines: String = lines.into_iter().collect();
     fs::write(&table, lines).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
     replace(renamed, |new| {
-        must_succeed(
-            binutils("objcopy")
-                .arg(format!("--redefine-syms={}", table.display()))
-                .arg(archive)
-                .arg(new),
-            "objcopy (Debian: binutils)",
-        );
+        let mut objcopy = binutils("objcopy");
+        objcopy.arg(format!("--redefine-syms={}", table.display()));
+        objcopy.arg(archive).arg(new);
+        must_succeed(&mut objcopy, "objcopy (Debian: binutils)");
         Ok(())
     });
     fs::remove_file(&table).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
@@ -269,12 +256,9 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
 /// using the old one keeps it.
 fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
     let mut new = path.as_os_str().to_owned();
-    new.push(format!(
-        ".{}-{}",
-        std::process::id(),
-        COUNT.fetch_add(1, Ordering::Relaxed)
-    ));
+    new.push(format!(".{}-{number}", std::process::id()));
     let new = PathBuf::from(new);
     make(&new)
         .and_then(|()| fs::rename(&new, path))
@@ -290,10 +274,7 @@ pub fn must_succeed(command: &mut Command, what: &str) -> Written {
         }
         Err(e) => panic!("cannot run {what}: {e}"),
     };
-    let written = Written {
-        stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
-        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
-    };
+    let written = Written::of(&output);
     assert!(
         output.status.success(),
         "{what} failed ({}): {}\n{}{}",
@@ -312,8 +293,9 @@ fn words_of(command: &Command) -> String {
     shown.join(" ")
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 enum Link {
+    #[default]
     OursShared,
     OursStatic,
     OursRenamedAndSystem,
@@ -321,7 +303,7 @@ enum Link {
 }
 
 /// A C or C++ program to compile.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Program {
     name: String,
     cpp: bool,
@@ -341,16 +323,8 @@ impl Program {
     pub fn c(name: &str) -> Program {
         Program {
             name: name.to_owned(),
-            cpp: false,
-            standard: None,
-            sources: Vec::new(),
-            includes: Vec::new(),
-            system_headers: false,
-            flags: Vec::new(),
-            libraries: Vec::new(),
-            precision: Precision::CURRENT,
-            link: Link::OursShared,
             tools: true,
+            ..Program::default()
         }
     }
 
@@ -444,70 +418,53 @@ impl Program {
         let mut compile = compile_with(&compiler(self.cpp));
         let default = ["c99", "c++17"][usize::from(self.cpp)];
         let standard = self.standard.as_deref().unwrap_or(default);
-        let mut args: Vec<OsString> = vec![format!("-std={standard}").into()];
+        compile.arg(format!("-std={standard}"));
         if self.precision == Precision::Single {
-            args.push("-DCCD_SINGLE".into());
+            compile.arg("-DCCD_SINGLE");
         }
-        for include in &self.includes {
-            args.push("-I".into());
-            args.push(include.into());
+        let mut includes = self.includes;
+        includes.push(root().join("c-tests"));
+        includes.extend((!self.system_headers).then(|| root().join("include")));
+        for include in includes {
+            compile.arg("-I").arg(include);
         }
-        args.push("-I".into());
-        args.push(root().join("c-tests").into());
-        if !self.system_headers {
-            args.push("-I".into());
-            args.push(root().join("include").into());
-        }
-        args.extend(self.flags.iter().cloned());
+        compile.args(&self.flags);
         if self.tools {
-            args.extend(words("C_TESTS_FLAGS").into_iter().map(OsString::from));
+            compile.args(words("C_TESTS_FLAGS"));
         }
-        args.extend(self.sources.iter().map(OsString::from));
-        args.extend(self.libraries.iter().map(OsString::from));
-        let ours = match self.link {
-            Link::System => {
-                args.push("-lccd".into());
-                None
-            }
-            Link::OursShared => {
-                let built = library(self.precision);
-                args.push("-L".into());
-                args.push(built.dir.clone().into());
-                args.push("-lccd".into());
-                Some(built)
-            }
-            Link::OursStatic | Link::OursRenamedAndSystem => {
-                let built = library(self.precision);
-                let renamed = self.link == Link::OursRenamedAndSystem;
-                let archive = ["libccd.a", "librs_ccd.a"][usize::from(renamed)];
-                args.push(built.dir.join(archive).into());
-                if renamed {
-                    args.push("-lccd".into());
+        compile.args(&self.sources).args(&self.libraries);
+        let mut library_path = None;
+        if self.link == Link::System {
+            compile.arg("-lccd");
+        } else {
+            let built = library(self.precision);
+            match self.link {
+                Link::OursShared => {
+                    library_path = Some(built.dir.clone());
+                    compile.arg("-L").arg(&built.dir).arg("-lccd")
                 }
-                args.extend(built.native_flags.iter().map(OsString::from));
-                Some(built)
+                Link::OursStatic => compile.arg(built.dir.join("libccd.a")),
+                _ => compile.arg(built.dir.join("librs_ccd.a")).arg("-lccd"),
+            };
+            if self.link != Link::OursShared {
+                compile.args(&built.native_flags);
             }
-        };
-        args.push("-lm".into());
+        }
+        compile.arg("-lm");
 
         // The command's hash keeps two programs of one name apart.
         let mut hash = DefaultHasher::new();
-        (compile.get_program(), &args).hash(&mut hash);
-        compile.get_args().for_each(|arg| arg.hash(&mut hash));
+        format!("{compile:?}").hash(&mut hash);
         let dir = output_dir().join("programs");
         fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
         let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
         replace(&path, |new| {
             let what = format!("the compiler (for {})", self.name);
-            let said = must_succeed(compile.args(&args).arg("-o").arg(new), &what);
+            let said = must_succeed(compile.arg("-o").arg(new), &what);
             print!("{}", said.stderr);
             Ok(())
         });
 
-        let library_path = match self.link {
-            Link::OursShared => ours.map(|built| built.dir.clone()),
-            _ => None,
-        };
         let executable = Executable {
             library_path,
             tools: self.tools,
@@ -542,6 +499,16 @@ pub struct Written {
     pub stderr: String,
 }
 
+impl Written {
+    fn of(output: &Output) -> Written {
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        Written {
+            stdout: text(&output.stdout),
+            stderr: text(&output.stderr),
+        }
+    }
+}
+
 impl Executable {
     /// A program that something else compiled, to run on the libraries it finds
     /// by itself.
@@ -572,12 +539,9 @@ impl Executable {
         let library = library(Precision::Double).dir.join("libccd.so");
         compared.library_path = None;
         compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
-        let words = [
-            "--fields".into(),
-            "--library".into(),
-            library.into_os_string(),
-        ];
-        compared.before.extend(words);
+        compared
+            .before
+            .extend(["--fields".into(), "--library".into(), library.into()]);
         compared.before.extend(options.iter().map(OsString::from));
         compared
     }
@@ -668,9 +632,9 @@ impl Executable {
 
     fn assert_loads_ours(&self) {
         let loaded = self.loaded_ccd();
+        let dir = loaded.as_deref().and_then(Path::parent);
         assert!(
-            loaded.is_some()
-                && loaded.as_deref().and_then(Path::parent) == self.library_path.as_deref(),
+            dir.is_some() && dir == self.library_path.as_deref(),
             "{} runs on {loaded:?}, not on the library of this repository",
             self.name
         );
@@ -678,19 +642,18 @@ impl Executable {
 
     fn assert_loads_system(&self) {
         let loaded = self.loaded_ccd();
-        assert!(
-            loaded.as_ref().is_some_and(|path| path.is_file())
-                && !loaded.as_ref().is_some_and(|p| p.starts_with(output_dir())),
-            "{} runs on {loaded:?}, not on the system's libccd",
-            self.name
-        );
+        let file = loaded
+            .as_deref()
+            .filter(|path| !path.starts_with(output_dir()));
+        let bytes = file.and_then(|path| fs::read(path).ok());
+        let bytes = bytes.unwrap_or_else(|| {
+            let name = &self.name;
+            panic!("{name} runs on {loaded:?}, not on the system's libccd")
+        });
         // Installed in /usr/local, this library comes before libccd.
-        let bytes = loaded
-            .as_ref()
-            .map(|path| fs::read(path).unwrap_or_default());
         let name = b"ccdImplementation";
         assert!(
-            !bytes.is_some_and(|b| b.windows(name.len()).any(|w| w == name)),
+            !bytes.windows(name.len()).any(|w| w == name),
             "{}: {loaded:?} is this library, installed; remove it to compare with libccd",
             self.name
         );
@@ -706,55 +669,27 @@ fn set_library_path(command: &mut Command, dir: Option<&Path>) {
     command.env("LD_BIND_NOW", "1");
 }
 
-/// Runs a command to its end; panics when it does not come to one in time.
+/// Runs a command to its end, under `timeout`; panics when it does not come to one in time.
 pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Written) {
-    let mut child = command
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap_or_else(|e| panic!("cannot run {command:?}: {e}"));
-    let stdout = collect(child.stdout.take());
-    let stderr = collect(child.stderr.take());
-    let start = Instant::now();
-    let status = loop {
-        match child.try_wait() {
-            Ok(Some(status)) => break Some(status),
-            Ok(None) if start.elapsed() < timeout => thread::sleep(Duration::from_millis(2)),
-            Ok(None) => {
-                let _ = child.kill();
-                let _ = child.wait();
-                break None;
-            }
-            Err(e) => panic!("cannot wait for {command:?}: {e}"),
-        }
-    };
-    let text = |reader: thread::JoinHandle<Vec<u8>>| {
-        let bytes = reader.join().expect("the reader thread ends");
-        String::from_utf8_lossy(&bytes).into_owned()
-    };
-    let written = Written {
-        stdout: text(stdout),
-        stderr: text(stderr),
-    };
-    let Some(status) = status else {
-        panic!(
-            "{command:?} did not end in {timeout:?}\n{}{}",
-            written.stdout, written.stderr
-        );
-    };
-    (status, written)
-}
-
-fn collect(pipe: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
-    thread::spawn(move || {
-        let mut bytes = Vec::new();
-        if let Some(mut pipe) = pipe {
-            // A pipe that breaks leaves what was read before.
-            let _ = pipe.read_to_end(&mut bytes);
-        }
-        bytes
-    })
+    let mut limited = Command::new("timeout");
+    limited.arg(timeout.as_secs_f64().to_string());
+    limited.arg(command.get_program()).args(command.get_args());
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => limited.env(name, value),
+            None => limited.env_remove(name),
+        };
+    }
+    let output = limited.stdin(Stdio::null()).output();
+    let output = output.unwrap_or_else(|e| panic!("cannot run {limited:?}: {e}"));
+    let written = Written::of(&output);
+    let late = output.status.code() == Some(124);
+    assert!(
+        !late,
+        "{command:?} did not end in {timeout:?}\n{}{}",
+        written.stdout, written.stderr
+    );
+    (output.status, written)
 }
 
 /// The line `first key value key value …` of what a program wrote.

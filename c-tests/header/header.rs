@@ -130,27 +130,20 @@ fn generated(root: &Path, header: &Header) -> String {
     text + &format!("\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n")
 }
 
-fn is_what_the_source_says(header: &Header) {
+#[test]
+fn headers_are_what_the_source_says() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let path = root.join("include/ccd").join(header.name);
-    let fresh = generated(root, header);
-    if std::env::var_os("WRITE_HEADER").is_some() {
-        std::fs::write(&path, &fresh).expect("write the header");
+    for header in &HEADERS {
+        let path = root.join("include/ccd").join(header.name);
+        let fresh = generated(root, header);
+        if std::env::var_os("WRITE_HEADER").is_some() {
+            std::fs::write(&path, &fresh).expect("write the header");
+        }
+        let committed = std::fs::read_to_string(&path).unwrap_or_default();
+        let name = header.name;
+        assert!(
+            committed == fresh,
+            "{name} is stale: WRITE_HEADER=1 cargo test --test header"
+        );
     }
-    let committed = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        committed == fresh,
-        "{} is stale: WRITE_HEADER=1 cargo test --test header",
-        path.display()
-    );
-}
-
-#[test]
-fn warm_h_is_what_the_source_says() {
-    is_what_the_source_says(&HEADERS[0]);
-}
-
-#[test]
-fn paper_h_is_what_the_source_says() {
-    is_what_the_source_says(&HEADERS[1]);
 }

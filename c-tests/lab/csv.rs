@@ -37,27 +37,3 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Vec<T> {
     let rows: Result<Vec<T>, csv::Error> = reader.deserialize().collect();
     rows.unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
-
-#[cfg(test)]
-mod tests {
-    #[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-    struct One {
-        name: String,
-        size: Option<f64>,
-        good: bool,
-    }
-
-    #[test]
-    fn what_is_written_is_read() {
-        let one = |name: &str, size| One {
-            name: name.to_owned(),
-            size,
-            good: size.is_some(),
-        };
-        let rows = [one("a, b", Some(1e-6)), one("", None), one("°", Some(0.1))];
-        let file = tempfile::NamedTempFile::new().expect("a temporary file");
-        super::write(file.path(), "here", &rows);
-        assert_eq!(super::read::<One>(file.path()), rows);
-        assert_eq!(super::origin(file.path()), "here");
-    }
-}

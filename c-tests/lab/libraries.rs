@@ -195,7 +195,7 @@ impl Libraries {
         let tests = harness::root().join("c-tests");
         let object = work.path().join("callbacks.so");
         let source = tests.join("lab/callbacks.c");
-        let compiler = compile(&compiler(false), &[], &source, &object, &[])
+        let compiler = compile(false, &[], &source, &object, &[])
             .unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
 
         // The bare name: what the system's loader finds, which must not be ours. First,
@@ -250,7 +250,7 @@ impl Libraries {
             .path()
             .join(format!("{source}{}.so", flags.concat().replace('/', "_")));
         let source: PathBuf = harness::root().join("c-tests/bench").join(source);
-        compile(&compiler(true), flags, &source, &object, libraries)?;
+        compile(true, flags, &source, &object, libraries)?;
         open(&object).map_err(|e| e.to_string())
     }
 
@@ -262,10 +262,6 @@ impl Libraries {
             .and_then(|l| l.split_once(": "))
             .map_or("unknown processor", |l| l.1);
         let cores = std::thread::available_parallelism().map_or(0, usize::from);
-        let said = |command: &mut Command| {
-            let output = command.output().map(|o| o.stdout).unwrap_or_default();
-            String::from_utf8_lossy(&output).trim().to_owned()
-        };
         let date = said(Command::new("date").args(["-u", "+%F"]));
         let version = said(Command::new("rustc").arg("--version"));
         format!(
@@ -283,65 +279,51 @@ impl Libraries {
 /// The file an address was loaded from, as the kernel tells it.
 fn file_of(address: *const c_void) -> String {
     let maps = std::fs::read_to_string("/proc/self/maps").unwrap_or_default();
-    maps.lines()
-        .find_map(|line| {
-            let mut words = line.split_whitespace();
-            let (low, high) = words.next()?.split_once('-')?;
-            let range =
-                usize::from_str_radix(low, 16).ok()?..usize::from_str_radix(high, 16).ok()?;
-            range
-                .contains(&(address as usize))
-                .then(|| words.nth(4).unwrap_or("").to_owned())
-        })
-        .unwrap_or_default()
+    let file = |line: &str| {
+        let mut words = line.split_whitespace();
+        let (low, high) = words.next()?.split_once('-')?;
+        let [low, high] = [low, high].map(|hex| usize::from_str_radix(hex, 16).ok());
+        let here = (low?..high?).contains(&(address as usize));
+        here.then(|| words.nth(4).unwrap_or_default().to_owned())
+    };
+    maps.lines().find_map(file).unwrap_or_default()
 }
 
-/// The compiler that callbacks and peers are compiled with: fast code, and on x86-64 that
-/// of every machine of the last ten years.
-fn compiler(cpp: bool) -> cc::Build {
-    let mut compiler = harness::compiler(cpp);
-    compiler.opt_level(3).debug(false);
-    if cfg!(target_arch = "x86_64") {
-        compiler.flag("-march=x86-64-v2");
-    }
-    compiler
-}
-
-/// Compiles one source file to a shared object; answers the command's essence.
+/// Compiles one source file to a shared object: fast code, and on x86-64 that of every machine of
+/// the last ten years. Answers the command's essence.
 fn compile(
-    compiler: &cc::Build,
+    cpp: bool,
     flags: &[&str],
     source: &Path,
     object: &Path,
     libraries: &[&str],
 ) -> Result<String, String> {
-    let root = harness::root();
-    let mut compile = harness::compile_with(compiler);
+    let mut compiler = harness::compiler(cpp);
+    compiler.opt_level(3).debug(false);
+    if cfg!(target_arch = "x86_64") {
+        compiler.flag("-march=x86-64-v2");
+    }
+    let mut compile = harness::compile_with(&compiler);
     let tool = compile.get_program().to_owned();
     let own = compile.get_args().map(|arg| arg.to_string_lossy());
-    let shown: Vec<String> = own.map(String::from).collect();
-    let run = compile
-        .args(flags)
-        .args(["-shared", "-fPIC"])
-        .arg("-I")
-        .arg(root.join("include"))
-        .arg("-I")
-        .arg(root.join("c-tests"))
-        .arg(source)
-        .arg("-o")
-        .arg(object)
-        .args(libraries)
-        .arg("-lm")
-        .output()
-        .map_err(|e| format!("{tool:?}: {e}"))?;
+    let shown = own.collect::<Vec<_>>().join(" ");
+    let root = harness::root();
+    for include in ["include", "c-tests"] {
+        compile.arg("-I").arg(root.join(include));
+    }
+    compile.args(flags).args(["-shared", "-fPIC"]).arg(source);
+    compile.arg("-o").arg(object).args(libraries).arg("-lm");
+    let run = compile.output().map_err(|e| format!("{tool:?}: {e}"))?;
     if !run.status.success() {
         return Err(String::from_utf8_lossy(&run.stderr).into_owned());
     }
-    let version = Command::new(tool).arg("--version").output().ok();
-    let version = version.map(|v| String::from_utf8_lossy(&v.stdout).into_owned());
-    let version = version
-        .as_deref()
-        .and_then(|v| v.lines().next())
-        .unwrap_or("");
-    Ok(format!("{version}, {}", shown.join(" ")))
+    let version = said(Command::new(tool).arg("--version"));
+    let version = version.lines().next().unwrap_or_default();
+    Ok(format!("{version}, {shown}"))
+}
+
+/// What a command writes, if anything.
+fn said(command: &mut Command) -> String {
+    let output = command.output().map(|o| o.stdout).unwrap_or_default();
+    String::from_utf8_lossy(&output).trim().to_owned()
 }

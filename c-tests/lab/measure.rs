@@ -177,18 +177,12 @@ const CHUNK: usize = 25;
 
 /// Mean time of a query of each method, ns. All methods take turns over the scene,
 /// `repetitions` times; of every chunk of poses (or motion) the median counts, so that
-/// what else the machine does meanwhile does not. `between` is called after each turn.
-pub fn times(
-    scene: &Scene,
-    methods: &mut [Method],
-    repetitions: usize,
-    mut between: impl FnMut(),
-) -> Vec<f64> {
+/// what else the machine does meanwhile does not.
+pub fn times(scene: &Scene, methods: &mut [Method], repetitions: usize) -> Vec<f64> {
     let mut passes = vec![Vec::with_capacity(repetitions); methods.len()];
     for _ in 0..repetitions {
         for (method, times) in methods.iter_mut().zip(&mut passes) {
             times.push(pass(scene, method));
-            between();
         }
     }
     let of = |passes: Vec<Vec<(f64, usize)>>| {

@@ -102,8 +102,8 @@ impl<'a> Method<'a> {
         self
     }
 
-    pub fn of_ours(mut self, ours: bool) -> Self {
-        self.ours = ours;
+    pub fn of_ours(mut self) -> Self {
+        self.ours = true;
         self
     }
 
@@ -139,97 +139,81 @@ pub fn classic(
     }
 }
 
-/// The name of a call of either library's, and whether it is this one's.
-fn named<'a>(libraries: &Libraries, of: &Classic, names: [&'a str; 2]) -> (&'a str, bool) {
-    let ours = std::ptr::eq(of, &libraries.ours);
-    (names[usize::from(ours)], ours)
-}
-
-/// libccd's MPR, of either library.
-pub fn mpr<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
-    let settings = of.settings(&libraries.callbacks, tolerance);
-    let (name, ours) = named(libraries, of, ["libccd MPR", "MPR"]);
-    let method = Method::new(name, classic(of.mpr, settings, !ours));
-    method.within(tolerance).of_ours(ours)
-}
-
-/// libccd's GJK and EPA.
-pub fn libccd_epa<'a>(libraries: &Libraries, tolerance: f64) -> Method<'a> {
-    gjk(libraries, &libraries.system, tolerance)
-}
-
-/// libccd's GJK and EPA, or what takes their place in this library.
-pub fn gjk<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
-    let settings = of.settings(&libraries.callbacks, tolerance);
-    let (name, ours) = named(libraries, of, ["libccd EPA", "GJK"]);
-    let method = Method::new(name, classic(of.gjk, settings, !ours));
-    method.within(tolerance).of_ours(ours)
-}
-
-/// Yes or no by MPR, of either library; the answer's numbers say nothing.
-pub fn intersect<'a>(libraries: &Libraries, of: &Classic, tolerance: f64) -> Method<'a> {
-    let settings = of.settings(&libraries.callbacks, tolerance);
+/// Yes or no by MPR; the answer's numbers say nothing.
+fn intersect(of: &Classic, settings: ccd_t) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
     let query = of.mpr_intersect;
-    let (name, ours) = named(libraries, of, ["libccd MPR intersect", "MPR intersect"]);
-    let run = move |_: &Scene, pair: &Pair| {
+    move |_, pair| {
         // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
         let yes = unsafe { query(pair.a, pair.b, &settings) };
         (yes == 1).then(Answer::default)
-    };
-    Method::new(name, run).of_ours(ours)
+    }
 }
 
-/// The same with one state a motion.
-pub fn intersect_warm<'a>(libraries: &'a Libraries, tolerance: f64) -> Method<'a> {
-    let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
-    let query = libraries.extension.mpr_intersect;
-    let mut state = COLD;
-    Method::new("MPR intersect", move |_, pair| {
-        if pair.frame == 0 {
-            state = COLD;
-        }
-        // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
-        let yes = unsafe { query(pair.a, pair.b, &settings, &mut state) };
-        (yes == 1).then(Answer::default)
-    })
-    .from(Start::Warm)
-    .of_ours(true)
-}
-
-/// What of the extension is asked.
+/// A call of the system's libccd, of this library, or the paper's method from inside it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ask {
+    SystemMpr,
+    SystemEpa,
+    SystemIntersect,
+    Mpr,
+    Gjk,
+    Intersect,
+    MprWarm,
+    IntersectWarm,
     Local,
     Minimum,
-    Mpr,
+    /// Algorithms 4 and 5, without later improvements.
+    Paper,
+    /// Algorithm 3: without the shortcut.
+    PaperBare,
+}
+
+/// One query of these, from where it starts.
+pub fn of<'a>(libraries: &'a Libraries, ask: Ask, start: Start, tolerance: f64) -> Method<'a> {
+    let (system, ours) = (&libraries.system, &libraries.ours);
+    let settings = |of: &Classic| of.settings(&libraries.callbacks, tolerance);
+    let theirs = |query| classic(query, settings(system), true);
+    let here = |query| classic(query, settings(ours), false);
+    let extension = || extension(libraries, ask, start, settings(ours));
+    let paper = |until| paper(libraries, until, start, tolerance);
+    let method = match ask {
+        Ask::SystemMpr => Method::new("libccd MPR", theirs(system.mpr)),
+        Ask::SystemEpa => Method::new("libccd EPA", theirs(system.gjk)),
+        Ask::SystemIntersect => {
+            Method::new("libccd MPR intersect", intersect(system, settings(system)))
+        }
+        Ask::Mpr => Method::new("MPR", here(ours.mpr)).of_ours(),
+        Ask::Gjk => Method::new("GJK", here(ours.gjk)).of_ours(),
+        Ask::Intersect => Method::new("MPR intersect", intersect(ours, settings(ours))).of_ours(),
+        Ask::MprWarm => Method::new("MPR warm", extension()).of_ours(),
+        Ask::IntersectWarm => Method::new("MPR intersect", extension()).of_ours(),
+        Ask::Local => Method::new("local", extension()).of_ours(),
+        Ask::Minimum => Method::new("minimum", extension()).of_ours(),
+        Ask::Paper => Method::new("Algorithm 4/5", paper(Until::Shortcut)),
+        Ask::PaperBare => Method::new("Algorithm 3", paper(Until::Normal)),
+    };
+    method.from(start).within(tolerance)
 }
 
 /// A query of the extension. Guesses are a fresh state each, `Warm` one state a
 /// motion, `Centres` a zero state.
-pub fn extension<'a>(
+fn extension<'a>(
     libraries: &'a Libraries,
     ask: Ask,
     start: Start,
-    tolerance: f64,
-) -> Method<'a> {
-    let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
+    settings: ccd_t,
+) -> impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a {
     let calls = libraries.extension;
     let mut state = COLD;
-    let name = match ask {
-        Ask::Local => "local",
-        Ask::Minimum => "minimum",
-        Ask::Mpr => "MPR warm",
-    };
-    Method::new(name, move |_, pair| {
-        if let Some(guess) = start.direction(&pair.truth) {
-            if start == Start::Centres {
-                state = COLD;
-            } else {
-                let guess = ccd_vec3_t { v: guess };
-                // SAFETY: a state and a direction.
-                unsafe { (calls.guess)(&mut state, &guess) };
-            }
-        } else if start == Start::None || pair.frame == 0 {
+    move |_, pair| {
+        if let Some(guess) = start
+            .direction(&pair.truth)
+            .filter(|_| start != Start::Centres)
+        {
+            let guess = ccd_vec3_t { v: guess };
+            // SAFETY: a state and a direction.
+            unsafe { (calls.guess)(&mut state, &guess) };
+        } else if start != Start::Warm || pair.frame == 0 {
             state = COLD;
         }
         // SAFETY: numbers.
@@ -240,7 +224,9 @@ pub fn extension<'a>(
             match ask {
                 Ask::Local => (calls.local)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
                 Ask::Minimum => (calls.minimum)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
-                Ask::Mpr => (calls.mpr)(a, b, ccd, warm, &mut out.depth, &mut out.dir, null_mut()),
+                // 1 is yes, 0 no.
+                Ask::IntersectWarm => (calls.mpr_intersect)(a, b, ccd, warm) - 1,
+                _ => (calls.mpr)(a, b, ccd, warm, &mut out.depth, &mut out.dir, null_mut()),
             }
         };
         // CCD_HIT, or CCD_LIMIT: the best sound answer at the cap.
@@ -249,10 +235,7 @@ pub fn extension<'a>(
             dir: out.dir.v,
             lower: out.depth_lower,
         })
-    })
-    .from(start)
-    .within(tolerance)
-    .of_ours(true)
+    }
 }
 
 /// The signed distance, cold, of objects with these margins around them.
@@ -276,30 +259,23 @@ pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64)
         })
     })
     .within(tolerance)
-    .of_ours(true)
+    .of_ours()
 }
 
-/// The paper's method without later improvements, from inside this library:
-/// Algorithms 4 and 5, or Algorithm 3 where the shortcut is off. It falls short of
-/// the published implementation in nothing, but answers with the portal's normal.
-pub fn paper<'a>(
+/// It falls short of the published implementation in nothing, but answers with the portal's normal.
+fn paper<'a>(
     libraries: &'a Libraries,
-    shortcut: bool,
+    until: Until,
     start: Start,
     tolerance: f64,
-) -> Method<'a> {
+) -> impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a {
     let settings = Settings {
         tolerance,
         max_iterations: 10_000,
     };
-    let (name, shortcut) = if shortcut {
-        ("Algorithm 4/5", Until::Shortcut)
-    } else {
-        ("Algorithm 3", Until::Normal)
-    };
     let support = libraries.callbacks.support;
     let mut last = None;
-    Method::new(name, move |_, pair| {
+    move |_, pair| {
         let object = |shape: *mut c_void| {
             move |dir: &Vec3| {
                 let (dir, mut out) = (ccd_vec3_t::from(*dir), ccd_vec3_t::default());
@@ -312,7 +288,7 @@ pub fn paper<'a>(
         let memory = if pair.frame == 0 { None } else { last };
         let from = start.direction(&pair.truth).map(Vec3::from).or(memory);
         let from = from.unwrap_or_else(|| pair.truth.cold.into());
-        let answer = incremental(&md, from, None, shortcut, &settings, |_| ());
+        let answer = incremental(&md, from, None, until, &settings, |_| ());
         let (Ok(Outcome::Hit(found)) | Ok(Outcome::Limit(found))) = answer else {
             return None;
         };
@@ -322,9 +298,7 @@ pub fn paper<'a>(
             dir: found.dir.into(),
             lower: 0.0,
         })
-    })
-    .from(start)
-    .within(tolerance)
+    }
 }
 
 /// DEEP, where both shapes of the scene are polytopes. It walks over the meshes

@@ -98,21 +98,25 @@ pub fn record() {
 
 /// This library's queries on a scene, from every start it has.
 pub fn ours<'a>(libraries: &'a Libraries, scene: &Scene) -> Vec<Method<'a>> {
-    let mut all = vec![methods::mpr(libraries, &libraries.ours, 1e-6)];
-    let local = |start, t| methods::extension(libraries, Ask::Local, start, t);
-    let minimum = |start, t| methods::extension(libraries, Ask::Minimum, start, t);
+    let of = |(ask, start, tolerance)| methods::of(libraries, ask, start, tolerance);
+    let all = [(Ask::Mpr, Start::None, 1e-6)].into_iter();
     if scene.motion > 0 {
-        all.extend([
-            local(Start::Centres, 1e-6),
-            local(Start::Warm, 1e-6),
-            local(Start::Warm, 1e-10),
-        ]);
-        all.push(methods::extension(libraries, Ask::Mpr, Start::Warm, 1e-6));
-        all.extend([minimum(Start::Warm, 1e-6), minimum(Start::None, 1e-6)]);
-    } else {
-        all.extend(Start::GUESSES.map(|start| local(start, 1e-6)));
-        all.extend([local(Start::Centres, 1e-6), local(Start::Five, 1e-10)]);
-        all.extend([minimum(Start::None, 1e-6), minimum(Start::None, 1e-10)]);
+        let others = [
+            (Ask::Local, Start::Centres, 1e-6),
+            (Ask::Local, Start::Warm, 1e-6),
+            (Ask::Local, Start::Warm, 1e-10),
+            (Ask::MprWarm, Start::Warm, 1e-6),
+            (Ask::Minimum, Start::Warm, 1e-6),
+            (Ask::Minimum, Start::None, 1e-6),
+        ];
+        return all.chain(others).map(of).collect();
     }
-    all
+    let guesses = Start::GUESSES.map(|start| (Ask::Local, start, 1e-6));
+    let others = [
+        (Ask::Local, Start::Centres, 1e-6),
+        (Ask::Local, Start::Five, 1e-10),
+        (Ask::Minimum, Start::None, 1e-6),
+        (Ask::Minimum, Start::None, 1e-10),
+    ];
+    all.chain(guesses).chain(others).map(of).collect()
 }

@@ -100,7 +100,7 @@ pub struct Scene {
 }
 
 /// A shape to place: its type number and parameters as in `c-tests/shapes.h`.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Form {
     pub kind: c_int,
     pub p: [f64; 3],
@@ -111,13 +111,10 @@ pub struct Form {
 
 impl Form {
     pub fn solid(kind: c_int, p: [f64; 3]) -> Self {
-        let mesh = Mesh::default();
-        let climb = false;
         Self {
             kind,
             p,
-            mesh,
-            climb,
+            ..Self::default()
         }
     }
 
@@ -213,12 +210,10 @@ impl Scene {
                 if let Some(shape) = shape.filter(|s| s.kind == 2) {
                     return Mesh::cuboid(shape.p);
                 }
+                let indices = |t: &[c_int]| [0, 1, 2].map(|i| t[i] as usize);
                 Mesh {
                     vertices: v.chunks_exact(3).map(Vector3::from_column_slice).collect(),
-                    triangles: t
-                        .chunks_exact(3)
-                        .map(|t| [t[0] as usize, t[1] as usize, t[2] as usize])
-                        .collect(),
+                    triangles: t.chunks_exact(3).map(indices).collect(),
                 }
             });
             Self {
@@ -255,27 +250,17 @@ impl Scene {
         let bodies = forms.map(|f| Body::of(&callbacks, f));
         let (mut shapes, words) = room(&callbacks, 2 * poses.len());
         let base = shapes.as_mut_ptr();
-        let pairs = poses
-            .iter()
-            .enumerate()
-            .map(|(i, (pose, truth))| {
-                let at: [*mut c_void; 2] = [0, 1].map(|k| {
-                    // SAFETY: room for 2 n shapes; the scene keeps the bodies.
-                    unsafe {
-                        let s = base.add((2 * i + k) * words).cast();
-                        bodies[k].place(&callbacks, s, &pose[k]);
-                        s
-                    }
-                });
-                let frame = i.checked_rem(motion).unwrap_or(0);
-                Pair {
-                    a: at[0],
-                    b: at[1],
-                    truth: *truth,
-                    frame,
-                }
-            })
-            .collect();
+        let pair = |(i, (pose, truth)): (usize, &([Pose; 2], Truth))| {
+            // SAFETY: room for 2 n shapes; the scene keeps the bodies.
+            let [a, b] = [0, 1].map(|k| unsafe {
+                let s = base.add((2 * i + k) * words).cast();
+                bodies[k].place(&callbacks, s, &pose[k]);
+                s
+            });
+            let (truth, frame) = (*truth, i.checked_rem(motion).unwrap_or(0));
+            Pair { a, b, truth, frame }
+        };
+        let pairs = poses.iter().enumerate().map(pair).collect();
         Self {
             name: name.to_owned(),
             pairs,
@@ -353,22 +338,13 @@ impl Body {
         let mesh = &form.mesh;
         let mut graph = Vec::new();
         if form.climb {
-            let triangles: Vec<c_int> = mesh
-                .triangles
-                .iter()
-                .flatten()
-                .map(|&i| i as c_int)
-                .collect();
-            graph = vec![0; mesh.vertices.len() + 1 + 6 * mesh.triangles.len()];
+            let indices = mesh.triangles.iter().flatten();
+            let indices: Vec<c_int> = indices.map(|&i| i as c_int).collect();
+            let (nv, nt) = (mesh.vertices.len(), mesh.triangles.len());
+            graph = vec![0; nv + 1 + 6 * nt];
+            let (t, room) = (indices.as_ptr(), graph.as_mut_ptr());
             // SAFETY: indices of the mesh, and room for its graph.
-            let code = unsafe {
-                (callbacks.graph)(
-                    mesh.vertices.len() as c_int,
-                    triangles.as_ptr(),
-                    mesh.triangles.len() as c_int,
-                    graph.as_mut_ptr(),
-                )
-            };
+            let code = unsafe { (callbacks.graph)(nv as c_int, t, nt as c_int, room) };
             assert_eq!(code, 0, "memory for a mesh's edges");
         }
         Self {
@@ -384,24 +360,16 @@ impl Body {
     /// # Safety
     /// `at` has room for a shape, which must not outlive the body.
     pub unsafe fn place(&self, callbacks: &Callbacks, at: *mut c_void, pose: &Pose) {
-        let rot = pose.rotation.to_rotation_matrix();
-        let graph = if self.graph.is_empty() {
+        let rot = pose.rotation.to_rotation_matrix().matrix().transpose();
+        let (p, pos, rot) = (self.p.as_ptr(), pose.position.as_ptr(), rot.as_ptr());
+        let (v, n) = (self.vertices.as_ptr(), (self.vertices.len() / 3) as c_int);
+        let scan = self.graph.is_empty();
+        let graph = if scan {
             std::ptr::null()
         } else {
             self.graph.as_ptr()
         };
         // SAFETY: the caller's contract; p[3], pos[3] and rot[9] row by row are read.
-        unsafe {
-            (callbacks.shape)(
-                at,
-                self.kind,
-                self.p.as_ptr(),
-                self.vertices.as_ptr(),
-                (self.vertices.len() / 3) as c_int,
-                graph,
-                pose.position.as_ptr(),
-                rot.matrix().transpose().as_ptr(),
-            );
-        }
+        unsafe { (callbacks.shape)(at, self.kind, p, v, n, graph, pos, rot) };
     }
 }

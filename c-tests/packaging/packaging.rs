@@ -30,8 +30,15 @@ fn fresh(name: &str) -> PathBuf {
     dir
 }
 
-fn cmake(args: impl IntoIterator<Item = impl AsRef<OsStr>>) {
-    must_succeed(Command::new("cmake").args(args), "cmake");
+/// Runs a tool to a good end; what it writes.
+fn ran(mut tool: Command, args: &[&dyn AsRef<OsStr>]) -> String {
+    tool.args(args);
+    let name = tool.get_program().to_string_lossy().into_owned();
+    must_succeed(&mut tool, &name).stdout
+}
+
+fn cmake(args: &[&dyn AsRef<OsStr>]) {
+    ran(Command::new("cmake"), args);
 }
 
 /// Configures a folder in another.
@@ -105,23 +112,19 @@ fn installed_and_moved() -> &'static Path {
         let dir = fresh("installed");
         let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
         build_library(&build, &first, Cargo::Release, &[]);
-        cmake(["--install".as_ref(), build.as_os_str()]);
+        cmake(&[&"--install", &build]);
         fs::remove_dir_all(&build).expect("the build tree can be removed");
         fs::rename(&first, &prefix).expect("the prefix can be moved");
         prefix
     })
 }
 
-/// Configures and builds the consumer, with what is needed to find libccd.
-fn consumer(name: &str, options: &[OsString]) -> PathBuf {
-    consumer_with(name, Cargo::Release, options)
-}
-
-/// The same where the library is built as a part of it.
-fn consumer_with(name: &str, cargo: Cargo, options: &[OsString]) -> PathBuf {
+/// Configures and builds the consumer; what else CMake is to know.
+fn consumer(name: &str, way: &str, cargo: Cargo, options: &[OsString]) -> PathBuf {
     let build = fresh(name);
-    let source = root().join("c-tests/packaging/consumer");
-    must_succeed(configure(&source, &build).args(options), "cmake");
+    let mut configure = configure(&root().join("c-tests/packaging/consumer"), &build);
+    configure.args([define("WAY", way), define("REPOSITORY", root())]);
+    must_succeed(configure.args(cargo.options()).args(options), "cmake");
     cargo.build(&build);
     build
 }
@@ -147,31 +150,41 @@ fn runs_on_ours(program: &Path, shared_under: Option<&Path>) {
     assert_eq!(program.run([""; 0]).stdout, expected);
 }
 
-fn all_run_on_ours(build: &Path, shared_under: &Path, names: &[&str]) {
+/// Of the consumer's programs: those on the shared library, and the one on the archive.
+fn all_run_on_ours(programs: &Path, shared_under: &Path, names: &[&str]) {
     for name in names {
-        runs_on_ours(&build.join(name), Some(shared_under));
+        runs_on_ours(&programs.join(name), Some(shared_under));
     }
-    runs_on_ours(&build.join("static"), None);
+    runs_on_ours(&programs.join("static"), None);
 }
 
 #[test]
 fn find_package() {
     let prefix = installed_and_moved();
-    let options = [
-        define("WAY", "find_package"),
-        define("CMAKE_PREFIX_PATH", prefix),
-    ];
-    let build = consumer("find_package", &options);
+    let there = [define("CMAKE_PREFIX_PATH", prefix)];
+    let build = consumer("find_package", "find_package", Cargo::Release, &there);
     all_run_on_ours(&build, prefix, &["plain", "namespaced", "variables"]);
 }
 
+/// As a part of another project, which installs this library only if it asks to.
 #[test]
 fn add_subdirectory_and_fetch_content() {
-    for way in ["add_subdirectory", "FetchContent"] {
-        let mut options = vec![define("WAY", way), define("REPOSITORY", root())];
-        options.extend(Cargo::Release.options());
-        let build = consumer(way, &options);
+    for (name, way, asked) in [
+        ("part", "add_subdirectory", false),
+        ("asked", "add_subdirectory", true),
+        ("fetched", "FetchContent", false),
+    ] {
+        let prefix = fresh("parent").join(name);
+        let install = define("CCD_INSTALL", "ON");
+        let mut options = vec![define("CMAKE_INSTALL_PREFIX", &prefix)];
+        options.extend(asked.then_some(install));
+        let build = consumer(name, way, Cargo::Release, &options);
         all_run_on_ours(&build, &build, &["plain", "namespaced"]);
+        cmake(&[&"--install", &build]);
+        assert!(prefix.join("bin/plain").is_file());
+        assert_eq!(prefix.join("include").exists(), asked);
+        let cache = fs::read_to_string(build.join("CMakeCache.txt")).expect("CMake's cache");
+        assert!(!cache.contains("BUILD_SHARED_LIBS"), "set for its parent");
     }
 }
 
@@ -179,16 +192,11 @@ fn add_subdirectory_and_fetch_content() {
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn generators() {
-    for (name, generator, programs) in [
-        ("ninja", "Ninja", ""),
-        ("multi-config", "Ninja Multi-Config", "Debug"),
-    ] {
-        let mut options = vec![define("WAY", "add_subdirectory")];
-        options.extend([define("REPOSITORY", root()), "-G".into(), generator.into()]);
-        options.extend(Cargo::Release.options());
-        let build = consumer(name, &options);
-        runs_on_ours(&build.join(programs).join("plain"), Some(&build));
-        runs_on_ours(&build.join(programs).join("static"), None);
+    for (generator, programs) in [("Ninja", ""), ("Ninja Multi-Config", "Debug")] {
+        let options = ["-G".into(), generator.into()];
+        let name = generator.replace(' ', "-");
+        let build = consumer(&name, "add_subdirectory", Cargo::Release, &options);
+        all_run_on_ours(&build.join(programs), &build, &["plain"]);
     }
 }
 
@@ -200,10 +208,9 @@ fn git_tag() {
         println!("skipped: not a git repository");
         return;
     }
-    let git = |dir: &Path, args: &[&str]| {
-        let mut git = Command::new("git");
-        git.arg("-C").arg(dir).args(args);
-        must_succeed(&mut git, "git").stdout.trim().to_owned()
+    let git = |dir: &Path, args: &[&dyn AsRef<OsStr>]| {
+        let args = [&[&"-C" as &dyn AsRef<OsStr>, &dir], args].concat();
+        ran(Command::new("git"), &args).trim().to_owned()
     };
     let page = page("cmake/README.md");
     let tag = page
@@ -212,44 +219,19 @@ fn git_tag() {
         .expect("the page names a branch");
     assert_eq!(tag, "main");
     // The files as they are now; HEAD where git knows no change.
-    let mut commit = git(root(), &["stash", "create"]);
+    let mut commit = git(root(), &[&"stash", &"create"]);
     if commit.is_empty() {
-        commit = git(root(), &["rev-parse", "HEAD"]);
+        commit = git(root(), &[&"rev-parse", &"HEAD"]);
     }
     let upstream = fresh("upstream");
-    git(&upstream, &["init", "--quiet", "--bare"]);
+    git(&upstream, &[&"init", &"--quiet", &"--bare"]);
     let to = format!("{commit}:refs/heads/{tag}");
-    git(
-        root(),
-        &["push", "--quiet", &upstream.to_string_lossy(), &to],
-    );
+    git(root(), &[&"push", &"--quiet", &upstream, &to]);
 
-    let mut options = vec![define("WAY", "git"), define("TAG", tag)];
-    options.push(define("REPOSITORY", upstream));
-    let cargo = Cargo::Quick("cargo-git");
-    options.extend(cargo.options());
-    let build = consumer_with("git", cargo, &options);
+    // Behind the consumer's own.
+    let options = [define("TAG", tag), define("REPOSITORY", upstream)];
+    let build = consumer("git", "git", Cargo::Quick("cargo-git"), &options);
     all_run_on_ours(&build, &build, &["plain", "namespaced"]);
-}
-
-/// Another project installs this library only if it asks to.
-#[test]
-#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn a_part_of_another_project_installs_nothing() {
-    for (name, asked) in [("unasked", false), ("asked", true)] {
-        let prefix = fresh("parent").join(name);
-        let mut options = vec![define("WAY", "add_subdirectory")];
-        options.push(define("REPOSITORY", root()));
-        options.push(define("CMAKE_INSTALL_PREFIX", &prefix));
-        options.extend(asked.then(|| define("CCD_INSTALL", "ON")));
-        options.extend(Cargo::Release.options());
-        let build = consumer(name, &options);
-        cmake(["--install".as_ref(), build.as_os_str()]);
-        assert!(prefix.join("bin/plain").is_file());
-        assert_eq!(prefix.join("include").exists(), asked);
-        let cache = fs::read_to_string(build.join("CMakeCache.txt")).expect("CMake's cache");
-        assert!(!cache.contains("BUILD_SHARED_LIBS"), "set for its parent");
-    }
 }
 
 /// BUILD_SHARED_LIBS=OFF: `ccd` is the archive, in a build tree and installed.
@@ -260,18 +242,18 @@ fn the_archive_alone_without_shared_libraries() {
     let cargo = Cargo::Quick("cargo-static");
     let off = define("BUILD_SHARED_LIBS", "OFF");
     build_library(&build, &prefix, cargo, std::slice::from_ref(&off));
-    cmake(["--install".as_ref(), build.as_os_str()]);
+    cmake(&[&"--install", &build]);
     find(&prefix, "libccd.a");
     assert!(!prefix.join("lib/libccd.so").exists());
-    let installed = [
-        define("WAY", "find_package"),
-        define("CMAKE_PREFIX_PATH", &prefix),
-    ];
-    let mut part = vec![define("WAY", "add_subdirectory"), off];
-    part.push(define("REPOSITORY", root()));
-    part.extend(cargo.options());
-    for (name, options) in [("static-installed", &installed[..]), ("static-part", &part)] {
-        let build = consumer_with(name, cargo, options);
+    for (name, way, option) in [
+        (
+            "static-installed",
+            "find_package",
+            define("CMAKE_PREFIX_PATH", &prefix),
+        ),
+        ("static-part", "add_subdirectory", off),
+    ] {
+        let build = consumer(name, way, cargo, &[option]);
         for program in ["plain", "namespaced", "static"] {
             runs_on_ours(&build.join(program), None);
         }
@@ -291,18 +273,12 @@ fn a_missing_or_old_rust_is_named() {
         define("CARGO", script)
     };
     let oldest = env!("CARGO_PKG_RUST_VERSION");
+    let missing = define("CARGO", "CARGO-NOTFOUND");
+    let (old, odd) = ("cargo 1.63.0", "no such toolchain");
     for (name, option, expected) in [
-        (
-            "missing",
-            define("CARGO", "CARGO-NOTFOUND"),
-            "cargo is missing",
-        ),
-        ("old", says("old-cargo", "cargo 1.63.0"), "is Rust 1.63"),
-        (
-            "odd",
-            says("odd-cargo", "no such toolchain"),
-            "no such toolchain",
-        ),
+        ("missing", missing, "cargo is missing"),
+        ("old", says("old-cargo", old), "is Rust 1.63"),
+        ("odd", says("odd-cargo", odd), odd),
     ] {
         let mut configure = configure(&root().join("cmake"), &dir.join(name));
         // find_program finds nothing anywhere.
@@ -333,25 +309,28 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
         return;
     }
     let dir = fresh("source");
-    let mut make = Command::new("sh");
-    make.arg(root().join("cmake/packages/source.sh")).arg(&dir);
-    let archive = must_succeed(&mut make, "source.sh").stdout;
+    let source = root().join("cmake/packages/source.sh");
+    let archive = ran(Command::new("sh"), &[&source, &dir]);
     let libraries: Vec<[Vec<u8>; 2]> = ["a", "another/place"]
         .into_iter()
         .map(|place| {
             let place = dir.join(place);
             fs::create_dir_all(&place).expect("a directory");
-            let mut unpack = Command::new("tar");
-            unpack.arg("-xf").arg(archive.trim()).arg("-C").arg(&place);
-            must_succeed(unpack.arg("--strip-components=1"), "tar");
+            let (archive, strip) = (archive.trim(), "--strip-components=1");
+            ran(
+                Command::new("tar"),
+                &[&"-xf", &archive, &"-C", &place, &strip],
+            );
             let build = place.join("build");
-            let mut configure = configure(&place.join("cmake"), &build);
-            must_succeed(configure.arg(precision_option()), "cmake");
+            ran(
+                configure(&place.join("cmake"), &build),
+                &[&precision_option()],
+            );
             let mut make = Command::new("cmake");
-            make.arg("--build").arg(&build);
             // No crate that was fetched before, and no way to fetch one.
             make.env("CARGO_HOME", place.join("cargo-home"));
-            must_succeed(make.env("CARGO_NET_OFFLINE", "true"), "cmake");
+            make.env("CARGO_NET_OFFLINE", "true");
+            ran(make, &[&"--build", &build]);
             ["libccd.so.2.0", "libccd.a"]
                 .map(|name| fs::read(build.join("lib").join(name)).expect("a library"))
         })
@@ -377,20 +356,19 @@ fn notices_name_every_crate() {
         .skip_while(|line| !line.starts_with("  "))
         .map_while(|line| line.strip_prefix("  ")?.split(' ').next())
         .collect();
-    let mut tree = Command::new(env!("CARGO"));
-    tree.current_dir(root())
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo
+        .current_dir(root())
         .args(["tree", "--offline", "--prefix=none"]);
-    tree.args(["--edges=normal,no-proc-macro", "--format={p} {l}"]);
-    let tree = must_succeed(&mut tree, "cargo").stdout;
-    let compiled: BTreeSet<&str> = tree
-        .lines()
-        .filter(|line| !line.starts_with("warmccd "))
-        .map(|line| {
-            assert!(line.contains("Apache-2.0"), "another licence: {line}");
-            line.split(' ').next().expect("a crate")
-        })
-        .collect();
-    assert_eq!(named, compiled);
+    let tree = ran(
+        cargo,
+        &[&"--edges=normal,no-proc-macro", &"--format={p} {l}"],
+    );
+    let lines = tree.lines().filter(|line| !line.starts_with("warmccd "));
+    let other = lines.clone().find(|line| !line.contains("Apache-2.0"));
+    assert_eq!(other, None, "another licence");
+    let compiled = lines.filter_map(|line| line.split(' ').next());
+    assert_eq!(named, compiled.collect());
 }
 
 /// Nothing that is installed carries debug information.
@@ -398,9 +376,8 @@ fn notices_name_every_crate() {
 fn no_debug_information() {
     let prefix = installed_and_moved();
     for name in ["libccd.so.2.0", "libccd.a"] {
-        let mut read = Command::new("readelf");
-        read.args(["--wide", "--sections"]).arg(find(prefix, name));
-        let sections = must_succeed(&mut read, "readelf (Debian: binutils)").stdout;
+        let file = find(prefix, name);
+        let sections = ran(Command::new("readelf"), &[&"--wide", &"--sections", &file]);
         assert!(sections.contains(".text"), "{name}");
         assert!(!sections.contains(".debug_"), "{name}");
     }
@@ -427,11 +404,7 @@ fn sizes_of_the_shared_library() {
     let installed = find(installed_and_moved(), "libccd.so.2.0");
     let bare = fresh("stripped").join("libccd.so");
     let built = harness::library(Precision::CURRENT).dir.join("libccd.so");
-    let mut strip = harness::binutils("strip");
-    must_succeed(
-        strip.arg("-o").arg(&bare).arg(built),
-        "strip (Debian: binutils)",
-    );
+    ran(harness::binutils("strip"), &[&"-o", &bare, &built]);
     assert_small(&[
         ("libccd.so.2.0", size(&installed), 680_000),
         ("cargo's libccd.so, stripped", size(&bare), 680_000),
@@ -446,23 +419,24 @@ fn sizes_of_the_static_library() {
     let archive = find(prefix, "libccd.a");
     let programs = fresh("sizes");
     // A program that calls one query, and the same without the call.
-    let program = |name: &str, libraries: &[&OsStr]| {
+    let program = |name: &str, code: &str, libraries: &[&OsStr]| {
         let source = programs.join(format!("{name}.c"));
-        let body = if libraries.is_empty() {
-            "int main(void) { return 0; }\n"
-        } else {
-            "#include <ccd/ccd.h>\nint main(int n, char **v) {\n    ccd_t ccd; ccd_real_t d; ccd_vec3_t x, y; CCD_INIT(&ccd);\n    return ccdMPRPenetration(v, v + n, &ccd, &d, &x, &y); }\n"
-        };
-        fs::write(&source, body).expect("a file can be written");
+        fs::write(&source, code).expect("a file can be written");
         let path = programs.join(name);
         let mut cc = c_compiler();
         cc.arg("-I").arg(prefix.join("include")).arg(&source);
-        cc.args(libraries).args(["-Wl,--gc-sections", "-s", "-o"]);
-        must_succeed(cc.arg(&path), "cc");
+        cc.args(libraries).args(["-Wl,--gc-sections", "-s"]);
+        ran(cc, &[&"-o", &path]);
         size(&path)
     };
-    let linked = program("linked", &[archive.as_os_str(), "-lm".as_ref()]);
-    let growth = linked - program("empty", &[]);
+    let call = "#include <ccd/ccd.h>
+        int main(int n, char **v) {
+            ccd_t ccd; ccd_real_t d; ccd_vec3_t x, y;
+            CCD_INIT(&ccd);
+            return ccdMPRPenetration(v, v + n, &ccd, &d, &x, &y);
+        }";
+    let linked = program("linked", call, &[archive.as_os_str(), "-lm".as_ref()]);
+    let growth = linked - program("empty", "int main(void) { return 0; }", &[]);
     assert_small(&[
         ("libccd.a", size(&archive), 15_000_000),
         ("a program's growth", growth, 420_000),
@@ -485,8 +459,9 @@ fn pkg_config() {
     let compile = |name: &str, flags: &[String]| {
         let program = programs.join(name);
         let mut cc = c_compiler();
-        cc.arg(root().join("c-tests/packaging/consumer/main.c"));
-        must_succeed(cc.args(flags).arg("-o").arg(&program), "cc");
+        cc.arg(root().join("c-tests/packaging/consumer/main.c"))
+            .args(flags);
+        ran(cc, &[&"-o", &program]);
         program
     };
 
@@ -514,15 +489,11 @@ fn destdir_and_multiarch() {
     let dir = fresh("destdir");
     let (build, stage) = (dir.join("build"), dir.join("stage"));
     build_library(&build, Path::new("/usr"), Cargo::Release, &[]);
-    must_succeed(
-        Command::new("cmake")
-            .env("DESTDIR", &stage)
-            .arg("--install")
-            .arg(&build),
-        "cmake",
-    );
-    let triplet = must_succeed(c_compiler().arg("-print-multiarch"), "cc");
-    let libdir = Path::new("usr/lib").join(triplet.stdout.trim());
+    let mut install = Command::new("cmake");
+    install.env("DESTDIR", &stage);
+    ran(install, &[&"--install", &build]);
+    let triplet = ran(c_compiler(), &[&"-print-multiarch"]);
+    let libdir = Path::new("usr/lib").join(triplet.trim());
     for file in [
         "libccd.a",
         "libccd.so",
@@ -561,10 +532,10 @@ fn the_other_precision_does_not_compile() {
     let prefix = installed_and_moved();
     let compiles = |flags: &[&str]| {
         let mut cc = c_compiler();
-        cc.arg("-fsyntax-only")
-            .arg(root().join("c-tests/packaging/consumer/main.c"))
-            .arg("-I")
+        cc.arg("-I")
             .arg(prefix.join("include"))
+            .arg("-fsyntax-only");
+        cc.arg(root().join("c-tests/packaging/consumer/main.c"))
             .args(flags);
         cc.output().expect("cc runs").status.success()
     };
@@ -577,20 +548,19 @@ fn the_other_precision_does_not_compile() {
 #[test]
 fn oldest_rust() {
     let version = env!("CARGO_PKG_RUST_VERSION");
-    let is_that_one = |command: &[&str]| {
+    let is_that_one = |command: &&[&str]| {
         let said = Command::new(command[0])
             .args(&command[1..])
             .arg("--version")
             .output();
-        said.is_ok_and(|said| {
-            String::from_utf8_lossy(&said.stdout).starts_with(&format!("cargo {version}."))
-        })
+        let wanted = format!("cargo {version}.");
+        said.is_ok_and(|said| said.stdout.starts_with(wanted.as_bytes()))
     };
     let choices = [
         &["rustup", "run", version, "cargo"][..],
-        &["/usr/bin/cargo"][..],
+        &["/usr/bin/cargo"],
     ];
-    let Some(cargo) = choices.into_iter().find(|cargo| is_that_one(cargo)) else {
+    let Some(cargo) = choices.into_iter().find(is_that_one) else {
         println!("skipped: no Rust {version} (rustup toolchain install {version})");
         return;
     };
@@ -599,10 +569,7 @@ fn oldest_rust() {
         .args(&cargo[1..])
         .args(["build", "--release", "--lib", "--locked"])
         .args(["--config", "profile.release.debug=false"])
-        .args([
-            "--manifest-path".as_ref(),
-            root().join("Cargo.toml").as_os_str(),
-        ])
+        .current_dir(root())
         .arg("--target-dir")
         .arg(output_dir().join("oldest-rust"))
         .env("RUSTFLAGS", "-D warnings");
@@ -647,35 +614,36 @@ fn program_of(name: &str, language: &str) -> PathBuf {
     source
 }
 
+/// The numbers of a line.
+fn numbers(line: &str) -> Vec<f64> {
+    let words = line.split(|c: char| !"+-.e".contains(c) && !c.is_ascii_digit());
+    words.filter_map(|word| word.parse().ok()).collect()
+}
+
 /// The README's box is 1 cm deep in its slab, face on face, in each of three frames.
 fn assert_depth_of_the_readme_s_box(said: &str) {
     assert_eq!(said.lines().count(), 3, "{said}");
     for line in said.lines() {
-        let depth = line.strip_prefix("move box by ").expect("a depth");
-        let (depth, rest) = depth.split_once(" along (").expect("a direction");
-        let (dir, contacts) = rest.split_once("), ").expect("contacts");
-        let depth: f64 = depth.parse().expect("a number");
+        let [depth, .., up, contacts] = numbers(line)[..] else {
+            panic!("{line}");
+        };
         assert!((depth - 0.01).abs() < 1e-5, "{line}");
-        let dir: Vec<f64> = dir
-            .split(", ")
-            .map(|x| x.parse().expect("a number"))
-            .collect();
-        assert!(dir.len() == 3 && dir[2] > 0.999_999, "{line}");
-        assert_eq!(contacts, "4 contacts", "{line}");
+        assert!(up > 0.999_999 && contacts == 4.0, "{line}");
     }
 }
 
-/// The README's C program compiles without a warning and answers rightly.
+/// A page's program compiles without a warning.
+fn strict(program: Program, page: &str, language: &str) -> Executable {
+    let program = program.source(program_of(page, language));
+    let program = program.flag("-pedantic").flag("-Werror");
+    program.link_ours_shared().build()
+}
+
+/// The README's C program.
 #[test]
 fn readme_c_program() {
-    let written = Program::c("readme")
-        .source(program_of("README.md", "c"))
-        .flag("-pedantic")
-        .flag("-Werror")
-        .link_ours_shared()
-        .build()
-        .run([""; 0]);
-    assert_depth_of_the_readme_s_box(&written.stdout);
+    let program = strict(Program::c("readme"), "README.md", "c");
+    assert_depth_of_the_readme_s_box(&program.run([""; 0]).stdout);
 }
 
 /// The README's two lines that link it, as they stand there, in a folder with its files.
@@ -693,16 +661,16 @@ fn readme_links_its_program() {
     link(&library.dir.join("libccd.so"), "target/swap/libccd.so.2");
     fs::copy(program_of("README.md", "c"), here.join("program.c")).expect("a copy");
     let page = page("README.md");
-    let lines: Vec<&str> = (page.split('`'))
-        .filter(|code| code.starts_with("cc program.c "))
-        .collect();
-    assert_eq!(lines.len(), 2, "{lines:?}");
+    let lines = page
+        .split('`')
+        .filter(|code| code.starts_with("cc program.c "));
+    assert_eq!(lines.clone().count(), 2);
     for line in lines {
         let mut shell = Command::new("sh");
         shell
+            .current_dir(&here)
             .arg("-c")
-            .arg(format!("{line} && ./a.out"))
-            .current_dir(&here);
+            .arg(format!("{line} && ./a.out"));
         assert_depth_of_the_readme_s_box(&must_succeed(&mut shell, line).stdout);
     }
 }
@@ -712,17 +680,9 @@ fn readme_links_its_program() {
 #[test]
 #[cfg(not(feature = "single"))]
 fn readme_cpp_program() {
-    let written = Program::cpp("readme")
-        .source(program_of("include/README.md", "cpp"))
-        .flag("-pedantic")
-        .flag("-Werror")
-        .link_ours_shared()
-        .build()
-        .run([""; 0]);
-    let depth = written.stdout.split(' ').nth(3).expect("move b by DEPTH");
-    let truth = 2.0 - 0.14_f64.sqrt();
-    let depth: f64 = depth.parse().expect("a number");
-    assert!((depth - truth).abs() < 1e-5, "{depth}");
+    let program = strict(Program::cpp("readme"), "include/README.md", "cpp");
+    let depth = numbers(&program.run([""; 0]).stdout)[0];
+    assert!((depth - (2.0 - 0.14_f64.sqrt())).abs() < 1e-5, "{depth}");
 }
 
 /// The one file of this name below a directory.

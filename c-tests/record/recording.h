@@ -35,15 +35,23 @@ static inline void recording_free(recording_t *r)
     memset(r, 0, sizeof *r);
 }
 
+/* The next bytes of the file; returns 0, or -1 where it has not so many. */
+static inline int recording_take(const recording_t *r, size_t *at, void *to, size_t bytes)
+{
+    if (r->size - *at < bytes)
+        return -1;
+    memcpy(to, r->bytes + *at, bytes);
+    *at += bytes;
+    return 0;
+}
+
 static inline int recording_parse(recording_t *r)
 {
-    const unsigned char *b = r->bytes;
-    const size_t size = r->size;
-    size_t at = 24, vertices = 0;
+    size_t at = 0, vertices = 0;
+    char magic[8];
     uint32_t head[4], i, j, total = 0;
-    if (size < at || memcmp(b, "CCDREC01", 8) != 0)
+    if (recording_take(r, &at, magic, sizeof magic) || memcmp(magic, "CCDREC01", 8) != 0 || recording_take(r, &at, head, sizeof head))
         return -1;
-    memcpy(head, b + 8, sizeof head);
     r->shapes = head[0];
     r->bodies = head[1];
     r->frames = head[2];
@@ -54,52 +62,38 @@ static inline int recording_parse(recording_t *r)
     r->shape_of = (uint32_t *)calloc(r->bodies, sizeof *r->shape_of);
     r->frame = (unsigned char **)calloc((size_t)r->frames + 1, sizeof *r->frame);
     r->frame_pairs = (uint32_t *)calloc((size_t)r->frames + 1, sizeof *r->frame_pairs);
-    r->vertices = (ccd_real_t *)malloc(size / 8 * sizeof *r->vertices);
+    r->vertices = (ccd_real_t *)malloc(r->size / 8 * sizeof *r->vertices);
     if (!r->shape || !r->shape_of || !r->frame || !r->frame_pairs || !r->vertices)
         return -1;
     for (i = 0; i < r->shapes; i++) {
         uint32_t kind[2];
-        double p[3];
-        if (size - at < sizeof kind + sizeof p)
+        double p[3], x;
+        if (recording_take(r, &at, kind, sizeof kind) || recording_take(r, &at, p, sizeof p) || kind[0] > SHAPE_POLYTOPE || kind[1] > 100000)
             return -1;
-        memcpy(kind, b + at, sizeof kind);
-        memcpy(p, b + at + sizeof kind, sizeof p);
-        at += sizeof kind + sizeof p;
-        if (kind[0] > SHAPE_POLYTOPE || kind[1] > 100000 || (size - at) / 24 < kind[1])
-            return -1;
-        for (j = 0; j < 3 * kind[1]; j++) {
-            double x;
-            memcpy(&x, b + at, sizeof x);
-            at += sizeof x;
+        for (j = 0; j < 3 * kind[1] && !recording_take(r, &at, &x, sizeof x); j++)
             r->vertices[vertices + j] = (ccd_real_t)x;
-        }
+        if (j < 3 * kind[1])
+            return -1;
         r->shape[i] = kind[0] == SHAPE_POLYTOPE ? shape_polytope(r->vertices + vertices, (int)kind[1])
                                                 : shape_make((int)kind[0], p[0], p[1], p[2]);
-        vertices += 3 * kind[1];
+        vertices += j;
     }
-    if ((size - at) / 4 < r->bodies)
-        return -1;
-    memcpy(r->shape_of, b + at, 4 * (size_t)r->bodies);
-    at += 4 * (size_t)r->bodies;
     for (i = 0; i < r->bodies; i++)
-        if (r->shape_of[i] >= r->shapes)
+        if (recording_take(r, &at, &r->shape_of[i], 4) || r->shape_of[i] >= r->shapes)
             return -1;
     for (i = 0; i < r->frames; i++) {
-        if (size - at < 4)
+        const size_t poses = 28 * (size_t)r->bodies;
+        if (recording_take(r, &at, &r->frame_pairs[i], 4) || (r->size - at) / 4 < poses / 4 + r->frame_pairs[i])
             return -1;
-        memcpy(&r->frame_pairs[i], b + at, 4);
-        r->frame[i] = r->bytes + at + 4;
-        at += 4;
-        if ((size - at) / 28 < r->bodies || (size - at - 28 * (size_t)r->bodies) / 4 < r->frame_pairs[i])
-            return -1;
-        at += 28 * (size_t)r->bodies + 4 * (size_t)r->frame_pairs[i];
+        r->frame[i] = r->bytes + at;
+        at += poses + 4 * (size_t)r->frame_pairs[i];
         total += r->frame_pairs[i];
     }
     if (total != r->pairs)
         return -1;
-    if (size - at == 8 * RECORDING_TRUTH * (size_t)r->pairs)
+    if (r->size - at == 8 * RECORDING_TRUTH * (size_t)r->pairs)
         r->truth_at = at;
-    return r->truth_at || size == at ? 0 : -1;
+    return r->truth_at || r->size == at ? 0 : -1;
 }
 
 /* Returns 0, or -1 when the file is not a whole recording; free either way. */

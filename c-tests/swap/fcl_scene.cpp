@@ -16,7 +16,7 @@
  * `missed`, `spurious`, `off` (beyond the promised depth) and `error` (largest, metres) are
  * those of pairs put to libccd or this library, `own_` of pairs that FCL has closed forms for.
  *
- * usage: fcl_scene FRAMES BODIES CONTACTS EXACT   (CONTACTS: of a pair, with BY_HEADER) */
+ * usage: fcl_scene FRAMES BODIES EXACT CONTACTS   (CONTACTS: of a pair, with BY_HEADER) */
 
 #include "swap/fcl_shapes.h"
 #include "harness/identity.h"
@@ -171,44 +171,38 @@ static void asked_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
     asked_support1(obj, dir, v);
 }
 
-template <typename Call> static int counted(const char *name, const ccd_t *ccd, ccd_t *behind, Call call)
+static ccd_t counted(const ccd_t *ccd, unsigned long queries)
 {
-    void *symbol = dlsym(RTLD_NEXT, name);
-    *behind = *ccd;
+    ccd_t behind = *ccd;
+    asked.queries += queries;
     asked_support1 = ccd->support1;
-    behind->support1 = asked_count;
-    return call(symbol);
+    behind.support1 = asked_count;
+    return behind;
 }
+
+#define NEXT(name) ((decltype(&name))dlsym(RTLD_NEXT, #name))
 
 static unsigned long put_so_far() { return asked.queries; }
 
 extern "C" int ccdMPRPenetrationWarm(const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm, ccd_real_t *depth,
                                      ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    ccd_t behind;
-    asked.queries++;
-    return counted("ccdMPRPenetrationWarm", ccd, &behind, [&](void *next) {
-        return ((decltype(&ccdMPRPenetrationWarm))next)(a, b, &behind, warm, depth, dir, pos);
-    });
+    const ccd_t behind = counted(ccd, 1);
+    return NEXT(ccdMPRPenetrationWarm)(a, b, &behind, warm, depth, dir, pos);
 }
 
 extern "C" int ccdSignedDistance(const void *a, const void *b, const ccd_t *ccd, ccd_real_t margin1, ccd_real_t margin2,
                                  ccd_real_t max_distance, ccd_warm_t *warm, unsigned want, ccd_distance_t *out)
 {
-    ccd_t behind;
-    asked.queries++;
-    return counted("ccdSignedDistance", ccd, &behind, [&](void *next) {
-        return ((decltype(&ccdSignedDistance))next)(a, b, &behind, margin1, margin2, max_distance, warm, want, out);
-    });
+    const ccd_t behind = counted(ccd, 1);
+    return NEXT(ccdSignedDistance)(a, b, &behind, margin1, margin2, max_distance, warm, want, out);
 }
 
 extern "C" int ccdContacts(const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
                            ccd_manifold_t *memory, ccd_contact_t *contacts, int max)
 {
-    ccd_t behind;
-    return counted("ccdContacts", ccd, &behind, [&](void *next) {
-        return ((decltype(&ccdContacts))next)(a, b, &behind, normal, slop, memory, contacts, max);
-    });
+    const ccd_t behind = counted(ccd, 0);
+    return NEXT(ccdContacts)(a, b, &behind, normal, slop, memory, contacts, max);
 }
 #else
 static unsigned long put_so_far() { return compare_queries(); }
@@ -298,14 +292,14 @@ static void run(scene_t &scene, long frames, long every)
 int main(int argc, char **argv)
 {
     if (argc != 5) {
-        fprintf(stderr, "usage: fcl_scene FRAMES BODIES CONTACTS EXACT\n");
+        fprintf(stderr, "usage: fcl_scene FRAMES BODIES EXACT CONTACTS\n");
         return 2;
     }
     tell_library();
 #ifdef BY_HEADER
-    settings.contacts_per_pair = (size_t)atol(argv[3]);
+    settings.contacts_per_pair = (size_t)atol(argv[4]);
 #endif
     scene_t scene(atoi(argv[2]));
-    run(scene, atol(argv[1]), atol(argv[4]));
+    run(scene, atol(argv[1]), atol(argv[3]));
     return 0;
 }

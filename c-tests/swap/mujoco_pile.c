@@ -6,9 +6,8 @@
  * a coordinate, by a stream named SEED. Prints what the second half of the run
  * looked like.
  *
- * usage: mujoco_pile SEED STEPS BODIES pile|multi|field [save|load FILE]
- *   multi: MuJoCo's multi-point convex collision; field: on a height field
- *   save: the state in the middle of the run; load: run the second half from there */
+ * usage: mujoco_pile SEED STEPS BODIES pile|multi|field
+ *   multi: MuJoCo's multi-point convex collision; field: on a height field */
 
 #include "swap/pile.h"
 #include "uniform.h"
@@ -90,24 +89,6 @@ static int escaped(const mjModel *m, const mjData *d)
     return out;
 }
 
-/* What a run goes on from, to or from a file. */
-static int state(const mjModel *m, mjData *d, const char *path, int save)
-{
-    mjtNum *part[3];
-    int count[3], i, good = 1;
-    FILE *file = fopen(path, save ? "wb" : "rb");
-    if (!file)
-        return 0;
-    part[0] = d->qpos, count[0] = m->nq;
-    part[1] = d->qvel, count[1] = m->nv;
-    part[2] = d->qacc_warmstart, count[2] = m->nv;
-    for (i = 0; i < 3; i++) {
-        const size_t n = (size_t)count[i];
-        good &= n == (save ? fwrite(part[i], sizeof(mjtNum), n, file) : fread(part[i], sizeof(mjtNum), n, file));
-    }
-    return !fclose(file) && good;
-}
-
 int main(int argc, char **argv)
 {
     static mjVFS vfs;
@@ -116,13 +97,11 @@ int main(int argc, char **argv)
     mjData *d;
     pile_t pile;
     long step, steps;
-    int i, field, multi, save, load;
-    if (argc != 5 && argc != 7) {
-        fprintf(stderr, "usage: mujoco_pile SEED STEPS BODIES pile|multi|field [save|load FILE]\n");
+    int i, field, multi;
+    if (argc != 5) {
+        fprintf(stderr, "usage: mujoco_pile SEED STEPS BODIES pile|multi|field\n");
         return 2;
     }
-    save = argc == 7 && !strcmp(argv[5], "save");
-    load = argc == 7 && !save;
     steps = atol(argv[2]);
     pile = pile_of(steps);
     multi = !strcmp(argv[4], "multi");
@@ -149,11 +128,7 @@ int main(int argc, char **argv)
         p[1] += uniform(-1e-3, 1e-3);
         p[2] += uniform(-1e-3, 1e-3);
     }
-    for (step = load ? (steps + 1) / 2 : 0; step < steps; step++) {
-        if (2 * step >= steps && 2 * step < steps + 2 && argc == 7 && !state(m, d, argv[6], save)) {
-            fprintf(stderr, "no state\n");
-            return 2;
-        }
+    for (step = 0; step < steps; step++) {
         pile.step = step;
         mj_step(m, d);
         pile.escaped |= escaped(m, d);

@@ -13,37 +13,21 @@
  *
  * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower */
 
-#include "swap/ode_run.h"
-#include "swap/ode_shape.h"
-#include "swap/callback_errors.h"
+#include "swap/ode_scene.h"
+#include "swap/tally.h"
 
 #include "compare/hooks.h"
 #include "harness/identity.h"
 
-/* Contacts of one step against the truth; only of pairs that ODE put to libccd. */
-typedef struct {
-    long judged, lost, spurious;
-    long off;     /* the deepest contact's depth is off by more than 1 % and twice ODE's tolerance */
-    double error; /* the largest */
-} judged_t;
-
-typedef struct {
-    const scene_t *scene;
-    unsigned long queries; /* watched so far */
-    int callback_wrong; /* in the query that is judged next */
-    judged_t right, wrong; /* by that */
-} judge_t;
-
 static scene_t scene;
-static judge_t found = { &scene, 0, 0, { 0, 0, 0, 0, 0 }, { 0, 0, 0, 0, 0 } };
+static unsigned long queries;  /* watched so far */
+static int astray;             /* a callback was wrong in the query that is judged next */
+static tally_t tally[2];       /* the second: of those; only pairs that ODE put to libccd */
 
 /* A depth or gap below this is neither: ten times ODE's tolerance. */
 static const double LOST = 1e-5;
 
-static shape_t shape_of(const scene_t *scene, int i)
-{
-    return ode_shape(&scene->shape[scene->shape_of[i]], scene->geom[i]);
-}
+static shape_t shape_of(int i) { return scene_shape_of(&scene.shape[scene.shape_of[i]], scene.geom[i]); }
 
 /* The object's centre tells which body it is. */
 void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *v)
@@ -56,9 +40,9 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
     for (i = 0; i < scene.bodies; i++) {
         const dReal *p = dGeomGetPosition(scene.geom[i]);
         if (p[0] == centre.v[0] && p[1] == centre.v[1] && p[2] == centre.v[2]) {
-            const shape_t s = shape_of(&scene, i);
+            const shape_t s = shape_of(i);
             double point[3];
-            found.callback_wrong |= !(right_point(&s, dir, v, point) < 1e-10 * scene.half_width);
+            astray |= !(right_point(&s, dir, v, point) < 1e-10 * scene.half_width);
             return;
         }
     }
@@ -66,29 +50,24 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
 
 static void judge(void *user, int a, int b, const dContact *contact, int contacts)
 {
-    judge_t *all = (judge_t *)user;
-    judged_t *j = all->callback_wrong ? &all->wrong : &all->right;
+    verdict_truth_t truth = { 0, 0, 1e-6, LOST };
     shape_t sa, sb;
     truth_t t;
     double deepest = 0;
     int i;
-    if (compare_queries() == all->queries)
+    (void)user;
+    if (compare_queries() == queries)
         return;
-    all->queries = compare_queries();
-    all->callback_wrong = 0;
-    sa = shape_of(all->scene, a);
-    sb = shape_of(all->scene, b);
+    queries = compare_queries();
+    sa = shape_of(a);
+    sb = shape_of(b);
     t = truth_depth_within(&sa, &sb, 1e-7);
-    j->judged++;
-    j->lost += !contacts && t.lower > LOST;
-    j->spurious += contacts && t.depth < -LOST;
+    truth.lower = t.lower;
+    truth.upper = t.depth;
     for (i = 0; i < contacts; i++)
         deepest = fmax(deepest, contact[i].geom.depth);
-    if (contacts && t.depth > 0) {
-        const double error = fabs(deepest - t.depth);
-        j->error = fmax(j->error, error);
-        j->off += !(error <= 0.01 * t.depth + 2e-6);
-    }
+    tally_add(&tally[astray], &truth, contacts > 0, deepest, 1);
+    astray = 0;
 }
 
 int main(int argc, char **argv)
@@ -104,16 +83,15 @@ int main(int argc, char **argv)
     dInitODE2(0);
     tell_library();
     run_scene(&scene, argv[4], bodies, seed, steps);
-    scene.user = &found;
     for (step = 0; step < steps; step++) {
         scene.on_pair = step % 20 ? NULL : judge;
-        found.queries = compare_queries();
+        queries = compare_queries();
         run_step(&scene, step);
     }
     pile_report(&scene.pile);
-    printf(" judged %ld lost %ld spurious %ld off %ld error %.9g wrong %ld wrong_lost %ld wrong_spurious %ld wrong_error %.9g\n",
-           found.right.judged, found.right.lost, found.right.spurious, found.right.off, found.right.error, found.wrong.judged,
-           found.wrong.lost, found.wrong.spurious, found.wrong.error);
+    printf("\n");
+    tally_print("right", &tally[0]);
+    tally_print("astray", &tally[1]);
     scene_free(&scene);
     dCloseODE();
     return 0;

@@ -11,16 +11,14 @@
 
 #include <string.h>
 #include <ode/ode.h>
+#include "shapes.h"
 #include "swap/hull.h"
 #include "swap/pile.h"
 
 enum { SCENE_BODIES = 96, SCENE_SHAPES = 96 };
 
-/* Kinds as in shapes.h: the numbers go into files. */
-enum scene_kind { SCENE_CAPSULE = 1, SCENE_BOX = 2, SCENE_CYLINDER = 3, SCENE_HULL = 6 };
-
 typedef struct {
-    enum scene_kind kind;
+    int kind;                   /* of shapes.h; the numbers go into files */
     double p[3];                /* capsule, cylinder: radius, half length; box: half extents */
     hull_t hull;
 } scene_shape_t;
@@ -35,7 +33,7 @@ typedef struct {
     dGeomID geom[SCENE_BODIES];
     dBodyID body[SCENE_BODIES]; /* NULL for what stands still */
     double half_width;          /* the pen is 2 half_width wide */
-    enum scene_kind kinds[4];   /* of a pile, by turns */
+    int kinds[4];               /* of a pile, by turns */
     pile_t pile;
     /* where set, told every pair the broad phase lets through, and the contacts ODE made of it */
     void (*on_pair)(void *user, int a, int b, const dContact *contact, int contacts);
@@ -53,12 +51,26 @@ static inline dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
         return geom;
     }
     switch (s->kind) {
-    case SCENE_CAPSULE: return dCreateCapsule(scene->space, s->p[0], 2 * s->p[1]);
-    case SCENE_BOX: return dCreateBox(scene->space, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]);
-    case SCENE_CYLINDER: return dCreateCylinder(scene->space, s->p[0], 2 * s->p[1]);
+    case SHAPE_CAPSULE: return dCreateCapsule(scene->space, s->p[0], 2 * s->p[1]);
+    case SHAPE_BOX: return dCreateBox(scene->space, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]);
+    case SHAPE_CYLINDER: return dCreateCylinder(scene->space, s->p[0], 2 * s->p[1]);
     default: return dCreateConvex(scene->space, s->hull.plane, (unsigned)s->hull.faces, s->hull.vertex, (unsigned)s->hull.vertices,
                                    s->hull.polygon);
     }
+}
+
+/* A shape; of a hull, the box with these half extents. */
+static inline int scene_shape(scene_t *scene, int kind, double x, double y, double z)
+{
+    scene_shape_t *s = &scene->shape[scene->shapes];
+    memset(s, 0, sizeof *s);
+    s->kind = kind;
+    s->p[0] = x;
+    s->p[1] = y;
+    s->p[2] = z;
+    if (kind == SHAPE_POLYTOPE)
+        hull_box(&s->hull, x, y, z);
+    return scene->shapes++;
 }
 
 static inline int scene_add(scene_t *scene, int shape)
@@ -79,9 +91,9 @@ static inline void scene_make_dynamic(scene_t *scene, int i)
     const double density = 1000;
     dMass mass;
     switch (s->kind) {
-    case SCENE_CAPSULE: dMassSetCapsule(&mass, density, 3, s->p[0], 2 * s->p[1]); break;
-    case SCENE_BOX: dMassSetBox(&mass, density, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]); break;
-    case SCENE_CYLINDER: dMassSetCylinder(&mass, density, 3, s->p[0], 2 * s->p[1]); break;
+    case SHAPE_CAPSULE: dMassSetCapsule(&mass, density, 3, s->p[0], 2 * s->p[1]); break;
+    case SHAPE_BOX: dMassSetBox(&mass, density, 2 * s->p[0], 2 * s->p[1], 2 * s->p[2]); break;
+    case SHAPE_CYLINDER: dMassSetCylinder(&mass, density, 3, s->p[0], 2 * s->p[1]); break;
     default: {
         double r = 0;
         int v;
@@ -102,12 +114,12 @@ static inline int scene_pile_shape(scene_t *scene, int i)
     int j;
     memset(s, 0, sizeof *s);
     s->kind = scene->kinds[i % 4];
-    if (s->kind == SCENE_HULL)
+    if (s->kind == SHAPE_POLYTOPE)
         hull_random(&s->hull, 8 + i % 9, uniform(0.07, 0.14), uniform(0.07, 0.14), uniform(0.07, 0.14));
     else
         for (j = 0; j < 3; j++)
             s->p[j] = (float)uniform(0.05, 0.13);
-    if (s->kind == SCENE_CAPSULE)
+    if (s->kind == SHAPE_CAPSULE)
         s->p[0] *= 0.75;
     s->p[0] = (float)s->p[0];
     return scene->shapes++;
@@ -115,7 +127,7 @@ static inline int scene_pile_shape(scene_t *scene, int i)
 
 static inline void scene_world(scene_t *scene, unsigned long seed)
 {
-    static const enum scene_kind all[4] = { SCENE_BOX, SCENE_CYLINDER, SCENE_CAPSULE, SCENE_HULL };
+    static const int all[4] = { SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_POLYTOPE };
     memset(scene, 0, sizeof *scene);
     memcpy(scene->kinds, all, sizeof all);
     scene->world = dWorldCreate();
@@ -137,17 +149,13 @@ static inline void scene_world(scene_t *scene, unsigned long seed)
 /* Floor (top at z = 0) and four walls: thick boxes. */
 static inline void scene_pen(scene_t *scene, double half_width)
 {
+    const int wall = scene_shape(scene, SHAPE_BOX, 2, 2, 2);
     int i;
-    scene_shape_t *wall = &scene->shape[scene->shapes++];
     scene->half_width = half_width;
-    memset(wall, 0, sizeof *wall);
-    wall->kind = SCENE_BOX;
-    wall->p[0] = wall->p[1] = wall->p[2] = 2;
-    dGeomSetPosition(scene->geom[scene_add(scene, (int)(wall - scene->shape))], 0, 0, -2);
+    dGeomSetPosition(scene->geom[scene_add(scene, wall)], 0, 0, -2);
     for (i = 0; i < 4; i++) {
         const double at = (i & 1 ? 1 : -1) * (float)(half_width + 2);
-        const int b = scene_add(scene, (int)(wall - scene->shape));
-        dGeomSetPosition(scene->geom[b], i & 2 ? at : 0, i & 2 ? 0 : at, 1.5);
+        dGeomSetPosition(scene->geom[scene_add(scene, wall)], i & 2 ? at : 0, i & 2 ? 0 : at, 1.5);
     }
 }
 
@@ -189,42 +197,18 @@ static inline void scene_pile(scene_t *scene, int count, double half_width, doub
     }
 }
 
-/* Towers of five flat boxes each, every second one an ODE box, the others hulls; in a pen. */
-static inline void scene_stack(scene_t *scene, int towers, double half_width)
+/* Towers of five flat boxes in a pen, every second one an ODE box, the others hulls; or one in its
+ * middle, of hulls alone. Each box begins exactly where the one below ends: a touch at first. */
+static inline void scene_towers(scene_t *scene, int bodies, int one)
 {
-    int i, j;
-    scene_pen(scene, half_width);
-    for (i = 0; i < 2; i++) {
-        scene_shape_t *s = &scene->shape[scene->shapes++];
-        memset(s, 0, sizeof *s);
-        s->kind = i ? SCENE_HULL : SCENE_BOX;
-        s->p[0] = s->p[1] = 0.125;
-        s->p[2] = 0.0625;
-        hull_box(&s->hull, s->p[0], s->p[1], s->p[2]);
-    }
-    for (i = 0; i < 5 * towers; i++) {
-        const int b = scene_add(scene, scene->shapes - 2 + i % 2);
-        j = i / 5;
-        scene_make_dynamic(scene, b);
-        dBodySetPosition(scene->body[b], 0.4 * (j % 2) - 0.2, 0.4 * (j / 2) - 0.2, 0.0625 + 0.125 * (i % 5));
-    }
-}
-
-/* One tower of flat boxes, all hulls, each exactly where the one below ends: every contact is a
- * touch at first. */
-static inline void scene_tower(scene_t *scene, int count)
-{
-    scene_shape_t *s;
-    int i;
+    int i, shape[2];
     scene_pen(scene, 0.8);
-    s = &scene->shape[scene->shapes++];
-    memset(s, 0, sizeof *s);
-    s->kind = SCENE_HULL;
-    hull_box(&s->hull, 0.125, 0.125, 0.0625);
-    for (i = 0; i < count; i++) {
-        const int b = scene_add(scene, scene->shapes - 1);
+    for (i = 0; i < 2; i++)
+        shape[i] = scene_shape(scene, i || one ? SHAPE_POLYTOPE : SHAPE_BOX, 0.125, 0.125, 0.0625);
+    for (i = 0; i < bodies; i++) {
+        const int b = scene_add(scene, shape[i % 2]), level = one ? i : i % 5;
         scene_make_dynamic(scene, b);
-        dBodySetPosition(scene->body[b], 0, 0, 0.0625 + 0.125 * i);
+        dBodySetPosition(scene->body[b], one ? 0 : 0.4 * (i / 5 % 2) - 0.2, one ? 0 : 0.4 * (i / 10) - 0.2, 0.0625 + 0.125 * level);
     }
 }
 
@@ -233,28 +217,19 @@ static inline void scene_tower(scene_t *scene, int count)
 static inline void scene_roll(scene_t *scene, int count, double half_width)
 {
     int i;
-    scene_shape_t *plate;
     scene_pen(scene, half_width);
-    plate = &scene->shape[scene->shapes++];
-    memset(plate, 0, sizeof *plate);
-    plate->kind = SCENE_HULL;
-    hull_box(&plate->hull, half_width, half_width, 0.05);
-    dGeomSetPosition(scene->geom[scene_add(scene, scene->shapes - 1)], 0, 0, 0.05);
+    i = scene_add(scene, scene_shape(scene, SHAPE_POLYTOPE, half_width, half_width, 0.05));
+    dGeomSetPosition(scene->geom[i], 0, 0, 0.05);
     for (i = 0; i < count; i++) {
-        scene_shape_t *s = &scene->shape[scene->shapes++];
-        int b;
+        const double radius = 0.06 + 0.01 * (i % 5);
+        const int b = scene_add(scene, scene_shape(scene, SHAPE_CYLINDER, radius, 0.08 + 0.02 * (i % 3), 0));
         dQuaternion q;
-        memset(s, 0, sizeof *s);
-        s->kind = SCENE_CYLINDER;
-        s->p[0] = 0.06 + 0.01 * (i % 5);
-        s->p[1] = 0.08 + 0.02 * (i % 3);
-        b = scene_add(scene, scene->shapes - 1);
         scene_make_dynamic(scene, b);
         dQFromAxisAndAngle(q, 1, 0, 0, 0.5 * 3.14159265358979323846); /* axis along y */
         dBodySetQuaternion(scene->body[b], q);
-        dBodySetPosition(scene->body[b], -0.5 * half_width, (i + 0.5) * 2 * half_width / count - half_width, 0.1 + s->p[0]);
+        dBodySetPosition(scene->body[b], -0.5 * half_width, (i + 0.5) * 2 * half_width / count - half_width, 0.1 + radius);
         dBodySetLinearVel(scene->body[b], 0.5, 0, 0);
-        dBodySetAngularVel(scene->body[b], 0, 0.5 / s->p[0], 0);
+        dBodySetAngularVel(scene->body[b], 0, 0.5 / radius, 0);
     }
 }
 
@@ -325,11 +300,57 @@ static inline int scene_escaped(const scene_t *scene)
     return out;
 }
 
+/* A body as the shape that the truth and the queries know. */
+static inline shape_t scene_shape_of(const scene_shape_t *s, dGeomID geom)
+{
+    const dReal *p = dGeomGetPosition(geom), *R = dGeomGetRotation(geom);
+    const double rot[9] = { R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10] };
+    shape_t out = s->kind == SHAPE_POLYTOPE ? shape_polytope(s->hull.vertex, s->hull.vertices) : shape_make(s->kind, s->p[0], s->p[1], s->p[2]);
+    shape_move(&out, p[0], p[1], p[2]);
+    shape_turn(&out, rot);
+    return out;
+}
+
 static inline void scene_free(scene_t *scene)
 {
     dJointGroupDestroy(scene->contacts);
     dSpaceDestroy(scene->space);
     dWorldDestroy(scene->world);
+}
+
+/* --- a run of one of the scenes that ode_pile.c names ------------------------------------ */
+
+/* Makes it, moved by the stream named seed. */
+static inline void run_scene(scene_t *scene, const char *name, int bodies, unsigned long seed, long steps)
+{
+    const int stack = !strcmp(name, "stack"), roll = !strcmp(name, "roll");
+    int i;
+    scene_world(scene, 11);
+    scene->pile = pile_of(steps);
+    if (!strcmp(name, "tower")) {
+        scene_towers(scene, bodies, 1);
+        return;
+    }
+    if (stack) {
+        scene_towers(scene, bodies, 0);
+    } else if (roll) {
+        scene_roll(scene, bodies, 1.5);
+    } else {
+        for (i = 0; i < 4 && !strcmp(name, "hulls"); i++)
+            scene->kinds[i] = SHAPE_POLYTOPE;
+        scene_pile(scene, bodies, 0.55, 0.33);
+    }
+    scene_nudge(scene, seed, stack || roll ? 1e-5 : 1e-3);
+}
+
+static inline void run_step(scene_t *scene, long step)
+{
+    double height, moving;
+    scene->pile.step = step;
+    scene_step(scene, 0.005);
+    scene->pile.escaped |= scene_escaped(scene);
+    moving = scene_energy(scene, &height);
+    pile_energy(&scene->pile, moving, height);
 }
 
 #endif

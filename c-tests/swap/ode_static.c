@@ -1,21 +1,17 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* ODE's dCollide over random pairs of every kind of geometry that it hands to
- * libccd. Writes a line for every query, as fcl_static does:
- *
- *   collide A B number size lower upper hit depth |normal| wrong
- *
- * wrong 1: ODE's own callback gave a point that is not a support point.
+/* ODE's dCollide over random pairs of every kind of geometry that it hands to libccd, held
+ * against their truth (pose_all of poses.h): apart where ODE's own callback gave a point that is
+ * not a support point.
  *
  * usage: ode_static SEED POSES asis|corrected   (POSES placed pairs of each two kinds)
- *   corrected: such points are replaced by the right ones, and wrong is 0 */
+ *   corrected: such points are replaced by the right ones */
 
 #include "swap/poses.h"
 
 #include "compare/hooks.h"
 #include "harness/identity.h"
-#include "swap/callback_errors.h"
 
 #include <ode/ode.h>
 
@@ -52,12 +48,14 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
 {
     ccd_vec3_t centre;
     const placed_t *p;
+    const double *at;
     double point[3];
     if (first.answered)
         return;
     center(obj, &centre);
     /* a's centre is where a is; that of a triangle is where ODE puts it */
-    p = from(&a.body.shape, &centre) < 1e-12 ? &a : &b;
+    at = a.body.shape.pos;
+    p = hypot(hypot(at[0] - centre.v[0], at[1] - centre.v[1]), at[2] - centre.v[2]) < 1e-12 ? &a : &b;
     if (right_point(&p->body.shape, dir, v, point) < 1e-10 * pair_size(&a.body.shape, &b.body.shape))
         return;
     if (corrected)
@@ -110,72 +108,53 @@ static void geom_place(placed_t *p)
 
 static void geom_free(placed_t *p)
 {
-    dGeomDestroy(p->geom);
+    if (p->geom)
+        dGeomDestroy(p->geom);
     if (p->mesh)
         dGeomTriMeshDataDestroy(p->mesh);
 }
 
-static void collide(long number, const known_t *known)
+static void make(void)
+{
+    geom_free(&a);
+    geom_free(&b);
+    geom_make(&a);
+    geom_make(&b);
+}
+
+static void ask(const known_t *known)
 {
     dContactGeom contact;
     int hit;
+    geom_place(&a);
+    geom_place(&b);
     callback_wrong = 0;
     first.answered = 0;
     hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
     if (!first.answered)
         return; /* not libccd's */
-    printf("collide %s %s %ld %.17g %.17g %.17g ", KIND_NAME[a.body.kind], KIND_NAME[b.body.kind], number, known->size,
-           known->lower, known->upper);
     /* A triangle that touches is turned a little and asked about again, four times: the
      * first answer is the one about this pose. */
     if (b.body.kind == KIND_TRIANGLE)
-        printf("%d %.17g %.17g %d\n", first.hit, first.depth, first.length, callback_wrong);
-    else if (hit)
-        printf("1 %.17g %.17g %d\n", contact.depth, dCalcVectorLength3(contact.normal), callback_wrong);
+        pose_judge(&a.body, &b.body, known, callback_wrong, first.hit, first.depth, first.length);
     else
-        printf("0 0 0 %d\n", callback_wrong);
+        pose_judge(&a.body, &b.body, known, callback_wrong, hit, hit ? contact.depth : 0,
+                   hit ? dCalcVectorLength3(contact.normal) : 0);
 }
 
 int main(int argc, char **argv)
 {
     static const int kinds[] = { SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_POLYTOPE, KIND_TRIANGLE, KIND_PLATE };
-    enum { COUNT = sizeof kinds / sizeof kinds[0] };
-    long number = 0, k, poses;
-    int i, j, d;
     if (argc != 4) {
         fprintf(stderr, "usage: ode_static SEED POSES asis|corrected\n");
         return 2;
     }
-    poses = atol(argv[2]);
     corrected = !strcmp(argv[3], "corrected");
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
     tell_library();
     uniform_seed(strtoull(argv[1], NULL, 10));
-    for (i = 0; i < COUNT; i++)
-        for (j = i; j < COUNT; j++)
-            for (k = 0; k < poses; k++) {
-                known_t known;
-                if (kinds[i] == KIND_TRIANGLE && kinds[j] == KIND_TRIANGLE)
-                    continue;
-                body_random(&a.body, kinds[i]);
-                body_random(&b.body, kinds[j]);
-                pose_overlapping(&a.body, &b.body, &known);
-                geom_make(&a);
-                geom_make(&b);
-                for (d = -1; d < DEPTH_COUNT; d++) {
-                    if (d >= 0) {
-                        if (DEPTHS[d] * known.size >= known.upper)
-                            continue;
-                        pose_at_depth(&b.body, &known, DEPTHS[d] * known.size);
-                    }
-                    geom_place(&a);
-                    geom_place(&b);
-                    collide(number++, &known);
-                }
-                geom_free(&a);
-                geom_free(&b);
-            }
+    pose_all(kinds, sizeof kinds / sizeof kinds[0], atol(argv[2]), &a.body, &b.body, make, ask);
     dCloseODE();
     return 0;
 }

@@ -7,8 +7,8 @@
  *
  * usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many */
 
-#include "swap/ode_run.h"
-#include "swap/ode_shape.h"
+#include "swap/ode_scene.h"
+#include "harness/identity.h"
 
 #include <ccd/warm.h>
 
@@ -25,7 +25,7 @@ static const double SLOP = 1e-3;
 
 static void aabb(dGeomID geom, dReal box[6])
 {
-    const shape_t s = ode_shape(*(const scene_shape_t **)dGeomGetClassData(geom), geom);
+    const shape_t s = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(geom), geom);
     int k, side;
     for (k = 0; k < 3; k++)
         for (side = 0; side < 2; side++) {
@@ -41,8 +41,8 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
 {
     const int i = (int)(intptr_t)dGeomGetData(o1), j = (int)(intptr_t)dGeomGetData(o2);
     const int room = flags & 0xffff, max = room < most ? room : most;
-    shape_t a = ode_shape(*(const scene_shape_t **)dGeomGetClassData(o1), o1);
-    shape_t b = ode_shape(*(const scene_shape_t **)dGeomGetClassData(o2), o2);
+    shape_t a = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(o1), o1);
+    shape_t b = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(o2), o2);
     ccd_contact_t contact[8];
     ccd_penetration_t hit;
     ccd_t ccd;
@@ -103,6 +103,7 @@ int main(int argc, char **argv)
     const int bodies = atoi(argv[3]);
     most = strcmp(argv[5], "many") ? 1 : 8;
     dInitODE2(0);
+    tell_library();
     convex = dCreateGeomClass(&class);
     scene_make_geom = make;
     run_scene(&scene, argv[4], bodies, seed, steps);

@@ -14,7 +14,7 @@
 #define SWAP_POSES_H
 
 #include "swap/hull.h"
-#include "truth.h"
+#include "swap/tally.h"
 
 /* Kinds of shape; those of shapes.h first, then special sizes of them. */
 enum {
@@ -116,5 +116,57 @@ static inline void pose_at_depth(body_t *b, known_t *known, double depth)
 /* Depths put to every placed pair, in sizes; the pose as it fell is asked first. */
 static const double DEPTHS[] = { 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 2e-9, -2e-9, -1e-8, -1e-7, -1e-6, -3e-6, -1e-5, -1e-3, -1e-1 };
 enum { DEPTH_COUNT = sizeof DEPTHS / sizeof DEPTHS[0] };
+
+/* --- answers held against that --------------------------------------------------------- */
+
+/* FCL's and ODE's, metres. */
+static const double POSE_TOLERANCE = 1e-6;
+
+/* The second: where a callback was wrong. There is no right answer then, and what is within two
+ * tolerances of the meant one will do. */
+static tally_t tally[2];
+static long threw; /* queries in which FCL did */
+
+static inline void pose_judge(const body_t *a, const body_t *b, const known_t *known, int astray, int hit, double depth,
+                              double length)
+{
+    static const char *const name[VERDICTS] = { "right", "missed", "spurious", "broken", "deep", "unsound" };
+    const double touch = astray ? 2 * POSE_TOLERANCE : 1e-9 * known->size;
+    const verdict_truth_t truth = { known->lower, known->upper, POSE_TOLERANCE, touch };
+    const verdict_t v = tally_add(&tally[astray], &truth, hit, depth, length);
+    if (v != VERDICT_RIGHT && !astray)
+        printf("wrong: %s %s %s, signed depth %.9g to %.9g, answered %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], name[v],
+               known->lower, known->upper, depth);
+}
+
+/* Asks about every pose of `poses` pairs of each two kinds; `make` is told of a new pair. Then the
+ * counts, in a line each. */
+static inline void pose_all(const int *kinds, int count, long poses, body_t *a, body_t *b, void (*make)(void),
+                            void (*ask)(const known_t *known))
+{
+    int i, j, d;
+    long k, asked = 0; /* pairs of kinds */
+    for (i = 0; i < count; i++)
+        for (j = i; j < count; j++) {
+            const long before = tally[0].queries + tally[1].queries;
+            for (k = 0; k < poses && (kinds[i] != KIND_TRIANGLE || kinds[j] != KIND_TRIANGLE); k++) {
+                known_t known;
+                body_random(a, kinds[i]);
+                body_random(b, kinds[j]);
+                pose_overlapping(a, b, &known);
+                make();
+                ask(&known);
+                for (d = 0; d < DEPTH_COUNT; d++)
+                    if (DEPTHS[d] * known.size < known.upper) {
+                        pose_at_depth(b, &known, DEPTHS[d] * known.size);
+                        ask(&known);
+                    }
+            }
+            asked += tally[0].queries + tally[1].queries > before;
+        }
+    printf("asked kinds %ld threw %ld\n", asked, threw);
+    tally_print("collide", &tally[0]);
+    tally_print("astray", &tally[1]);
+}
 
 #endif

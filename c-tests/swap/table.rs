@@ -22,41 +22,31 @@ mod fcl_scene;
 use checks::{Piles, Swapped, piles};
 
 fn table() {
-    let seed_and_poses = |poses: usize| vec!["2".to_owned(), poses.to_string()];
     eprintln!("FCL and ODE: static queries");
-    let fcl_program = checks::fcl_static();
-    let fcl = fcl_program.run(&seed_and_poses(60));
-    let ode = |callbacks: &str| {
-        let mut args = seed_and_poses(200);
-        args.push(callbacks.to_owned());
-        checks::ode_static().run(&args)
-    };
+    let fcl = checks::fcl_static().run("2 60");
+    let ode = |callbacks: &str| checks::ode_static().run(&format!("2 200 {callbacks}"));
     let rows = [
-        checks::judge_collide("FCL", "collide", &fcl),
-        checks::judge_distance("FCL", &fcl),
-        checks::judge_collide("ODE", "collide", &ode("asis")),
-        checks::judge_collide("ODE", "collide, its cylinder corrected", &ode("corrected")),
+        checks::judge_collide("FCL collide", &fcl),
+        checks::judge_collide("ODE collide", &ode("asis")),
+        checks::judge_collide("ODE collide, its cylinder corrected", &ode("corrected")),
     ];
-    for row in &rows {
-        for line in row.against.iter().take(20) {
-            eprintln!("{} {}: {line}", row.consumer, row.what);
-        }
+    let (distances, differ, threw, wrong) = checks::judge_distances(&fcl);
+    for line in rows.iter().flat_map(|row| &row.against).chain(&wrong) {
+        eprintln!("{line}");
     }
-    let dart = checks::dart_pile();
-    let mujoco = checks::mujoco_pile();
-    let halves = "small pile, second halves from libccd's first";
-    let taken_over = checks::taken_over(&mujoco, halves, 10, 1500, "20 pile");
+    let (mujoco, dart) = (checks::mujoco_pile(), checks::dart_pile());
     let simulations = [
         piles(&checks::ode_pile(), "pile", 10, 1500, "32 pile"),
         piles(&mujoco, "pile", 10, 1500, "30 pile"),
-        taken_over,
         piles(&mujoco.against_minimum(), "small pile", 10, 1500, "20 pile"),
         piles(&dart, "over FCL", 10, 800, "12 fcl"),
         piles(&dart, "over ODE", 10, 800, "12 ode"),
     ];
     println!("Static queries, libccd / this library:\n");
     println!("{}", checks::static_table(&rows));
-    println!("{}\n", checks::epa_time(&fcl_program, &seed_and_poses(60)));
+    println!(
+        "FCL's signed distance: {distances} queries, {differ} differ; FCL threw in {threw:?}\n"
+    );
     println!("Simulations:\n");
     println!("{}", checks::pile_table(&simulations));
 }

@@ -5,7 +5,7 @@
 
 use super::figure::{self, Axis, Look, Mark, Panel, Unit};
 use super::{Bench, COUNTED, Cost, Page, SUPPORTS, TIME, TIMED};
-use crate::lab::measure::{self, Row};
+use crate::lab::measure::Row;
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::recorded::{MOTIONS, RANDOM};
 use crate::lab::scene::Scene;
@@ -21,24 +21,26 @@ fn roster<'a>(bench: &Bench<'a>, scene: &Scene) -> Vec<Method<'a>> {
     let libraries = bench.libraries;
     let mut all = Vec::new();
     let frames = scene.motion > 0;
+    let (start, proof) = match frames {
+        true => (Start::Warm, Start::Warm),
+        false => (Start::Five, Start::None),
+    };
     for t in tolerances(bench.quick) {
-        all.push(methods::mpr(libraries, &libraries.system, t));
-        all.push(methods::libccd_epa(libraries, t));
-        let start = if frames { Start::Warm } else { Start::Five };
-        all.push(methods::paper(libraries, true, start, t));
-        all.push(methods::paper(libraries, false, start, t));
-        all.push(methods::mpr(libraries, &libraries.ours, t));
-        all.push(methods::extension(libraries, Ask::Local, start, t));
-        let start = if frames { Start::Warm } else { Start::None };
-        all.push(methods::extension(libraries, Ask::Minimum, start, t));
+        let asked = [
+            (Ask::SystemMpr, Start::None),
+            (Ask::SystemEpa, Start::None),
+            (Ask::Paper, start),
+            (Ask::PaperBare, start),
+            (Ask::Mpr, Start::None),
+            (Ask::Local, start),
+            (Ask::Minimum, proof),
+        ];
+        all.extend(asked.map(|(ask, start)| methods::of(libraries, ask, start, t)));
     }
     if !frames {
         all.extend(methods::deep(libraries, scene, Start::Five));
     }
-    all.extend(bench.compiled.bullet(libraries));
-    all.extend(bench.compiled.coal(libraries, 1e-6));
-    // Its own default: an assertion in it ends the process at others.
-    all.extend(bench.compiled.fcl(libraries, 1e-6));
+    all.extend(bench.compiled.all(libraries));
     all.push(peers::parry(libraries));
     all
 }
@@ -79,23 +81,13 @@ fn picture(page: &Page, file: &str, title: &str, rows: &[&Row], sets: &[&str], c
 
 pub fn measure(bench: &Bench) -> Vec<Row> {
     let sets = [&RANDOM[..], &MOTIONS].concat();
-    let bar = progress::bar(sets.len() as u64, "speed against accuracy");
-    let mut rows = Vec::new();
-    for set in sets {
-        bar.set_message(set);
+    let of = |set: &&str| {
         let scene = Scene::load(bench.libraries, set, bench.poses());
-        let mut methods = roster(bench, &scene);
-        let ns = measure::times(&scene, &mut methods, bench.repetitions(), || bar.tick());
-        for (method, ns) in methods.iter_mut().zip(ns) {
-            rows.push(Row {
-                ns: Some(ns),
-                ..measure::judge(bench.libraries, &scene, method)
-            });
-        }
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    rows
+        super::rows(bench, &scene, roster(bench, &scene), None)
+    };
+    progress::over(&sets, "speed against accuracy")
+        .flat_map(of)
+        .collect()
 }
 
 /// What a finer tolerance costs: a curve for each kind of pair.

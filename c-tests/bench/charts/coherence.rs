@@ -9,7 +9,6 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64;
 
 use super::figure::{self, Curve, Panel, Unit as AxisUnit};
-use super::paper::rows;
 use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
 use crate::lab::libraries::Truth;
 use crate::lab::measure::Row;
@@ -99,36 +98,31 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
     } else {
         &STEPS
     };
-    let bar = progress::bar((kinds.len() * steps.len()) as u64, "coherence");
+    let motions = if bench.quick { 3 } else { 10 };
     let mut all = Vec::new();
-    for (name, forms) in &kinds {
+    for (name, forms) in progress::over(&kinds, "coherence") {
         for &step in steps {
-            let motions = if bench.quick { 3 } else { 10 };
             let scene = motion(bench, name, [&forms[0], &forms[1]], step, motions);
-            all.extend(rows(bench, &scene, roster(bench), Some(step)));
-            bar.inc(1);
+            all.extend(super::rows(bench, &scene, roster(bench), Some(step)));
         }
     }
-    bar.finish_and_clear();
     all
 }
 
 fn roster<'a>(bench: &Bench<'a>) -> Vec<methods::Method<'a>> {
-    let libraries = bench.libraries;
-    let mut all = vec![
-        methods::mpr(libraries, &libraries.system, 1e-6),
-        methods::libccd_epa(libraries, 1e-6),
-        methods::paper(libraries, true, Start::Warm, 1e-6),
-        methods::mpr(libraries, &libraries.ours, 1e-6),
+    let asked = [
+        (Ask::SystemMpr, Start::None),
+        (Ask::SystemEpa, Start::None),
+        (Ask::Paper, Start::Warm),
+        (Ask::Mpr, Start::None),
+        (Ask::MprWarm, Start::Warm),
+        (Ask::Local, Start::Centres),
+        (Ask::Local, Start::Warm),
+        (Ask::Minimum, Start::None),
+        (Ask::Minimum, Start::Warm),
     ];
-    all.push(methods::extension(libraries, Ask::Mpr, Start::Warm, 1e-6));
-    all.extend(
-        [Start::Centres, Start::Warm].map(|s| methods::extension(libraries, Ask::Local, s, 1e-6)),
-    );
-    all.extend(
-        [Start::None, Start::Warm].map(|s| methods::extension(libraries, Ask::Minimum, s, 1e-6)),
-    );
-    all
+    let of = |(ask, start)| methods::of(bench.libraries, ask, start, 1e-6);
+    asked.map(of).into()
 }
 
 /// The step, degrees a frame, from which a warm query of this kind costs as many
@@ -175,8 +169,5 @@ pub fn draw(page: &Page, all: &[Row]) {
 /// The recorded contact sequence: queries in the order of their pair's frames.
 pub fn recorded(bench: &Bench) -> Vec<Row> {
     let scene = Scene::recorded(bench.libraries, if bench.quick { 40 } else { usize::MAX });
-    let bar = progress::bar(1, "recorded contacts");
-    let all = rows(bench, &scene, roster(bench), None);
-    bar.finish_and_clear();
-    all
+    super::rows(bench, &scene, roster(bench), None)
 }

@@ -57,6 +57,12 @@ impl Look {
     }
 }
 
+impl Look {
+    fn line(&self) -> ShapeStyle {
+        self.colour.stroke_width(if self.bold { 3 } else { 1 })
+    }
+}
+
 #[derive(Clone, Debug)]
 pub struct Curve {
     pub label: String,
@@ -75,45 +81,35 @@ pub enum Unit {
 
 impl Unit {
     fn show(self, v: f64) -> String {
-        // Ticks are powers of ten; this rounds what their logarithms lost.
-        let with = |scales: &[(f64, &str)]| {
-            let (scale, name) = scales
-                .iter()
-                .find(|(s, _)| v >= s * 0.999)
-                .or(scales.last())
-                .copied()
-                .unwrap_or((1.0, ""));
-            format!("{} {name}", short(v / scale))
+        let scales: &[(f64, &str)] = match self {
+            Unit::Metres => &METRES,
+            Unit::Seconds => &[(1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")],
+            Unit::Count => return short(v),
+            Unit::Degrees => return format!("{}°", short(v)),
         };
-        match self {
-            Unit::Metres => with(&[
-                (1.0, "m"),
-                (1e-3, "mm"),
-                (1e-6, "µm"),
-                (1e-9, "nm"),
-                (1e-12, "pm"),
-                (1e-15, "fm"),
-            ]),
-            Unit::Seconds => with(&[(1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")]),
-            Unit::Count => short(v),
-            Unit::Degrees => format!("{}°", short(v)),
-        }
+        // Ticks are powers of ten; this rounds what their logarithms lost.
+        let fits = scales.iter().find(|(scale, _)| v >= scale * 0.999);
+        let (scale, name) = fits.unwrap_or(&scales[scales.len() - 1]);
+        format!("{} {name}", short(v / scale))
     }
 }
 
+const METRES: [(f64, &str); 6] = [
+    (1.0, "m"),
+    (1e-3, "mm"),
+    (1e-6, "µm"),
+    (1e-9, "nm"),
+    (1e-12, "pm"),
+    (1e-15, "fm"),
+];
+
 /// Three digits at most, no trailing zeros.
 fn short(v: f64) -> String {
-    let digits = if v >= 99.5 {
-        0
-    } else if v >= 9.95 {
-        1
-    } else {
-        2
-    };
+    let digits = usize::from(v < 99.5) + usize::from(v < 9.95);
     let text = format!("{v:.digits$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
+    match digits {
+        0 => text,
+        _ => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
     }
 }
 
@@ -182,18 +178,17 @@ fn ticks(range: &std::ops::Range<f64>, most: usize) -> Vec<f64> {
         all.filter(|v| range.contains(v)).collect()
     };
     let fine = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
+    let one = &[1.0][..];
     let choices = [
         (&fine[..], 1),
         (&[1.0, 2.0, 5.0], 1),
-        (&[1.0], 1),
-        (&[1.0], 2),
-        (&[1.0], 3),
+        (one, 1),
+        (one, 2),
+        (one, 3),
     ];
-    let fits = choices
-        .iter()
-        .map(|(d, e)| pick(d, *e))
-        .find(|t| t.len() <= most);
-    fits.unwrap_or_else(|| pick(&[1.0], 4))
+    let mut picks = choices.iter().map(|(digits, every)| pick(digits, *every));
+    let fits = picks.find(|ticks| ticks.len() <= most);
+    fits.unwrap_or_else(|| pick(one, 4))
 }
 
 type Cell<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
@@ -271,15 +266,9 @@ fn panel(area: &Cell, panel: &Panel) -> Result<(), Error> {
         chart.draw_series(DashedLineSeries::new(line, 4, 4, INK.stroke_width(1)))?;
     }
     for curve in &panel.curves {
-        let Look {
-            colour,
-            bold,
-            dashed,
-            ..
-        } = curve.look;
-        let line = colour.stroke_width(if bold { 3 } else { 1 });
+        let line = curve.look.line();
         let points = curve.points.iter().copied();
-        if dashed {
+        if curve.look.dashed {
             chart.draw_series(DashedLineSeries::new(points, 6, 4, line))?;
         } else {
             chart.draw_series(LineSeries::new(points, line))?;
@@ -304,14 +293,13 @@ fn legend(area: &Cell, entries: &[(&str, Look)], columns: usize) -> Result<(), E
     for (k, (label, look)) in entries.iter().enumerate() {
         let x = 16 + width * (k % columns) as i32;
         let y = (LINE / 2 + LINE * (k / columns) as u32) as i32;
-        let line = look.colour.stroke_width(if look.bold { 3 } else { 1 });
-        let ends: &[(i32, i32)] = if look.dashed {
-            &[(0, 8), (20, 28)]
-        } else {
-            &[(0, 28)]
+        let ends: &[(i32, i32)] = match look.dashed {
+            true => &[(0, 8), (20, 28)],
+            false => &[(0, 28)],
         };
         for (from, to) in ends {
-            area.draw(&PathElement::new(vec![(x + from, y), (x + to, y)], line))?;
+            let line = vec![(x + from, y), (x + to, y)];
+            area.draw(&PathElement::new(line, look.line()))?;
         }
         area.draw(&mark(*look, (x + 14, y)))?;
         text(area, (x + 36, y), label, 14)?;
@@ -331,11 +319,8 @@ fn notes_below(area: &Cell, notes: &[String]) -> Result<(), Error> {
 /// Panels in rows of `columns`, the legend in the cell after the last or, where there is
 /// none, below; then the notes.
 pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &[String]) {
-    let panels: Vec<Panel> = panels
-        .iter()
-        .filter(|p| p.curves.iter().any(|c| !c.points.is_empty()))
-        .cloned()
-        .collect();
+    let drawn = panels.iter().filter(|p| !p.curves.is_empty());
+    let panels: Vec<&Panel> = drawn.collect();
     let mut entries: Vec<(&str, Look)> = Vec::new();
     for curve in panels.iter().flat_map(|p| &p.curves) {
         if !entries.iter().any(|(label, _)| *label == curve.label) {
@@ -344,11 +329,9 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
     }
     let rows = panels.len().div_ceil(columns) as u32;
     let cell = if columns == 2 { 320 } else { 270 };
-    let free = !panels.len().is_multiple_of(columns);
-    let strip = if free {
-        0
-    } else {
-        LINE * entries.len().div_ceil(3) as u32
+    let strip = match panels.len().is_multiple_of(columns) {
+        true => LINE * entries.len().div_ceil(3) as u32,
+        false => 0,
     };
     let below = strip + LINE * notes.len() as u32;
     let top = cell * rows;
@@ -367,12 +350,8 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
     });
 }
 
-/// Parts of a bar: how much, and of what.
-#[derive(Clone, Debug)]
-pub struct Bar {
-    pub label: String,
-    pub parts: Vec<f64>,
-}
+/// A name, and how much of each part.
+pub type Bar = (String, Vec<f64>);
 
 /// Height of a bar with the space around it.
 const BAR: i32 = 24;
@@ -400,14 +379,14 @@ pub fn bars(
         };
         let mut y = 6;
         for (group, bars) in groups {
-            let sum = |bar: &Bar| bar.parts.iter().sum::<f64>();
+            let sum = |bar: &Bar| bar.1.iter().sum::<f64>();
             let longest = bars.iter().map(sum).fold(0.0, f64::max);
             text(&area, (16, y + BAR / 2), group, 15)?;
             y += BAR;
             for bar in bars {
-                text(&area, (28, y + BAR / 2 - 3), &bar.label, 13)?;
+                text(&area, (28, y + BAR / 2 - 3), &bar.0, 13)?;
                 let mut x = left;
-                for (value, (_, colour)) in bar.parts.iter().zip(parts) {
+                for (value, (_, colour)) in bar.1.iter().zip(parts) {
                     let wide = value / longest * f64::from(room);
                     area.draw(&block((x, y), wide, *colour))?;
                     x += wide.round() as i32;

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Where the time goes: instructions of a query, counted by callgrind on this very program; by
-//! phase as a table, beside libccd's and Bullet's, or inside the callbacks and outside them as a
-//! picture.
+//! Where the time goes: instructions of a query, counted by callgrind on this very program, in the
+//! callbacks and outside them: as a table, beside libccd's and Bullet's, and as a picture.
 
 use clap::Args;
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
@@ -16,7 +15,7 @@ use crate::lab::callgrind::{self, Count};
 use crate::lab::libraries::Libraries;
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::scene::{Pair, Scene};
-use crate::{peers, progress};
+use crate::peers;
 
 /// The rows of the table: a pair set, moved this far apart if it is.
 const SCENES: [(&str, &str, Option<f64>); 13] = [
@@ -57,7 +56,7 @@ pub struct Options {
 impl Options {
     /// What makes these options again.
     fn words(&self) -> Vec<String> {
-        let mut words = vec!["phases".to_owned(), "--watched".to_owned()];
+        let mut words = vec!["instructions".to_owned(), "--watched".to_owned()];
         words.push(format!("--poses={}", self.poses));
         words.push(format!("--scene={}", self.scene));
         words.extend(self.charted.map(|n| format!("--charted={n}")));
@@ -92,47 +91,36 @@ fn parts(libraries: &Libraries, options: &Options) -> Vec<Part> {
 
 /// The methods of a part, in their order; the same in both processes.
 fn asked<'a>(libraries: &'a Libraries, scene: &Scene, charted: bool) -> Vec<Method<'a>> {
-    let tolerance = 1e-6;
-    let (ours, system) = (&libraries.ours, &libraries.system);
-    let extension = |ask, start| methods::extension(libraries, ask, start, tolerance);
-    let mpr = |of| methods::mpr(libraries, of, tolerance);
-    let intersect = |of| methods::intersect(libraries, of, tolerance);
-    let epa = methods::libccd_epa(libraries, tolerance);
-    let (local, minimum) = (Ask::Local, Ask::Minimum);
-    match (charted, scene.motion > 0) {
-        (true, true) => vec![
-            extension(local, Start::Warm),
-            extension(minimum, Start::Warm),
-        ],
-        (true, false) => vec![
-            mpr(system),
-            epa,
-            mpr(ours),
-            extension(local, Start::Five),
-            extension(minimum, Start::None),
-        ],
-        (false, true) => vec![
-            mpr(ours),
-            extension(Ask::Mpr, Start::Warm),
-            extension(minimum, Start::Warm),
-            intersect(ours),
-            methods::intersect_warm(libraries, tolerance),
-            mpr(system),
-        ],
-        (false, false) => {
-            let mut all = vec![
-                mpr(ours),
-                methods::gjk(libraries, ours, tolerance),
-                extension(minimum, Start::None),
-                intersect(ours),
-                mpr(system),
-                epa,
-                intersect(system),
-            ];
-            all.extend(peers::bullet(libraries));
-            all
+    use Ask::{Gjk, Intersect, IntersectWarm, Local, Minimum, Mpr, MprWarm};
+    use Ask::{SystemEpa, SystemIntersect, SystemMpr};
+    use Start::{Five, Warm};
+    let cold = |ask| (ask, Start::None);
+    let asked = match (charted, scene.motion > 0) {
+        (true, true) => vec![(Local, Warm), (Minimum, Warm)],
+        (true, false) => {
+            let [mpr, epa] = [SystemMpr, SystemEpa].map(cold);
+            vec![mpr, epa, cold(Mpr), (Local, Five), cold(Minimum)]
         }
+        (false, true) => {
+            let warm = [MprWarm, Minimum, IntersectWarm].map(|ask| (ask, Warm));
+            let all = [&[cold(Mpr)], &warm[..], &[cold(Intersect), cold(SystemMpr)]];
+            all.concat()
+        }
+        (false, false) => {
+            let ours = [Mpr, Gjk, Minimum, Intersect].map(cold);
+            [
+                &ours[..],
+                &[SystemMpr, SystemEpa, SystemIntersect].map(cold),
+            ]
+            .concat()
+        }
+    };
+    let of = |(ask, start)| methods::of(libraries, ask, start, 1e-6);
+    let mut all: Vec<Method> = asked.into_iter().map(of).collect();
+    if !charted && scene.motion == 0 {
+        all.extend(peers::bullet(libraries));
     }
+    all
 }
 
 /// The watched process: every method over every part, between a begin and an end.
@@ -173,7 +161,7 @@ pub fn run(options: &Options) {
     println!("{}\n", libraries.machine());
     let mut table = Table::new();
     table.load_style(ASCII_MARKDOWN);
-    let head = "pairs|query|supports|instructions|search|proof|patch|rest|callbacks";
+    let head = "pairs|query|supports|instructions|callbacks";
     table.set_header(head.split('|'));
     let counted = counted(&libraries, options, |part, method, count| {
         let queries = part.scene.pairs.len() as f64;
@@ -185,24 +173,18 @@ pub fn run(options: &Options) {
             method.query(&part.scene, pair);
         }
         let each = |n: u64| format!("{:.0}", n as f64 / queries);
-        // Others' phases are not told apart.
-        let phase = |n: u64| if method.ours { each(n) } else { String::new() };
         table.add_row([
             part.name.to_owned(),
             super::name_of(method),
             format!("{:.1}", (all() - before) as f64 / queries),
-            each(count.solver()),
-            phase(count.search),
-            phase(count.proof),
-            phase(count.patch),
-            phase(count.rest),
+            each(count.solver),
             each(count.callbacks),
         ]);
     });
     match counted {
-        Ok(()) => println!(
-            "Instructions a query, without callbacks but in the last column; the solver's by phase.\n\n{table}"
-        ),
+        Ok(()) => {
+            println!("Instructions a query, without callbacks but in the last column.\n\n{table}")
+        }
         Err(why) => println!("instructions not counted: {why}"),
     }
 }
@@ -217,7 +199,6 @@ pub struct Split {
 }
 
 pub fn measure(bench: &Bench) -> Vec<Split> {
-    let bar = progress::bar(1, "where the time goes");
     let options = Options {
         poses: 100,
         scene: String::new(),
@@ -231,10 +212,9 @@ pub fn measure(bench: &Bench) -> Vec<Split> {
             set: part.name.to_owned(),
             method: super::name_of(method),
             callbacks: each(count.callbacks),
-            solver: each(count.solver()),
+            solver: each(count.solver),
         });
     });
-    bar.finish_and_clear();
     if let Err(why) = counted {
         let last = why.lines().last().unwrap_or("");
         println!("instructions not counted: {last}");
@@ -252,10 +232,7 @@ pub fn draw(page: &Page, all: &[Split]) {
             groups.push((title, Vec::new()));
         }
         if let Some((_, bars)) = groups.last_mut() {
-            bars.push(Bar {
-                label: s.method.clone(),
-                parts: vec![s.callbacks, s.solver],
-            });
+            bars.push((s.method.clone(), vec![s.callbacks, s.solver]));
         }
     }
     figure::bars(

@@ -21,11 +21,11 @@ use serde::de::DeserializeOwned;
 
 use crate::lab::csv;
 use crate::lab::libraries::Libraries;
-use crate::lab::measure::Row;
+use crate::lab::measure::{self, Row};
 use crate::lab::methods::Method;
+use crate::lab::scene::Scene;
 use crate::peers::Compiled;
 use figure::{Axis, Curve, Look, Mark, Unit};
-use results::Results;
 
 #[derive(Args)]
 pub struct Options {
@@ -35,12 +35,9 @@ pub struct Options {
     /// Leave out the instruction counts (which run this program under valgrind).
     #[arg(long)]
     pub no_instructions: bool,
-    /// The models alone; the other figures stay as they are.
+    /// The figures of this name alone, as `models`; the others stay as they are.
     #[arg(long)]
-    pub models: bool,
-    /// The contact positions alone, likewise.
-    #[arg(long)]
-    pub position: bool,
+    pub only: Option<String>,
     /// Where CSV and pictures go.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../charts"))]
     pub out: PathBuf,
@@ -71,17 +68,15 @@ impl Page {
         format!("{place}; {version}; all in one process, rustc and gcc -O3")
     }
 
-    /// Writes the rows, unless there are none.
-    fn keep<T: Serialize>(&self, name: &str, rows: Vec<T>) -> Vec<T> {
-        if !rows.is_empty() {
-            csv::write(&self.file(name), &self.machine, &rows);
-        }
-        rows
-    }
-
-    /// None where the file is missing, as instructions.csv without valgrind.
-    fn read<T: DeserializeOwned>(&self, name: &str) -> Vec<T> {
-        csv::read(&self.file(name))
+    /// None where the file is missing, as instructions.csv without valgrind; and the page with
+    /// what it says of itself: it may be of another time.
+    fn read<T: DeserializeOwned>(&self, name: &str) -> (Page, Vec<T>) {
+        let file = self.file(&format!("{name}.csv"));
+        let page = Page {
+            out: self.out.clone(),
+            machine: csv::origin(&file),
+        };
+        (page, csv::read(&file))
     }
 }
 
@@ -190,30 +185,35 @@ pub fn kind(set: &str) -> String {
     format!("{a} – {b}")
 }
 
-/// Every picture, and the page about them.
-fn draw(page: &Page, results: &Results) {
-    accuracy::draw(page, &results.accuracy);
-    paper::draw(page, &results.vertices);
-    coherence::draw(page, &results.coherence);
-    // Measured at another time, perhaps.
-    let page_of = |file| Page {
-        out: page.out.clone(),
-        machine: csv::origin(&page.file(file)),
-    };
-    models::draw(&page_of("models.csv"), &results.models);
-    position::draw(&page_of("position.csv"), &results.position);
-    instructions::draw(page, &results.split);
-    results::write(page, results);
+/// Times and judges `methods` on a scene.
+pub fn rows(bench: &Bench, scene: &Scene, mut methods: Vec<Method>, x: Option<f64>) -> Vec<Row> {
+    let ns = measure::times(scene, &mut methods, bench.repetitions());
+    let judged = methods.iter_mut().zip(ns).map(|(method, ns)| Row {
+        ns: Some(ns),
+        x,
+        ..measure::judge(bench.libraries, scene, method)
+    });
+    judged.collect()
 }
 
 /// The pictures and the page from the figures that are there.
 pub fn redraw(options: &Options) {
-    let mut page = Page {
+    let page = Page {
         out: options.out.clone(),
-        machine: String::new(),
+        machine: csv::origin(&options.out.join("accuracy.csv")),
     };
-    page.machine = csv::origin(&page.file("accuracy.csv"));
-    draw(&page, &Results::read(&page));
+    accuracy::draw(&page, &page.read("accuracy").1);
+    paper::draw(&page, &page.read("vertices").1);
+    let coherence = page.read("coherence").1;
+    coherence::draw(&page, &coherence);
+    let (of, models) = page.read("models");
+    models::draw(&of, &models);
+    let (of, position) = page.read("position");
+    position::draw(&of, &position);
+    let split = page.read("instructions").1;
+    instructions::draw(&page, &split);
+    let (paper, recorded) = (page.read("paper").1, page.read("recorded").1);
+    results::write(&page, &paper, &coherence, &recorded, &split);
 }
 
 pub fn run(options: &Options) {
@@ -225,27 +225,35 @@ pub fn run(options: &Options) {
         compiled: &compiled,
         quick: options.quick,
     };
-    let page = Page {
-        out: options.out.clone(),
-        machine: libraries.machine(),
-    };
-    println!("{}", page.machine);
+    let machine = libraries.machine();
+    println!("{machine}");
     for (name, why) in &compiled.missing {
-        println!(
-            "not measured here: {name}: {}",
-            why.lines().next().unwrap_or("")
-        );
+        let why = why.lines().next().unwrap_or("");
+        println!("not measured here: {name}: {why}");
     }
-    if options.models {
-        page.keep("models.csv", models::measure_all(&bench));
-        return redraw(options);
+    let wanted = |name: &str| match &options.only {
+        Some(only) => only == name,
+        None => name != "instructions" || !options.no_instructions,
+    };
+    fn keep<T: Serialize>(file: PathBuf, machine: &str, rows: Vec<T>) {
+        if !rows.is_empty() {
+            csv::write(&file, machine, &rows);
+        }
     }
-    if options.position {
-        page.keep("position.csv", position::measure(&bench));
-        return redraw(options);
+    // Each is written as it comes.
+    macro_rules! measure {
+        ($($name:literal: $measure:path),*) => {$(
+            if wanted($name) {
+                let file = options.out.join(concat!($name, ".csv"));
+                keep(file, &machine, $measure(&bench));
+            }
+        )*};
     }
-    draw(
-        &page,
-        &Results::measure(&bench, &page, !options.no_instructions),
+    measure!(
+        "accuracy": accuracy::measure, "paper": paper::tables, "vertices": paper::vertices,
+        "coherence": coherence::measure, "recorded": coherence::recorded,
+        "models": models::measure_all, "position": position::measure,
+        "instructions": instructions::measure
     );
+    redraw(options);
 }

@@ -116,12 +116,12 @@ fn measure(
     }
     let scene = Scene::placed(bench.libraries, body, forms, &placed, 0);
     let mut methods = vec![
-        methods::extension(bench.libraries, Ask::Local, Start::Five, 1e-6),
-        methods::extension(bench.libraries, Ask::Minimum, Start::None, 1e-6),
+        methods::of(bench.libraries, Ask::Local, Start::Five, 1e-6),
+        methods::of(bench.libraries, Ask::Minimum, Start::None, 1e-6),
         methods::distance(bench.libraries, [0.0; 2], 1e-6),
-        methods::libccd_epa(bench.libraries, 1e-6),
+        methods::of(bench.libraries, Ask::SystemEpa, Start::None, 1e-6),
     ];
-    let ns = measure::times(&scene, &mut methods, bench.repetitions(), || ());
+    let ns = measure::times(&scene, &mut methods, bench.repetitions());
     let modelling_error = measure::mean(&modelling);
     let row_of = |model: &str, scene: &Scene, method: &mut Method, ns| {
         let row = measure::judge(bench.libraries, scene, method);
@@ -144,7 +144,7 @@ fn measure(
         let [(a, one), (b, two)] = forms.map(Form::core);
         let cores = Scene::placed(bench.libraries, body, [&a, &b], &placed, 0);
         let mut methods = [methods::distance(bench.libraries, [one, two], 1e-6)];
-        let ns = measure::times(&cores, &mut methods, bench.repetitions(), || ())[0];
+        let ns = measure::times(&cores, &mut methods, bench.repetitions())[0];
         rows.push(row_of(CORES, &cores, &mut methods[0], ns));
     }
     rows
@@ -184,15 +184,14 @@ fn panel<'a>(title: &str, models: impl Iterator<Item = &'a Model>) -> Panel {
 
 pub fn measure_all(bench: &Bench) -> Vec<Model> {
     let capsule = Form::capsule(0.5, 0.5);
-    let bar = progress::bar(2 * (1 + 2 * VERTICES.len()) as u64, "models");
     let mut all = Vec::new();
-    for (body, form) in [("sphere", Form::sphere(0.5)), ("capsule", capsule.clone())] {
-        let poses = poses(bench, &form, &capsule);
-        all.extend(measure(bench, body, body, [&form, &capsule], &poses));
-        bar.inc(1);
+    let bodies = [("sphere", Form::sphere(0.5)), ("capsule", capsule.clone())];
+    for (body, form) in progress::over(&bodies, "models") {
+        let poses = poses(bench, form, &capsule);
+        all.extend(measure(bench, body, body, [form, &capsule], &poses));
         for n in VERTICES {
             let icosphere = Scene::load(bench.libraries, &format!("p{n}_cap"), 1).meshes[0].clone();
-            let mesh = if body == "sphere" {
+            let mesh = if *body == "sphere" {
                 icosphere
             } else {
                 stretched(&icosphere, 0.5)
@@ -203,11 +202,9 @@ pub fn measure_all(bench: &Bench) -> Vec<Model> {
                     ..Form::polytope(mesh.clone())
                 };
                 all.extend(measure(bench, body, model, [&polytope, &capsule], &poses));
-                bar.inc(1);
             }
         }
     }
-    bar.finish_and_clear();
     all
 }
 

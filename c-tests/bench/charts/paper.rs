@@ -6,8 +6,8 @@
 
 use super::figure::{self, Panel, Unit};
 use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
-use crate::lab::measure::{self, Row};
-use crate::lab::methods::{self, Ask, Method, Start};
+use crate::lab::measure::Row;
+use crate::lab::methods::{self, Ask, Start};
 use crate::lab::scene::{Form, Scene};
 use crate::{poses, progress};
 
@@ -27,17 +27,6 @@ pub const PAPER: [(&str, f64); 3] = [
 /// on the pairs of the tables, against 56, 48 and 55 (`c-tests/bench/published.csv`).
 pub const AS_PUBLISHED: f64 = 1e-5;
 
-/// Times and judges `methods` on a scene.
-pub fn rows(bench: &Bench, scene: &Scene, mut methods: Vec<Method>, x: Option<f64>) -> Vec<Row> {
-    let ns = measure::times(scene, &mut methods, bench.repetitions(), || ());
-    let judged = methods.iter_mut().zip(ns).map(|(method, ns)| Row {
-        ns: Some(ns),
-        x,
-        ..measure::judge(bench.libraries, scene, method)
-    });
-    judged.collect()
-}
-
 /// Tables I to III.
 pub fn tables(bench: &Bench) -> Vec<Row> {
     let libraries = bench.libraries;
@@ -48,54 +37,50 @@ pub fn tables(bench: &Bench) -> Vec<Row> {
         [&sphere, &capsule],
     ];
     let n = if bench.quick { 500 } else { 10_000 };
-    let bar = progress::bar(3, "the paper's tables");
     let mut all = Vec::new();
-    for (k, forms) in forms.into_iter().enumerate() {
-        let scene = poses::random_rounded(libraries, PAPER[k].0, forms, n, k as u64);
-        let mut methods = Vec::new();
-        for start in Start::GUESSES {
-            methods.push(methods::extension(libraries, Ask::Local, start, 1e-6));
-            methods.push(methods::paper(libraries, true, start, AS_PUBLISHED));
-        }
+    for k in progress::over(&[0, 1, 2], "the paper's tables") {
+        let scene = poses::random_rounded(libraries, PAPER[*k].0, forms[*k], n, *k as u64);
+        let of = |ask, start, t| methods::of(libraries, ask, start, t);
+        let guessed = |start| {
+            let paper = of(Ask::Paper, start, AS_PUBLISHED);
+            [of(Ask::Local, start, 1e-6), paper]
+        };
+        let mut methods: Vec<_> = Start::GUESSES.into_iter().flat_map(guessed).collect();
         // Squares of metres: the second takes the time that the paper reports.
-        methods.extend([1e-6, 1e-10].map(|t| methods::libccd_epa(libraries, t)));
-        let minimum = methods::extension(libraries, Ask::Minimum, Start::None, 1e-6);
-        methods.push(minimum);
-        all.extend(rows(bench, &scene, methods, None));
-        bar.inc(1);
+        methods.extend([1e-6, 1e-10].map(|t| of(Ask::SystemEpa, Start::None, t)));
+        methods.push(of(Ask::Minimum, Start::None, 1e-6));
+        all.extend(super::rows(bench, &scene, methods, None));
     }
-    bar.finish_and_clear();
     all
 }
 
 /// Over vertex counts: `cap` a polytope against a capsule, else against another.
 pub fn vertices(bench: &Bench) -> Vec<Row> {
     let libraries = bench.libraries;
-    let bar = progress::bar(2 * VERTICES.len() as u64, "vertex counts");
     let mut all = Vec::new();
-    for n in VERTICES {
+    for n in progress::over(&VERTICES, "vertex counts") {
+        let x = Some(*n as f64);
         let scene = Scene::load(libraries, &format!("p{n}_cap"), bench.poses());
-        let local = |start| methods::extension(libraries, Ask::Local, start, 1e-6);
-        let paper = |on, start| methods::paper(libraries, on, start, AS_PUBLISHED);
+        let of = |ask, start| match ask {
+            Ask::Paper | Ask::PaperBare => methods::of(libraries, ask, start, AS_PUBLISHED),
+            _ => methods::of(libraries, ask, start, 1e-6),
+        };
         let methods = vec![
-            local(Start::Five),
-            paper(true, Start::Five),
-            local(Start::FortyFive),
-            paper(true, Start::FortyFive),
-            paper(false, Start::FortyFive),
-            methods::libccd_epa(libraries, 1e-6),
-            methods::extension(libraries, Ask::Minimum, Start::None, 1e-6),
+            of(Ask::Local, Start::Five),
+            of(Ask::Paper, Start::Five),
+            of(Ask::Local, Start::FortyFive),
+            of(Ask::Paper, Start::FortyFive),
+            of(Ask::PaperBare, Start::FortyFive),
+            of(Ask::SystemEpa, Start::None),
+            of(Ask::Minimum, Start::None),
         ];
-        all.extend(rows(bench, &scene, methods, Some(n as f64)));
-        bar.inc(1);
+        all.extend(super::rows(bench, &scene, methods, x));
         // Climbing supports here: DEEP walks over the same edges.
         let scene = Scene::load(libraries, &format!("p{n}hc_p{n}hc"), bench.poses());
-        let mut methods = vec![local(Start::Five), paper(true, Start::Five)];
+        let mut methods = Vec::from([Ask::Local, Ask::Paper].map(|ask| of(ask, Start::Five)));
         methods.extend(methods::deep(libraries, &scene, Start::Five));
-        all.extend(rows(bench, &scene, methods, Some(n as f64)));
-        bar.inc(1);
+        all.extend(super::rows(bench, &scene, methods, x));
     }
-    bar.finish_and_clear();
     all
 }
 

@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use super::figure::{self, Look, Mark, Panel, Unit};
 use super::{Bench, GREY, Page};
 use crate::harness::Program;
-use crate::progress;
 
 /// How far off a body's middle its contact position is, metres.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -22,13 +21,11 @@ pub struct Position {
 }
 
 pub fn measure(_: &Bench) -> Vec<Position> {
-    let bar = progress::bar(1, "contact positions");
     let program = Program::c("pressure")
         .source("extension/pressure.c")
         .link_ours_renamed_and_system()
         .without_tools();
     let lines = program.build().run(["tilt"]).stdout;
-    bar.finish_and_clear();
     let row = |line: &str| {
         let (body, numbers) = line.split_once(',')?;
         let mut numbers = numbers.split(',').map(str::parse);

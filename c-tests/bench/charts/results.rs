@@ -6,58 +6,10 @@
 
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 
-use super::instructions::{self, Split};
-use super::models::{self, Model};
-use super::paper::{self, AS_PUBLISHED, PAPER};
-use super::position::{self, Position};
-use super::{Bench, Page, accuracy, coherence};
+use super::instructions::Split;
+use super::paper::{AS_PUBLISHED, PAPER};
+use super::{Page, coherence};
 use crate::lab::measure::Row;
-
-/// Everything a run has measured.
-pub struct Results {
-    pub accuracy: Vec<Row>,
-    pub paper: Vec<Row>,
-    pub vertices: Vec<Row>,
-    pub coherence: Vec<Row>,
-    pub recorded: Vec<Row>,
-    pub models: Vec<Model>,
-    pub split: Vec<Split>,
-    pub position: Vec<Position>,
-}
-
-impl Results {
-    /// As they were written.
-    pub fn read(page: &Page) -> Self {
-        Self {
-            accuracy: page.read("accuracy.csv"),
-            paper: page.read("paper.csv"),
-            vertices: page.read("vertices.csv"),
-            coherence: page.read("coherence.csv"),
-            recorded: page.read("recorded.csv"),
-            models: page.read("models.csv"),
-            split: page.read("instructions.csv"),
-            position: page.read("position.csv"),
-        }
-    }
-
-    /// Measures all, and writes each as it comes.
-    pub fn measure(bench: &Bench, page: &Page, instructions: bool) -> Self {
-        let split = || instructions::measure(bench);
-        Self {
-            accuracy: page.keep("accuracy.csv", accuracy::measure(bench)),
-            paper: page.keep("paper.csv", paper::tables(bench)),
-            vertices: page.keep("vertices.csv", paper::vertices(bench)),
-            coherence: page.keep("coherence.csv", coherence::measure(bench)),
-            recorded: page.keep("recorded.csv", coherence::recorded(bench)),
-            models: page.keep("models.csv", models::measure_all(bench)),
-            position: page.keep("position.csv", position::measure(bench)),
-            split: page.keep(
-                "instructions.csv",
-                instructions.then(split).unwrap_or_default(),
-            ),
-        }
-    }
-}
 
 /// The head's cells are between bars.
 fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
@@ -181,15 +133,15 @@ fn instructions(split: &[Split]) -> String {
 }
 
 /// Writes the page's tables between their marks.
-pub fn write(page: &Page, results: &Results) {
+pub fn write(page: &Page, paper: &[Row], moved: &[Row], contacts: &[Row], split: &[Split]) {
     let committed = crate::harness::root().join("c-tests/charts/README.md");
     let mut text = std::fs::read_to_string(&committed).expect("the charts' page");
     let tables = [
         ("MACHINE", page.machine.clone()),
-        ("FASTER", times_faster(&results.paper)),
-        ("COHERENCE", coherent(&results.coherence)),
-        ("RECORDED", recorded(&results.recorded)),
-        ("INSTRUCTIONS", instructions(&results.split)),
+        ("FASTER", times_faster(paper)),
+        ("COHERENCE", coherent(moved)),
+        ("RECORDED", recorded(contacts)),
+        ("INSTRUCTIONS", instructions(split)),
     ];
     for (name, table) in &tables {
         let place = between_marks(&text, name).unwrap_or_else(|| panic!("no table {name}"));
