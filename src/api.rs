@@ -10,7 +10,7 @@
 
 use core::fmt;
 
-use crate::contact::{self, Answer};
+use crate::contact;
 use crate::contacts::manifold;
 use crate::contacts::memory::Memory;
 use crate::ffi::arena::Heap;
@@ -19,6 +19,7 @@ use crate::gjk::signed_distance::{self, Wanted};
 use crate::known::check;
 pub use crate::known::check::Check;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support_set::{Stop, if_overlapping};
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, unit};
 use crate::query::Pair;
@@ -335,7 +336,7 @@ where
 /// there is no answer.
 fn with_state<R>(
     warm: Option<&mut Warm>,
-    ask: impl FnOnce(&mut State) -> Result<R, Error>,
+    ask: impl FnOnce(&mut State) -> Result<R, Fault>,
 ) -> Result<R, Error> {
     let mut state = warm.as_ref().map_or(State::default(), |warm| warm.0);
     let answer = ask(&mut state)?;
@@ -351,19 +352,23 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     settings: &Settings,
     warm: Option<&mut Warm>,
-    solve: impl FnOnce(&Asking<'_, A, B>, &mut State, &contact::Settings, bool) -> Result<Answer, Fault>,
+    solve: impl FnOnce(
+        &Asking<'_, A, B>,
+        &mut State,
+        &contact::Settings,
+        bool,
+        &mut contact::Penetration,
+    ) -> Result<(), Stop>,
 ) -> Result<Option<Penetration>, Error> {
     let checked = settings.checked()?;
     let want = settings.want;
     let pair = pair(a, b, warm.is_some())?;
-    let answer = with_state(warm, |state| Ok(solve(&pair, state, &checked, want.pos)?))?;
-    let (hit, limit) = match answer {
-        Answer::Hit(hit) => (hit, false),
-        Answer::Limit(hit) => (hit, true),
-        Answer::Miss(_) => return Ok(None),
-    };
+    let mut hit = contact::Penetration::default();
+    let found = with_state(warm, |state| {
+        if_overlapping(solve(&pair, state, &checked, want.pos, &mut hit))
+    })?;
     let given = |wanted: bool, point: Vec3| if wanted { point.into() } else { [0.0; 3] };
-    Ok(Some(Penetration {
+    Ok(found.map(|()| Penetration {
         depth: hit.depth,
         depth_lower: hit.depth_lower,
         dir: hit.dir.into(),
@@ -373,7 +378,7 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
         point2: given(want.points, hit.point2),
         support_calls: pair.md.supports(),
         iterations: hit.iterations,
-        limit,
+        limit: hit.limit,
     }))
 }
 
@@ -412,8 +417,8 @@ pub fn penetration<A: Shape + ?Sized, B: Shape + ?Sized>(
     settings: &Settings,
     warm: Option<&mut Warm>,
 ) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.mpr(state, settings, wants)
+    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
+        pair.mpr(state, settings, wants, hit)
     })
 }
 
@@ -437,10 +442,11 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     warm: Option<&mut Warm>,
 ) -> Result<bool, Error> {
     let pair = pair(a, b, warm.is_some())?;
-    if warm.is_none() {
-        return Ok(pair.intersect(None)?);
-    }
-    with_state(warm, |state| Ok(pair.intersect(Some(state))?))
+    let overlap = match warm {
+        None => if_overlapping(pair.intersect(None))?,
+        warm => with_state(warm, |state| if_overlapping(pair.intersect(Some(state))))?,
+    };
+    Ok(overlap.is_some())
 }
 
 /// How far apart, or how deep: one continuous function through the touch, with bounds proven on
@@ -482,13 +488,11 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     }
     let points = settings.want.points;
     let pair = pair(a, b, warm.is_some())?;
-    let minimum = |pair: &Asking<'_, A, B>, state: &mut State, settings: &contact::Settings| {
-        pair.minimum(state, settings, &mut Heap::default(), points)
+    let minimum = |pair: &Asking<'_, A, B>, state: &mut State, settings: &_, hit: &mut _| {
+        pair.minimum(state, settings, &mut Heap::default(), points, hit)
     };
     let d = with_state(warm, |state| {
-        Ok(signed_distance::signed_distance(
-            &pair, state, &wanted, minimum,
-        )?)
+        signed_distance::signed_distance(&pair, state, &wanted, minimum)
     })?;
     let given = |point: Vec3| if points { point.into() } else { [0.0; 3] };
     Ok(Distance {
@@ -570,8 +574,8 @@ pub fn penetration_local<A: Shape + ?Sized, B: Shape + ?Sized>(
     settings: &Settings,
     warm: Option<&mut Warm>,
 ) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.local(state, settings, wants)
+    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
+        pair.local(state, settings, wants, hit)
     })
 }
 
@@ -598,8 +602,8 @@ pub fn penetration_proven<A: Shape + ?Sized, B: Shape + ?Sized>(
     settings: &Settings,
     warm: Option<&mut Warm>,
 ) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.minimum(state, settings, &mut Heap::default(), wants)
+    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
+        pair.minimum(state, settings, &mut Heap::default(), wants, hit)
     })
 }
 
@@ -616,8 +620,8 @@ pub fn penetration_along<A: Shape + ?Sized, B: Shape + ?Sized>(
     warm: Option<&mut Warm>,
 ) -> Result<Option<Penetration>, Error> {
     let dir = direction(dir)?;
-    answer(a, b, settings, warm, |pair, state, settings, _| {
-        pair.along(dir, state, settings)
+    answer(a, b, settings, warm, |pair, state, settings, _, hit| {
+        pair.along(dir, state, settings, hit)
     })
 }
 
@@ -634,8 +638,8 @@ pub fn penetration_planar<A: Shape + ?Sized, B: Shape + ?Sized>(
     warm: Option<&mut Warm>,
 ) -> Result<Option<Penetration>, Error> {
     let m = direction(plane_normal)?;
-    answer(a, b, settings, warm, |pair, state, settings, _| {
-        pair.planar(m, state, settings)
+    answer(a, b, settings, warm, |pair, state, settings, _, hit| {
+        pair.planar(m, state, settings, hit)
     })
 }
 
@@ -651,8 +655,8 @@ pub fn penetration_incremental<A: Shape + ?Sized, B: Shape + ?Sized>(
     settings: &Settings,
     warm: Option<&mut Warm>,
 ) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.incremental(state, settings, wants)
+    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
+        pair.incremental(state, settings, wants, hit)
     })
 }
 

@@ -17,10 +17,10 @@
 //!
 //! The centres and the state choose where to look first, and prove nothing.
 
-use crate::contact::{Answer, Penetration, Settings};
+use crate::contact::{Penetration, Settings};
 use crate::gjk::distance::{Approach, End, Goal};
 use crate::known::support::{Fault, SupportMap};
-use crate::known::support_set::Inquiry;
+use crate::known::support_set::{Inquiry, Stop};
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::{query::Pair, state::State};
 
@@ -86,14 +86,15 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
     pair: &Pair<A, B>,
     state: &mut State,
     wanted: &Wanted,
-    minimum: impl Fn(&Pair<A, B>, &mut State, &Settings) -> Result<Answer, Fault>,
+    minimum: impl Fn(&Pair<A, B>, &mut State, &Settings, &mut Penetration) -> Result<(), Stop>,
 ) -> Result<Distance, Fault> {
     let depth = |state: &mut State| {
-        Ok(match minimum(pair, state, &wanted.settings)? {
-            Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
-            Answer::Limit(hit) => Ok(deep(&hit, wanted, true)),
-            Answer::Miss(normal) => Err(normal),
-        })
+        let mut hit = Penetration::default();
+        match minimum(pair, state, &wanted.settings, &mut hit) {
+            Ok(()) => Ok(Ok(deep(&hit, wanted))),
+            Err(Stop::Apart(normal)) => Ok(Err(normal)),
+            Err(Stop::Fault(fault)) => Err(fault),
+        }
     };
     // Cores that overlapped are asked for their depth at once.
     if state.overlapped() {
@@ -131,7 +132,7 @@ fn touching<A: SupportMap, B: SupportMap>(
 }
 
 /// The answer for cores that overlap by this much.
-fn deep(hit: &Penetration, wanted: &Wanted, limit: bool) -> Distance {
+fn deep(hit: &Penetration, wanted: &Wanted) -> Distance {
     let n = hit.normal;
     let margin = wanted.margin();
     // No depth is minus nothing.
@@ -148,7 +149,7 @@ fn deep(hit: &Penetration, wanted: &Wanted, limit: bool) -> Distance {
         point2: hit.point2 - n * wanted.margin2,
         iterations: hit.iterations,
         hit: lower < 0.0,
-        limit,
+        limit: hit.limit,
     }
 }
 

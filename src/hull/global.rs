@@ -428,9 +428,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             normal: dir,
             point1,
             point2,
-            pos: Vec3::zeros(),
             extent,
             iterations,
+            ..Penetration::default()
         };
     }
 

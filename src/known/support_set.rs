@@ -266,6 +266,16 @@ impl From<Fault> for Stop {
     }
 }
 
+/// What a query found; `None` of objects that are apart.
+#[inline(always)]
+pub fn if_overlapping<T>(found: Result<T, Stop>) -> Result<Option<T>, Fault> {
+    match found {
+        Ok(found) => Ok(Some(found)),
+        Err(Stop::Apart(_)) => Ok(None),
+        Err(Stop::Fault(fault)) => Err(fault),
+    }
+}
+
 /// What a query has learned by asking, wherever its points are kept.
 pub struct Inquiry<'q, A, B> {
     /// What is asked.

@@ -4,7 +4,7 @@
 //! A local minimum, its overlap not proven, and what it is good for in the other queries.
 
 use super::Pair;
-use crate::contact::{Answer, INSIDE, Penetration, Settings};
+use crate::contact::{INSIDE, Penetration, Settings};
 use crate::gjk::barycentric;
 use crate::hull::expansion::Limits;
 use crate::known::support::{Fault, Known, SupportMap, SupportPoint};
@@ -71,19 +71,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         let start = hit.normal;
         let until = Until::Shortcut;
-        let last = incremental::penetration(&self.md, start, None, until, &rest, |_| ())?;
-        let ended = match last {
+        match incremental::penetration(&self.md, start, None, until, &rest, |_| ()) {
             // D reaches beyond that plane: a callback that errs must not separate.
-            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(false),
-            Answer::Miss(n) => return Err(Stop::Apart(n)),
-            Answer::Hit(found) | Answer::Limit(found) => {
-                *hit = found;
-                matches!(last, Answer::Hit(_))
-            }
-        };
+            Err(Stop::Apart(n)) if known.farthest(&n).is_some() => return Ok(false),
+            found => *hit = found?,
+        }
         hit.iterations += most - left;
         *memory = Memory::towards(hit.normal);
-        Ok(ended)
+        Ok(!hit.limit)
     }
 
     /// One local search, of so many iterations at most.
@@ -152,6 +147,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 *hit = Penetration {
                     depth_lower: hit.depth_lower.min(floor.depth),
                     iterations: hit.iterations + floor.iterations,
+                    limit: true,
                     ..floor
                 };
                 Ok(())
