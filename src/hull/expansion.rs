@@ -42,13 +42,13 @@
 //!
 //! # Where rounding has the last word
 //!
-//! A face that no support point is above is recomputed from its corners. If that takes it
-//! no farther the search ends with what it has, and the caller begins again elsewhere; if the
-//! origin is outside of it, by rounding then, yes or no is left to the caller.
+//! Where no support point is above the nearest face the search ends with what it has, and the
+//! caller begins again elsewhere; if the origin is outside of that face, by rounding then, yes or no
+//! is left to the caller.
 
 use crate::gjk::barycentric;
 use crate::hull::plane::Plane;
-use crate::hull::polytope::{Inserted, Polytope, Top};
+use crate::hull::polytope::{Polytope, Top};
 use crate::known::precision::Precision;
 use crate::known::support::SupportMap;
 use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
@@ -298,7 +298,7 @@ impl Progress {
     }
 
     /// Makes a known point a corner that is above a face by more than `level`, metres, if there
-    /// is one.
+    /// is one: was there room for it?
     #[inline(never)]
     fn spend<const P: usize, const F: usize>(
         &mut self,
@@ -306,14 +306,14 @@ impl Progress {
         hull: &mut Polytope<F>,
         face: usize,
         level: Real,
-    ) -> Option<Inserted> {
+    ) -> Option<bool> {
         let mut left = self.spare;
         while left != 0 {
             let i = left.trailing_zeros() as usize;
             let v = set.v(i);
             if hull.height(face, &Plane::point(&v)) > level {
                 let done = hull.insert(face, i, &v, level, &|i| set.v(i));
-                if done == Inserted::Yes {
+                if done {
                     self.spare &= !(1 << i);
                 }
                 return Some(done);
@@ -393,8 +393,7 @@ pub fn exact(tolerance: Real, precision: &Precision) -> bool {
 /// is above the nearest face. A point above it becomes a corner. Else what was asked along
 /// decides: a promise of the ball, a mean or a step aside that found nothing is
 /// forgotten; a normal that found nothing shows that no point lies above the face, so either
-/// the upper bound has fallen, or the face's plane can be sharpened, or rounding ends the
-/// search.
+/// the upper bound has fallen, or rounding ends the search.
 #[inline(always)]
 pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
@@ -429,8 +428,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         let level = progress.level(inside);
         if progress.spare != 0 {
             match progress.spend(set, hull, top.face, level) {
-                Some(Inserted::Yes) => continue,
-                Some(Inserted::NoRoom) => return Ok(End::NoRoom),
+                Some(true) => continue,
+                Some(false) => return Ok(End::NoRoom),
                 None => {}
             }
         }
@@ -446,26 +445,23 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         let Asked { i, h, v } = inquiry.ask(set, &n)?;
         progress.step(aim, h);
         let height = hull.height(top.face, &Plane::point(&v));
-        if height > level && !(hull.borrowed(top.face) && is_corner(set, hull, top.face, &v)) {
+        if height > level {
             // The start's own points are far apart.
             if progress.iterations > 1 {
                 progress
                     .core
                     .measure(set, &hull.corners(top.face), [&n, &v], level);
             }
-            match hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
-                Inserted::Yes => continue,
-                Inserted::NoRoom => {
-                    // Its direction is asked again in the larger room.
-                    set.truncate(count);
-                    return Ok(End::NoRoom);
-                }
+            if hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
+                continue;
             }
+            // Its direction is asked again in the larger room.
+            set.truncate(count);
+            return Ok(End::NoRoom);
         }
         match aim {
             // A lower upper bound moves the target nearer in the next turn.
             Aim::Normal if inquiry.lowest.depth < before => {}
-            Aim::Normal if hull.refine(top.face, &|i| set.v(i)) => set.truncate(count),
             Aim::Normal => return Ok(stuck),
             _ => {
                 set.truncate(count);
@@ -473,16 +469,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             }
         }
     }
-}
-
-#[cold]
-fn is_corner<const P: usize, const F: usize>(
-    set: &SupportSet<P>,
-    hull: &Polytope<F>,
-    face: usize,
-    v: &Vec3,
-) -> bool {
-    hull.corners(face).into_iter().any(|i| set.v(i) == *v)
 }
 
 impl Progress {
