@@ -168,7 +168,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &Known,
         tolerance: Real,
     ) -> Result<(), Stop> {
-        let mut set = SupportSet::<{ Known::ROOM }>::EMPTY;
+        let mut set = SupportSet::<{ overlap::ROOM }>::EMPTY;
         let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
         let centre = centre.map(|c| set.push(&Vec3::zeros(), c));
         for point in known.points() {
@@ -176,7 +176,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // All were asked for near there.
             set.push(&hit.normal, point);
         }
-        let held = overlap::overlap(inquiry, &mut set, centre, &dir)?;
+        let held = overlap::overlap(inquiry, &mut set, centre, None, &dir)?;
         let corners = match held.between {
             Some([p, q]) => [p, q, q, q],
             None => held.corners.map(|i| set.point(i)),

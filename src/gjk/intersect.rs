@@ -9,15 +9,12 @@
 //! it: where those points still surround the origin, they are the whole answer. Whatever
 //! fails is not lost: the points go into the search.
 
-use crate::gjk::overlap::overlap;
+use crate::gjk::overlap::{ROOM, overlap};
 use crate::gjk::separation::{leave, still_apart};
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::math::{Vec3, unit};
 use crate::state::State;
-
-/// Room for the points of a query: what the state's directions give, and a simplex.
-const ROOM: usize = 8;
 
 /// Shows that the objects overlap. `centre`, an interior point of D, is trusted. Where there is none, the
 /// search begins along `first`, unit.
@@ -45,8 +42,15 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
     if let Some(n) = still_apart(&mut inquiry, &mut set, state)? {
         return Err(Stop::Apart(n));
     }
-    let answer = surround(&mut inquiry, &mut set, state)
-        .and_then(|()| overlap(&mut inquiry, &mut set, inner, &dir.unwrap_or_else(first)));
+    let answer = surround(&mut inquiry, &mut set, state).and_then(|()| {
+        overlap(
+            &mut inquiry,
+            &mut set,
+            inner,
+            None,
+            &dir.unwrap_or_else(first),
+        )
+    });
     match &answer {
         // What a depth query left is worth more than this.
         Ok(held) if !state.overlapped() => {

@@ -137,16 +137,8 @@ impl Simplex {
         Some((face.way, face.distance2))
     }
 
-    /// [`Simplex::add`] as a function of its own. Measured on the recorded contacts: where some
-    /// points are known a yes or no takes 0.6 %, a proof without centres 0.3 % more instructions by
-    /// it, and the library is 25 KB smaller; the cold yes or no and the distance would take 12 and
-    /// 1.3 % more.
-    #[inline(never)]
-    pub fn add_called(&mut self, id: usize, at: Vec3, touch: Real, size2: Real) -> Option<Added> {
-        self.add(id, at, touch, size2)
-    }
-
     /// How many corners there are: at most three.
+    #[inline(always)]
     pub fn len(&self) -> usize {
         self.len
     }
@@ -389,10 +381,6 @@ pub fn direction(way: &Vec3) -> Option<Vec3> {
 /// one that is no corner.
 #[inline(always)]
 pub fn room<const N: usize>(set: &SupportSet<N>, simplex: &Simplex) -> usize {
-    if N == 4 {
-        // Indices and places are the same.
-        return simplex.place();
-    }
     if !set.is_full() {
         return set.len();
     }

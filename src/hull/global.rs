@@ -431,7 +431,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     fn surround<const P: usize>(&mut self, set: &mut SupportSet<P>) -> Result<[usize; 4], Stop> {
         set.truncate(START);
         let dir = self.inquiry.lowest.dir;
-        Ok(overlap::overlap(&mut self.inquiry, set, None, &dir)?.corners)
+        let mut around = SupportSet::<{ overlap::ROOM }>::EMPTY;
+        let held = overlap::overlap(&mut self.inquiry, &mut around, None, None, &dir)?;
+        let mut take = |i| set.push(&around.direction(i), &around.point(i));
+        Ok(held.corners.map(&mut take))
     }
 
     /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
