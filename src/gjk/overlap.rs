@@ -21,7 +21,7 @@
 
 use crate::gjk::simplex::{Simplex, direction, room};
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
-use crate::known::support_set::{Beyond, Inquiry, Stop, SupportSet};
+use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, unit};
 use crate::paper::portal::{Exit, Search, SupportPlane, Until};
 
@@ -134,9 +134,9 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
             None => {
                 let place = room(set, &simplex);
                 match inquiry.ask_at(set, place, &dir)? {
-                    Beyond::Put { v, touch } => (place, v, touch),
+                    Some((v, touch)) => (place, v, touch),
                     // A callback that contradicts itself.
-                    Beyond::Known(_) => break,
+                    None => break,
                 }
             }
         };

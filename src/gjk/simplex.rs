@@ -171,15 +171,11 @@ impl Simplex {
                     [true, true, true] => {
                         let n = normal(a, b, c);
                         let height = n.dot(a);
-                        let (order, way) = if height > 0.0 {
-                            ([j, i, k], -n)
-                        } else {
-                            ([i, j, k], n)
-                        };
+                        let inner = height > 0.0;
                         Face {
-                            order,
+                            order: if inner { [j, i, k] } else { [i, j, k] },
                             len: 3,
-                            way,
+                            way: if inner { -n } else { n },
                             distance2: height / n.norm_squared() * height,
                         }
                     }

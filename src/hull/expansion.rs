@@ -97,7 +97,7 @@ const NEIGHBOURS: core::ops::Range<Real> = if cfg!(feature = "single") {
 };
 
 /// How far a search goes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Limits {
     /// Largest gap between the bounds, metres, as asked for.
     pub tolerance: Real,
@@ -127,6 +127,7 @@ pub enum End {
 
 /// What a search knows besides the points and the polytope. A face's *key* is the signed
 /// square of its distance from the origin, m².
+#[derive(Default)]
 pub struct Progress {
     limits: Limits,
     /// Support points after the tetrahedron.
@@ -151,7 +152,7 @@ pub struct Progress {
     rounding2: f64,
     /// Once the origin is inside, a point is above a face by more than this, metres.
     level: Real,
-    /// The square of the size that tolerance, rounding and level belong to; -1: of none.
+    /// The square of the size that tolerance, rounding and level belong to.
     size2: Real,
     /// No mean of normals is asked in so many steps.
     plain: i32,
@@ -167,6 +168,7 @@ pub struct Progress {
 }
 
 /// The ball that the samples tell of, see the head of this file.
+#[derive(Default)]
 struct Core {
     /// Its radius, metres; 0 while none is known.
     radius: Real,
@@ -203,30 +205,9 @@ impl Progress {
         let known = (1 << points) - 2_u64;
         let mut progress = Self {
             limits: *limits,
-            iterations: 0,
-            same: (0.0, 0),
-            upper: Real::INFINITY,
-            error: 0.0,
-            coarse: false,
-            target: 0.0,
-            tolerance: 0.0,
-            allowed: 0.0,
-            rounding: 0.0,
-            rounding2: 0.0,
-            level: 0.0,
-            size2: -1.0,
             plain: FEW as i32 - points as i32,
-            vain: 0,
-            lone: 0.0,
-            core: Core {
-                radius: 0.0,
-                pause: 0,
-                failures: 0,
-                key: 0.0,
-                foretold: 0.0,
-                before: 0.0,
-            },
             spare: names.iter().fold(known, |spare, name| spare & !(1 << name)),
+            ..Self::default()
         };
         progress.resize(precision);
         progress
