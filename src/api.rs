@@ -382,45 +382,56 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     }))
 }
 
-/// The penetration depth: the least distance by which the second shape must move to separate the
-/// two, within the larger of the tolerance and 0.1 % of it. The call to take unless one of the
-/// others says what is wanted better. `None`: apart, or a touch within rounding.
-///
-/// With a state, a pair that stays apart costs one call of each shape's support function, and one
-/// that overlaps fewer than without. Centres are trusted; `depth_lower` leans on them too.
-/// Allocates nothing.
-///
-/// ```
-/// use ccd::{Real, Settings, Warm};
-///
-/// fn push(depth: Real, dir: [Real; 3], at: &mut [Real; 3]) {
-///     at.iter_mut().zip(dir).for_each(|(x, d)| *x += depth * d);
-/// }
-///
-/// let ball = |at: [Real; 3]| (move |d: [Real; 3]| [at[0] + d[0], at[1] + d[1], at[2] + d[2]], at);
-/// let (a, mut at) = (ball([0.0; 3]), [0.3, 0.2, 0.1]);
-/// let mut warm = Warm::default(); // one for each pair, kept between frames
-/// for frame in 0..3 {
-///     if let Some(hit) = ccd::penetration(&a, &ball(at), &Settings::new(1e-6), Some(&mut warm))? {
-///         assert!(frame == 0 || hit.depth < 1e-3);
-///         push(hit.depth, hit.dir, &mut at);
-///     }
-/// }
-/// # Ok::<(), ccd::Error>(())
-/// ```
-///
-/// # Errors
-/// A tolerance that is negative or NaN; a shape's point that is not finite.
-pub fn penetration<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
-        pair.mpr(state, settings, wants, hit)
-    })
+/// A penetration query: its name, the direction that it takes, if any, and its solver.
+macro_rules! query {
+    ($(#[$about:meta])* $name:ident $(($dir:ident))?, $solve:expr) => {
+        $(#[$about])*
+        pub fn $name<A: Shape + ?Sized, B: Shape + ?Sized>(
+            a: &A,
+            b: &B,
+            $($dir: [Real; 3],)?
+            settings: &Settings,
+            warm: Option<&mut Warm>,
+        ) -> Result<Option<Penetration>, Error> {
+            $(let $dir = direction($dir)?;)?
+            answer(a, b, settings, warm, $solve)
+        }
+    };
 }
+
+query!(
+    /// The penetration depth: the least distance by which the second shape must move to separate the
+    /// two, within the larger of the tolerance and 0.1 % of it. The call to take unless one of the
+    /// others says what is wanted better. `None`: apart, or a touch within rounding.
+    ///
+    /// With a state, a pair that stays apart costs one call of each shape's support function, and one
+    /// that overlaps fewer than without. Centres are trusted; `depth_lower` leans on them too.
+    /// Allocates nothing.
+    ///
+    /// ```
+    /// use ccd::{Real, Settings, Warm};
+    ///
+    /// fn push(depth: Real, dir: [Real; 3], at: &mut [Real; 3]) {
+    ///     at.iter_mut().zip(dir).for_each(|(x, d)| *x += depth * d);
+    /// }
+    ///
+    /// let ball = |at: [Real; 3]| (move |d: [Real; 3]| [at[0] + d[0], at[1] + d[1], at[2] + d[2]], at);
+    /// let (a, mut at) = (ball([0.0; 3]), [0.3, 0.2, 0.1]);
+    /// let mut warm = Warm::default(); // one for each pair, kept between frames
+    /// for frame in 0..3 {
+    ///     if let Some(hit) = ccd::penetration(&a, &ball(at), &Settings::new(1e-6), Some(&mut warm))? {
+    ///         assert!(frame == 0 || hit.depth < 1e-3);
+    ///         push(hit.depth, hit.dir, &mut at);
+    ///     }
+    /// }
+    /// # Ok::<(), ccd::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A tolerance that is negative or NaN; a shape's point that is not finite.
+    penetration,
+    |pair, state, settings, wants, hit| pair.mpr(state, settings, wants, hit)
+);
 
 /// Do the shapes overlap? (A touch within rounding is no overlap.) A pair that stays apart costs
 /// one call of each shape's support function while its last separating direction still separates.
@@ -562,103 +573,69 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     Ok(&room[..count])
 }
 
-/// A local minimum of the depth, by the fastest search there is. For who has a direction that is
-/// roughly right ([`Warm::guess`]), or follows one valley; from far off it may end in another.
-/// Allocates nothing.
-///
-/// # Errors
-/// As [`penetration`].
-pub fn penetration_local<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
-        pair.local(state, settings, wants, hit)
-    })
-}
+query!(
+    /// A local minimum of the depth, by the fastest search there is. For who has a direction that is
+    /// roughly right ([`Warm::guess`]), or follows one valley; from far off it may end in another.
+    /// Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`penetration`].
+    penetration_local,
+    |pair, state, settings, wants, hit| pair.local(state, settings, wants, hit)
+);
 
-/// The least depth with its proof: `depth - depth_lower` is within the tolerance unless
-/// [`Penetration::limit`] is set. Trusts no centre.
-///
-/// Takes memory, from C's allocator, only where the minima (nearly) form a curve or a surface.
-///
-/// ```
-/// use ccd::{Real, Settings};
-///
-/// let ball = |x: Real| move |d: [Real; 3]| [x + d[0], d[1], d[2]];
-/// let hit = ccd::penetration_proven(&ball(0.0), &ball(1.5), &Settings::new(1e-5), None)?;
-/// let hit = hit.expect("an overlap");
-/// assert!(hit.depth_lower <= hit.depth && hit.depth - hit.depth_lower <= 1.1e-5);
-/// # Ok::<(), ccd::Error>(())
-/// ```
-///
-/// # Errors
-/// As [`penetration`]; no memory.
-pub fn penetration_proven<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
-        pair.minimum(state, settings, &mut Heap::default(), wants, hit)
-    })
-}
+query!(
+    /// The least depth with its proof: `depth - depth_lower` is within the tolerance unless
+    /// [`Penetration::limit`] is set. Trusts no centre.
+    ///
+    /// Takes memory, from C's allocator, only where the minima (nearly) form a curve or a surface.
+    ///
+    /// ```
+    /// use ccd::{Real, Settings};
+    ///
+    /// let ball = |x: Real| move |d: [Real; 3]| [x + d[0], d[1], d[2]];
+    /// let hit = ccd::penetration_proven(&ball(0.0), &ball(1.5), &Settings::new(1e-5), None)?;
+    /// let hit = hit.expect("an overlap");
+    /// assert!(hit.depth_lower <= hit.depth && hit.depth - hit.depth_lower <= 1.1e-5);
+    /// # Ok::<(), ccd::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`penetration`]; no memory.
+    penetration_proven,
+    |pair, state, settings, wants, hit| pair.minimum(state, settings, &mut Heap::default(), wants, hit)
+);
 
-/// How far the second shape must move along `dir`, of any length, to separate the two
-/// (directional penetration depth). The tolerance is measured along `dir`. Allocates nothing.
-///
-/// # Errors
-/// A `dir` that is zero or not finite, and as [`penetration`].
-pub fn penetration_along<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    dir: [Real; 3],
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    let dir = direction(dir)?;
-    answer(a, b, settings, warm, |pair, state, settings, _, hit| {
-        pair.along(dir, state, settings, hit)
-    })
-}
+query!(
+    /// How far the second shape must move along `dir`, of any length, to separate the two
+    /// (directional penetration depth). The tolerance is measured along `dir`. Allocates nothing.
+    ///
+    /// # Errors
+    /// A `dir` that is zero or not finite, and as [`penetration`].
+    penetration_along(dir),
+    |pair, state, settings, _, hit| pair.along(dir, state, settings, hit)
+);
 
-/// A local minimum of the depth among the directions of a plane, for shapes that lie in a common
-/// plane with this normal, of any length. Allocates nothing.
-///
-/// # Errors
-/// A `plane_normal` that is zero or not finite, and as [`penetration`].
-pub fn penetration_planar<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    plane_normal: [Real; 3],
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    let m = direction(plane_normal)?;
-    answer(a, b, settings, warm, |pair, state, settings, _, hit| {
-        pair.planar(m, state, settings, hit)
-    })
-}
+query!(
+    /// A local minimum of the depth among the directions of a plane, for shapes that lie in a common
+    /// plane with this normal, of any length. Allocates nothing.
+    ///
+    /// # Errors
+    /// A `plane_normal` that is zero or not finite, and as [`penetration`].
+    penetration_planar(plane_normal),
+    |pair, state, settings, _, hit| pair.planar(plane_normal, state, settings, hit)
+);
 
-/// A local minimum of the depth by the paper's method as published, for comparisons: W. Gao,
-/// *Efficient Incremental Penetration Depth Estimation between Convex Geometries*, Algorithms 4
-/// and 5, with a sound answer. Allocates nothing.
-///
-/// # Errors
-/// As [`penetration`].
-pub fn penetration_incremental<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants, hit| {
-        pair.incremental(state, settings, wants, hit)
-    })
-}
+query!(
+    /// A local minimum of the depth by the paper's method as published, for comparisons: W. Gao,
+    /// *Efficient Incremental Penetration Depth Estimation between Convex Geometries*, Algorithms 4
+    /// and 5, with a sound answer. Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`penetration`].
+    penetration_incremental,
+    |pair, state, settings, wants, hit| pair.incremental(state, settings, wants, hit)
+);
 
 /// What is wrong with a shape, as far as 192 directions tell, each asked twice: for when an answer
 /// is odd, and for tests. What is found is wrong for certain; a fault that shows in few directions
