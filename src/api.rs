@@ -10,7 +10,7 @@
 
 use core::fmt;
 
-use crate::contact::{self, Answer};
+use crate::contact;
 use crate::contacts::manifold;
 use crate::contacts::memory::Memory;
 use crate::ffi::arena::Heap;
@@ -19,6 +19,7 @@ use crate::gjk::signed_distance::{self, Wanted};
 use crate::known::check;
 pub use crate::known::check::Check;
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support_set::{Stop, if_overlapping};
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, unit};
 use crate::query::Pair;
@@ -335,7 +336,7 @@ where
 /// there is no answer.
 fn with_state<R>(
     warm: Option<&mut Warm>,
-    ask: impl FnOnce(&mut State) -> Result<R, Error>,
+    ask: impl FnOnce(&mut State) -> Result<R, Fault>,
 ) -> Result<R, Error> {
     let mut state = warm.as_ref().map_or(State::default(), |warm| warm.0);
     let answer = ask(&mut state)?;
@@ -351,19 +352,23 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     settings: &Settings,
     warm: Option<&mut Warm>,
-    solve: impl FnOnce(&Asking<'_, A, B>, &mut State, &contact::Settings, bool) -> Result<Answer, Fault>,
+    solve: impl FnOnce(
+        &Asking<'_, A, B>,
+        &mut State,
+        &contact::Settings,
+        bool,
+        &mut contact::Penetration,
+    ) -> Result<(), Stop>,
 ) -> Result<Option<Penetration>, Error> {
     let checked = settings.checked()?;
     let want = settings.want;
     let pair = pair(a, b, warm.is_some())?;
-    let answer = with_state(warm, |state| Ok(solve(&pair, state, &checked, want.pos)?))?;
-    let (hit, limit) = match answer {
-        Answer::Hit(hit) => (hit, false),
-        Answer::Limit(hit) => (hit, true),
-        Answer::Miss(_) => return Ok(None),
-    };
+    let mut hit = contact::Penetration::default();
+    let found = with_state(warm, |state| {
+        if_overlapping(solve(&pair, state, &checked, want.pos, &mut hit))
+    })?;
     let given = |wanted: bool, point: Vec3| if wanted { point.into() } else { [0.0; 3] };
-    Ok(Some(Penetration {
+    Ok(found.map(|()| Penetration {
         depth: hit.depth,
         depth_lower: hit.depth_lower,
         dir: hit.dir.into(),
@@ -373,49 +378,60 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
         point2: given(want.points, hit.point2),
         support_calls: pair.md.supports(),
         iterations: hit.iterations,
-        limit,
+        limit: hit.limit,
     }))
 }
 
-/// The penetration depth: the least distance by which the second shape must move to separate the
-/// two, within the larger of the tolerance and 0.1 % of it. The call to take unless one of the
-/// others says what is wanted better. `None`: apart, or a touch within rounding.
-///
-/// With a state, a pair that stays apart costs one call of each shape's support function, and one
-/// that overlaps fewer than without. Centres are trusted; `depth_lower` leans on them too.
-/// Allocates nothing.
-///
-/// ```
-/// use ccd::{Real, Settings, Warm};
-///
-/// fn push(depth: Real, dir: [Real; 3], at: &mut [Real; 3]) {
-///     at.iter_mut().zip(dir).for_each(|(x, d)| *x += depth * d);
-/// }
-///
-/// let ball = |at: [Real; 3]| (move |d: [Real; 3]| [at[0] + d[0], at[1] + d[1], at[2] + d[2]], at);
-/// let (a, mut at) = (ball([0.0; 3]), [0.3, 0.2, 0.1]);
-/// let mut warm = Warm::default(); // one for each pair, kept between frames
-/// for frame in 0..3 {
-///     if let Some(hit) = ccd::penetration(&a, &ball(at), &Settings::new(1e-6), Some(&mut warm))? {
-///         assert!(frame == 0 || hit.depth < 1e-3);
-///         push(hit.depth, hit.dir, &mut at);
-///     }
-/// }
-/// # Ok::<(), ccd::Error>(())
-/// ```
-///
-/// # Errors
-/// A tolerance that is negative or NaN; a shape's point that is not finite.
-pub fn penetration<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.mpr(state, settings, wants)
-    })
+/// A penetration query: its name, the direction that it takes, if any, and its solver.
+macro_rules! query {
+    ($(#[$about:meta])* $name:ident $(($dir:ident))?, $solve:expr) => {
+        $(#[$about])*
+        pub fn $name<A: Shape + ?Sized, B: Shape + ?Sized>(
+            a: &A,
+            b: &B,
+            $($dir: [Real; 3],)?
+            settings: &Settings,
+            warm: Option<&mut Warm>,
+        ) -> Result<Option<Penetration>, Error> {
+            $(let $dir = direction($dir)?;)?
+            answer(a, b, settings, warm, $solve)
+        }
+    };
 }
+
+query!(
+    /// The penetration depth: the least distance by which the second shape must move to separate the
+    /// two, within the larger of the tolerance and 0.1 % of it. The call to take unless one of the
+    /// others says what is wanted better. `None`: apart, or a touch within rounding.
+    ///
+    /// With a state, a pair that stays apart costs one call of each shape's support function, and one
+    /// that overlaps fewer than without. Centres are trusted; `depth_lower` leans on them too.
+    /// Allocates nothing.
+    ///
+    /// ```
+    /// use ccd::{Real, Settings, Warm};
+    ///
+    /// fn push(depth: Real, dir: [Real; 3], at: &mut [Real; 3]) {
+    ///     at.iter_mut().zip(dir).for_each(|(x, d)| *x += depth * d);
+    /// }
+    ///
+    /// let ball = |at: [Real; 3]| (move |d: [Real; 3]| [at[0] + d[0], at[1] + d[1], at[2] + d[2]], at);
+    /// let (a, mut at) = (ball([0.0; 3]), [0.3, 0.2, 0.1]);
+    /// let mut warm = Warm::default(); // one for each pair, kept between frames
+    /// for frame in 0..3 {
+    ///     if let Some(hit) = ccd::penetration(&a, &ball(at), &Settings::new(1e-6), Some(&mut warm))? {
+    ///         assert!(frame == 0 || hit.depth < 1e-3);
+    ///         push(hit.depth, hit.dir, &mut at);
+    ///     }
+    /// }
+    /// # Ok::<(), ccd::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A tolerance that is negative or NaN; a shape's point that is not finite.
+    penetration,
+    |pair, state, settings, wants, hit| pair.mpr(state, settings, wants, hit)
+);
 
 /// Do the shapes overlap? (A touch within rounding is no overlap.) A pair that stays apart costs
 /// one call of each shape's support function while its last separating direction still separates.
@@ -437,10 +453,11 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     warm: Option<&mut Warm>,
 ) -> Result<bool, Error> {
     let pair = pair(a, b, warm.is_some())?;
-    if warm.is_none() {
-        return Ok(pair.intersect(None)?);
-    }
-    with_state(warm, |state| Ok(pair.intersect(Some(state))?))
+    let overlap = match warm {
+        None => if_overlapping(pair.intersect(None))?,
+        warm => with_state(warm, |state| if_overlapping(pair.intersect(Some(state))))?,
+    };
+    Ok(overlap.is_some())
 }
 
 /// How far apart, or how deep: one continuous function through the touch, with bounds proven on
@@ -482,13 +499,11 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     }
     let points = settings.want.points;
     let pair = pair(a, b, warm.is_some())?;
-    let minimum = |pair: &Asking<'_, A, B>, state: &mut State, settings: &contact::Settings| {
-        pair.minimum(state, settings, &mut Heap::default(), points)
+    let minimum = |pair: &Asking<'_, A, B>, state: &mut State, settings: &_, hit: &mut _| {
+        pair.minimum(state, settings, &mut Heap::default(), points, hit)
     };
     let d = with_state(warm, |state| {
-        Ok(signed_distance::signed_distance(
-            &pair, state, &wanted, minimum,
-        )?)
+        signed_distance::signed_distance(&pair, state, &wanted, minimum)
     })?;
     let given = |point: Vec3| if points { point.into() } else { [0.0; 3] };
     Ok(Distance {
@@ -558,103 +573,69 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     Ok(&room[..count])
 }
 
-/// A local minimum of the depth, by the fastest search there is. For who has a direction that is
-/// roughly right ([`Warm::guess`]), or follows one valley; from far off it may end in another.
-/// Allocates nothing.
-///
-/// # Errors
-/// As [`penetration`].
-pub fn penetration_local<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.local(state, settings, wants)
-    })
-}
+query!(
+    /// A local minimum of the depth, by the fastest search there is. For who has a direction that is
+    /// roughly right ([`Warm::guess`]), or follows one valley; from far off it may end in another.
+    /// Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`penetration`].
+    penetration_local,
+    |pair, state, settings, wants, hit| pair.local(state, settings, wants, hit)
+);
 
-/// The least depth with its proof: `depth - depth_lower` is within the tolerance unless
-/// [`Penetration::limit`] is set. Trusts no centre.
-///
-/// Takes memory, from C's allocator, only where the minima (nearly) form a curve or a surface.
-///
-/// ```
-/// use ccd::{Real, Settings};
-///
-/// let ball = |x: Real| move |d: [Real; 3]| [x + d[0], d[1], d[2]];
-/// let hit = ccd::penetration_proven(&ball(0.0), &ball(1.5), &Settings::new(1e-5), None)?;
-/// let hit = hit.expect("an overlap");
-/// assert!(hit.depth_lower <= hit.depth && hit.depth - hit.depth_lower <= 1.1e-5);
-/// # Ok::<(), ccd::Error>(())
-/// ```
-///
-/// # Errors
-/// As [`penetration`]; no memory.
-pub fn penetration_proven<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.minimum(state, settings, &mut Heap::default(), wants)
-    })
-}
+query!(
+    /// The least depth with its proof: `depth - depth_lower` is within the tolerance unless
+    /// [`Penetration::limit`] is set. Trusts no centre.
+    ///
+    /// Takes memory, from C's allocator, only where the minima (nearly) form a curve or a surface.
+    ///
+    /// ```
+    /// use ccd::{Real, Settings};
+    ///
+    /// let ball = |x: Real| move |d: [Real; 3]| [x + d[0], d[1], d[2]];
+    /// let hit = ccd::penetration_proven(&ball(0.0), &ball(1.5), &Settings::new(1e-5), None)?;
+    /// let hit = hit.expect("an overlap");
+    /// assert!(hit.depth_lower <= hit.depth && hit.depth - hit.depth_lower <= 1.1e-5);
+    /// # Ok::<(), ccd::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`penetration`]; no memory.
+    penetration_proven,
+    |pair, state, settings, wants, hit| pair.minimum(state, settings, &mut Heap::default(), wants, hit)
+);
 
-/// How far the second shape must move along `dir`, of any length, to separate the two
-/// (directional penetration depth). The tolerance is measured along `dir`. Allocates nothing.
-///
-/// # Errors
-/// A `dir` that is zero or not finite, and as [`penetration`].
-pub fn penetration_along<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    dir: [Real; 3],
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    let dir = direction(dir)?;
-    answer(a, b, settings, warm, |pair, state, settings, _| {
-        pair.along(dir, state, settings)
-    })
-}
+query!(
+    /// How far the second shape must move along `dir`, of any length, to separate the two
+    /// (directional penetration depth). The tolerance is measured along `dir`. Allocates nothing.
+    ///
+    /// # Errors
+    /// A `dir` that is zero or not finite, and as [`penetration`].
+    penetration_along(dir),
+    |pair, state, settings, _, hit| pair.along(dir, state, settings, hit)
+);
 
-/// A local minimum of the depth among the directions of a plane, for shapes that lie in a common
-/// plane with this normal, of any length. Allocates nothing.
-///
-/// # Errors
-/// A `plane_normal` that is zero or not finite, and as [`penetration`].
-pub fn penetration_planar<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    plane_normal: [Real; 3],
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    let m = direction(plane_normal)?;
-    answer(a, b, settings, warm, |pair, state, settings, _| {
-        pair.planar(m, state, settings)
-    })
-}
+query!(
+    /// A local minimum of the depth among the directions of a plane, for shapes that lie in a common
+    /// plane with this normal, of any length. Allocates nothing.
+    ///
+    /// # Errors
+    /// A `plane_normal` that is zero or not finite, and as [`penetration`].
+    penetration_planar(plane_normal),
+    |pair, state, settings, _, hit| pair.planar(plane_normal, state, settings, hit)
+);
 
-/// A local minimum of the depth by the paper's method as published, for comparisons: W. Gao,
-/// *Efficient Incremental Penetration Depth Estimation between Convex Geometries*, Algorithms 4
-/// and 5, with a sound answer. Allocates nothing.
-///
-/// # Errors
-/// As [`penetration`].
-pub fn penetration_incremental<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-) -> Result<Option<Penetration>, Error> {
-    answer(a, b, settings, warm, |pair, state, settings, wants| {
-        pair.incremental(state, settings, wants)
-    })
-}
+query!(
+    /// A local minimum of the depth by the paper's method as published, for comparisons: W. Gao,
+    /// *Efficient Incremental Penetration Depth Estimation between Convex Geometries*, Algorithms 4
+    /// and 5, with a sound answer. Allocates nothing.
+    ///
+    /// # Errors
+    /// As [`penetration`].
+    penetration_incremental,
+    |pair, state, settings, wants, hit| pair.incremental(state, settings, wants, hit)
+);
 
 /// What is wrong with a shape, as far as 192 directions tell, each asked twice: for when an answer
 /// is odd, and for tests. What is found is wrong for certain; a fault that shows in few directions

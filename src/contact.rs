@@ -45,35 +45,13 @@ pub struct Penetration {
     pub point2: Vec3,
     /// Iterations of the solver.
     pub iterations: u64,
+    /// A cap or rounding came before the tolerance: the best sound answer.
+    pub limit: bool,
 }
 
 impl Penetration {
     /// The middle of the witness points.
     pub fn middle(&self) -> Vec3 {
         (self.point1 + self.point2) * 0.5
-    }
-}
-
-/// The outcome of a query whose input was good.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Answer {
-    /// The objects overlap.
-    Hit(Penetration),
-    /// They overlap, and the iteration cap came before the tolerance: the best
-    /// sound answer.
-    Limit(Penetration),
-    /// They are apart, or touch within rounding: the support value of this unit direction,
-    /// n·s(n), is negative or no more than rounding.
-    Miss(Vec3),
-}
-
-impl Answer {
-    /// The same with its contact position: the middle of the witness points.
-    #[must_use]
-    pub fn in_the_middle(mut self) -> Self {
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut self {
-            hit.pos = hit.middle();
-        }
-        self
     }
 }

@@ -76,7 +76,7 @@ pub use api::{
 /// What this package's own tests and benchmarks ask besides; may change in any version.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::contact::{Answer, Settings};
+    pub use crate::contact::Settings;
     pub use crate::known::support::MinkowskiDifference;
     pub use crate::math::Vec3;
     pub use crate::paper::incremental::penetration as incremental;

@@ -150,8 +150,6 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Answer;
-    use crate::known::support::Fault;
     use crate::math::{EPSILON, Real, perpendicular};
     use crate::paper::incremental;
     use crate::paper::portal::Until;
@@ -238,7 +236,7 @@ mod tests {
         start: Vec3,
         memory: &mut Memory,
         tolerance: Real,
-    ) -> (Answer, u64) {
+    ) -> (Result<Penetration, Stop>, u64) {
         let md = MinkowskiDifference::new(a, b);
         let mut known = Known::default();
         let mut hit = Penetration::default();
@@ -251,26 +249,22 @@ mod tests {
             None,
             (&mut known, &mut hit),
         );
-        let answer: Result<Answer, Fault> = match found {
-            Ok(true) => Ok(Answer::Hit(hit)),
+        let answer = match found {
+            Ok(true) => Ok(hit),
             // What every caller does with a search that did not end in a minimum.
             Ok(false) => {
                 let until = Until::Shortcut;
                 let rest = settings(tolerance);
                 incremental::penetration(&md, hit.normal, None, until, &rest, |_| ())
             }
-            Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
-            Err(Stop::Fault(fault)) => Err(fault),
+            Err(stop) => Err(stop),
         };
-        match answer {
-            Ok(answer) => (answer, md.supports()),
-            Err(fault) => panic!("{fault:?}"),
-        }
+        (answer, md.supports())
     }
 
     fn hit(a: &Shape, b: &Shape, start: Vec3, tolerance: Real) -> Penetration {
         match solve(a, b, start, &mut Memory::default(), tolerance) {
-            (Answer::Hit(p), supports) => {
+            (Ok(p), supports) if !p.limit => {
                 assert!(supports < 100, "{supports} support points");
                 p
             }
@@ -332,7 +326,7 @@ mod tests {
             let at = r.vector(0.4);
             let (a, b) = (half_disc(&mut r, Vec3::zeros()), half_disc(&mut r, at));
             let start = r.direction();
-            if let (Answer::Hit(p), _) = solve(&a, &b, start, &mut Memory::default(), TOLERANCE) {
+            if let (Ok(p), _) = solve(&a, &b, start, &mut Memory::default(), TOLERANCE) {
                 check(&a, &b, &p, TOLERANCE, 2.0);
             }
         }
@@ -428,13 +422,11 @@ mod tests {
                 ] {
                     let size = if i == 5 || j == 5 { 2.0 * long } else { 2.0 };
                     match solve(a, b, start, &mut Memory::default(), TOLERANCE) {
-                        (Answer::Hit(p), _) => check(a, b, &p, TOLERANCE, size),
+                        (Ok(p), _) if !p.limit => check(a, b, &p, TOLERANCE, size),
                         // In single precision the curvature of a needle is rounding:
                         // the search may stop at the minimum without knowing it.
-                        (Answer::Limit(p), _) if EPSILON > 1e-10 => {
-                            check(a, b, &p, TOLERANCE, size)
-                        }
-                        (Answer::Miss(n), _) => assert!(h(a, b, &n) < 0.0),
+                        (Ok(p), _) if EPSILON > 1e-10 => check(a, b, &p, TOLERANCE, size),
+                        (Err(Stop::Apart(n)), _) => assert!(h(a, b, &n) < 0.0),
                         (other, supports) => panic!("{i} {j} {start:?} {other:?} after {supports}"),
                     }
                 }
@@ -478,7 +470,7 @@ mod tests {
                             &mut Memory::default(),
                             tolerance,
                         ) {
-                            (Answer::Hit(p), supports) => {
+                            (Ok(p), supports) if !p.limit => {
                                 assert!(supports < 100, "{i} {scale} {far} {fine}: {supports}");
                                 check(a, b, &p, tolerance.max(64.0 * EPSILON * size), size);
                             }
@@ -501,7 +493,7 @@ mod tests {
             &mut Memory::default(),
             TOLERANCE,
         ) {
-            (Answer::Miss(n), supports) => {
+            (Err(Stop::Apart(n)), supports) => {
                 assert!(h(&a, &b, &n) < 0.0);
                 assert!(supports < 20);
             }
@@ -521,8 +513,8 @@ mod tests {
                 &mut Memory::default(),
                 TOLERANCE,
             ) {
-                (Answer::Hit(p), _) => assert!(p.depth <= TOLERANCE, "{}", p.depth),
-                (Answer::Miss(n), _) => assert!(h(&a, &b, &n) < 0.0),
+                (Ok(p), _) if !p.limit => assert!(p.depth <= TOLERANCE, "{}", p.depth),
+                (Err(Stop::Apart(n)), _) => assert!(h(&a, &b, &n) < 0.0),
                 other => panic!("{other:?}"),
             }
         }
@@ -559,7 +551,7 @@ mod tests {
             memory.count = (round % 5) as u32;
             memory.curved = (round % 3) as u32;
             match solve(&a, &b, Vec3::x(), &mut memory, TOLERANCE) {
-                (Answer::Hit(p), _) => check(&a, &b, &p, TOLERANCE, 2.0),
+                (Ok(p), _) if !p.limit => check(&a, &b, &p, TOLERANCE, 2.0),
                 (other, supports) => panic!("{round}: {other:?} after {supports}"),
             }
         }
@@ -581,7 +573,7 @@ mod tests {
                     ..Memory::default()
                 };
                 match solve(&a, &b, Vec3::x(), &mut memory, TOLERANCE) {
-                    (Answer::Hit(p), supports) => {
+                    (Ok(p), supports) if !p.limit => {
                         check(&a, &b, &p, TOLERANCE, 2.0);
                         let at = format!("{curved} {power}: {supports} support points");
                         assert!(supports <= 40, "{at}");
@@ -649,7 +641,7 @@ mod tests {
             let place = Vec3::new(0.3, 0.2, 0.49 - lowest);
             let rolls = at(place, turned);
             let (answer, count) = solve(&rolls, &floor, -Vec3::z(), &mut memory, 1e-6);
-            let Answer::Hit(hit) = answer else {
+            let Ok(hit) = answer else {
                 panic!("{answer:?}");
             };
             assert!((hit.depth - 0.01).abs() <= 1e-6, "{}", hit.depth);

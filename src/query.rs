@@ -24,7 +24,7 @@
 
 mod local_minimum;
 
-use crate::contact::{Answer, Penetration, Settings};
+use crate::contact::{Penetration, Settings};
 use crate::contacts::polygon::cross;
 use crate::contacts::pressure::{self, Around, Aside};
 use crate::contacts::seen::Seen;
@@ -57,38 +57,44 @@ pub struct Pair<A, B> {
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// Step 1: the separating direction that still separates, see [`crate::gjk::separation`].
-    fn still_apart(&self, state: &mut State) -> Result<Option<Vec3>, Fault> {
-        if !state.was_apart() {
-            return Ok(None);
+    /// Steps 1 and 5 around what comes between: `solve` is asked where the direction that separated
+    /// the pair last time does not, and is told what came nearest to it; a miss leaves behind what the
+    /// next query asks first.
+    #[inline(always)]
+    fn asked(
+        &self,
+        state: &mut State,
+        solve: impl FnOnce(&mut State, Option<(Vec3, SupportPoint)>) -> Result<(), Stop>,
+    ) -> Result<(), Stop> {
+        let mut nearest = None;
+        if state.was_apart() {
+            let mut failed = SupportSet::EMPTY;
+            self.still_apart(state, &mut failed)?;
+            nearest = failed
+                .lowest()
+                .map(|i| (failed.direction(i), failed.point(i)));
         }
-        let mut failed = SupportSet::<{ separation::TRIES }>::EMPTY;
-        self.separated(state, &mut failed)
+        let found = solve(state, nearest);
+        match &found {
+            Err(Stop::Apart(n)) if self.lasting => {
+                let was_apart = state.was_apart();
+                separation::leave(&mut Inquiry::new(&self.md), state, was_apart, *n)?;
+            }
+            _ => {}
+        }
+        found
     }
 
-    /// The same; the support points of directions that fail go into the set.
+    /// Step 1: [`Stop::Apart`] where the separating direction still separates. The support points of
+    /// directions that fail go into the set.
     #[inline(never)]
-    fn separated(
+    fn still_apart(
         &self,
         state: &mut State,
         failed: &mut SupportSet<{ separation::TRIES }>,
-    ) -> Result<Option<Vec3>, Fault> {
-        separation::still_apart(&mut Inquiry::new(&self.md), failed, state)
-    }
-
-    /// Leaves the answer behind for the next query.
-    fn remember(&self, state: &mut State, answer: &Answer) -> Result<(), Fault> {
-        match answer {
-            Answer::Miss(n) if self.lasting => {
-                let was_apart = state.was_apart();
-                separation::leave(&mut Inquiry::new(&self.md), state, was_apart, *n)
-            }
-            other => {
-                state.remember(other);
-                self.face(state);
-                Ok(())
-            }
-        }
+    ) -> Result<(), Stop> {
+        let apart = separation::still_apart(&mut Inquiry::new(&self.md), failed, state)?;
+        apart.map_or(Ok(()), |n| Err(Stop::Apart(n)))
     }
 
     /// The way from the centre of D through the origin, or the caller's first
@@ -149,24 +155,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.touching(&mut inquiry, self.centre.as_ref(), hit, known, tolerance)
     }
 
-    /// The same of a solver's answer.
-    fn proven(
-        &self,
-        mut answer: Answer,
-        known: &mut Known,
-        settings: &Settings,
-        planar: bool,
-    ) -> Result<Answer, Fault> {
-        let (Answer::Hit(hit) | Answer::Limit(hit)) = &mut answer else {
-            return Ok(answer);
-        };
-        match self.prove(hit, known, settings, planar) {
-            Ok(()) => Ok(answer),
-            Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
-            Err(Stop::Fault(fault)) => Err(fault),
-        }
-    }
-
     /// Shows that the origin lies among support points, known ones and others, and the `centre`,
     /// where it is trusted. Where a touch, within the tolerance, has witness points that do not
     /// meet, the points that meet at the origin take their place.
@@ -180,7 +168,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &Known,
         tolerance: Real,
     ) -> Result<(), Stop> {
-        let mut set = SupportSet::<{ Known::ROOM }>::EMPTY;
+        let mut set = SupportSet::<{ overlap::ROOM }>::EMPTY;
         let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
         let centre = centre.map(|c| set.push(&Vec3::zeros(), c));
         for point in known.points() {
@@ -188,7 +176,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // All were asked for near there.
             set.push(&hit.normal, point);
         }
-        let held = overlap::overlap(inquiry, &mut set, centre, &dir)?;
+        let held = overlap::overlap(inquiry, &mut set, centre, None, &dir)?;
         let corners = match held.between {
             Some([p, q]) => [p, q, q, q],
             None => held.corners.map(|i| set.point(i)),
@@ -232,18 +220,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
     }
 
-    /// Do the objects overlap? With memory, or cold.
+    /// Do the objects overlap? With memory, or cold. [`Stop::Apart`] where they do not.
     #[inline]
-    pub fn intersect(&self, state: Option<&mut State>) -> Result<bool, Fault> {
-        let Some(state) = state else {
-            return match overlap::cold(&self.md, self.centre.as_ref(), || self.cold_start()) {
-                Ok(()) => Ok(true),
-                Err(Stop::Apart(_)) => Ok(false),
-                Err(Stop::Fault(fault)) => Err(fault),
-            };
-        };
+    pub fn intersect(&self, state: Option<&mut State>) -> Result<(), Stop> {
         let first = || self.cold_start();
-        intersect::intersect(&self.md, self.centre.as_ref(), first, state)
+        match state {
+            None => overlap::cold(&self.md, self.centre.as_ref(), first),
+            Some(state) => intersect::intersect(&self.md, self.centre.as_ref(), first, state),
+        }
     }
 
     /// A local minimum of the depth.
@@ -252,38 +236,26 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         settings: &Settings,
         wants_pos: bool,
-    ) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
-            return Ok(Answer::Miss(n));
-        }
-        let cold = self.is_behind(state)?;
-        let mut known = Known::default();
-        let mut hit = Penetration::default();
-        let found = self
-            .local_minimum(state.solver(cold), settings, &mut known, &mut hit)
-            .and_then(|minimum| {
-                self.prove(&mut hit, &mut known, settings, false)?;
-                Ok(minimum)
-            });
-        let minimum = match found {
-            Ok(minimum) => minimum,
-            Err(stop) => return self.stopped(state, stop),
-        };
-        state.overlap();
-        self.face(state);
-        if !minimum {
-            hit.pos = hit.middle();
-            return Ok(Answer::Limit(hit));
-        }
-        if wants_pos {
-            let mut seen = Seen::Nothing;
-            seen.rest(
-                &|k: usize| known.points().get(k).map(|p| [p.v1, p.v2]),
-                &hit,
-            );
-            hit.pos = self.position(&hit, settings.tolerance, &seen)?;
-        }
-        Ok(Answer::Hit(hit))
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.asked(state, |state, _| {
+            let cold = self.is_behind(state)?;
+            let mut known = Known::default();
+            let memory = state.solver(cold);
+            hit.limit = !self.local_minimum(memory, settings, &mut known, hit)?;
+            self.prove(hit, &mut known, settings, false)?;
+            state.overlap();
+            self.face(state);
+            if hit.limit {
+                hit.pos = hit.middle();
+            } else if wants_pos {
+                let mut seen = Seen::Nothing;
+                let points = |k: usize| known.points().get(k).map(|p| [p.v1, p.v2]);
+                seen.rest(&points, hit);
+                hit.pos = self.position(hit, settings.tolerance, &seen)?;
+            }
+            Ok(())
+        })
     }
 
     /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
@@ -293,13 +265,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         settings: &Settings,
         wants_pos: bool,
-    ) -> Result<Answer, Fault> {
-        self.as_published(None, state, settings, wants_pos)
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.as_published(None, state, settings, wants_pos, hit)
     }
 
     /// The same among the directions perpendicular to the unit vector `m`.
-    pub fn planar(&self, m: Vec3, state: &mut State, settings: &Settings) -> Result<Answer, Fault> {
-        self.as_published(Some(m), state, settings, false)
+    pub fn planar(
+        &self,
+        m: Vec3,
+        state: &mut State,
+        settings: &Settings,
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.as_published(Some(m), state, settings, false, hit)
     }
 
     /// The paper's method; in the plane with unit normal `flat`, where there is one.
@@ -309,26 +288,26 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         settings: &Settings,
         wants_pos: bool,
-    ) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
-            return Ok(Answer::Miss(n));
-        }
-        let mut start = state.leaving().unwrap_or_else(|| self.cold_start());
-        if let Some(m) = flat {
-            let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
-            start = in_plane(start).unwrap_or_else(|| perpendicular(&m));
-        }
-        let until = Until::Shortcut;
-        let found = incremental::penetration(&self.md, start, flat, until, settings, |_| ())?;
-        let answer = self.proven(found, &mut Known::default(), settings, flat.is_some())?;
-        self.remember(state, &answer)?;
-        match answer {
-            Answer::Hit(mut hit) if wants_pos => {
-                hit.pos = self.position(&hit, settings.tolerance, &Seen::Nothing)?;
-                Ok(Answer::Hit(hit))
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.asked(state, |state, _| {
+            let mut start = state.leaving().unwrap_or_else(|| self.cold_start());
+            if let Some(m) = flat {
+                let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
+                start = in_plane(start).unwrap_or_else(|| perpendicular(&m));
             }
-            other => Ok(other.in_the_middle()),
-        }
+            let until = Until::Shortcut;
+            *hit = incremental::penetration(&self.md, start, flat, until, settings, |_| ())?;
+            self.prove(hit, &mut Known::default(), settings, flat.is_some())?;
+            *state = State::towards(hit.normal);
+            self.face(state);
+            hit.pos = if wants_pos && !hit.limit {
+                self.position(hit, settings.tolerance, &Seen::Nothing)?
+            } else {
+                hit.middle()
+            };
+            Ok(())
+        })
     }
 
     /// The minimum depth at MPR's price: within the tolerance or a thousandth of the depth,
@@ -339,14 +318,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut State,
         settings: &Settings,
         wants_pos: bool,
-    ) -> Result<Answer, Fault> {
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
         let limits = Limits {
             tolerance: settings.tolerance,
             gap: GAP,
             supports: MPR_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(self.centre.as_ref(), state, &limits, None, wants_pos)
+        self.global(self.centre.as_ref(), state, &limits, None, wants_pos, hit)
     }
 
     /// The global minimum of the depth, proven by support points alone: from the state,
@@ -357,18 +337,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         arena: &mut dyn Arena,
         wants_pos: bool,
-    ) -> Result<Answer, Fault> {
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
         let limits = Limits {
             tolerance: settings.tolerance,
             gap: 0.0,
             supports: MOST_SUPPORTS,
             iterations: settings.max_iterations,
         };
-        self.global(None, state, &limits, Some(arena), wants_pos)
+        self.global(None, state, &limits, Some(arena), wants_pos, hit)
     }
 
     /// The global search, from the state; `apex` is a point that is trusted to be in D.
-    #[inline(always)]
+    #[inline(never)]
     fn global(
         &self,
         apex: Option<&SupportPoint>,
@@ -376,88 +357,48 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         limits: &Limits,
         arena: Option<&mut dyn Arena>,
         wants_pos: bool,
-    ) -> Result<Answer, Fault> {
-        let mut asked = None;
-        if state.was_apart() {
-            let mut failed = SupportSet::EMPTY;
-            if let Some(n) = self.separated(state, &mut failed)? {
-                return Ok(Answer::Miss(n));
-            }
-            asked = failed
-                .lowest()
-                .map(|i| (failed.direction(i), failed.point(i)));
-        }
-        let (first, asked) = match asked {
-            Some((first, point)) => (first, Some(point)),
-            None => (state.leaving().unwrap_or_else(|| self.cold_start()), None),
-        };
-        // Before all that a search needs: most misses are told by the first support point.
-        let mut inquiry = Inquiry::new(&self.md);
-        let point = match inquiry.first(&first, asked) {
-            Ok(point) => point,
-            Err(stop) => return self.stopped(state, stop),
-        };
-        let request = Request {
-            centre: apex,
-            first,
-            others: state.others(),
-            hint: state.hint(),
-            limits,
-            wants_pos,
-            mark: state.mark(),
-            stands: wants_pos && state.stands(),
-        };
-        let mut basis = Basis::default();
-        let kept = self.lasting.then_some(&mut basis);
-        let mut hit = Penetration::default();
-        let mut seen = Seen::Nothing;
-        #[allow(clippy::needless_match, reason = "it shortens the lifetime")]
-        let arena: Option<&mut dyn Arena> = match arena {
-            Some(arena) => Some(arena),
-            None => None,
-        };
-        let out = (&mut hit, &mut seen);
-        let found = global::minimum(inquiry, &point, &request, arena, kept, out);
-        let found = found.and_then(|proven| {
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.asked(state, |state, nearest| {
+            let (first, asked) = match nearest {
+                Some((first, point)) => (first, Some(point)),
+                None => (state.leaving().unwrap_or_else(|| self.cold_start()), None),
+            };
+            // Before all that a search needs: most misses are told by the first support point.
+            let mut inquiry = Inquiry::new(&self.md);
+            let point = inquiry.first(&first, asked)?;
+            let request = Request {
+                centre: apex,
+                first,
+                others: state.others(),
+                hint: state.hint(),
+                limits,
+                wants_pos,
+                mark: state.mark(),
+                stands: wants_pos && state.stands(),
+            };
+            let mut basis = Basis::default();
+            let kept = self.lasting.then_some(&mut basis);
+            let mut seen = Seen::Nothing;
+            let arena = arena.map(|arena| arena as &mut dyn Arena);
+            let out = (&mut *hit, &mut seen);
+            hit.limit = !global::minimum(inquiry, &point, &request, arena, kept, out)?;
             if hit.depth <= limits.tolerance && !(hit.depth_lower > 0.0) {
                 seen = Seen::Nothing;
                 let mut inquiry = Inquiry::new(&self.md);
                 let known = Known::default();
-                self.touching(&mut inquiry, None, &mut hit, &known, limits.tolerance)?;
+                self.touching(&mut inquiry, None, hit, &known, limits.tolerance)?;
             }
-            Ok(proven)
-        });
-        match found {
-            Ok(true) => {
-                if wants_pos {
-                    self.place(state, &basis, &seen, &mut hit, limits)?;
-                } else {
-                    self.keep(state, &basis, None, 0);
-                }
-                Ok(Answer::Hit(hit))
-            }
-            Ok(false) => {
-                self.floor(&mut hit, limits)?;
+            if hit.limit {
+                self.floor(hit, limits)?;
                 hit.pos = hit.middle();
-                self.keep(state, &basis, None, 0);
-                Ok(Answer::Limit(hit))
+            } else if wants_pos {
+                self.place(state, &basis, &seen, hit, limits)?;
+                return Ok(());
             }
-            Err(stop) => self.stopped(state, stop),
-        }
-    }
-
-    /// The answer of a search that ended where it asked.
-    fn stopped(&self, state: &mut State, stop: Stop) -> Result<Answer, Fault> {
-        match stop {
-            Stop::Apart(n) => {
-                let miss = Answer::Miss(n);
-                if self.lasting {
-                    self.remember(state, &miss)?;
-                }
-                Ok(miss)
-            }
-            Stop::Fault(fault) => Err(fault),
-        }
+            self.keep(state, &basis, None, 0);
+            Ok(())
+        })
     }
 
     /// Leaves the basis of a proof behind, where somebody keeps the state. `middle`: of a face
@@ -553,37 +494,25 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         dir: Vec3,
         state: &mut State,
         settings: &Settings,
-    ) -> Result<Answer, Fault> {
-        if let Some(n) = self.still_apart(state)? {
-            return Ok(Answer::Miss(n));
-        }
-        let way = match along::penetration(&self.md, &dir, state.portal(), settings) {
-            Ok(way) => way,
-            Err(stop) => return self.stopped(state, stop),
-        };
-        let mut known = Known::default();
-        for plane in way.portal.iter().flat_map(|p| &p.planes) {
-            known.add(&plane.point);
-        }
-        let found = if way.limit {
-            Answer::Limit(way.hit)
-        } else {
-            Answer::Hit(way.hit)
-        };
-        let mut answer = self.proven(found, &mut known, settings, false)?;
-        if let Answer::Hit(hit) | Answer::Limit(hit) = &mut answer {
-            // The bound along dir in place of the one all around.
-            hit.depth_lower = way.hit.depth_lower;
-            // Where rounding ended the search the answer may yet be as good as asked for.
-            if hit.depth - hit.depth_lower <= settings.tolerance.max(2.0 * way.error) {
-                answer = Answer::Hit(*hit);
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.asked(state, |state, _| {
+            let last = state.portal();
+            let (found, portal) = along::penetration(&self.md, &dir, last, settings)?;
+            *hit = found;
+            let mut known = Known::default();
+            for plane in portal.iter().flat_map(|p| &p.planes) {
+                known.add(&plane.point);
             }
-        }
-        self.remember(state, &answer)?;
-        if let (Some(portal), Answer::Hit(_) | Answer::Limit(_)) = (way.portal, &answer) {
-            state.keep_portal(portal.planes.map(|plane| plane.normal));
-        }
-        Ok(answer.in_the_middle())
+            self.prove(hit, &mut known, settings, false)?;
+            *state = State::towards(hit.normal);
+            self.face(state);
+            if let Some(portal) = portal {
+                state.keep_portal(portal.planes.map(|plane| plane.normal));
+            }
+            hit.pos = hit.middle();
+            Ok(())
+        })
     }
 }
 
@@ -618,10 +547,10 @@ mod tests {
             first_dir: None,
             lasting: true,
         };
-        match pair.local(&mut state, &SETTINGS, true).unwrap() {
-            Answer::Hit(hit) => (pair.md.supports(), hit.depth, state),
-            other => panic!("{other:?}"),
-        }
+        let mut hit = Penetration::default();
+        pair.local(&mut state, &SETTINGS, true, &mut hit).unwrap();
+        assert!(!hit.limit);
+        (pair.md.supports(), hit.depth, state)
     }
 
     #[test]
@@ -674,9 +603,9 @@ mod tests {
                     first_dir: None,
                     lasting: true,
                 };
-                let Ok(Answer::Hit(hit)) = pair.local(&mut state, &SETTINGS, false) else {
-                    panic!("no minimum");
-                };
+                let mut hit = Penetration::default();
+                pair.local(&mut state, &SETTINGS, false, &mut hit).unwrap();
+                assert!(!hit.limit);
                 assert!((hit.depth - (0.5 - least)).abs() < 64.0 * EPSILON, "{step}");
                 assert!((hit.dir - whole * Vec3::z()).norm() < 64.0 * EPSILON);
                 assert!((hit.point1 - hit.point2 - hit.dir * hit.depth).norm() < 64.0 * EPSILON);
@@ -708,9 +637,8 @@ mod tests {
                 lasting: true,
             };
             let mut state = State::guess(&r.direction());
-            if let Ok(Answer::Hit(hit) | Answer::Limit(hit)) =
-                pair.local(&mut state, &SETTINGS, true)
-            {
+            let mut hit = Penetration::default();
+            if pair.local(&mut state, &SETTINGS, true, &mut hit).is_ok() {
                 assert_eq!(hit.depth_lower, 0.0);
             }
         }

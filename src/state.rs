@@ -20,7 +20,6 @@
 //! A direction that is zero stands for none. What a query for the depth of an overlap leaves
 //! behind also tells how the centres lay, where they are given ([`State::face`]).
 
-use crate::contact::Answer;
 use crate::hull::global::Basis;
 use crate::local::Memory;
 use crate::math::{Real, Vec3, as_unit, normalised, unit};
@@ -63,9 +62,14 @@ impl State {
     /// A fresh state that starts from `dir`; cold when it is zero or not finite.
     pub fn guess(dir: &Vec3) -> Self {
         match unit(dir) {
-            Some(n) => Self::of(OVERLAP, n),
+            Some(n) => Self::towards(n),
             None => Self::default(),
         }
+    }
+
+    /// The pair overlaps, and obj2 leaves along this unit direction.
+    pub fn towards(n: Vec3) -> Self {
+        Self::of(OVERLAP, n)
     }
 
     /// The state of a pair becomes that of the same objects in the other order, whose D is
@@ -313,14 +317,6 @@ impl State {
         let [x, y, z, ..] = &mut self.memory.curvature;
         [*x, *y, *z] = middle.into();
         (self.memory.count, self.memory.curved) = (mark as u32, (mark >> 32) as u32);
-    }
-
-    /// Keeps the kind of the answer and its direction alone.
-    pub fn remember(&mut self, answer: &Answer) {
-        match answer {
-            Answer::Miss(n) => *self = Self::of(APART, *n),
-            Answer::Hit(hit) | Answer::Limit(hit) => *self = Self::of(OVERLAP, hit.normal),
-        }
     }
 }
 

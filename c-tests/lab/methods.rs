@@ -9,7 +9,7 @@ use std::ptr::null_mut;
 use ccd::internals::ffi::{
     CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
 };
-use ccd::internals::{Answer as Outcome, MinkowskiDifference, Settings, Until, Vec3, incremental};
+use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 
 use super::deep::{Deep, Polytope};
 use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
@@ -289,9 +289,7 @@ fn paper<'a>(
         let from = start.direction(&pair.truth).map(Vec3::from).or(memory);
         let from = from.unwrap_or_else(|| pair.truth.cold.into());
         let answer = incremental(&md, from, None, until, &settings, |_| ());
-        let (Ok(Outcome::Hit(found)) | Ok(Outcome::Limit(found))) = answer else {
-            return None;
-        };
+        let found = answer.ok()?;
         last = Some(found.dir);
         Some(Answer {
             depth: found.depth,

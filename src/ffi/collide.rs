@@ -8,45 +8,11 @@ use core::ffi::{c_int, c_void};
 use super::arena;
 use super::callbacks::{Call, Query};
 use super::types::{ccd_t, ccd_vec3_t};
-use super::warm::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
-use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm};
+use super::warm::intersect::intersect;
+use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_s, write};
 use super::warm::penetration::run;
 use crate::contact::Penetration;
-use crate::gjk::overlap;
 use crate::math::Real;
-
-/// What libccd returns where the extension has this code.
-pub fn libccd_s(code: c_int) -> c_int {
-    match code {
-        CCD_HIT | CCD_LIMIT => 0,
-        CCD_NO_MEMORY => -2,
-        _ => CCD_MISS,
-    }
-}
-
-/// Writes the outputs that are not NULL.
-///
-/// # Safety
-/// \[outputs\] of the module contract.
-pub unsafe fn write(
-    hit: &Penetration,
-    depth: *mut Real,
-    dir: *mut ccd_vec3_t,
-    pos: *mut ccd_vec3_t,
-) {
-    // SAFETY: [outputs].
-    unsafe {
-        if let Some(depth) = depth.as_mut() {
-            *depth = hit.depth;
-        }
-        if let Some(dir) = dir.as_mut() {
-            *dir = hit.dir.into();
-        }
-        if let Some(pos) = pos.as_mut() {
-            *pos = hit.pos.into();
-        }
-    }
-}
 
 /// Do the objects overlap? Starts from the centres, and relies on their lying in the objects.
 ///
@@ -72,9 +38,9 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     ccd: *const ccd_t,
 ) -> c_int {
     // SAFETY: passed on.
-    match unsafe { Query { obj1, obj2, ccd }.pair(Call::Gjk, false) } {
-        Some(pair) => c_int::from(overlap::cold(&pair.md, None, || pair.cold_start()).is_ok()),
-        None => 0,
+    unsafe {
+        let pair = Query { obj1, obj2, ccd }.pair(Call::Gjk, false);
+        intersect(pair, core::ptr::null_mut())
     }
 }
 
@@ -118,8 +84,8 @@ unsafe fn gjk_penetration(
             query,
             Call::Gjk,
             core::ptr::null_mut(),
-            |pair, state, settings| {
-                arena::with(|arena| pair.minimum(state, settings, arena, wants_pos))
+            |pair, state, settings, hit| {
+                arena::with(|arena| pair.minimum(state, settings, arena, wants_pos, hit))
             },
             |hit, _| put(hit),
         )

@@ -14,7 +14,7 @@ use core::ptr::null_mut;
 
 use super::types::{
     CCD_PT_EDGE, CCD_PT_FACE, CCD_PT_VERTEX, ccd_list_t, ccd_pt_edge_t, ccd_pt_el_t, ccd_pt_face_t,
-    ccd_pt_t, ccd_pt_vertex_t, ccd_support_t, ccd_vec3_t,
+    ccd_pt_t, ccd_pt_vertex_t, ccd_support_t,
 };
 use super::{free, malloc};
 use crate::gjk::barycentric;
@@ -25,9 +25,9 @@ use crate::math::{EPSILON, Real, Vec3};
 pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
     // SAFETY: [outputs].
     unsafe {
-        list_init(&raw mut (*pt).vertices);
-        list_init(&raw mut (*pt).edges);
-        list_init(&raw mut (*pt).faces);
+        for list in lists(pt) {
+            list_init(list);
+        }
         forget_nearest(pt);
     }
 }
@@ -74,12 +74,10 @@ pub unsafe extern "C-unwind" fn ccdPtAddVertex(
     }
     // SAFETY: [polytope], [inputs] for v, and `vertex` is a new block of its size ([heap]).
     unsafe {
-        let v = *v;
         (*vertex).id = 0;
-        (*vertex).v = v;
+        (*vertex).v = *v;
         list_init(&raw mut (*vertex).edges);
-        let distance = (v.v, Vec3::from(v.v).norm_squared());
-        insert(pt, &raw mut (*vertex).el, CCD_PT_VERTEX, distance);
+        insert(pt, &raw mut (*vertex).el, CCD_PT_VERTEX);
     }
     vertex
 }
@@ -104,7 +102,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddEdge(
         (*edge).faces = [null_mut(); 2];
         list_append(&raw mut (*v1).edges, &raw mut (*edge).vertex_list[0]);
         list_append(&raw mut (*v2).edges, &raw mut (*edge).vertex_list[1]);
-        insert(pt, &raw mut (*edge).el, CCD_PT_EDGE, edge_distance(edge));
+        insert(pt, &raw mut (*edge).el, CCD_PT_EDGE);
     }
     edge
 }
@@ -131,7 +129,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
             let free_side = usize::from(!(*edge).faces[0].is_null());
             (*edge).faces[free_side] = face;
         }
-        insert(pt, &raw mut (*face).el, CCD_PT_FACE, face_distance(face));
+        insert(pt, &raw mut (*face).el, CCD_PT_FACE);
     }
     face
 }
@@ -141,15 +139,8 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
 pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
     // SAFETY: [polytope].
     unsafe {
-        for vertex in elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices) {
-            let v = (*vertex).v.v;
-            set_distance(&raw mut (*vertex).el, (v, Vec3::from(v).norm_squared()));
-        }
-        for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
-            set_distance(&raw mut (*edge).el, edge_distance(edge));
-        }
-        for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
-            set_distance(&raw mut (*face).el, face_distance(face));
+        for element in lists(pt).into_iter().flat_map(|list| elements(list)) {
+            measure(element);
         }
     }
 }
@@ -162,14 +153,8 @@ pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_e
     unsafe {
         if (*pt).nearest.is_null() {
             forget_nearest(pt);
-            for list in [
-                &raw mut (*pt).vertices,
-                &raw mut (*pt).edges,
-                &raw mut (*pt).faces,
-            ] {
-                for element in elements(list) {
-                    update_nearest(pt, element);
-                }
+            for element in lists(pt).into_iter().flat_map(|list| elements(list)) {
+                update_nearest(pt, element);
             }
         }
         (*pt).nearest
@@ -246,33 +231,61 @@ unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     }
 }
 
+/// The polytope's lists, by [`ccd_pt_el_t::kind`].
+#[inline(always)]
+unsafe fn lists(pt: *mut ccd_pt_t) -> [*mut ccd_list_t; 3] {
+    // SAFETY: [polytope].
+    unsafe {
+        [
+            &raw mut (*pt).vertices,
+            &raw mut (*pt).edges,
+            &raw mut (*pt).faces,
+        ]
+    }
+}
+
 /// Ends the addition of a new element: its common part, its list, `nearest`.
 #[inline(always)]
-unsafe fn insert(
-    pt: *mut ccd_pt_t,
-    element: *mut ccd_pt_el_t,
-    kind: c_int,
-    distance: (ccd_vec3_t, Real),
-) {
+unsafe fn insert(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t, kind: c_int) {
     // SAFETY: [polytope].
     unsafe {
         (*element).kind = kind;
-        set_distance(element, distance);
+        measure(element);
+        let [vertices, edges, faces] = lists(pt);
         let list = match kind {
-            CCD_PT_VERTEX => &raw mut (*pt).vertices,
-            CCD_PT_EDGE => &raw mut (*pt).edges,
-            _ => &raw mut (*pt).faces,
+            CCD_PT_VERTEX => vertices,
+            CCD_PT_EDGE => edges,
+            _ => faces,
         };
         list_append(list, &raw mut (*element).list);
         update_nearest(pt, element);
     }
 }
 
+/// An element's point nearest to the origin, and its squared distance.
 #[inline(always)]
-unsafe fn set_distance(element: *mut ccd_pt_el_t, (witness, dist): (ccd_vec3_t, Real)) {
-    // SAFETY: [polytope].
+unsafe fn measure(element: *mut ccd_pt_el_t) {
+    let origin = Vec3::zeros();
+    // SAFETY: [polytope]; an element's kind is that of its block.
     unsafe {
-        (*element).witness = witness;
+        let (witness, dist) = match (*element).kind {
+            CCD_PT_VERTEX => {
+                let v = Vec3::from((*element.cast::<ccd_pt_vertex_t>()).v.v);
+                (v, v.norm_squared())
+            }
+            CCD_PT_EDGE => {
+                let ends = (*element.cast::<ccd_pt_edge_t>()).vertex;
+                let [a, b] = ends.map(|v| Vec3::from((*v).v.v));
+                let nearest = barycentric::segment(&origin, &a, &b);
+                (nearest.point, nearest.distance2)
+            }
+            _ => {
+                let [a, b, c] = corners(element.cast()).map(|v| Vec3::from((*v).v.v));
+                let nearest = barycentric::triangle(&origin, &a, &b, &c);
+                (nearest.point, nearest.distance2)
+            }
+        };
+        (*element).witness = witness.into();
         (*element).dist = dist;
     }
 }
@@ -316,24 +329,6 @@ fn equal(a: Real, b: Real) -> bool {
     let difference = (a - b).abs();
     let (a, b) = (a.abs(), b.abs());
     difference < EPSILON || difference < EPSILON * if b > a { b } else { a }
-}
-
-/// The point of an edge nearest to the origin and its squared distance.
-#[inline(always)]
-unsafe fn edge_distance(edge: *const ccd_pt_edge_t) -> (ccd_vec3_t, Real) {
-    // SAFETY: [polytope].
-    let [a, b] = unsafe { (*edge).vertex.map(|v| Vec3::from((*v).v.v)) };
-    let nearest = barycentric::segment(&Vec3::zeros(), &a, &b);
-    (nearest.point.into(), nearest.distance2)
-}
-
-/// The point of a face nearest to the origin and its squared distance.
-#[inline(always)]
-unsafe fn face_distance(face: *const ccd_pt_face_t) -> (ccd_vec3_t, Real) {
-    // SAFETY: [polytope].
-    let [a, b, c] = unsafe { corners(face).map(|v| Vec3::from((*v).v.v)) };
-    let nearest = barycentric::triangle(&Vec3::zeros(), &a, &b, &c);
-    (nearest.point.into(), nearest.distance2)
 }
 
 /// The two vertices of the first edge, and the one of the second that is neither.

@@ -9,27 +9,24 @@
 //! it: where those points still surround the origin, they are the whole answer. Whatever
 //! fails is not lost: the points go into the search.
 
-use crate::gjk::overlap::overlap;
+use crate::gjk::overlap::{ROOM, overlap};
 use crate::gjk::separation::{leave, still_apart};
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::math::{Vec3, unit};
 use crate::state::State;
 
-/// Room for the points of a query: what the state's directions give, and a simplex.
-const ROOM: usize = 8;
-
-/// Do the objects overlap? `centre`, an interior point of D, is trusted. Where there is none, the
+/// Shows that the objects overlap. `centre`, an interior point of D, is trusted. Where there is none, the
 /// search begins along `first`, unit.
 ///
 /// # Errors
-/// A callback's answer that is not finite.
+/// [`Stop::Apart`]; a callback's answer that is not finite.
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     centre: Option<&SupportPoint>,
     first: impl FnOnce() -> Vec3,
     state: &mut State,
-) -> Result<bool, Fault> {
+) -> Result<(), Stop> {
     let mut inquiry = Inquiry::new(md);
     let mut set = SupportSet::<ROOM>::EMPTY;
     // A centre at the origin is no corner to look from.
@@ -42,27 +39,27 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
         inquiry.precision.note(centre);
     }
     let was_apart = state.separating().is_some();
-    if still_apart(&mut inquiry, &mut set, state)?.is_some() {
-        return Ok(false);
+    if let Some(n) = still_apart(&mut inquiry, &mut set, state)? {
+        return Err(Stop::Apart(n));
     }
-    let answer = match surround(&mut inquiry, &mut set, state) {
-        Ok(()) => overlap(&mut inquiry, &mut set, inner, &dir.unwrap_or_else(first)),
-        Err(stop) => Err(stop),
-    };
-    match answer {
-        Ok(held) => {
-            // What a depth query left is worth more than this.
-            if !state.overlapped() {
-                *state = State::surrounded(held.corners.map(|i| set.direction(i)));
-            }
-            Ok(true)
+    let answer = surround(&mut inquiry, &mut set, state).and_then(|()| {
+        overlap(
+            &mut inquiry,
+            &mut set,
+            inner,
+            None,
+            &dir.unwrap_or_else(first),
+        )
+    });
+    match &answer {
+        // What a depth query left is worth more than this.
+        Ok(held) if !state.overlapped() => {
+            *state = State::surrounded(held.corners.map(|i| set.direction(i)));
         }
-        Err(Stop::Apart(n)) => {
-            leave(&mut inquiry, state, was_apart, n)?;
-            Ok(false)
-        }
-        Err(Stop::Fault(fault)) => Err(fault),
+        Err(Stop::Apart(n)) => leave(&mut inquiry, state, was_apart, *n)?,
+        _ => {}
     }
+    answer.map(|_| ())
 }
 
 /// Asks along the directions of the state's last tetrahedron. `Err`: one separates.

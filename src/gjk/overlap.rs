@@ -19,9 +19,9 @@
 //! difference for a first corner where they are given and trusted; on a million pairs of the
 //! kinds in use that is a sixth fewer support points than libccd's portal asks for.
 
-use crate::gjk::simplex::{Added, Simplex, direction, room};
+use crate::gjk::simplex::{Simplex, direction, room};
 use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
-use crate::known::support_set::{Beyond, Inquiry, Stop, SupportSet};
+use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::math::{Real, Vec3, larger, unit};
 use crate::paper::portal::{Exit, Search, SupportPlane, Until};
 
@@ -51,19 +51,17 @@ fn beyond_first<A: SupportMap, B: SupportMap>(
     dir: &Vec3,
     first: &SupportPoint,
 ) -> Result<(), Stop> {
-    let mut set = SupportSet::<4>::EMPTY;
-    let mut simplex = Simplex::new();
-    if let Some(centre) = centre {
-        let c = set.push(&Vec3::zeros(), centre);
-        simplex = Simplex::around(c, &centre.v);
+    let mut set = SupportSet::<ROOM>::EMPTY;
+    let centre = centre.map(|centre| {
         inquiry.precision.note(centre);
-    }
-    let w = set.push(dir, first);
-    let (touch, size2) = (inquiry.precision.touch(), inquiry.precision.size2());
-    let way = simplex.add(w, first.v, touch, size2);
-    let next = way.and_then(|(way, _)| direction(&way)).unwrap_or(*dir);
-    search(inquiry, &mut set, simplex, next, Simplex::add).map(|_| ())
+        set.push(&Vec3::zeros(), centre)
+    });
+    let asked = set.push(dir, first);
+    overlap(inquiry, &mut set, centre, Some(asked), dir).map(|_| ())
 }
+
+/// Room for a simplex and what is known besides.
+pub const ROOM: usize = 8;
 
 /// Support points after which the portal decides: of a hundred thousand pairs of every kind
 /// in use none needs forty.
@@ -92,41 +90,36 @@ pub struct Held {
 ///
 /// `centre` is the index of a point of D that is trusted to be one, and need not be a
 /// support point: the origin is looked for between it and others. `dir`, unit, is asked
-/// first. Other points in the set stand in for a support point where they do as well. The
-/// set has room for more than four points; where it is full, points out of use give way.
-#[inline]
+/// first, unless it has found the point `asked`. Other points in the set stand in for a support
+/// point where they do as well. The set has room for more than four points; where it is full, points
+/// out of use give way.
+#[inline(never)]
 pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
     set: &mut SupportSet<N>,
     centre: Option<usize>,
+    asked: Option<usize>,
     dir: &Vec3,
 ) -> Result<Held, Stop> {
-    let simplex = match centre {
+    let mut dir = *dir;
+    let mut simplex = match centre {
         Some(c) => Simplex::around(c, &set.v(c)),
         None => Simplex::new(),
     };
-    search(inquiry, set, simplex, *dir, Simplex::add_called)
-}
-
-/// [`overlap`], from a simplex and a direction to ask. `add`: [`Simplex::add`], or its form that is
-/// called.
-#[inline(always)]
-fn search<A: SupportMap, B: SupportMap, const N: usize>(
-    inquiry: &mut Inquiry<'_, A, B>,
-    set: &mut SupportSet<N>,
-    mut simplex: Simplex,
-    mut dir: Vec3,
-    add: impl Fn(&mut Simplex, usize, Vec3, Real, Real) -> Option<Added>,
-) -> Result<Held, Stop> {
+    if let Some(w) = asked {
+        let (touch, size2) = (inquiry.precision.touch(), inquiry.precision.size2());
+        let way = simplex.add(w, set.v(w), touch, size2);
+        dir = way.and_then(|(way, _)| direction(&way)).unwrap_or(dir);
+    }
     // The square of the distance from the simplex; and whether points on the other side of
     // it, where it is a triangle, are known.
     let (mut nearest, mut backed) = (Real::INFINITY, false);
     let mut stalls = 0;
-    // A set of four holds no others.
-    let known = N > 4 && set.len() > simplex.len();
+    // Points of the set that have not been corners yet.
+    let mut known = set.len() - [centre, asked].iter().flatten().count();
     for _ in 0..STEPS {
         let touch = inquiry.precision.touch();
-        let other = if known {
+        let other = if known > 0 {
             set.farther(&dir, touch)
         } else {
             None
@@ -134,25 +127,27 @@ fn search<A: SupportMap, B: SupportMap, const N: usize>(
         let (w, at, touch) = match other {
             // A corner, by rounding.
             Some(w) if simplex.has(w) => break,
-            Some(w) => (w, set.v(w), touch),
+            Some(w) => {
+                known -= 1;
+                (w, set.v(w), touch)
+            }
             None => {
                 let place = room(set, &simplex);
                 match inquiry.ask_at(set, place, &dir)? {
-                    Beyond::Put { v, touch } => (place, v, touch),
+                    Some((v, touch)) => (place, v, touch),
                     // A callback that contradicts itself.
-                    Beyond::Known(_) => break,
+                    None => break,
                 }
             }
         };
         let solid = simplex.len() == 3;
         let size2 = inquiry.precision.size2();
-        let Some((way, distance2)) = add(&mut simplex, w, at, touch, size2) else {
+        let Some((way, distance2)) = simplex.add(w, at, touch, size2) else {
             let inside = simplex.has_inner();
             if !(nearest > touch * touch || backed || inside) {
                 // The origin is in the base's plane, within rounding: in one of the two
                 // tetrahedra on either side of it, if there is another.
-                let place = room(set, &simplex);
-                inquiry.ask_at(set, place, &-dir)?;
+                inquiry.ask_at(set, room(set, &simplex), &-dir)?;
             }
             let [i, j, k] = simplex.ids();
             return Ok(Held {
@@ -336,7 +331,7 @@ mod tests {
             let mut before = 0;
             for again in [false, true] {
                 before = if again { md.supports() } else { before };
-                let held = super::overlap(&mut inquiry, &mut set, None, &dir);
+                let held = super::overlap(&mut inquiry, &mut set, None, None, &dir);
                 assert_eq!(held.is_ok(), gap < 0.0, "gap {gap}");
             }
             without += u32::from(gap < 0.0 && md.supports() == before);

@@ -17,10 +17,10 @@
 //!
 //! The centres and the state choose where to look first, and prove nothing.
 
-use crate::contact::{Answer, Penetration, Settings};
+use crate::contact::{Penetration, Settings};
 use crate::gjk::distance::{Approach, End, Goal};
 use crate::known::support::{Fault, SupportMap};
-use crate::known::support_set::Inquiry;
+use crate::known::support_set::{Inquiry, Stop};
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::{query::Pair, state::State};
 
@@ -64,36 +64,21 @@ pub struct Distance {
     pub limit: bool,
 }
 
-/// The gap between two cores, as the distance algorithm leaves them.
-#[derive(Clone, Copy)]
-struct Gap {
-    /// They overlap, or so nearly that only a proof tells: along the normal the overlap was least, and
-    /// the points are at most a touch apart.
-    overlap: bool,
-    lower: Real,
-    normal: Vec3,
-    point1: Vec3,
-    point2: Vec3,
-    iterations: u64,
-    limit: bool,
-    /// Rounding of it, metres.
-    touch: Real,
-}
-
 /// The signed distance of a pair's objects with their margins. `minimum` is the global
 /// minimum of the depth of objects that overlap.
 pub fn signed_distance<A: SupportMap, B: SupportMap>(
     pair: &Pair<A, B>,
     state: &mut State,
     wanted: &Wanted,
-    minimum: impl Fn(&Pair<A, B>, &mut State, &Settings) -> Result<Answer, Fault>,
+    minimum: impl Fn(&Pair<A, B>, &mut State, &Settings, &mut Penetration) -> Result<(), Stop>,
 ) -> Result<Distance, Fault> {
     let depth = |state: &mut State| {
-        Ok(match minimum(pair, state, &wanted.settings)? {
-            Answer::Hit(hit) => Ok(deep(&hit, wanted, false)),
-            Answer::Limit(hit) => Ok(deep(&hit, wanted, true)),
-            Answer::Miss(normal) => Err(normal),
-        })
+        let mut hit = Penetration::default();
+        match minimum(pair, state, &wanted.settings, &mut hit) {
+            Ok(()) => Ok(Ok(deep(&hit, wanted))),
+            Err(Stop::Apart(normal)) => Ok(Err(normal)),
+            Err(Stop::Fault(fault)) => Err(fault),
+        }
     };
     // Cores that overlapped are asked for their depth at once.
     if state.overlapped() {
@@ -101,37 +86,25 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
             return Ok(distance);
         }
     }
-    let gap = cores(pair, state, wanted)?;
-    if !gap.overlap {
-        return Ok(apart(&gap, wanted));
+    let (mut gap, mut touch) = cores(pair, state, wanted)?;
+    if gap.hit {
+        *state = State::guess(&gap.normal);
+        let normal = match depth(state)? {
+            Ok(distance) => return Ok(distance),
+            Err(normal) => normal,
+        };
+        // The proof's word, whatever one support value says of it. The points are those where the
+        // search came upon the origin.
+        let mut inquiry = Inquiry::new(&pair.md);
+        let h = normal.dot(&inquiry.point(&normal)?.v);
+        touch = larger(inquiry.precision.touch(), h.abs());
+        (gap.lower, gap.normal, gap.iterations) = (-h, normal, 0);
     }
-    *state = State::guess(&gap.normal);
-    match depth(state)? {
-        Ok(distance) => Ok(distance),
-        Err(normal) => Ok(apart(&touching(pair, normal, gap)?, wanted)),
-    }
-}
-
-/// Where the cores touch: the proof's word, whatever one support value says of it. The points
-/// are those where the search came upon the origin.
-fn touching<A: SupportMap, B: SupportMap>(
-    pair: &Pair<A, B>,
-    normal: Vec3,
-    met: Gap,
-) -> Result<Gap, Fault> {
-    let mut inquiry = Inquiry::new(&pair.md);
-    let h = normal.dot(&inquiry.point(&normal)?.v);
-    Ok(Gap {
-        lower: -h,
-        normal,
-        touch: larger(inquiry.precision.touch(), h.abs()),
-        iterations: 0,
-        ..met
-    })
+    Ok(apart(&gap, touch, wanted))
 }
 
 /// The answer for cores that overlap by this much.
-fn deep(hit: &Penetration, wanted: &Wanted, limit: bool) -> Distance {
+fn deep(hit: &Penetration, wanted: &Wanted) -> Distance {
     let n = hit.normal;
     let margin = wanted.margin();
     // No depth is minus nothing.
@@ -148,37 +121,33 @@ fn deep(hit: &Penetration, wanted: &Wanted, limit: bool) -> Distance {
         point2: hit.point2 - n * wanted.margin2,
         iterations: hit.iterations,
         hit: lower < 0.0,
-        limit,
+        limit: hit.limit,
     }
 }
 
-/// The answer for cores with this gap.
-fn apart(gap: &Gap, wanted: &Wanted) -> Distance {
+/// The answer for cores that are this far apart, `touch` being rounding, metres.
+fn apart(cores: &Distance, touch: Real, wanted: &Wanted) -> Distance {
     let margin = wanted.margin();
-    let between = gap.point2 - gap.point1;
-    let length = between.norm();
+    let between = cores.point2 - cores.point1;
     // Points of the surfaces on the line between the cores' points, as far apart as those
     // less the margins. Of points that touch the line is rounding.
-    let along = if length > gap.touch {
-        between / length
+    let along = if cores.upper > touch {
+        between / cores.upper
     } else {
-        gap.normal
+        cores.normal
     };
-    let touch = gap.touch + 4.0 * EPSILON * margin;
-    let (mut lower, mut upper) = (gap.lower - margin, length - margin);
-    if lower.abs() <= touch {
+    let (mut lower, mut upper) = (cores.lower - margin, cores.upper - margin);
+    if lower.abs() <= touch + 4.0 * EPSILON * margin {
         lower = 0.0;
         upper = larger(upper, 0.0);
     }
     Distance {
         lower,
         upper: larger(upper, lower),
-        normal: gap.normal,
-        point1: gap.point1 + along * wanted.margin1,
-        point2: gap.point2 - along * wanted.margin2,
-        iterations: gap.iterations,
+        point1: cores.point1 + along * wanted.margin1,
+        point2: cores.point2 - along * wanted.margin2,
         hit: lower < 0.0,
-        limit: gap.limit,
+        ..*cores
     }
 }
 
@@ -186,14 +155,16 @@ fn apart(gap: &Gap, wanted: &Wanted) -> Distance {
 /// round part. Insensitive: 0.01 to 0.04 tried on the distances of the recorded contacts.
 const ONE_PART: Real = 0.02;
 
-/// The gap between the cores, from the state, else from the centres, else from the caller's
-/// first direction. A frame of its own, that is left before a minimum is looked for.
+/// The distance of the cores, from the state, else from the centres, else from the caller's first
+/// direction, and what of it is rounding, metres. A hit where they overlap, or so nearly that only a
+/// proof tells: along the normal the overlap was least, and the points are at most a touch apart. A
+/// frame of its own, that is left before a minimum is looked for.
 #[inline(never)]
 fn cores<A: SupportMap, B: SupportMap>(
     pair: &Pair<A, B>,
     state: &mut State,
     wanted: &Wanted,
-) -> Result<Gap, Fault> {
+) -> Result<(Distance, Real), Fault> {
     let mut inquiry = Inquiry::new(&pair.md);
     let mut search = Approach::new(&mut inquiry);
     let margin = wanted.margin();
@@ -209,21 +180,22 @@ fn cores<A: SupportMap, B: SupportMap>(
         iterations: wanted.settings.max_iterations,
     })?;
     let touch = search.inquiry.precision.touch();
-    let overlap = end == End::Inside || end == End::Stalled && !(search.lower >= -touch);
+    let hit = end == End::Inside || end == End::Stalled && !(search.lower >= -touch);
     let (point1, point2) = search.witnesses();
-    if !overlap {
+    if !hit {
         *state = left_behind(&search);
     }
-    Ok(Gap {
-        overlap,
+    let distance = Distance {
         lower: search.lower,
+        upper: (point2 - point1).norm(),
         normal: search.normal,
         point1,
         point2,
         iterations: search.iterations,
-        limit: !overlap && end != End::Met,
-        touch,
-    })
+        hit,
+        limit: !hit && end != End::Met,
+    };
+    Ok((distance, touch))
 }
 
 /// Starts from the directions that the state holds, if it holds any.

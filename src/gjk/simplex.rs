@@ -137,16 +137,8 @@ impl Simplex {
         Some((face.way, face.distance2))
     }
 
-    /// [`Simplex::add`] as a function of its own. Measured on the recorded contacts: where some
-    /// points are known a yes or no takes 0.6 %, a proof without centres 0.3 % more instructions by
-    /// it, and the library is 25 KB smaller; the cold yes or no and the distance would take 12 and
-    /// 1.3 % more.
-    #[inline(never)]
-    pub fn add_called(&mut self, id: usize, at: Vec3, touch: Real, size2: Real) -> Option<Added> {
-        self.add(id, at, touch, size2)
-    }
-
     /// How many corners there are: at most three.
+    #[inline(always)]
     pub fn len(&self) -> usize {
         self.len
     }
@@ -179,15 +171,11 @@ impl Simplex {
                     [true, true, true] => {
                         let n = normal(a, b, c);
                         let height = n.dot(a);
-                        let (order, way) = if height > 0.0 {
-                            ([j, i, k], -n)
-                        } else {
-                            ([i, j, k], n)
-                        };
+                        let inner = height > 0.0;
                         Face {
-                            order,
+                            order: if inner { [j, i, k] } else { [i, j, k] },
                             len: 3,
-                            way,
+                            way: if inner { -n } else { n },
                             distance2: height / n.norm_squared() * height,
                         }
                     }
@@ -389,10 +377,6 @@ pub fn direction(way: &Vec3) -> Option<Vec3> {
 /// one that is no corner.
 #[inline(always)]
 pub fn room<const N: usize>(set: &SupportSet<N>, simplex: &Simplex) -> usize {
-    if N == 4 {
-        // Indices and places are the same.
-        return simplex.place();
-    }
     if !set.is_full() {
         return set.len();
     }

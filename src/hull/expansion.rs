@@ -42,13 +42,13 @@
 //!
 //! # Where rounding has the last word
 //!
-//! A face that no support point is above is recomputed from its corners. If that takes it
-//! no farther the search ends with what it has, and the caller begins again elsewhere; if the
-//! origin is outside of it, by rounding then, yes or no is left to the caller.
+//! Where no support point is above the nearest face the search ends with what it has, and the
+//! caller begins again elsewhere; if the origin is outside of that face, by rounding then, yes or no
+//! is left to the caller.
 
 use crate::gjk::barycentric;
 use crate::hull::plane::Plane;
-use crate::hull::polytope::{Inserted, Polytope, Top};
+use crate::hull::polytope::{Polytope, Top};
 use crate::known::precision::Precision;
 use crate::known::support::SupportMap;
 use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
@@ -97,7 +97,7 @@ const NEIGHBOURS: core::ops::Range<Real> = if cfg!(feature = "single") {
 };
 
 /// How far a search goes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Limits {
     /// Largest gap between the bounds, metres, as asked for.
     pub tolerance: Real,
@@ -127,6 +127,7 @@ pub enum End {
 
 /// What a search knows besides the points and the polytope. A face's *key* is the signed
 /// square of its distance from the origin, m².
+#[derive(Default)]
 pub struct Progress {
     limits: Limits,
     /// Support points after the tetrahedron.
@@ -151,7 +152,7 @@ pub struct Progress {
     rounding2: f64,
     /// Once the origin is inside, a point is above a face by more than this, metres.
     level: Real,
-    /// The square of the size that tolerance, rounding and level belong to; -1: of none.
+    /// The square of the size that tolerance, rounding and level belong to.
     size2: Real,
     /// No mean of normals is asked in so many steps.
     plain: i32,
@@ -167,6 +168,7 @@ pub struct Progress {
 }
 
 /// The ball that the samples tell of, see the head of this file.
+#[derive(Default)]
 struct Core {
     /// Its radius, metres; 0 while none is known.
     radius: Real,
@@ -203,30 +205,9 @@ impl Progress {
         let known = (1 << points) - 2_u64;
         let mut progress = Self {
             limits: *limits,
-            iterations: 0,
-            same: (0.0, 0),
-            upper: Real::INFINITY,
-            error: 0.0,
-            coarse: false,
-            target: 0.0,
-            tolerance: 0.0,
-            allowed: 0.0,
-            rounding: 0.0,
-            rounding2: 0.0,
-            level: 0.0,
-            size2: -1.0,
             plain: FEW as i32 - points as i32,
-            vain: 0,
-            lone: 0.0,
-            core: Core {
-                radius: 0.0,
-                pause: 0,
-                failures: 0,
-                key: 0.0,
-                foretold: 0.0,
-                before: 0.0,
-            },
             spare: names.iter().fold(known, |spare, name| spare & !(1 << name)),
+            ..Self::default()
         };
         progress.resize(precision);
         progress
@@ -298,7 +279,7 @@ impl Progress {
     }
 
     /// Makes a known point a corner that is above a face by more than `level`, metres, if there
-    /// is one.
+    /// is one: was there room for it?
     #[inline(never)]
     fn spend<const P: usize, const F: usize>(
         &mut self,
@@ -306,14 +287,14 @@ impl Progress {
         hull: &mut Polytope<F>,
         face: usize,
         level: Real,
-    ) -> Option<Inserted> {
+    ) -> Option<bool> {
         let mut left = self.spare;
         while left != 0 {
             let i = left.trailing_zeros() as usize;
             let v = set.v(i);
             if hull.height(face, &Plane::point(&v)) > level {
                 let done = hull.insert(face, i, &v, level, &|i| set.v(i));
-                if done == Inserted::Yes {
+                if done {
                     self.spare &= !(1 << i);
                 }
                 return Some(done);
@@ -393,8 +374,7 @@ pub fn exact(tolerance: Real, precision: &Precision) -> bool {
 /// is above the nearest face. A point above it becomes a corner. Else what was asked along
 /// decides: a promise of the ball, a mean or a step aside that found nothing is
 /// forgotten; a normal that found nothing shows that no point lies above the face, so either
-/// the upper bound has fallen, or the face's plane can be sharpened, or rounding ends the
-/// search.
+/// the upper bound has fallen, or rounding ends the search.
 #[inline(always)]
 pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
     inquiry: &mut Inquiry<'_, A, B>,
@@ -429,8 +409,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         let level = progress.level(inside);
         if progress.spare != 0 {
             match progress.spend(set, hull, top.face, level) {
-                Some(Inserted::Yes) => continue,
-                Some(Inserted::NoRoom) => return Ok(End::NoRoom),
+                Some(true) => continue,
+                Some(false) => return Ok(End::NoRoom),
                 None => {}
             }
         }
@@ -446,26 +426,23 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
         let Asked { i, h, v } = inquiry.ask(set, &n)?;
         progress.step(aim, h);
         let height = hull.height(top.face, &Plane::point(&v));
-        if height > level && !(hull.borrowed(top.face) && is_corner(set, hull, top.face, &v)) {
+        if height > level {
             // The start's own points are far apart.
             if progress.iterations > 1 {
                 progress
                     .core
                     .measure(set, &hull.corners(top.face), [&n, &v], level);
             }
-            match hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
-                Inserted::Yes => continue,
-                Inserted::NoRoom => {
-                    // Its direction is asked again in the larger room.
-                    set.truncate(count);
-                    return Ok(End::NoRoom);
-                }
+            if hull.insert(top.face, i, &v, level, &|i| set.v(i)) {
+                continue;
             }
+            // Its direction is asked again in the larger room.
+            set.truncate(count);
+            return Ok(End::NoRoom);
         }
         match aim {
             // A lower upper bound moves the target nearer in the next turn.
             Aim::Normal if inquiry.lowest.depth < before => {}
-            Aim::Normal if hull.refine(top.face, &|i| set.v(i)) => set.truncate(count),
             Aim::Normal => return Ok(stuck),
             _ => {
                 set.truncate(count);
@@ -473,16 +450,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const P: usize, const F: usize>(
             }
         }
     }
-}
-
-#[cold]
-fn is_corner<const P: usize, const F: usize>(
-    set: &SupportSet<P>,
-    hull: &Polytope<F>,
-    face: usize,
-    v: &Vec3,
-) -> bool {
-    hull.corners(face).into_iter().any(|i| set.v(i) == *v)
 }
 
 impl Progress {

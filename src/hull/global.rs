@@ -162,7 +162,6 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
         hit,
         seen,
         open: None,
-        stuck: false,
     };
     search.run(first)
 }
@@ -194,8 +193,6 @@ struct Search<'q, 'r, A, B> {
     /// Whether it is proven, where rounding has ended all expansions so far: the answer where it
     /// ends the last one too.
     open: Option<bool>,
-    /// Was that one stuck?
-    stuck: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
@@ -236,7 +233,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let dir = self.request.first;
         let depth = dir.dot(&first.v);
         self.inquiry.lowest = Lowest { depth, dir };
-        (*self.hit, self.open, self.stuck) = (Penetration::default(), None, false);
+        (*self.hit, self.open) = (Penetration::default(), None);
         if let Some(basis) = &mut self.basis {
             **basis = Basis::default();
         }
@@ -321,12 +318,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     #[inline(never)]
     fn expanded(&mut self, start: &mut Handed) -> Result<bool, Stop> {
         let mut hull = Polytope::<{ FIRST.1 }>::blank(self.inquiry.precision.size());
-        let mut large = false;
         for way in WAYS {
-            // What a larger room has not shown no other tetrahedron of the same points will.
-            if large && way != Way::Surround {
-                continue;
-            }
             // What a try has handed over is named.
             if way != Way::Known && start.set.is_full() {
                 start.set.truncate(START);
@@ -356,18 +348,15 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 continue;
             }
             let end = expand(&mut self.inquiry, set, &mut hull, &mut progress)?;
+            let proven = match end {
+                End::NoRoom => self.widened(set, &hull, &mut progress)?,
+                end => self.answer(set, &hull, &progress, end)?,
+            };
             // Where an expansion stays open or is stuck, rounding had the last word: from another
             // tetrahedron it may not.
-            if end != End::NoRoom {
-                if let Some(proven) = self.answer(set, &hull, &progress, end)? {
-                    return Ok(proven);
-                }
-                continue;
-            }
-            if let Some(proven) = self.widened(set, &hull, &mut progress)? {
+            if let Some(proven) = proven {
                 return Ok(proven);
             }
-            large = !self.stuck;
         }
         Ok(self.open.unwrap_or_else(|| {
             let set = &start.set;
@@ -428,9 +417,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             normal: dir,
             point1,
             point2,
-            pos: Vec3::zeros(),
             extent,
             iterations,
+            ..Penetration::default()
         };
     }
 
@@ -442,7 +431,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     fn surround<const P: usize>(&mut self, set: &mut SupportSet<P>) -> Result<[usize; 4], Stop> {
         set.truncate(START);
         let dir = self.inquiry.lowest.dir;
-        Ok(overlap::overlap(&mut self.inquiry, set, None, &dir)?.corners)
+        let mut around = SupportSet::<{ overlap::ROOM }>::EMPTY;
+        let held = overlap::overlap(&mut self.inquiry, &mut around, None, None, &dir)?;
+        let mut take = |i| set.push(&around.direction(i), &around.point(i));
+        Ok(held.corners.map(&mut take))
     }
 
     /// The answer of an expansion: is it proven? `None` where the expansion has not shown the
@@ -474,7 +466,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         };
         if open {
             self.open = Some(proven);
-            self.stuck = end == End::Stuck;
             return Ok(None);
         }
         Ok(Some(proven))

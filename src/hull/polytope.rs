@@ -98,8 +98,6 @@ const SIGNED: f64 = 64.0;
 /// by. Derived: of two products of a unit vector with a point, three each and their sums, and of
 /// the unit vector's own length and z's coordinates.
 const FRESH: f64 = 8.0;
-/// The bit of a face that has its parent's plane.
-const BORROWED: u64 = 1 << 63;
 
 /// The hull of points that are named by numbers below 32768.
 #[repr(C)]
@@ -114,7 +112,7 @@ pub struct Polytope<const F: usize> {
     /// (for [`Polytope::undo`]), and a visible face what lies under its half-edge on the
     /// stack of the walk.
     twins: [[u16; 4]; F],
-    /// Four names of 16 bits: corners 0, 1, 2, and 0 again with [`BORROWED`].
+    /// Four names of 16 bits: corners 0, 1, 2, and 0 again.
     corners: [u64; F],
     /// The next face outside use, or the next visible one.
     next: [u16; F],
@@ -137,15 +135,6 @@ pub struct Top {
     pub face: usize,
     /// d|d| / |N|², to 1e-12 of itself.
     pub key: f64,
-}
-
-/// What became of an insertion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inserted {
-    /// The point is a corner.
-    Yes,
-    /// There is no room for its faces; nothing changed.
-    NoRoom,
 }
 
 impl<const F: usize> Polytope<F> {
@@ -172,19 +161,8 @@ impl<const F: usize> Polytope<F> {
     #[inline(always)]
     pub fn blank(size: Real) -> Self {
         Self {
-            planes: [[0.0; 4]; F],
             ulp: f64::EPSILON * wide(size),
-            keys: [0.0; F],
-            twins: [[0; 4]; F],
-            corners: [0; F],
-            next: [0; F],
-            free: 0,
-            used: 0,
-            inner: Wide3::new(0.0, 0.0, 0.0),
-            margin: 0.0,
-            error: 0.0,
-            collapsed: 0.0,
-            untold: 0.0,
+            ..Self::BLANK
         }
     }
 
@@ -280,12 +258,6 @@ impl<const F: usize> Polytope<F> {
     #[inline(always)]
     fn wear(&mut self) {
         self.error += 20.0 * self.ulp;
-    }
-
-    /// Is the plane of this face its parent's, which its corners are above?
-    #[inline(always)]
-    pub fn borrowed(&self, f: usize) -> bool {
-        self.corners[Self::at(f)] & BORROWED != 0
     }
 
     /// The faces that there are.
@@ -460,7 +432,8 @@ impl<const F: usize> Polytope<F> {
     }
 
     /// Makes a point a corner: `first` is a face that it is above by more than `rounding`,
-    /// metres; `corner` tells the points by their names.
+    /// metres; `corner` tells the points by their names. `false`: there is no room for its faces;
+    /// nothing changed.
     ///
     /// Where the visible faces are no disc, only those count as visible that the point is
     /// eight times as high above, and so on, down to `first` alone.
@@ -472,38 +445,20 @@ impl<const F: usize> Polytope<F> {
         p: &Vec3,
         rounding: Real,
         corner: &impl Fn(usize) -> Vec3,
-    ) -> Inserted {
-        match self.fan(first, name, p, wide(rounding), corner) {
-            Fan::Done => Inserted::Yes,
-            Fan::NoRoom => Inserted::NoRoom,
-            Fan::NoDisc => self.insert_fewer(first, name, p, rounding, corner),
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn insert_fewer(
-        &mut self,
-        first: usize,
-        name: usize,
-        p: &Vec3,
-        rounding: Real,
-        corner: &impl Fn(usize) -> Vec3,
-    ) -> Inserted {
-        let height = self.plane(first).height(&Plane::point(p));
+    ) -> bool {
         let mut above = wide(rounding);
+        // Ends: `first` alone is a disc.
         loop {
-            above = if 8.0 * above < height {
-                8.0 * above
-            } else {
-                f64::INFINITY
-            };
             match self.fan(first, name, p, above, corner) {
-                Fan::Done => return Inserted::Yes,
-                Fan::NoRoom => return Inserted::NoRoom,
-                // `first` alone is a disc.
-                Fan::NoDisc if above == f64::INFINITY => return Inserted::NoRoom,
-                Fan::NoDisc => {}
+                Fan::NoDisc if above < f64::INFINITY => {
+                    let height = self.plane(first).height(&Plane::point(p));
+                    above = if 8.0 * above < height {
+                        8.0 * above
+                    } else {
+                        f64::INFINITY
+                    };
+                }
+                fan => return fan == Fan::Done,
             }
         }
     }
@@ -666,10 +621,10 @@ impl<const F: usize> Polytope<F> {
         let f = Self::at(f);
         let (old, parent) = (self.plane(f), self.plane(parent));
         let (square, n2) = old.signed_square();
-        let something = n2 > NOTHING;
         // Of a vanished plane neither side nor sign is known: its parent's sign counts.
-        let heir = if something { &old } else { &parent };
-        let plane = match self.through_corners(f, heir, something, corner) {
+        let sided = n2 > NOTHING;
+        let heir = if sided { &old } else { &parent };
+        let plane = match self.through_corners(f, heir, sided, corner) {
             Some((plane, margin)) => {
                 self.margin = lesser(margin, self.margin);
                 plane
@@ -678,16 +633,13 @@ impl<const F: usize> Polytope<F> {
                 self.wear();
                 return square;
             }
-            None if something && self.error <= WORN * self.ulp * n2.sqrt() => {
+            None if sided && self.error <= WORN * self.ulp * n2.sqrt() => {
                 let k = 1.0 / n2.sqrt();
                 self.error *= k;
                 old.scaled(k)
             }
             // Also for NaN.
-            None => {
-                self.corners[f] |= BORROWED;
-                parent
-            }
+            None => parent,
         };
         self.planes[f] = plane.array();
         plane.signed_square().0
@@ -719,23 +671,6 @@ impl<const F: usize> Polytope<F> {
             && margin >= larger(FRESH * self.ulp, self.error)
             && (d > 0.0 || !(old.offset() > 0.0));
         inherits.then(|| (Plane::new(&n, d), margin))
-    }
-
-    /// Computes the plane of a face from its corners. Is it farther away now, by more than
-    /// an ulp?
-    #[cold]
-    #[inline(never)]
-    pub fn refine(&mut self, f: usize, corner: &impl Fn(usize) -> Vec3) -> bool {
-        let f = Self::at(f);
-        let old = Plane::of(&self.planes[f]);
-        let Some((plane, margin)) = self.through_corners(f, &old, true, corner) else {
-            return false;
-        };
-        self.margin = lesser(margin, self.margin);
-        let before = old.offset() / old.normal().norm();
-        self.planes[f] = plane.array();
-        self.keys[f] = Self::key(f, plane.signed_square().0);
-        plane.offset() > before + self.ulp
     }
 
     /// The direction to ask for the nearest face `top`: the sum of its normal, its three
@@ -771,6 +706,7 @@ impl<const F: usize> Polytope<F> {
     }
 }
 
+#[derive(PartialEq, Eq)]
 enum Fan {
     Done,
     NoRoom,
@@ -841,7 +777,7 @@ mod tests {
         for (i, p) in points.iter().enumerate().skip(4) {
             if let Some(f) = farthest_below(&hull, &Plane::point(p), rounding) {
                 let done = hull.insert(f, i, p, rounding, &|i| points[i]);
-                assert_eq!(done, Inserted::Yes);
+                assert!(done);
             }
             check(&hull, points);
         }
@@ -962,7 +898,7 @@ mod tests {
             if !full {
                 if let Some(f) = farthest_below(&small, &seen, LEVEL) {
                     let before: Vec<_> = small.faces().map(|f| small.corners(f)).collect();
-                    if small.insert(f, i, p, LEVEL, &|i| points[i]) == Inserted::NoRoom {
+                    if !small.insert(f, i, p, LEVEL, &|i| points[i]) {
                         let after: Vec<_> = small.faces().map(|f| small.corners(f)).collect();
                         assert_eq!(before, after);
                         check(&small, &points);
@@ -973,7 +909,7 @@ mod tests {
             }
             if full {
                 if let Some(f) = farthest_below(&large, &seen, LEVEL) {
-                    assert_eq!(large.insert(f, i, p, LEVEL, &|i| points[i]), Inserted::Yes);
+                    assert!(large.insert(f, i, p, LEVEL, &|i| points[i]));
                 }
                 check(&large, &points);
             }

@@ -148,27 +148,18 @@ impl<const N: usize> SupportSet<N> {
     #[inline(always)]
     pub fn push(&mut self, direction: &Vec3, point: &SupportPoint) -> usize {
         let i = self.len.min(N - 1);
-        self.put(i, direction, point);
-        self.len = i + 1;
+        self.place(i, direction, point);
         i
     }
 
-    /// [`SupportSet::put`], where `i` may also be the first free index: then it is added.
+    /// Puts a point in the place of another, or behind the last.
     #[inline(always)]
     pub fn place(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
-        self.put(i, direction, point);
-        if i >= self.len {
-            self.len = (i + 1).min(N);
-        }
-    }
-
-    /// Puts a point in the place of another.
-    #[inline(always)]
-    pub fn put(&mut self, i: usize, direction: &Vec3, point: &SupportPoint) {
-        let i = Self::at(i);
-        self.points[0][i] = point.v1;
-        self.points[1][i] = point.v2;
-        self.directions[i] = *direction;
+        let at = Self::at(i);
+        self.points[0][at] = point.v1;
+        self.points[1][at] = point.v2;
+        self.directions[at] = *direction;
+        self.len = self.len.max(at + 1);
     }
 
     /// Forgets all points from this index on.
@@ -236,20 +227,6 @@ pub struct Asked {
     pub v: Vec3,
 }
 
-/// A point of D that lies beyond the origin along the direction asked.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Beyond {
-    /// The answer, which is in the set now.
-    Put {
-        /// The point of D.
-        v: Vec3,
-        /// [`Precision::touch`], metres.
-        touch: Real,
-    },
-    /// A point of the set, where the answer contradicts it.
-    Known(usize),
-}
-
 /// Why a query ends where it asks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
@@ -263,6 +240,16 @@ pub enum Stop {
 impl From<Fault> for Stop {
     fn from(fault: Fault) -> Self {
         Self::Fault(fault)
+    }
+}
+
+/// What a query found; `None` of objects that are apart.
+#[inline(always)]
+pub fn if_overlapping<T>(found: Result<T, Stop>) -> Result<Option<T>, Fault> {
+    match found {
+        Ok(found) => Ok(Some(found)),
+        Err(Stop::Apart(_)) => Ok(None),
+        Err(Stop::Fault(fault)) => Err(fault),
     }
 }
 
@@ -353,24 +340,25 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
     }
 
     /// As [`Inquiry::ask`], for a query that wants yes or no: the point goes to this place
-    /// in the set, and the lowest plane is not kept.
+    /// in the set, and the lowest plane is not kept. It, and [`Precision::touch`], metres; `None`: the
+    /// answer contradicts a point of the set.
     #[inline(always)]
     pub fn ask_at<const N: usize>(
         &mut self,
         set: &mut SupportSet<N>,
         place: usize,
         dir: &Vec3,
-    ) -> Result<Beyond, Stop> {
+    ) -> Result<Option<(Vec3, Real)>, Stop> {
         let point = self.point(dir)?;
         let h = dir.dot(&point.v);
         let touch = self.precision.touch();
         // NaN is no depth.
         if h > touch {
             set.place(place, dir, &point);
-            return Ok(Beyond::Put { v: point.v, touch });
+            return Ok(Some((point.v, touch)));
         }
         let known = set.farther(dir, larger(h + self.precision.grain(), touch));
-        known.map(Beyond::Known).ok_or(Stop::Apart(*dir))
+        known.map(|_| None).ok_or(Stop::Apart(*dir))
     }
 
     /// How far along `dir` a point is that contradicts an answer which separates, at least.

@@ -15,19 +15,9 @@ use crate::math::{Real, Vec3};
 use crate::paper::incremental::answer;
 use crate::paper::portal::{Exit, Portal, Search, SupportPlane, Until, rounding};
 
-/// Where the ray leaves D, as long as the origin is in D.
-pub struct Way {
-    /// The answer with its lower bound.
-    pub hit: Penetration,
-    /// What rounding keeps the bounds apart by, metres.
-    pub error: Real,
-    /// Did a cap come first?
-    pub limit: bool,
-    /// The last portal, where there was one.
-    pub portal: Option<Portal>,
-}
-
-/// Follows the ray along unit `dir`; `last` are the normals of the portal to begin with.
+/// Follows the ray along unit `dir` to where it leaves D, as long as the origin is in D; `last` are the
+/// normals of the portal to begin with. The answer with its lower bound, and the last portal, where
+/// there was one.
 ///
 /// # Errors
 /// [`Stop::Apart`]; a callback's answer that is not finite.
@@ -36,7 +26,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     dir: &Vec3,
     last: Option<[Vec3; 3]>,
     settings: &Settings,
-) -> Result<Way, Stop> {
+) -> Result<(Penetration, Option<Portal>), Stop> {
     let mut budget = settings.max_iterations;
     let (exit, first) = follow(md, dir, last, settings.tolerance, &mut budget)?;
     let (limit, portal, plane) = match exit {
@@ -50,20 +40,18 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         None if matches!(exit, Exit::Vertex) => (depth, 0.0),
         None => (0.0, 0.0),
     };
+    // `max` passes over NaN.
+    let depth_lower = lower.max(0.0).min(depth);
     let hit = Penetration {
         depth,
-        // `max` passes over NaN.
-        depth_lower: lower.max(0.0).min(depth),
+        depth_lower,
         dir: *dir,
         iterations: settings.max_iterations - budget,
+        // Where rounding ended the search the answer may yet be as good as asked for.
+        limit: limit && !(depth - depth_lower <= settings.tolerance.max(2.0 * error)),
         ..answer(&plane, portal.as_ref().filter(|_| !limit))
     };
-    Ok(Way {
-        hit,
-        error,
-        limit,
-        portal,
-    })
+    Ok((hit, portal))
 }
 
 /// After the cap, or a portal without area: every support plane is sound, and the one that
@@ -149,11 +137,12 @@ mod tests {
             let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
             let mut last = None;
             for _ in 0..2 {
-                let way = penetration(&md, &d, last, &settings).expect("the origin is inside");
+                let (hit, portal) =
+                    penetration(&md, &d, last, &settings).expect("the origin is inside");
                 let slack = 100.0 * EPSILON;
-                assert!(way.hit.depth >= exact - slack && way.hit.depth_lower <= exact + slack);
-                assert!(!way.limit && way.hit.depth - way.hit.depth_lower <= 2e-4);
-                last = way.portal.map(|p| p.planes.map(|plane| plane.normal));
+                assert!(hit.depth >= exact - slack && hit.depth_lower <= exact + slack);
+                assert!(!hit.limit && hit.depth - hit.depth_lower <= 2e-4);
+                last = portal.map(|p| p.planes.map(|plane| plane.normal));
             }
         }
     }

@@ -22,9 +22,9 @@
 //! D) or a saddle: the search steps aside once and goes on. Planes below the last
 //! one, met on the way in another valley, are searched as well.
 
-use crate::contact::{Answer, Penetration, Settings};
+use crate::contact::{Penetration, Settings};
 use crate::contacts::pressure;
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::known::support::{MinkowskiDifference, SupportMap};
 use crate::known::support_set::Stop;
 use crate::math::{Real, Vec3, perpendicular};
 use crate::paper::portal::{Exit, Portal, Search, SupportPlane, Until, rounding};
@@ -39,7 +39,7 @@ const ASIDE: (Real, Real) = (0.093, 0.041);
 /// plane that D and `start` lie in, where there is one. `switched` is told |z| at each switch of the ray.
 ///
 /// # Errors
-/// A callback's answer that is not finite.
+/// [`Stop::Apart`]; a callback's answer that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,
@@ -47,7 +47,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     until: Until,
     settings: &Settings,
     switched: impl FnMut(Real),
-) -> Result<Answer, Fault> {
+) -> Result<Penetration, Stop> {
     let ray = SupportPlane::of(md, start)?;
     let mut search = Search {
         md,
@@ -57,17 +57,12 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         budget: settings.max_iterations,
         best: ray,
     };
-    let ended = from_ray_to_ray(&mut search, ray, switched);
-    let iterations = settings.max_iterations - search.budget;
-    match ended {
-        Ok(Some(hit)) => Ok(Answer::Hit(Penetration { iterations, ..hit })),
-        Ok(None) => {
-            let hit = answer(&search.best, None);
-            Ok(Answer::Limit(Penetration { iterations, ..hit }))
-        }
-        Err(Stop::Apart(n)) => Ok(Answer::Miss(n)),
-        Err(Stop::Fault(fault)) => Err(fault),
-    }
+    let ended = from_ray_to_ray(&mut search, ray, switched)?;
+    Ok(Penetration {
+        iterations: settings.max_iterations - search.budget,
+        limit: ended.is_none(),
+        ..ended.unwrap_or_else(|| answer(&search.best, None))
+    })
 }
 
 /// The loop of Algorithm 3. `None`: a cap came first.
@@ -170,10 +165,9 @@ mod tests {
         shortcut: Until,
         switched: impl FnMut(Real),
     ) -> Penetration {
-        match penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap() {
-            Answer::Hit(hit) => hit,
-            other => panic!("{other:?}"),
-        }
+        let hit = penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap();
+        assert!(!hit.limit);
+        hit
     }
 
     /// An ellipsoid with semi-axes `radii` about `centre`, as a level set
@@ -387,16 +381,12 @@ mod tests {
                 tolerance: 1e-9,
             };
             let start = r.direction();
-            match penetration(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap() {
-                Answer::Limit(hit) => {
-                    assert!(hit.iterations <= max_iterations);
-                    let h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
-                    assert!((h - hit.depth).abs() <= 8.0 * EPSILON);
-                    let apart = (hit.point1 - hit.point2).dot(&hit.dir);
-                    assert!((apart - hit.depth).abs() <= 8.0 * EPSILON);
-                }
-                other => panic!("{other:?}"),
-            }
+            let hit = penetration(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap();
+            assert!(hit.limit && hit.iterations <= max_iterations);
+            let h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
+            assert!((h - hit.depth).abs() <= 8.0 * EPSILON);
+            let apart = (hit.point1 - hit.point2).dot(&hit.dir);
+            assert!((apart - hit.depth).abs() <= 8.0 * EPSILON);
         }
     }
 }

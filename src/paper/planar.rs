@@ -10,8 +10,9 @@
 
 #[cfg(test)]
 mod tests {
-    use crate::contact::{Answer, Penetration, Settings};
-    use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
+    use crate::contact::{Penetration, Settings};
+    use crate::known::support::{MinkowskiDifference, SupportMap};
+    use crate::known::support_set::Stop;
     use crate::math::{EPSILON, Real, Vec3, unit};
     use crate::paper::incremental;
     use crate::paper::portal::Until;
@@ -37,7 +38,7 @@ mod tests {
         m: &Vec3,
         start: Vec3,
         settings: &Settings,
-    ) -> Result<Answer, Fault> {
+    ) -> Result<Penetration, Stop> {
         incremental::penetration(md, start, Some(*m), Until::Shortcut, settings, |_| ())
     }
 
@@ -46,21 +47,18 @@ mod tests {
         m: &Vec3,
         start: Vec3,
     ) -> Penetration {
-        match penetration(md, m, start, &SETTINGS).unwrap() {
-            Answer::Hit(hit) => {
-                let ulps = 100.0 * EPSILON;
-                assert!(hit.dir.dot(m).abs() < ulps, "leaves the plane");
-                assert!((hit.dir.norm() - 1.0).abs() < ulps);
-                // Sound, and the witnesses are on the two planes.
-                let s = md.support(&hit.dir).unwrap();
-                assert!((hit.dir.dot(&s.v) - hit.depth).abs() < ulps);
-                let room = SETTINGS.tolerance + ulps;
-                assert!((hit.dir.dot(&(hit.point1 - s.v1))).abs() <= room);
-                assert!((hit.dir.dot(&(hit.point2 - s.v2))).abs() <= room);
-                hit
-            }
-            other => panic!("{other:?}"),
-        }
+        let hit = penetration(md, m, start, &SETTINGS).unwrap();
+        let ulps = 100.0 * EPSILON;
+        assert!(!hit.limit);
+        assert!(hit.dir.dot(m).abs() < ulps, "leaves the plane");
+        assert!((hit.dir.norm() - 1.0).abs() < ulps);
+        // Sound, and the witnesses are on the two planes.
+        let s = md.support(&hit.dir).unwrap();
+        assert!((hit.dir.dot(&s.v) - hit.depth).abs() < ulps);
+        let room = SETTINGS.tolerance + ulps;
+        assert!((hit.dir.dot(&(hit.point1 - s.v1))).abs() <= room);
+        assert!((hit.dir.dot(&(hit.point2 - s.v2))).abs() <= room);
+        hit
     }
 
     /// Discs: the depth is r1 + r2 − distance, along the centres.
@@ -161,13 +159,13 @@ mod tests {
             let md = MinkowskiDifference::new(hull(&square(at)), hull(&square(at + by)));
             let angle = r.within(0.0, TAU);
             let start = x * angle.cos() + y * angle.sin();
-            match penetration(&md, &m, start, &SETTINGS).unwrap() {
-                Answer::Miss(n) => {
+            match penetration(&md, &m, start, &SETTINGS) {
+                Err(Stop::Apart(n)) => {
                     assert!(n.dot(&m).abs() < 100.0 * EPSILON);
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
                 // A local minimum behind the other square: not yet a proven overlap.
-                Answer::Hit(hit) => assert!(hit.dir.dot(&by) < 0.0),
+                Ok(hit) => assert!(!hit.limit && hit.dir.dot(&by) < 0.0),
                 other => panic!("{other:?}"),
             }
         }

@@ -4,12 +4,11 @@
 //! A local minimum, its overlap not proven, and what it is good for in the other queries.
 
 use super::Pair;
-use crate::contact::{Answer, INSIDE, Penetration, Settings};
-use crate::gjk::barycentric;
+use crate::contact::{INSIDE, Penetration, Settings};
 use crate::hull::expansion::Limits;
 use crate::hull::shallow::Try;
 use crate::known::points::{Points, ROOM};
-use crate::known::support::{Fault, Known, SupportMap, SupportPoint};
+use crate::known::support::{Fault, Known, SupportMap};
 use crate::known::support_set::{Inquiry, Stop};
 use crate::local::{self, Memory};
 use crate::math::{Real, Vec3, larger};
@@ -107,19 +106,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         let start = hit.normal;
         let until = Until::Shortcut;
-        let last = incremental::penetration(&self.md, start, None, until, &rest, |_| ())?;
-        let ended = match last {
+        match incremental::penetration(&self.md, start, None, until, &rest, |_| ()) {
             // D reaches beyond that plane: a callback that errs must not separate.
-            Answer::Miss(n) if known.farthest(&n).is_some() => return Ok(false),
-            Answer::Miss(n) => return Err(Stop::Apart(n)),
-            Answer::Hit(found) | Answer::Limit(found) => {
-                *hit = found;
-                matches!(last, Answer::Hit(_))
-            }
-        };
+            Err(Stop::Apart(n)) if known.farthest(&n).is_some() => return Ok(false),
+            found => *hit = found?,
+        }
         hit.iterations += most - left;
         *memory = Memory::towards(hit.normal);
-        Ok(ended)
+        Ok(!hit.limit)
     }
 
     /// One local search, of so many iterations at most, or [`BUDGET`]; `seen`: what has been asked already.
@@ -171,8 +165,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         match self.local_minimum(&mut memory, &level, &mut known, &mut floor) {
             Ok(minimum) if floor.depth < hit.depth => {
                 // The polytope's witness points are points of the objects, the local search's lie on
-                // the planes, and beside their objects where it found no minimum: there means of the
-                // objects' own points, if they meet as well as the bounds do.
+                // the planes, and beside their objects where it found no minimum.
                 let reach = larger(floor.point1.norm(), floor.point2.norm());
                 let near = larger(limits.tolerance, INSIDE * reach);
                 let [one, two] = [hit.point1 - floor.point1, hit.point2 - floor.point2];
@@ -180,15 +173,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 if one.dot(n).abs() <= near && two.dot(n).abs() <= near {
                     (floor.point1, floor.point2) = (hit.point1, hit.point2);
                 } else if !minimum {
-                    let open = larger(floor.depth - hit.depth_lower, near);
-                    match own_witnesses(known.points(), &floor, open) {
-                        Some(own) => (floor.point1, floor.point2) = own,
-                        None => return Ok(()),
-                    }
+                    return Ok(());
                 }
                 *hit = Penetration {
                     depth_lower: hit.depth_lower.min(floor.depth),
                     iterations: hit.iterations + floor.iterations,
+                    limit: true,
                     ..floor
                 };
                 Ok(())
@@ -197,28 +187,4 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Err(Stop::Fault(fault)) => Err(fault),
         }
     }
-}
-
-/// Means of the objects' own points, of those known, that are the depth apart along an answer's
-/// direction to within `open`, metres.
-#[cold]
-fn own_witnesses(known: &[SupportPoint], hit: &Penetration, open: Real) -> Option<(Vec3, Vec3)> {
-    let to = hit.normal * hit.depth;
-    let (first, rest) = known.split_first()?;
-    let mut best = None;
-    let mut least2 = 2.0 * hit.depth * open;
-    for (i, a) in rest.iter().enumerate() {
-        for (j, b) in rest.iter().enumerate().skip(i) {
-            for c in rest.iter().skip(j) {
-                let points = [first, a, b, c];
-                let nearest = barycentric::tetrahedron(&to, points.map(|p| &p.v));
-                let low = hit.depth - nearest.point.dot(&hit.normal);
-                if nearest.distance2 < least2 && low <= open {
-                    least2 = nearest.distance2;
-                    best = Some(barycentric::witnesses(&nearest.weights, points));
-                }
-            }
-        }
-    }
-    best
 }

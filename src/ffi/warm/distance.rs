@@ -6,14 +6,13 @@
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
 use super::super::arena;
-use super::super::callbacks::{Call, Object, Query};
+use super::super::callbacks::{Call, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
+use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, given};
-use super::state::{ccd_warm_t, read, store};
+use super::state::{ccd_warm_t, with_state};
 use crate::contact::Settings;
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
-use crate::known::support::Fault;
 use crate::math::Real;
 use crate::{query::Pair, state::State};
 
@@ -93,27 +92,24 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
         let Some((pair, settings)) = query.ready(Call::Distance, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
-        let mut state = read(warm);
         let wanted = Wanted {
             margin1,
             margin2,
             max_distance,
             settings,
         };
-        let minimum = |pair: &Pair<Object, Object>, state: &mut State, settings: &Settings| {
-            arena::with(|arena| pair.minimum(state, settings, arena, want & CCD_WANT_POINTS != 0))
+        let points = want & CCD_WANT_POINTS != 0;
+        let minimum = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, hit: &mut _| {
+            arena::with(|arena| pair.minimum(state, settings, arena, points, hit))
         };
-        let distance = match signed_distance(&pair, &mut state, &wanted, minimum) {
-            Ok(distance) => distance,
-            Err(Fault::NoMemory) => return CCD_NO_MEMORY,
-            Err(Fault::NonFinite) => return CCD_BAD_INPUT,
-        };
-        *out = ccd_distance_t::new(&distance, want, pair.md.supports());
-        store(warm, &state);
-        match (distance.limit, distance.hit) {
-            (true, _) => CCD_LIMIT,
-            (false, true) => CCD_HIT,
-            (false, false) => CCD_MISS,
-        }
+        with_state(warm, |state| {
+            let distance = signed_distance(&pair, state, &wanted, minimum)?;
+            *out = ccd_distance_t::new(&distance, want, pair.md.supports());
+            Ok(match (distance.limit, distance.hit) {
+                (true, _) => CCD_LIMIT,
+                (false, true) => CCD_HIT,
+                (false, false) => CCD_MISS,
+            })
+        })
     }
 }

@@ -7,8 +7,9 @@ use core::ffi::{c_int, c_void};
 
 use super::super::callbacks::{Call, Object, Query};
 use super::super::types::ccd_t;
-use super::state::{ccd_warm_t, read, store};
-use crate::query::Pair;
+use super::state::{ccd_warm_t, with_state};
+use crate::known::support_set::if_overlapping;
+use crate::{query::Pair, state::State};
 
 /// Yes or no of a pair, with the caller's state.
 ///
@@ -21,20 +22,15 @@ pub(in crate::ffi) unsafe fn intersect(
     let Some(pair) = pair else {
         return 0;
     };
-    // SAFETY: passed on.
-    unsafe {
-        if warm.is_null() {
-            return c_int::from(pair.intersect(None) == Ok(true));
-        }
-        let mut state = read(warm);
-        match pair.intersect(Some(&mut state)) {
-            Ok(overlap) => {
-                store(warm, &state);
-                c_int::from(overlap)
-            }
-            Err(_) => 0,
-        }
+    if warm.is_null() {
+        return c_int::from(pair.intersect(None).is_ok());
     }
+    let ask = |state: &mut State| {
+        let overlap = if_overlapping(pair.intersect(Some(state)))?;
+        Ok(c_int::from(overlap.is_some()))
+    };
+    // SAFETY: passed on. Without an answer the code is below 0.
+    unsafe { with_state(warm, ask) }.max(0)
 }
 
 /// Do the objects overlap? A pair that stays apart costs one call of each support function while

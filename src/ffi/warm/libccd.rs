@@ -7,12 +7,46 @@
 use core::ffi::{c_int, c_void};
 
 use super::super::callbacks::{Call, Query};
-use super::super::collide::{libccd_s, write};
 use super::super::types::{ccd_t, ccd_vec3_t};
+use super::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::intersect::intersect;
 use super::penetration::run;
 use super::state::ccd_warm_t;
+use crate::contact::Penetration;
 use crate::math::Real;
+
+/// What libccd returns where the extension has this code.
+pub(in crate::ffi) fn libccd_s(code: c_int) -> c_int {
+    match code {
+        CCD_HIT | CCD_LIMIT => 0,
+        CCD_NO_MEMORY => -2,
+        _ => CCD_MISS,
+    }
+}
+
+/// Writes the outputs that are not NULL.
+///
+/// # Safety
+/// \[outputs\] of the module contract.
+pub(in crate::ffi) unsafe fn write(
+    hit: &Penetration,
+    depth: *mut Real,
+    dir: *mut ccd_vec3_t,
+    pos: *mut ccd_vec3_t,
+) {
+    // SAFETY: [outputs].
+    unsafe {
+        if let Some(depth) = depth.as_mut() {
+            *depth = hit.depth;
+        }
+        if let Some(dir) = dir.as_mut() {
+            *dir = hit.dir.into();
+        }
+        if let Some(pos) = pos.as_mut() {
+            *pos = hit.pos.into();
+        }
+    }
+}
 
 /// ccdMPRPenetration with memory: ccdPenetration with libccd's outputs and codes.
 ///
@@ -35,7 +69,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
             Query { obj1, obj2, ccd },
             Call::Mpr,
             warm,
-            |pair, state, settings| pair.mpr(state, settings, !pos.is_null()),
+            |pair, state, settings, hit| pair.mpr(state, settings, !pos.is_null(), hit),
             |hit, _| write(hit, depth, dir, pos),
         )
     })

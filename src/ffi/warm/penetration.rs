@@ -7,10 +7,10 @@ use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
 use super::super::callbacks::{Call, Object, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
-use super::state::{ccd_warm_t, read, store};
-use crate::contact::{Answer, Penetration, Settings};
-use crate::known::support::Fault;
+use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
+use super::state::{ccd_warm_t, with_state};
+use crate::contact::{Penetration, Settings};
+use crate::known::support_set::{Stop, if_overlapping};
 use crate::math::{Real, Vec3};
 use crate::{query::Pair, state::State};
 
@@ -89,7 +89,12 @@ pub(in crate::ffi) unsafe fn run(
     query: Query,
     call: Call,
     warm: *mut ccd_warm_t,
-    solve: impl FnOnce(&Pair<Object, Object>, &mut State, &Settings) -> Result<Answer, Fault>,
+    solve: impl FnOnce(
+        &Pair<Object, Object>,
+        &mut State,
+        &Settings,
+        &mut Penetration,
+    ) -> Result<(), Stop>,
     put: impl FnOnce(&Penetration, u64),
 ) -> c_int {
     // SAFETY: [inputs]; `solve` runs callbacks, [callbacks].
@@ -97,22 +102,14 @@ pub(in crate::ffi) unsafe fn run(
         let Some((pair, settings)) = query.ready(call, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
-        let mut state = read(warm);
-        let code = match &solve(&pair, &mut state, &settings) {
-            Ok(Answer::Hit(hit)) => {
-                put(hit, pair.md.supports());
-                CCD_HIT
+        with_state(warm, |state| {
+            let mut hit = Penetration::default();
+            if if_overlapping(solve(&pair, state, &settings, &mut hit))?.is_none() {
+                return Ok(CCD_MISS);
             }
-            Ok(Answer::Limit(hit)) => {
-                put(hit, pair.md.supports());
-                CCD_LIMIT
-            }
-            Ok(Answer::Miss(_)) => CCD_MISS,
-            Err(Fault::NoMemory) => return CCD_NO_MEMORY,
-            Err(Fault::NonFinite) => return CCD_BAD_INPUT,
-        };
-        store(warm, &state);
-        code
+            put(&hit, pair.md.supports());
+            Ok(if hit.limit { CCD_LIMIT } else { CCD_HIT })
+        })
     }
 }
 
@@ -127,7 +124,13 @@ pub(in crate::ffi) unsafe fn answer(
     warm: *mut ccd_warm_t,
     want: c_uint,
     out: *mut ccd_penetration_t,
-    solve: impl FnOnce(&Pair<Object, Object>, &mut State, &Settings, bool) -> Result<Answer, Fault>,
+    solve: impl FnOnce(
+        &Pair<Object, Object>,
+        &mut State,
+        &Settings,
+        bool,
+        &mut Penetration,
+    ) -> Result<(), Stop>,
 ) -> c_int {
     if out.is_null() || want & !CCD_WANT_ALL != 0 {
         return CCD_BAD_INPUT;
@@ -139,7 +142,7 @@ pub(in crate::ffi) unsafe fn answer(
             query,
             call,
             warm,
-            |pair, state, settings| solve(pair, state, settings, wants_pos),
+            |pair, state, settings, hit| solve(pair, state, settings, wants_pos, hit),
             |hit, supports| *out = ccd_penetration_t::new(hit, want, supports),
         )
     }

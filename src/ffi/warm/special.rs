@@ -55,8 +55,8 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     out: *mut ccd_penetration_t,
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
-    let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, wants| {
-        arena::with(|arena| pair.minimum(state, settings, arena, wants))
+    let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, wants, hit: &mut _| {
+        arena::with(|arena| pair.minimum(state, settings, arena, wants, hit))
     };
     // SAFETY: passed on.
     unsafe { answer(query, Call::Proven, warm, want, out, solve) }
@@ -85,8 +85,8 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
             return CCD_BAD_INPUT;
         };
         let query = Query { obj1, obj2, ccd };
-        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _| {
-            pair.along(dir, state, settings)
+        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _, hit: &mut _| {
+            pair.along(dir, state, settings, hit)
         };
         answer(query, Call::Refined, warm, want, out, solve)
     }
@@ -116,8 +116,8 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
             return CCD_BAD_INPUT;
         };
         let query = Query { obj1, obj2, ccd };
-        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _| {
-            pair.planar(m, state, settings)
+        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _, hit: &mut _| {
+            pair.planar(m, state, settings, hit)
         };
         answer(query, Call::Refined, warm, want, out, solve)
     }

@@ -3,9 +3,11 @@
 
 //! States: what one query of a pair leaves for the next.
 
-use core::ffi::c_uint;
+use core::ffi::{c_int, c_uint};
 
 use super::super::types::ccd_vec3_t;
+use super::codes::{CCD_BAD_INPUT, CCD_NO_MEMORY};
+use crate::known::support::Fault;
 use crate::math::Real;
 use crate::state::State;
 
@@ -41,7 +43,7 @@ const _: () = {
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> State {
+unsafe fn read(warm: *const ccd_warm_t) -> State {
     if warm.is_null() {
         State::default()
     } else {
@@ -50,9 +52,34 @@ pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> State {
     }
 }
 
+/// What `ask` returns: with the caller's state, or with a cold one where there is none. The state stays
+/// as it was where there is no answer.
+///
+/// # Safety
+/// \[inputs\] and \[outputs\] of the module contract; `ask` runs callbacks, so that nothing
+/// with a destructor is alive here.
+#[inline(always)]
+pub(in crate::ffi) unsafe fn with_state(
+    warm: *mut ccd_warm_t,
+    ask: impl FnOnce(&mut State) -> Result<c_int, Fault>,
+) -> c_int {
+    // SAFETY: passed on.
+    unsafe {
+        let mut state = read(warm);
+        match ask(&mut state) {
+            Ok(code) => {
+                store(warm, &state);
+                code
+            }
+            Err(Fault::NoMemory) => CCD_NO_MEMORY,
+            Err(Fault::NonFinite) => CCD_BAD_INPUT,
+        }
+    }
+}
+
 /// # Safety
 /// \[outputs\] of the module contract.
-pub(in crate::ffi) unsafe fn store(warm: *mut ccd_warm_t, state: &State) {
+unsafe fn store(warm: *mut ccd_warm_t, state: &State) {
     if !warm.is_null() {
         // SAFETY: [outputs].
         unsafe { *warm.cast::<State>() = *state };
