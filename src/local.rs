@@ -310,24 +310,63 @@ mod tests {
         }
     }
 
-    /// Half discs, tilted to each other: round on one side of each, and a corner is a minimum.
+    /// Half discs, tilted to each other: round on one side of each, and a corner is a minimum. The witness
+    /// points are theirs.
     #[test]
     fn half_discs() {
         let mut r = Random::new(12);
-        let half_disc = |r: &mut Random, at: Vec3| -> Shape {
+        let half_disc = |r: &mut Random, at: Vec3| {
             let (turn, radius) = (r.rotation(), r.within(0.5, 1.0));
-            at_turned(at, turn, move |d| {
+            let shape: Shape = at_turned(at, turn, move |d| {
                 let arc = Vec3::new(d.x, d.y, 0.0) * (radius / d.x.hypot(d.y));
                 let end = Vec3::x() * radius.copysign(d.x);
                 if d.y > 0.0 { arc } else { end }
-            })
+            });
+            let outside = move |p: &Vec3| {
+                let p = turn.inverse() * (p - at);
+                p.z.abs().max(-p.y).max(p.x.hypot(p.y) - radius)
+            };
+            (shape, outside)
         };
-        for _ in 0..300 {
+        for round in 0..3000 {
+            let tolerance = if round % 2 == 0 { TOLERANCE } else { 1e-4 };
             let at = r.vector(0.4);
-            let (a, b) = (half_disc(&mut r, Vec3::zeros()), half_disc(&mut r, at));
+            let (a, outside1) = half_disc(&mut r, Vec3::zeros());
+            let (b, outside2) = half_disc(&mut r, at);
             let start = r.direction();
-            if let (Ok(p), _) = solve(&a, &b, start, &mut Memory::default(), TOLERANCE) {
-                check(&a, &b, &p, TOLERANCE, 2.0);
+            let (found, _) = solve(&a, &b, start, &mut Memory::default(), tolerance);
+            if let Some(p) = found.ok().filter(|p| !p.limit) {
+                check(&a, &b, &p, tolerance, 2.0);
+                let out = outside1(&p.point1).max(outside2(&p.point2));
+                assert!(out < tolerance + 64.0 * EPSILON, "round {round}: {out}");
+            }
+        }
+    }
+
+    /// Teardrops that nearly coincide: level ground, that falls all the same.
+    #[test]
+    fn level_ground_that_falls_is_no_minimum() {
+        let mut r = Random::new(13);
+        let tolerance = 10.0 * TOLERANCE;
+        for round in 0..1000 {
+            let (radius, tip) = (r.within(0.1, 0.3), Vec3::z() * r.within(0.4, 0.5));
+            let teardrop = move |d: &Vec3| {
+                if tip.dot(d) > radius { tip } else { d * radius }
+            };
+            let a = at_turned(Vec3::zeros(), r.rotation(), teardrop);
+            let at = r.vector(1e4 * tolerance);
+            let b = at_turned(at, r.rotation(), teardrop);
+            let start = r.direction();
+            let (found, _) = solve(&a, &b, start, &mut Memory::default(), tolerance);
+            if let Some(p) = found.ok().filter(|p| !p.limit) {
+                let e1 = perpendicular(&p.dir);
+                let e2 = p.dir.cross(&e1);
+                for k in 0..32 {
+                    let (s, c) = (k as Real * 0.197).sin_cos();
+                    let there = h(&a, &b, &(p.dir + (e1 * c + e2 * s) * 0.02).normalize());
+                    let lower = p.depth - there;
+                    assert!(lower < 4.0 * tolerance, "round {round}: {lower}");
+                }
             }
         }
     }

@@ -8,14 +8,19 @@ use super::search::{HAIR, LATEST, Sample, Search};
 use super::walk::ROOM;
 use crate::contact::{INSIDE, Penetration};
 use crate::contacts::pressure;
+use crate::known::round::{Same, Seen};
 use crate::known::support::{Known, SupportPoint};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
 
 impl Search {
     /// What finds the cuts of the minimum along unit `dir` again stays behind.
     #[inline]
     pub fn leave(&self, dir: &Vec3, memory: &mut Memory) {
-        let round = self.objects.each_ref().map(|object| object.round(dir));
+        let round = [0, 1].map(|o| {
+            let object = &self.objects[o];
+            let bends = object.bends(self.step.end.active[o], self.seen(o));
+            object.round(dir, bends)
+        });
         memory.keep(dir, &self.slopes, self.count, &round);
     }
 
@@ -42,9 +47,13 @@ impl Search {
     pub(super) fn conclude(&mut self, at: usize, known: &mut Known, hit: &mut Penetration) -> bool {
         let at = &self.samples[at % LATEST];
         let (n, depth) = (&at.n, at.h);
+        let here = Self::points(at);
         let end = &self.step.end;
         // Of what bends the witnesses are at the model's minimum: as deep, and below the origin.
-        let out = HAIR * self.finest;
+        let out = Same {
+            round: HAIR * self.finest,
+            ..self.same()
+        };
         // As fine as rounding R leads to none.
         let fine = self.finest * self.finest <= INSIDE * INSIDE * self.extent2;
         let near2 = larger(2.0 * depth * self.finest, self.rounding * self.rounding);
@@ -55,9 +64,9 @@ impl Search {
             height >= depth - self.tolerance && across2 <= near2
         };
         // Where they are near enough the points of the bodies themselves, else those that R leads to.
-        let mut found = self.witnesses(n, out);
+        let mut found = self.witnesses(&here, n, &out);
         if !meets(&found) && self.is_curved() && !end.on_border && !fine {
-            found = self.witnesses(&self.step.n, out);
+            found = self.witnesses(&here, &self.step.n, &out);
         }
         if !meets(&found) {
             return false;
@@ -66,9 +75,9 @@ impl Search {
         // Of one cut the point here is the witness.
         if end.count == 0 {
             let same = self.same().round;
-            for (o, own) in Self::points(at).iter().enumerate() {
+            for (o, own) in here.iter().enumerate() {
                 let object = &self.objects[o];
-                let off = object.point(end.active[o], n, out) - own.p;
+                let off = object.point(end.active[o], n, &out, self.seen(o)) - own.p;
                 if object.kind != Kind::Curved && off.norm_squared() > same * same {
                     return false;
                 }
@@ -99,10 +108,24 @@ impl Search {
     /// The means of the active points of both objects, obj2's turned about, and three points of D's face,
     /// each of what is round where unit `m` looks to.
     #[inline(always)]
-    fn witnesses(&self, m: &Vec3, out: Real) -> ([Vec3; 2], [Vec3; 3]) {
+    fn witnesses(&self, here: &[Seen; 2], m: &Vec3, out: &Same) -> ([Vec3; 2], [Vec3; 3]) {
         let end = &self.step.end;
-        let own = |o: usize, k: usize| self.objects[o % 2].point(k, m, out);
-        let mut points = [own(0, end.active[0]), own(1, end.active[1])];
+        let own = |o: usize, k: usize| self.objects[o % 2].point(k, m, out, self.seen(o % 2));
+        // Of an object of one point, on a ball or disc, that is the one found here: these may end before.
+        let found = |o: usize| {
+            let object = &self.objects[o];
+            let kinks = end.kinks.iter().take(end.count);
+            object.is_cored()
+                && object.carries(end.active[o])
+                && kinks.filter(|kink| kink.object == o).count() == 0
+        };
+        let mut points = [0, 1].map(|o| {
+            if found(o) {
+                here[o].p
+            } else {
+                own(o, end.active[o])
+            }
+        });
         let mut slopes = [points[0] + points[1]; 3];
         for (i, kink) in end.kinks.iter().take(end.count).enumerate() {
             let o = kink.object % 2;
@@ -111,6 +134,12 @@ impl Search {
             slopes[i + 1] += e;
         }
         (points, slopes)
+    }
+
+    /// The latest points of an object.
+    fn seen(&self, o: usize) -> impl Iterator<Item = Seen> + Clone + '_ {
+        let samples = self.samples.iter().take(self.asked);
+        samples.map(move |sample| Self::points(sample)[o % 2])
     }
 
     /// Names the points of D for the proof: the active ones, the one here, the others.

@@ -44,6 +44,8 @@ pub struct Curved {
     line: Vec3,
     /// Measured along a second direction too.
     pub spread: bool,
+    /// Did points near the last answer show that it bends both ways?
+    pub both: bool,
 }
 
 impl Curved {
@@ -53,6 +55,7 @@ impl Curved {
         foretold: false,
         line: ZERO,
         spread: false,
+        both: false,
     };
 
     /// R as an earlier search knew it, or as a ball or disc that was refuted has it: enough to look
@@ -62,6 +65,21 @@ impl Curved {
             r,
             error: BELIEVED,
             ..Self::NONE
+        }
+    }
+
+    /// For the next search: negative, if it was shown to bend both ways.
+    pub fn keep(&self, both: bool) -> [Real; 6] {
+        self.r.0.map(|entry| if both { -entry } else { entry })
+    }
+
+    /// What [`Curved::keep`] kept.
+    pub fn remembered(kept: &[Real; 6]) -> Self {
+        let both = kept[0] + kept[3] + kept[5] < 0.0;
+        let r = kept.map(|entry| if both { -entry } else { entry });
+        Self {
+            both,
+            ..Self::recall(Symmetric(r))
         }
     }
 
@@ -96,6 +114,7 @@ impl Curved {
         let dn2 = dn.norm_squared();
         self.error = (w.norm_squared() / d.norm_squared()).sqrt();
         self.foretold = self.error <= FORETOLD;
+        self.both &= self.foretold;
         let line2 = self.line.norm_squared();
         if line2 > 0.0 {
             self.spread |= self.line.cross(dn).norm_squared() > SPREAD * dn2 * line2;

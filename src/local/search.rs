@@ -118,7 +118,6 @@ pub struct Search {
     pub(super) newest: usize,
     pub(super) asked: usize,
     pub(super) doubts: u32,
-    pub(super) levelled: bool,
     pub(super) slopes: [Vec3; 3],
     pub(super) count: usize,
 }
@@ -433,10 +432,9 @@ impl Search {
             self.objects.iter_mut().for_each(Object::unround);
             self.lowest();
         }
-        if round && self.gain().abs() <= self.tolerance && self.step.end.on_border && !self.levelled
-        {
+        let level = round && self.gain().abs() <= self.tolerance && self.step.end.on_border;
+        if level && self.trust.radius != FIRST {
             // Level so far: is it as far as the first radius?
-            self.levelled = true;
             self.trust.radius = FIRST;
             let near = self.step;
             self.lowest();

@@ -39,6 +39,11 @@ const STEPS: usize = 32;
 /// four support points more.
 const NEGATIVE: Real = -1e-12;
 
+/// Halvings of the way to the border, of which the first is taken where level ground falls. Derived: what
+/// bends rises by the fourth order, by x⁴/32 of the depth, more than a slope s falls where x³ > 32 s; the
+/// last x, of a first radius, shows a slope of some hundred ulps.
+const NEARER: usize = 12;
+
 /// Does this for each place that so many points take.
 #[inline(always)]
 pub fn each(len: usize, mut of: impl FnMut(usize)) {
@@ -301,11 +306,15 @@ impl Model {
                 t = ((xu * xu + uu * room).sqrt() - xu) / uu;
             }
             if BENT && end.on_border {
-                let to = [x[0] + t * u[0], x[1] + t * u[1]];
-                let there = Place::of::<BENT>(&to, linear + t * dot(&beta, &u), &beta, &bend);
-                let fall = here.value / here.one.sqrt() - there.value / there.one.sqrt();
-                // On level ground what bends is known best near by.
-                t = if fall <= self.level { 0.0 } else { t };
+                // On level ground what bends is known best near by: farther off the model is above it
+                // by the fourth order, and may hide that it falls.
+                let falls = |t: Real| {
+                    let to = [x[0] + t * u[0], x[1] + t * u[1]];
+                    let there = Place::of::<BENT>(&to, linear + t * dot(&beta, &u), &beta, &bend);
+                    here.value / here.one.sqrt() - there.value / there.one.sqrt() > self.level
+                };
+                let mut nearer = core::iter::successors(Some(t), |t| Some(0.5 * t)).take(NEARER);
+                t = nearer.find(|t| falls(*t)).unwrap_or(0.0);
             }
             // Not NaN, of no way.
             if t > 0.0 {
