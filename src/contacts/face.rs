@@ -446,7 +446,8 @@ impl<'a, S: SupportMap> Search<'a, S> {
         let samples = &self.ring;
         let mut corners = Polygon::default();
         samples.iter().for_each(|s| corners.push(s.corner));
-        let corners = corners.tidy(self.slop, self.flat());
+        // One that was found twice is one, to the rounding of both.
+        let corners = corners.tidy(larger(self.slop, 4.0 * self.rounding), self.flat());
         let least = corners.iter().map(|c| c.low);
         let least = least.fold(Real::INFINITY, lesser);
         let mut ring = Ring {

@@ -326,4 +326,26 @@ mod tests {
             }
         }
     }
+
+    /// Two rods side by side, without a slop: where they touch is on both.
+    #[test]
+    fn without_a_slop_what_touches_lies_on_both() {
+        let mut r = Random::new(6);
+        for round in 0..2000 {
+            let [a, b] = [0, 1].map(|_| Vec3::z() * r.within(0.1, 1.0));
+            let [p, q] = [0, 1].map(|_| r.within(0.1, 0.5));
+            let at = Vec3::new((p + q) * r.within(0.3, 0.9), 0.0, r.within(-0.2, 0.2));
+            let (one, two) = (capsule(-a, a, p), capsule(at - b, at + b, q));
+            let found = contacts(&one, &two, &Vec3::x(), 0.0, None, 4).unwrap();
+            for c in found.contacts() {
+                let near = EPSILON.sqrt();
+                assert!(c.point1.z.abs() < a.z + near, "{round}: {}", c.point1);
+                assert!(
+                    (c.point2 - at).z.abs() < b.z + near,
+                    "{round}: {}",
+                    c.point2
+                );
+            }
+        }
+    }
 }
