@@ -139,8 +139,10 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
 pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
     // SAFETY: [polytope].
     unsafe {
-        for element in lists(pt).into_iter().flat_map(|list| elements(list)) {
-            measure(element);
+        for list in lists(pt) {
+            for element in elements(list) {
+                measure(element);
+            }
         }
     }
 }
@@ -153,8 +155,10 @@ pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_e
     unsafe {
         if (*pt).nearest.is_null() {
             forget_nearest(pt);
-            for element in lists(pt).into_iter().flat_map(|list| elements(list)) {
-                update_nearest(pt, element);
+            for list in lists(pt) {
+                for element in elements(list) {
+                    update_nearest(pt, element);
+                }
             }
         }
         (*pt).nearest

@@ -16,12 +16,13 @@ impl Search {
     /// What finds the cuts of the minimum along unit `dir` again stays behind.
     #[inline]
     pub fn leave(&self, dir: &Vec3, memory: &mut Memory) {
-        let round = [0, 1].map(|o| {
-            let object = &self.objects[o];
-            let bends = object.bends(self.step.end.active[o], self.seen(o));
+        let round = |o: usize| {
+            let object = &self.objects[o % 2];
+            let bends = object.bends(self.step.end.active[o % 2], self.seen(o));
             object.round(dir, bends)
-        });
-        memory.keep(dir, &self.slopes, self.count, &round);
+        };
+        // Spelt out: in a map that is not inlined the bounds are checked.
+        memory.keep(dir, &self.slopes, self.count, &[round(0), round(1)]);
     }
 
     /// The lowest direction met, after a search that found no minimum: the witness points are points
@@ -112,20 +113,17 @@ impl Search {
         let end = &self.step.end;
         let own = |o: usize, k: usize| self.objects[o % 2].point(k, m, out, self.seen(o % 2));
         // Of an object of one point, on a ball or disc, that is the one found here: these may end before.
-        let found = |o: usize| {
-            let object = &self.objects[o];
-            let kinks = end.kinks.iter().take(end.count);
-            object.is_cored()
-                && object.carries(end.active[o])
-                && kinks.filter(|kink| kink.object == o).count() == 0
-        };
-        let mut points = [0, 1].map(|o| {
-            if found(o) {
-                here[o].p
+        let active = |o: usize| {
+            let (object, k) = (&self.objects[o % 2], end.active[o % 2]);
+            let mut kinks = end.kinks.iter().take(end.count);
+            let is_cored = object.is_cored() && object.carries(k);
+            if is_cored && kinks.all(|kink| kink.object != o) {
+                here[o % 2].p
             } else {
-                own(o, end.active[o])
+                own(o, k)
             }
-        });
+        };
+        let mut points = [active(0), active(1)];
         let mut slopes = [points[0] + points[1]; 3];
         for (i, kink) in end.kinks.iter().take(end.count).enumerate() {
             let o = kink.object % 2;
