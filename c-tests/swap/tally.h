@@ -49,8 +49,9 @@ static inline void tally_print(const char *what, const tally_t *t)
 static inline double right_point(const shape_t *s, const ccd_vec3_t *dir, const ccd_vec3_t *v, double point[3])
 {
     static const double origin[3] = { 0, 0, 0 };
-    truth_point(s, origin, dir->v, point);
-    return fabs(dir->v[0] * (v->v[0] - point[0]) + dir->v[1] * (v->v[1] - point[1]) + dir->v[2] * (v->v[2] - point[2]));
+    const double n[3] = { dir->v[0], dir->v[1], dir->v[2] };
+    truth_point(s, origin, n, point);
+    return fabs(n[0] * (v->v[0] - point[0]) + n[1] * (v->v[1] - point[1]) + n[2] * (v->v[2] - point[2]));
 }
 
 #endif
