@@ -521,9 +521,9 @@ const MPR_SUPPORTS: u64 = 160;
 /// Part of a triangle by which the origin is inside of it, at least, for the state to stand on it.
 /// Insensitive: 0.01 to 0.1 tried.
 const EDGE: Real = 0.02;
-/// Of a proven minimum. Derived: no call asks more than 400, and what comes before and after takes 41 on
+/// Of a proven minimum. Derived: no call asks more than 400, and what comes before and after takes 52 on
 /// nearly coincident bodies (`campaigns -- wide`).
-const MOST_SUPPORTS: u64 = 350;
+const MOST_SUPPORTS: u64 = 345;
 /// Where an MPR query may stop: a gap of this share of the depth.
 const GAP: Real = 1e-3;
 
