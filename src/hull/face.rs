@@ -109,11 +109,14 @@ impl Try {
         };
         let own = points.names(self.lowest);
         let [a, b, c] = names;
-        let first = match [a, b, c] {
-            _ if cross(a, b, c) => 0,
-            _ if cross(b, c, a) => 1,
-            _ if cross(c, a, b) => 2,
-            _ => names.iter().position(|corner| *corner == own).unwrap_or(0),
+        let first = if cross(a, b, c) {
+            0
+        } else if cross(b, c, a) {
+            1
+        } else if cross(c, a, b) {
+            2
+        } else {
+            names.iter().position(|corner| *corner == own).unwrap_or(0)
         };
         for i in first..first + 3 {
             let [v1, v2] = corners[i % 3];
