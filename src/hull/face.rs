@@ -6,7 +6,12 @@
 //! What two polytopes touch in is mostly a face that they touched in before, a little turned. The directions
 //! that found its corners find them again; the polytope P of all that is known has the face
 //! ([`crate::hull::portal`], as seen along the lowest direction instead of from an apex); and one
-//! question along its normal finds nothing above it, or none where it has not turned. What is round
+//! question along its normal finds nothing above it, or none where it has not turned.
+//!
+//! *Why that is a minimum.* P is in D, so h(m) >= m·x for all directions m and points x of P. The search ends
+//! where x, in the face, is the foot n h(n) of the origin in the lowest plane, to what the tolerance allows
+//! ([`crate::hull::portal::Portal::touches`]): of a direction m at the angle θ from n, h(m) >= h(n) cos θ by x
+//! alone, and more by the face's corners, which lie around x. What is round
 //! counts as a polytope of the points that it shows, as far as the tolerance lets it.
 
 use crate::contact::Penetration;
@@ -88,8 +93,8 @@ impl Try {
         self.from = self.lowest;
     }
 
-    /// Writes the answer in the face, and its corners to `known`: the first one of both objects' edges where
-    /// two cross, else the one that the lowest direction itself has found, if it has.
+    /// Writes the answer in the face, and its corners to `known`: the one that the lowest direction itself has
+    /// found comes first, if it has found one.
     pub fn conclude(&self, lowest: &Lowest, known: &mut Known, hit: &mut Penetration) {
         let Some((names, weights)) = self.exit else {
             return;
@@ -108,25 +113,10 @@ impl Try {
             ..Penetration::default()
         };
         let own = points.names(self.lowest);
-        let [a, b, c] = names;
-        let first = if cross(a, b, c) {
-            0
-        } else if cross(b, c, a) {
-            1
-        } else if cross(c, a, b) {
-            2
-        } else {
-            names.iter().position(|corner| *corner == own).unwrap_or(0)
-        };
+        let first = names.iter().position(|corner| *corner == own).unwrap_or(0);
         for i in first..first + 3 {
             let [v1, v2] = corners[i % 3];
             known.push(&SupportPoint { v: v1 - v2, v1, v2 });
         }
     }
-}
-
-/// Is a corner at an end of an edge of each object, and the other two at the other end of one of them?
-fn cross(corner: [usize; 2], p: [usize; 2], q: [usize; 2]) -> bool {
-    let one = |p: [usize; 2]| (p[0] == corner[0]) != (p[1] == corner[1]);
-    one(p) && one(q) && p[0] != q[0] && p[1] != q[1]
 }

@@ -120,14 +120,20 @@ impl Memory {
         })
     }
 
-    /// Leaves behind the direction of a minimum in a face, its corners, and what was round before. Of two
-    /// edges that cross the first corner is on both.
+    /// Leaves behind the direction of a minimum in a face, its corners, and what was round before. Where an
+    /// edge of each object crosses the other's the corner that is on both comes first.
     pub fn touch(&mut self, dir: &Vec3, corners: &[SupportPoint]) {
         let [a, b, c] = corners else { return };
         let one = |p: &SupportPoint, q: &SupportPoint| (p.v1 == q.v1) != (p.v2 == q.v2);
-        let edges = one(a, b) && one(a, c) && !one(b, c);
-        let count = if edges { EDGES as usize } else { 3 };
-        let slopes = [a, b, c].map(|p| p.v - dir * dir.dot(&p.v));
+        let edges = [[a, b, c], [b, c, a], [c, a, b]];
+        let mut edges = edges
+            .into_iter()
+            .filter(|[a, b, c]| one(a, b) && one(a, c) && !one(b, c));
+        let (corners, count) = match edges.next() {
+            Some(edges) => (edges, EDGES as usize),
+            None => ([a, b, c], 3),
+        };
+        let slopes = corners.map(|p| p.v - dir * dir.dot(&p.v));
         let round = self.round();
         self.keep(dir, &slopes, count, &round);
     }
