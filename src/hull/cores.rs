@@ -82,9 +82,9 @@ pub enum Aim {
 }
 
 impl Part {
-    /// Smooth, and neither a ball nor a disc: an ellipsoid's.
+    /// Smooth, and neither a ball nor a disc: an ellipsoid's. Beside the other object's radius it is nothing.
     const NEITHER: Self = Self {
-        radius: -1.0,
+        radius: -Real::MIN_POSITIVE,
         axis: Vec3::new(0.0, 0.0, 0.0),
     };
 
@@ -291,9 +291,10 @@ impl Cores {
         v
     }
 
-    /// R(n); and of its derivative the ball's part, and of each disc the way that it turns.
-    fn round(&self, n: &Vec3) -> (Vec3, Real, [Vec3; 2]) {
-        let (mut r, mut ball, mut turns) = (Vec3::zeros(), 0.0, [Vec3::zeros(); 2]);
+    /// R(n); and of its derivative the ball's part, and of each disc the way that it turns and how fast.
+    #[inline(always)]
+    fn round(&self, n: &Vec3) -> (Vec3, Real, [(Vec3, Real); 2]) {
+        let (mut r, mut ball, mut turns) = (Vec3::zeros(), 0.0, [(Vec3::zeros(), 0.0); 2]);
         for (part, turn) in self.parts.iter().zip(&mut turns) {
             let Part { radius, axis } = part;
             if part.is_ball() {
@@ -301,11 +302,11 @@ impl Cores {
                 ball += radius;
             } else {
                 let across = n - axis * axis.dot(n);
-                let long = across.norm();
-                if long * long > EPSILON {
-                    let m = across * (1.0 / long);
-                    r += m * *radius;
-                    *turn = axis.cross(&m) * (radius / long).sqrt();
+                let long2 = across.norm_squared();
+                if long2 > EPSILON {
+                    let bend = radius / long2.sqrt();
+                    r += across * bend;
+                    *turn = (axis.cross(&across), bend / long2);
                 }
             }
         }
@@ -345,8 +346,8 @@ impl Cores {
             let t = e.cross(&n);
             let (r, ball, turns) = self.round(&n);
             let v = a + r;
-            let bend = turns.iter().fold(ball - n.dot(&v), |bend, turn| {
-                bend + turn.dot(&t) * turn.dot(&t)
+            let bend = turns.iter().fold(ball - n.dot(&v), |bend, (turn, fast)| {
+                bend + fast * (turn.dot(&t) * turn.dot(&t))
             });
             let step = -t.dot(&v) / bend;
             if !(bend > 0.0 && step.abs() < 1.0) {
@@ -372,9 +373,9 @@ impl Cores {
             let v = a + r;
             let level = ball - n.dot(&v);
             let (mut xx, mut xy, mut yy) = (level, 0.0, level);
-            for turn in &turns {
+            for (turn, fast) in &turns {
                 let (x, y) = (turn.dot(&s), turn.dot(&t));
-                (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+                (xx, xy, yy) = (xx + fast * x * x, xy + fast * x * y, yy + fast * y * y);
             }
             let (x, y) = (-s.dot(&v), -t.dot(&v));
             let det = xx * yy - xy * xy;
