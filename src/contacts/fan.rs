@@ -6,10 +6,13 @@
 //! # Derivation
 //!
 //! *A fan.* The points of an object, seen from the deepest place r*, are the corners of a fan of
-//! triangles. In each of them low, how far the object is below its support plane, is linear, and so is w, which is 0 at r* and 1 along the outer side, beyond which there
-//! is nothing. Where r* is itself a corner of the face a corner a hair beyond it closes the fan. The
-//! rays of the corners of both fans part the plane into cones, in which w1, w2 and f = low1 + low2
-//! are linear, and the shared region is where all three are at most 1 (low in units of d).
+//! triangles. In each of them low, how far the object is below its support plane, is linear, and so is w,
+//! which is 0 at r* and 1 along the outer side, beyond which there is nothing. What a sector of the one fan
+//! shares with a sector of the other is a cone, in which w1, w2 and f = low1 + low2 are linear, and the shared
+//! region is where all three are at most 1 (low in units of d). A sector turns back where r* lies
+//! beyond the corners that are seen. By more than rounding it is one of a rim itself, and the sector is none.
+//! By no more it is beside the object, as witness points are, and the sector counts with a minus: what the
+//! others have between r* and the outline goes.
 //!
 //! *A cone.* The region's outline in a cone is the upper envelope of the three: two to four corners
 //! v_i. With δ_i = 1 − f(v_i), in units of d, the triangle 0 v_i v_j, of twice the area a, has
@@ -32,209 +35,20 @@
 //! it is cancels out. Where the outline is at depth 0 it is nothing. So faces, edges and corners are
 //! one case, and what is between them is between them.
 
-use crate::contacts::list::List;
-use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, dot, length, side};
+use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, dot, side};
 use crate::math::{Real, larger, lesser};
 
-/// Corners of a fan, at most: eight that are asked for, and those that close it.
-const ROOM: usize = 11;
-/// A corner within so many hairs, and more than the one it was moved by, is the deepest place itself:
-/// as far as witness points are beside it. Measured
-/// (`extension/pressure.c`): 1 leaves out half of a box that leans by less than its depth.
-const HERE: Real = 32.0;
-/// Part of a hair by which directions must differ, at the farther corner. Insensitive: 1/8 to 1/2 tried.
-const PART: Real = 0.25;
+/// Corners of a fan, at most.
+const ROOM: usize = 8;
+/// The deepest place may be beside the outline by so many hairs, as witness points are. Measured
+/// (`extension/pressure.c`): ÷4, in single precision, a brick on an edge steps by 1.6 mm; ×4 no change.
+const BESIDE: Real = 32.0;
 
-/// What is seen of one object from the deepest place: corners around it, in order, low in units of the
-/// depth. Without corners it is a level plane that reaches farther than all.
-#[derive(Clone, Debug, Default)]
-pub struct Fan {
-    pub corners: Polygon<ROOM>,
-    /// What is taken off all lows.
-    level: Real,
-}
+/// What is seen of one object from the deepest place: corners around it, low in units of the depth.
+pub type Fan = Polygon<ROOM>;
 
-impl Fan {
-    /// Does it stand for a level plane?
-    pub fn is_plane(&self) -> bool {
-        self.corners.is_empty()
-    }
-
-    /// How far the object reaches towards its corners, as far as the depth goes.
-    #[inline(always)]
-    pub fn ends(&self) -> impl Iterator<Item = Flat> + '_ {
-        self.corners.iter().map(|c| c.outer().at)
-    }
-
-    /// Does the object end within `far`, metres, around the deepest place, as far as the depth goes?
-    #[inline(always)]
-    pub fn is_point(&self, far: Real) -> bool {
-        self.corners.iter().all(|c| {
-            let most = far * larger(c.low, 1.0);
-            dot(&c.at, &c.at) <= most * most
-        })
-    }
-
-    /// Takes this share of what all corners are lower by off them, and puts them in order. `hair`,
-    /// metres: what is nearer is the same.
-    #[inline(never)]
-    pub fn settle(&mut self, share: Real, hair: Real) {
-        let low = self.corners.iter().map(|corner| corner.low);
-        self.level = low.fold(1.0, lesser) * share;
-        let part2 = PART * PART * hair * hair;
-        // Mostly they lie around the deepest place, in the order in which they were asked for.
-        let (mut p, mut is_around) = (self.corners.at(self.corners.len().max(1) - 1).at, true);
-        for corner in self.corners.iter_mut() {
-            corner.low -= self.level;
-            let q = corner.at;
-            let (area, way) = (cross(&p, &q), side(&p, &q));
-            is_around &= area > 0.0 && area * area > part2 * dot(&way, &way);
-            p = q;
-        }
-        if !is_around {
-            self.corners = closed(&self.in_order(hair * hair, part2), hair);
-        }
-    }
-
-    /// Its corners in order around the deepest place, of those in one direction the farthest.
-    /// `part2`, m²: what is aside by less than its root is not.
-    #[cold]
-    #[inline(never)]
-    fn in_order(&self, hair2: Real, part2: Real) -> List<(Real, Corner), ROOM> {
-        // What is the deepest place, but beside it, has no direction.
-        let is_here = |c: &Corner| {
-            let far2 = dot(&c.at, &c.at);
-            far2 > 4.0 * hair2 && far2 <= HERE * HERE * hair2
-        };
-        let is_same = |p: &Flat, q: &Flat| {
-            let aside = cross(p, q);
-            let most2 = part2 * larger(dot(p, p), dot(q, q));
-            dot(p, q) > 0.0 && !(aside * aside > most2)
-        };
-        let mut order: List<(Real, Corner), ROOM> = List::default();
-        let all = self.corners.iter().all(is_here);
-        for corner in self.corners.iter().filter(|c| all || !is_here(c)) {
-            let turn = turn(&corner.at);
-            let i = order.iter().filter(|(t, _)| *t <= turn).count();
-            let beside = [(i + order.len()).max(1) - 1, i];
-            let mut same = beside
-                .into_iter()
-                .filter(|k| is_same(&order.at(*k).1.at, &corner.at));
-            if let Some(k) = same.next() {
-                let place = &mut order.at_mut(k).1;
-                if dot(&corner.at, &corner.at) > dot(&place.at, &place.at) {
-                    *place = *corner;
-                }
-            } else {
-                order.insert(i, (turn, *corner));
-            }
-        }
-        order
-    }
-
-    /// The sector from corner `i`, counted around, to the next.
-    #[inline(always)]
-    fn at(&self, i: usize) -> [&Corner; 2] {
-        let i = if i < self.corners.len() {
-            i
-        } else {
-            i - self.corners.len()
-        };
-        [self.corners.at(i), self.corners.at(i + 1)]
-    }
-
-    /// The sector that a ray is in.
-    #[inline(always)]
-    fn sector(&self, r: &Flat) -> Option<usize> {
-        let mut last = self.corners.len().max(1) - 1;
-        let mut left = cross(&self.corners.at(last).at, r);
-        for (i, corner) in self.corners.iter().enumerate() {
-            let next = cross(&corner.at, r);
-            if left >= 0.0 && next < 0.0 {
-                return Some(last);
-            }
-            (last, left) = (i, next);
-        }
-        None
-    }
-
-    /// The centre of pressure on a level plane, from the deepest place; `rim`: d / 2 s.
-    #[inline(never)]
-    fn pressed_on_plane(&self, rim: Real) -> Flat {
-        let mut p = self.corners.at(self.corners.len().max(1) - 1);
-        let mut sum = Sum {
-            rim,
-            last: p.outer(),
-            ..Sum::default()
-        };
-        for q in self.corners.iter() {
-            if (p.low > 1.0) != (q.low > 1.0) {
-                let at = between(&p.at, &q.at, (1.0 - p.low) / (q.low - p.low));
-                sum.to(Outer { at, depth: 0.0 });
-            }
-            sum.to(q.outer());
-            p = q;
-        }
-        sum.centroid()
-    }
-
-    /// How far the object is below its plane at a place, in units of the depth; `None` where that is
-    /// no place of the fan, but for a hundredth.
-    #[inline(never)]
-    pub fn low(&self, r: &Flat) -> Option<Real> {
-        if self.is_plane() {
-            return Some(0.0);
-        }
-        let [wall, low] = within(&self.at(self.sector(r)?), r);
-        // Not where it is NaN.
-        (wall <= 1.01).then_some(low + self.level * wall)
-    }
-}
-
-/// Corners in order, closed where they leave out half a turn or more, because the deepest place is a
-/// corner itself: by others a hair beyond it.
-#[cold]
-#[inline(never)]
-fn closed(order: &List<(Real, Corner), ROOM>, hair: Real) -> Polygon<ROOM> {
-    let mut fan = Polygon::default();
-    for (i, (_, p)) in order.iter().enumerate() {
-        let q = order.at(i + 1).1.at;
-        fan.push(*p);
-        if cross(&p.at, &q) > 0.0 {
-            continue;
-        }
-        // A quarter of a turn from p, a half, three quarters, as far as q is.
-        let share = hair / length(&p.at);
-        let mut at = p.at.map(|x| x * share);
-        for _ in 1..4 {
-            at = [-at[1], at[0]];
-            fan.push(Corner { at, low: 0.0 });
-            let (across, along) = (cross(&at, &q), dot(&at, &q));
-            // Not where the rest is nearly half a turn: it would be no region.
-            if across > 0.0 && across > -along {
-                break;
-            }
-        }
-    }
-    fan
-}
-
-/// Of a place in a sector: w and low.
-#[inline(always)]
-fn within([p, q]: &[&Corner; 2], r: &Flat) -> [Real; 2] {
-    let share = 1.0 / cross(&p.at, &q.at);
-    let (one, two) = (cross(r, &q.at) * share, cross(&p.at, r) * share);
-    [one + two, one * p.low + two * q.low]
-}
-
-/// What grows with a direction's angle, around from the first axis: 0 to 4.
-fn turn([x, y]: &Flat) -> Real {
-    let along = x / larger(x.abs() + y.abs(), Real::MIN_POSITIVE);
-    if *y < 0.0 { 3.0 + along } else { 1.0 - along }
-}
-
-/// The ray to a corner of either fan, and what is at most 1 in the region there: w of both, and f.
-#[derive(Clone, Copy, Debug, Default)]
+/// A ray from the deepest place, and what is at most 1 in the region there: w of both fans, and f.
+#[derive(Clone, Copy)]
 struct Ray {
     at: Flat,
     most: [Real; 3],
@@ -270,11 +84,7 @@ impl Ray {
         let (s, e) = (&self.most, &other.most);
         Self {
             at: between(&self.at, &other.at, t),
-            most: [
-                s[0] + (e[0] - s[0]) * t,
-                s[1] + (e[1] - s[1]) * t,
-                s[2] + (e[2] - s[2]) * t,
-            ],
+            most: [0, 1, 2].map(|k| s[k] + (e[k] - s[k]) * t),
         }
     }
 }
@@ -292,40 +102,66 @@ impl Corner {
 }
 
 /// A corner of the region's outline, and the local depth there in units of the depth.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy)]
 pub struct Outer {
     pub at: Flat,
     depth: Real,
 }
 
 /// Volume and moment of the local depth, along the outline.
-#[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     volume: Real,
     moment: Flat,
     /// d / 2 s.
     rim: Real,
-    /// Where the outline has come to.
-    last: Outer,
 }
 
 impl Sum {
-    /// The triangle from the deepest place to the next piece of outline, and the rim beyond that.
+    fn new(rim: Real) -> Self {
+        Self {
+            volume: 0.0,
+            moment: [0.0; 2],
+            rim,
+        }
+    }
+
+    /// The triangle from the deepest place to a piece of outline, times `sign`, and the rim beyond that.
     #[inline(always)]
-    fn to(&mut self, w: Outer) {
-        let v = self.last;
+    fn add(&mut self, sign: Real, v: &Outer, w: &Outer) {
         let (a, b) = (v.depth, w.depth);
-        let area = cross(&v.at, &w.at);
+        let area = sign * cross(&v.at, &w.at);
         // How long the piece is, to 4 %: the rim's width is not known better.
         let [x, y] = side(&v.at, &w.at).map(Real::abs);
         let k = 2.0 * self.rim * (larger(x, y) + 0.4 * lesser(x, y));
         let (aa, ab, bb) = (a * a, a * b, b * b);
-        self.volume += 4.0 * (area * (1.0 + a + b) + k * (aa + ab + bb));
-        let one = area * (1.0 + 2.0 * a + b) + k * (3.0 * aa + 2.0 * ab + bb);
-        let two = area * (1.0 + a + 2.0 * b) + k * (aa + 2.0 * ab + 3.0 * bb);
+        let both = area * (1.0 + a + b) + k * (aa + 2.0 * ab + bb);
+        let one = both + area * a + 2.0 * k * aa;
+        let two = both + area * b + 2.0 * k * bb;
+        self.volume += 4.0 * (both - k * ab);
         self.moment[0] += one * v.at[0] + two * w.at[0];
         self.moment[1] += one * v.at[1] + two * w.at[1];
-        self.last = w;
+    }
+
+    /// The outline in a cone, from one ray to another.
+    #[inline(always)]
+    fn cone(&mut self, sign: Real, s: &Ray, e: &Ray) {
+        let (i, j) = (s.top(), e.top());
+        let mut from = s.outer(i);
+        let mut to = |next: Outer| {
+            self.add(sign, &from, &next);
+            from = next;
+        };
+        if i != j {
+            let cut = s.between(e, i, j);
+            let k = 3_usize.wrapping_sub(i + j).min(2);
+            if cut.most[k] > cut.most[i.min(2)] {
+                to(s.between(e, i, k).outer(k));
+                to(s.between(e, k, j).outer(k));
+            } else {
+                to(cut.outer(i));
+            }
+        }
+        to(e.outer(j));
     }
 
     /// NaN where nothing is shared.
@@ -333,79 +169,151 @@ impl Sum {
         let share = 1.0 / self.volume;
         self.moment.map(|m| m * share)
     }
+}
 
-    /// The outline from one ray, whose largest is the `i`th, to the next, whose largest is the `j`th.
-    #[inline(always)]
-    fn cone(&mut self, s: &Ray, i: usize, e: &Ray, j: usize) {
-        if i != j {
-            let cut = s.between(e, i, j);
-            let k = 3_usize.wrapping_sub(i + j).min(2);
-            if cut.most[k] > cut.most[i.min(2)] {
-                self.to(s.between(e, i, k).outer(k));
-                self.to(s.between(e, k, j).outer(k));
-            } else {
-                self.to(cut.outer(i));
-            }
+/// The centre of pressure of a fan on a level plane that reaches farther, from the deepest place; `rim`:
+/// d / 2 s, `hair`: what corners are moved by, metres. NaN where nothing is shared.
+#[inline(never)]
+pub fn pressed_on_plane(fan: &Fan, rim: Real, hair: Real) -> Flat {
+    let mut sum = Sum::new(rim);
+    let mut p = fan.at(fan.len().max(1) - 1);
+    for q in fan.iter() {
+        let mut from = p.outer();
+        if whole(p, q, hair) == 0.0 {
+            p = q;
+            continue;
         }
-        self.to(e.outer(j));
+        if (p.low > 1.0) != (q.low > 1.0) {
+            let at = between(&p.at, &q.at, (1.0 - p.low) / (q.low - p.low));
+            let cut = Outer { at, depth: 0.0 };
+            sum.add(1.0, &from, &cut);
+            from = cut;
+        }
+        sum.add(1.0, &from, &q.outer());
+        p = q;
+    }
+    sum.centroid()
+}
+
+/// A corner q of the second fan, and how it lies to a sector of the first, from p to r.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    /// Twice the areas of the triangles p q and r q.
+    areas: [Real; 2],
+    /// One over that of the sector from the corner before; 0 where that is none.
+    share: Real,
+}
+
+/// Twice the area of a sector, less than 0 where it turns back; 0 of none.
+#[inline(always)]
+fn whole(p: &Corner, q: &Corner, hair: Real) -> Real {
+    let whole = cross(&p.at, &q.at);
+    if whole < 0.0 {
+        let (way, most) = (side(&p.at, &q.at), BESIDE * hair);
+        if whole * whole > most * most * dot(&way, &way) {
+            return 0.0;
+        }
+    }
+    whole
+}
+
+/// The same of two fans.
+#[inline(never)]
+pub fn pressed(one: &Fan, two: &Fan, rim: Real, hair: Real) -> Flat {
+    let mut sum = Sum::new(rim);
+    let share = |p: &Corner, r: &Corner| {
+        let whole = whole(p, r, hair);
+        if whole == 0.0 { 0.0 } else { 1.0 / whole }
+    };
+    let (Some(mut p), Some(mut q)) = (one.last(), two.last()) else {
+        return [Real::NAN; 2];
+    };
+    let mut places = [Place::default(); ROOM];
+    for (place, s) in places.iter_mut().zip(two.iter()) {
+        place.areas[1] = cross(&p.at, &s.at);
+        place.share = share(q, s);
+        q = s;
+    }
+    for r in one.iter() {
+        for (place, q) in places.iter_mut().zip(two.iter()) {
+            place.areas = [place.areas[1], cross(&r.at, &q.at)];
+        }
+        let share = share(p, r);
+        if share != 0.0 {
+            shared(&mut sum, [p, r], share, two, &places);
+        }
+        p = r;
+    }
+    sum.centroid()
+}
+
+/// What a sector of the first fan shares with those of the second.
+#[inline(always)]
+fn shared(sum: &mut Sum, sector: [&Corner; 2], share: Real, two: &Fan, places: &[Place; ROOM]) {
+    let back = usize::from(share < 0.0);
+    let [p, r] = turned(share, sector);
+    let share = share.abs();
+    let sides = places.iter().zip(two.iter());
+    let Some(mut last) = sides.clone().next_back() else {
+        return;
+    };
+    for next in sides {
+        // It is from q to s.
+        let [(at_q, q), (at_s, s)] = turned(next.0.share, [last, next]);
+        last = next;
+        let (pq, rq) = (at_q.areas[back], at_q.areas[1 - back]);
+        let (ps, rs) = (at_s.areas[back], at_s.areas[1 - back]);
+        let is_p_within = pq <= 0.0 && ps > 0.0;
+        let is_q_within = pq > 0.0 && rq < 0.0;
+        if next.0.share == 0.0 || !(is_p_within || is_q_within) {
+            continue;
+        }
+        let its = next.0.share.abs();
+        // A corner of the first fan in a sector of the second, by its shares of that one's corners.
+        let first = |c: &Corner, cq: Real, cs: Real| {
+            let (one, two) = (cs * its, -cq * its);
+            Ray {
+                at: c.at,
+                most: [1.0, one + two, c.low + one * q.low + two * s.low],
+            }
+        };
+        let second = |c: &Corner, pc: Real, rc: Real| {
+            let (one, two) = (-rc * share, pc * share);
+            Ray {
+                at: c.at,
+                most: [one + two, 1.0, c.low + one * p.low + two * r.low],
+            }
+        };
+        let start = if is_p_within {
+            first(p, pq, ps)
+        } else {
+            second(q, pq, rq)
+        };
+        let end = if rq < 0.0 && rs >= 0.0 {
+            first(r, rq, rs)
+        } else {
+            second(s, ps, rs)
+        };
+        let sign = if (back == 1) == (next.0.share < 0.0) {
+            1.0
+        } else {
+            -1.0
+        };
+        sum.cone(sign, &start, &end);
     }
 }
 
-/// The centre of pressure of two fans, from the deepest place; `rim`: d / 2 s. `None` where one does
-/// not close.
+/// The two ends of a sector, in the order in which it turns ahead.
 #[inline(always)]
-pub fn pressed(one: &Fan, two: &Fan, rim: Real) -> Option<Flat> {
-    if two.is_plane() {
-        return Some(one.pressed_on_plane(rim));
-    }
-    let ray = |corner: &Corner, sector: &[&Corner; 2], is_first: bool| {
-        let [wall, low] = within(sector, &corner.at);
-        let (a, b) = if is_first { (1.0, wall) } else { (wall, 1.0) };
-        Ray {
-            at: corner.at,
-            most: [a, b, corner.low + low],
-        }
-    };
-    // The sectors that the last ray is in: the second fan's are counted from the first ray's, and left in
-    // order until that comes again.
-    let (first, mut i, mut j) = (two.sector(&one.corners.at(0).at)?, 0, 0);
-    let mut sectors = [one.at(0), two.at(first)];
-    let start = ray(sectors[0][0], &sectors[1], true);
-    let (mut last, mut top) = (start, start.top());
-    let mut sum = Sum {
-        rim,
-        last: start.outer(top),
-        ..Sum::default()
-    };
-    // Ends: each round takes a corner.
-    while i < one.corners.len() {
-        let [[_, p], [_, q]] = sectors;
-        let next = if cross(&p.at, &q.at) > 0.0 || j == two.corners.len() {
-            i += 1;
-            sectors[0] = one.at(i);
-            if i < one.corners.len() {
-                ray(p, &sectors[1], true)
-            } else {
-                start
-            }
-        } else {
-            j += 1;
-            sectors[1] = two.at(first + j);
-            ray(q, &sectors[0], false)
-        };
-        let next_top = next.top();
-        sum.cone(&last, top, &next, next_top);
-        (last, top) = (next, next_top);
-    }
-    Some(sum.centroid())
+fn turned<T>(share: Real, [a, b]: [T; 2]) -> [T; 2] {
+    if share < 0.0 { [b, a] } else { [a, b] }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contacts::polygon::length;
     use crate::shapes::Random;
-
-    const HAIR: Real = 2e-6;
 
     fn fan(corners: &[(Real, Real, Real)]) -> Fan {
         let corner = |c: &(Real, Real, Real)| Corner {
@@ -413,11 +321,15 @@ mod tests {
             low: c.2,
         };
         let mut fan = Fan::default();
-        for (i, c) in corners.iter().enumerate() {
-            fan.corners.insert(i, corner(c));
-        }
-        fan.settle(0.0, HAIR);
+        corners.iter().for_each(|c| fan.push(corner(c)));
         fan
+    }
+
+    /// Of a place in a sector: w and low.
+    fn within(p: &Corner, q: &Corner, r: &Flat) -> Option<[Real; 2]> {
+        let share = 1.0 / cross(&p.at, &q.at);
+        let (one, two) = (cross(r, &q.at) * share, cross(&p.at, r) * share);
+        (one >= 0.0 && two >= 0.0).then_some([one + two, one * p.low + two * q.low])
     }
 
     /// By sums over a grid: where w of both and the sum of lows are at most 1.
@@ -427,7 +339,10 @@ mod tests {
         for x in -N..N {
             for y in -N..N {
                 let r = [x, y].map(|x| (x as Real + 0.5) * 1.5 / N as Real);
-                let of = |f: &Fan| f.sector(&r).map_or([9.0; 2], |i| within(&f.at(i), &r));
+                let of = |f: &Fan| {
+                    let mut found = f.sides().filter_map(|(p, q)| within(&p, &q, &r));
+                    found.next().unwrap_or([9.0; 2])
+                };
                 let ([w1, l1], [w2, l2]) = (of(one), of(two));
                 let depth = 1.0 - l1 - l2;
                 if w1 <= 1.0 && w2 <= 1.0 && depth > 0.0 {
@@ -458,7 +373,7 @@ mod tests {
                 fan(&corners)
             });
             let [one, two] = &fans;
-            let found = pressed(one, two, 1e-9).unwrap();
+            let found = pressed(one, two, 1e-9, 1e-9);
             let truth = by_grid(one, two);
             let off = length(&side(&found, &truth));
             assert!(off < 3e-3, "{round}: {found:?} {truth:?} {one:?} {two:?}");
@@ -473,14 +388,14 @@ mod tests {
             (-1.0, -1.0, 0.0),
             (1.0, -1.0, 0.0),
         ]);
-        let h = HAIR;
+        let h = 2e-6;
         let edge = fan(&[
             (0.5, h, 0.0),
             (0.5, h * 1.1, 0.0),
             (-0.5, -h, 0.0),
             (-0.5, -h * 0.5, 0.0),
         ]);
-        let c = pressed(&edge, &plate, 1e-3).unwrap();
+        let c = pressed(&edge, &plate, 1e-3, 2e-6);
         assert!(length(&c) < 1e-3, "{c:?} {edge:?}");
         let edge = fan(&[
             (1.0, h, 1.0),
@@ -488,7 +403,25 @@ mod tests {
             (0.0, -h, 0.0),
             (0.0, -h * 0.5, 0.0),
         ]);
-        let c = pressed(&edge, &plate, 1e-3).unwrap();
+        let c = pressed(&edge, &plate, 1e-3, 2e-6);
         assert!((c[0] - 0.25).abs() < 1e-2, "{c:?} {edge:?}");
+        // The deepest place is beside it.
+        let edge = |y: Real| {
+            fan(&[
+                (1.0, y + h, 1.0),
+                (1.0, y + h * 1.1, 1.0),
+                (-0.3, y - h, 0.0),
+                (-0.3, y - h * 0.5, 0.0),
+            ])
+        };
+        let level = |fan: &Fan| pressed_on_plane(fan, 1e-5, h);
+        let both = |fan: &Fan| pressed(fan, &plate, 1e-5, h);
+        for of in [&level as &dyn Fn(&Fan) -> Flat, &both] {
+            let on = of(&edge(0.0));
+            for y in [20.0 * h, -20.0 * h] {
+                let c = of(&edge(y));
+                assert!((c[0] - on[0]).abs() < 1e-2, "{c:?} {on:?}");
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! The plane across the normal of a contact, in which the faces of both objects are seen.
 
 use crate::contacts::polygon::{Corner, Flat};
-use crate::contacts::view::{CIRCLE, FOUR};
+use crate::contacts::view::FOUR;
 use crate::known::support::Fault;
 use crate::math::{POLE, Real, Vec3, axes};
 
@@ -27,12 +27,16 @@ impl Plane {
         }
     }
 
-    /// Through `origin`, with the same axes for the objects swapped.
+    /// Through `origin`, with the same axes for the objects swapped. They are turned, so that of a box whose
+    /// axes are the world's no two corners are as far along any of them.
     pub fn upright(n: &Vec3, origin: &Vec3) -> Self {
+        const X: Real = 11.0 / 61.0;
+        const Y: Real = 60.0 / 61.0;
         let up = if POLE.dot(n) < 0.0 { -n } else { *n };
+        let [e1, e2] = axes(&up);
         Self {
             n: *n,
-            axes: axes(&up),
+            axes: [e1 * X + e2 * Y, e2 * X - e1 * Y],
             origin: *origin,
         }
     }
@@ -45,12 +49,11 @@ impl Plane {
         (self.n * sign + (e1 * aside[0] + e2 * aside[1])) * share
     }
 
-    /// The four unit directions of this tilt that [`CIRCLE`] tells.
+    /// The four unit directions that are tilted so towards the axes, and away from them.
     pub fn around(&self, tilt: Real) -> [Vec3; FOUR] {
         let share = 1.0 / (1.0 + tilt * tilt).sqrt();
-        let [x, y] = CIRCLE[0].map(|x| x * tilt * share);
-        let ([e1, e2], n) = (&self.axes, self.n * share);
-        let (a, b) = (e1 * x + e2 * y, e2 * x - e1 * y);
+        let n = self.n * share;
+        let [a, b] = self.axes.map(|e| e * (tilt * share));
         [n + a, n + b, n - a, n - b]
     }
 
@@ -72,6 +75,7 @@ impl Plane {
     }
 
     /// The point at a place of the plane, so high above it.
+    #[inline(always)]
     pub fn point(&self, [x, y]: &Flat, height: Real) -> Vec3 {
         let [e1, e2] = &self.axes;
         self.origin + e1 * *x + e2 * *y + self.n * height

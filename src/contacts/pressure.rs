@@ -26,20 +26,22 @@
 //! not the whole face more is asked: [`crate::contacts::view`]. Other points enter only as a floor
 //! ([`crate::contacts::seen`]): where known points of one object lie in its support plane all around what
 //! the other has there, no corner of that floor matters, and that object is not asked; where they leave
-//! something out it is asked towards that, until they do. As corners they would not do: they lie where the search came from, and would pull c there.
+//! something out it is asked towards that, until they do. As corners they would not do: they lie where
+//! the search came from, and would pull c there.
 //!
 //! *Fans.* The points of an object, seen from r*, are the corners of a fan of triangles, in each of
-//! which low is linear. The integrals over two fans are in closed form: [`crate::contacts::fan`].
+//! which low is linear. The integrals over two fans, or over one on a floor, are in closed form:
+//! [`crate::contacts::fan`]. The position is half-way between the support planes there.
 //!
 //! *Roundness.* A round face is lower by ½ R t² where it is asked with the tilt t, all around: a part
-//! of what all corners have in common is taken off, [`LEVEL`]. All of it would be right for a sphere;
+//! of what all corners have in common is taken off, `LEVEL` of [`crate::contacts::view`]. All of it would be right for a sphere;
 //! of the strip along which a cylinder lies the depth falls by the square, not linearly, and the rest
 //! makes up for that.
 
 use crate::contact::Penetration;
-use crate::contacts::fan::{Fan, pressed};
+use crate::contacts::fan::{Fan, pressed, pressed_on_plane};
 use crate::contacts::plane::Plane;
-use crate::contacts::polygon::{Flat, side};
+use crate::contacts::polygon::{Flat, dot, side};
 use crate::contacts::seen::Seen;
 use crate::contacts::view::{FOUR, Four, View};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -60,9 +62,6 @@ const HAIR: Real = 1.0 / 512.0;
 /// What ends within this share of the smaller object's extent is a point: the centre of pressure is
 /// within a quarter of that.
 const POINT: Real = 0.016;
-/// Share of what all corners are lower by that is taken off. Measured: 0 lets a lying capsule step by 5 mm, 1
-/// leaves it 7 mm off.
-const LEVEL: Real = 0.75;
 /// The four directions around a deepest place whose points all lie in the face of D there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Around {
@@ -77,8 +76,13 @@ pub struct Around {
 impl Around {
     /// Of the four corners of either object.
     #[inline(never)]
-    fn fill<A: SupportMap, B: SupportMap>(&mut self, view: &View<A, B>, four: &[Four; 2]) {
-        let [one, two] = four;
+    fn fill<A: SupportMap, B: SupportMap>(
+        &mut self,
+        view: &View<A, B>,
+        four: &[Four; 2],
+        first: usize,
+    ) {
+        let (one, two) = (&four[first % 2], &four[1 - first % 2]);
         for k in 0..FOUR {
             let (p, q) = (&one[k], &two[(k + FOUR / 2) % FOUR]);
             if !((p.low + q.low) * view.depth <= self.low) {
@@ -103,7 +107,7 @@ pub struct Aside<'a> {
     pub around: Option<&'a mut Around>,
 }
 
-/// The centre of pressure of a hit, in the middle of the chord there. Two support points where the search
+/// The centre of pressure of a hit, half-way between the support planes. Two support points where the search
 /// has seen a floor that holds what is on it, else up to four, and a half more where a face has more than four corners.
 ///
 /// # Errors
@@ -128,9 +132,12 @@ pub fn centre<A: SupportMap, B: SupportMap>(
         Seen::Floor(floor) => Some(floor),
         _ => None,
     };
-    let plane = match floor {
-        Some(floor) => floor.plane,
-        None => Plane::upright(&hit.normal, &middle),
+    let upright;
+    let plane = if let Some(floor) = floor {
+        &floor.plane
+    } else {
+        upright = Plane::upright(&hit.normal, &middle);
+        &upright
     };
     let tilt = lesser(TILT * (depth / far).sqrt(), MOST);
     let view = View {
@@ -150,37 +157,48 @@ pub fn centre<A: SupportMap, B: SupportMap>(
         Some(floor) => 1 - floor.object % 2,
         None => usize::from(far2[1] < far2[0]),
     };
-    let other = 1 - first;
+    let point2 = POINT * POINT * far * far;
     let mut four = [Four::default(); 2];
-    let [mut one, mut two] = [Fan::default(), Fan::default()];
-    view.look(first, &mut four[first % 2], &mut one, None)?;
-    if one.is_point(POINT * far) {
+    let [mine, its] = &mut four;
+    view.look(first, mine)?;
+    if is_point(mine, point2) {
         return Ok(middle);
     }
-    view.complete(first, &four[first % 2], &mut one)?;
-    one.settle(LEVEL, hair);
-    let floor = floor.map(|floor| (*floor, &one));
-    view.look(other, &mut four[other % 2], &mut two, floor)?;
-    if !two.is_plane() {
-        if two.is_point(POINT * far) {
-            return Ok(middle);
-        }
-        view.complete(other, &four[other % 2], &mut two)?;
-        two.settle(LEVEL, hair);
+    let mut one = Fan::default();
+    view.fan(first, mine, &mut one)?;
+    let on_floor = match floor {
+        Some(floor) => view.look_beyond(floor, &one, its)?,
+        None => view.look(1 - first, its).map(|()| false)?,
+    };
+    let rim = depth * 0.5 / FLANK;
+    let c = if on_floor {
+        pressed_on_plane(&one, rim, hair)
+    } else if is_point(its, point2) {
+        return Ok(middle);
+    } else {
+        let mut two = Fan::default();
+        view.fan(1 - first, its, &mut two)?;
         if let Some(around) = aside.around {
-            around.fill(&view, &four);
+            around.fill(&view, &four, first);
         }
-    }
-    // Rounding may have it elsewhere, where a fan is a line; it is NaN where nothing is shared.
-    let Some(c) = pressed(&one, &two, depth * 0.5 / FLANK) else {
-        return Ok(middle);
+        pressed(&one, &two, rim, hair)
     };
-    let Some((low, other)) = one.low(&c).zip(two.low(&c)) else {
-        return Ok(middle);
-    };
-    let down = 0.5 * depth * (lesser(low, 1.0) - lesser(other, 1.0));
-    let up = if first == 0 { -down } else { down };
-    Ok(view.plane.point(&c, up))
+    // NaN where nothing is shared.
+    Ok(if dot(&c, &c).is_finite() {
+        view.plane.point(&c, 0.0)
+    } else {
+        middle
+    })
+}
+
+/// Does an object with these corners end within the root of `most2`, m², around the deepest place, as far as
+/// the depth goes?
+#[inline(always)]
+fn is_point(four: &Four, most2: Real) -> bool {
+    four.iter().all(|c| {
+        let low = larger(c.low, 1.0);
+        dot(&c.at, &c.at) <= most2 * low * low
+    })
 }
 
 /// The squares of how far the objects are known to reach from their witness points, m².

@@ -6,7 +6,7 @@
 use crate::contact::Penetration;
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Corner, Flat, cross, side};
-use crate::contacts::view::{CIRCLE, FOUR};
+use crate::contacts::view::FOUR;
 use crate::known::points::Points;
 use crate::math::{EPSILON, Real, Vec3};
 
@@ -63,7 +63,7 @@ pub enum Seen {
     Nothing,
     /// What the directions of a state that stands ([`crate::state::State::stand`]) found.
     Standing([[Vec3; 2]; OTHERS]),
-    /// A face around the deepest place.
+    /// A face at the deepest place.
     Floor(Floor),
 }
 
@@ -90,10 +90,10 @@ impl Seen {
         }
     }
 
-    /// Keeps the face around the deepest place of a hit, if what is known of the object that reaches
-    /// farther shows one. What stands stays.
+    /// Keeps the floor of a hit, if what is known of the object that reaches farther shows one. What
+    /// stands stays.
     #[inline(never)]
-    pub fn rest(&mut self, known: &dyn Known, hit: &Penetration) {
+    pub fn rest(&mut self, known: &impl Known, hit: &Penetration) {
         if matches!(self, Self::Standing(_)) {
             return;
         }
@@ -104,24 +104,21 @@ impl Seen {
     }
 }
 
-/// Points of one object in its support plane: of those known the farthest in four directions a right
-/// angle apart, in their order.
+/// Points of one object in its support plane: of those known the farthest towards the plane's axes and
+/// away from them, in that order.
 #[derive(Clone, Copy, Debug)]
 pub struct Floor {
     /// Whose: 0 or 1.
     pub object: usize,
     /// The hit's.
     pub plane: Plane,
-    /// In the plane.
     corners: [Flat; FOUR],
-    /// How far in their directions.
-    most: [Real; FOUR],
 }
 
 impl Floor {
-    /// Of a hit, if they lie around the deepest place.
+    /// Of a hit, if there are three.
     #[inline(always)]
-    fn of(object: usize, known: &dyn Known, hit: &Penetration) -> Option<Self> {
+    fn of(object: usize, known: &impl Known, hit: &Penetration) -> Option<Self> {
         let n = if object == 0 { hit.normal } else { -hit.normal };
         let middle = hit.middle();
         let least = n.dot(&middle) + hit.depth * (0.5 - LEVEL);
@@ -129,59 +126,62 @@ impl Floor {
         if level.count_ones() < 3 {
             return None;
         }
-        let mut floor = Self {
-            object,
-            plane: Plane::upright(&hit.normal, &middle),
-            corners: [[0.0; 2]; FOUR],
-            most: [Real::NEG_INFINITY; FOUR],
-        };
-        let [e1, e2] = floor.plane.axes;
-        while level != 0 {
+        let plane = Plane::upright(&hit.normal, &middle);
+        let [e1, e2] = &plane.axes;
+        let mut next = || {
             let p = known.point_of(object, level.trailing_zeros() as usize) - middle;
             level &= level - 1;
-            floor.widen([e1.dot(&p), e2.dot(&p)]);
+            (level != 0, [e1.dot(&p), e2.dot(&p)])
+        };
+        let (mut more, first) = next();
+        let mut corners = [first; FOUR];
+        while more {
+            let at;
+            (more, at) = next();
+            widen(&mut corners, at);
         }
-        floor
-            .lacks([[0.0; 2]].into_iter())
-            .is_none()
-            .then_some(floor)
-    }
-
-    /// Adds what is known to be as high.
-    #[inline(always)]
-    fn widen(&mut self, at: Flat) {
-        let [x, y] = CIRCLE[0];
-        let (a, b) = (x * at[0] + y * at[1], x * at[1] - y * at[0]);
-        let places = self.corners.iter_mut().zip(&mut self.most);
-        for ((corner, most), reach) in places.zip([a, b, -a, -b]) {
-            (*corner, *most) = if reach > *most {
-                (at, reach)
-            } else {
-                (*corner, *most)
-            };
-        }
+        Some(Self {
+            object,
+            plane,
+            corners,
+        })
     }
 
     /// Adds a corner that was found, if it is as high.
     pub fn add(&mut self, corner: &Corner) {
         if corner.low <= LEVEL {
-            self.widen(corner.at);
+            widen(&mut self.corners, corner.at);
         }
     }
 
-    /// The first of these places that does not lie within.
+    /// The first of these places that does not lie within, but for a `hair`, metres.
     #[inline(always)]
-    pub fn lacks(&self, mut places: impl Iterator<Item = Flat>) -> Option<Flat> {
+    pub fn lacks(&self, mut places: impl Iterator<Item = Flat>, hair: Real) -> Option<Flat> {
         let [a, b, c, d] = &self.corners;
         let sides = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| {
             let along = side(p, q);
-            // A corner that is two has all within.
-            let least = if p == q { -1.0 } else { cross(&along, p) };
-            (along, least)
+            let [x, y] = along.map(Real::abs);
+            (along, cross(&along, p) - hair * (x + y))
         });
-        let is_line = a == c && b == d;
-        places.find(|at| is_line || !sides.iter().all(|(along, least)| cross(along, at) > *least))
+        // Of what is no wider than a hair all is beside it.
+        let ([x, y], [u, v]) = (side(a, c), side(b, d));
+        let is_line = !(x * v - y * u > hair * (x.abs() + y.abs() + u.abs() + v.abs()));
+        let is_within = |at: &Flat| {
+            sides
+                .iter()
+                .all(|(along, least)| cross(along, at) >= *least)
+        };
+        places.find(|at| is_line || !is_within(at))
     }
+}
+
+/// Takes in a place that lies farther towards an axis, or away from it.
+#[inline(always)]
+fn widen([a, b, c, d]: &mut [Flat; FOUR], at: Flat) {
+    *a = if at[0] > a[0] { at } else { *a };
+    *b = if at[1] > b[1] { at } else { *b };
+    *c = if at[0] < c[0] { at } else { *c };
+    *d = if at[1] < d[1] { at } else { *d };
 }
 
 #[cfg(test)]
@@ -211,16 +211,17 @@ mod tests {
         let three = [corner(1.0, 1.0), corner(-1.0, 1.0), corner(0.0, -1.0)];
         let [e1, e2] = Plane::upright(&hit.normal, &hit.middle()).axes;
         let at = |v: Vec3| [e1.dot(&v), e2.dot(&v)];
+        let holds = |floor: &Floor, v: Vec3| floor.lacks([at(v)].into_iter(), 1e-6).is_none();
         let floor = outline(&three).unwrap();
-        let holds = |v: Vec3| floor.lacks([at(v)].into_iter()).is_none();
-        assert!(holds(corner(0.9, 0.95)));
-        assert!(!holds(corner(0.9, 0.7)));
-        // One is lower, or the place is beyond a side, or on it.
+        assert!(holds(&floor, corner(0.9, 0.95)));
+        assert!(!holds(&floor, corner(0.9, 0.7)));
+        // One is lower, or the place is beyond a side.
         let lower = Vec3::new(0.0, -1.0, -0.001);
         assert!(outline(&[three[0], three[1], lower]).is_none());
         let beyond = [corner(1.0, 1.0), corner(-1.0, 1.0), corner(0.0, 0.5)];
-        assert!(outline(&beyond).is_none());
+        let floor = outline(&beyond).unwrap();
+        assert!(!holds(&floor, Vec3::zeros()));
         let line = [corner(1.0, 0.0), corner(-1.0, 0.0), corner(0.0, 0.0)];
-        assert!(outline(&line).is_none());
+        assert!(!holds(&outline(&line).unwrap(), Vec3::zeros()));
     }
 }

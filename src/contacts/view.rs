@@ -22,27 +22,20 @@ use crate::contacts::seen::{Floor, Seen};
 use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::math::{EPSILON, Real, Vec3, larger, lesser};
 
-/// Directions: four a right angle apart at even places, and four between them.
-pub const WAYS: usize = 8;
-/// The corners that are asked for at first.
-pub const FOUR: usize = WAYS / 2;
-/// Their cosines and sines in the plane's axes. Of a box whose axes are the world's no two corners
-/// are as far in any of the four.
-pub const CIRCLE: [Flat; WAYS] = {
-    const X: Real = 11.0 / 61.0;
-    const Y: Real = 60.0 / 61.0;
+/// The corners that are asked for at first: towards the plane's axes, and away from them.
+pub const FOUR: usize = 4;
+/// Cosines and sines of those directions, and of four between them.
+const CIRCLE: [Flat; 2 * FOUR] = {
     const H: Real = core::f64::consts::FRAC_1_SQRT_2 as Real;
-    const U: Real = (X - Y) * H;
-    const V: Real = (X + Y) * H;
     [
-        [X, Y],
-        [U, V],
-        [-Y, X],
-        [-V, U],
-        [-X, -Y],
-        [-U, -V],
-        [Y, -X],
-        [V, -U],
+        [1.0, 0.0],
+        [H, H],
+        [0.0, 1.0],
+        [-H, H],
+        [-1.0, 0.0],
+        [-H, -H],
+        [0.0, -1.0],
+        [H, -H],
     ]
 };
 /// How far a point of a rim may be beside it, as a share of the radius: ten times what callbacks in single
@@ -62,6 +55,10 @@ const SAME: Real = 0.1;
 /// Insensitive: 0.005 to 0.08 tried (`extension/pressure.c`).
 const NARROW: Real = 0.02;
 
+/// Share of what all four corners are lower by that is taken off. Measured: 0 lets a lying capsule step by 5 mm, 1
+/// leaves it 7 mm off.
+const LEVEL: Real = 0.75;
+
 /// Corners a right angle apart, in their order. At: from the deepest place; low: in units of the depth.
 pub type Four = [Corner; FOUR];
 
@@ -72,7 +69,7 @@ pub struct View<'q, A, B> {
     pub seen: &'q Seen,
     pub others: &'q [Vec3],
     /// Half-way between the support planes.
-    pub plane: Plane,
+    pub plane: &'q Plane,
     /// How far these are from there, metres.
     pub half: Real,
     /// The unit of lows, metres, and one over it.
@@ -87,13 +84,8 @@ pub struct View<'q, A, B> {
 }
 
 impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
-    /// What the `k`th direction is tilted by.
-    fn way(&self, k: usize) -> Flat {
-        CIRCLE[k % WAYS].map(|x| x * self.tilt)
-    }
-
     /// What the search found about there.
-    #[inline]
+    #[inline(always)]
     fn found(&self, d: &Vec3) -> Option<[Vec3; 2]> {
         let Seen::Standing(found) = self.seen else {
             return None;
@@ -115,65 +107,96 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         Ok(corner)
     }
 
-    /// A corner a hair beyond its place, towards where it was asked for.
-    fn moved(&self, corner: &Corner, [x, y]: &Flat) -> Corner {
-        Corner {
-            at: [corner.at[0] + self.hair * x, corner.at[1] + self.hair * y],
-            low: corner.low,
-        }
+    /// The corner of an object in the `k`th of the four directions.
+    #[inline(always)]
+    fn corner(&self, object: usize, k: usize) -> Result<Corner, Fault> {
+        self.ask(object, &self.directions[(k + FOUR / 2 * object) % FOUR])
     }
 
-    /// The corners of an object in the four directions, and their fan. Of one of which a floor is known no
-    /// more than until that holds what the other has there: then it has no corners.
-    pub fn look(
-        &self,
-        object: usize,
-        four: &mut Four,
-        fan: &mut Fan,
-        mut floor: Option<(Floor, &Fan)>,
-    ) -> Result<(), Fault> {
-        let mut left = [0, 1, 2, 3];
-        for asked in 0..FOUR {
-            if let Some((floor, on)) = &floor {
-                let Some(at) = floor.lacks(on.ends()) else {
-                    return Ok(());
-                };
-                // Where it lacks most is asked first.
-                let far = |i: usize| dot(&CIRCLE[2 * left[i % FOUR] % WAYS], &at);
-                let next =
-                    (asked + 1..FOUR).fold(asked, |k, i| if far(i) > far(k) { i } else { k });
-                left.swap(asked % FOUR, next % FOUR);
-            }
-            let k = left[asked % FOUR] % FOUR;
-            four[k] = self.ask(object, &self.directions[(k + 2 * object) % FOUR])?;
-            if let Some((floor, _)) = &mut floor {
-                floor.add(&four[k]);
-            }
-        }
-        for (corner, way) in four.iter().zip(CIRCLE.iter().step_by(2)) {
-            fan.corners.push(self.moved(corner, way));
+    /// Its corners in the four directions.
+    #[inline(never)]
+    pub fn look(&self, object: usize, four: &mut Four) -> Result<(), Fault> {
+        for (k, corner) in four.iter_mut().enumerate() {
+            *corner = self.corner(object, k)?;
         }
         Ok(())
     }
 
-    /// Puts into the fan of the four what else the object has there.
+    /// The same of one of which a floor is known, no more than until that holds the other. Does it?
+    #[inline(always)]
+    pub fn look_beyond(&self, floor: &Floor, on: &Fan, four: &mut Four) -> Result<bool, Fault> {
+        match floor.lacks(ends(on), 2.0 * self.hair) {
+            Some(at) => self.look_towards(at, *floor, on, four),
+            None => Ok(true),
+        }
+    }
+
     #[inline(never)]
-    pub fn complete(&self, object: usize, four: &Four, fan: &mut Fan) -> Result<(), Fault> {
+    fn look_towards(
+        &self,
+        mut at: Flat,
+        mut floor: Floor,
+        on: &Fan,
+        four: &mut Four,
+    ) -> Result<bool, Fault> {
+        let mut left = [0, 1, 2, 3];
+        for asked in 0..FOUR {
+            // Where it lacks most is asked first.
+            let far = |i: usize| dot(&CIRCLE[2 * left[i % FOUR] % CIRCLE.len()], &at);
+            let next = (asked + 1..FOUR).fold(asked, |k, i| if far(i) > far(k) { i } else { k });
+            left.swap(asked, next % FOUR);
+            let k = left[asked] % FOUR;
+            four[k] = self.corner(floor.object, k)?;
+            floor.add(&four[k]);
+            match floor.lacks(ends(on), 2.0 * self.hair) {
+                Some(lacks) => at = lacks,
+                None => return Ok(true),
+            }
+        }
+        Ok(false)
+    }
+
+    /// The fan of the four, and of what else the object has there: corners a hair beyond their places, towards
+    /// where they were asked for.
+    #[inline(never)]
+    pub fn fan(&self, object: usize, four: &Four, fan: &mut Fan) -> Result<(), Fault> {
         let sides = [0, 1, 2, 3].map(|i| side(&four[i].at, &four[(i + 1) % FOUR].at));
         let lengths2 = sides.map(|s| dot(&s, &s));
         let least2 = 4.0 * self.hair * self.hair;
         let twice = lengths2.iter().position(|l| *l <= least2);
-        if let Some(rim) = if twice.is_none() {
+        let rim = if twice.is_none() {
             self.rim(four)
         } else {
             None
-        } {
-            for (i, corner) in rim.iter().enumerate() {
-                fan.corners
-                    .insert(2 * i + 1, self.moved(corner, &CIRCLE[(2 * i + 1) % WAYS]));
-            }
+        };
+        let lows = four.iter().chain(rim.iter().flatten()).map(|c| c.low);
+        let level = lows.fold(1.0, lesser) * LEVEL;
+        let seen = |corner: &Corner, way: &Flat| Corner {
+            at: [0, 1].map(|i| corner.at[i] + self.hair * way[i]),
+            low: corner.low - level,
+        };
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| seen(&four[k], &CIRCLE[2 * k]));
+        if let Some(rim) = rim {
+            let [ab, bc, cd, da] = [0, 1, 2, 3].map(|k| seen(&rim[k], &CIRCLE[2 * k + 1]));
+            fan.fill([a, ab, b, bc, c, cd, d, da]);
             return Ok(());
         }
+        fan.fill([a, b, c, d]);
+        if let Some((i, out, corner)) = self.beyond(object, four, &lengths2, twice)? {
+            fan.insert(i, seen(&corner, &out));
+        }
+        Ok(())
+    }
+
+    /// The corner that an object has besides the four: its place among them, the way outwards, and itself.
+    #[inline(always)]
+    fn beyond(
+        &self,
+        object: usize,
+        four: &Four,
+        lengths2: &[Real; FOUR],
+        twice: Option<usize>,
+    ) -> Result<Option<(usize, Flat, Corner)>, Fault> {
         // The side beyond which there may be another, from corner `i` to the next, and a corner across from it.
         let (i, third) = if let Some(twice) = twice {
             // The longest of the three; across is what is neither of its ends.
@@ -186,7 +209,7 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
             let areas = [0, 1, 2, 3].map(|i| cross(&four[i].at, &four[(i + 1) % FOUR].at));
             let least = (1..FOUR).fold(0, |k, j| if areas[j] < areas[k] { j } else { k });
             if !(areas[least] < -BEYOND * areas.iter().sum::<Real>()) {
-                return Ok(());
+                return Ok(None);
             }
             (least, least + 2)
         };
@@ -196,7 +219,7 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         let height = cross(&along, &side(&p.at, &o.at)) / whole;
         // Beyond a side that is all too low nothing is shared.
         if !(height > NARROW * whole && height > 2.0 * self.hair && lesser(p.low, q.low) < 1.0) {
-            return Ok(());
+            return Ok(None);
         }
         let slope = self.slope([o, p, q]);
         let out = [along[1] / whole, -along[0] / whole];
@@ -205,9 +228,9 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         let corner = self.ask(object, &(self.plane.direction(sign, &aside) * sign))?;
         let is_beyond = dot(&out, &side(&p.at, &corner.at)) > 2.0 * self.hair;
         if is_beyond && corner.low <= self.low(o, &slope, &corner.at) + SAME_FACE {
-            fan.corners.insert(i + 1, self.moved(&corner, &out));
+            return Ok(Some((i + 1, out, corner)));
         }
-        Ok(())
+        Ok(None)
     }
 
     /// The slope of the plane of three corners: how much lower it is a metre along each axis.
@@ -224,21 +247,27 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
     }
 
     /// The corners between, where the four lie on the rim of a disc.
+    #[inline(never)]
     fn rim(&self, four: &Four) -> Option<Four> {
         let [a, b, c, _] = four;
         let slope = self.slope([a, b, c]);
         // Where a disc that leans so reaches farthest: the direction without its part along the disc's axis.
         let share = 1.0 / (1.0 + dot(&slope, &slope));
         let out = |k: usize| {
-            let aside = side(&slope, &self.way(k));
+            let aside = side(&slope, &CIRCLE[k].map(|x| x * self.tilt));
             let down = dot(&slope, &aside) * share;
             let out = [aside[0] - slope[0] * down, aside[1] - slope[1] * down];
             let share = 1.0 / (dot(&out, &out) + down * down).sqrt();
             out.map(|x| x * share)
         };
         let first = out(0);
-        let across = side(&out(4), &first);
-        let radius = dot(&side(&c.at, &a.at), &across) / dot(&across, &across);
+        let (across, chord) = (side(&out(4), &first), side(&c.at, &a.at));
+        let whole2 = dot(&across, &across);
+        // Other faces' corners mostly lie in other directions.
+        if !(cross(&across, &chord).powi(2) <= RIM * whole2 * dot(&chord, &chord)) {
+            return None;
+        }
+        let radius = dot(&chord, &across) / whole2;
         let on_rim = |k: usize| {
             let way = side(&first, &out(k));
             let at = [a.at[0] + radius * way[0], a.at[1] + radius * way[1]];
@@ -252,9 +281,15 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
             let off = side(&rim.at, &found.at);
             dot(&off, &off) <= most * most && (rim.low - found.low).abs() <= SAME_FACE
         };
-        let is_rim = radius > 2.0 * self.hair && [1, 3, 2].into_iter().all(is_there);
+        let is_rim = radius > 2.0 * self.hair && is_there(1) && is_there(3) && is_there(2);
         is_rim.then(|| [1, 3, 5, 7].map(on_rim))
     }
+}
+
+/// How far an object reaches towards its corners, as far as the depth goes.
+#[inline(always)]
+fn ends(fan: &Fan) -> impl Iterator<Item = Flat> + '_ {
+    fan.iter().map(|c| c.outer().at)
 }
 
 /// 1 of the object whose face looks along the normal, -1 of the other.
