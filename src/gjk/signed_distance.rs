@@ -94,11 +94,12 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
             Err(normal) => normal,
         };
         // The proof's word, whatever one support value says of it. The points are those where the
-        // search came upon the origin.
+        // search came upon the origin, or left off before.
         let mut inquiry = Inquiry::new(&pair.md);
         let h = normal.dot(&inquiry.point(&normal)?.v);
         touch = larger(inquiry.precision.touch(), h.abs());
         (gap.lower, gap.normal, gap.iterations) = (-h, normal, 0);
+        gap.limit = !(gap.upper <= larger(touch, wanted.settings.tolerance));
     }
     Ok(apart(&gap, touch, wanted))
 }
