@@ -7,7 +7,6 @@
 #   compare.sh [OPTION...] PROGRAM [ARGUMENT...]
 #     --every N    judge one query in N (default 10; 0: count them alone, ask nothing)
 #     --swap       let the program go on with this library's answers, not libccd's
-#     --minimum    or with the proven minimum's
 #     --keep DIR   write the worst wrong answers there, as C files for replay.sh
 #     --no-times   take no times: less is asked of the callbacks
 #     --libccd F   the libccd to compare with (default: the one that the program gets)
@@ -38,7 +37,6 @@ times=1
 while [ $# -gt 0 ]; do
     case $1 in
     --swap) base=ours ;;
-    --minimum) base=minimum ;;
     --no-times) times=0 ;;
     --fields) fields=1 ;; # for the tables of swap/: one line on stdout
     --every | --keep | --libccd | --library)

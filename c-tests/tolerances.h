@@ -19,8 +19,6 @@
     X(TIGHT, 1e-9, 256 * FLT_EPSILON, \
       "tolerance of a tight query relative to the size: a thousandth of the 1e-6 that " \
       "configurations are judged to; in single what eight bits above rounding leave") \
-    X(LOOSE, 1e-4, 1e-3, \
-      "tolerance of an ordinary query relative to the size: CCD_INIT's for unit shapes") \
     X(PROMISED, 1e-3, 1e-3, \
       "part of its depth by which an answer of MPR may be above the least: its promise") \
     X(LATE, 1e-2, 1e-2, \

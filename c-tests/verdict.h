@@ -19,6 +19,8 @@ typedef enum {
     VERDICTS
 } verdict_t;
 
+static const char *const VERDICT_NAME[VERDICTS] = { "right", "overlap missed", "false hit", "no direction", "too deep", "unsound" };
+
 /* Metres. The signed depth: positive overlapping, negative the gap. */
 typedef struct {
     double lower, upper;

@@ -75,51 +75,23 @@ pub struct Compiled {
     pub missing: Vec<(&'static str, String)>,
 }
 
-/// One part of peers.cpp, or why it does not compile.
-fn peer(libraries: &Libraries, flags: &[&str], with: &[&str]) -> Result<Classic, String> {
-    let flags = [&["-std=c++17", "-w"], flags].concat();
-    let library = libraries.helper("peers.cpp", &flags, with)?;
-    Ok(Classic {
-        // SAFETY: peer_penetration has the type of libccd's queries.
-        gjk: unsafe { function(library, "peer_penetration") },
-        ..libraries.system
-    })
-}
-
-const BULLET: [&str; 3] = ["-DPEER_BULLET", "-isystem", "/usr/include/bullet"];
-
-fn method<'a>(libraries: &Libraries, name: &str, tolerance: f64, of: Classic) -> Method<'a> {
-    let settings = of.settings(&libraries.callbacks, tolerance);
-    Method::new(name, classic(of.gjk, settings, true))
-}
-
-/// Bullet's btGjkEpa3, double, or why it is not here. Its tolerance is built in.
-pub fn bullet<'a>(libraries: &Libraries) -> Result<Method<'a>, String> {
-    let of = peer(libraries, &BULLET, &[])?;
-    Ok(method(libraries, "Bullet EPA", 1e-4, of))
-}
-
 impl Compiled {
     pub fn build(libraries: &Libraries) -> Self {
-        // Coal is in no Debian package: `pip install --target DIR coal-library`, then
-        // COAL_PREFIX=DIR/cmeel.prefix names its headers and libraries.
-        let prefix = std::env::var("COAL_PREFIX").unwrap_or_default();
-        let [headers, folder, search] = [
-            format!("-I{prefix}/include"),
-            format!("-L{prefix}/lib"),
-            format!("-Wl,-rpath,{prefix}/lib"),
-        ];
-        let eigen = "/usr/include/eigen3";
-        let coal = ["-DPEER_COAL", &headers, "-isystem", eigen];
-        let fcl = ["-DPEER_FCL", "-isystem", eigen];
         let (mut found, mut missing) = (Vec::new(), Vec::new());
-        for (name, tolerance, flags, with) in [
-            ("Bullet EPA", 1e-4, &BULLET[..], &[][..]),
-            ("Coal EPA", 1e-6, &coal, &[&*folder, &search, "-lcoal"]),
+        for (name, tolerance, part, with) in [
+            ("Bullet EPA", 1e-4, "-DPEER_BULLET", &[][..]),
             // Its own default: an assertion in it ends the process at others.
-            ("FCL EPA", 1e-6, &fcl, &["-lfcl"]),
+            ("FCL EPA", 1e-6, "-DPEER_FCL", &["-lfcl"]),
         ] {
-            match peer(libraries, flags, with) {
+            let [bullet, eigen] =
+                ["bullet", "eigen3"].map(|dir| format!("-isystem/usr/include/{dir}"));
+            let flags = ["-std=c++17", "-w", part, &bullet, &eigen];
+            let of = |library| Classic {
+                // SAFETY: peer_penetration has the type of libccd's queries.
+                gjk: unsafe { function(library, "peer_penetration") },
+                ..libraries.system
+            };
+            match libraries.helper("peers.cpp", &flags, with).map(of) {
                 Ok(of) => found.push((name, tolerance, of)),
                 Err(why) => missing.push((name, why)),
             }
@@ -129,7 +101,9 @@ impl Compiled {
 
     pub fn all<'a>(&self, libraries: &Libraries) -> impl Iterator<Item = Method<'a>> {
         self.found.iter().map(|&(name, tolerance, of)| {
-            let method = method(libraries, name, tolerance, of);
+            let settings = of.settings(&libraries.callbacks, tolerance);
+            let method = Method::new(name, classic(of.gjk, settings, true));
+            // Bullet's is built in.
             match name {
                 "Bullet EPA" => method,
                 _ => method.within(tolerance),

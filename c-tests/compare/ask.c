@@ -196,7 +196,7 @@ void ask_watched(const library_t *library, const query_t *q, asked_t *asked, ans
     ask(library, q->call, &w[0], &w[1], &ccd, out);
 }
 
-int ask_minimum(const library_t *ours, const query_t *q, double tolerance, asked_t *asked, unsigned want, ccd_penetration_t *out)
+int ask_minimum(const library_t *ours, const query_t *q, double tolerance, asked_t *asked, ccd_penetration_t *out)
 {
     watched_t w[2];
     ccd_t ccd = watched_settings(q, asked, w);
@@ -205,7 +205,7 @@ int ask_minimum(const library_t *ours, const query_t *q, double tolerance, asked
         ccd.first_dir = along_x;
     ccd.epa_tolerance = (ccd_real_t)tolerance;
     ccd.max_iterations = 2000;
-    return ours->minimum(&w[0], &w[1], &ccd, NULL, want, out);
+    return ours->minimum(&w[0], &w[1], &ccd, NULL, 0, out);
 }
 
 double ask_value(const query_t *q, asked_t *asked, const ccd_vec3_t *dir)

@@ -86,8 +86,8 @@ void ask_plainly(const library_t *library, const query_t *q, answer_t *out);
 /* Through callbacks that count in `asked`. */
 void ask_watched(const library_t *library, const query_t *q, asked_t *asked, answer_t *out);
 
-/* The proven minimum, trusting no centre; want: CCD_WANT_ flags. */
-int ask_minimum(const library_t *ours, const query_t *q, double tolerance, asked_t *asked, unsigned want, ccd_penetration_t *out);
+/* The proven minimum, trusting no centre. */
+int ask_minimum(const library_t *ours, const query_t *q, double tolerance, asked_t *asked, ccd_penetration_t *out);
 
 /* The support value of the difference along a unit direction: how far obj2 must move that way. */
 double ask_value(const query_t *q, asked_t *asked, const ccd_vec3_t *dir);

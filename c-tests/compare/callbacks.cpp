@@ -6,7 +6,6 @@
  *
  * usage: callbacks WAY
  *   plain     500 queries of all calls
- *   stacked   boxes face to face, whose support functions answer with the middle of a face
  *   throw     the callbacks throw at their n-th call of a query, n from 1 to 40
  *   later     they throw at a call that only the tool's own questions come to
  *   tired     they throw at all calls after 300 a query, of which the program needs 40
@@ -120,11 +119,6 @@ static void pair(int k, shape_t *a, shape_t *b)
     rotation_about(1 + k % 3, k % 7 - 3, k % 5, 0.7 * k, rot);
     shape_turn(b, rot);
     shape_move(b, 0.9 * sin(1.1 * k), 0.7 * cos(1.7 * k), 0.5 * sin(2.3 * k));
-    if (way == "stacked") {
-        *b = shape_box(0.5, 0.4, 0.3);
-        a->tie = b->tie = SHAPE_TIE_CENTRE;
-        shape_move(b, 0, 0, 0.6 - 0.001 * (k % 11));
-    }
 }
 
 typedef struct {

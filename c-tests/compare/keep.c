@@ -5,7 +5,7 @@
  * of some hundred more, all around and near the directions that matter. The truth is then that
  * of these hulls. If the library's answer to them is wrong in the same way, that is the case;
  * else the answers themselves are played back, direction by direction. What shows the fault
- * neither way is not kept. */
+ * neither way is not kept, as a depth that would do along another direction: it is counted alone. */
 
 #define CASE_KEEPS
 #include "compare/sample.h"
@@ -137,7 +137,6 @@ static int shows(const compare_t *compare, const sample_t *s, int side, case_t *
     case_object_t object[2];
     answer_t answer;
     asked_t asked;
-    verdict_t v;
     ccd_t ccd;
     const query_t q = { s->q->call, { &object[0], &object[1] }, &ccd };
     case_prepare(c, object, &ccd);
@@ -159,11 +158,7 @@ static int shows(const compare_t *compare, const sample_t *s, int side, case_t *
         for (k = 0; k < 3; k++)
             c->truth_dir[k] = (double)again.truth_dir.v[k];
     }
-    v = sample_verdict(&q, &answer, &c->truth);
-    if (v == VERDICT_RIGHT && sample_has_depth(&q, &answer)
-        && case_moved_overlap(c, compare->library[side].mpr_intersect, (double)answer.depth, &answer.dir))
-        v = VERDICT_UNSOUND;
-    return v == s->verdict[side];
+    return sample_verdict(&q, &answer, &c->truth) == s->verdict[side];
 }
 
 static void settings_of(const sample_t *s, case_t *c)
@@ -280,7 +275,6 @@ static int write_case(const compare_t *compare, const case_t *c, const char *pat
 /* Both libraries may be wrong; of each COMPARE_KEPT cases are kept. */
 static void make_case(const compare_t *compare, const sample_t *s, int side, compare_kept_t *place, double score)
 {
-    static const char *const wrong[VERDICTS] = { "right", "overlap missed", "false hit", "no direction", "too deep", "unsound" };
     points_t *p = (points_t *)calloc(1, sizeof *p);
     char title[sizeof place->title], path[4096];
     case_t c;
@@ -291,7 +285,7 @@ static void make_case(const compare_t *compare, const sample_t *s, int side, com
     p->q = s->q;
     p->s = s;
     settings_of(s, &c);
-    snprintf(title, sizeof title, "%s of %s, %s: ", COMPARE_CALL_NAME[s->q->call], SIDE_NAME[side], wrong[s->verdict[side]]);
+    snprintf(title, sizeof title, "%s of %s, %s: ", COMPARE_CALL_NAME[s->q->call], SIDE_NAME[side], VERDICT_NAME[s->verdict[side]]);
     if (s->answer[side].hit)
         snprintf(title + strlen(title), sizeof title - strlen(title), "depth %.6g, ", (double)s->answer[side].depth);
     snprintf(title + strlen(title), sizeof title - strlen(title), "the signed depth is at most %.6g", s->truth.upper);

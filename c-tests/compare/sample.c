@@ -94,7 +94,7 @@ guard_t sample_ask(const library_t *library, const query_t *q, seen_t *seen, ask
 static void work_minimum(void *argument)
 {
     work_t *w = (work_t *)argument;
-    w->code = ask_minimum(w->library, w->q, w->tolerance, w->asked, 0, &w->least);
+    w->code = ask_minimum(w->library, w->q, w->tolerance, w->asked, &w->least);
 }
 
 static void work_value(void *argument)
@@ -310,11 +310,9 @@ static void count_change(compare_call_t *to, const sample_t *s)
     count_add(&to->found, ours->hit && !theirs->hit);
     count_add(&to->gone, theirs->hit && !ours->hit);
     if (sample_has_depth(s->q, theirs) && sample_has_depth(s->q, ours)) {
-        const double octaves = log2((double)theirs->depth / (double)ours->depth);
-        const int bin = octaves > 0 ? 1 + (int)fmin(octaves * COMPARE_BINS_OCTAVE, COMPARE_BINS - 2) : 0;
         count_add(&to->both, 1);
-        count_add(&to->ratio[bin], 1);
-        count_add(&to->turned, !((double)ccdVec3Dot(&theirs->dir, &ours->dir) > 0.9848)); /* by more than 10 degrees */
+        count_add(&to->deeper, theirs->depth > (ccd_real_t)1.01 * ours->depth);
+        count_add(&to->turned, !((double)ccdVec3Dot(&theirs->dir, &ours->dir) > 0.9848)); /* the cosine of 10 degrees */
     }
 }
 

@@ -219,31 +219,15 @@ static void print_price(const compare_call_t *sum)
     }
 }
 
-static double median_ratio(const compare_call_t *sum)
-{
-    uint64_t below = 0;
-    int bin;
-    for (bin = 0; bin < COMPARE_BINS - 1; bin++)
-        if (2 * (below += sum->ratio[bin]) >= sum->both)
-            break;
-    return bin ? exp2((bin - 0.5) / COMPARE_BINS_OCTAVE) : 1;
-}
-
 static void print_change(const compare_call_t *sum)
 {
     const compare_side_t *theirs = &sum->side[COMPARE_THEIRS];
-    uint64_t deeper = 0;
-    int bin;
     if (!sum->judged)
         return;
-    /* 1 %, in bins of a hundredth of an octave (0.7 %) */
-    for (bin = 3; bin < COMPARE_BINS; bin++)
-        deeper += sum->ratio[bin];
     printf("What the swap changes, of %s judged: %s hits more, %s fewer", thousands(sum->judged), thousands(sum->found), thousands(sum->gone));
     if (sum->both)
-        printf("; of %s common hits %.1f %% of libccd's depths\n  are more than 1 %% deeper (the median one %.3f times as deep), %.1f %% of the "
-               "directions differ by more than 10 degrees",
-               thousands(sum->both), 100 * part(deeper, sum->both), median_ratio(sum), 100 * part(sum->turned, sum->both));
+        printf("; of %s common hits %.1f %% of libccd's depths\n  are more than 1 %% deeper, %.1f %% of the directions differ by more than 10 degrees",
+               thousands(sum->both), 100 * part(sum->deeper, sum->both), 100 * part(sum->turned, sum->both));
     printf(".\n");
     if (theirs->verdict[VERDICT_BROKEN])
         printf("  %s hits of libccd have no direction (a touch); here they are misses, or hits with one.\n",
@@ -281,7 +265,7 @@ static void print_screen(const char *every, const char *code)
 {
     static compare_call_t sum;
     int i;
-    const char *who = all.minimum ? "the proven minimum" : all.base == COMPARE_THEIRS ? "libccd" : "this library";
+    const char *who = all.base == COMPARE_THEIRS ? "libccd" : "this library";
     printf("\n== %s, exit code %s, on the answers of %s; ", all.program, code, who);
     if (strcmp(every, "0") != 0)
         printf("one query in %s judged", every);

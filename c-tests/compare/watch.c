@@ -11,7 +11,7 @@
  *
  *   CCD_COMPARE_DIR     where to count; without it nothing is watched
  *   CCD_COMPARE_THEIRS, CCD_COMPARE_OURS   private copies of the two libraries
- *   CCD_COMPARE_BASE    theirs, ours or minimum: whose answers the program goes on with
+ *   CCD_COMPARE_BASE    theirs or ours: whose answers the program goes on with
  *   CCD_COMPARE_EVERY   one query in so many is judged; 0: none
  *   CCD_COMPARE_TIMES   0: no times are taken
  *   CCD_COMPARE_KEEP, CCD_COMPARE_CASE   where wrong answers go, and what their files end with */
@@ -37,7 +37,6 @@
 static compare_t compare;
 static uint64_t every;
 static const library_t *base;
-static int with_minimum;
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static void (*answered)(int call, int hit, double depth, double length);
 
@@ -107,13 +106,11 @@ static void start(void)
     compare.keep = wanted("CCD_COMPARE_KEEP", NULL);
     compare.case_source = wanted("CCD_COMPARE_CASE", NULL);
     base = &compare.library[compare.base];
-    with_minimum = strcmp(who, "minimum") == 0;
     every = strtoull(wanted("CCD_COMPARE_EVERY", "1"), NULL, 10);
     find_hook("compare_audit", &ask_audit);
     find_hook("compare_answered", &answered);
     name_libraries(compare.counts);
     compare.counts->base = (uint64_t)compare.base;
-    compare.counts->minimum = (uint64_t)with_minimum;
     compare.counts->process = (uint64_t)getpid();
     compare.counts->magic = COMPARE_MAGIC;
 }
@@ -201,22 +198,13 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
     count_add(&compare.counts->watch_nanoseconds, processor_time(CLOCK_THREAD_CPUTIME_ID) - start);
 }
 
-/* Through wrappers, for what a plain call cannot do: an audit of every point, or the proven
- * minimum's answer. */
-static int answer_otherwise(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+/* Through wrappers, for an audit of every point. */
+static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
     asked_t asked;
     answer_t answer;
     memset(&asked, 0, sizeof asked);
-    if (with_minimum && q->call == COMPARE_PENETRATION_MPR) {
-        ccd_penetration_t out;
-        const int code = ask_minimum(base, q, query_tolerance(q), &asked, CCD_WANT_POS, &out);
-        answer.code = code == CCD_HIT || code == CCD_LIMIT ? 0 : -1;
-        answer.depth = out.depth;
-        answer.dir = out.dir;
-        answer.pos = out.pos;
-    } else
-        ask_watched(base, q, &asked, &answer);
+    ask_watched(base, q, &asked, &answer);
     if (!is_hit(q->call, answer.code))
         return answer.code;
     if (q->call == COMPARE_SEPARATE)
@@ -244,8 +232,7 @@ static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd,
     if (guard_active())
         return ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
     number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
-    code = ask_audit || with_minimum ? answer_otherwise(&q, depth, dir, pos)
-                                   : ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
+    code = ask_audit ? answer_audited(&q, depth, dir, pos) : ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
     watch(&q, number, code, depth, dir);
     return code;
 }

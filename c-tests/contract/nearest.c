@@ -219,21 +219,11 @@ int main(int argc, char **argv)
         printf("\n");
     }
     {
-        /* What is not a number in does not come out as one. */
-        ccd_vec3_t nan = {{0, (ccd_real_t)NAN, 0}}, a = {{1, 0, 0}}, b = {{0, 1, 0}}, c = {{0, 0, 1}};
-        const ccd_vec3_t *v[4] = {&c, &a, &b, &c};
-        int i;
-        for (i = 0; i < 4; i++) {
-            const ccd_vec3_t *kept = v[i];
-            ccd_real_t triangle, segment;
-            v[i] = &nan;
-            triangle = OURS(ccdVec3PointTriDist2)(v[0], v[1], v[2], v[3], NULL);
-            segment = OURS(ccdVec3PointSegmentDist2)(v[0], v[1], v[2], NULL);
-            if (i == 0) {
-                CHECK(triangle != triangle && segment != segment, "a NaN point has no distance");
-            }
-            v[i] = kept;
-        }
+        /* A point that is no number has no distance. */
+        const ccd_vec3_t nan = {{0, (ccd_real_t)NAN, 0}}, a = {{1, 0, 0}}, b = {{0, 1, 0}}, c = {{0, 0, 1}};
+        const ccd_real_t triangle = OURS(ccdVec3PointTriDist2)(&nan, &a, &b, &c, NULL);
+        const ccd_real_t segment = OURS(ccdVec3PointSegmentDist2)(&nan, &a, &b, NULL);
+        CHECK(triangle != triangle && segment != segment, "a NaN point has no distance");
     }
     return checks_end();
 }

@@ -13,7 +13,6 @@
 #include <stdio.h>
 
 typedef struct { ccd_vec3_t v, v1, v2; } support_t;
-typedef struct { support_t ps[4]; int last; } simplex_t;
 typedef struct list { struct list *next, *prev; } list_t;
 
 enum { PT_VERTEX = 1, PT_EDGE = 2, PT_FACE = 3 };
@@ -48,9 +47,6 @@ POLYTOPE_FUNCTIONS(LIBCCD);
 #ifdef __cplusplus
 }
 #endif
-
-/* The element whose link this is. */
-#define PT_ELEMENT(type, link) ccd_container_of(link, type, el.list)
 
 #define PT_FOR_EACH(link, head) for ((link) = (head)->next; (link) != (head); (link) = (link)->next)
 
@@ -102,15 +98,6 @@ static inline int list_length(const list_t *head)
     PT_FOR_EACH(link, head)
         n++;
     return n;
-}
-
-/* A face's corners, in the order the library takes them for the distance. */
-static inline void pt_face_corners(const pt_face_t *face, pt_vertex_t *corner[3])
-{
-    pt_vertex_t *const *first = face->edge[0]->vertex, *const *second = face->edge[1]->vertex;
-    corner[0] = first[0];
-    corner[1] = first[1];
-    corner[2] = second[0] != first[0] && second[0] != first[1] ? second[0] : second[1];
 }
 
 #endif

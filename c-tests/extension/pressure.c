@@ -275,6 +275,7 @@ int main(int argc, char **argv)
     rotation_quaternion(0.3, -0.5, 0.7, 0.2, world[1]);
 #ifndef OURS_ALONE
     if (argc > 1 && strcmp(argv[1], "tilt") == 0) {
+        printf("body,degrees,truth,ours,libccd\n");
         for (i = 0; i < sizeof all / sizeof *all; i++)
             if ((strcmp(all[i].name, "box") == 0 || strstr(all[i].name, "standing") || strstr(all[i].name, "capsule") || strstr(all[i].name, "base")))
                 tilt(&all[i]);

@@ -121,23 +121,23 @@ static void same_as_c()
             ccd_penetration_t out;
             ccd_real_t depth;
             ccd_vec3_t d, pos;
-            int code = ccdPenetration(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
-            check_same("penetration", ccd::penetration(a, b, settings, &warm), code, out);
-            code = ccdPenetrationLocal(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
-            check_same("local", ccd::penetration_local(a, b, settings, &warm), code, out);
+            check_same("penetration", ccd::penetration(a, b, settings, &warm),
+                       ccdPenetration(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+            const ccd::Penetration local = ccd::penetration_local(a, b, settings, &warm);
+            check_same("local", local, ccdPenetrationLocal(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after a local query");
-            (code == CCD_HIT ? hits : misses)++;
-            code = ccdPenetrationIncremental(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
-            check_same("incremental", ccd::penetration_incremental(a, b, settings, &warm), code, out);
-            code = ccdPenetrationProven(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out);
-            check_same("proven", ccd::penetration_proven(a, b, settings, &warm), code, out);
-            code = ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out);
-            check_same("along", ccd::penetration_along(a, b, dir, settings, &warm), code, out);
-            code = ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out);
-            check_same("planar", ccd::penetration_planar(a, b, dir, settings, &warm), code, out);
+            (local ? hits : misses)++;
+            check_same("incremental", ccd::penetration_incremental(a, b, settings, &warm),
+                       ccdPenetrationIncremental(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+            check_same("proven", ccd::penetration_proven(a, b, settings, &warm),
+                       ccdPenetrationProven(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+            check_same("along", ccd::penetration_along(a, b, dir, settings, &warm),
+                       ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out), out);
+            check_same("planar", ccd::penetration_planar(a, b, dir, settings, &warm),
+                       ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out), out);
 
             ccd_distance_t away;
-            code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5), &c_warm, CCD_WANT_ALL, &away);
+            int code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5), &c_warm, CCD_WANT_ALL, &away);
             const ccd::Distance distance = ccd::signed_distance(a, b, settings, {CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5)}, &warm);
             CHECK(int(distance.status) == code && distance, "distance");
             CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&

@@ -309,7 +309,6 @@ pub struct Program {
     cpp: bool,
     standard: Option<String>,
     sources: Vec<PathBuf>,
-    includes: Vec<PathBuf>,
     system_headers: bool,
     flags: Vec<OsString>,
     libraries: Vec<String>,
@@ -345,13 +344,6 @@ impl Program {
     /// `"c99"`, `"gnu11"`, `"c++20"`.
     pub fn standard(mut self, standard: &str) -> Program {
         self.standard = Some(standard.to_owned());
-        self
-    }
-
-    /// A further include directory, relative to the root (or absolute).
-    /// `include/` and `c-tests/` are always there.
-    pub fn include(mut self, path: impl AsRef<Path>) -> Program {
-        self.includes.push(root().join(path));
         self
     }
 
@@ -422,11 +414,9 @@ impl Program {
         if self.precision == Precision::Single {
             compile.arg("-DCCD_SINGLE");
         }
-        let mut includes = self.includes;
-        includes.push(root().join("c-tests"));
-        includes.extend((!self.system_headers).then(|| root().join("include")));
-        for include in includes {
-            compile.arg("-I").arg(include);
+        compile.arg("-I").arg(root().join("c-tests"));
+        if !self.system_headers {
+            compile.arg("-I").arg(root().join("include"));
         }
         compile.args(&self.flags);
         if self.tools {

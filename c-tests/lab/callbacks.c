@@ -66,23 +66,23 @@ void bench_shape(shape_t *s, int type, const double p[3], const double *verts, i
     shape_turn(s, rot);
 }
 
-void bench_shape_shift(shape_t *s, const double by[3])
-{
-    shape_move(s, s->pos[0] + by[0], s->pos[1] + by[1], s->pos[2] + by[2]);
-}
-
 /* Where a profiler is told to begin and to end a part of its output. */
 __attribute__((noinline)) void bench_begin(void) { __asm__ volatile(""); }
 
 __attribute__((noinline)) void bench_end(void) { __asm__ volatile(""); }
 
 /* Where a shape is, and what it is. */
-void bench_shape_pose(const shape_t *s, double pos[3], double rot[9], int *type, double p[3])
+typedef struct {
+    double pos[3], rot[9], p[3];
+    int type;
+} bench_placed_t;
+
+bench_placed_t bench_placed(const shape_t *s)
 {
-    memcpy(pos, s->pos, sizeof s->pos);
-    memcpy(rot, s->rot, sizeof s->rot);
-    memcpy(p, s->p, sizeof s->p);
-    *type = s->type;
+    const double *r = s->rot;
+    const bench_placed_t out = {{s->pos[0], s->pos[1], s->pos[2]}, {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]},
+                                {s->p[0], s->p[1], s->p[2]}, s->type};
+    return out;
 }
 
 typedef struct {
@@ -98,7 +98,7 @@ size_t bench_recording(const char *path, unsigned frames, shape_t *shape, bench_
     shape_t *body;
     size_t k = 0;
     unsigned f, i;
-    if ((!r.bytes && recording_read(path, &r) != 0) || !r.truth_at)
+    if (!r.bytes && recording_read(path, &r) != 0)
         return 0;
     body = (shape_t *)malloc(r.bodies * sizeof *body);
     for (f = 0; body && f < frames && f < r.frames; f++) {

@@ -29,11 +29,13 @@ pub fn origin(path: &Path) -> String {
 /// The rows of such a file; none where there is no file. Panics where a column is missing, or a
 /// cell is none of its field's values.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Vec<T> {
-    let Ok(text) = fs::read_to_string(path) else {
-        return Vec::new();
-    };
+    fs::read_to_string(path).map_or(Vec::new(), |text| rows(&text))
+}
+
+/// The rows of a text.
+pub fn rows<T: DeserializeOwned>(text: &str) -> Vec<T> {
     let mut builder = csv::ReaderBuilder::new();
     let mut reader = builder.comment(Some(b'#')).from_reader(text.as_bytes());
     let rows: Result<Vec<T>, csv::Error> = reader.deserialize().collect();
-    rows.unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    rows.unwrap_or_else(|e| panic!("{e} in {text:.200}"))
 }

@@ -106,6 +106,16 @@ pub struct Truth {
     pub cold: [f64; 3],
 }
 
+/// `bench_placed_t` of `callbacks.c`: where a shape is, its rotation row by row, and what it is.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct Placed {
+    pub position: [f64; 3],
+    pub rotation: [f64; 9],
+    pub p: [f64; 3],
+    pub kind: c_int,
+}
+
 /// `bench_recorded_t` of `callbacks.c`: two bodies in a frame, and bounds on their signed depth.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
@@ -129,8 +139,7 @@ functions! {
         set_mesh: fn bench_set_mesh(Object, c_int, *mut c_int, *mut *const f64, *mut c_int, *mut *const c_int);
         graph: fn bench_graph(c_int, *const c_int, c_int, *mut c_int) -> c_int;
         shape: fn bench_shape(*mut c_void, c_int, *const f64, *const f64, c_int, *const c_int, *const f64, *const f64);
-        shape_pose: fn bench_shape_pose(Object, *mut f64, *mut f64, *mut c_int, *mut f64);
-        shape_shift: fn bench_shape_shift(*mut c_void, *const f64);
+        placed: fn bench_placed(Object) -> Placed;
         recording: fn bench_recording(*const c_char, c_uint, *mut c_void, *mut Recorded) -> usize;
         begin: fn bench_begin();
         end: fn bench_end();

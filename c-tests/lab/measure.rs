@@ -39,7 +39,6 @@ pub struct Row {
     pub ns: Option<f64>,
     /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
     pub mean_error: f64,
-    pub median_error: f64,
     pub max_error: f64,
     /// Mean over the answers within 1 mm of the truth.
     pub mean_error_1mm: f64,
@@ -158,7 +157,6 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
             .then(|| supports as f64 / 2.0 / queries as f64),
         ns: None,
         mean_error: mean(&errors),
-        median_error: median(&errors),
         max_error: largest(&errors),
         mean_error_1mm: mean(&near),
         nonminimal: percent(nonminimal),

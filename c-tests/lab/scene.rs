@@ -26,30 +26,9 @@ impl Pair {
     pub fn pose(&self, libraries: &Libraries, which: usize) -> (Matrix3<f64>, Vector3<f64>) {
         let shape = [self.a, self.b][which];
         // SAFETY: a shape of the scene.
-        let shape = unsafe { Shape::read(&libraries.callbacks, shape) };
+        let shape = unsafe { (libraries.callbacks.placed)(shape) };
         let rotation = Matrix3::from_row_slice(&shape.rotation);
         (rotation, shape.position.into())
-    }
-}
-
-/// What the callbacks know of a shape.
-#[derive(Default)]
-struct Shape {
-    position: [f64; 3],
-    rotation: [f64; 9],
-    kind: c_int,
-    p: [f64; 3],
-}
-
-impl Shape {
-    /// # Safety
-    /// `shape` is one of the callbacks' shapes.
-    unsafe fn read(callbacks: &Callbacks, shape: *const c_void) -> Self {
-        let mut s = Self::default();
-        let (position, rotation) = (s.position.as_mut_ptr(), s.rotation.as_mut_ptr());
-        // SAFETY: the caller's contract, and room for what is written.
-        unsafe { (callbacks.shape_pose)(shape, position, rotation, &mut s.kind, s.p.as_mut_ptr()) };
-        s
     }
 }
 
@@ -205,7 +184,7 @@ impl Scene {
                 let v = std::slice::from_raw_parts(v, 3 * nv as usize);
                 let t = std::slice::from_raw_parts(t, 3 * nt as usize);
                 let shape = pairs.first().map(|p| if k == 0 { p.a } else { p.b });
-                let shape = shape.map(|s| Shape::read(&callbacks, s));
+                let shape = shape.map(|s| (callbacks.placed)(s));
                 // A box.
                 if let Some(shape) = shape.filter(|s| s.kind == 2) {
                     return Mesh::cuboid(shape.p);
@@ -224,17 +203,6 @@ impl Scene {
                 _shapes: shapes,
                 _bodies: Vec::new(),
             }
-        }
-    }
-
-    /// Moves the second shape of every pair out along its least direction until they
-    /// are `gap` apart, metres.
-    pub fn part(&mut self, libraries: &Libraries, gap: f64) {
-        for pair in &mut self.pairs {
-            let by = pair.truth.normal.map(|n| n * (pair.truth.depth + gap));
-            // SAFETY: a shape of the scene.
-            unsafe { (libraries.callbacks.shape_shift)(pair.b, by.as_ptr()) };
-            pair.truth.depth = -gap;
         }
     }
 
@@ -302,8 +270,7 @@ impl Scene {
             last = now;
             let (a, b) = (shape(2 * k), shape(2 * k + 1));
             // SAFETY: shapes that were placed.
-            let [pa, pb] =
-                [a, b].map(|s| Vector3::from(unsafe { Shape::read(&callbacks, s) }.position));
+            let [pa, pb] = [a, b].map(|s| Vector3::from(unsafe { (callbacks.placed)(s) }.position));
             let truth = Truth {
                 depth: (now.lower + now.upper) / 2.0,
                 gap: now.upper - now.lower,

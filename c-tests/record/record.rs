@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The recorded contact sequence: its truth, its recorder, and what both methods and
-//! the extension answer on it.
+//! The recorded contact sequence: its truth, and what both methods and the extension answer
+//! on it.
 
 // The recording and Debian's libccd are double.
 #![cfg(not(feature = "single"))]
@@ -10,7 +10,7 @@
 #[path = "../harness/mod.rs"]
 mod harness;
 
-use harness::{Executable, Program, output_dir, root};
+use harness::{Program, root};
 use std::path::PathBuf;
 
 fn recording() -> PathBuf {
@@ -21,11 +21,6 @@ fn program(name: &str) -> Program {
     Program::c(name)
         .source(format!("record/{name}.c"))
         .flag("-pedantic")
-}
-
-/// Asks no libccd anything, so that none needs to be found when it runs.
-fn certify() -> Executable {
-    program("certify").link_ours_static().build()
 }
 
 /// One method's line of the table that replay.h prints: its counts are missed, false, broken, deep
@@ -71,23 +66,8 @@ impl Row {
 
 #[test]
 fn the_committed_truth_is_true() {
-    let certify = certify();
+    let certify = program("certify").link_ours_static().build();
     certify.run([recording().as_os_str(), "10".as_ref()]);
-}
-
-#[test]
-fn a_recording_can_be_made_anew() {
-    let new = output_dir().join("new-recording.bin");
-    program("recorder")
-        .library("ode")
-        .link_system() // that ODE's own dependency brings along
-        .without_tools()
-        .build()
-        .run([&new]);
-    let certify = certify();
-    certify.run([&new]);
-    certify.run([new.as_os_str(), "100".as_ref()]);
-    program("replay").link_ours_shared().build().run([&new]);
 }
 
 /// The same binary on the system's libccd and on this library: this one misses

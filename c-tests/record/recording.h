@@ -20,7 +20,7 @@ typedef struct {
     unsigned char **frame;   /* where each frame's poses begin; its pairs follow */
     uint32_t *frame_pairs;
     unsigned char *bytes;    /* the whole file */
-    size_t size, truth_at;   /* of the file; where the truth begins, 0 while there is none */
+    size_t size, truth_at;   /* of the file; where the truth begins */
     ccd_real_t *vertices;
 } recording_t;
 
@@ -89,11 +89,8 @@ static inline int recording_parse(recording_t *r)
         at += poses + 4 * (size_t)r->frame_pairs[i];
         total += r->frame_pairs[i];
     }
-    if (total != r->pairs)
-        return -1;
-    if (r->size - at == 8 * RECORDING_TRUTH * (size_t)r->pairs)
-        r->truth_at = at;
-    return r->truth_at || r->size == at ? 0 : -1;
+    r->truth_at = at;
+    return total == r->pairs && r->size - at == 8 * RECORDING_TRUTH * (size_t)r->pairs ? 0 : -1;
 }
 
 /* Returns 0, or -1 when the file is not a whole recording; free either way. */

@@ -201,12 +201,11 @@ static inline int recording_replay(const recording_t *r, tally_t *tally, size_t 
     return 0;
 }
 
-/* The command line of a replaying program: reads the recording, with its truth, and
- * how many passes (default 1). Returns 0, or -1 after saying the usage. */
+/* The command line of a replaying program: reads the recording, and how many passes (default 1). Returns 0, or -1 after saying the usage. */
 static inline int replay_arguments(int argc, char **argv, recording_t *r, int *passes)
 {
     *passes = argc == 3 ? atoi(argv[2]) : 1;
-    if ((argc == 2 || argc == 3) && *passes > 0 && recording_read(argv[1], r) == 0 && r->truth_at)
+    if ((argc == 2 || argc == 3) && *passes > 0 && recording_read(argv[1], r) == 0)
         return 0;
     fprintf(stderr, "usage: %s RECORDING [PASSES] (a whole recording, with its truth)\n", argv[0]);
     return -1;

@@ -14,23 +14,16 @@
 
 /* columns of the tables */
 typedef struct {
-    int asked, overlaps;
+    int asked;
     int count[FAULT_BIT_COUNT];
     int limit; /* CCD_LIMIT where minima form a surface: allowed */
-    double calls, most, least;
-    double *errors;
+    double calls;
 } row_t;
 
 /* which fault of which entry point has been shown in full */
 static int shown[ENTRIES];
 
-static int by_value(const void *x, const void *y)
-{
-    double a = *(const double *)x, b = *(const double *)y;
-    return (a > b) - (a < b);
-}
-
-static void tally(row_t *r, const answer_t *x, const pair_t *p, int faults)
+static void tally(row_t *r, const answer_t *x, int faults)
 {
     int bit;
     r->asked++;
@@ -38,22 +31,6 @@ static void tally(row_t *r, const answer_t *x, const pair_t *p, int faults)
     for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
         r->count[bit] += faults >> bit & 1;
     r->limit += x->code == CCD_LIMIT;
-    if ((x->code == CCD_HIT || x->code == CCD_LIMIT) && p->truth.lower > 0) {
-        double ratio = x->depth / p->truth.depth;
-        if (faults & FAULT_OVER)
-            r->most = fmax(r->most, ratio);
-        if (faults & FAULT_UNDER)
-            r->least = fmin(r->least, ratio);
-        r->errors[r->overlaps++] = isfinite(ratio) ? fabs(ratio - 1) : HUGE_VAL;
-    }
-}
-
-static void number(const char *format, double x)
-{
-    if (isfinite(x) && x != 0)
-        printf(format, x);
-    else
-        printf(" - |");
 }
 
 static void report(const char *name, const char *category, row_t *r)
@@ -66,13 +43,6 @@ static void report(const char *name, const char *category, row_t *r)
     printf("| %s | %s |", category, name);
     for (i = 0; i < sizeof columns / sizeof columns[0]; i++)
         printf(" %.1f |", 100 * r->count[columns[i]] / n);
-    qsort(r->errors, (size_t)r->overlaps, sizeof *r->errors, by_value);
-    number(" %.2g |", r->most);
-    number(" %.1e |", r->least);
-    if (r->overlaps)
-        printf(" %.1e | %.1e |", r->errors[r->overlaps / 2], r->errors[r->overlaps * 99 / 100]);
-    else
-        printf(" - | - |");
     printf(" %.0f |\n", r->calls / n);
 }
 
@@ -111,21 +81,11 @@ int main(int argc, char **argv)
     /* [entry][category] at the default tolerance, and the fine one for ours */
     static row_t table[ENTRIES][CATEGORY_COUNT], fine[ENTRIES][CATEGORY_COUNT];
     static pair_t p;
-    double *errors;
     if (pairs < 1) {
         fprintf(stderr, "usage: campaign [pairs a category [tie rule [category [group]]]]\n");
         return 2;
     }
     judge_begin();
-    errors = (double *)malloc(sizeof(double) * 2 * ENTRIES * CATEGORY_COUNT * (size_t)pairs);
-    if (!errors)
-        return 2;
-    for (k = 0; k < (int)ENTRIES; k++)
-        for (category = 0; category < CATEGORY_COUNT; category++) {
-            table[k][category].least = fine[k][category].least = HUGE_VAL;
-            table[k][category].errors = errors + 2 * (k * CATEGORY_COUNT + category) * (size_t)pairs;
-            fine[k][category].errors = table[k][category].errors + pairs;
-        }
     for (category = 0; category < CATEGORY_COUNT; category++) {
         if (only >= 0 && category != only)
             continue;
@@ -146,7 +106,7 @@ int main(int argc, char **argv)
                     int faults;
                     q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_stop(&p, tols[t]);
                     faults = judge(e, &x, &p.a, &p.b, &q);
-                    tally(t ? &fine[k][category] : &table[k][category], &x, &p, faults);
+                    tally(t ? &fine[k][category] : &table[k][category], &x, faults);
                     if (!e->system && faults & FAULTS_NEVER & ~shown[k]) {
                         shown[k] |= faults;
                         printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t], q.surface ? ", surface" : "");
@@ -158,11 +118,11 @@ int main(int argc, char **argv)
             }
         }
     }
-    printf("Rates in %% of %d pairs a category, tolerance 1e-4 m (fine: 1e-9 of the size), %s tie rule; errors relative to the true depth; calls of "
+    printf("Rates in %% of %d pairs a category, tolerance 1e-4 m (fine: 1e-9 of the size), %s tie rule; calls of "
            "both support functions.\n\n", pairs, tie == SHAPE_TIE_CENTRE ? "centre" : "sign");
     printf("| category | method | loop | crash | NaN | dir 0 | deep miss | shallow miss | false hit | over | under | depth ~0 | "
-           "unsound | bad dir | most over | least under | median err | p99 err | calls |\n");
-    printf("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+           "unsound | bad dir | calls |\n");
+    printf("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (category = 0; category < CATEGORY_COUNT; category++)
         for (k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
@@ -196,6 +156,5 @@ int main(int argc, char **argv)
                 broken += n + m;
             }
     printf("%d rows, %d broken promises\n", rows, broken);
-    free(errors);
     return broken > 0;
 }

@@ -6,10 +6,7 @@
  * the depth steps as the truth steps, and the contact position of a resting face moves
  * no faster than the bodies allow. Each motion is run cold, and warm with one state
  * carried along; both find the same depth, and the same place for a resting face.
- *
- *   continuity [motion | position | local]   prints, per motion and method, jumps and
- *       largest steps; judges directions and depths, contact positions, or the bare local
- *       method alone; without an argument all of them */
+ * Prints, per motion and method, jumps and largest steps. */
 
 #include "categories.h"
 
@@ -146,7 +143,7 @@ static double angle_between(const double a[3], const double b[3])
     return atan2(sqrt(truth_dot3(c, c)), truth_dot3(a, b)) * 57.29577951308232;
 }
 
-int main(int argc, char **argv)
+int main(void)
 {
     static const entry_t methods[] = {
 #ifndef OURS_ALONE
@@ -163,8 +160,6 @@ int main(int argc, char **argv)
     /* where the first method, a cold one, has the contact in each frame */
     static double place[FRAMES][3];
     int m, k, f, i, failed = 0;
-    const int motion = argc < 2 || strcmp(argv[1], "motion") == 0, position = argc < 2 || strcmp(argv[1], "position") == 0,
-        local = argc < 2 || strcmp(argv[1], "local") == 0;
     judge_begin();
     for (m = 0; m < MOTIONS; m++)
         for (k = 0; k < (int)(sizeof methods / sizeof methods[0]); k++) {
@@ -233,8 +228,8 @@ int main(int argc, char **argv)
             printf("%-28s %-14s jumps %3d (with the truth %d)  depth off the truth's step %.2g  pos step %.3g  error %.2g  calls %.1f\n",
                    motions[m].name, e->name, jumps, needed, depth_step, pos_step, error, (double)calls / FRAMES);
             if (!e->system
-                && (((e->ask == ASK_LOCAL ? local : motion) && ((jumps > 0 && (e->ask != ASK_LOCAL || motions[m].face)) || wrong > 0))
-                    || (position && motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
+                && ((jumps > 0 && (e->ask != ASK_LOCAL || motions[m].face)) || wrong > 0
+                    || (motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
                 printf("FAILED the line above\n");
                 failed++;
             }

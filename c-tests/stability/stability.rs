@@ -88,18 +88,10 @@ fn judged_in_128_bits() {
     wide().run([harness::rounds(60)]);
 }
 
-/// Sliding, rolling, rocking: directions and depths.
+/// Sliding, rolling, rocking: directions, depths and contact positions.
 #[test]
 fn continuity() {
-    program("continuity").run(["motion"]);
-}
-
-/// The same: contact positions, and the bare local method.
-#[test]
-fn continuity_of_positions() {
-    let continuity = program("continuity");
-    continuity.run(["position"]);
-    continuity.run(["local"]);
+    program("continuity").run([""; 0]);
 }
 
 /// Same bits in two runs, and in the debug and release builds.

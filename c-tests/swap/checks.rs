@@ -75,7 +75,7 @@ fn run_all(ways: &[Way], args: &str) -> Vec<Vec<String>> {
     })
 }
 
-/// One program of a consumer's: on libccd, or what stands in for it, and on this library.
+/// One program of a consumer's, on libccd and on this library.
 pub struct Swapped {
     pub consumer: &'static str,
     pub ways: [Way; 2],
@@ -95,13 +95,6 @@ impl Swapped {
                 Way::new("this library", "ours", ours),
             ],
         }
-    }
-
-    /// The same, held against this library's proven minima instead of libccd.
-    pub fn against_minimum(mut self) -> Swapped {
-        let minimum = self.ways[1].program.with_option("--minimum");
-        self.ways[0] = Way::new("proven minimum", "minimum", minimum);
-        self
     }
 
     pub fn run(&self, args: &str) -> Vec<Vec<String>> {

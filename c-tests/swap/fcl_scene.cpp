@@ -26,6 +26,32 @@
 #include "compare/hooks.h"
 #endif
 #endif
+#if defined(BY_HEADER) && !defined(TIMED)
+/* The calls of the header are the extension's, which compare.sh does not know: counted here. */
+static struct {
+    unsigned long queries, supports;
+} asked;
+
+static ccd_support_fn asked_support1;
+static void asked_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
+{
+    asked.supports++;
+    asked_support1(obj, dir, v);
+}
+
+template <typename Call, typename... Rest>
+static int counted(Call *call, unsigned long queries, const void *a, const void *b, const ccd_t *ccd, Rest... rest)
+{
+    ccd_t behind = *ccd;
+    asked.queries += queries;
+    asked_support1 = ccd->support1;
+    behind.support1 = asked_count;
+    return call(a, b, &behind, rest...);
+}
+#define ccdMPRPenetrationWarm(...) counted(ccdMPRPenetrationWarm, 1, __VA_ARGS__)
+#define ccdSignedDistance(...) counted(ccdSignedDistance, 1, __VA_ARGS__)
+#define ccdContacts(...) counted(ccdContacts, 0, __VA_ARGS__)
+#endif
 #ifdef BY_HEADER
 #include <ccd/fcl.hpp>
 #endif
@@ -159,51 +185,7 @@ static void run(scene_t &scene, long frames, long)
 #else
 
 #ifdef BY_HEADER
-/* The calls of the header are the extension's, which compare.sh does not know: counted here. */
-static struct {
-    unsigned long queries, supports;
-} asked;
-
-static ccd_support_fn asked_support1;
-static void asked_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
-{
-    asked.supports++;
-    asked_support1(obj, dir, v);
-}
-
-static ccd_t counted(const ccd_t *ccd, unsigned long queries)
-{
-    ccd_t behind = *ccd;
-    asked.queries += queries;
-    asked_support1 = ccd->support1;
-    behind.support1 = asked_count;
-    return behind;
-}
-
-#define NEXT(name) ((decltype(&name))dlsym(RTLD_NEXT, #name))
-
 static unsigned long put_so_far() { return asked.queries; }
-
-extern "C" int ccdMPRPenetrationWarm(const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm, ccd_real_t *depth,
-                                     ccd_vec3_t *dir, ccd_vec3_t *pos)
-{
-    const ccd_t behind = counted(ccd, 1);
-    return NEXT(ccdMPRPenetrationWarm)(a, b, &behind, warm, depth, dir, pos);
-}
-
-extern "C" int ccdSignedDistance(const void *a, const void *b, const ccd_t *ccd, ccd_real_t margin1, ccd_real_t margin2,
-                                 ccd_real_t max_distance, ccd_warm_t *warm, unsigned want, ccd_distance_t *out)
-{
-    const ccd_t behind = counted(ccd, 1);
-    return NEXT(ccdSignedDistance)(a, b, &behind, margin1, margin2, max_distance, warm, want, out);
-}
-
-extern "C" int ccdContacts(const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *normal, ccd_real_t slop,
-                           ccd_manifold_t *memory, ccd_contact_t *contacts, int max)
-{
-    const ccd_t behind = counted(ccd, 0);
-    return NEXT(ccdContacts)(a, b, &behind, normal, slop, memory, contacts, max);
-}
 #else
 static unsigned long put_so_far() { return compare_queries(); }
 #endif

@@ -86,7 +86,7 @@ static inline double hull_inradius(const hull_t *s)
 }
 
 /* Random points on an ellipsoid with these radii, not too close to each other:
- * equal ones make needle faces. Rounded to float, so that a file holds them. */
+ * equal ones make needle faces. Rounded to float. */
 static inline void hull_make_vertices(hull_t *s, const double r[3])
 {
     int i, j;

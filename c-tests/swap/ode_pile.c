@@ -48,14 +48,13 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
     }
 }
 
-static void judge(void *user, int a, int b, const dContact *contact, int contacts)
+static void judge(int a, int b, const dContact *contact, int contacts)
 {
     verdict_truth_t truth = { 0, 0, 1e-6, LOST };
     shape_t sa, sb;
     truth_t t;
     double deepest = 0;
     int i;
-    (void)user;
     if (compare_queries() == queries)
         return;
     queries = compare_queries();

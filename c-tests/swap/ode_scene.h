@@ -4,7 +4,7 @@
 /*
  * A pen of falling bodies in ODE: boxes, cylinders, capsules and convex hulls
  * between a floor and four walls. Metres, kilograms, seconds; z is up.
- * The recorder and the simulations of the swap test share it.
+ * The simulations of the swap test share it.
  */
 #ifndef ODE_SCENE_H
 #define ODE_SCENE_H
@@ -36,8 +36,7 @@ typedef struct {
     int kinds[4];               /* of a pile, by turns */
     pile_t pile;
     /* where set, told every pair the broad phase lets through, and the contacts ODE made of it */
-    void (*on_pair)(void *user, int a, int b, const dContact *contact, int contacts);
-    void *user;
+    void (*on_pair)(int a, int b, const dContact *contact, int contacts);
 } scene_t;
 
 /* Where set, makes the geoms in ODE's place. */
@@ -107,7 +106,7 @@ static inline void scene_make_dynamic(scene_t *scene, int i)
     dGeomSetBody(scene->geom[i], scene->body[i]);
 }
 
-/* Shape number for body i of a pile: kinds by turns, sizes around 0.1 m, as floats so that a file holds them exactly. */
+/* Shape number for body i of a pile: kinds by turns, sizes around 0.1 m, as floats. */
 static inline int scene_pile_shape(scene_t *scene, int i)
 {
     scene_shape_t *s = &scene->shape[scene->shapes];
@@ -244,7 +243,7 @@ static inline void scene_near(void *data, dGeomID o1, dGeomID o2)
         return;
     n = dCollide(o1, o2, MOST, &contact[0].geom, sizeof contact[0]);
     if (scene->on_pair)
-        scene->on_pair(scene->user, (int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2), contact, n);
+        scene->on_pair((int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2), contact, n);
     for (i = 0; i < n; i++) {
         const dContactGeom *g = &contact[i].geom;
         const int somewhere = fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6;
@@ -263,7 +262,7 @@ static inline void scene_step(scene_t *scene, double h)
     dJointGroupEmpty(scene->contacts);
 }
 
-/* Joules of motion; and of height above the floor, where `potential` is not NULL. */
+/* Joules of motion; and, in `potential`, of height above the floor. */
 static inline double scene_energy(const scene_t *scene, double *potential)
 {
     double kinetic = 0, height = 0;
@@ -283,8 +282,7 @@ static inline double scene_energy(const scene_t *scene, double *potential)
                     kinetic += 0.5 * local[j] * m.I[4 * j + k] * local[k];
             height += 9.81 * m.mass * dBodyGetPosition(scene->body[i])[2];
         }
-    if (potential)
-        *potential = height;
+    *potential = height;
     return kinetic;
 }
 

@@ -130,12 +130,11 @@ static long threw; /* queries in which FCL did */
 static inline void pose_judge(const body_t *a, const body_t *b, const known_t *known, int astray, int hit, double depth,
                               double length)
 {
-    static const char *const name[VERDICTS] = { "right", "missed", "spurious", "broken", "deep", "unsound" };
     const double touch = astray ? 2 * POSE_TOLERANCE : 1e-9 * known->size;
     const verdict_truth_t truth = { known->lower, known->upper, POSE_TOLERANCE, touch };
     const verdict_t v = tally_add(&tally[astray], &truth, hit, depth, length);
     if (v != VERDICT_RIGHT && !astray)
-        printf("wrong: %s %s %s, signed depth %.9g to %.9g, answered %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], name[v],
+        printf("wrong: %s %s %s, signed depth %.9g to %.9g, answered %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], VERDICT_NAME[v],
                known->lower, known->upper, depth);
 }
 

@@ -31,7 +31,7 @@ helgrind)
     exec cargo test --no-fail-fast "$@"
     ;;
 miri)
-    exec cargo +nightly miri test --test exported "$@"
+    exec cargo +nightly miri test --test api "$@"
     ;;
 *)
     echo "usage: check.sh address|memcheck|helgrind|miri [cargo test's arguments]" >&2

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Pictures of the charts: panels of curves over logarithmic axes, with a legend in the
-//! free cell or below, and stacked bars, drawn by plotters as SVG; 900 units wide, as
-//! wide as a page shows them.
+//! free cell or below, drawn by plotters as SVG; 900 units wide, as wide as a page shows
+//! them.
 //!
 //! Ink and paper are two colours that nothing else uses; a style sheet in the file
 //! turns them round where the reader's system is dark, and lightens two colours that are
@@ -348,74 +348,4 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
         }
         notes_below(&foot, notes)
     });
-}
-
-/// A name, and how much of each part.
-pub type Bar = (String, Vec<f64>);
-
-/// Height of a bar with the space around it.
-const BAR: i32 = 24;
-
-/// Groups of bars, each group to a scale of its own: the parts of a bar end to end, then
-/// their sum in figures.
-pub fn bars(
-    path: &Path,
-    title: &str,
-    parts: &[(&str, RGBColor)],
-    groups: &[(String, Vec<Bar>)],
-    notes: &[String],
-) {
-    if groups.is_empty() {
-        return;
-    }
-    let (left, room) = (250, 560);
-    let lines: i32 = groups.iter().map(|(_, bars)| bars.len() as i32 + 1).sum();
-    let height = 76 + lines * BAR + (LINE * notes.len() as u32) as i32;
-    write(path, (900, height as u32), |root| {
-        let area = root.titled(title, ink(20))?;
-        let block = |(x, y): (i32, i32), wide: f64, colour: RGBColor| {
-            let to = (x + wide.round() as i32, y + BAR - 6);
-            Rectangle::new([(x, y), to], colour.filled())
-        };
-        let mut y = 6;
-        for (group, bars) in groups {
-            let sum = |bar: &Bar| bar.1.iter().sum::<f64>();
-            let longest = bars.iter().map(sum).fold(0.0, f64::max);
-            text(&area, (16, y + BAR / 2), group, 15)?;
-            y += BAR;
-            for bar in bars {
-                text(&area, (28, y + BAR / 2 - 3), &bar.0, 13)?;
-                let mut x = left;
-                for (value, (_, colour)) in bar.1.iter().zip(parts) {
-                    let wide = value / longest * f64::from(room);
-                    area.draw(&block((x, y), wide, *colour))?;
-                    x += wide.round() as i32;
-                }
-                let figure = thousands(sum(bar));
-                text(&area, (x + 8, y + BAR / 2 - 3), &figure, 13)?;
-                y += BAR;
-            }
-        }
-        y += 8;
-        for (k, (label, colour)) in parts.iter().enumerate() {
-            let x = 16 + 240 * k as i32;
-            area.draw(&block((x, y), 14.0, *colour))?;
-            text(&area, (x + 22, y + BAR / 2 - 3), label, 14)?;
-        }
-        let (_, foot) = area.split_vertically(y + BAR);
-        notes_below(&foot, notes)
-    });
-}
-
-/// A whole number with a comma between its thousands.
-fn thousands(v: f64) -> String {
-    let digits = format!("{v:.0}");
-    let mut out = String::new();
-    for (k, c) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k) % 3 == 0 {
-            out.push(',');
-        }
-        out.push(c);
-    }
-    out
 }

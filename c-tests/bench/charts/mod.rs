@@ -108,7 +108,6 @@ pub fn look(row: &Row) -> Look {
         ("DEEP", _) => ((219, 39, 119), Mark::Triangle, false),
         ("Bullet EPA", _) => (GREY, Mark::Dot, false),
         ("FCL EPA", _) => (GREY, Mark::Ring, false),
-        ("Coal EPA", _) => (GREY, Mark::Cross, false),
         _ => (GREY, Mark::Triangle, false),
     };
     Look::new(colour, mark, bold)
@@ -211,7 +210,6 @@ pub fn redraw(options: &Options) {
     let (of, position) = page.read("position");
     position::draw(&of, &position);
     let split = page.read("instructions").1;
-    instructions::draw(&page, &split);
     let (paper, recorded) = (page.read("paper").1, page.read("recorded").1);
     results::write(&page, &paper, &coherence, &recorded, &split);
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::figure::{self, Look, Mark, Panel, Unit};
 use super::{Bench, GREY, Page};
 use crate::harness::Program;
+use crate::lab::csv;
 
 /// How far off a body's middle its contact position is, metres.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -26,20 +27,7 @@ pub fn measure(_: &Bench) -> Vec<Position> {
         .link_ours_renamed_and_system()
         .without_tools();
     let lines = program.build().run(["tilt"]).stdout;
-    let row = |line: &str| {
-        let (body, numbers) = line.split_once(',')?;
-        let mut numbers = numbers.split(',').map(str::parse);
-        let mut next = || numbers.next()?.ok();
-        Some(Position {
-            body: body.to_owned(),
-            degrees: next()?,
-            truth: next()?,
-            ours: next()?,
-            libccd: next()?,
-        })
-    };
-    let rows: Option<Vec<Position>> = lines.lines().map(row).collect();
-    rows.filter(|rows| !rows.is_empty()).expect("positions")
+    csv::rows(&lines)
 }
 
 pub fn draw(page: &Page, all: &[Position]) {

@@ -116,7 +116,7 @@ fn recorded(rows: &[Row]) -> String {
     markdown(head, lines)
 }
 
-fn instructions(split: &[Split]) -> String {
+pub fn instructions(split: &[Split]) -> String {
     let lines = split.iter().map(|s| {
         let total = s.callbacks + s.solver;
         [
