@@ -95,7 +95,8 @@ impl Pair {
         }
         let aside2 = by.d2 * by.dn2 - by.along * by.along;
         let radius = by.along / by.dn2;
-        if aside2 <= PARALLEL * PARALLEL * by.d2 * by.dn2 && fits(radius, same.extent2) {
+        // From an inner point near its border a ball seems smaller, until its far side is seen.
+        if aside2 <= PARALLEL * PARALLEL * by.d2 * by.dn2 && fits(0.5 * radius, same.extent2) {
             return Self::Ball(radius);
         }
         if by.is_smooth(same, ALIKE) {

@@ -169,6 +169,14 @@ impl Curved {
         self.is_believed()
     }
 
+    /// What it was taken for ended at unit `n`, with a point that lies `aside`: what confirmed it lies
+    /// on the other side, and that way R is to be seen again.
+    pub fn end(&mut self, n: &Vec3, aside: &Vec3) {
+        if self.spread {
+            (self.line, self.spread) = (n.cross(aside), false);
+        }
+    }
+
     /// Across the one direction in which R was measured, and unit `n`.
     pub fn across(&self, n: &Vec3) -> Option<Vec3> {
         (!self.spread).then(|| self.line.cross(n))

@@ -330,6 +330,7 @@ impl Object {
             if let Some(known) = self.agrees(new, &core, carries, same.round) {
                 twin = known;
             } else {
+                let aside = core - self.core(*kept);
                 self.unround();
                 (core, carries) = (new.p, false);
                 twin = match self.learn_curved(kept, new, same) {
@@ -337,6 +338,7 @@ impl Object {
                     Shown::Twin(k) => Some(k),
                     _ => None,
                 };
+                self.curved.end(&new.n, &aside);
             }
         }
         let curved = self.kind == Kind::Curved;

@@ -125,6 +125,8 @@ pub struct End {
     pub on_border: bool,
     /// It found no end.
     pub lost: bool,
+    /// Least straight down from a kink alone: beside that way φ may be lower.
+    pub straight: bool,
     /// The highest point of each object.
     pub active: [usize; 2],
     /// Other points as high, …
@@ -151,7 +153,7 @@ impl End {
     #[inline]
     pub fn is_lowest(&self, radius: Real) -> bool {
         if self.count < 2 || !(self.value > 0.0) {
-            return true;
+            return !self.straight;
         }
         let least = 0.5 * self.value * radius;
         let least2 = least * least;
@@ -262,11 +264,13 @@ impl Model {
                     false => continue,
                 },
             };
+            end.straight = false;
             if BENT && end.count == 0 && left.0 < 2 {
                 let of = &cuts[left.0 % 2];
                 let (old, new) = (of.slope(left.1), of.slope(end.active[left.0 % 2]));
                 if dot(&way.0, &old) > dot(&way.0, &new) {
                     // The valley is across the kink that was just left: straight down first.
+                    end.straight = true;
                     let u = [-here.up[0], -here.up[1]];
                     let rise = dot(&times(&bend, &u), &u) - end.value * dot(&u, &u);
                     way = to_the_least(u, dot(&u, &u), rise);
@@ -582,6 +586,15 @@ mod tests {
                 "{} {end:?} {model:?}",
                 value(&model, &end.x)
             );
+            if bend > 0.0 && end.count == 0 && !end.straight {
+                // In a valley: it bends up both ways.
+                let [i, j] = end.active;
+                let base = model.cuts[0].a[i] + model.cuts[1].a[j];
+                let [xx, xy, yy] = model.bend(&end, &end.x, &[0.0; 2], base);
+                let half = 0.5 * (xx - yy);
+                let low = 0.5 * (xx + yy) - (half * half + xy * xy).sqrt();
+                assert!(low > base, "{low} {base} {end:?}");
+            }
             // The bent model's slope is right to second order about the start, its third
             // derivative no more than three times its slopes and bends.
             let slack = if bend > 0.0 { 3.0 * off * off } else { NEAR };

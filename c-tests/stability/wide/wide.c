@@ -104,33 +104,48 @@ static int is_outside(const body_t *s, const double at[3], double bound)
     return wide_bounds(s, &point, bound / 4, -bound, -bound / 2, 120).upper < -bound;
 }
 
-/* How far h falls on a way from n, of steps that none goes up, within a fiftieth of a rad: each
- * is taken at random, up to a tenth of that long, and shorter after each that went up. What lies
- * behind a ridge is another minimum. */
+/* h of the unit direction that far on a step from n, which is written. */
+static double beside(const wide_pair_t *p, const double n[3], const double step[3], double far, double m[3])
+{
+    double l = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        m[k] = n[k] + far * step[k];
+        l += m[k] * m[k];
+    }
+    for (k = 0; k < 3; k++)
+        m[k] /= sqrt(l);
+    return wide_value(&p->body[0], &p->body[1], m);
+}
+
+/* How far h falls on a way from n, of steps down which it falls all the way, within a fiftieth of a
+ * rad: each is taken at random, longer after one that went down, up to a tenth of that, and shorter
+ * after each that did not. They begin short: what lies behind a ridge is another minimum, be the
+ * ridge ever so narrow. */
 static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
 {
     const double reach = .02;
     const double first = wide_value(&p->body[0], &p->body[1], n);
-    double best[3], least = first, step = reach / 10;
+    double best[3], least = first, step = 1e-5 * reach;
     int i, k;
     memcpy(best, n, sizeof best);
     for (i = 0; i < 200; i++) {
-        double m[3], l = 0, far = 0, h;
-        for (k = 0; k < 3; k++) {
-            m[k] = best[k] + step * dice_in(d, -1, 1);
-            l += m[k] * m[k];
-        }
-        for (k = 0; k < 3; k++) {
-            m[k] /= sqrt(l);
+        double by[3], m[3], between[3], far = 0, before = least, h;
+        for (k = 0; k < 3; k++)
+            by[k] = step * dice_in(d, -1, 1);
+        h = beside(p, best, by, 1, m);
+        for (k = 0; k < 3; k++)
             far += (m[k] - n[k]) * (m[k] - n[k]);
-        }
         if (far > reach * reach)
             continue;
-        h = wide_value(&p->body[0], &p->body[1], m);
-        if (h < least) {
+        for (k = 1; k < 4 && h < before; k++) {
+            const double there = beside(p, best, by, k / 4., between);
+            before = there < before ? there : -HUGE_VAL;
+        }
+        if (h < before) {
             least = h;
             memcpy(best, m, sizeof best);
-            step = fmin(step * 1.5, reach / 10);
+            step = fmin(step * 2, reach / 10);
         } else {
             step *= .9;
         }
