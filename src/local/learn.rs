@@ -110,9 +110,7 @@ impl Object {
             let [ahead, behind] = by.excess();
             let repeated = by.d2 <= 4.0 * rounding * rounding;
             let one_piece = if by.dn2 > TOLD * TOLD {
-                by.is_smooth(same, self.alike())
-                    || self.pieces >> k & 1 != 0
-                    || self.curved.foretells(&by.d, &by.dn)
+                by.is_smooth(same, self.alike()) || self.pieces >> k & 1 != 0
             } else {
                 by.d2 <= BLUNT * BLUNT * same.extent2 * by.dn2
             };
