@@ -50,15 +50,6 @@ impl Object {
         self.pieces |= kept.map_or(0, |k| 1 << k);
     }
 
-    /// The points that a new one may make a smooth pair with: of what seems a polytope the `best` alone.
-    fn others(&self, best: usize) -> core::ops::Range<usize> {
-        if self.flat {
-            best..best + 1
-        } else {
-            0..self.len
-        }
-    }
-
     /// What a new point shows with those before.
     #[inline(never)]
     pub fn learn(&mut self, best: usize, new: &Seen, same: &Same) -> Shown {
@@ -85,7 +76,7 @@ impl Object {
             return Shown::Twin(k);
         }
         let mut shown = Shown::Nothing;
-        for k in self.others(best) {
+        for k in 0..self.len {
             match Pair::of(&self.at[k % ROOM], new, same) {
                 Pair::Ball(radius) => return Shown::Ball(radius),
                 Pair::Smooth => shown = Shown::Smooth,
@@ -170,7 +161,7 @@ impl Object {
         if self.is_round() {
             return None;
         }
-        for k in self.others(best) {
+        for k in 0..self.len {
             let old = &self.at[k % ROOM];
             let by = Move::of(old, new);
             let one = k == best && self.pieces >> k & 1 != 0;
