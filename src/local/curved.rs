@@ -114,7 +114,6 @@ impl Curved {
         let dn2 = dn.norm_squared();
         self.error = (w.norm_squared() / d.norm_squared()).sqrt();
         self.foretold = self.error <= FORETOLD;
-        self.both &= self.foretold;
         let line2 = self.line.norm_squared();
         if line2 > 0.0 {
             self.spread |= self.line.cross(dn).norm_squared() > SPREAD * dn2 * line2;
@@ -129,12 +128,6 @@ impl Curved {
             // Across: the least symmetric change.
             self.r.add_least(&w, dn);
         }
-    }
-
-    /// Does it foretell that a point moves by `d` where its direction turns by `dn`?
-    pub fn foretells(&self, d: &Vec3, dn: &Vec3) -> bool {
-        let off = d - self.r.times(dn);
-        self.is_believed() && off.norm_squared() <= FORETOLD * FORETOLD * d.norm_squared()
     }
 
     /// The relative error to be reckoned with.
@@ -217,7 +210,6 @@ mod tests {
             assert!(curved.across(&n).is_none());
             let to = ask(n + (t * 0.6 - u * 0.3) * step);
             let (d, dn) = (to.p - at.p, to.n - at.n);
-            assert!(curved.foretells(&d, &dn));
             assert!((d - curved.r().times(&dn)).norm() < 0.05 * d.norm());
         }
     }

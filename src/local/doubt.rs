@@ -31,9 +31,6 @@ impl Search {
         if far && !(self.gain_by_less() <= self.tolerance) {
             return Some(self.step.n);
         }
-        if self.step.end.count == 2 {
-            return None;
-        }
         for object in &mut self.objects {
             let curved = &mut object.curved;
             let across = curved.across(b).filter(|_| object.kind == Kind::Curved);

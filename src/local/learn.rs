@@ -29,8 +29,6 @@ pub enum Shown {
     Ball(Real),
     /// A smooth surface that is no ball.
     Smooth,
-    /// One of them is no support point.
-    Contradiction,
 }
 
 /// What a point of a smooth surface shows.
@@ -52,26 +50,18 @@ impl Object {
         self.pieces |= kept.map_or(0, |k| 1 << k);
     }
 
-    /// The points that a new one may make a smooth pair with: of what seems a polytope the `best` alone.
-    fn others(&self, best: usize) -> core::ops::Range<usize> {
-        if self.flat {
-            best..best + 1
-        } else {
-            0..self.len
-        }
-    }
-
     /// What a new point shows with those before.
     #[inline(never)]
-    pub fn learn(&mut self, best: &mut usize, new: &Seen, same: &Same) -> Shown {
+    pub fn learn(&mut self, best: usize, new: &Seen, same: &Same) -> Shown {
         if self.kind == Kind::Curved {
-            return self.learn_curved(best, new, same);
+            let twin = self.learn_curved(best, new, same);
+            return twin.map_or(Shown::Nothing, Shown::Twin);
         }
         if self.kind == Kind::Disc && self.told == Told::Before {
             let core = |at: &Seen| at.p - self.disc().point(&at.n);
             let apart = self
                 .disc()
-                .across(&(core(new) - core(&self.at[*best % ROOM])));
+                .across(&(core(new) - core(&self.at[best % ROOM])));
             if apart.norm_squared() > same.round * same.round {
                 // The axis has turned with the object: a pair is to show it.
                 let radius = self.disc().radius;
@@ -86,7 +76,7 @@ impl Object {
             return Shown::Twin(k);
         }
         let mut shown = Shown::Nothing;
-        for k in self.others(*best) {
+        for k in 0..self.len {
             match Pair::of(&self.at[k % ROOM], new, same) {
                 Pair::Ball(radius) => return Shown::Ball(radius),
                 Pair::Smooth => shown = Shown::Smooth,
@@ -99,7 +89,7 @@ impl Object {
     /// What a new point of a curved object shows with those before: its R, and the point of the same
     /// piece nearest to it.
     #[inline(never)]
-    pub(super) fn learn_curved(&mut self, best: &mut usize, new: &Seen, same: &Same) -> Shown {
+    fn learn_curved(&mut self, best: usize, new: &Seen, same: &Same) -> Option<usize> {
         let rounding = same.rounding;
         let mut twin = ROOM;
         let mut nearest = Real::INFINITY;
@@ -108,16 +98,10 @@ impl Object {
         for k in 0..self.len.min(ROOM) {
             let old = &self.at[k];
             let by = Move::of(old, new);
-            // Also NaN.
             let [ahead, behind] = by.excess();
-            if !(ahead >= -rounding && behind >= -rounding) {
-                return Shown::Contradiction;
-            }
             let repeated = by.d2 <= 4.0 * rounding * rounding;
             let one_piece = if by.dn2 > TOLD * TOLD {
-                by.is_smooth(same, self.alike())
-                    || self.pieces >> k & 1 != 0
-                    || self.curved.foretells(&by.d, &by.dn)
+                by.is_smooth(same, self.alike()) || self.pieces >> k & 1 != 0
             } else {
                 by.d2 <= BLUNT * BLUNT * same.extent2 * by.dn2
             };
@@ -125,12 +109,12 @@ impl Object {
                 if by.dn2 < nearest {
                     (twin, nearest, vertex) = (k, by.dn2, repeated);
                 }
-            } else if k == *best {
+            } else if k == best {
                 room = 2.0 * ahead.min(behind);
             }
         }
         if room < Real::INFINITY {
-            let dn = new.n - self.at[*best % ROOM].n;
+            let dn = new.n - self.at[best % ROOM].n;
             let believed = self.curved.refute(&dn, larger(room, 0.0));
             self.believe(believed);
         }
@@ -146,11 +130,7 @@ impl Object {
             }
             self.see(k, nearest);
         }
-        if twin < ROOM {
-            Shown::Twin(twin)
-        } else {
-            Shown::Nothing
-        }
+        (twin < ROOM).then_some(twin)
     }
 
     /// R ends, unless it is believed.
@@ -181,7 +161,7 @@ impl Object {
         if self.is_round() {
             return None;
         }
-        for k in self.others(best) {
+        for k in 0..self.len {
             let old = &self.at[k % ROOM];
             let by = Move::of(old, new);
             let one = k == best && self.pieces >> k & 1 != 0;
@@ -314,30 +294,26 @@ impl Object {
     }
 
     /// Takes a new point, the vertex in place `twin` if known; returns its place. `best`: the best
-    /// direction. `kept`: the place that must stay. `None`: it contradicts what is known.
+    /// direction. `kept`: the place that must stay.
     #[inline(never)]
     pub fn take(
         &mut self,
         new: &Seen,
         mut twin: Option<usize>,
         best: &Vec3,
-        kept: &mut usize,
+        kept: usize,
         same: &Same,
-    ) -> Option<usize> {
+    ) -> usize {
         let (mut core, mut carries) = (new.p, false);
         if self.is_cored() {
             (core, carries) = self.vertex(new, same.round);
             if let Some(known) = self.agrees(new, &core, carries, same.round) {
                 twin = known;
             } else {
-                let aside = core - self.core(*kept);
+                let aside = core - self.core(kept);
                 self.unround();
                 (core, carries) = (new.p, false);
-                twin = match self.learn_curved(kept, new, same) {
-                    Shown::Contradiction => return None,
-                    Shown::Twin(k) => Some(k),
-                    _ => None,
-                };
+                twin = self.learn_curved(kept, new, same);
                 self.curved.end(&new.n, &aside);
             }
         }
@@ -358,17 +334,17 @@ impl Object {
                 *old = *new;
                 self.set(place, &core, carries);
             }
-            return Some(place);
+            return place;
         }
         let mut place = self.len;
         if place >= ROOM {
-            place = self.lowest(best, *kept);
+            place = self.lowest(best, kept);
         } else {
             self.len += 1;
         }
         self.at[place % ROOM] = *new;
         self.set(place, &core, carries);
         self.span[place % ROOM] = 0.0;
-        Some(place)
+        place
     }
 }

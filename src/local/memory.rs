@@ -94,7 +94,7 @@ impl Memory {
     /// it; zero for none. They are those of [`Memory::recall`]; where the face had not turned by the
     /// tolerance, the answer's own takes the place of one that shows a corner which it found itself.
     pub fn face(&self, tolerance: Real) -> Option<[Vec3; 4]> {
-        if !matches!(self.count, 3 | EDGES) || self.kinds().contains(&Kind::Curved) {
+        if !matches!(self.count, 3 | EDGES) {
             return None;
         }
         // What is round lifts D between its corners.
@@ -138,7 +138,7 @@ impl Memory {
         self.keep(dir, &slopes, count, &round);
     }
 
-    /// Notes what is round of each object. Beside several cuts there is room for one R alone.
+    /// Notes what is round of each object. Beside several cuts there is no room for R.
     fn put(&mut self, round: &[Round; 2]) {
         let [(mut one, p), (mut two, q)] = *round;
         if self.count < 2 {
@@ -148,10 +148,6 @@ impl Memory {
                 Vec3::new(q[3], q[4], q[5]),
                 ZERO,
             ];
-        } else if one == Kind::Curved && matches!(two, Kind::None | Kind::Curved) {
-            (self.curvature, two) = (p, Kind::None);
-        } else if two == Kind::Curved && one == Kind::None {
-            self.curvature = q;
         } else {
             one = if one == Kind::Curved { Kind::None } else { one };
             two = if two == Kind::Curved { Kind::None } else { two };
@@ -173,8 +169,6 @@ impl Memory {
         let [p, q] = if self.count < 2 {
             let [p, q, _] = self.slopes;
             [self.curvature, [p.x, p.y, p.z, q.x, q.y, q.z]]
-        } else if one == Kind::Curved || two == Kind::Curved {
-            [self.curvature; 2]
         } else {
             [[a, b, c, 0.0, 0.0, 0.0], [d, e, f, 0.0, 0.0, 0.0]]
         };
@@ -310,16 +304,14 @@ mod tests {
         assert_eq!((memory.dir, memory.slopes[1]), (-Vec3::z(), -Vec3::x()));
     }
 
-    /// Several cuts need the room: of R one has it, if the other object has nothing.
+    /// Several cuts need the room that R would take.
     #[test]
-    fn several_cuts_leave_room_for_one_matrix() {
-        let kinds = |count, round: [Round; 2]| kept(count, &round).round().map(|(kind, _)| kind);
-        assert_eq!(kept(2, &[NOTHING, R]).round()[1], R);
-        assert_eq!(kept(3, &[R, S]).round()[0], R);
-        assert_eq!(kinds(3, [R, S]), [Kind::Curved, Kind::None]);
-        assert_eq!(kinds(2, [NOTHING, R]), [Kind::None, Kind::Curved]);
-        assert_eq!(kept(2, &[R, BALL]).round()[1], BALL);
-        assert_eq!(kinds(2, [R, BALL]), [Kind::None, Kind::Ball]);
+    fn several_cuts_leave_room_for_no_matrix() {
+        for (round, rest) in [([R, S], [NOTHING; 2]), ([R, BALL], [NOTHING, BALL])] {
+            let kinds = kept(2, &round).round().map(|(kind, _)| kind);
+            assert_eq!(kinds, rest.map(|(kind, _)| kind));
+        }
+        assert_eq!(kept(2, &[DISC, BALL]).round(), [DISC, BALL]);
     }
 
     #[test]

@@ -577,7 +577,7 @@ mod tests {
         let mut shown = Shown::Nothing;
         for (i, at) in points.iter().enumerate() {
             if i > 0 {
-                shown = object.learn(&mut 0, at, &SAME);
+                shown = object.learn(0, at, &SAME);
                 match &shown {
                     Shown::Ball(radius) => {
                         object.take_off((&Found::ball(*radius), Told::More), 0, SAME.round);
@@ -591,7 +591,7 @@ mod tests {
                     _ => (),
                 }
             }
-            let _ = object.take(at, None, &points[0].n, &mut 0, &SAME);
+            object.take(at, None, &points[0].n, 0, &SAME);
         }
         (object, shown)
     }
@@ -611,7 +611,7 @@ mod tests {
             let seen = [n, n + aside * 0.01].map(|n| ask(plate, n));
             let [at, beside] = seen;
             let mut object = Object::default();
-            let _ = object.take(&at, None, &at.n, &mut 0, &SAME);
+            object.take(&at, None, &at.n, 0, &SAME);
             (object.kind, object.carried, object.span[0]) = (Kind::Curved, 1, 0.1);
             // As pairs far from here would have it: right along the rim, and as large across.
             let (d, dn) = (beside.p - at.p, beside.n - at.n);
@@ -671,7 +671,7 @@ mod tests {
             if found.is_doubted() {
                 met += 1;
                 let third = near(&mut random);
-                assert!(found.take(&third, None, &n, &mut 0, &SAME).is_some());
+                found.take(&third, None, &n, 0, &SAME);
                 assert!(found.kind != Kind::Disc);
             }
         }
@@ -705,7 +705,7 @@ mod tests {
         for k in 0..2 * ROOM {
             let p = Vec3::new(k as Real, 1.0, (k * 7 % (2 * ROOM)) as Real);
             let at = Seen { n: b, p };
-            let place = object.take(&at, None, &b, &mut 2, &SAME).unwrap();
+            let place = object.take(&at, None, &b, 2, &SAME);
             assert_eq!(object.core(place), p);
         }
         assert!(object.len == ROOM && object.core(2).x == 2.0);

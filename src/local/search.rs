@@ -211,9 +211,7 @@ impl Search {
             let place = self.put(&new);
             let told = self.told && self.trust.came_true(new.h, self.tolerance);
             self.told = false;
-            if !self.take(place, centre, settings.tolerance) {
-                return Ok(Outcome::Open);
-            }
+            self.take(place, centre, settings.tolerance);
             if told
                 && !self.is_curved()
                 && self.step.end.is_lowest(self.trust.radius)
@@ -256,9 +254,9 @@ impl Search {
         [sample.p.v1, -sample.p.v2].map(|p| Seen { n, p })
     }
 
-    /// Takes a support point. Not, if it contradicts what is known.
+    /// Takes a support point.
     #[inline(always)]
-    fn take(&mut self, place: usize, centre: &Vec3, tolerance: Real) -> bool {
+    fn take(&mut self, place: usize, centre: &Vec3, tolerance: Real) {
         let new = &self.samples[place % LATEST];
         let (n, h, p) = (new.n, new.h, &new.p);
         self.rounding = larger(new.rounding(), self.rounding);
@@ -280,33 +278,24 @@ impl Search {
             }
         } else {
             self.trust.compare(&n, h, before);
-            match self.learn(&points, &same) {
-                Some(known) => twins = known,
-                None => return false,
-            }
+            twins = self.learn(&points, &same);
         }
         let better = first || h < before;
         let best = if better { n } else { self.best().n };
         let mut places = [0; 2];
         for o in 0..2 {
-            let object = &mut self.objects[o];
-            let kept = &mut self.places[o];
-            let place = object.take(&points[o], twins[o], &best, kept, &same);
-            match place {
-                Some(place) => places[o] = place,
-                None => return false,
-            }
+            let kept = self.places[o];
+            places[o] = self.objects[o].take(&points[o], twins[o], &best, kept, &same);
         }
         if better {
             (self.best, self.places) = (place, places);
         }
-        true
     }
 
     /// Looks for what is round: a new point of each object beside those before. Returns which
-    /// vertices the new points are, if known; `None`, where one of them is no support point.
+    /// vertices the new points are, if known.
     #[inline(always)]
-    fn learn(&mut self, points: &[Seen; 2], same: &Same) -> Option<[Option<usize>; 2]> {
+    fn learn(&mut self, points: &[Seen; 2], same: &Same) -> [Option<usize>; 2] {
         let mut twins = [None; 2];
         let mut smooth = false;
         for object in &mut self.objects {
@@ -317,7 +306,7 @@ impl Search {
         }
         for o in 0..2 {
             let object = &mut self.objects[o];
-            match object.learn(&mut self.places[o], &points[o], same) {
+            match object.learn(self.places[o], &points[o], same) {
                 Shown::Nothing => (),
                 Shown::Twin(k) => twins[o] = Some(k),
                 Shown::Ball(radius) => {
@@ -325,7 +314,6 @@ impl Search {
                     *best = object.take_off((&Found::ball(radius), Told::More), *best, same.round);
                 }
                 Shown::Smooth => smooth = true,
-                Shown::Contradiction => return None,
             }
         }
         if smooth {
@@ -334,7 +322,7 @@ impl Search {
             }
             self.learn_discs(points, same);
         }
-        Some(twins)
+        twins
     }
 
     /// The points of each object whose samples show one smooth piece of D with the new one, as bits:
