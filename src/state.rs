@@ -93,7 +93,10 @@ impl State {
             self.memory.curvature = curvature;
             (self.memory.count, self.memory.curved) = (count, curved);
         }
-        self.memory.drift = flipped(self.hint()).map_or(self.memory.drift, |hint| hint as Real);
+        // A hint names the objects.
+        if self.kind == PROVEN {
+            self.memory.drift = 0.0;
+        }
         if let Some(centre) = self.facing() {
             self.face(&-centre);
         }
@@ -318,17 +321,6 @@ impl State {
         [*x, *y, *z] = middle.into();
         (self.memory.count, self.memory.curved) = (mark as u32, (mark >> 32) as u32);
     }
-}
-
-/// A [`Basis::hint`] of the pair in the other order: the portal's first two corners change places, and
-/// at each corner the objects. `None` where there is none.
-fn flipped(hint: u32) -> Option<u32> {
-    let corner = |i: u32| {
-        let both = hint >> (4 * i) & 15;
-        both >> 2 | (both & 3) << 2
-    };
-    (hint >= Basis::PORTAL)
-        .then(|| hint & !(Basis::PORTAL - 1) | corner(1) | corner(0) << 4 | corner(2) << 8)
 }
 
 #[cfg(test)]
