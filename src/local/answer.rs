@@ -25,18 +25,19 @@ impl Search {
         memory.keep(dir, &self.slopes, self.count, &[round(0), round(1)]);
     }
 
-    /// The lowest direction met, after a search that found no minimum: the witness points are its
-    /// support points, which are points of the objects. `known` gains the points.
+    /// The lowest direction met, after a search that found no minimum: the witness points are points
+    /// of the support planes, in the middle between its support points. `known` gains the points.
     #[cold]
     pub fn lowest_met(&self, known: &mut Known) -> Penetration {
         let Sample { n, p, h } = self.best();
         self.name(p, true, known);
+        let half = (p.v - n * *h) * 0.5;
         Penetration {
             depth: *h,
             dir: *n,
             normal: *n,
-            point1: p.v1,
-            point2: p.v2,
+            point1: p.v1 - half,
+            point2: p.v2 + half,
             iterations: self.asked as u64,
             ..Penetration::default()
         }

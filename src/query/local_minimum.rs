@@ -163,14 +163,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut known = Known::default();
         let mut floor = Penetration::default();
         match self.local_minimum(&mut memory, &level, &mut known, &mut floor) {
-            Ok(_) if floor.depth < hit.depth => {
-                // The polytope's witness points, where these are on the lower planes too.
+            Ok(minimum) if floor.depth < hit.depth => {
+                // The polytope's witness points are points of the objects, the local search's lie on
+                // the planes, and beside their objects where it found no minimum.
                 let reach = larger(floor.point1.norm(), floor.point2.norm());
                 let near = larger(limits.tolerance, INSIDE * reach);
                 let [one, two] = [hit.point1 - floor.point1, hit.point2 - floor.point2];
                 let n = &floor.normal;
                 if one.dot(n).abs() <= near && two.dot(n).abs() <= near {
                     (floor.point1, floor.point2) = (hit.point1, hit.point2);
+                } else if !minimum {
+                    return Ok(());
                 }
                 *hit = Penetration {
                     depth_lower: hit.depth_lower.min(floor.depth),
