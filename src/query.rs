@@ -76,7 +76,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let found = solve(state, nearest);
         match &found {
-            Err(Stop::Apart(n)) if self.lasting => separation::leave(state, *n),
+            Err(Stop::Apart(n)) if self.lasting => {
+                let was_apart = state.was_apart();
+                separation::leave(&mut Inquiry::new(&self.md), state, was_apart, *n)?;
+            }
             _ => {}
         }
         found

@@ -6,22 +6,22 @@
 //!
 //! For any unit n, −h(n) is a lower bound on the distance: D lies behind its support plane. The
 //! point of the simplex nearest to the origin is an upper one. [`Approach::step`] asks where the
-//! bounds are to meet, and [`Approach::run`] goes on until they do. Called by
-//! [`crate::gjk::signed_distance`].
+//! bounds are to meet, and [`Approach::run`] goes on until they do, or a [`Goal`] says otherwise:
+//! [`separate`] leaves off where they are near enough for a direction that is
+//! to separate for long; [`crate::gjk::signed_distance`] at its tolerance.
 //!
 //! **Balls are taken off to choose where to ask.** On a round part of D of radius ρ the points
 //! of directions n are s = u + ρ n around a fixed u, and two of them tell ρ: with
 //! e = n′·(s′ − s) and e′ = n·(s − s′), which agree there, ρ = (e + e′) / |n′ − n|². The point
 //! nearest to the origin of the corners u tells the way to ask, which for balls rolled over
 //! a polytope is the right one at once, where the simplex itself would take many halvings.
-//! It promises a distance; after one that was not kept the next step is the simplex's.
+//! It promises a distance; one that was not kept is not asked for a while.
 
-use crate::contact::Settings;
 use crate::gjk::barycentric;
 use crate::gjk::simplex::{Simplex, direction};
 use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, SupportSet};
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, larger};
 
 /// How far the two measures of a ball may differ, as a share of their sum. (Measured on the
 /// random sets moved apart: a fifth of it costs ellipsoids one support point more, six times
@@ -36,10 +36,25 @@ const WORTH: Real = 0.3;
 /// Steps that bring the simplex no nearer before rounding is all that is left.
 const STALLS: u32 = 3;
 
+/// How near the bounds are to come.
+pub struct Goal {
+    /// The width between them, metres.
+    pub tolerance: Real,
+    /// The same as a share of the upper one, where that is more.
+    pub share: Real,
+    /// What is taken off the distance, metres: the tolerance does not tell a touch from a gap, and a
+    /// plane between the objects is wanted.
+    pub margin: Real,
+    /// What is farther apart than this, metres, need not be refined.
+    pub far: Real,
+    /// Support points, at most.
+    pub iterations: u64,
+}
+
 /// Where an approach ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The bounds have met, or the objects are far apart.
+    /// Where the goal is.
     Met,
     /// The new simplex holds the origin inside.
     Inside,
@@ -73,8 +88,9 @@ pub struct Approach<'s, 'q, A, B> {
     last: Option<(Vec3, Vec3)>,
     /// Radius of the ball taken off, metres; 0 for none.
     pub ball: Real,
-    /// Was the last promise not kept?
-    is_broken: bool,
+    /// Steps without a try, and how many the next failure costs.
+    pause: u32,
+    penalty: u32,
     /// Support points asked for.
     pub iterations: u64,
 }
@@ -95,33 +111,44 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
             stalls: 0,
             last: None,
             ball: 0.0,
-            is_broken: false,
+            pause: 0,
+            penalty: 1,
             iterations: 0,
         }
     }
 
-    /// From support point to support point, until the bounds are as near as the tolerance, or what is
-    /// left of the distance without the `margin`, metres, is known to be more than `far`: a plane between
-    /// the objects is wanted, and the tolerance does not tell a touch from a gap.
-    pub fn run(&mut self, settings: &Settings, margin: Real, far: Real) -> Result<End, Fault> {
+    /// From support point to support point.
+    pub fn run(&mut self, goal: &Goal) -> Result<End, Fault> {
         loop {
-            let (touch, tolerance) = {
-                let precision = &self.inquiry.precision;
-                (precision.touch(), precision.tolerance(settings.tolerance))
-            };
-            let (lower, upper) = (self.lower - margin, self.upper - margin);
-            // A plane between the objects is wanted even where the width would not ask.
-            let told = lower > -touch || !(upper > touch);
-            if lower > far || told && self.upper - self.lower <= tolerance {
-                return Ok(End::Met);
+            // In the plane of a touching face the last point was no nearer than others.
+            if self.has_met(goal) {
+                self.settle();
+                if self.has_met(goal) {
+                    return Ok(End::Met);
+                }
             }
-            if self.iterations >= settings.max_iterations {
+            if self.iterations >= goal.iterations {
                 return Ok(End::Limit);
             }
-            if let Some(end) = self.step(tolerance)? {
+            if let Some(end) = self.step(self.width(goal))? {
                 return Ok(end);
             }
         }
+    }
+
+    /// The width that the bounds are to have, metres; NaN is none.
+    fn width(&self, goal: &Goal) -> Real {
+        let least = self.inquiry.precision.tolerance(goal.tolerance);
+        larger(goal.share * self.upper, least)
+    }
+
+    /// Are the bounds near enough?
+    fn has_met(&self, goal: &Goal) -> bool {
+        let touch = self.inquiry.precision.touch();
+        let (lower, upper) = (self.lower - goal.margin, self.upper - goal.margin);
+        // A plane between the objects is wanted even where the width would not ask.
+        let told = lower > -touch || !(upper > touch);
+        lower > goal.far || told && self.upper - self.lower <= self.width(goal)
     }
 
     /// One more support point, for bounds that are to come within `tolerance`, metres: where a ball
@@ -173,8 +200,24 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
     /// Returns whether the new simplex holds the origin.
     pub fn ask(&mut self, n: &Vec3) -> Result<bool, Fault> {
         let point = self.sample(n)?;
-        self.is_broken = false;
-        Ok(self.beyond(&point) && self.add(n, &point))
+        self.pause = self.pause.saturating_sub(1);
+        if self.beyond(&point) {
+            return Ok(self.add(n, &point));
+        }
+        // What is left is rounding, or the plane of a touching face, in which the simplex's
+        // last point was no nearer than the others.
+        self.settle();
+        Ok(false)
+    }
+
+    /// Asks along unit `n`, and makes the point a corner, one of at most three: for directions that
+    /// are known to have found corners. [`Approach::settle`] tells the bounds.
+    pub fn ask_again(&mut self, n: &Vec3) -> Result<(), Fault> {
+        let point = self.sample(n)?;
+        let place = self.simplex.place();
+        self.set.place(place, n, &point);
+        self.simplex.put(place, point.v);
+        Ok(())
     }
 
     /// Does the point lie beyond the simplex, as seen along the way, by more than rounding?
@@ -210,7 +253,10 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
         let before = self.lower;
         let point = self.sample(n)?;
         let inside = self.beyond(&point) && self.add(n, &point);
-        self.is_broken = !(self.lower - before >= KEPT * (promise - before));
+        if !(self.lower - before >= KEPT * (promise - before)) {
+            self.pause = self.penalty;
+            self.penalty += 2;
+        }
         Ok(inside)
     }
 
@@ -223,7 +269,7 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
     /// The direction that the ball foretells to be best, and the distance, metres, that it
     /// promises there; none where that is not worth a support point.
     fn aim(&self, tolerance: Real) -> Option<(Vec3, Real)> {
-        if !(self.ball > 0.0) || self.is_broken {
+        if !(self.ball > 0.0) || self.pause > 0 {
             return None;
         }
         let [a, b, c] = self.bare();
@@ -239,17 +285,50 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
         (gain > WORTH * tolerance && promise < self.upper + tolerance).then_some((n, promise))
     }
 
+    /// The way and the distance anew, from every face of the simplex.
+    pub fn settle(&mut self) {
+        let (way, distance2) = self.simplex.settle(self.inquiry.precision.touch());
+        (self.way, self.upper) = (way, distance2.sqrt());
+    }
+
     /// The points of the objects whose difference is the simplex's point nearest to the origin.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
         self.simplex.witnesses(&self.set, self.inside)
     }
 }
 
+/// From a unit direction that separates to one that separates by a good part of the
+/// distance, and so for longer while the objects move: steps of the distance algorithm until
+/// the margin −n·s(n) is [`WIDE`] enough. Returns n and its margin, metres.
+///
+/// # Errors
+/// A callback's answer that is not finite.
+pub fn separate<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    separating: &Vec3,
+) -> Result<(Vec3, Real), Fault> {
+    let mut approach = Approach::new(inquiry);
+    approach.ask(separating)?;
+    approach.run(&Goal {
+        tolerance: 0.0,
+        share: 1.0 - WIDE,
+        margin: 0.0,
+        far: Real::INFINITY,
+        iterations: WIDENING,
+    })?;
+    Ok((approach.normal, larger(approach.lower, 0.0)))
+}
+
+/// The share of the distance that is wide enough.
+const WIDE: Real = 0.8;
+/// Support points that [`separate`] may ask for.
+const WIDENING: u64 = 8;
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::known::support::MinkowskiDifference;
-    use crate::shapes::{Random, ball, corners, hull, placed};
+    use crate::shapes::{Random, ball, capsule, corners, hull, placed};
 
     /// Boxes face to face and balls: the bounds close around the known distance, and the points
     /// are that far apart.
@@ -278,6 +357,25 @@ mod tests {
             let (p, q) = approach.witnesses();
             assert!((approach.lower - gap).abs() <= 1e-5, "round {round}");
             assert!(((p - q).norm() - gap).abs() <= 1e-5, "round {round}");
+        }
+    }
+
+    /// A direction that hardly separates, if at all, is turned to one that separates by most of the distance.
+    #[test]
+    fn a_separating_direction_is_turned() {
+        let mut r = Random::new(62);
+        for _ in 0..200 {
+            let gap = r.within(0.01, 1.0);
+            let up = r.direction();
+            let a = capsule(up * -0.6, up * -0.2, 0.2);
+            let b = ball(up * (0.2 + gap), 0.2);
+            let md = MinkowskiDifference::new(&a, &b);
+            let mut inquiry = Inquiry::new(&md);
+            let (n, margin) =
+                separate(&mut inquiry, &(up + r.direction() * 0.9).normalize()).unwrap();
+            let h = n.dot(&md.support(&n).unwrap().v);
+            assert!((margin + h).abs() <= 1e-6 && margin >= WIDE * gap - 1e-6);
+            assert!(md.supports() <= WIDENING + 1);
         }
     }
 }

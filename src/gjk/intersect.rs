@@ -38,6 +38,7 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
     if let Some(centre) = centre {
         inquiry.precision.note(centre);
     }
+    let was_apart = state.separating().is_some();
     if let Some(n) = still_apart(&mut inquiry, &mut set, state)? {
         return Err(Stop::Apart(n));
     }
@@ -55,7 +56,7 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
         Ok(held) if !state.overlapped() => {
             *state = State::surrounded(held.corners.map(|i| set.direction(i)));
         }
-        Err(Stop::Apart(n)) => leave(state, *n),
+        Err(Stop::Apart(n)) => leave(&mut inquiry, state, was_apart, *n)?,
         _ => {}
     }
     answer.map(|_| ())

@@ -4,9 +4,10 @@
 //! A pair that is apart, with memory: the direction that separated it is asked first, and
 //! while it still separates, one support point is the whole answer.
 
+use crate::gjk::distance::separate;
 use crate::known::support::{Fault, SupportMap};
 use crate::known::support_set::{Inquiry, SupportSet};
-use crate::math::{EPSILON, Real, Vec3, unit};
+use crate::math::{EPSILON, Real, Vec3, larger, unit};
 use crate::state::State;
 
 /// Directions tried before a pair that was apart is asked about as if it were new.
@@ -71,7 +72,24 @@ pub fn still_apart<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(None)
 }
 
-/// Leaves the separating direction `n` behind: a miss pays nothing for the next time.
-pub fn leave(state: &mut State, n: Vec3) {
-    *state = State::apart(n * UNSURE);
+/// Leaves the separating direction `n` behind.
+///
+/// A pair that was not apart before pays nothing for the next time. One that `was_apart`,
+/// and is so along another direction, is worth a better one than that.
+///
+/// # Errors
+/// A callback's answer that is not finite.
+pub fn leave<A: SupportMap, B: SupportMap>(
+    inquiry: &mut Inquiry<'_, A, B>,
+    state: &mut State,
+    was_apart: bool,
+    n: Vec3,
+) -> Result<(), Fault> {
+    *state = if was_apart {
+        let (n, margin) = separate(inquiry, &n)?;
+        State::apart(n * larger(margin, UNSURE))
+    } else {
+        State::apart(n * UNSURE)
+    };
+    Ok(())
 }

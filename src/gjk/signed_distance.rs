@@ -18,7 +18,7 @@
 //! The centres and the state choose where to look first, and prove nothing.
 
 use crate::contact::{Penetration, Settings};
-use crate::gjk::distance::{Approach, End};
+use crate::gjk::distance::{Approach, End, Goal};
 use crate::known::support::{Fault, SupportMap};
 use crate::known::support_set::{Inquiry, Stop};
 use crate::math::{EPSILON, Real, Vec3, larger, unit};
@@ -168,11 +168,18 @@ fn cores<A: SupportMap, B: SupportMap>(
 ) -> Result<(Distance, Real), Fault> {
     let mut inquiry = Inquiry::new(&pair.md);
     let mut search = Approach::new(&mut inquiry);
+    let margin = wanted.margin();
     if !resume(&mut search, state)? {
         let start = state.separating().unwrap_or_else(|| pair.cold_start());
         search.ask(&start)?;
     }
-    let end = search.run(&wanted.settings, wanted.margin(), wanted.max_distance)?;
+    let end = search.run(&Goal {
+        tolerance: wanted.settings.tolerance,
+        share: 0.0,
+        margin,
+        far: wanted.max_distance,
+        iterations: wanted.settings.max_iterations,
+    })?;
     let touch = search.inquiry.precision.touch();
     let hit = end == End::Inside || end == End::Stalled && !(search.lower >= -touch);
     let (point1, point2) = search.witnesses();
@@ -204,7 +211,7 @@ fn resume<A: SupportMap, B: SupportMap>(
 ) -> Result<bool, Fault> {
     let (corners, ball) = state.nearest();
     for n in corners.iter().filter_map(unit) {
-        search.ask(&n)?;
+        search.ask_again(&n)?;
     }
     if search.iterations == 0 {
         return Ok(false);
@@ -213,6 +220,7 @@ fn resume<A: SupportMap, B: SupportMap>(
     if search.ball == 0.0 && ball > 0.0 && ball < search.inquiry.precision.size() {
         search.ball = ball;
     }
+    search.settle();
     Ok(true)
 }
 

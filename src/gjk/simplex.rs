@@ -143,6 +143,55 @@ impl Simplex {
         self.len
     }
 
+    /// Adds a corner, one of at most three, wherever it is: [`Simplex::settle`] tells the rest.
+    pub fn put(&mut self, id: usize, at: Vec3) {
+        let w = self.place();
+        self.ids[w] = id;
+        self.at[w] = at;
+        self.order = match (self.order, self.len) {
+            ([i, ..], 1) => [i, w, w],
+            ([i, j, _], 2) => [i, j, w],
+            _ => [w; 3],
+        };
+        self.len = (self.len + 1).min(3);
+    }
+
+    /// As [`Simplex::add`] without a new point; and every face of the simplex counts, not
+    /// only those with the newest point.
+    pub fn settle(&mut self, touch: Real) -> (Vec3, Real) {
+        let [i, j, k] = self.order;
+        let at = self.order.map(|p| self.at[p & 3]);
+        let face = match self.len {
+            0 | 1 => self.corner(i),
+            2 => self.line(i, j, touch),
+            _ => {
+                let [a, b, c] = &at;
+                let weights = barycentric::triangle(&Vec3::zeros(), a, b, c).weights;
+                match weights.map(|w| w > 0.0) {
+                    [true, true, true] => {
+                        let n = normal(a, b, c);
+                        let height = n.dot(a);
+                        let inner = height > 0.0;
+                        Face {
+                            order: if inner { [j, i, k] } else { [i, j, k] },
+                            len: 3,
+                            way: if inner { -n } else { n },
+                            distance2: height / n.norm_squared() * height,
+                        }
+                    }
+                    [true, true, _] => self.line(i, j, touch),
+                    [true, _, true] => self.line(i, k, touch),
+                    [_, true, true] => self.line(j, k, touch),
+                    [_, _, true] => self.corner(k),
+                    [_, true, _] => self.corner(j),
+                    _ => self.corner(i),
+                }
+            }
+        };
+        (self.order, self.len) = (face.order, face.len);
+        (face.way, face.distance2)
+    }
+
     #[inline(always)]
     fn corner(&self, i: usize) -> Face {
         Face {
