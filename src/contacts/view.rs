@@ -254,7 +254,7 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         // Where a disc that leans so reaches farthest: the direction without its part along the disc's axis.
         let share = 1.0 / (1.0 + dot(&slope, &slope));
         let out = |k: usize| {
-            let aside = side(&slope, &CIRCLE[k].map(|x| x * self.tilt));
+            let aside = side(&slope, &CIRCLE[k % CIRCLE.len()].map(|x| x * self.tilt));
             let down = dot(&slope, &aside) * share;
             let out = [aside[0] - slope[0] * down, aside[1] - slope[1] * down];
             let share = 1.0 / (dot(&out, &out) + down * down).sqrt();
