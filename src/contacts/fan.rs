@@ -40,9 +40,10 @@ use crate::math::{Real, larger, lesser};
 
 /// Corners of a fan, at most.
 const ROOM: usize = 8;
-/// The deepest place may be beside the outline by so many hairs, as witness points are. Measured
-/// (`extension/pressure.c`): ÷4, in single precision, a brick on an edge steps by 1.6 mm; ×4 no change.
-const BESIDE: Real = 32.0;
+/// The deepest place may be beside the outline by so many hairs, as witness points are. Measured in single
+/// precision: ÷2 a brick on an edge steps by 1.6 mm (`extension/pressure.c`), ×2 a corner on a rim has
+/// its position outside (`campaign`).
+const BESIDE: Real = 16.0;
 
 /// What is seen of one object from the deepest place: corners around it, low in units of the depth.
 pub type Fan = Polygon<ROOM>;

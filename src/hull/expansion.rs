@@ -49,7 +49,6 @@
 use crate::gjk::barycentric;
 use crate::hull::plane::Plane;
 use crate::hull::polytope::{Polytope, Top};
-use crate::hull::start;
 use crate::known::precision::Precision;
 use crate::known::support::SupportMap;
 use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
@@ -568,19 +567,31 @@ impl Core {
         &mut self,
         set: &SupportSet<P>,
         corners: &[usize; 3],
-        [n, s]: [&Vec3; 2],
+        new: [&Vec3; 2],
         least: Real,
     ) {
         // The newest corner is the last; the first one is mostly the oldest and far away.
         for &i in corners.iter().rev().take(2) {
-            let other = set.direction(i);
-            if i > 0 && NEIGHBOURS.contains(&(n - other).norm_squared()) {
-                let between = s - set.v(i);
-                if let Some(radius) = start::radius([&other, n], &between, ALIKE, least) {
-                    self.radius = radius;
-                    return;
-                }
+            if i > 0 && self.pair([&set.direction(i), &set.v(i)], new, least) {
+                return;
             }
         }
+    }
+
+    /// The radius that two samples tell: are they of one ball?
+    #[inline(always)]
+    fn pair(&mut self, [n, s]: [&Vec3; 2], [n_, s_]: [&Vec3; 2], least: Real) -> bool {
+        let turn2 = 2.0 - 2.0 * n.dot(n_);
+        if !NEIGHBOURS.contains(&turn2) {
+            return false;
+        }
+        let between = s_ - s;
+        let (e, e_) = (n_.dot(&between), -n.dot(&between));
+        let sum = e + e_;
+        let alike = (e - e_).abs() <= ALIKE * sum && sum > least;
+        if alike {
+            self.radius = sum / turn2;
+        }
+        alike
     }
 }

@@ -18,7 +18,7 @@ use crate::contact::Penetration;
 use crate::hull::global::mixed;
 use crate::hull::portal::View;
 use crate::hull::shallow::{LEVEL, STEPS, Sizes, Try};
-use crate::known::support::{Known, SupportMap};
+use crate::known::support::{Known, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop};
 use crate::math::{Real, Vec3, larger, normalised};
 
@@ -100,7 +100,8 @@ impl Try {
             return;
         };
         let points = &self.points;
-        let [point1, point2] = mixed(&weights, names.map(|names| points.witnesses(names)));
+        let corners = names.map(|names| points.witnesses(names));
+        let [point1, point2] = mixed(&weights, corners);
         *hit = Penetration {
             depth: lowest.depth,
             dir: lowest.dir,
@@ -114,7 +115,8 @@ impl Try {
         let own = points.names(self.lowest);
         let first = names.iter().position(|corner| *corner == own).unwrap_or(0);
         for i in first..first + 3 {
-            known.push(&points.made(names[i % 3]));
+            let [v1, v2] = corners[i % 3];
+            known.push(&SupportPoint { v: v1 - v2, v1, v2 });
         }
     }
 }

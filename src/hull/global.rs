@@ -44,6 +44,8 @@ const LENT: (usize, usize) = (376, 760);
 /// Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
 /// much by which the face found there is nearer than the nearest.
 const ROUNDED: Real = 32.0;
+/// Points beyond the answer's plane that are asked about, at most. Insensitive: mostly there is one.
+const DOUBTS: usize = 4;
 /// The share of the centres' distance that the first depth of a shallow contact is, at most. Measured: 0.5
 /// changes no recorded contact by 0.1 %, and leaves deep pairs alone.
 const FAR: Real = 0.5;
@@ -167,7 +169,7 @@ pub fn minimum<'q, A: SupportMap, B: SupportMap>(
 /// A way to a first tetrahedron.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
-    /// [`start::ring`], else the portal of the try without a hull.
+    /// [`start::ring`], else the portal of the try without a hull, else [`start::known`].
     Known,
     /// [`start::solid`].
     Solid,
@@ -202,17 +204,39 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             return Ok(true);
         }
         let start = start.get_or_insert(Handed::EMPTY);
-        if start.set.len() > 0 {
+        loop {
+            let known = start.known;
+            if !known {
+                self.begin(&mut start.set, first)?;
+            }
             let proven = self.expanded(start)?;
-            // Does no point that known ones make lie beyond the lowest plane?
-            let Lowest { depth, dir } = self.inquiry.lowest;
-            if start.set.extreme(&dir, 1).reach <= depth + self.inquiry.precision.tie() {
+            if !known || self.is_deepest(&start.set) {
                 return Ok(proven);
             }
-            *start = Handed::EMPTY;
+            // A callback contradicts itself: the pair is asked anew, once.
+            self.forget(first);
+            start.clear();
         }
-        self.begin(&mut start.set, first)?;
-        self.expanded(start)
+    }
+
+    /// Does no point that known ones make lie beyond the lowest plane?
+    #[inline(never)]
+    fn is_deepest(&self, set: &SupportSet<{ FIRST.0 }>) -> bool {
+        let Lowest { depth, dir } = self.inquiry.lowest;
+        set.extreme(&dir, 1).reach <= depth + self.inquiry.precision.tie()
+    }
+
+    /// All is as after the first support point.
+    #[cold]
+    #[inline(never)]
+    fn forget(&mut self, first: &SupportPoint) {
+        let dir = self.request.first;
+        let depth = dir.dot(&first.v);
+        self.inquiry.lowest = Lowest { depth, dir };
+        (*self.hit, self.open) = (Penetration::default(), None);
+        if let Some(basis) = &mut self.basis {
+            **basis = Basis::default();
+        }
     }
 
     /// Is there an answer of a proof without a hull ([`shallow`](crate::hull::shallow))? Else `start`
@@ -229,6 +253,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         } = self.request;
         let mut attempt = Try::new(dir, first);
         if !attempt.recall(&mut self.inquiry, others)? {
+            self.forget(first);
             return Ok(false);
         }
         let (opposite, middle);
@@ -243,7 +268,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                     middle = first.towards(&opposite, 0.5);
                     (&middle, Some(&opposite))
                 }
-                None => return Ok(false),
+                None => {
+                    self.forget(first);
+                    return Ok(false);
+                }
             },
         };
         // Where the first plane is as far as that the contact is a deep one.
@@ -259,6 +287,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         if !attempt.lies && attempt.is_honest(self.inquiry.precision.tie()) {
             attempt.hand_over(apex, opposite, start.insert(Handed::EMPTY));
+        } else {
+            self.forget(first);
         }
         Ok(false)
     }
@@ -274,7 +304,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         Ok(match way {
             Way::Known => match start::ring(&mut self.inquiry, set, self.request.limits)? {
                 Some(ring) => Some(ring),
-                None => *names,
+                None if names[1] > 0 => Some(names.map(usize::from)),
+                None => start::known(&set.v(0), set.len() - 1, |k| set.v(k + 1))
+                    .map(|[a, b, c]| [0, a + 1, b + 1, c + 1]),
             },
             Way::Solid => start::solid(&mut self.inquiry, set)?,
             Way::Surround => Some(self.surround(set)?),
@@ -307,7 +339,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             };
             let precision = &self.inquiry.precision;
             let mut progress = Progress::new(self.request.limits, precision, set.len(), names);
-            progress.iterations = *rounds;
+            progress.iterations = u64::from(*rounds);
             let fine = expansion::exact(progress.tolerance, precision);
             let [i, j, k, l] = names;
             let points = [set.v(i), set.v(j), set.v(k), set.v(l)];
@@ -452,8 +484,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         self.seen.rest(&known, self.hit);
     }
 
-    /// A callback contradicts itself: the pair is asked anew, once. Puts the apex into the set as point 0,
-    /// `first` as point 1, and the points that the last proof stood on.
+    /// Puts the apex into the set as point 0, `first` as point 1, and the points that the last
+    /// proof stood on: for a pair that is asked anew.
     #[cold]
     #[inline(never)]
     fn begin<const P: usize>(
@@ -467,8 +499,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             others,
             ..
         } = self.request;
-        let depth = dir.dot(&first.v);
-        (self.inquiry.lowest, self.open) = (Lowest { depth, dir: *dir }, None);
         set.push(&Vec3::zeros(), centre.unwrap_or(first));
         set.push(dir, first);
         // A state may hold anything: made unit, and no more than there is room for.
@@ -517,24 +547,42 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         self.answer(set, hull, progress, end)
     }
 
-    /// How far along `dir` D reaches, where the known point with this index lies beyond `depth`, the support
-    /// value there.
+    /// How far along `dir` D reaches, where known points lie beyond `depth`, the support value there.
     ///
-    /// Either the callback stopped short along `dir`, and the point is right; or it erred where it
-    /// found it, as one does that divides by how far the direction is off an axis. The first
-    /// is found again from beside, and the other is not.
+    /// Either the callback stopped short along `dir`, and they are right; or it erred where it
+    /// found them, as one does that divides by how far the direction is off an axis. The first
+    /// are found again from beside, and the others are not.
     #[cold]
     #[inline(never)]
     fn confirmed<const P: usize>(
         &mut self,
         set: &SupportSet<P>,
-        i: usize,
         dir: &Vec3,
         depth: Real,
     ) -> Result<Real, Fault> {
-        let again = self.inquiry.point(&beside(&set.direction(i)))?;
-        let found = dir.dot(&again.v) > depth + self.inquiry.precision.tie();
-        Ok(if found { dir.dot(&set.v(i)) } else { depth })
+        let beyond = depth + self.inquiry.precision.tie();
+        let mut doubted = [0; DOUBTS];
+        for place in 0..DOUBTS {
+            let mut farthest = (beyond, 0);
+            for i in 1..set.len() {
+                let reach = dir.dot(&set.v(i));
+                if reach > farthest.0 && !doubted.contains(&i) && set.direction(i) != Vec3::zeros()
+                {
+                    farthest = (reach, i);
+                }
+            }
+            let (reach, i) = farthest;
+            if i == 0 {
+                break;
+            }
+            let n = set.direction(i);
+            let point = self.inquiry.point(&beside(&n))?;
+            if dir.dot(&point.v) > beyond {
+                return Ok(reach);
+            }
+            doubted[place] = i;
+        }
+        Ok(depth)
     }
 
     /// Writes the answer of an expansion, and tells whether it is proven: depth and direction
@@ -554,7 +602,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         // contradicts itself.
         let lowest = set.farther(&dir, Real::NEG_INFINITY).unwrap_or(1);
         if dir.dot(&set.v(lowest)) > depth + self.inquiry.precision.tie() {
-            depth = self.confirmed(set, lowest, &dir, depth)?;
+            depth = self.confirmed(set, &dir, depth)?;
         }
         let grain = self.inquiry.precision.grain();
         let lower = if end == End::Open {

@@ -47,7 +47,8 @@
 //!   F′ is normalised, and the error with it; or, where nothing of it is left, the new
 //!   face has F's plane, which its corners are on or above.
 //! - *No single horizon.* Where rounding has made the visible faces no disc, nothing is
-//!   changed, and the first one alone is taken for visible ([`Polytope::insert`]): it always is a disc.
+//!   changed, and fewer of them are taken for visible ([`Polytope::insert`]); the first
+//!   one alone always is a disc.
 //!
 //! # Double precision throughout
 //!
@@ -101,7 +102,7 @@ const FRESH: f64 = 8.0;
 /// The hull of points that are named by numbers below 32768.
 #[repr(C)]
 pub struct Polytope<const F: usize> {
-    planes: [Plane; F],
+    planes: [[f64; 4]; F],
     /// An ulp of the points' size, metres.
     ulp: f64,
     /// d|d| / |N|² with the face's number in its low bits.
@@ -140,7 +141,7 @@ impl<const F: usize> Polytope<F> {
     /// Nothing, and not yet fit for use: [`Polytope::tetrahedron`] comes first. All zero, so that no
     /// pattern is copied.
     pub const BLANK: Self = Self {
-        planes: [Plane::ZERO; F],
+        planes: [[0.0; 4]; F],
         ulp: 0.0,
         keys: [0.0; F],
         twins: [[0; 4]; F],
@@ -168,18 +169,26 @@ impl<const F: usize> Polytope<F> {
     #[inline(always)]
     fn at(i: usize) -> usize {
         const { assert!(F % 8 == 0 && F >= 8 && F <= MOST_FACES) };
-        i.min(F - 1)
+        if F.is_power_of_two() {
+            i & (F - 1)
+        } else {
+            i.min(F - 1)
+        }
     }
 
     #[inline(always)]
     fn plane(&self, f: usize) -> Plane {
-        self.planes[Self::at(f)]
+        Plane::of(&self.planes[Self::at(f)])
     }
 
     /// The place of a half-edge among all of them.
     #[inline(always)]
     fn at_edge(h: usize) -> usize {
-        h.min(4 * F - 1)
+        if F.is_power_of_two() {
+            h & (4 * F - 1)
+        } else {
+            h.min(4 * F - 1)
+        }
     }
 
     #[inline(always)]
@@ -315,7 +324,7 @@ impl<const F: usize> Polytope<F> {
             let n = n / n2.sqrt();
             widest2 = larger(n2, widest2);
             let d = lesser(lesser(n.dot(&p), n.dot(&q)), n.dot(&r));
-            self.planes[i] = Plane::new(&n, d);
+            self.planes[i] = Plane::new(&n, d).array();
             self.keys[i] = Self::key(i, d * d.abs());
             self.corners[i] = names;
             self.twins[i] = twins;
@@ -426,7 +435,8 @@ impl<const F: usize> Polytope<F> {
     /// metres; `corner` tells the points by their names. `false`: there is no room for its faces;
     /// nothing changed.
     ///
-    /// Where the visible faces are no disc, `first` alone counts as visible.
+    /// Where the visible faces are no disc, only those count as visible that the point is
+    /// eight times as high above, and so on, down to `first` alone.
     #[inline(always)]
     pub fn insert(
         &mut self,
@@ -440,7 +450,14 @@ impl<const F: usize> Polytope<F> {
         // Ends: `first` alone is a disc.
         loop {
             match self.fan(first, name, p, above, corner) {
-                Fan::NoDisc if above < f64::INFINITY => above = f64::INFINITY,
+                Fan::NoDisc if above < f64::INFINITY => {
+                    let height = self.plane(first).height(&Plane::point(p));
+                    above = if 8.0 * above < height {
+                        8.0 * above
+                    } else {
+                        f64::INFINITY
+                    };
+                }
                 fan => return fan == Fan::Done,
             }
         }
@@ -538,7 +555,7 @@ impl<const F: usize> Polytope<F> {
         let names = self.corners[Self::at(edge >> 2)] >> (16 * (edge & 3)) & 0x7fff_ffff;
         let f = Self::at(f);
         self.corners[f] = names | (name as u64) << 32 | (names & 0xffff) << 48;
-        self.planes[f] = plane;
+        self.planes[f] = plane.array();
         let (mut square, n2) = plane.signed_square();
         if !(n2 >= self.collapsed) {
             square = self.renew(f, edge >> 2, corner);
@@ -624,7 +641,7 @@ impl<const F: usize> Polytope<F> {
             // Also for NaN.
             None => parent,
         };
-        self.planes[f] = plane;
+        self.planes[f] = plane.array();
         plane.signed_square().0
     }
 
@@ -669,23 +686,23 @@ impl<const F: usize> Polytope<F> {
     #[inline(always)]
     pub fn mean_normal(&self, top: usize, target: f64) -> Vec3 {
         let f = self.plane(top);
-        let (mut first, mut second) = (f, Plane::ZERO);
-        let counts = |i: usize, g: &Plane| self.keys[Self::at(i)] < target && g.along(&f) > 0.0;
+        let (mut first, mut second) = (f, None);
         for i in 0..3 {
             let twin = self.twin(4 * top + i);
             let g = self.plane(twin >> 2);
-            if counts(twin >> 2, &g) {
+            if self.keys[Self::at(twin >> 2)] < target && g.along(&f) > 0.0 {
                 first = first.plus(&g);
                 for by in [&NEXT, &PREVIOUS] {
                     let other = self.twin(Self::turn(twin, by)) >> 2;
                     let k = self.plane(other);
-                    if counts(other, &k) {
-                        second = second.plus(&k);
+                    if self.keys[Self::at(other)] < target && k.along(&f) > 0.0 {
+                        second = Some(second.map_or(k, |s: Plane| s.plus(&k)));
                     }
                 }
             }
         }
-        narrow3(&first.plus(&second.scaled(0.5)).normal())
+        let sum = second.map_or(first, |second| first.plus(&second.scaled(0.5)));
+        narrow3(&sum.normal())
     }
 }
 

@@ -16,9 +16,10 @@
 //! spheres, at least one ([`Portal::open_side`]).
 
 use crate::gjk::barycentric;
+use crate::hull::start;
 use crate::known::points::Points;
 use crate::known::support_set::Lowest;
-use crate::math::{EPSILON, Real, Vec3, larger, lesser, perpendicular, replace_if};
+use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, replace_if};
 
 /// Steps of a portal that is looked for. Insensitive: 5 to 16 tried on the recorded contacts.
 const FOUND: usize = 8;
@@ -31,17 +32,6 @@ const DEEP: usize = 4;
 /// The share of the size up to which a depth is shallow. Measured on a first version: deep pairs took
 /// a quarter more time where these were tried too.
 const SHALLOW: Real = 0.05;
-
-/// A direction is tilted by this much of what leaves the known points no support value: at 1
-/// itself a separation hardly shows. Measured: with 1.3 contacts take 0.6 % more instructions.
-const TILT: Real = 1.15;
-/// What a tilt grows by each time that it was in vain; from then on the direction lies in the
-/// plane. Measured: without the second and third misses take 4.6 % more, with a fourth the same.
-const GROWTH: [Real; 3] = [1.0, 1.5, 2.25];
-/// How wide a portal may be, for each unit of the origin's distance from its edge, and of the
-/// edge's length. Measured on the recorded contacts: 2 and 2.5 for the first cost hits 0.3 and 0.5 % of their
-/// instructions; 0.45 and 0.8 for the second 0.5 and 0.7 %.
-const WIDE: [Real; 2] = [3.0, 0.6];
 
 /// A triangle of points of P, counter-clockwise as seen from outside.
 #[derive(Clone, Copy)]
@@ -139,24 +129,16 @@ impl View {
         -self.from <= 0.5 * tolerance * far * far * far
     }
 
-    /// The way that the lowest direction, of this depth, is to be tilted by, after so many tilts in
-    /// vain; `None`: there is nothing wider to try but the plane. `far`: |c|; `length`: from there to where
-    /// the ray leaves D, about.
-    ///
-    /// *No tilt is wider than the depth allows.* Let n be a direction of the support value h, and
-    /// the known points no farther along it, and w short of the origin as seen along the ray, or
-    /// across n. Along n tilted by h / w they have no positive support value: if the minimum is
-    /// this side of there, it is what lies beyond those points that holds it back, and if nothing
-    /// does the objects are apart. That tilt is small where a contact is shallow, and where n is
-    /// near the minimum, as a state has it.
+    /// The way that the lowest direction is to be tilted by, as [`start::tilt`] has it, and
+    /// whether there is any. `far`: |c|; `length`: from there to where the ray leaves D, about.
     #[inline(always)]
     pub fn tilt(&self, depth: Real, far: Real, length: Real, vain: usize) -> Option<Vec3> {
-        let off = -self.from;
+        let way2 = self.way.norm_squared();
         let span = if self.b.is_some() { 1.0 / far } else { 0.0 };
-        let wide = larger(WIDE[0] * (off / self.way.norm_squared()), WIDE[1] * span);
-        let tilt = lesser(TILT * depth / off, wide / length);
-        let by = GROWTH.get(vain).filter(|_| tilt > 0.0);
-        by.map(|by| self.way * (tilt * by))
+        let tilt = start::tilt(depth, -self.from, -self.from / way2, span, length);
+        start::growth(vain)
+            .filter(|_| tilt > 0.0)
+            .map(|by| self.way * (tilt * by))
     }
 
     /// Goes on in P. The portal, if there is one; `None` where P ends this side of the ray.

@@ -196,6 +196,15 @@ impl Try {
         self.c = if at_origin { -dir * depth } else { *c };
         let hull = hull || at_origin;
         let sizes = Sizes::of(&inquiry.precision, limits.tolerance);
+        if hull && !cold {
+            let points = &self.points;
+            let names = |k| points.names(k);
+            let known = start::known(c, points.asked(), |k| points.point(names(k)));
+            if let Some(corners) = known {
+                self.begin = Some(corners.map(names));
+                return Ok(None);
+            }
+        }
         if hint >= Basis::PORTAL {
             let portal = Portal::hinted(&self.points, hint);
             self.portal = Some(portal).filter(|portal| portal.is_pierced(&self.c, sizes.tiny));
@@ -257,7 +266,11 @@ impl Try {
             return Err(Stop::Apart(*n));
         }
         let mut set = Known::EMPTY;
-        self.put(&mut set, answer);
+        set.push(&Vec3::zeros(), answer);
+        for k in 0..points.asked() {
+            let [v1, v2] = points.witnesses(points.names(k));
+            set.push(&points.direction(k), &SupportPoint { v: v1 - v2, v1, v2 });
+        }
         self.lies = true;
         inquiry.apart(&mut set, *n, answer)?;
         Ok(())
@@ -294,15 +307,17 @@ impl Try {
             if self.may_be_round() && self.is_ball(&dir, inquiry.precision.tie()) {
                 return Ok(false);
             }
-            let tilt = view.tilt(depth, far, length, vain);
-            let n = tilt.map_or(view.way, |tilt| dir + tilt);
+            let n = match view.tilt(depth, far, length, vain) {
+                Some(way) => dir + way,
+                None => view.way,
+            };
             let Some(n) = normalised(&n) else { break };
             let Some((p, _)) = self.ask(inquiry, &n)? else {
                 break;
             };
             let names = self.points.names(self.points.asked() - 1);
             if !(view.way.dot(&p) > 0.0) {
-                if tilt.is_none() {
+                if start::is_widest(vain) {
                     break;
                 }
                 vain += 1;
@@ -568,30 +583,29 @@ impl Try {
         }
     }
 
-    /// Puts a point, and those asked for, into a set.
-    fn put(&self, set: &mut Known, first: &SupportPoint) {
-        set.push(&Vec3::zeros(), first);
-        for k in 0..self.points.asked() {
-            set.push(&self.points.direction(k), &self.points.asked_point(k));
-        }
-    }
-
     /// What a hull may begin with.
     #[inline(never)]
     pub fn hand_over(&self, apex: &SupportPoint, opposite: Option<&SupportPoint>, to: &mut Handed) {
         let points = &self.points;
-        self.put(&mut to.set, apex);
+        let put = |set: &mut Known, n: &Vec3, names| {
+            let [v1, v2] = points.witnesses(names);
+            set.push(n, &SupportPoint { v: v1 - v2, v1, v2 })
+        };
+        to.set.push(&Vec3::zeros(), apex);
+        for k in 0..points.asked() {
+            put(&mut to.set, &points.direction(k), points.names(k));
+        }
         if let Some(corners) = self.begin {
             let [a, b, c] = corners.map(|corner| {
                 match (0..points.asked()).find(|&k| points.names(k) == corner) {
                     Some(k) => k + 1,
-                    None => to.set.push(&Vec3::zeros(), &points.made(corner)),
+                    None => put(&mut to.set, &Vec3::zeros(), corner),
                 }
             });
-            to.names = Some([0, a, b, c]);
+            to.names = [0, a, b, c].map(|i| i as u16);
         }
         to.opposite = opposite.map(|point| (-points.direction(0), *point));
-        to.rounds = self.rounds;
+        (to.rounds, to.known) = (self.rounds as u16, true);
     }
 }
 
@@ -599,23 +613,33 @@ impl Try {
 pub struct Handed {
     /// The apex, and the points asked for; and those of the portal's corners that are none.
     pub set: Known,
-    /// The corners of a tetrahedron to begin with.
-    pub names: Option<[usize; 4]>,
+    /// The corners of a tetrahedron to begin with; all 0 for none.
+    pub names: [u16; 4],
     /// Where there was no centre the point opposite to the first, and its direction: one of a hull like
     /// others, but no corner of a portal or a ring.
     pub opposite: Option<(Vec3, SupportPoint)>,
     /// Support points beyond the first tetrahedron.
-    pub rounds: u64,
+    pub rounds: u16,
+    /// Is there anything?
+    pub known: bool,
 }
 
 impl Handed {
     /// Nothing.
     pub const EMPTY: Self = Self {
         set: SupportSet::EMPTY,
-        names: None,
+        names: [0; 4],
         opposite: None,
         rounds: 0,
+        known: false,
     };
+
+    /// Nothing again.
+    pub fn clear(&mut self) {
+        self.set.truncate(0);
+        (self.names, self.rounds, self.known) = ([0; 4], 0, false);
+        self.opposite = None;
+    }
 }
 #[cfg(test)]
 mod tests {

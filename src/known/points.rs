@@ -214,13 +214,7 @@ impl Points {
     /// The support point that it found.
     #[inline(always)]
     pub fn asked_point(&self, k: usize) -> SupportPoint {
-        self.made(self.names(k))
-    }
-
-    /// The point of P of these places, with its witnesses.
-    #[inline(always)]
-    pub fn made(&self, names: [usize; 2]) -> SupportPoint {
-        let [v1, v2] = self.witnesses(names);
+        let [v1, v2] = self.witnesses(self.names(k));
         SupportPoint { v: v1 - v2, v1, v2 }
     }
 
