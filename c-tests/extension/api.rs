@@ -302,48 +302,37 @@ impl Question {
     /// Asks every call, from the state that an overlap left: those whose names hold one of these
     /// words refuse, and write nothing.
     fn refused_by(&self, words: &[&str], what: &str) {
-        let Question {
-            a,
-            b,
-            dir,
-            settings,
-            options,
-            slop,
-        } = self;
-        let of = good();
+        let (q, of) = (self, good());
         let mut before = Warm::default();
         let hit = ccd::penetration(&of.a, &of.b, &of.settings, Some(&mut before));
         assert!(hit.expect("good input").is_some());
-        let check = |name: &str, refuses: Option<Error>, written: bool| {
-            let bad = matches!(refuses, Some(Error::BadInput(_)));
-            let expected = words.iter().any(|word| name.contains(word));
-            assert_eq!(
-                (bad, refuses.is_some()),
-                (expected, expected),
-                "{name}: {what}"
-            );
-            assert!(!(bad && written), "{name}, {what}: written");
-        };
-        let with_state = |name: &str, ask: &dyn Fn(&mut Warm) -> Result<(), Error>| {
+        let check = |name: &str, ask: &mut dyn FnMut(&mut Warm) -> Result<(), Error>| {
             let mut warm = before;
             let refuses = ask(&mut warm).err();
-            check(name, refuses, format!("{warm:?}") != format!("{before:?}"));
+            let expected = words.iter().any(|word| name.contains(word));
+            assert_eq!(refuses.is_some(), expected, "{name}: {what}");
+            if let Some(said) = refuses {
+                assert!(matches!(said, Error::BadInput(_)), "{name}, {what}: {said}");
+                assert_eq!(format!("{warm:?}"), format!("{before:?}"), "{name}, {what}");
+            }
         };
         for call in &CALLS {
-            with_state(call.name, &|warm| {
-                (call.rust)(a, b, *dir, settings, Some(warm)).map(|_| ())
+            check(call.name, &mut |warm| {
+                (call.rust)(&q.a, &q.b, q.dir, &q.settings, Some(warm)).map(drop)
             });
         }
-        with_state("intersect", &|warm| {
-            ccd::intersect(a, b, Some(warm)).map(|_| ())
+        check("intersect", &mut |warm| {
+            ccd::intersect(&q.a, &q.b, Some(warm)).map(drop)
         });
-        check("intersect", ccd::intersect(a, b, None).err(), false);
-        with_state("distance", &|warm| {
-            ccd::signed_distance(a, b, settings, options, Some(warm)).map(|_| ())
+        check("distance", &mut |warm| {
+            ccd::signed_distance(&q.a, &q.b, &q.settings, &q.options, Some(warm)).map(drop)
         });
         let mut room = [Contact::default(); 2];
-        let refuses = ccd::contacts(a, b, *dir, *slop, None, &mut room).err();
-        check("contacts", refuses, room != [Contact::default(); 2]);
+        check("contacts", &mut |_| {
+            ccd::contacts(&q.a, &q.b, q.dir, q.slop, None, &mut room).map(drop)
+        });
+        let written = room != [Contact::default(); 2];
+        assert_eq!(written, !words.iter().any(|word| "contacts".contains(word)));
     }
 }
 
@@ -440,124 +429,39 @@ fn shapes_behind_a_pointer() {
 
 // --- every exported function, as C calls it ---------------------------------------------------
 
-/// Which fields of `ccd_t` a call reads besides the support functions and the cap.
-#[derive(Clone, Copy, PartialEq)]
-enum Reads {
-    Mpr,
-    Proven,
-    Distance,
-    Gjk,
-    /// As MPR's yes or no.
-    Centers,
-}
-
-/// Settings with every field that the call must not read left uninitialised.
-fn settings(reads: Reads) -> MaybeUninit<ccd_t> {
-    const TOLERANCE: Real = 1e-4;
-    let mut settings = MaybeUninit::<ccd_t>::uninit();
-    let ccd = settings.as_mut_ptr();
-    // SAFETY: fields of it are written.
-    unsafe {
-        (&raw mut (*ccd).support1).write(Some(support));
-        (&raw mut (*ccd).support2).write(Some(support));
-        (&raw mut (*ccd).max_iterations).write(200);
-        if reads != Reads::Gjk {
-            (&raw mut (*ccd).center1).write(Some(center));
-            (&raw mut (*ccd).center2).write(Some(center));
-        }
-        match reads {
-            Reads::Mpr => (&raw mut (*ccd).mpr_tolerance).write(TOLERANCE),
-            Reads::Proven => (&raw mut (*ccd).epa_tolerance).write(TOLERANCE),
-            Reads::Distance => {
-                (&raw mut (*ccd).first_dir).write(None);
-                (&raw mut (*ccd).dist_tolerance).write(TOLERANCE);
-            }
-            Reads::Gjk => {
-                (&raw mut (*ccd).first_dir).write(Some(ccdFirstDirDefault));
-                (&raw mut (*ccd).epa_tolerance).write(TOLERANCE);
-            }
-            Reads::Centers => {}
-        }
-    }
-    settings
-}
-
 /// What a call is asked; what it returns.
 type InC = fn(Object, Object, *const ccd_t, *mut ccd_warm_t) -> c_int;
 
-const UNTOUCHED: ccd_vec3_t = ccd_vec3_t { v: [7.0; 3] };
-
-/// A call that writes depth, direction and position where it returns 0, also without them.
+/// A call that writes depth, direction and position.
 macro_rules! depth {
     ($call:ident $(, $warm:ident)?) => {
         |a, b, ccd, _warm| unsafe {
             $(let $warm = _warm;)?
-            let (mut depth, mut dir, mut pos) = (7.0, UNTOUCHED, UNTOUCHED);
-            let code = $call(a, b, ccd, $($warm,)? &mut depth, &mut dir, &mut pos);
-            let kept = (depth, dir, pos) == (7.0, UNTOUCHED, UNTOUCHED);
-            assert_eq!(code != 0, kept);
-            let (depth, dir, pos) = (null_mut(), null_mut(), null_mut());
-            assert_eq!($call(a, b, ccd, $($warm,)? depth, dir, pos), code);
-            code
+            let (mut depth, mut dir, mut pos) = (0.0, Default::default(), Default::default());
+            $call(a, b, ccd, $($warm,)? &mut depth, &mut dir, &mut pos)
         }
     };
-}
-
-/// One of CALLS, whose answer is read where there is one.
-macro_rules! full {
-    ($number:literal) => {
-        |a, b, ccd, warm| {
-            let mut out = MaybeUninit::uninit();
-            let code = (CALLS[$number].c)(a, b, ccd, warm, CCD_WANT_ALL, out.as_mut_ptr());
-            if code == CCD_HIT || code == CCD_LIMIT {
-                // SAFETY: it is written then.
-                let out = unsafe { out.assume_init() };
-                assert!(out.depth > 0.0 && out.pos.v[0] + out.point1.v[0] + out.point2.v[0] < 9.0);
-            }
-            code
-        }
-    };
-}
-
-fn distance(a: Object, b: Object, ccd: *const ccd_t, warm: *mut ccd_warm_t) -> c_int {
-    let mut out = MaybeUninit::<ccd_distance_t>::uninit();
-    // SAFETY: live objects of their types, and room for an answer.
-    let mut ask = |margin: Real| unsafe {
-        let (far, out) = (Real::INFINITY, out.as_mut_ptr());
-        ccdSignedDistance(a, b, ccd, 0.0, margin, far, warm, CCD_WANT_ALL, out)
-    };
-    assert_eq!(ask(-0.1), CCD_BAD_INPUT);
-    let code = ask(0.0);
-    if code != CCD_BAD_INPUT {
-        // SAFETY: a distance is an answer too.
-        let out = unsafe { out.assume_init() };
-        assert_eq!(code == CCD_HIT, out.distance < 0.0);
-    }
-    code
 }
 
 const YES: [c_int; 3] = [1, 0, 0];
 const LIBCCD: [c_int; 3] = [0, -1, -1];
 const FULL: [c_int; 3] = [CCD_HIT, CCD_MISS, CCD_BAD_INPUT];
 
-/// What each returns of an overlap, of a miss and of points that are no numbers.
+/// Those that CALLS has not; what each returns of an overlap, of a miss and of points that are no numbers.
 #[rustfmt::skip]
-const IN_C: [(&str, Reads, [c_int; 3], InC); 15] = [
-    ("MPR", Reads::Mpr, LIBCCD, depth!(ccdMPRPenetration)),
-    ("GJK", Reads::Gjk, LIBCCD, depth!(ccdGJKPenetration)),
-    ("separate", Reads::Gjk, LIBCCD, |a, b, ccd, _| unsafe { ccdGJKSeparate(a, b, ccd, &mut ccd_vec3_t::default()) }),
-    ("MPR, warm", Reads::Mpr, LIBCCD, depth!(ccdMPRPenetrationWarm, warm)),
-    ("penetration", Reads::Mpr, FULL, full!(0)),
-    ("local", Reads::Mpr, FULL, full!(1)),
-    ("proven", Reads::Proven, FULL, full!(2)),
-    ("along", Reads::Mpr, FULL, full!(3)),
-    ("planar", Reads::Mpr, FULL, full!(4)),
-    ("incremental", Reads::Mpr, FULL, full!(5)),
-    ("distance", Reads::Distance, FULL, distance),
-    ("MPR intersect", Reads::Centers, YES, |a, b, ccd, _| unsafe { ccdMPRIntersect(a, b, ccd) }),
-    ("GJK intersect", Reads::Gjk, YES, |a, b, ccd, _| unsafe { ccdGJKIntersect(a, b, ccd) }),
-    ("MPR intersect, warm", Reads::Centers, YES, |a, b, ccd, warm| unsafe { ccdMPRIntersectWarm(a, b, ccd, warm) }),
-    ("intersect", Reads::Centers, YES, |a, b, ccd, warm| unsafe { ccdIntersect(a, b, ccd, warm) }),
+const IN_C: [(&str, [c_int; 3], InC); 9] = [
+    ("MPR", LIBCCD, depth!(ccdMPRPenetration)),
+    ("GJK", LIBCCD, depth!(ccdGJKPenetration)),
+    ("separate", LIBCCD, |a, b, ccd, _| unsafe { ccdGJKSeparate(a, b, ccd, &mut ccd_vec3_t::default()) }),
+    ("MPR, warm", LIBCCD, depth!(ccdMPRPenetrationWarm, warm)),
+    ("distance", FULL, |a, b, ccd, warm| unsafe {
+        let mut out = MaybeUninit::uninit();
+        ccdSignedDistance(a, b, ccd, 0.0, 0.0, Real::INFINITY, warm, CCD_WANT_ALL, out.as_mut_ptr())
+    }),
+    ("MPR intersect", YES, |a, b, ccd, _| unsafe { ccdMPRIntersect(a, b, ccd) }),
+    ("GJK intersect", YES, |a, b, ccd, _| unsafe { ccdGJKIntersect(a, b, ccd) }),
+    ("MPR intersect, warm", YES, |a, b, ccd, warm| unsafe { ccdMPRIntersectWarm(a, b, ccd, warm) }),
+    ("intersect", YES, |a, b, ccd, warm| unsafe { ccdIntersect(a, b, ccd, warm) }),
 ];
 
 /// A box, or a ball, or both.
@@ -572,8 +476,8 @@ fn rounded(half: [Real; 3], radius: Real, at: [Real; 3]) -> Rounded {
     }
 }
 
-/// Every state that C can hand over: none, cold, a guess flipped twice, any bytes at all.
-fn states() -> Vec<Option<ccd_warm_t>> {
+/// Every state that C can hand over: cold, a guess, any bytes at all.
+fn states() -> Vec<ccd_warm_t> {
     let bytes = |next: &mut dyn FnMut() -> u8| {
         let mut state = MaybeUninit::<ccd_warm_t>::uninit();
         let first = state.as_mut_ptr().cast::<u8>();
@@ -585,18 +489,12 @@ fn states() -> Vec<Option<ccd_warm_t>> {
         unsafe { state.assume_init() }
     };
     let mut random = Random(1);
-    let mut guess = bytes(&mut || 0);
+    let mut states = vec![bytes(&mut || 0), bytes(&mut || 0), bytes(&mut || 0xff)];
     // SAFETY: a state.
-    unsafe {
-        ccdWarmGuess(&mut guess, &ccd_vec3_t { v: [0.0, 3.0, 0.0] });
-        ccdWarmFlip(&mut guess);
-        ccdWarmFlip(&mut guess);
-    }
-    let mut states = vec![None, Some(guess)];
-    states.extend([0, 0xff].map(|byte| Some(bytes(&mut || byte))));
+    unsafe { ccdWarmGuess(&mut states[0], &WAY) };
     let random_states = if cfg!(miri) { 1 } else { 8 };
     let mut byte = || (128.0 + random.within(128.0)) as u8;
-    states.extend((0..random_states).map(|_| Some(bytes(&mut byte))));
+    states.extend((0..random_states).map(|_| bytes(&mut byte)));
     states
 }
 
@@ -604,49 +502,29 @@ fn states() -> Vec<Option<ccd_warm_t>> {
 #[test]
 fn every_call_answers_in_c_from_every_state() {
     let (ball, brick) = (rounded([0.0; 3], 1.0, [0.0; 3]), [0.5, 1.0, 1.5]);
+    let ccd = ccd_t {
+        first_dir: Some(ccdFirstDirDefault),
+        ..in_c(&Settings::default(), true)
+    };
     for (a, b, expected) in [
         (ball, rounded([0.0; 3], 0.5, [1.2, 0.0, 0.0]), 0),
-        (ball, rounded(brick, 0.0, [0.0, 0.0, 2.4]), 0),
-        (
-            rounded(brick, 0.0, [0.0; 3]),
-            rounded(brick, 0.0, [0.9, 0.1, 0.2]),
-            0,
-        ),
-        (
-            rounded(brick, 0.0, [0.0; 3]),
-            rounded(brick, 0.0, [5.0, 4.0, 3.0]),
-            1,
-        ),
+        (rounded(brick, 0.0, [0.9, 0.1, 0.2]), ball, 0),
+        (rounded(brick, 0.0, [5.0, 4.0, 3.0]), ball, 1),
         (ball, rounded([0.0; 3], Real::NAN, [0.5; 3]), 2),
     ] {
-        for (name, reads, codes, ask) in &IN_C {
-            let ccd = settings(*reads);
-            for (number, mut state) in states().into_iter().enumerate() {
-                let warm = state.as_mut().map_or(null_mut(), |state| &raw mut *state);
-                // The second call starts from what the first one left.
-                for _ in 0..2 {
-                    let code = ask(object(&a), object(&b), ccd.as_ptr(), warm);
+        for (number, mut state) in states().into_iter().enumerate() {
+            // The second call starts from what the first one left.
+            for _ in 0..2 {
+                for (name, codes, ask) in &IN_C {
+                    let code = ask(object(&a), object(&b), &ccd, &mut state);
                     assert_eq!(code, codes[expected], "{name}, state {number}");
+                }
+                for call in &CALLS {
+                    let code = in_c_of(call, &a, &b, &ccd, &mut state, CCD_WANT_ALL).0;
+                    assert_eq!(code, FULL[expected], "{}, state {number}", call.name);
                 }
             }
         }
-    }
-}
-
-unsafe extern "C-unwind" fn leaving(_: Object, _: *const ccd_vec3_t, _: *mut ccd_vec3_t) {
-    panic!("out of a callback");
-}
-
-/// Nothing is leaked or left half done when a callback does not return.
-#[test]
-fn a_panic_leaves_every_call() {
-    let a = rounded([0.0; 3], 1.0, [0.0; 3]);
-    for (name, reads, _, ask) in &IN_C {
-        let mut ccd = settings(*reads);
-        // SAFETY: a field of it.
-        unsafe { (&raw mut (*ccd.as_mut_ptr()).support2).write(Some(leaving)) };
-        let ask = || ask(object(&a), object(&a), ccd.as_ptr(), null_mut());
-        assert!(catch_unwind(AssertUnwindSafe(ask)).is_err(), "{name}");
     }
 }
 
@@ -654,64 +532,42 @@ fn a_panic_leaves_every_call() {
 /// everywhere. The proof outgrows the stack.
 #[test]
 fn memory_from_malloc() {
-    let (a, b) = (
-        rounded([0.0, 0.0, 0.01], 1.0, [0.0; 3]),
-        rounded([0.0; 3], 0.5, [0.0; 3]),
-    );
-    let ccd = settings(Reads::Proven);
-    let mut out = MaybeUninit::uninit();
-    let ask = CALLS[2].c;
-    let code = ask(
-        object(&a),
-        object(&b),
-        ccd.as_ptr(),
-        null_mut(),
-        CCD_WANT_ALL,
-        out.as_mut_ptr(),
-    );
+    let a = rounded([0.0, 0.0, 0.01], 1.0, [0.0; 3]);
+    let b = rounded([0.0; 3], 0.5, [0.0; 3]);
+    let ccd = in_c(&Settings::default(), true);
+    let (code, out) = in_c_of(&CALLS[2], &a, &b, &ccd, null_mut(), CCD_WANT_ALL);
     assert_eq!(code, CCD_LIMIT);
-    // SAFETY: written at the limit.
-    let out = unsafe { out.assume_init() };
     assert!((out.depth - 1.5).abs() < 1e-4 && out.support_calls > 162);
 }
 
 /// What asks one object or none.
 #[test]
 fn what_asks_no_pair() {
-    let good = rounded([0.0; 3], 1.0, [0.5; 3]);
-    for (radius, right) in [(1.0, true), (Real::NAN, false)] {
-        let of = Rounded { radius, ..good };
-        let mut out = MaybeUninit::<ccd_check_t>::uninit();
-        // SAFETY: a live object of its type, and room for what is found.
-        unsafe {
-            let found = ccdCheck(object(&of), Some(support), Some(center), out.as_mut_ptr());
-            let silent = ccdCheck(object(&of), Some(support), Some(center), null_mut());
-            assert_eq!((found == 0, found == silent), (right, true));
-            assert!(!right || (out.assume_init().size - 2.0).abs() < 0.1);
-            assert_eq!(ccdCheck(object(&of), None, None, null_mut()), CCD_BAD_INPUT);
-        }
-    }
+    let ball = rounded([0.0; 3], 1.0, [0.5; 3]);
+    let mut found = MaybeUninit::<ccd_check_t>::uninit();
     let mut dir = ccd_vec3_t::default();
-    // SAFETY: room for a direction; a string that stays.
-    let name = unsafe {
-        ccdFirstDirDefault(null(), null(), &mut dir);
-        CStr::from_ptr(ccdImplementation())
-    };
-    assert_eq!(dir.v, [1.0, 0.0, 0.0]);
-    assert!(name.to_bytes().starts_with(b"warmccd "));
     let point = |x, y, z| ccd_vec3_t { v: [x, y, z] };
     let (p, a) = (point(0.25, 0.25, 2.0), point(0.0, 0.0, 0.0));
     let (b, c, mut witness) = (point(1.0, 0.0, 0.0), point(0.0, 1.0, 0.0), a);
-    // SAFETY: points; the witness may be one of the inputs.
+    let at = &raw mut witness;
+    // SAFETY: a live object of its type, and room for what is found; a string that stays; points, and
+    // the witness may be one of the inputs.
     unsafe {
-        assert_eq!(ccdVec3PointTriDist2(&p, &a, &b, &c, &mut witness), 4.0);
-        assert_eq!(witness, point(0.25, 0.25, 0.0));
-        assert_eq!(ccdVec3PointTriDist2(&p, &a, &b, &c, null_mut()), 4.0);
-        let (mut a, at) = (a, &raw mut witness);
+        let faults = ccdCheck(
+            object(&ball),
+            Some(support),
+            Some(center),
+            found.as_mut_ptr(),
+        );
+        assert!(faults == 0 && (found.assume_init().size - 2.0).abs() < 0.1);
+        ccdFirstDirDefault(null(), null(), &mut dir);
+        assert_eq!(dir.v, [1.0, 0.0, 0.0]);
+        let name = CStr::from_ptr(ccdImplementation());
+        assert!(name.to_bytes().starts_with(b"warmccd "));
+        assert_eq!(ccdVec3PointTriDist2(&p, at, &b, &c, at), 4.0);
+        assert_eq!(*at, point(0.25, 0.25, 0.0));
         at.write(a);
         assert_eq!(ccdVec3PointSegmentDist2(&p, at, &b, at), 4.0625);
-        a.v[0] = 0.25;
-        assert_eq!(witness, a);
     }
 }
 
@@ -724,20 +580,14 @@ fn polytope_in_c() {
         at: [3.0, 0.0, 0.0],
         ..a
     };
-    let (mut out, ccd) = (ccd_support_t::default(), settings(Reads::Mpr));
+    let (mut out, ccd) = (ccd_support_t::default(), in_c(&Settings::default(), true));
     out.v.v = [0.0, 1.0, 0.0];
     let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
     let mut pt = MaybeUninit::<ccd_pt_t>::uninit();
     let pt = pt.as_mut_ptr();
     // SAFETY: live objects; a polytope of its own elements, which NULL is none of.
     unsafe {
-        __ccdSupport(
-            object(&a),
-            object(&b),
-            &raw const out.v,
-            ccd.as_ptr(),
-            &raw mut out,
-        );
+        __ccdSupport(object(&a), object(&b), &raw const out.v, &ccd, &raw mut out);
         assert_eq!(out.v.v, [-3.0, 2.0, 0.0]);
         ccdPtInit(pt);
         let vertex = corners.map(|v| {
