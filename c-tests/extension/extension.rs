@@ -13,7 +13,7 @@ const NO_ARGS: [&str; 0] = [];
 /// A C program of this directory on this library.
 fn program(name: &str) -> Program {
     let program = Program::c(name).source(format!("extension/{name}.c"));
-    strict(program).flag("-DOURS_ALONE")
+    strict(program)
 }
 
 /// The same in C++.
@@ -22,7 +22,8 @@ fn cpp(name: &str) -> Program {
 }
 
 fn strict(program: Program) -> Program {
-    program.flag("-pedantic").flag("-Werror").link_ours_shared()
+    let program = program.flag("-pedantic").flag("-Werror");
+    program.flag("-DOURS_ALONE").link_ours_shared()
 }
 
 #[test]

@@ -12,124 +12,41 @@
 
 enum { FRAMES = 300 };
 
-typedef struct {
-    const char *name;
-    void (*pose)(int frame, shape_t *a, shape_t *b);
-    double step;     /* how far a point of either body moves in a frame, at most */
-    int face;        /* a resting face contact: pos must not run away, and is the same for every
-                      * method, warm or cold */
-} motion_t;
-
-/* T22: over a plate that is larger than the way */
-static void box_slides(int f, shape_t *a, shape_t *b)
-{
-    *a = shape_box(1, 1, .2);
-    *b = shape_box(.2, .2, .2);
-    shape_move(b, -.7 + 1.4 * f / FRAMES, .1, .38);
-}
-
-static void cylinder_slides(int f, shape_t *a, shape_t *b)
-{
-    *a = shape_box(1, 1, .2);
-    *b = shape_cylinder(.2, .2);
-    shape_move(b, -.7 + 1.4 * f / FRAMES, .1, .38);
-}
-
-static void box_spins(int f, shape_t *a, shape_t *b)
-{
-    double r[9];
-    *a = shape_box(1, 1, .2);
-    *b = shape_box(.3, .2, .1);
-    rotation_about(0, 0, 1, 3.14159265358979 * f / FRAMES, r);
-    shape_turn(b, r);
-    shape_move(b, .2, .1, .29);
-}
-
-/* Over the edge of one of the same size: what touches shrinks to a tenth. */
-static void box_overhangs(int f, shape_t *a, shape_t *b)
-{
-    double r[9];
-    *a = shape_box(.2, .3, .2);
-    *b = shape_box(.2, .3, .2);
-    rotation_about(0, 0, 1, .3, r);
-    shape_turn(b, r);
-    shape_move(b, .36 * f / FRAMES, .05, .39);
-}
-
-static void cylinder_rolls(int f, shape_t *a, shape_t *b)
-{
-    static const double lying[9] = {1, 0, 0, 0, 0, -1, 0, 1, 0};
-    double angle = 2 * 3.14159265358979 * f / FRAMES, r[9], rot[9];
-    *a = shape_box(2, 1, .2);
-    *b = shape_cylinder(.2, .3);
-    rotation_about(0, 1, 0, angle, r);
-    rotation_times(r, lying, rot);
-    shape_turn(b, rot);
-    shape_move(b, -.6 + .2 * angle, 0, .2 + .2 - .01);
-}
-
-static void capsule_over_edge(int f, shape_t *a, shape_t *b)
-{
-    double r[9];
-    *a = shape_box(1, 1, .2);
-    *b = shape_capsule(.1, .4);
-    rotation_about(0, 1, 0, 1.2, r);
-    shape_turn(b, r);
-    shape_move(b, .6 + .8 * f / FRAMES, .05, .39 - .1 * f / FRAMES);
-}
-
-static void box_rocks(int f, shape_t *a, shape_t *b)
-{
-    /* about its lower edge, 5 degrees to either side, the lowest point 1 cm deep */
-    double angle = .0873 * sin(4 * 3.14159265358979 * f / FRAMES), r[9];
-    *a = shape_box(1, 1, .2);
-    *b = shape_box(.3, .2, .2);
-    rotation_about(0, 1, 0, angle, r);
-    shape_turn(b, r);
-    shape_move(b, 0, 0, .2 + .3 * fabs(sin(angle)) + .2 * cos(angle) - .01);
-}
-
-static void ellipsoid_rolls(int f, shape_t *a, shape_t *b)
-{
-    double angle = 2 * 3.14159265358979 * f / FRAMES, r[9];
-    double height = sqrt(.3 * .3 * sin(angle) * sin(angle) + .2 * .2 * cos(angle) * cos(angle));
-    *a = shape_box(2, 1, .2);
-    *b = shape_ellipsoid(.3, .25, .2);
-    rotation_about(0, 1, 0, angle, r);
-    shape_turn(b, r);
-    shape_move(b, -.6 + .25 * angle, 0, .2 + height - .005);
-}
-
-static ccd_real_t hulls[2][3 * PAIR_VERTICES];
-
-static void hull_on_hull(int f, shape_t *a, shape_t *b)
-{
-    dice_t d = dice(3000, 1);
-    double r[9];
-    *a = pair_hull(&d, hulls[0], 1);
-    *b = pair_hull(&d, hulls[1], .5);
-    rotation_about(.3, 1, .2, 2 * 3.14159265358979 * f / FRAMES, r);
-    shape_turn(b, r);
-    shape_move(b, .1, .05, .55);
-}
-
 /* Corners are the same points whoever asks; the points of a round face that stand for it
  * are not, where the normals differ within the tolerance. Metres. */
 enum { NO_FACE, CORNERS, ROUND };
 static const double same_place[] = {HUGE_VAL, sizeof(ccd_real_t) == 8 ? 1e-9 : 1e-3, 5e-3};
 
-static const motion_t motions[] = {
-    {"box slides on a plate", box_slides, .005, CORNERS},
-    {"cylinder slides on a plate", cylinder_slides, .005, ROUND},
-    {"box spins on a plate", box_spins, .004, CORNERS},
-    {"box slides off a box", box_overhangs, .0012, CORNERS},
-    {"cylinder rolls on a plate", cylinder_rolls, .009, NO_FACE},
-    {"capsule over an edge", capsule_over_edge, .004, NO_FACE},
-    {"box rocks on its edge", box_rocks, .004, NO_FACE},
-    {"ellipsoid rolls on a plate", ellipsoid_rolls, .012, NO_FACE},
-    {"hull turns in a hull", hull_on_hull, .012, NO_FACE},
-};
-enum { MOTIONS = sizeof motions / sizeof motions[0] };
+/* b moves on a, whose top is at z = 0.2. All is told of the first frame and of the one after the last. */
+typedef struct {
+    const char *name;
+    shape_t a, b;
+    double step;        /* how far a point of either body moves in a frame, at most */
+    int face;           /* a resting face contact: pos must not run away, and is the same for every
+                         * method, warm or cold */
+    double first[4];    /* b's own turn: axis, angle */
+    double axis[3], turn[2]; /* then about this, rad; */
+    int swings;         /* there and back, twice, by so much to either side */
+    double from[2], to[2], depth[2];
+} motion_t;
+
+static const double pi = 3.14159265358979323846;
+
+static void pose(const motion_t *m, int frame, shape_t *a, shape_t *b)
+{
+    const double t = (double)frame / FRAMES, angle = m->turn[0] + (m->turn[1] - m->turn[0]) * (m->swings ? sin(4 * pi * t) : t);
+    const double down[3] = {0, 0, -1}, at[3] = {0, 0, 0};
+    double first[9], then[9], all[9], low[3];
+    *a = m->a;
+    *b = m->b;
+    rotation_about(m->first[0], m->first[1], m->first[2], m->first[3], first);
+    rotation_about(m->axis[0], m->axis[1], m->axis[2], angle, then);
+    rotation_times(then, first, all);
+    shape_turn(b, all);
+    truth_point(b, at, down, low);
+    shape_move(b, m->from[0] + (m->to[0] - m->from[0]) * t, m->from[1] + (m->to[1] - m->from[1]) * t,
+               .2 - low[2] - m->depth[0] - (m->depth[1] - m->depth[0]) * t);
+}
 
 /* A resting contact's position may move so much faster than the bodies: where the
  * touching region loses a corner at one end, its middle moves at half that speed, and
@@ -145,6 +62,31 @@ static double angle_between(const double a[3], const double b[3])
 
 int main(void)
 {
+    static ccd_real_t hulls[2][3 * PAIR_VERTICES];
+    dice_t d = dice(3000, 1);
+    const shape_t plate = shape_box(1, 1, .2), wide = shape_box(2, 1, .2), block = shape_box(.2, .3, .2);
+    const shape_t large = pair_hull(&d, hulls[0], 1), small = pair_hull(&d, hulls[1], .5);
+#define X {1, 0, 0}
+#define Y {0, 1, 0}
+#define Z {0, 0, 1}
+#define SAME(x) {x, x}
+    const motion_t motions[] = {
+        /* T22: over a plate that is larger than the way */
+        {"box slides on a plate", plate, shape_box(.2, .2, .2), .005, CORNERS, {0}, Z, {0}, 0, {-.7, .1}, {.7, .1}, SAME(.02)},
+        {"cylinder slides on a plate", plate, shape_cylinder(.2, .2), .005, ROUND, {0}, Z, {0}, 0, {-.7, .1}, {.7, .1}, SAME(.02)},
+        {"box spins on a plate", plate, shape_box(.3, .2, .1), .004, CORNERS, {0}, Z, {0, pi}, 0, {.2, .1}, {.2, .1}, SAME(.01)},
+        /* Over the edge of one of the same size: what touches shrinks to a tenth. */
+        {"box slides off a box", block, block, .0012, CORNERS, {0}, Z, SAME(.3), 0, {0, .05}, {.36, .05}, SAME(.01)},
+        {"cylinder rolls on a plate", wide, shape_cylinder(.2, .3), .009, NO_FACE, {1, 0, 0, pi / 2}, Y, {0, 2 * pi}, 0, {-.6, 0},
+         {-.6 + .4 * pi, 0}, SAME(.01)},
+        {"capsule over an edge", plate, shape_capsule(.1, .4), .004, NO_FACE, {0}, Y, SAME(1.2), 0, {.6, .05}, {1.4, .05}, {.055, .155}},
+        /* about its lower edge, 5 degrees to either side */
+        {"box rocks on its edge", plate, shape_box(.3, .2, .2), .004, NO_FACE, {0}, Y, {0, .0873}, 1, {0}, {0}, SAME(.01)},
+        {"ellipsoid rolls on a plate", wide, shape_ellipsoid(.3, .25, .2), .012, NO_FACE, {0}, Y, {0, 2 * pi}, 0, {-.6, 0},
+         {-.6 + .5 * pi, 0}, SAME(.005)},
+        {"hull turns in a hull", large, small, .012, NO_FACE, {0}, {.3, 1, .2}, {0, 2 * pi}, 0, {.1, .05}, {.1, .05}, SAME(0)},
+    };
+    const int MOTIONS = (int)(sizeof motions / sizeof motions[0]);
     static const entry_t methods[] = {
 #ifndef OURS_ALONE
         {"libccd MPR", 1, ASK_MPR, STATE_NONE},
@@ -181,7 +123,7 @@ int main(void)
                 truth_t t;
                 question_t q;
                 double tol;
-                motions[m].pose(f, &a, &b);
+                pose(&motions[m], f, &a, &b);
                 tol = e->system ? 1e-6 : tolerance(TOL_TIGHT) * pair_size(&a, &b);
                 t = truth_depth(&a, &b);
                 q = question(&a, &b, tol, &t);
