@@ -28,21 +28,16 @@ typedef struct { list_t vertices, edges, faces; pt_el_t *nearest; ccd_real_t nea
 extern "C" {
 #endif
 
-#define POLYTOPE_FUNCTIONS(NAME)                                                        \
-    void NAME(ccdPtInit)(pt_t * pt);                                                    \
-    void NAME(ccdPtDestroy)(pt_t * pt);                                                 \
-    pt_vertex_t *NAME(ccdPtAddVertex)(pt_t * pt, const support_t *v);                   \
-    pt_edge_t *NAME(ccdPtAddEdge)(pt_t * pt, pt_vertex_t * v1, pt_vertex_t * v2);       \
-    pt_face_t *NAME(ccdPtAddFace)(pt_t * pt, pt_edge_t * a, pt_edge_t * b, pt_edge_t * c); \
-    void NAME(ccdPtRecomputeDistances)(pt_t * pt);                                      \
-    pt_el_t *NAME(ccdPtNearest)(pt_t * pt);                                             \
-    void NAME(ccdPtDumpSVT)(pt_t * pt, const char *filename);                           \
-    void NAME(ccdPtDumpSVT2)(pt_t * pt, FILE *file);                                    \
-    void NAME(__ccdSupport)(const void *obj1, const void *obj2, const ccd_vec3_t *dir,  \
-                            const ccd_t *ccd, support_t *supp)
-
-#define LIBCCD(name) name
-POLYTOPE_FUNCTIONS(LIBCCD);
+void ccdPtInit(pt_t *pt);
+void ccdPtDestroy(pt_t *pt);
+pt_vertex_t *ccdPtAddVertex(pt_t *pt, const support_t *v);
+pt_edge_t *ccdPtAddEdge(pt_t *pt, pt_vertex_t *v1, pt_vertex_t *v2);
+pt_face_t *ccdPtAddFace(pt_t *pt, pt_edge_t *a, pt_edge_t *b, pt_edge_t *c);
+void ccdPtRecomputeDistances(pt_t *pt);
+pt_el_t *ccdPtNearest(pt_t *pt);
+void ccdPtDumpSVT(pt_t *pt, const char *filename);
+void ccdPtDumpSVT2(pt_t *pt, FILE *file);
+void __ccdSupport(const void *obj1, const void *obj2, const ccd_vec3_t *dir, const ccd_t *ccd, support_t *supp);
 
 #ifdef __cplusplus
 }
