@@ -79,32 +79,32 @@ static inline void pair_one(dice_t *d, pair_t *p, int side, const int *kinds, in
 }
 
 /* Two of these kinds, turned. */
-static inline void pair_of(dice_t *d, pair_t *p, const int *kinds, int n, double scale)
+static inline void pair_of(dice_t *d, pair_t *p, const int *kinds, int n)
 {
     int k;
     for (k = 0; k < 2; k++)
-        pair_one(d, p, k, kinds, n, .1 * scale, scale);
+        pair_one(d, p, k, kinds, n, .1, 1);
     for (k = 0; k < 2; k++)
         pair_turn(d, pair_side(p, k));
 }
 
-/* Two shapes of any kind in random poses that overlap, or (apart) do not. */
-static inline void pair_generic(dice_t *d, pair_t *p, double scale, int apart)
+/* Moves b by up to part of both reaches, until they overlap by more than depth; negative: until they are farther
+ * apart than that. */
+static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
 {
-    double u[3];
     int tries;
-    pair_of(d, p, any_kind, SHAPE_TYPES, scale);
     for (tries = 0; tries < 60; tries++) {
-        const double at = pair_size(&p->a, &p->b) * dice_in(d, 0, apart ? 1.5 : 1);
+        double u[3];
+        const double at = part * pair_size(&p->a, &p->b) * dice_in(d, 0, 1);
         truth_t t;
         dice_unit(d, u);
         pair_place(p, at, u);
         t = truth_depth(&p->a, &p->b);
-        if (apart ? t.depth < -1e-3 * scale : t.lower > 1e-3 * scale)
+        if (depth < 0 ? t.depth < depth : t.lower > depth)
             return;
     }
     /* as last resort deep inside, or far out */
-    shape_move(&p->b, apart ? 10 * scale : .01 * scale, 0, 0);
+    shape_move(&p->b, depth < 0 ? 10 : 0, 0, 0);
 }
 
 /* By so much further along n. */
@@ -223,28 +223,13 @@ static inline const char *category_text(int category)
     return texts[category];
 }
 
-/* Moves b by up to part of both reaches, until they overlap by more than depth. */
-static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
-{
-    int tries;
-    for (tries = 0; tries < 60; tries++) {
-        double u[3];
-        const double at = part * pair_size(&p->a, &p->b) * dice_in(d, 0, 1);
-        dice_unit(d, u);
-        pair_place(p, at, u);
-        if (truth_depth(&p->a, &p->b).lower > depth)
-            return;
-    }
-    shape_move(&p->b, 0, 0, 0);
-}
-
 /* Two shapes that touch with their support points in a random direction, pushed into each other by
  * at most a thousandth of the size: corners and rims meet. */
 static inline void pair_corners(dice_t *d, pair_t *p)
 {
     static const int kinds[] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE};
     double part = dice_log(d, 1e-5, 1e-3), deep;
-    pair_of(d, p, kinds, 4, 1);
+    pair_of(d, p, kinds, 4);
     do {
         double u[3], s[3];
         deep = part * pair_size(&p->a, &p->b);
@@ -358,18 +343,20 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     switch (category) {
     case CATEGORY_GENERIC:
     case CATEGORY_APART:
-        pair_generic(d, p, 1, category == CATEGORY_APART);
+        pair_of(d, p, any_kind, SHAPE_TYPES);
+        pair_scatter(d, p, category == CATEGORY_APART ? 1.5 : 1, category == CATEGORY_APART ? -1e-3 : 1e-3);
         break;
     case CATEGORY_SHALLOW3:
     case CATEGORY_SHALLOW5:
     case CATEGORY_TOUCHING:
-        pair_generic(d, p, 1, 0);
+        pair_of(d, p, any_kind, SHAPE_TYPES);
+        pair_scatter(d, p, 1, 1e-3);
         x = pair_size(&p->a, &p->b);
         pair_pull_out(p, category == CATEGORY_SHALLOW3 ? 1e-3 * x : category == CATEGORY_SHALLOW5 ? 1e-5 * x : dice_sign(d) * 1e-12);
         break;
     case CATEGORY_COINCIDENT:
     case CATEGORY_NEAR_COINCIDENT:
-        pair_of(d, p, any_kind, SHAPE_TYPES, 1);
+        pair_of(d, p, any_kind, SHAPE_TYPES);
         if (category == CATEGORY_NEAR_COINCIDENT) {
             dice_unit(d, u);
             pair_place(p, dice_log(d, 1e-18, 1e-8), u);
@@ -528,7 +515,8 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_FAR_6:
     case CATEGORY_FAR_8:
-        pair_generic(d, p, 1, 0);
+        pair_of(d, p, any_kind, SHAPE_TYPES);
+        pair_scatter(d, p, 1, 1e-3);
         dice_unit(d, u);
         for (k = 0; k < 2; k++)
             shape_shift(pair_side(p, k), category == CATEGORY_FAR_6 ? 1e6 : 1e8, u);

@@ -50,7 +50,7 @@ static ccd_warm_t fresh(void)
 static void overlapping(dice_t *d, pair_t *p, const int *kinds, int n, double part)
 {
     do {
-        pair_of(d, p, kinds, n, 1);
+        pair_of(d, p, kinds, n);
         pair_scatter(d, p, 1, 1e-3);
         p->truth = truth_depth(&p->a, &p->b);
     } while (!(p->truth.lower > part * pair_size(&p->a, &p->b)));
