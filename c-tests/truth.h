@@ -335,24 +335,9 @@ static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], t
 /* And the faces and edges of their hull. */
 static inline int truth_core(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
 {
-    int i, k, m;
     if (!truth_vertices(s, origin, c))
         return 0;
-    if (s->type == SHAPE_BOX) {
-        truth_real axis[3][3];
-        for (k = 0; k < 3; k++)
-            for (m = 0; m < 3; m++)
-                axis[k][m] = s->rot[3 * m + k];
-        for (k = 0; k < 3; k++)
-            if (truth_cross(axis[(k + 1) % 3], axis[(k + 2) % 3], c->n[c->nn]))
-                c->nn++;
-        for (i = 0; i < 8; i++)
-            for (k = 0; k < 3; k++)
-                if (!(i >> k & 1))
-                    truth_add_edge(c, i, i | 1 << k);
-    } else {
-        truth_faces(c);
-    }
+    truth_faces(c);
     return !c->full;
 }
 
