@@ -265,51 +265,25 @@ fn headers_have_every_name_of_libccd_s_and_every_name_is_compared() {
     assert_eq!(lacks, None, "headers.c");
 }
 
-/// What a program writes, too much to show.
-fn run_quietly(program: Program) -> String {
-    let mut command = program.without_tools().build().command();
-    let (status, written) = harness::run_command(&mut command, Duration::from_secs(120));
-    assert!(status.success(), "{}", written.stderr);
-    written.stdout
-}
-
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn headers_compute_what_libccd_s_do() {
-    let headers = |standard: &str| {
-        Program::c("headers")
-            .standard(standard)
-            .source("contract/headers.c")
-    };
-    // A C++ compiler takes the same source for C++.
-    let cpp = || {
-        Program::cpp("headers")
-            .standard("c++11")
-            .source("contract/headers.c")
-    };
-    for (theirs, ours) in [
-        (headers("c99"), headers("c99")),
-        (headers("gnu17"), headers("c11")),
-        (cpp(), cpp()),
+    let single_config = harness::root().join("c-tests/contract/single");
+    for (program, theirs, ours) in [
+        (Program::c("headers"), "c99", "c99"),
+        (Program::c("headers"), "gnu17", "c11"),
+        // A C++ compiler takes the same source for C++.
+        (Program::cpp("headers"), "c++11", "c++11"),
     ] {
-        for single in [false, true] {
-            let precise = |program: Program| {
-                let program = program.precision(Precision::Double).link_system();
-                if single {
-                    program.flag("-DCCD_SINGLE")
-                } else {
-                    program
-                }
-            };
-            let theirs = precise(theirs.clone()).system_headers();
-            let theirs = if single {
-                let ours_of_it = harness::root().join("c-tests/contract/single");
-                theirs.flag("-I").flag(ours_of_it)
-            } else {
-                theirs
-            };
-            let theirs = run_quietly(theirs);
-            let ours = run_quietly(precise(ours.clone()));
+        let program = program.source("contract/headers.c").without_tools();
+        let double = program.precision(Precision::Double).link_system();
+        for (single, program) in [(false, double.clone()), (true, double.flag("-DCCD_SINGLE"))] {
+            let mut of_theirs = program.clone().system_headers().standard(theirs);
+            if single {
+                of_theirs = of_theirs.flag("-I").flag(&single_config);
+            }
+            let [theirs, ours] = [of_theirs, program.standard(ours)]
+                .map(|program| program.build().quiet().run(NO_ARGS).stdout);
             assert!(ours.lines().count() > 1_000_000);
             let different = ours.lines().zip(theirs.lines()).find(|(a, b)| a != b);
             assert_eq!(different, None, "ours and libccd's, single: {single}");
