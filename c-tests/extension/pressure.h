@@ -33,53 +33,33 @@ static inline span_t span_slab(double p, double d, double half)
     return s;
 }
 
-/* Where a t^2 + 2 b t + c <= 0, a > 0. */
-static inline span_t span_within(double a, double b, double c)
+/* Where w0 x^2 + w1 y^2 + w2 (z - at)^2 <= most: in a ball or an ellipsoid, around z where w2 is 0, below
+ * the apex of a cone where it is negative. */
+static inline span_t span_quadric(const double p[3], const double d[3], const double w[3], double at, double most)
 {
-    const double root = b * b - a * c;
-    span_t s = {1, 0};
-    if (root >= 0) {
+    const double q[3] = {p[0], p[1], p[2] - at};
+    double a = 0, b = 0, c = -most, root;
+    span_t s = {-INFINITY, INFINITY};
+    int i;
+    for (i = 0; i < 3; i++) {
+        a += w[i] * d[i] * d[i];
+        b += w[i] * q[i] * d[i];
+        c += w[i] * q[i] * q[i];
+    }
+    root = b * b - a * c;
+    if (a > 1e-30 ? root < 0 : a > -1e-30 && c > 0) {
+        s.from = 1;
+        s.to = 0;
+    } else if (a > 1e-30) {
         s.from = (-b - sqrt(root)) / a;
         s.to = (-b + sqrt(root)) / a;
-    }
-    return s;
-}
-
-/* Where the circle of this radius about z holds the line. */
-static inline span_t span_circle(const double p[3], const double d[3], double r)
-{
-    const double a = d[0] * d[0] + d[1] * d[1], b = p[0] * d[0] + p[1] * d[1], c = p[0] * p[0] + p[1] * p[1] - r * r;
-    const span_t all = {-INFINITY, INFINITY}, none = {1, 0};
-    if (a > 1e-30)
-        return span_within(a, b, c);
-    return c <= 0 ? all : none;
-}
-
-static inline span_t span_ball(const double p[3], const double d[3], double z, double r)
-{
-    const double w = p[2] - z;
-    return span_within(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], p[0] * d[0] + p[1] * d[1] + w * d[2],
-                       p[0] * p[0] + p[1] * p[1] + w * w - r * r);
-}
-
-/* x^2 + y^2 <= k^2 (h - z)^2 below the apex at z = h. */
-static inline span_t span_cone(const double p[3], const double d[3], double r, double h)
-{
-    const double k = r / (2 * h), up = h - p[2];
-    const double a = d[0] * d[0] + d[1] * d[1] - k * k * d[2] * d[2];
-    const double b = p[0] * d[0] + p[1] * d[1] + k * k * up * d[2];
-    const double c = p[0] * p[0] + p[1] * p[1] - k * k * up * up;
-    const double root = b * b - a * c;
-    span_t s = span_slab(p[2], d[2], h);
-    if (a > 0)
-        return span_both(s, span_within(a, b, c));
-    if (root >= 0) {
+    } else if (w[2] < 0 && root >= 0) {
         /* Inside beyond both roots, of which the lower nappe has one. */
         const double one = (-b - sqrt(root)) / a, two = (-b + sqrt(root)) / a;
         if (d[2] > 0)
-            s.to = fmin(s.to, fmin(one, two));
+            s.to = fmin(one, two);
         else
-            s.from = fmax(s.from, fmax(one, two));
+            s.from = fmax(one, two);
     }
     return s;
 }
@@ -87,8 +67,12 @@ static inline span_t span_cone(const double p[3], const double d[3], double r, d
 /* The part of the line p + t d that is in the shape. */
 static inline span_t pressure_span(const shape_t *s, const double p[3], const double d[3])
 {
-    double q[3], e[3];
+    static const double ball[3] = {1, 1, 1}, tube[3] = {1, 1, 0};
+    const double p0 = (double)s->p[0], p1 = (double)s->p[1], r2 = p0 * p0;
+    const double tapered[3] = {1, 1, -r2 / (4 * p1 * p1)};
+    double q[3], e[3], w[3];
     const span_t none = {1, 0};
+    span_t slab;
     int i;
     for (i = 0; i < 3; i++) {
         int j;
@@ -97,18 +81,17 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
             q[i] += (double)s->rot[3 * j + i] * (p[j] - (double)s->pos[j]);
             e[i] += (double)s->rot[3 * j + i] * d[j];
         }
+        w[i] = 1 / ((double)s->p[i] * (double)s->p[i]);
     }
+    slab = span_slab(q[2], e[2], p1);
     switch (s->type) {
-    case SHAPE_SPHERE: return span_ball(q, e, 0, (double)s->p[0]);
+    case SHAPE_SPHERE: return span_quadric(q, e, ball, 0, r2);
     case SHAPE_BOX:
-        return span_both(span_both(span_slab(q[0], e[0], (double)s->p[0]), span_slab(q[1], e[1], (double)s->p[1])),
-                         span_slab(q[2], e[2], (double)s->p[2]));
-    case SHAPE_CYLINDER:
-        return span_both(span_circle(q, e, (double)s->p[0]), span_slab(q[2], e[2], (double)s->p[1]));
+        return span_both(span_both(span_slab(q[0], e[0], p0), span_slab(q[1], e[1], p1)), span_slab(q[2], e[2], (double)s->p[2]));
+    case SHAPE_CYLINDER: return span_both(span_quadric(q, e, tube, 0, r2), slab);
     case SHAPE_CAPSULE: {
-        const span_t part[3] = {
-            span_both(span_circle(q, e, (double)s->p[0]), span_slab(q[2], e[2], (double)s->p[1])),
-            span_ball(q, e, (double)s->p[1], (double)s->p[0]), span_ball(q, e, -(double)s->p[1], (double)s->p[0])};
+        const span_t part[3] = {span_both(span_quadric(q, e, tube, 0, r2), slab), span_quadric(q, e, ball, p1, r2),
+                                span_quadric(q, e, ball, -p1, r2)};
         span_t all = {INFINITY, -INFINITY};
         for (i = 0; i < 3; i++)
             if (part[i].from <= part[i].to) {
@@ -117,13 +100,8 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
             }
         return all;
     }
-    case SHAPE_CONE: return span_cone(q, e, (double)s->p[0], (double)s->p[1]);
-    case SHAPE_ELLIPSOID:
-        for (i = 0; i < 3; i++) {
-            q[i] /= (double)s->p[i];
-            e[i] /= (double)s->p[i];
-        }
-        return span_ball(q, e, 0, 1);
+    case SHAPE_CONE: return span_both(span_quadric(q, e, tapered, p1, 0), slab);
+    case SHAPE_ELLIPSOID: return span_quadric(q, e, w, 0, 1);
     case SHAPE_POLYTOPE: break;
     }
     return none;
