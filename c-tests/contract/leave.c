@@ -84,7 +84,7 @@ static void leaving_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *di
 
 static void test(const call_t *entry)
 {
-    int left = 0, round;
+    int round;
     for (round = 0; round < 20; round++) {
         shape_t a, b;
         ccd_t ccd;
@@ -104,7 +104,6 @@ static void test(const call_t *entry)
             calls_left = last;
             if (!leaves(entry, &a, &b, &ccd, &out))
                 break;
-            left++;
             calls_left = 0;
             memset(&out, 0, sizeof out);
             code = run(entry, &a, &b, &ccd, &out);
@@ -112,7 +111,6 @@ static void test(const call_t *entry)
         }
         CHECK(last > 1, "%s runs callbacks", entry->name);
     }
-    printf("%s: left %d times\n", entry->name, left);
 }
 
 int main(void)

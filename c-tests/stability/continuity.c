@@ -109,9 +109,8 @@ int main(void)
             ccd_warm_t warm;
             answer_t last;
             truth_t before;
-            int jumps = 0, needed = 0, wrong = 0;
-            double depth_step = 0, pos_step = 0, pos_off = 0, error = 0;
-            unsigned long calls = 0;
+            int jumps = 0, wrong = 0;
+            double pos_step = 0, pos_off = 0;
             memset(&warm, 0, sizeof warm);
             memset(&last, 0, sizeof last);
             memset(&before, 0, sizeof before);
@@ -130,7 +129,6 @@ int main(void)
                 memset(&unused, 0, sizeof unused);
                 ccd = judge_query(tol);
                 x = ask_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
-                calls += x.calls;
                 if (!e->system) {
                     int faults = judge(e, &x, &a, &b, &q);
                     /* the bare local method may be in another valley, and leave it */
@@ -140,7 +138,6 @@ int main(void)
                         print_wrong(e, &x, faults, &t);
                     }
                 }
-                error = fmax(error, fabs(x.depth - t.depth));
                 if (f > 0) {
                     double step = 0, turn = angle_between(x.dir, last.dir);
                     /* the truth turns, or the old direction ties with the new one: as far as
@@ -151,11 +148,7 @@ int main(void)
                     int true_turn = angle_between(t.n, before.n) > 1
                         || (mpr && (angle_between(last.dir, before.n) > 1 || angle_between(x.dir, t.n) > 1))
                         || truth_value(&a, &b, last.dir) <= t.depth + tie + 2 * (tol + q.noise) + 1e-6 * q.size;
-                    if (!(turn <= 1)) {
-                        needed += true_turn;
-                        jumps += !true_turn;
-                    }
-                    depth_step = fmax(depth_step, fabs((x.depth - last.depth) - (t.depth - before.depth)));
+                    jumps += !(turn <= 1) && !true_turn;
                     for (i = 0; i < 3; i++)
                         step += (x.pos[i] - last.pos[i]) * (x.pos[i] - last.pos[i]);
                     pos_step = fmax(pos_step, sqrt(step));
@@ -167,8 +160,7 @@ int main(void)
                 last = x;
                 before = t;
             }
-            printf("%-28s %-14s jumps %3d (with the truth %d)  depth off the truth's step %.2g  pos step %.3g  error %.2g  calls %.1f\n",
-                   motions[m].name, e->name, jumps, needed, depth_step, pos_step, error, (double)calls / FRAMES);
+            printf("%-28s %-14s jumps %3d  pos step %.3g\n", motions[m].name, e->name, jumps, pos_step);
             if (!e->system
                 && ((jumps > 0 && (e->ask != ASK_LOCAL || motions[m].face)) || wrong > 0
                     || (motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
