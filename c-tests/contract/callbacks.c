@@ -109,7 +109,7 @@ int main(void)
             seen.obj2 = &b;
             seen.thread = pthread_self();
             for (k = 0; k < 3; k++)
-                seen.first.v[k] = (ccd_real_t)(length[round % 5] * random_in(-1, 1));
+                seen.first.v[k] = (ccd_real_t)(length[round % 5] * uniform(-1, 1));
             if (round % 7 == 0)
                 ccdVec3Set(&seen.first, 0, 0, round % 14 == 0 ? 0 : (ccd_real_t)NAN);
             ccd.support1 = support1;

@@ -37,22 +37,14 @@ static inline int checks_end(void)
     return checks_made == 0 || checks_failed != 0;
 }
 
-/* Uniform in [0, 1). */
-static inline double random_unit(void) { return uniform(0, 1); }
-
-static inline double random_in(double low, double high) { return uniform(low, high); }
-
-static inline int random_below(int n)
-{
-    return (int)(random_unit() * n);
-}
+static inline int random_below(int n) { return (int)uniform(0, n); }
 
 static inline ccd_vec3_t random_vec3(double size)
 {
     ccd_vec3_t v;
     int i;
     for (i = 0; i < 3; i++)
-        v.v[i] = (ccd_real_t)random_in(-size, size);
+        v.v[i] = (ccd_real_t)uniform(-size, size);
     return v;
 }
 

@@ -130,10 +130,10 @@ static inline int run(const call_t *entry, const void *a, const void *b, const c
 static inline shape_t random_shape(void)
 {
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, -1, -1, 0, 0, -1, -1, 0.5, 0.5, 0.5, -0.5, 0.5, -0.5};
-    double p = random_in(0.3, 1), q = random_in(0.3, 1), r = random_in(0.3, 1), rot[9];
+    double p = uniform(0.3, 1), q = uniform(0.3, 1), r = uniform(0.3, 1), rot[9];
     int type = random_below(SHAPE_TYPES);
     shape_t s = type == SHAPE_POLYTOPE ? shape_polytope(corners, 7) : shape_make(type, p, q, r);
-    rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), rot);
+    rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
     shape_turn(&s, rot);
     return s;
 }
@@ -144,7 +144,7 @@ static inline shape_t random_polygon(void)
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, -1, 0.2f, 0, -0.3f, -0.8f, 0, 0.5f, -0.9f, 0};
     double rot[9];
     shape_t s = shape_polytope(corners, 5);
-    rotation_about(0, 0, 1, random_in(0, 6), rot);
+    rotation_about(0, 0, 1, uniform(0, 6), rot);
     shape_turn(&s, rot);
     return s;
 }
@@ -154,8 +154,8 @@ static inline shape_t random_polygon(void)
 static inline void random_pair(const call_t *entry, int overlapping, shape_t *a, shape_t *b, ccd_t *ccd)
 {
     const int planar = entry->number == ASK_PLANAR;
-    double angle = random_in(0, 6.28), z = planar ? 0 : random_in(-1, 1), across = sqrt(1 - z * z);
-    double distance = overlapping ? random_in(0, 0.1) : random_in(4, 6);
+    double angle = uniform(0, 6.28), z = planar ? 0 : uniform(-1, 1), across = sqrt(1 - z * z);
+    double distance = overlapping ? uniform(0, 0.1) : uniform(4, 6);
     *a = planar ? random_polygon() : random_shape();
     *b = planar ? random_polygon() : random_shape();
     shape_move(b, distance * across * cos(angle), distance * across * sin(angle), distance * z);

@@ -104,14 +104,14 @@ static void draw(int shape, ccd_vec3_t v[4])
 {
     /* The fourth power must be a number of the precision, and the square of an ulp. */
     const double digits = sizeof(ccd_real_t) == 8 ? 70 : 8;
-    double size = pow(10, random_in(-digits, digits)), thin = pow(10, random_in(-18, 0)), s = random_unit(), t = random_unit();
+    double size = pow(10, uniform(-digits, digits)), thin = pow(10, uniform(-18, 0)), s = uniform(0, 1), t = uniform(0, 1);
     ccd_vec3_t *p = &v[0], *a = &v[1], *b = &v[2], *c = &v[3];
     int i;
     for (i = 0; i < 4; i++)
         v[i] = random_vec3(size);
     for (i = 0; i < 3; i++) {
         ccd_real_t *pi = &p->v[i], *ai = &a->v[i], *bi = &b->v[i], *ci = &c->v[i];
-        ccd_real_t noise = (ccd_real_t)(thin * random_in(-size, size));
+        ccd_real_t noise = (ccd_real_t)(thin * uniform(-size, size));
         switch (shape) {
         case 1: *ci = *ai + noise; break;
         case 2: *ci = (ccd_real_t)(*ai + s * (*bi - *ai)) + noise; break;
@@ -124,17 +124,17 @@ static void draw(int shape, ccd_vec3_t v[4])
             *bi = (ccd_real_t)(random_below(7) - 3);
             *ci = (ccd_real_t)(random_below(7) - 3);
             break;
-        case 7: *bi = *ai + noise; *ci = *ai + (ccd_real_t)(thin * random_in(-size, size)); break;
+        case 7: *bi = *ai + noise; *ci = *ai + (ccd_real_t)(thin * uniform(-size, size)); break;
         case 8: if (i == 2) *pi = *ai = *bi = *ci = 0; break;
         }
     }
     if (shape != 6 && random_below(2)) {
         /* On the triangle or its plane, or off it by little. */
-        double off = random_below(2) ? 0 : pow(10, random_in(-16, -1));
+        double off = random_below(2) ? 0 : pow(10, uniform(-16, -1));
         s = random_below(3) == 0 ? (double)random_below(2) : 2 * s - 0.5;
         t = random_below(3) == 0 ? 0 : t;
         for (i = 0; i < 3; i++)
-            p->v[i] = (ccd_real_t)(a->v[i] + s * (b->v[i] - a->v[i]) + t * (c->v[i] - a->v[i]) + off * random_in(-size, size));
+            p->v[i] = (ccd_real_t)(a->v[i] + s * (b->v[i] - a->v[i]) + t * (c->v[i] - a->v[i]) + off * uniform(-size, size));
     }
     if (random_below(8) == 0)
         *p = v[1 + random_below(3)];

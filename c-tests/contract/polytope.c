@@ -250,7 +250,7 @@ static void set_nearest(void)
         return;
     pt.nearest = address[i];
     nearest.element = i;
-    pt.nearest_dist = nearest.dist = (ccd_real_t)random_unit();
+    pt.nearest_dist = nearest.dist = (ccd_real_t)uniform(0, 1);
     pt.nearest_type = nearest.type = address[i]->type;
 }
 

@@ -130,7 +130,7 @@ static void strange_state(int kind, ccd_warm_t *warm)
     for (i = 0; i < sizeof *warm; i++)
         bytes[i] = (unsigned char)random_below(256);
     for (i = 0; kind > 0 && i + sizeof x <= sizeof *warm; i += sizeof x) {
-        x = (ccd_real_t)(kind == 1 ? values[random_below(12)] : random_in(-1, 1));
+        x = (ccd_real_t)(kind == 1 ? values[random_below(12)] : uniform(-1, 1));
         memcpy(bytes + i, &x, sizeof x);
     }
     for (i = sizeof *warm - 16; kind > 0 && i < sizeof *warm; i += sizeof(unsigned)) {

@@ -110,7 +110,7 @@ static double outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
         ccd_vec3_t m, q;
         double v[3], l = 0, out = 0;
         for (k = 0; k < 3; k++) {
-            v[k] = random_in(-step, step) + (4 * trial < trials ? 0 : way[k]);
+            v[k] = uniform(-step, step) + (4 * trial < trials ? 0 : way[k]);
             l += v[k] * v[k];
         }
         for (k = 0, l = sqrt(l); k < 3; k++)
@@ -237,10 +237,10 @@ static ccd_real_t prism_verts[4][16 * 3];
 static shape_t prism(int which, int k, double half)
 {
     ccd_real_t *v = prism_verts[which];
-    const double top = random_in(0.7, 1.3), turn = random_in(0, 6);
+    const double top = uniform(0.7, 1.3), turn = uniform(0, 6);
     int i;
     for (i = 0; i < k; i++) {
-        const double angle = turn + 2 * 3.14159265358979 * (i + random_in(0, 0.8)) / k;
+        const double angle = turn + 2 * 3.14159265358979 * (i + uniform(0, 0.8)) / k;
         v[3 * i] = (ccd_real_t)cos(angle);
         v[3 * i + 1] = (ccd_real_t)sin(angle);
         v[3 * i + 2] = (ccd_real_t)-half;
@@ -253,9 +253,9 @@ static shape_t prism(int which, int k, double half)
 
 static shape_t block(int which, double *half)
 {
-    *half = random_in(0.2, 0.8);
+    *half = uniform(0.2, 0.8);
     if (random_below(3) == 0)
-        return shape_box(random_in(0.3, 1.2), random_in(0.3, 1.2), *half);
+        return shape_box(uniform(0.3, 1.2), uniform(0.3, 1.2), *half);
     return prism(which, 3 + random_below(6), *half);
 }
 
@@ -287,8 +287,8 @@ static void somewhere(double far_off)
 {
     int k;
     for (k = 0; k < 3; k++)
-        scene_at[k] = random_in(-far_off, far_off);
-    rotation_quaternion(random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), random_in(-1, 1), scene_rot);
+        scene_at[k] = uniform(-far_off, far_off);
+    rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), scene_rot);
 }
 
 static void place(scene_t *s, double far_off)
@@ -300,13 +300,13 @@ static void place(scene_t *s, double far_off)
 static void yaw(shape_t *s)
 {
     double rot[9];
-    rotation_about(0, 0, 1, random_in(0, 6.28), rot);
+    rotation_about(0, 0, 1, uniform(0, 6.28), rot);
     shape_turn_by(s, rot, 0, 0, 0);
 }
 
 static double slop_of(void)
 {
-    return random_below(8) == 0 ? 0 : pow(10, random_in(single ? -5 : -9, -2.5));
+    return random_below(8) == 0 ? 0 : pow(10, uniform(single ? -5 : -9, -2.5));
 }
 
 static void rest(void)
@@ -314,7 +314,7 @@ static void rest(void)
     static const double up[3] = {0, 0, 1};
     int i;
     for (i = 0; i < 4000; i++) {
-        const double depth = random_in(-0.01, 0.05), angle = random_in(0, 6.28);
+        const double depth = uniform(-0.01, 0.05), angle = uniform(0, 6.28);
         double rot[9];
         scene_t s;
         s.slop = slop_of();
@@ -322,10 +322,10 @@ static void rest(void)
         yaw(&s.a);
         yaw(&s.b);
         if (i % 2) { /* tilted, by what the slop forgives or not */
-            rotation_about(cos(angle), sin(angle), 0, i % 4 == 1 ? s.slop * random_in(0, 3) : pow(10, random_in(-4, -0.3)), rot);
+            rotation_about(cos(angle), sin(angle), 0, i % 4 == 1 ? s.slop * uniform(0, 3) : pow(10, uniform(-4, -0.3)), rot);
             shape_turn_by(&s.b, rot, 0, 0, 0);
         }
-        shape_move(&s.b, random_in(-1, 1), random_in(-1, 1), -depth - reach(&s.b, up, -1));
+        shape_move(&s.b, uniform(-1, 1), uniform(-1, 1), -depth - reach(&s.b, up, -1));
         place(&s, i % 3 ? 1 : 30);
         compare(&s, i % 2 ? "tilted" : "rest");
     }
@@ -342,12 +342,12 @@ static void anywhere(void)
         ccd_t ccd;
         s.slop = slop_of();
         for (k = 0; k < 36; k++) {
-            points_of[0][k] = (ccd_real_t)random_in(-1, 1);
-            points_of[1][k] = (ccd_real_t)random_in(-1, 1);
+            points_of[0][k] = (ccd_real_t)uniform(-1, 1);
+            points_of[1][k] = (ccd_real_t)uniform(-1, 1);
         }
         s.a = i % 3 ? shape_polytope(points_of[0], 12) : shape_box(0.5, 0.7, 0.9);
         s.b = i % 2 ? shape_polytope(points_of[1], 12) : shape_box(0.3, 0.8, 0.6);
-        shape_move(&s.b, random_in(0, 1.5), 0, 0);
+        shape_move(&s.b, uniform(0, 1.5), 0, 0);
         place(&s, 1);
         shape_query(&ccd);
         ccd.epa_tolerance = CCD_REAL(0.0);
@@ -387,11 +387,11 @@ static void expect(const char *what, shape_t a, shape_t b, int n, const double (
         int i, k, j;
         s.a = a;
         s.b = b;
-        s.slop = pow(10, random_in(single ? -4 : -6, -3));
+        s.slop = pow(10, uniform(single ? -4 : -6, -3));
         place(&s, 1);
         /* an answer's normal is not exact either: turned by less than the slop forgives */
         for (k = 0, room = 0; k < 3; k++) {
-            s.n[k] += 0.1 * fmin(s.slop, error) * random_in(-1, 1);
+            s.n[k] += 0.1 * fmin(s.slop, error) * uniform(-1, 1);
             room += s.n[k] * s.n[k];
         }
         for (k = 0; k < 3; k++)
@@ -434,7 +434,7 @@ static void categories(void)
         category_pair(category, (uint64_t)(i / CATEGORY_COUNT), SHAPE_TIE_SIGN, &p);
         s.a = p.a;
         s.b = p.b;
-        s.slop = pow(10, random_in(-4, -2)) * pair_size(&p.a, &p.b);
+        s.slop = pow(10, uniform(-4, -2)) * pair_size(&p.a, &p.b);
         if (i % 4 == 0)
             s.slop = 0;
         shape_query(&ccd);
@@ -501,13 +501,13 @@ static void discs(void)
 {
     int i, j;
     for (i = 0; i < 200; i++) {
-        const double radius = random_in(0.3, 1), tilt = i % 2 ? 0 : random_in(0, 0.1), angle = random_in(0, 6.28);
+        const double radius = uniform(0.3, 1), tilt = i % 2 ? 0 : uniform(0, 0.1), angle = uniform(0, 6.28);
         frame_t f;
         flats_t found;
         contacts_t c;
         scene_t s;
         truth_real axis[3];
-        s.slop = pow(10, random_in(single ? -4 : -6, -3));
+        s.slop = pow(10, uniform(single ? -4 : -6, -3));
         s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
         s.b = i % 3 ? shape_cylinder(radius, 0.5) : shape_cone(radius, 0.5);
         s.b = at(turned(s.b, cos(angle), sin(angle), 0, tilt * s.slop), 0, 0, 0.5);
@@ -566,7 +566,7 @@ static const char *const motion_name[MOTIONS] = {"sliding", "spinning", "rocking
 
 static void steady(int motion, scene_t start, double step)
 {
-    const double angle = random_in(0, 6.28), axis[3] = {random_in(-1, 1), random_in(-1, 1), random_in(-1, 1)};
+    const double angle = uniform(0, 6.28), axis[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
     /* rolling: along x, about y */
     motion_t m = {.by = {motion == SLIDE ? step * cos(angle) : motion == ROLL ? step : 0, motion == SLIDE ? step * sin(angle) : 0, 0}};
     flats_t before;
@@ -615,21 +615,21 @@ static void motions(void)
         const int motion = i % MOTIONS;
         scene_t s;
         double half = blocks(&s);
-        s.slop = pow(10, random_in(single ? -4 : -7, -3));
+        s.slop = pow(10, uniform(single ? -4 : -7, -3));
         yaw(&s.a);
         if (motion == SPIN && i % 8 == 1) {
             half = 0.4;
-            s.b = shape_cylinder(random_in(0.3, 0.8), half);
+            s.b = shape_cylinder(uniform(0.3, 0.8), half);
         }
         if (motion == ROLL) {
             half = 0.3;
             s.b = turned(i % 8 == 3 ? shape_capsule(half, 0.5) : shape_cylinder(half, 0.5), 1, 0, 0, pi / 2);
         }
-        shape_move(&s.b, random_in(-0.5, 0.5), random_in(-0.5, 0.5), half - 0.01);
+        shape_move(&s.b, uniform(-0.5, 0.5), uniform(-0.5, 0.5), half - 0.01);
         if (motion == SLIDE)
             yaw(&s.b);
         somewhere(0);
-        steady(motion, s, pow(10, random_in(single ? -4 : -8, -3)));
+        steady(motion, s, pow(10, uniform(single ? -4 : -8, -3)));
     }
 }
 
@@ -718,7 +718,7 @@ static void tipping(void)
     int i, j;
     for (i = 0; i < 400; i++) {
         static ccd_manifold_t memory;
-        const double angle = i % 3 ? random_in(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_ulp());
+        const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_ulp());
         const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
         memset(&memory, 0, sizeof memory);
         memory_in_use = &memory;
@@ -790,7 +790,7 @@ static void fewer(void)
         scene_t s;
         const double half = blocks(&s);
         s.slop = 1e-4;
-        shape_move(&s.b, random_in(-0.3, 0.3), random_in(-0.3, 0.3), half - 0.01);
+        shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), half - 0.01);
         yaw(&s.b);
         place(&s, 1);
         f = manifold_frame(s.n);

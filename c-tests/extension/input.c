@@ -9,24 +9,10 @@
 #include "ours.h"
 #include "shapes.h"
 
+/* The first of `calls`. */
 enum { PENETRATION, LOCAL, INCREMENTAL, PROVEN, ALONG, PLANAR, QUERIES };
 
-static const char *const name[QUERIES] = {"penetration", "local", "incremental", "proven", "along", "planar"};
 static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}}, across = {{2, 0, 0}};
-
-static int ask_for(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm,
-                   unsigned want, ccd_penetration_t *out)
-{
-    static const int number[QUERIES] = {ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_ALONG, ASK_PLANAR};
-    const call_rest_t rest = {.warm = warm, .along = dir, .want = want, .full = out};
-    return call_by_number(number[query], a, b, ccd, &rest);
-}
-
-static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm,
-               ccd_penetration_t *out)
-{
-    return ask_for(query, a, b, ccd, dir, warm, CCD_WANT_ALL, out);
-}
 
 /* Bit by bit but for what a compiler puts between the fields. */
 static int same_answer(const ccd_penetration_t *a, const ccd_penetration_t *b)
@@ -105,6 +91,13 @@ static int ask_number(int number, const ccd_t *ccd, const call_rest_t *rest, ccd
         x.contacts = out->contact;
     }
     return call_by_number(number, &one, &other, ccd, &x);
+}
+
+static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm, unsigned want,
+               ccd_penetration_t *out)
+{
+    const call_rest_t rest = {.warm = warm, .along = dir, .want = want, .full = out};
+    return call_by_number(calls[query].ask, a, b, ccd, &rest);
 }
 
 static int no_out;
@@ -280,14 +273,14 @@ static int nonsense; /* what is no number was answered */
 
 static double any_number(void)
 {
-    const uint64_t bits = (uint64_t)(random_unit() * 9007199254740992.0) << 11 | (uint64_t)random_below(2048);
+    const uint64_t bits = (uint64_t)(uniform(0, 1) * 9007199254740992.0) << 11 | (uint64_t)random_below(2048);
     double x;
     memcpy(&x, &bits, sizeof x);
     switch (random_below(7)) {
-    case 0: return pow(10, random_in(-30, 30));
+    case 0: return pow(10, uniform(-30, 30));
     case 1: return x;
     case 2: return (random_below(5) - 2) / 2.;
-    default: return random_in(-1, 1);
+    default: return uniform(-1, 1);
     }
 }
 
@@ -313,7 +306,7 @@ static void draw_lie(void)
     lie.kind = random_below(LIES);
     for (i = 0; i < LIST; i++)
         for (k = 0; k < 3; k++)
-            lie.said[i][k] = lie.kind == NEARLY_ONE                ? 1 + pow(10, random_in(-9, 0)) * random_in(-1, 1)
+            lie.said[i][k] = lie.kind == NEARLY_ONE                ? 1 + pow(10, uniform(-9, 0)) * uniform(-1, 1)
                 : lie.kind == ADDED && random_below(5) ? 0 : any_number();
 }
 
@@ -403,22 +396,22 @@ static void wanted(void)
             for (frame = 0; frame < 20; frame++) {
                 const ccd_vec3_t zero = {{0, 0, 0}};
                 shape_move(&other, 1.75, 0.25 + 0.002 * frame, 0.001 * frame);
-                CHECK(ask_for(query, &one, &other, &ccd, NULL, &warm[0], CCD_WANT_ALL, &all) == CCD_HIT, "%s", name[query]);
-                CHECK(ask_for(query, &one, &other, &ccd, NULL, &warm[1], want, &out) == CCD_HIT, "%s", name[query]);
+                CHECK(ask(query, &one, &other, &ccd, NULL, &warm[0], CCD_WANT_ALL, &all) == CCD_HIT, "%s", calls[query].name);
+                CHECK(ask(query, &one, &other, &ccd, NULL, &warm[1], want, &out) == CCD_HIT, "%s", calls[query].name);
                 cost[want] += frame ? out.support_calls : 0;
-                CHECK(fabs((double)(out.depth - all.depth)) <= 1e-6, "%s: depth %g", name[query], (double)out.depth);
+                CHECK(fabs((double)(out.depth - all.depth)) <= 1e-6, "%s: depth %g", calls[query].name, (double)out.depth);
                 for (k = 0; k < 3; k++) {
                     const ccd_vec3_t *points[3] = {&out.pos, &out.point1, &out.point2};
                     const unsigned flag = k ? CCD_WANT_POINTS : CCD_WANT_POS;
                     CHECK((want & flag) != 0 || same_bits(points[k], &zero, sizeof zero), "%s: not wanted, and not zero",
-                          name[query]);
-                    CHECK((want & flag) == 0 || !same_bits(points[k], &zero, sizeof zero), "%s: wanted, and zero", name[query]);
+                          calls[query].name);
+                    CHECK((want & flag) == 0 || !same_bits(points[k], &zero, sizeof zero), "%s: wanted, and zero", calls[query].name);
                 }
             }
         }
-        printf("%s, face on face, 19 frames: %lu calls of each support function, %lu with pos\n", name[query], cost[0],
+        printf("%s, face on face, 19 frames: %lu calls of each support function, %lu with pos\n", calls[query].name, cost[0],
                cost[CCD_WANT_POS]);
-        CHECK(cost[0] < cost[CCD_WANT_POS], "%s: pos for nothing: %lu, %lu", name[query], cost[0], cost[CCD_WANT_POS]);
+        CHECK(cost[0] < cost[CCD_WANT_POS], "%s: pos for nothing: %lu, %lu", calls[query].name, cost[0], cost[CCD_WANT_POS]);
     }
     setup();
 }
@@ -452,17 +445,17 @@ static void freedoms(void)
     ccd.support1 = ccd.support2 = fixed_support;
     ccd.center1 = ccd.center2 = NULL;
     for (query = 0; query < QUERIES; query++)
-        CHECK(ask(query, NULL, NULL, &ccd, dir_of(query), NULL, &out) >= CCD_HIT && out.depth > 1, "%s: NULL objects", name[query]);
+        CHECK(ask(query, NULL, NULL, &ccd, dir_of(query), NULL, CCD_WANT_ALL, &out) >= CCD_HIT && out.depth > 1, "%s: NULL objects", calls[query].name);
     for (query = ALONG; query < QUERIES; query++) {
         ccd_penetration_t unit;
-        ask(query, &one, &other, &good, dir_of(query), NULL, &unit);
+        ask(query, &one, &other, &good, dir_of(query), NULL, CCD_WANT_ALL, &unit);
         for (i = -30; i <= 30; i += 10) {
             ccd_vec3_t d = *dir_of(query);
             for (k = 0; k < 3; k++)
                 d.v[k] = (ccd_real_t)ldexp((double)d.v[k], i);
             memset(&out, 0, sizeof out);
-            CHECK(ask(query, &one, &other, &good, &d, NULL, &out) == CCD_HIT, "%s: length", name[query]);
-            CHECK(same_answer(&out, &unit), "%s: a direction of length 2^%d", name[query], i);
+            CHECK(ask(query, &one, &other, &good, &d, NULL, CCD_WANT_ALL, &out) == CCD_HIT, "%s: length", calls[query].name);
+            CHECK(same_answer(&out, &unit), "%s: a direction of length 2^%d", calls[query].name, i);
         }
     }
 }

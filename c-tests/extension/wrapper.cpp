@@ -89,7 +89,7 @@ static void check_same(const char *name, const ccd::Penetration &p, int code, co
 static Wrapped anywhere()
 {
     Wrapped w{random_shape()};
-    shape_move(&w.shape, random_in(-1, 1), random_in(-1, 1), random_in(-1, 1));
+    shape_move(&w.shape, uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
     return w;
 }
 

@@ -54,7 +54,7 @@ typedef struct {
     const ccd_real_t *verts;
     int nverts;
     double pos[3];
-    enum { UNTURNED, BY_ANGLE, BY_QUATERNION, BY_ROTATION } turn;
+    int by_rotation; /* else by axis and angle; no axis: not turned */
     double by[12];
 } body_row_t;
 
@@ -66,9 +66,8 @@ typedef struct {
 #define ELLIPSOID(x, y, z) .type = SHAPE_ELLIPSOID, .p = {x, y, z}
 #define HULL(points) .type = SHAPE_POLYTOPE, .verts = points[0], .nverts = sizeof points / sizeof points[0]
 #define AT(x, y, z) .pos = {x, y, z}
-#define ABOUT(x, y, z, angle) .turn = BY_ANGLE, .by = {x, y, z, angle}
-#define QUATERNION(w, x, y, z) .turn = BY_QUATERNION, .by = {w, x, y, z}
-#define TURNED(...) .turn = BY_ROTATION, .by = {__VA_ARGS__} /* rows of R, then p */
+#define ABOUT(x, y, z, angle) .by = {x, y, z, angle}
+#define TURNED(...) .by_rotation = 1, .by = {__VA_ARGS__} /* rows of R, then p */
 #define PI 3.14159265358979323846
 
 typedef struct {
@@ -100,7 +99,7 @@ static const configuration_row_t configuration_rows[] = {
      {CYLINDER(.08, .001), AT(0, 0, .0085)}, 0, 1e-15, 1e-8, EVERYWHERE | TOUCHING},
     {"T10", "cube in cube on the diagonal", {BOX(.5, .5, .5)},
      {BOX(.1, .1, .1), AT(.4, .4, .4)}, .2, 1e-12, 1e-6, EVERYWHERE},
-    {"T11", "cylinder through a huge triangle", {CYLINDER(.02, .07), QUATERNION(.77515626, -.16498479, .36682746, -.48718625),
+    {"T11", "cylinder through a huge triangle", {CYLINDER(.02, .07), ABOUT(-.16498479, .36682746, -.48718625, 1.367667908687469),
      AT(28.87991333, 260.53430176, .00036136055)},
      {HULL(huge_triangle)}, .0617191506, 1e-9, 1e-3, 0},
     {"T12 coaxial", "capsules on one axis", {CAPSULE(.1, .5)},
@@ -203,7 +202,7 @@ static const configuration_row_t configuration_rows[] = {
     {"MuJoCo LongBox", "", {BOX(1, 1, .3), AT(0, 0, -.3)},
      {BOX(.6, .03, .03), AT(0, 0, .02), ABOUT(0, 0, 1, 40 * PI / 180)}, .01, 1e-12, 1e-7, 0},
     {"MuJoCo BoxEdgeFlipped", "", {BOX(.65, .48, .04), AT(1.10164554, -0.11389316, 0.74),
-     QUATERNION(-0.348312918, 0, 0, 0.937378318)},
+     ABOUT(0, 0, 1, 3.8531340790532629)},
      {BOX(.1, 1.2, 1.4), AT(1.4, 0, 1.425)}, 1.907368 - 1.3, 1e-6, 1e-6, 0},
     {"MuJoCo ThinBoxGrazing", "apart by 0.77 um", {BOX(0.015108062742470629, 0.00020768330936692047, 0.00033708479398415232),
      TURNED(0.41747699392674587, 0.7445704580736479, -0.5208913442416622, 0.735898261710082, -0.6133129289446175,
@@ -234,19 +233,11 @@ static inline shape_t body_shape(const body_row_t *row)
     const double *by = row->by;
     double r[9];
     shape_move(&s, row->pos[0], row->pos[1], row->pos[2]);
-    switch (row->turn) {
-    case UNTURNED:
-        return s;
-    case BY_ANGLE:
-        rotation_about(by[0], by[1], by[2], by[3], r);
-        break;
-    case BY_QUATERNION:
-        rotation_quaternion(by[0], by[1], by[2], by[3], r);
-        break;
-    case BY_ROTATION:
+    if (row->by_rotation) {
         memcpy(r, by, sizeof r);
         shape_move(&s, by[9], by[10], by[11]);
-        break;
+    } else {
+        rotation_about(by[0], by[1], by[2], by[3], r);
     }
     shape_turn(&s, r);
     return s;
