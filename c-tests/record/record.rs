@@ -25,10 +25,7 @@ fn program(name: &str) -> Program {
 
 /// One method's line of the table that replay.h prints: its counts are missed, false, broken, deep
 /// and unsound.
-struct Row {
-    method: String,
-    wrong: [u64; 5],
-}
+type Row = (String, [u64; 5]);
 
 /// How many pairs overlap, and the table's rows.
 fn table(written: &str) -> (u64, Vec<Row>) {
@@ -41,10 +38,8 @@ fn table(written: &str) -> (u64, Vec<Row>) {
         // A name may have blanks, the nine figures after it have none.
         let words: Vec<&str> = line.split_whitespace().collect();
         let (name, figures) = words.split_at(words.len() - 9);
-        Row {
-            method: name.join(" "),
-            wrong: [0, 1, 2, 3, 4].map(|i| figures[i].parse().expect("a count")),
-        }
+        let wrong = [0, 1, 2, 3, 4].map(|i| figures[i].parse().expect("a count"));
+        (name.join(" "), wrong)
     };
     let lines = lines.skip(1).take_while(|l| !l.is_empty());
     (
@@ -53,15 +48,12 @@ fn table(written: &str) -> (u64, Vec<Row>) {
     )
 }
 
-impl Row {
-    /// Misses nothing, invents nothing, no answer unsound or without a direction; at most `most`
-    /// are more than 1 % too deep.
-    fn assert_right(&self, most: u64) {
-        let Row { method, wrong } = self;
-        let [missed, spurious, broken, deep, unsound] = *wrong;
-        assert_eq!([missed, spurious, broken, unsound], [0; 4], "{method}");
-        assert!(deep <= most, "{method}: {deep}");
-    }
+/// Misses nothing, invents nothing, no answer unsound or without a direction; at most `most`
+/// are more than 1 % too deep.
+fn assert_right((method, wrong): &Row, most: u64) {
+    let [missed, spurious, broken, deep, unsound] = *wrong;
+    assert_eq!([missed, spurious, broken, unsound], [0; 4], "{method}");
+    assert!(deep <= most, "{method}: {deep}");
 }
 
 #[test]
@@ -80,7 +72,8 @@ fn replay_on_both_libraries() {
     let (overlaps, rows) = table(&ours.run([recording()]).stdout);
     assert_eq!((rows.len(), theirs.len()), (2, 2));
     assert_eq!(overlaps, of_theirs, "not the same queries");
-    rows.iter().for_each(|row| row.assert_right(overlaps / 100));
+    rows.iter()
+        .for_each(|row| assert_right(row, overlaps / 100));
 }
 
 #[test]
@@ -91,9 +84,9 @@ fn the_extension_cold_and_warm() {
         .build();
     let (overlaps, rows) = table(&warm.run([recording()]).stdout);
     assert_eq!(rows.len(), 8);
-    for row in rows {
+    for row in &rows {
         // The bare local method may end in a local minimum.
-        let local = row.method.starts_with("local");
-        row.assert_right(if local { overlaps } else { overlaps / 100 });
+        let local = row.0.starts_with("local");
+        assert_right(row, if local { overlaps } else { overlaps / 100 });
     }
 }
