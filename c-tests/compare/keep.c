@@ -13,8 +13,6 @@
 
 #include <string.h>
 
-static const char *const SIDE_NAME[COMPARE_SIDES] = { "libccd", "warmccd" };
-
 /* --- how wrong ---------------------------------------------------------------------- */
 
 /* Metres off, a metre of the smaller object. A touch without a direction is hardly wrong. */
@@ -185,13 +183,12 @@ static void make_case(const compare_t *compare, const sample_t *s, int side, com
     char title[sizeof place->title], path[4096];
     case_t c;
     case_of(s, &c);
-    snprintf(title, sizeof title, "%s of %s, %s: ", COMPARE_CALL_NAME[s->q->call], SIDE_NAME[side], VERDICT_NAME[s->verdict[side]]);
+    snprintf(title, sizeof title, "%s of %s, %s: ", COMPARE_CALL_NAME[s->q->call], COMPARE_SIDE_NAME[side], VERDICT_NAME[s->verdict[side]]);
     if (s->answer[side].hit)
         snprintf(title + strlen(title), sizeof title - strlen(title), "depth %.6g, ", (double)s->answer[side].depth);
     snprintf(title + strlen(title), sizeof title - strlen(title), "the signed depth is at most %.6g", s->truth.upper);
     c.title = title;
-    snprintf(path, sizeof path, "%s/.%ld-%d-%d.c", compare->keep, (long)compare->counts->process, side,
-             (int)(place - compare->counts->kept[side]));
+    snprintf(path, sizeof path, "%s/%s-%d.c", compare->keep, COMPARE_SIDE_NAME[side], (int)(place - compare->counts->kept[side]) + 1);
     if (shows(compare, s, side, &c) && write_case(compare, &c, path) == 0) {
         place->used = 1;
         place->verdict = (uint64_t)s->verdict[side];
