@@ -40,7 +40,7 @@ fn quick_charts_are_whole_and_ours_sound() {
             row.unsound,
             row.direction,
             row.ns.unwrap_or(0.0),
-            row.supports.unwrap_or(0.0),
+            row.supports,
             row.gap.unwrap_or(0.0),
         ];
         assert!(numbers.iter().all(|x| x.is_finite()), "{row:?}");

@@ -18,10 +18,10 @@ unsigned long bench_calls(const shape_t *s) { return s->calls; }
 
 /* A pair set, with how many poses and steps of one motion (0: independent poses); NULL where there
  * is none. It stays: shapes refer to its vertices. */
-pair_set_t *bench_set(const char *path, int climb, int *n, int *trajectory)
+pair_set_t *bench_set(const char *path, int *n, int *trajectory)
 {
     pair_set_t *set = (pair_set_t *)malloc(sizeof *set);
-    if (!set || pair_set_read(path, set) != 0 || (climb && pair_set_climb(set) != 0))
+    if (!set || pair_set_read(path, set) != 0)
         return NULL;
     *n = set->n;
     *trajectory = set->trajectory;
@@ -70,20 +70,6 @@ void bench_shape(shape_t *s, int type, const double p[3], const double *verts, i
 __attribute__((noinline)) void bench_begin(void) { __asm__ volatile(""); }
 
 __attribute__((noinline)) void bench_end(void) { __asm__ volatile(""); }
-
-/* Where a shape is, and what it is. */
-typedef struct {
-    double pos[3], rot[9], p[3];
-    int type;
-} bench_placed_t;
-
-bench_placed_t bench_placed(const shape_t *s)
-{
-    const double *r = s->rot;
-    const bench_placed_t out = {{s->pos[0], s->pos[1], s->pos[2]}, {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]},
-                                {s->p[0], s->p[1], s->p[2]}, s->type};
-    return out;
-}
 
 typedef struct {
     unsigned a, b, frame;

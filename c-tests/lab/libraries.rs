@@ -106,16 +106,6 @@ pub struct Truth {
     pub cold: [f64; 3],
 }
 
-/// `bench_placed_t` of `callbacks.c`: where a shape is, its rotation row by row, and what it is.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct Placed {
-    pub position: [f64; 3],
-    pub rotation: [f64; 9],
-    pub p: [f64; 3],
-    pub kind: c_int,
-}
-
 /// `bench_recorded_t` of `callbacks.c`: two bodies in a frame, and bounds on their signed depth.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
@@ -134,12 +124,11 @@ functions! {
         center: fn bench_center(Object, Point);
         shape_size: fn bench_shape_size() -> usize;
         calls: fn bench_calls(Object) -> c_ulong;
-        set: fn bench_set(*const c_char, c_int, *mut c_int, *mut c_int) -> Object;
+        set: fn bench_set(*const c_char, *mut c_int, *mut c_int) -> Object;
         set_pose: fn bench_set_pose(Object, c_int, *mut c_void, *mut c_void, *mut Truth);
         set_mesh: fn bench_set_mesh(Object, c_int, *mut c_int, *mut *const f64, *mut c_int, *mut *const c_int);
         graph: fn bench_graph(c_int, *const c_int, c_int, *mut c_int) -> c_int;
         shape: fn bench_shape(*mut c_void, c_int, *const f64, *const f64, c_int, *const c_int, *const f64, *const f64);
-        placed: fn bench_placed(Object) -> Placed;
         recording: fn bench_recording(*const c_char, c_uint, *mut c_void, *mut Recorded) -> usize;
         begin: fn bench_begin();
         end: fn bench_end();

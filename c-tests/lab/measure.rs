@@ -33,8 +33,8 @@ pub struct Row {
     pub queries: usize,
     /// Of these, overlaps deeper than 1 nm: the ones that are judged.
     pub overlaps: usize,
-    /// Support points of D per query; none for a method that does not use our callbacks.
-    pub supports: Option<f64>,
+    /// Support points of D per query.
+    pub supports: f64,
     /// Mean time of a query, of medians over repetitions; none when not timed.
     pub ns: Option<f64>,
     /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
@@ -152,9 +152,7 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         x: None,
         queries,
         overlaps: hits,
-        supports: method
-            .uses_callbacks
-            .then(|| supports as f64 / 2.0 / queries as f64),
+        supports: supports as f64 / 2.0 / queries as f64,
         ns: None,
         mean_error: mean(&errors),
         max_error: largest(&errors),

@@ -11,7 +11,6 @@ use ccd::internals::ffi::{
 };
 use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 
-use super::deep::{Deep, Polytope};
 use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
 use super::scene::{Pair, Scene};
 
@@ -75,8 +74,6 @@ pub struct Method<'a> {
     pub tolerance: Option<f64>,
     /// A call of this library's interface.
     pub ours: bool,
-    /// Asks through the C callbacks, so its supports count.
-    pub uses_callbacks: bool,
     run: Run<'a>,
 }
 
@@ -87,7 +84,6 @@ impl<'a> Method<'a> {
             start: Start::None,
             tolerance: None,
             ours: false,
-            uses_callbacks: true,
             run: Box::new(run),
         }
     }
@@ -104,11 +100,6 @@ impl<'a> Method<'a> {
 
     pub fn of_ours(mut self) -> Self {
         self.ours = true;
-        self
-    }
-
-    pub fn without_callbacks(mut self) -> Self {
-        self.uses_callbacks = false;
         self
     }
 
@@ -297,27 +288,4 @@ fn paper<'a>(
             lower: 0.0,
         })
     }
-}
-
-/// DEEP, where both shapes of the scene are polytopes. It walks over the meshes
-/// and calls no support function.
-pub fn deep<'a>(libraries: &'a Libraries, scene: &Scene, start: Start) -> Option<Method<'a>> {
-    if scene.meshes.iter().any(|m| m.triangles.is_empty()) {
-        return None;
-    }
-    let [a, b] = [0, 1].map(|k| Polytope::new(&scene.meshes[k]));
-    let mut deep = Deep::default();
-    let run = move |_: &Scene, pair: &Pair| {
-        let ((ra, pa), (rb, pb)) = (pair.pose(libraries, 0), pair.pose(libraries, 1));
-        let local = ra.transpose();
-        let from = start.direction(&pair.truth).unwrap_or(pair.truth.cold);
-        let from = local * Vec3::from(from);
-        let (depth, n) = deep.penetration(&a, &b, local * rb, local * (pb - pa), from)?;
-        Some(Answer {
-            depth,
-            dir: (ra * n).into(),
-            lower: 0.0,
-        })
-    };
-    Some(Method::new("DEEP", run).from(start).without_callbacks())
 }

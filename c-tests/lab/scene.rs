@@ -7,7 +7,9 @@
 
 use std::ffi::{c_int, c_uint, c_void};
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use ccd::internals::ffi::ccd_vec3_t;
 
 use super::libraries::{Callbacks, Libraries, Recorded, Truth};
 use crate::harness;
@@ -21,47 +23,11 @@ pub struct Pair {
     pub frame: usize,
 }
 
-impl Pair {
-    /// Rotation (local to world) and position of the first or second shape.
-    pub fn pose(&self, libraries: &Libraries, which: usize) -> (Matrix3<f64>, Vector3<f64>) {
-        let shape = [self.a, self.b][which];
-        // SAFETY: a shape of the scene.
-        let shape = unsafe { (libraries.callbacks.placed)(shape) };
-        let rotation = Matrix3::from_row_slice(&shape.rotation);
-        (rotation, shape.position.into())
-    }
-}
-
 /// A polytope's mesh, in its own frame.
 #[derive(Clone, Default)]
 pub struct Mesh {
     pub vertices: Vec<Vector3<f64>>,
     pub triangles: Vec<[usize; 3]>,
-}
-
-impl Mesh {
-    /// A box by its half extents.
-    pub fn cuboid(half: [f64; 3]) -> Self {
-        // Corner k is at the positive end of axis i where bit i of k is set.
-        let end = |k: usize, i: usize| if k >> i & 1 == 1 { half[i] } else { -half[i] };
-        let corner = |k| Vector3::from_fn(|i, _| end(k, i));
-        // A side's corners go round counterclockwise, seen from outside.
-        let sides = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        Self {
-            vertices: (0..8).map(corner).collect(),
-            triangles: sides
-                .iter()
-                .flat_map(|s| [[s[0], s[1], s[2]], [s[0], s[2], s[3]]])
-                .collect(),
-        }
-    }
 }
 
 /// Pairs of one kind.
@@ -151,17 +117,15 @@ pub fn room(callbacks: &Callbacks, n: usize) -> (Vec<u64>, usize) {
 }
 
 impl Scene {
-    /// A pair set of `c-tests/pairs`. `hc` behind a polytope's name (`p642hc_p642hc`)
-    /// asks for hill climbing in place of the scan over all vertices. At most `limit` poses.
+    /// A pair set of `c-tests/pairs`. At most `limit` poses.
     pub fn load(libraries: &Libraries, name: &str, limit: usize) -> Self {
         let callbacks = libraries.callbacks;
-        let climb = name.contains("hc");
-        let path = harness::root().join(format!("c-tests/pairs/{}.bin", name.replace("hc", "")));
+        let path = harness::root().join(format!("c-tests/pairs/{name}.bin"));
         // SAFETY: the functions of callbacks.c, called as it says; what they point to stays.
         unsafe {
             let (mut n, mut motion) = (0, 0);
             let file = Libraries::c_path(&path);
-            let set = (callbacks.set)(file.as_ptr(), climb.into(), &mut n, &mut motion);
+            let set = (callbacks.set)(file.as_ptr(), &mut n, &mut motion);
             assert!(!set.is_null(), "{} is not a pair set", path.display());
             let n = (n as usize).min(limit);
             let motion = motion as usize;
@@ -183,12 +147,6 @@ impl Scene {
                 (callbacks.set_mesh)(set, k, &mut nv, &mut v, &mut nt, &mut t);
                 let v = std::slice::from_raw_parts(v, 3 * nv as usize);
                 let t = std::slice::from_raw_parts(t, 3 * nt as usize);
-                let shape = pairs.first().map(|p| if k == 0 { p.a } else { p.b });
-                let shape = shape.map(|s| (callbacks.placed)(s));
-                // A box.
-                if let Some(shape) = shape.filter(|s| s.kind == 2) {
-                    return Mesh::cuboid(shape.p);
-                }
                 let indices = |t: &[c_int]| [0, 1, 2].map(|i| t[i] as usize);
                 Mesh {
                     vertices: v.chunks_exact(3).map(Vector3::from_column_slice).collect(),
@@ -269,8 +227,12 @@ impl Scene {
             let age = pairs.last().map_or(0, |pair| pair.frame + 1);
             last = now;
             let (a, b) = (shape(2 * k), shape(2 * k + 1));
-            // SAFETY: shapes that were placed.
-            let [pa, pb] = [a, b].map(|s| Vector3::from(unsafe { (callbacks.placed)(s) }.position));
+            let [pa, pb] = [a, b].map(|s| {
+                let mut at = ccd_vec3_t::default();
+                // SAFETY: a shape that was placed.
+                unsafe { (callbacks.center)(s, &mut at) };
+                Vector3::from(at.v)
+            });
             let truth = Truth {
                 depth: (now.lower + now.upper) / 2.0,
                 gap: now.upper - now.lower,

@@ -37,9 +37,6 @@ fn roster<'a>(bench: &Bench<'a>, scene: &Scene) -> Vec<Method<'a>> {
         ];
         all.extend(asked.map(|(ask, start)| methods::of(libraries, ask, start, t)));
     }
-    if !frames {
-        all.extend(methods::deep(libraries, scene, Start::Five));
-    }
     all.extend(bench.compiled.all(libraries));
     all.push(peers::parry(libraries));
     all

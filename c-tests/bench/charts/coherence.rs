@@ -138,7 +138,7 @@ pub fn stops_paying(rows: &[Row], set: &str, method: &str) -> Option<f64> {
         .filter(|r| r.set == set && r.method == method && r.start == "warm");
     steps.find_map(|warm| {
         let x = warm.x?;
-        (warm.supports? >= of(cold, x)?.supports?).then_some(x)
+        (warm.supports >= of(cold, x)?.supports).then_some(x)
     })
 }
 

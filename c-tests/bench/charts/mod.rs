@@ -105,7 +105,6 @@ pub fn look(row: &Row) -> Look {
         ("Algorithm 4/5", "45") => ((190, 130, 240), Mark::Ring, false),
         ("Algorithm 4/5", _) => ((147, 51, 234), Mark::Dot, false),
         ("Algorithm 3", _) => ((147, 51, 234), Mark::Cross, false),
-        ("DEEP", _) => ((219, 39, 119), Mark::Triangle, false),
         ("Bullet EPA", _) => (GREY, Mark::Dot, false),
         ("FCL EPA", _) => (GREY, Mark::Ring, false),
         _ => (GREY, Mark::Triangle, false),
@@ -121,7 +120,7 @@ pub const TIME: Axis = ("time per query", Unit::Seconds);
 /// What a query costs, on either axis.
 pub type Cost = fn(&Row) -> Option<f64>;
 
-pub const COUNTED: Cost = |r| r.supports;
+pub const COUNTED: Cost = |r| Some(r.supports);
 pub const TIMED: Cost = |r| r.ns.map(|n| n * 1e-9);
 
 /// A curve a method: what it costs over `x`.
@@ -176,7 +175,7 @@ pub fn kind(set: &str) -> String {
         "cyl" => "cylinder".to_owned(),
         "ell" => "ellipsoid".to_owned(),
         s => match s.strip_prefix('p') {
-            Some(n) => format!("{} vertices", n.replace("hc", "")),
+            Some(n) => format!("{n} vertices"),
             None => s.to_owned(),
         },
     };

@@ -132,7 +132,7 @@ fn measure(
             method: super::name(&row),
             modelling_error,
             query_error: row.mean_error,
-            supports: row.supports.unwrap_or_default(),
+            supports: row.supports,
             ns,
         }
     };

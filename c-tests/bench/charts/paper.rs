@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The paper's Section IV measured again: Tables I to III, the figures over vertex
-//! counts, the comparison with DEEP, the ablation of the shortcut.
+//! counts, the ablation of the shortcut.
 
 use super::figure::{self, Panel, Unit};
 use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
@@ -54,7 +54,7 @@ pub fn tables(bench: &Bench) -> Vec<Row> {
     all
 }
 
-/// Over vertex counts: `cap` a polytope against a capsule, else against another.
+/// Over vertex counts, a polytope against a capsule.
 pub fn vertices(bench: &Bench) -> Vec<Row> {
     let libraries = bench.libraries;
     let mut all = Vec::new();
@@ -75,17 +75,11 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
             of(Ask::Minimum, Start::None),
         ];
         all.extend(super::rows(bench, &scene, methods, x));
-        // Climbing supports here: DEEP walks over the same edges.
-        let scene = Scene::load(libraries, &format!("p{n}hc_p{n}hc"), bench.poses());
-        let mut methods = Vec::from([Ask::Local, Ask::Paper].map(|ask| of(ask, Start::Five)));
-        methods.extend(methods::deep(libraries, &scene, Start::Five));
-        all.extend(super::rows(bench, &scene, methods, x));
     }
     all
 }
 
 pub fn draw(page: &Page, all: &[Row]) {
-    let capsule = |r: &Row| r.set.ends_with("_cap");
     let over_counts = |title: &str, wanted: &dyn Fn(&Row) -> bool, timed: bool| {
         let (y, cost) = if timed {
             (TIME, TIMED)
@@ -96,16 +90,11 @@ pub fn draw(page: &Page, all: &[Row]) {
         let curves = super::curves(rows, |r| r.x, cost);
         Panel::new(title, ("vertices", Unit::Count), y, curves)
     };
-    let all_on = |r: &Row| capsule(r) && r.method != "Algorithm 3";
-    let ablation = |r: &Row| capsule(r) && r.start == "45" && r.method.starts_with("Algorithm");
+    let all_on = |r: &Row| r.method != "Algorithm 3";
+    let ablation = |r: &Row| r.start == "45" && r.method.starts_with("Algorithm");
     let panels = [
         over_counts("polytope – capsule: time", &all_on, true),
         over_counts("polytope – capsule: supports", &all_on, false),
-        over_counts(
-            "polytope – polytope, climbing: DEEP",
-            &|r| !capsule(r),
-            true,
-        ),
         over_counts("shortcut on and off, 45°: time", &ablation, true),
         over_counts("shortcut on and off, 45°: supports", &ablation, false),
     ];
@@ -113,7 +102,7 @@ pub fn draw(page: &Page, all: &[Row]) {
     figure::grid(
         &page.file("vertices.svg"),
         title,
-        3,
+        2,
         &panels,
         &[page.footer()],
     );

@@ -66,8 +66,7 @@ fn times_faster(rows: &[Row]) -> String {
 }
 
 fn supports(row: Option<&Row>) -> String {
-    row.and_then(|r| r.supports)
-        .map_or("-".to_owned(), |s| format!("{s:.1}"))
+    row.map_or("-".to_owned(), |r| format!("{:.1}", r.supports))
 }
 
 fn coherent(rows: &[Row]) -> String {
