@@ -12,7 +12,6 @@ mod harness;
 mod lab;
 #[allow(dead_code)]
 mod peers;
-mod poses;
 mod progress;
 
 use lab::csv;
@@ -27,7 +26,7 @@ fn quick_charts_are_whole_and_ours_sound() {
         no_instructions: true,
         out: out.path().to_owned(),
     });
-    let rows: Vec<Row> = ["accuracy", "paper", "vertices", "coherence", "recorded"]
+    let rows: Vec<Row> = ["accuracy", "vertices", "coherence", "recorded"]
         .iter()
         .flat_map(|name| csv::read::<Row>(&out.path().join(name).with_extension("csv")))
         .collect();
@@ -57,9 +56,7 @@ fn quick_charts_are_whole_and_ours_sound() {
         "frames_time",
         "tolerance",
         "vertices",
-        "coherence_supports",
-        "coherence_time",
-        "models",
+        "coherence",
     ] {
         let path = out.path().join(name).with_extension("svg");
         let picture = std::fs::read_to_string(&path).unwrap_or_default();

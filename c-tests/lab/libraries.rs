@@ -16,9 +16,7 @@ use std::mem::MaybeUninit;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use ccd::internals::ffi::{
-    CCD_WARM_REALS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t,
-};
+use ccd::internals::ffi::{CCD_WARM_REALS, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
 
 use crate::harness;
@@ -89,7 +87,6 @@ functions! {
         mpr_intersect: fn ccdMPRIntersectWarm(Object, Object, Settings, State) -> c_int;
         local: fn ccdPenetrationLocal(Object, Object, Settings, State, c_uint, Full) -> c_int;
         minimum: fn ccdPenetrationProven(Object, Object, Settings, State, c_uint, Full) -> c_int;
-        distance: fn ccdSignedDistance(Object, Object, Settings, f64, f64, f64, State, c_uint, *mut ccd_distance_t) -> c_int;
     }
 }
 
@@ -126,9 +123,6 @@ functions! {
         calls: fn bench_calls(Object) -> c_ulong;
         set: fn bench_set(*const c_char, *mut c_int, *mut c_int) -> Object;
         set_pose: fn bench_set_pose(Object, c_int, *mut c_void, *mut c_void, *mut Truth);
-        set_mesh: fn bench_set_mesh(Object, c_int, *mut c_int, *mut *const f64, *mut c_int, *mut *const c_int);
-        graph: fn bench_graph(c_int, *const c_int, c_int, *mut c_int) -> c_int;
-        shape: fn bench_shape(*mut c_void, c_int, *const f64, *const f64, c_int, *const c_int, *const f64, *const f64);
         recording: fn bench_recording(*const c_char, c_uint, *mut c_void, *mut Recorded) -> usize;
         begin: fn bench_begin();
         end: fn bench_end();

@@ -6,9 +6,7 @@
 use std::ffi::c_void;
 use std::ptr::null_mut;
 
-use ccd::internals::ffi::{
-    CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
-};
+use ccd::internals::ffi::{CCD_LIMIT, CCD_WANT_POINTS, ccd_penetration_t, ccd_t, ccd_vec3_t};
 use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 
 use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
@@ -227,30 +225,6 @@ fn extension<'a>(
             lower: out.depth_lower,
         })
     }
-}
-
-/// The signed distance, cold, of objects with these margins around them.
-pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64) -> Method<'a> {
-    let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
-    let [one, two] = margins;
-    Method::new("distance", move |_, pair| {
-        let mut state = COLD;
-        // SAFETY: numbers.
-        let mut out: ccd_distance_t = unsafe { zeroed() };
-        // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
-        let code = unsafe {
-            let (query, far) = (libraries.extension.distance, f64::INFINITY);
-            let (a, b, state, want) = (pair.a, pair.b, &mut state, CCD_WANT_POINTS);
-            query(a, b, &settings, one, two, far, state, want, &mut out)
-        };
-        (code == 0 || code == CCD_LIMIT).then_some(Answer {
-            depth: -out.distance,
-            dir: out.normal.v,
-            lower: -out.distance_upper,
-        })
-    })
-    .within(tolerance)
-    .of_ours()
 }
 
 /// It falls short of the published implementation in nothing, but answers with the portal's normal.

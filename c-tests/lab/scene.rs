@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Pairs of shapes in many poses, each with the global minimum of its
-//! penetration depth: read from `c-tests/pairs` or `c-tests/record`, or placed by
-//! whoever knows the truth.
+//! penetration depth: read from `c-tests/pairs` or `c-tests/record`.
 
 use std::ffi::{c_int, c_uint, c_void};
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use ccd::internals::ffi::ccd_vec3_t;
 
@@ -23,90 +22,14 @@ pub struct Pair {
     pub frame: usize,
 }
 
-/// A polytope's mesh, in its own frame.
-#[derive(Clone, Default)]
-pub struct Mesh {
-    pub vertices: Vec<Vector3<f64>>,
-    pub triangles: Vec<[usize; 3]>,
-}
-
 /// Pairs of one kind.
 pub struct Scene {
     pub name: String,
     pub pairs: Vec<Pair>,
     /// Poses follow each other; else they are independent.
     pub motion: usize,
-    /// The two polytopes, where they are.
-    pub meshes: [Mesh; 2],
     /// Where the shapes live.
     _shapes: Vec<u64>,
-    /// What shapes that were placed refer to.
-    _bodies: Vec<Body>,
-}
-
-/// A shape to place: its type number and parameters as in `c-tests/shapes.h`.
-#[derive(Clone, Default)]
-pub struct Form {
-    pub kind: c_int,
-    pub p: [f64; 3],
-    pub mesh: Mesh,
-    /// Support points by climbing over the mesh's edges, not by a scan of its vertices.
-    pub climb: bool,
-}
-
-impl Form {
-    pub fn solid(kind: c_int, p: [f64; 3]) -> Self {
-        Self {
-            kind,
-            p,
-            ..Self::default()
-        }
-    }
-
-    pub fn sphere(radius: f64) -> Self {
-        Self::solid(0, [radius, 0.0, 0.0])
-    }
-
-    /// Along z.
-    pub fn capsule(radius: f64, half: f64) -> Self {
-        Self::solid(1, [radius, half, 0.0])
-    }
-
-    pub fn polytope(mesh: Mesh) -> Self {
-        Self {
-            mesh,
-            ..Self::solid(6, [0.0; 3])
-        }
-    }
-
-    /// The point or segment inside, and the radius around it: all of the shape, where it is
-    /// a sphere or a capsule, and nothing around it else.
-    pub fn core(&self) -> (Self, f64) {
-        match self.kind {
-            0 | 1 => {
-                let mut core = self.clone();
-                core.p[0] = 0.0;
-                (core, self.p[0])
-            }
-            _ => (self.clone(), 0.0),
-        }
-    }
-
-    /// Half length of the core segment, and the radius around it.
-    pub fn rounded(&self) -> (f64, f64) {
-        match self.kind {
-            0 => (0.0, self.p[0]),
-            1 => (self.p[1], self.p[0]),
-            _ => panic!("closed forms are known for spheres and capsules only"),
-        }
-    }
-}
-
-/// Where a shape is: local point x at `rotation * x + position`.
-#[derive(Clone, Copy)]
-pub struct Pose {
-    pub position: Vector3<f64>,
-    pub rotation: UnitQuaternion<f64>,
 }
 
 /// Memory for `n` shapes, and the size of one in words.
@@ -141,59 +64,12 @@ impl Scene {
                     Pair { a, b, truth, frame }
                 })
                 .collect();
-            let meshes = [0, 1].map(|k| {
-                let (mut nv, mut nt) = (0, 0);
-                let (mut v, mut t) = (std::ptr::null(), std::ptr::null());
-                (callbacks.set_mesh)(set, k, &mut nv, &mut v, &mut nt, &mut t);
-                let v = std::slice::from_raw_parts(v, 3 * nv as usize);
-                let t = std::slice::from_raw_parts(t, 3 * nt as usize);
-                let indices = |t: &[c_int]| [0, 1, 2].map(|i| t[i] as usize);
-                Mesh {
-                    vertices: v.chunks_exact(3).map(Vector3::from_column_slice).collect(),
-                    triangles: t.chunks_exact(3).map(indices).collect(),
-                }
-            });
             Self {
                 name: name.to_owned(),
                 pairs,
                 motion,
-                meshes,
                 _shapes: shapes,
-                _bodies: Vec::new(),
             }
-        }
-    }
-
-    /// Shapes at given poses, `motion` steps to a motion.
-    pub fn placed(
-        libraries: &Libraries,
-        name: &str,
-        forms: [&Form; 2],
-        poses: &[([Pose; 2], Truth)],
-        motion: usize,
-    ) -> Self {
-        let callbacks = libraries.callbacks;
-        let bodies = forms.map(|f| Body::of(&callbacks, f));
-        let (mut shapes, words) = room(&callbacks, 2 * poses.len());
-        let base = shapes.as_mut_ptr();
-        let pair = |(i, (pose, truth)): (usize, &([Pose; 2], Truth))| {
-            // SAFETY: room for 2 n shapes; the scene keeps the bodies.
-            let [a, b] = [0, 1].map(|k| unsafe {
-                let s = base.add((2 * i + k) * words).cast();
-                bodies[k].place(&callbacks, s, &pose[k]);
-                s
-            });
-            let (truth, frame) = (*truth, i.checked_rem(motion).unwrap_or(0));
-            Pair { a, b, truth, frame }
-        };
-        let pairs = poses.iter().enumerate().map(pair).collect();
-        Self {
-            name: name.to_owned(),
-            pairs,
-            motion,
-            meshes: forms.map(|f| f.mesh.clone()),
-            _shapes: shapes,
-            _bodies: bodies.into(),
         }
     }
 
@@ -246,59 +122,7 @@ impl Scene {
             name: "recorded".to_owned(),
             pairs,
             motion: 1,
-            meshes: Default::default(),
             _shapes: shapes,
-            _bodies: Vec::new(),
         }
-    }
-}
-
-/// What the callbacks' shapes of one form have in common.
-pub struct Body {
-    kind: c_int,
-    p: [f64; 3],
-    vertices: Vec<f64>,
-    /// The edges to climb over; empty: scan.
-    graph: Vec<c_int>,
-}
-
-impl Body {
-    pub fn of(callbacks: &Callbacks, form: &Form) -> Self {
-        let mesh = &form.mesh;
-        let mut graph = Vec::new();
-        if form.climb {
-            let indices = mesh.triangles.iter().flatten();
-            let indices: Vec<c_int> = indices.map(|&i| i as c_int).collect();
-            let (nv, nt) = (mesh.vertices.len(), mesh.triangles.len());
-            graph = vec![0; nv + 1 + 6 * nt];
-            let (t, room) = (indices.as_ptr(), graph.as_mut_ptr());
-            // SAFETY: indices of the mesh, and room for its graph.
-            let code = unsafe { (callbacks.graph)(nv as c_int, t, nt as c_int, room) };
-            assert_eq!(code, 0, "memory for a mesh's edges");
-        }
-        Self {
-            kind: form.kind,
-            p: form.p,
-            vertices: mesh.vertices.iter().flat_map(|v| [v.x, v.y, v.z]).collect(),
-            graph,
-        }
-    }
-
-    /// Makes a shape at a pose.
-    ///
-    /// # Safety
-    /// `at` has room for a shape, which must not outlive the body.
-    pub unsafe fn place(&self, callbacks: &Callbacks, at: *mut c_void, pose: &Pose) {
-        let rot = pose.rotation.to_rotation_matrix().matrix().transpose();
-        let (p, pos, rot) = (self.p.as_ptr(), pose.position.as_ptr(), rot.as_ptr());
-        let (v, n) = (self.vertices.as_ptr(), (self.vertices.len() / 3) as c_int);
-        let scan = self.graph.is_empty();
-        let graph = if scan {
-            std::ptr::null()
-        } else {
-            self.graph.as_ptr()
-        };
-        // SAFETY: the caller's contract; p[3], pos[3] and rot[9] row by row are read.
-        unsafe { (callbacks.shape)(at, self.kind, p, v, n, graph, pos, rot) };
     }
 }

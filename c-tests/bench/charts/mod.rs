@@ -200,17 +200,26 @@ pub fn redraw(options: &Options) {
         out: options.out.clone(),
         machine: csv::origin(&options.out.join("accuracy.csv")),
     };
-    accuracy::draw(&page, &page.read("accuracy").1);
-    paper::draw(&page, &page.read("vertices").1);
-    let coherence = page.read("coherence").1;
-    coherence::draw(&page, &coherence);
-    let (of, models) = page.read("models");
-    models::draw(&of, &models);
+    let (sets, vertices) = (page.read("accuracy").1, page.read("vertices").1);
+    accuracy::draw(&page, &sets);
+    paper::draw(&page, &vertices);
+    let (of, coherence) = page.read("coherence");
+    coherence::draw(&of, &coherence);
     let (of, position) = page.read("position");
     position::draw(&of, &position);
-    let split = page.read("instructions").1;
-    let (paper, recorded) = (page.read("paper").1, page.read("recorded").1);
-    results::write(&page, &paper, &coherence, &recorded, &split);
+    let models = page.read("models").1;
+    let tables = [
+        ("MACHINE", page.machine.clone()),
+        ("FASTER", results::times_faster(&sets)),
+        ("COHERENCE", results::coherent(&coherence)),
+        ("RECORDED", results::recorded(&page.read("recorded").1)),
+        ("MODELS", results::modelled(&models, &vertices, &sets)),
+        (
+            "INSTRUCTIONS",
+            results::instructions(&page.read("instructions").1),
+        ),
+    ];
+    results::write(&page, &tables);
 }
 
 pub fn run(options: &Options) {
@@ -247,9 +256,9 @@ pub fn run(options: &Options) {
         )*};
     }
     measure!(
-        "accuracy": accuracy::measure, "paper": paper::tables, "vertices": paper::vertices,
+        "accuracy": accuracy::measure, "vertices": paper::vertices,
         "coherence": coherence::measure, "recorded": coherence::recorded,
-        "models": models::measure_all, "position": position::measure,
+        "models": models::measure, "position": position::measure,
         "instructions": instructions::measure
     );
     redraw(options);
