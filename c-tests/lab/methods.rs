@@ -18,8 +18,6 @@ pub struct Answer {
     pub depth: f64,
     /// The way obj2 moves.
     pub dir: [f64; 3],
-    /// Proven lower bound; 0 where none.
-    pub lower: f64,
 }
 
 /// Where a search starts.
@@ -123,8 +121,8 @@ pub fn classic(
         let pos = if needs_pos { &raw mut pos } else { null_mut() };
         // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
         let code = unsafe { query(pair.a, pair.b, &settings, &mut depth, &mut dir, pos) };
-        let (dir, lower) = (dir.v, 0.0);
-        (code == 0).then_some(Answer { depth, dir, lower })
+        let dir = dir.v;
+        (code == 0).then_some(Answer { depth, dir })
     }
 }
 
@@ -222,7 +220,6 @@ fn extension<'a>(
         (code == 0 || code == CCD_LIMIT).then_some(Answer {
             depth: out.depth,
             dir: out.dir.v,
-            lower: out.depth_lower,
         })
     }
 }
@@ -259,7 +256,6 @@ fn paper<'a>(
         Some(Answer {
             depth: found.depth,
             dir: found.dir.into(),
-            lower: 0.0,
         })
     }
 }

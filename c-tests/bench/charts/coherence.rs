@@ -4,8 +4,7 @@
 //! What memory is worth: the motions of the pair sets, by growing steps a frame, and
 //! the recorded contact sequence of a simulation.
 
-use super::figure::{self, Curve, Panel, Unit};
-use super::{Bench, COUNTED, Page, SUPPORTS};
+use super::Bench;
 use crate::lab::measure::{self, Row};
 use crate::lab::methods::{self, Ask, Start};
 use crate::lab::recorded::MOTIONS;
@@ -47,31 +46,6 @@ fn roster<'a>(bench: &Bench<'a>) -> Vec<methods::Method<'a>> {
     ];
     let of = |(ask, start)| methods::of(bench.libraries, ask, start, 1e-6);
     asked.map(of).into()
-}
-
-/// Ours without a state as dashes, beside the same query with one.
-fn cold_dashed(mut curves: Vec<Curve>) -> Vec<Curve> {
-    for curve in &mut curves {
-        curve.look.dashed = curve.look.bold && !curve.label.ends_with("warm");
-    }
-    curves
-}
-
-pub fn draw(page: &Page, all: &[Row]) {
-    let panel = |set: &str| {
-        let curves = super::curves(all.iter().filter(|r| r.set == set), |r| r.x, COUNTED);
-        let x = ("motion per frame", Unit::Degrees);
-        Panel::new(&super::kind(set), x, SUPPORTS, cold_dashed(curves))
-    };
-    let panels: Vec<Panel> = super::sets(all).into_iter().map(panel).collect();
-    let title = "Support points of a query of a contact that moves";
-    figure::grid(
-        &page.file("coherence.svg"),
-        title,
-        3,
-        &panels,
-        &[page.footer()],
-    );
 }
 
 /// The recorded contact sequence: queries in the order of their pair's frames.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The charts: speed against accuracy, the paper redone, coherence, models and
-//! tolerances, and where the time goes; each as CSV and as a picture.
+//! The charts: speed against accuracy, the paper redone, coherence, models, and where the
+//! time goes; each as CSV, and as a picture or a table.
 
 pub mod accuracy;
 pub mod coherence;
@@ -92,8 +92,7 @@ impl Bench<'_> {
 }
 
 /// A method's look, the same in every picture. Ours are bold, a colour a query: MPR blue,
-/// local amber, minimum green; libccd's are red, the paper's purple, the rest grey. What
-/// starts cold is dashed where the same query starts warm beside it.
+/// local amber, minimum green; libccd's are red, the paper's purple, the rest grey.
 pub fn look(row: &Row) -> Look {
     let (colour, mark, bold) = match (row.method.as_str(), row.start.as_str()) {
         ("local", "45") => ((244, 170, 40), Mark::Ring, true),
@@ -203,15 +202,13 @@ pub fn redraw(options: &Options) {
     let (sets, vertices) = (page.read("accuracy").1, page.read("vertices").1);
     accuracy::draw(&page, &sets);
     paper::draw(&page, &vertices);
-    let (of, coherence) = page.read("coherence");
-    coherence::draw(&of, &coherence);
     let (of, position) = page.read("position");
     position::draw(&of, &position);
     let models = page.read("models").1;
     let tables = [
         ("MACHINE", page.machine.clone()),
         ("FASTER", results::times_faster(&sets)),
-        ("COHERENCE", results::coherent(&coherence)),
+        ("COHERENCE", results::coherent(&page.read("coherence").1)),
         ("RECORDED", results::recorded(&page.read("recorded").1)),
         ("MODELS", results::modelled(&models, &vertices, &sets)),
         (
