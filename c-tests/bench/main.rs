@@ -3,7 +3,7 @@
 
 //! The benchmark: `cargo bench -p charts -- charts` measures supports, times and errors beside
 //! system libccd's and other libraries'; `-- instructions` prints those of each query,
-//! beside libccd's and Bullet's; `-- record` writes the support counts of every pair set.
+//! beside libccd's; `-- record` writes the support counts of every pair set.
 
 mod charts;
 #[path = "../harness/mod.rs"]
@@ -11,7 +11,6 @@ mod harness;
 #[path = "../lab/mod.rs"]
 mod lab;
 mod peers;
-mod poses;
 mod progress;
 
 use clap::{Parser, Subcommand};

@@ -60,7 +60,6 @@ pub fn parry<'a>(libraries: &'a Libraries) -> Method<'a> {
             GJKResult::ClosestPoints(p, q, n) => Some(Answer {
                 depth: (p - q).dot(n),
                 dir: n.into(),
-                lower: 0.0,
             }),
             _ => None,
         }

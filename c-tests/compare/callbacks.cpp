@@ -8,7 +8,6 @@
  *   plain     500 queries of all calls
  *   throw     the callbacks throw at their n-th call of a query, n from 1 to 40
  *   later     they throw at a call that only the tool's own questions come to
- *   tired     they throw at all calls after 300 a query, of which the program needs 40
  *   jump      as throw, by longjmp
  *   jump-later as later, by longjmp
  *   within    the callbacks jump and throw within themselves
@@ -68,7 +67,7 @@ static void ask(const shape_t *a, const shape_t *b, int call, int *hit, double *
 static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     shape_t *s = (shape_t *)obj;
-    if (calls_left > 0 ? --calls_left == 0 : way == "tired")
+    if (calls_left > 0 && --calls_left == 0)
         leave();
     shape_support(s, dir, out);
     if (way == "within")
@@ -137,8 +136,6 @@ static void query(int k, int calls, seen_by_program *out)
     /* a query of MPR's needs less than this; four of them, which the tool asks, more */
     if (way == "later" || way == "jump-later")
         calls_left = 70;
-    if (way == "tired")
-        calls_left = 300;
     ask(&a, &b, k % calls, &hit, &depth);
     out->hits += hit;
     out->depth += depth;

@@ -16,9 +16,7 @@
 typedef struct {
     const char *title; /* what was answered when it was kept, and by whom */
     int call;          /* 0 ccdMPRPenetration, 1 ccdMPRIntersect, 2 ccdGJKPenetration, 3 ccdGJKSeparate, 4 ccdGJKIntersect */
-    /* 3: the objects are the hulls of points. 6: a direction and the point that was answered,
-     * one after another; what is asked is looked up. */
-    int columns, rows[2];
+    int rows[2]; /* each a direction and the point that was answered, as they were asked */
     const double *numbers[2];
     int centred;
     double centre[2][3], first_dir[3];
@@ -33,54 +31,31 @@ typedef struct {
     int which, next;
 } case_object_t;
 
-/* The farthest of the points that are known of an object; of several the first. */
-static inline const double *case_farthest(const case_t *c, int which, const ccd_vec3_t *dir)
+/* What was answered the next time that this direction was asked; where it was not, the farthest
+ * of all points. */
+static inline void case_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *point)
 {
-    const double *best = c->numbers[which] + c->columns - 3;
-    double most = -HUGE_VAL;
-    int i;
-    for (i = 0; i < c->rows[which]; i++) {
-        const double *p = c->numbers[which] + c->columns * (i + 1) - 3;
-        const double h = p[0] * (double)dir->v[0] + p[1] * (double)dir->v[1] + p[2] * (double)dir->v[2];
-        if (h > most) {
-            most = h;
-            best = p;
-        }
-    }
-    return best;
-}
-
-/* What was answered the next time that this direction was asked; where it was not, what was
- * answered in the nearest one. */
-static inline const double *case_recorded(case_object_t *o, const ccd_vec3_t *dir)
-{
-    const case_t *c = o->of;
-    const int n = c->rows[o->which];
-    const double *nearest = c->numbers[o->which];
+    case_object_t *o = (case_object_t *)obj;
+    const int n = o->of->rows[o->which];
+    const double *found = o->of->numbers[o->which];
     double most = -HUGE_VAL;
     int i;
     for (i = 0; i < n; i++) {
         const int row = (o->next + i) % n;
-        const double *p = c->numbers[o->which] + 6 * row;
+        const double *p = o->of->numbers[o->which] + 6 * row;
         const double x = (double)dir->v[0], y = (double)dir->v[1], z = (double)dir->v[2];
-        const double near = (p[0] * x + p[1] * y + p[2] * z) / sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        const double h = p[3] * x + p[4] * y + p[5] * z;
         if (p[0] == x && p[1] == y && p[2] == z) {
             o->next = row + 1;
-            return p + 3;
+            found = p;
+            break;
         }
-        if (near > most) {
-            most = near;
-            nearest = p;
+        if (h > most) {
+            most = h;
+            found = p;
         }
     }
-    return nearest + 3;
-}
-
-static inline void case_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *point)
-{
-    case_object_t *o = (case_object_t *)obj;
-    const double *p = o->of->columns == 3 ? case_farthest(o->of, o->which, dir) : case_recorded(o, dir);
-    ccdVec3Set(point, (ccd_real_t)p[0], (ccd_real_t)p[1], (ccd_real_t)p[2]);
+    ccdVec3Set(point, (ccd_real_t)found[3], (ccd_real_t)found[4], (ccd_real_t)found[5]);
 }
 
 static inline void case_center(const void *obj, ccd_vec3_t *center)

@@ -299,16 +299,3 @@ fn kept_cases_replay() {
         "{said}"
     );
 }
-
-/// Objects of which no hull can be had: the answers themselves are played back.
-#[test]
-fn answers_are_played_back_where_points_do_not_do() {
-    let dir = tempfile::tempdir().expect("a directory");
-    let keep = dir.path().to_str().expect("a path");
-    let (_, screen) = screen("tired", &["--every", "1", "--keep", keep]);
-    let path = dir.path().join("libccd-1.c");
-    let text = std::fs::read_to_string(&path).expect(&screen);
-    assert!(text.contains("direction by direction"), "{text}");
-    let case = watchable(Program::c("case").source(&path));
-    assert_eq!(case.run_to_end([""; 0]).0.code(), Some(1));
-}

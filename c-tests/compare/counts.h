@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What one watched process counts. It lies in a file that the process maps, so that it is
- * there whichever way the process ends; every field is counted by atomic additions, so that
- * threads and forked children may count at once. Lengths are in picometres, times in
+/* What the watched processes of a run count. It lies in a file that each maps, so that it is
+ * there whichever way they end; every field is counted by atomic additions, so that threads,
+ * children and other programs may count at once. Lengths are in picometres, times in
  * nanoseconds: whole numbers, which add up in any order. */
 
 #ifndef COMPARE_COUNTS_H
@@ -12,8 +12,6 @@
 #include "verdict.h"
 
 #include <stdint.h>
-
-#define COMPARE_MAGIC UINT64_C(0x3130637063646363) /* "ccdcpc01" */
 
 enum { COMPARE_PENETRATION_MPR, COMPARE_INTERSECT_MPR, COMPARE_PENETRATION_GJK, COMPARE_SEPARATE, COMPARE_INTERSECT_GJK, COMPARE_CALLS };
 enum { COMPARE_THEIRS, COMPARE_OURS, COMPARE_SIDES };
@@ -44,7 +42,9 @@ typedef struct {
     uint64_t found, gone, both, deeper, turned;
 } compare_call_t;
 
-/* Kept cases, of each library. */
+static const char *const COMPARE_SIDE_NAME[COMPARE_SIDES] = { "libccd", "warmccd" };
+
+/* Kept cases, of each library: SIDE-NUMBER.c. */
 enum { COMPARE_KEPT = 5 };
 typedef struct {
     uint64_t used, verdict;
@@ -53,15 +53,15 @@ typedef struct {
 } compare_kept_t;
 
 typedef struct {
-    uint64_t magic, process;
-    char program[256];
+    uint64_t processes;
+    char program[256]; /* of the first */
     char theirs[512], ours[512]; /* which libraries */
     uint64_t base;               /* whose answers the program goes on with */
     compare_call_t call[COMPARE_CALLS];
     uint64_t raw_supports; /* __ccdSupport, which FCL's own GJK calls */
     uint64_t callback_pairs, callback_nanoseconds; /* support1 and support2 alone */
     uint64_t process_nanoseconds, watch_nanoseconds; /* processor time of all, and of it the tool's */
-    uint64_t keeping; /* a thread is at it */
+    uint64_t keeping; /* someone is at it */
     compare_kept_t kept[COMPARE_SIDES][COMPARE_KEPT];
 } compare_counts_t;
 

@@ -10,6 +10,8 @@
 #include "compare/ask.h"
 #include "compare/guard.h"
 
+#include <time.h>
+
 typedef struct {
     compare_counts_t *counts;
     library_t library[COMPARE_SIDES];
@@ -54,6 +56,9 @@ int sample_has_depth(const query_t *q, const answer_t *a);
 void keep_case(const compare_t *compare, const sample_t *s, int side);
 
 void seen_clear(seen_t *seen);
+
+/* Nanoseconds. */
+uint64_t clock_now(clockid_t id);
 
 /* Atomic; n of the counts' own unit. */
 void count_add(uint64_t *to, uint64_t n);

@@ -1,23 +1,19 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The screen at the end: what the watched processes counted, added up.
+/* The screen at the end: what the watched processes counted.
  *
  * usage: screen DIR EVERY EXIT KEPT   for people; KEPT: where cases were kept, or empty
  *        screen DIR fields            `watched key value key value ...`, for the tables of swap/ */
 
-#define _POSIX_C_SOURCE 200809L
 #include "compare/counts.h"
 
-#include <dirent.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const double PICO = 1e-12;
 
 static compare_counts_t all;
-static int processes;
 
 /* Both are made of 64-bit numbers alone; the largest error alone is no sum. */
 static void add_call(compare_call_t *to, const compare_call_t *from)
@@ -30,64 +26,6 @@ static void add_call(compare_call_t *to, const compare_call_t *from)
         ((uint64_t *)to)[i] += ((const uint64_t *)from)[i];
     for (i = 0; i < COMPARE_SIDES; i++)
         to->side[i].error_max = most[i];
-}
-
-/* A kept case, and the file that its process gave it. */
-typedef struct {
-    compare_kept_t kept;
-    char file[64];
-} kept_t;
-static kept_t kept[COMPARE_SIDES][1024];
-static int kept_count[COMPARE_SIDES];
-
-static void add_kept(const compare_counts_t *one)
-{
-    int side, i;
-    for (side = 0; side < COMPARE_SIDES; side++)
-        for (i = 0; i < COMPARE_KEPT && kept_count[side] < 1024; i++)
-            if (one->kept[side][i].used) {
-                kept_t *k = &kept[side][kept_count[side]++];
-                k->kept = one->kept[side][i];
-                snprintf(k->file, sizeof k->file, ".%llu-%d-%d.c", (unsigned long long)one->process, side, i);
-            }
-}
-
-static void add_process(const compare_counts_t *one)
-{
-    int i;
-    add_kept(one);
-    if (processes++ == 0) {
-        all = *one;
-        return;
-    }
-    for (i = 0; i < COMPARE_CALLS; i++)
-        add_call(&all.call[i], &one->call[i]);
-    all.raw_supports += one->raw_supports;
-    all.callback_pairs += one->callback_pairs;
-    all.callback_nanoseconds += one->callback_nanoseconds;
-    all.process_nanoseconds += one->process_nanoseconds;
-    all.watch_nanoseconds += one->watch_nanoseconds;
-}
-
-static void read_all(const char *dir)
-{
-    static compare_counts_t one;
-    DIR *d = opendir(dir);
-    const struct dirent *entry;
-    while (d && (entry = readdir(d))) {
-        char path[4096];
-        FILE *file;
-        if (!strstr(entry->d_name, ".counts"))
-            continue;
-        snprintf(path, sizeof path, "%s/%s", dir, entry->d_name);
-        file = fopen(path, "rb");
-        if (file && fread(&one, sizeof one, 1, file) == 1 && one.magic == COMPARE_MAGIC)
-            add_process(&one);
-        if (file)
-            fclose(file);
-    }
-    if (d)
-        closedir(d);
 }
 
 static double part(uint64_t n, uint64_t of) { return of ? (double)n / (double)of : 0; }
@@ -234,30 +172,16 @@ static void print_change(const compare_call_t *sum)
                thousands(theirs->verdict[VERDICT_BROKEN]));
 }
 
-static int worse(const void *a, const void *b)
+static void print_kept(const char *dir)
 {
-    const double x = ((const kept_t *)a)->kept.score, y = ((const kept_t *)b)->kept.score;
-    return (x < y) - (x > y);
-}
-
-/* The worst of all processes get their names, the others go. */
-static void name_kept(const char *dir)
-{
-    static const char *const name[COMPARE_SIDES] = { "libccd", "warmccd" };
-    int side, i;
-    for (side = 0; side < COMPARE_SIDES; side++) {
-        qsort(kept[side], (size_t)kept_count[side], sizeof kept[side][0], worse);
-        for (i = 0; i < kept_count[side]; i++) {
-            char from[4096], to[4096];
-            snprintf(from, sizeof from, "%s/%s", dir, kept[side][i].file);
-            snprintf(to, sizeof to, "%s/%s-%d.c", dir, name[side], i + 1);
-            if (i >= COMPARE_KEPT)
-                remove(from);
-            else if (rename(from, to) == 0)
-                printf("%s %s\n", to, kept[side][i].kept.title);
-        }
-    }
-    if (kept_count[0] + kept_count[1] == 0)
+    int side, i, none = 1;
+    for (side = 0; side < COMPARE_SIDES; side++)
+        for (i = 0; i < COMPARE_KEPT; i++)
+            if (all.kept[side][i].used) {
+                printf("%s/%s-%d.c %s\n", dir, COMPARE_SIDE_NAME[side], i + 1, all.kept[side][i].title);
+                none = 0;
+            }
+    if (none)
         printf("No wrong answer to keep.\n");
 }
 
@@ -271,8 +195,8 @@ static void print_screen(const char *every, const char *code)
         printf("one query in %s judged", every);
     else
         printf("none was judged");
-    if (processes > 1)
-        printf("; %d processes", processes);
+    if (all.processes > 1)
+        printf("; %d processes", (int)all.processes);
     printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);
     print_calls(&sum);
     for (i = 0; i < COMPARE_CALLS; i++)
@@ -318,17 +242,24 @@ static void print_fields(void)
 /* Exit code 3: nothing was asked. */
 int main(int argc, char **argv)
 {
+    char path[4096];
+    FILE *file;
     if (argc != 3 && argc != 5) {
         fprintf(stderr, "usage: screen DIR EVERY EXIT KEPT | screen DIR fields\n");
         return 2;
     }
-    read_all(argv[1]);
+    snprintf(path, sizeof path, "%s/counts", argv[1]);
+    file = fopen(path, "rb");
+    if (!file || fread(&all, sizeof all, 1, file) != 1)
+        all.processes = 0;
+    if (file)
+        fclose(file);
     if (argc == 3)
         print_fields();
-    else if (processes) {
+    else if (all.processes) {
         print_screen(argv[2], argv[3]);
         if (*argv[4])
-            name_kept(argv[4]);
+            print_kept(argv[4]);
     }
-    return processes ? 0 : 3;
+    return all.processes ? 0 : 3;
 }

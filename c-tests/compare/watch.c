@@ -29,7 +29,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <time.h>
 #include <unistd.h>
 
 #define EXPORT __attribute__((visibility("default")))
@@ -53,16 +52,14 @@ static void give_up(const char *what)
     exit(125);
 }
 
-/* A file of this process's own: it may have been another program's before exec. */
+/* The file that all processes of the run share. */
 static compare_counts_t *counts_map(const char *dir)
 {
     char path[4096];
     void *mapped;
-    int file = -1, i;
-    for (i = 0; file < 0 && i < 1000; i++) {
-        snprintf(path, sizeof path, "%s/%ld-%d.counts", dir, (long)getpid(), i);
-        file = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    }
+    int file;
+    snprintf(path, sizeof path, "%s/counts", dir);
+    file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (file < 0 || ftruncate(file, sizeof(compare_counts_t)) != 0)
         give_up(path);
     mapped = mmap(NULL, sizeof(compare_counts_t), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
@@ -90,6 +87,10 @@ static void name_libraries(compare_counts_t *c)
     snprintf(c->program, sizeof c->program, "%s", program_invocation_name);
 }
 
+static uint64_t time_told; /* of this process's */
+
+static void forked(void) { time_told = 0; }
+
 static void start(void)
 {
     const char *const dir = getenv("CCD_COMPARE_DIR"), *const theirs = getenv("CCD_COMPARE_THEIRS"), *const ours = getenv("CCD_COMPARE_OURS");
@@ -109,22 +110,17 @@ static void start(void)
     every = strtoull(wanted("CCD_COMPARE_EVERY", "1"), NULL, 10);
     find_hook("compare_audit", &ask_audit);
     find_hook("compare_answered", &answered);
+    pthread_atfork(NULL, NULL, forked);
+    if (__atomic_fetch_add(&compare.counts->processes, 1, __ATOMIC_RELAXED))
+        return;
     name_libraries(compare.counts);
     compare.counts->base = (uint64_t)compare.base;
-    compare.counts->process = (uint64_t)getpid();
-    compare.counts->magic = COMPARE_MAGIC;
-}
-
-static uint64_t processor_time(clockid_t of)
-{
-    struct timespec t;
-    clock_gettime(of, &t);
-    return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
 static void count_process_time(void)
 {
-    __atomic_store_n(&compare.counts->process_nanoseconds, processor_time(CLOCK_PROCESS_CPUTIME_ID), __ATOMIC_RELAXED);
+    const uint64_t now = clock_now(CLOCK_PROCESS_CPUTIME_ID), told = __atomic_exchange_n(&time_told, now, __ATOMIC_RELAXED);
+    count_add(&compare.counts->process_nanoseconds, now > told ? now - told : 0);
 }
 
 __attribute__((destructor)) static void end(void)
@@ -189,13 +185,13 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
         answered(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
     if (!is_sampled(number))
         return;
-    start = processor_time(CLOCK_THREAD_CPUTIME_ID);
+    start = clock_now(CLOCK_THREAD_CPUTIME_ID);
     read_outputs(q, code, depth, dir, &own);
     if (q->call == COMPARE_SEPARATE && own.hit && dir)
         answer_by_length(&own);
     sample_query(&compare, q, &own);
     count_process_time();
-    count_add(&compare.counts->watch_nanoseconds, processor_time(CLOCK_THREAD_CPUTIME_ID) - start);
+    count_add(&compare.counts->watch_nanoseconds, clock_now(CLOCK_THREAD_CPUTIME_ID) - start);
 }
 
 /* Through wrappers, for an audit of every point. */

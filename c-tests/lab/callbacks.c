@@ -18,10 +18,10 @@ unsigned long bench_calls(const shape_t *s) { return s->calls; }
 
 /* A pair set, with how many poses and steps of one motion (0: independent poses); NULL where there
  * is none. It stays: shapes refer to its vertices. */
-pair_set_t *bench_set(const char *path, int climb, int *n, int *trajectory)
+pair_set_t *bench_set(const char *path, int *n, int *trajectory)
 {
     pair_set_t *set = (pair_set_t *)malloc(sizeof *set);
-    if (!set || pair_set_read(path, set) != 0 || (climb && pair_set_climb(set) != 0))
+    if (!set || pair_set_read(path, set) != 0)
         return NULL;
     *n = set->n;
     *trajectory = set->trajectory;
@@ -33,57 +33,10 @@ void bench_set_pose(const pair_set_t *set, int i, shape_t *a, shape_t *b, pair_t
     pair_set_pose(set, i, a, b, truth);
 }
 
-/* The mesh of shape k (0 or 1) where it is a polytope; else no vertices. */
-void bench_set_mesh(const pair_set_t *set, int k, int *nverts, const double **verts, int *ntris, const int **tris)
-{
-    *nverts = k ? set->b.nverts : set->a.nverts;
-    *verts = set->verts[k];
-    *ntris = set->ntris[k];
-    *tris = set->tris[k];
-}
-
-/* The edges of a mesh for climbing, into nverts + 1 + 6 * ntris ints. */
-int bench_graph(int nverts, const int *tris, int ntris, int *graph)
-{
-    int *first, *neighbours;
-    if (shape_edge_graph(nverts, tris, ntris, &first, &neighbours) != 0)
-        return -1;
-    memcpy(graph, first, sizeof(int) * ((size_t)nverts + 1 + 6 * (size_t)ntris));
-    free(first);
-    return 0;
-}
-
-/* A shape at a pose; verts (3 * nverts) and graph (NULL: scan) must outlive it. */
-void bench_shape(shape_t *s, int type, const double p[3], const double *verts, int nverts, const int *graph,
-                 const double pos[3], const double rot[9])
-{
-    *s = type == SHAPE_POLYTOPE ? shape_polytope(verts, nverts) : shape_make(type, p[0], p[1], p[2]);
-    if (graph) {
-        s->first = graph;
-        s->neighbours = graph + nverts + 1;
-    }
-    shape_move(s, pos[0], pos[1], pos[2]);
-    shape_turn(s, rot);
-}
-
 /* Where a profiler is told to begin and to end a part of its output. */
 __attribute__((noinline)) void bench_begin(void) { __asm__ volatile(""); }
 
 __attribute__((noinline)) void bench_end(void) { __asm__ volatile(""); }
-
-/* Where a shape is, and what it is. */
-typedef struct {
-    double pos[3], rot[9], p[3];
-    int type;
-} bench_placed_t;
-
-bench_placed_t bench_placed(const shape_t *s)
-{
-    const double *r = s->rot;
-    const bench_placed_t out = {{s->pos[0], s->pos[1], s->pos[2]}, {r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]},
-                                {s->p[0], s->p[1], s->p[2]}, s->type};
-    return out;
-}
 
 typedef struct {
     unsigned a, b, frame;

@@ -16,9 +16,7 @@ use std::mem::MaybeUninit;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use ccd::internals::ffi::{
-    CCD_WARM_REALS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t,
-};
+use ccd::internals::ffi::{CCD_WARM_REALS, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
 
 use crate::harness;
@@ -89,7 +87,6 @@ functions! {
         mpr_intersect: fn ccdMPRIntersectWarm(Object, Object, Settings, State) -> c_int;
         local: fn ccdPenetrationLocal(Object, Object, Settings, State, c_uint, Full) -> c_int;
         minimum: fn ccdPenetrationProven(Object, Object, Settings, State, c_uint, Full) -> c_int;
-        distance: fn ccdSignedDistance(Object, Object, Settings, f64, f64, f64, State, c_uint, *mut ccd_distance_t) -> c_int;
     }
 }
 
@@ -104,16 +101,6 @@ pub struct Truth {
     pub init25: [f64; 3],
     pub init45: [f64; 3],
     pub cold: [f64; 3],
-}
-
-/// `bench_placed_t` of `callbacks.c`: where a shape is, its rotation row by row, and what it is.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct Placed {
-    pub position: [f64; 3],
-    pub rotation: [f64; 9],
-    pub p: [f64; 3],
-    pub kind: c_int,
 }
 
 /// `bench_recorded_t` of `callbacks.c`: two bodies in a frame, and bounds on their signed depth.
@@ -134,12 +121,8 @@ functions! {
         center: fn bench_center(Object, Point);
         shape_size: fn bench_shape_size() -> usize;
         calls: fn bench_calls(Object) -> c_ulong;
-        set: fn bench_set(*const c_char, c_int, *mut c_int, *mut c_int) -> Object;
+        set: fn bench_set(*const c_char, *mut c_int, *mut c_int) -> Object;
         set_pose: fn bench_set_pose(Object, c_int, *mut c_void, *mut c_void, *mut Truth);
-        set_mesh: fn bench_set_mesh(Object, c_int, *mut c_int, *mut *const f64, *mut c_int, *mut *const c_int);
-        graph: fn bench_graph(c_int, *const c_int, c_int, *mut c_int) -> c_int;
-        shape: fn bench_shape(*mut c_void, c_int, *const f64, *const f64, c_int, *const c_int, *const f64, *const f64);
-        placed: fn bench_placed(Object) -> Placed;
         recording: fn bench_recording(*const c_char, c_uint, *mut c_void, *mut Recorded) -> usize;
         begin: fn bench_begin();
         end: fn bench_end();

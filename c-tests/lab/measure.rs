@@ -33,8 +33,8 @@ pub struct Row {
     pub queries: usize,
     /// Of these, overlaps deeper than 1 nm: the ones that are judged.
     pub overlaps: usize,
-    /// Support points of D per query; none for a method that does not use our callbacks.
-    pub supports: Option<f64>,
+    /// Support points of D per query.
+    pub supports: f64,
     /// Mean time of a query, of medians over repetitions; none when not timed.
     pub ns: Option<f64>,
     /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
@@ -50,10 +50,6 @@ pub struct Row {
     pub missed: f64,
     /// Largest h(dir) - depth: how far from separated the shapes may be left.
     pub unsound: f64,
-    /// Mean angle to the true direction over the answers within 1 mm (milliradian).
-    pub direction: f64,
-    /// Largest depth - depth_lower, where a bound was proven.
-    pub gap: Option<f64>,
     /// Widest uncertainty of the truth itself.
     pub truth_gap: f64,
 }
@@ -101,7 +97,7 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         // SAFETY: shapes of the scene.
         unsafe { (libraries.callbacks.calls)(pair.a) + (libraries.callbacks.calls)(pair.b) }
     };
-    let (mut errors, mut near, mut angles, mut gaps) = (vec![], vec![], vec![], vec![]);
+    let (mut errors, mut near) = (vec![], vec![]);
     let (mut unsound, mut missed, mut nonminimal, mut shallow) = (vec![], 0, 0, 0);
     let (mut queries, mut hits, mut supports, mut truth_gap) = (0_usize, 0_usize, 0, 0.0_f64);
     for pair in &scene.pairs {
@@ -128,16 +124,11 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         let off = answer.depth - pair.truth.depth;
         errors.push(off.abs());
         unsound.push(support_value(libraries, pair, &answer.dir) - answer.depth);
-        if answer.lower > 0.0 {
-            gaps.push(answer.depth - answer.lower);
-        }
         // Written so that NaN counts as non-minimal.
         if off < -1e-3 {
             shallow += 1;
         } else if off <= 1e-3 {
             near.push(off.abs());
-            let (n, t) = (Vector3::from(answer.dir), Vector3::from(pair.truth.normal));
-            angles.push(n.cross(&t).norm().atan2(n.dot(&t)) * 1e3);
         } else {
             nonminimal += 1;
         }
@@ -152,9 +143,7 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         x: None,
         queries,
         overlaps: hits,
-        supports: method
-            .uses_callbacks
-            .then(|| supports as f64 / 2.0 / queries as f64),
+        supports: supports as f64 / 2.0 / queries as f64,
         ns: None,
         mean_error: mean(&errors),
         max_error: largest(&errors),
@@ -163,8 +152,6 @@ pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         shallow: percent(shallow),
         missed: percent(missed),
         unsound: largest(&unsound),
-        direction: mean(&angles),
-        gap: (!gaps.is_empty()).then(|| largest(&gaps)),
         truth_gap,
     }
 }

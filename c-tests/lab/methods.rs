@@ -6,12 +6,9 @@
 use std::ffi::c_void;
 use std::ptr::null_mut;
 
-use ccd::internals::ffi::{
-    CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t,
-};
+use ccd::internals::ffi::{CCD_LIMIT, CCD_WANT_POINTS, ccd_penetration_t, ccd_t, ccd_vec3_t};
 use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 
-use super::deep::{Deep, Polytope};
 use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
 use super::scene::{Pair, Scene};
 
@@ -21,8 +18,6 @@ pub struct Answer {
     pub depth: f64,
     /// The way obj2 moves.
     pub dir: [f64; 3],
-    /// Proven lower bound; 0 where none.
-    pub lower: f64,
 }
 
 /// Where a search starts.
@@ -75,8 +70,6 @@ pub struct Method<'a> {
     pub tolerance: Option<f64>,
     /// A call of this library's interface.
     pub ours: bool,
-    /// Asks through the C callbacks, so its supports count.
-    pub uses_callbacks: bool,
     run: Run<'a>,
 }
 
@@ -87,7 +80,6 @@ impl<'a> Method<'a> {
             start: Start::None,
             tolerance: None,
             ours: false,
-            uses_callbacks: true,
             run: Box::new(run),
         }
     }
@@ -104,11 +96,6 @@ impl<'a> Method<'a> {
 
     pub fn of_ours(mut self) -> Self {
         self.ours = true;
-        self
-    }
-
-    pub fn without_callbacks(mut self) -> Self {
-        self.uses_callbacks = false;
         self
     }
 
@@ -134,8 +121,8 @@ pub fn classic(
         let pos = if needs_pos { &raw mut pos } else { null_mut() };
         // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
         let code = unsafe { query(pair.a, pair.b, &settings, &mut depth, &mut dir, pos) };
-        let (dir, lower) = (dir.v, 0.0);
-        (code == 0).then_some(Answer { depth, dir, lower })
+        let dir = dir.v;
+        (code == 0).then_some(Answer { depth, dir })
     }
 }
 
@@ -233,33 +220,8 @@ fn extension<'a>(
         (code == 0 || code == CCD_LIMIT).then_some(Answer {
             depth: out.depth,
             dir: out.dir.v,
-            lower: out.depth_lower,
         })
     }
-}
-
-/// The signed distance, cold, of objects with these margins around them.
-pub fn distance<'a>(libraries: &'a Libraries, margins: [f64; 2], tolerance: f64) -> Method<'a> {
-    let settings = libraries.ours.settings(&libraries.callbacks, tolerance);
-    let [one, two] = margins;
-    Method::new("distance", move |_, pair| {
-        let mut state = COLD;
-        // SAFETY: numbers.
-        let mut out: ccd_distance_t = unsafe { zeroed() };
-        // SAFETY: a query of <ccd/warm.h> over the callbacks' own shapes.
-        let code = unsafe {
-            let (query, far) = (libraries.extension.distance, f64::INFINITY);
-            let (a, b, state, want) = (pair.a, pair.b, &mut state, CCD_WANT_POINTS);
-            query(a, b, &settings, one, two, far, state, want, &mut out)
-        };
-        (code == 0 || code == CCD_LIMIT).then_some(Answer {
-            depth: -out.distance,
-            dir: out.normal.v,
-            lower: -out.distance_upper,
-        })
-    })
-    .within(tolerance)
-    .of_ours()
 }
 
 /// It falls short of the published implementation in nothing, but answers with the portal's normal.
@@ -294,30 +256,6 @@ fn paper<'a>(
         Some(Answer {
             depth: found.depth,
             dir: found.dir.into(),
-            lower: 0.0,
         })
     }
-}
-
-/// DEEP, where both shapes of the scene are polytopes. It walks over the meshes
-/// and calls no support function.
-pub fn deep<'a>(libraries: &'a Libraries, scene: &Scene, start: Start) -> Option<Method<'a>> {
-    if scene.meshes.iter().any(|m| m.triangles.is_empty()) {
-        return None;
-    }
-    let [a, b] = [0, 1].map(|k| Polytope::new(&scene.meshes[k]));
-    let mut deep = Deep::default();
-    let run = move |_: &Scene, pair: &Pair| {
-        let ((ra, pa), (rb, pb)) = (pair.pose(libraries, 0), pair.pose(libraries, 1));
-        let local = ra.transpose();
-        let from = start.direction(&pair.truth).unwrap_or(pair.truth.cold);
-        let from = local * Vec3::from(from);
-        let (depth, n) = deep.penetration(&a, &b, local * rb, local * (pb - pa), from)?;
-        Some(Answer {
-            depth,
-            dir: (ra * n).into(),
-            lower: 0.0,
-        })
-    };
-    Some(Method::new("DEEP", run).from(start).without_callbacks())
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! What measures: libraries side by side, scenes with truth, methods, measurement.
-//! Each module uses those before it alone: `csv`, `libraries`, `scene`, `deep`,
+//! Each module uses those before it alone: `csv`, `libraries`, `scene`,
 //! `methods`, `measure`, `recorded`. The benchmark (`c-tests/bench`) and the test of
 //! the figures that a change may not lose (`support_counts.rs`) are made of them.
 
@@ -11,7 +11,6 @@
 
 pub mod callgrind;
 pub mod csv;
-pub mod deep;
 pub mod libraries;
 pub mod measure;
 pub mod methods;

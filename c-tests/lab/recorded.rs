@@ -88,7 +88,7 @@ pub fn record() {
             method: row.method,
             start: row.start,
             tolerance: row.tolerance.unwrap_or_default(),
-            supports: row.supports.unwrap_or_default(),
+            supports: row.supports,
             mean_error_1mm: row.mean_error_1mm,
             nonminimal: row.nonminimal,
         })

@@ -322,25 +322,6 @@ pub fn head(columns: &[&str]) -> String {
     format!("| {} |\n|{rule}\n", columns.join(" | "))
 }
 
-/// The static half of the swap table, libccd's / this library's.
-pub fn static_table(rows: &[Static]) -> String {
-    let keys = "queries hits missed spurious deep unsound broken";
-    let keys: Vec<&str> = keys.split(' ').collect();
-    let first = ["query", "pairs of kinds", "threw"];
-    let last = ["wrong callbacks: queries", "missed", "swap"];
-    let mut out = head(&[&first[..], &keys, &last].concat());
-    for s in rows {
-        let both = |of: &[Run; 2], key: &str| format!("{} / {}", of[0][key], of[1][key]);
-        let mut cells = vec![s.what.to_owned(), s.asked[1]["kinds"].to_string()];
-        cells.push(both(&s.asked, "threw"));
-        cells.extend(keys.iter().map(|key| both(&s.collide, key)));
-        cells.extend(["queries", "missed"].map(|key| both(&s.astray, key)));
-        cells.push(verdict(&s.against));
-        let _ = writeln!(out, "| {} |", cells.join(" | "));
-    }
-    out
-}
-
 fn verdict(against: &[String]) -> String {
     match against.len() {
         0 => "passes".to_owned(),

@@ -17,7 +17,6 @@
 #include "swap/tally.h"
 
 #include "compare/hooks.h"
-#include "harness/identity.h"
 
 static scene_t scene;
 static unsigned long queries;  /* watched so far */
@@ -34,7 +33,7 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
 {
     ccd_vec3_t centre;
     int i;
-    if (!scene.on_pair)
+    if (scene.pile.step % 20)
         return;
     center(obj, &centre);
     for (i = 0; i < scene.bodies; i++) {
@@ -58,6 +57,8 @@ static void judge(int a, int b, const dContact *contact, int contacts)
     if (compare_queries() == queries)
         return;
     queries = compare_queries();
+    if (scene.pile.step % 20)
+        return;
     sa = shape_of(a);
     sb = shape_of(b);
     t = truth_depth_within(&sa, &sb, 1e-7);
@@ -71,27 +72,16 @@ static void judge(int a, int b, const dContact *contact, int contacts)
 
 int main(int argc, char **argv)
 {
-    long step;
     if (argc != 5) {
         fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower\n");
         return 2;
     }
-    const unsigned long seed = strtoul(argv[1], NULL, 10);
-    const long steps = atol(argv[2]);
-    const int bodies = atoi(argv[3]);
     dInitODE2(0);
-    tell_library();
-    run_scene(&scene, argv[4], bodies, seed, steps);
-    for (step = 0; step < steps; step++) {
-        scene.on_pair = step % 20 ? NULL : judge;
-        queries = compare_queries();
-        run_step(&scene, step);
-    }
-    pile_report(&scene.pile);
+    scene_on_pair = judge;
+    run(&scene, argv);
     printf("\n");
     tally_print("right", &tally[0]);
     tally_print("astray", &tally[1]);
-    scene_free(&scene);
     dCloseODE();
     return 0;
 }

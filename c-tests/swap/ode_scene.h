@@ -11,6 +11,7 @@
 
 #include <string.h>
 #include <ode/ode.h>
+#include "harness/identity.h"
 #include "shapes.h"
 #include "swap/hull.h"
 #include "swap/pile.h"
@@ -35,12 +36,13 @@ typedef struct {
     double half_width;          /* the pen is 2 half_width wide */
     int kinds[4];               /* of a pile, by turns */
     pile_t pile;
-    /* where set, told every pair the broad phase lets through, and the contacts ODE made of it */
-    void (*on_pair)(int a, int b, const dContact *contact, int contacts);
 } scene_t;
 
 /* Where set, makes the geoms in ODE's place. */
 static dGeomID (*scene_make_geom)(const scene_shape_t *s);
+
+/* Where set, told every pair the broad phase lets through, and the contacts ODE made of it. */
+static void (*scene_on_pair)(int a, int b, const dContact *contact, int contacts);
 
 static inline dGeomID scene_geom(scene_t *scene, const scene_shape_t *s)
 {
@@ -242,8 +244,8 @@ static inline void scene_near(void *data, dGeomID o1, dGeomID o2)
     if (!b1 && !b2)
         return;
     n = dCollide(o1, o2, MOST, &contact[0].geom, sizeof contact[0]);
-    if (scene->on_pair)
-        scene->on_pair((int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2), contact, n);
+    if (scene_on_pair)
+        scene_on_pair((int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2), contact, n);
     for (i = 0; i < n; i++) {
         const dContactGeom *g = &contact[i].geom;
         const int somewhere = fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6;
@@ -341,14 +343,23 @@ static inline void run_scene(scene_t *scene, const char *name, int bodies, unsig
     scene_nudge(scene, seed, stack || roll ? 1e-5 : 1e-3);
 }
 
-static inline void run_step(scene_t *scene, long step)
+/* SEED STEPS BODIES SCENE of the command line; prints what the run looked like, but for the line's end. */
+static inline void run(scene_t *scene, char **argv)
 {
-    double height, moving;
-    scene->pile.step = step;
-    scene_step(scene, 0.005);
-    scene->pile.escaped |= scene_escaped(scene);
-    moving = scene_energy(scene, &height);
-    pile_energy(&scene->pile, moving, height);
+    const long steps = atol(argv[2]);
+    long step;
+    tell_library();
+    run_scene(scene, argv[4], atoi(argv[3]), strtoul(argv[1], NULL, 10), steps);
+    for (step = 0; step < steps; step++) {
+        double height, moving;
+        scene->pile.step = step;
+        scene_step(scene, 0.005);
+        scene->pile.escaped |= scene_escaped(scene);
+        moving = scene_energy(scene, &height);
+        pile_energy(&scene->pile, moving, height);
+    }
+    pile_report(&scene->pile);
+    scene_free(scene);
 }
 
 #endif

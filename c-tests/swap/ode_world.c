@@ -8,7 +8,6 @@
  * usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many */
 
 #include "swap/ode_scene.h"
-#include "harness/identity.h"
 
 #include <ccd/warm.h>
 
@@ -93,26 +92,17 @@ static dGeomID make(const scene_shape_t *s)
 int main(int argc, char **argv)
 {
     dGeomClass class = { sizeof(const scene_shape_t *), collider, aabb, NULL, NULL };
-    long step;
     if (argc != 6) {
         fprintf(stderr, "usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many\n");
         return 2;
     }
-    const unsigned long seed = strtoul(argv[1], NULL, 10);
-    const long steps = atol(argv[2]);
-    const int bodies = atoi(argv[3]);
     most = strcmp(argv[5], "many") ? 1 : 8;
     dInitODE2(0);
-    tell_library();
     convex = dCreateGeomClass(&class);
     scene_make_geom = make;
-    run_scene(&scene, argv[4], bodies, seed, steps);
-    for (step = 0; step < steps; step++)
-        run_step(&scene, step);
-    pile_report(&scene.pile);
+    run(&scene, argv);
     printf(" limits %lu\n", limits);
     printf("watched queries %lu supports %lu\n", queries, supports);
-    scene_free(&scene);
     dCloseODE();
     return 0;
 }

@@ -3,8 +3,8 @@
 
 //! Speed against accuracy: every method at every tolerance on every kind of pair.
 
-use super::figure::{self, Axis, Look, Mark, Panel, Unit};
-use super::{Bench, COUNTED, Cost, Page, SUPPORTS, TIME, TIMED};
+use super::figure::{self, Panel, Unit};
+use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
 use crate::lab::measure::Row;
 use crate::lab::methods::{self, Ask, Method, Start};
 use crate::lab::recorded::{MOTIONS, RANDOM};
@@ -36,9 +36,6 @@ fn roster<'a>(bench: &Bench<'a>, scene: &Scene) -> Vec<Method<'a>> {
             (Ask::Minimum, proof),
         ];
         all.extend(asked.map(|(ask, start)| methods::of(libraries, ask, start, t)));
-    }
-    if !frames {
-        all.extend(methods::deep(libraries, scene, Start::Five));
     }
     all.extend(bench.compiled.all(libraries));
     all.push(peers::parry(libraries));
@@ -90,57 +87,7 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
         .collect()
 }
 
-/// What a finer tolerance costs: a curve for each kind of pair.
-fn tolerance(page: &Page, rows: &[Row]) {
-    // Hues that are alike are next to each other, and have another mark.
-    let marks = [Mark::Dot, Mark::Ring, Mark::Triangle, Mark::Cross];
-    let palette = [
-        (220, 38, 38),
-        (234, 88, 12),
-        (202, 138, 4),
-        (101, 163, 13),
-        (22, 145, 70),
-        (13, 148, 136),
-        (14, 165, 233),
-        (37, 99, 235),
-        (124, 58, 237),
-        (192, 38, 211),
-        (120, 113, 108),
-    ];
-    let panel = |title: &str, (method, start): (&str, &str), y: Axis, cost: Cost| {
-        let marked = RANDOM.iter().zip(palette).zip(marks.into_iter().cycle());
-        let points = marked.flat_map(|((set, colour), mark)| {
-            let mine = move |r: &&Row| r.set == *set && r.method == method && r.start == start;
-            let look = Look::new(colour, mark, false);
-            let point = move |r: &Row| Some((super::kind(set), look, (r.tolerance?, cost(r)?)));
-            rows.iter().filter(mine).filter_map(point)
-        });
-        let curves = figure::curves(points);
-        Panel::new(title, ("tolerance", Unit::Metres), y, curves)
-    };
-    let error = ("mean |depth error| within 1 mm", Unit::Metres);
-    let exact: Cost = |r| Some(r.mean_error_1mm.max(1e-16));
-    let (local, minimum) = (("local", "5"), ("minimum", ""));
-    let panels = [
-        panel("local, guess 5° off: supports", local, SUPPORTS, COUNTED),
-        panel("local, guess 5° off: time", local, TIME, TIMED),
-        panel("local, guess 5° off: error", local, error, exact),
-        panel("minimum: supports", minimum, SUPPORTS, COUNTED),
-        panel("minimum: time", minimum, TIME, TIMED),
-        panel("minimum: error", minimum, error, exact),
-    ];
-    let title = "What a tolerance costs";
-    figure::grid(
-        &page.file("tolerance.svg"),
-        title,
-        3,
-        &panels,
-        &[page.footer()],
-    );
-}
-
 pub fn draw(page: &Page, rows: &[Row]) {
-    tolerance(page, rows);
     let all: Vec<&Row> = rows.iter().collect();
     let some = rows.iter().filter(|r| IN_FRONT.contains(&&*r.method));
     let (some, title) = (

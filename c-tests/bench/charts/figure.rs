@@ -41,23 +41,15 @@ pub struct Look {
     colour: RGBColor,
     mark: Mark,
     /// Ours are drawn bolder.
-    pub bold: bool,
-    pub dashed: bool,
+    bold: bool,
 }
 
 impl Look {
     pub fn new((r, g, b): (u8, u8, u8), mark: Mark, bold: bool) -> Self {
-        let (colour, dashed) = (RGBColor(r, g, b), false);
-        Self {
-            colour,
-            mark,
-            bold,
-            dashed,
-        }
+        let colour = RGBColor(r, g, b);
+        Self { colour, mark, bold }
     }
-}
 
-impl Look {
     fn line(&self) -> ShapeStyle {
         self.colour.stroke_width(if self.bold { 3 } else { 1 })
     }
@@ -221,9 +213,7 @@ where
     TriangleMarker<C, i32>: IntoDynElement<'static, SVGBackend<'b>, C>,
     Cross<C, i32>: IntoDynElement<'static, SVGBackend<'b>, C>,
 {
-    let Look {
-        colour, mark, bold, ..
-    } = look;
+    let Look { colour, mark, bold } = look;
     let size = if bold { 4 } else { 3 };
     match mark {
         Mark::Dot => Circle::new(at, size, colour.filled()).into_dyn(),
@@ -266,13 +256,8 @@ fn panel(area: &Cell, panel: &Panel) -> Result<(), Error> {
         chart.draw_series(DashedLineSeries::new(line, 4, 4, INK.stroke_width(1)))?;
     }
     for curve in &panel.curves {
-        let line = curve.look.line();
         let points = curve.points.iter().copied();
-        if curve.look.dashed {
-            chart.draw_series(DashedLineSeries::new(points, 6, 4, line))?;
-        } else {
-            chart.draw_series(LineSeries::new(points, line))?;
-        }
+        chart.draw_series(LineSeries::new(points, curve.look.line()))?;
         chart.draw_series(curve.points.iter().map(|&p| mark(curve.look, p)))?;
     }
     Ok(())
@@ -293,14 +278,8 @@ fn legend(area: &Cell, entries: &[(&str, Look)], columns: usize) -> Result<(), E
     for (k, (label, look)) in entries.iter().enumerate() {
         let x = 16 + width * (k % columns) as i32;
         let y = (LINE / 2 + LINE * (k / columns) as u32) as i32;
-        let ends: &[(i32, i32)] = match look.dashed {
-            true => &[(0, 8), (20, 28)],
-            false => &[(0, 28)],
-        };
-        for (from, to) in ends {
-            let line = vec![(x + from, y), (x + to, y)];
-            area.draw(&PathElement::new(line, look.line()))?;
-        }
+        let line = vec![(x, y), (x + 28, y)];
+        area.draw(&PathElement::new(line, look.line()))?;
         area.draw(&mark(*look, (x + 14, y)))?;
         text(area, (x + 36, y), label, 14)?;
     }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The charts: speed against accuracy, the paper redone, coherence, models and
-//! tolerances, and where the time goes; each as CSV and as a picture.
+//! The charts: speed against accuracy, the paper redone, coherence, models, and where the
+//! time goes; each as CSV, and as a picture or a table.
 
 pub mod accuracy;
 pub mod coherence;
@@ -92,8 +92,7 @@ impl Bench<'_> {
 }
 
 /// A method's look, the same in every picture. Ours are bold, a colour a query: MPR blue,
-/// local amber, minimum green; libccd's are red, the paper's purple, the rest grey. What
-/// starts cold is dashed where the same query starts warm beside it.
+/// local amber, minimum green; libccd's are red, the paper's purple, the rest grey.
 pub fn look(row: &Row) -> Look {
     let (colour, mark, bold) = match (row.method.as_str(), row.start.as_str()) {
         ("local", "45") => ((244, 170, 40), Mark::Ring, true),
@@ -105,7 +104,6 @@ pub fn look(row: &Row) -> Look {
         ("Algorithm 4/5", "45") => ((190, 130, 240), Mark::Ring, false),
         ("Algorithm 4/5", _) => ((147, 51, 234), Mark::Dot, false),
         ("Algorithm 3", _) => ((147, 51, 234), Mark::Cross, false),
-        ("DEEP", _) => ((219, 39, 119), Mark::Triangle, false),
         ("Bullet EPA", _) => (GREY, Mark::Dot, false),
         ("FCL EPA", _) => (GREY, Mark::Ring, false),
         _ => (GREY, Mark::Triangle, false),
@@ -121,7 +119,7 @@ pub const TIME: Axis = ("time per query", Unit::Seconds);
 /// What a query costs, on either axis.
 pub type Cost = fn(&Row) -> Option<f64>;
 
-pub const COUNTED: Cost = |r| r.supports;
+pub const COUNTED: Cost = |r| Some(r.supports);
 pub const TIMED: Cost = |r| r.ns.map(|n| n * 1e-9);
 
 /// A curve a method: what it costs over `x`.
@@ -176,7 +174,7 @@ pub fn kind(set: &str) -> String {
         "cyl" => "cylinder".to_owned(),
         "ell" => "ellipsoid".to_owned(),
         s => match s.strip_prefix('p') {
-            Some(n) => format!("{} vertices", n.replace("hc", "")),
+            Some(n) => format!("{n} vertices"),
             None => s.to_owned(),
         },
     };
@@ -201,17 +199,24 @@ pub fn redraw(options: &Options) {
         out: options.out.clone(),
         machine: csv::origin(&options.out.join("accuracy.csv")),
     };
-    accuracy::draw(&page, &page.read("accuracy").1);
-    paper::draw(&page, &page.read("vertices").1);
-    let coherence = page.read("coherence").1;
-    coherence::draw(&page, &coherence);
-    let (of, models) = page.read("models");
-    models::draw(&of, &models);
+    let (sets, vertices) = (page.read("accuracy").1, page.read("vertices").1);
+    accuracy::draw(&page, &sets);
+    paper::draw(&page, &vertices);
     let (of, position) = page.read("position");
     position::draw(&of, &position);
-    let split = page.read("instructions").1;
-    let (paper, recorded) = (page.read("paper").1, page.read("recorded").1);
-    results::write(&page, &paper, &coherence, &recorded, &split);
+    let models = page.read("models").1;
+    let tables = [
+        ("MACHINE", page.machine.clone()),
+        ("FASTER", results::times_faster(&sets)),
+        ("COHERENCE", results::coherent(&page.read("coherence").1)),
+        ("RECORDED", results::recorded(&page.read("recorded").1)),
+        ("MODELS", results::modelled(&models, &vertices, &sets)),
+        (
+            "INSTRUCTIONS",
+            results::instructions(&page.read("instructions").1),
+        ),
+    ];
+    results::write(&page, &tables);
 }
 
 pub fn run(options: &Options) {
@@ -248,9 +253,9 @@ pub fn run(options: &Options) {
         )*};
     }
     measure!(
-        "accuracy": accuracy::measure, "paper": paper::tables, "vertices": paper::vertices,
+        "accuracy": accuracy::measure, "vertices": paper::vertices,
         "coherence": coherence::measure, "recorded": coherence::recorded,
-        "models": models::measure_all, "position": position::measure,
+        "models": models::measure, "position": position::measure,
         "instructions": instructions::measure
     );
     redraw(options);

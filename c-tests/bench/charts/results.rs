@@ -6,9 +6,10 @@
 
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 
+use super::Page;
 use super::instructions::Split;
+use super::models::Model;
 use super::paper::{AS_PUBLISHED, PAPER};
-use super::{Page, coherence};
 use crate::lab::measure::Row;
 
 /// The head's cells are between bars.
@@ -37,9 +38,9 @@ fn find<'a>(
     })
 }
 
-fn times_faster(rows: &[Row]) -> String {
-    let lines = PAPER.iter().map(|(pair, faster)| {
-        let ns = |m: &str, s: &str, t: f64| find(rows, pair, m, s, t).and_then(|r| r.ns);
+pub fn times_faster(rows: &[Row]) -> String {
+    let lines = PAPER.iter().map(|(set, faster)| {
+        let ns = |m: &str, s: &str, t: f64| find(rows, set, m, s, t).and_then(|r| r.ns);
         let ratio = |m: &str, s: &str, t: f64| {
             let own = if m.starts_with("Algorithm") {
                 AS_PUBLISHED
@@ -51,7 +52,7 @@ fn times_faster(rows: &[Row]) -> String {
                 .map_or("-".to_owned(), |(e, m)| format!("{:.1}", e / m))
         };
         [
-            (*pair).to_owned(),
+            super::kind(set),
             ratio("local", "5", 1e-6),
             ratio("local", "5", 1e-10),
             ratio("minimum", "", 1e-6),
@@ -66,15 +67,10 @@ fn times_faster(rows: &[Row]) -> String {
 }
 
 fn supports(row: Option<&Row>) -> String {
-    row.and_then(|r| r.supports)
-        .map_or("-".to_owned(), |s| format!("{s:.1}"))
+    row.map_or("-".to_owned(), |r| format!("{:.1}", r.supports))
 }
 
-fn coherent(rows: &[Row]) -> String {
-    let until = |set: &str, method: &str| match coherence::stops_paying(rows, set, method) {
-        Some(step) => format!("{step}°"),
-        None => "always pays".to_owned(),
-    };
+pub fn coherent(rows: &[Row]) -> String {
     let at = |set: &str, method: &str, start: &str, x: f64| {
         supports(
             rows.iter()
@@ -85,20 +81,40 @@ fn coherent(rows: &[Row]) -> String {
         [
             super::kind(set),
             at(set, "local", "warm", 0.1),
-            at(set, "local", "warm", 1.0),
-            at(set, "local", "warm", 10.0),
-            at(set, "local", "centres", 1.0),
-            at(set, "libccd EPA", "", 1.0),
-            until(set, "local"),
-            until(set, "minimum"),
+            at(set, "local", "warm", 0.5),
+            at(set, "local", "warm", 2.0),
+            at(set, "local", "centres", 0.5),
+            at(set, "minimum", "warm", 0.1),
+            at(set, "minimum", "warm", 0.5),
+            at(set, "minimum", "warm", 2.0),
+            at(set, "minimum", "", 0.5),
+            at(set, "libccd EPA", "", 0.5),
         ]
     });
-    let head = "pair|local, warm, 0.1°|1°|10°|local, cold|libccd EPA|\
-                local: warm costs as much as cold from|minimum: from";
+    let head = "pair|local, warm, 0.1°|0.5°|2°|local, cold|\
+                minimum, warm, 0.1°|0.5°|2°|minimum, cold|libccd EPA";
     markdown(head, lines)
 }
 
-fn recorded(rows: &[Row]) -> String {
+/// Models of a ball against a capsule; the ball itself, as what it is, last.
+pub fn modelled(models: &[Model], polytopes: &[Row], sets: &[Row]) -> String {
+    let line = |what: String, off: String, rows: &[Row], set: &str| {
+        let local = find(rows, set, "local", "5", 1e-6);
+        let ns = local.and_then(|r| r.ns);
+        let ns = ns.map_or("-".to_owned(), |ns| format!("{ns:.0}"));
+        [what, off, supports(local), ns]
+    };
+    let model = |m: &Model| {
+        let (what, off) = (format!("{} vertices", m.vertices), 1e3 * m.off);
+        let set = format!("p{}_cap", m.vertices);
+        line(what, format!("{off:.2}"), polytopes, &set)
+    };
+    let ball = line("sphere".to_owned(), "0".to_owned(), sets, "sph_cap");
+    let head = "as|off by, mm|supports|ns";
+    markdown(head, models.iter().map(model).chain([ball]))
+}
+
+pub fn recorded(rows: &[Row]) -> String {
     let lines = rows.iter().map(|r| {
         [
             super::name(r),
@@ -133,17 +149,10 @@ pub fn instructions(split: &[Split]) -> String {
 }
 
 /// Writes the page's tables between their marks.
-pub fn write(page: &Page, paper: &[Row], moved: &[Row], contacts: &[Row], split: &[Split]) {
+pub fn write(page: &Page, tables: &[(&str, String)]) {
     let committed = crate::harness::root().join("c-tests/charts/README.md");
     let mut text = std::fs::read_to_string(&committed).expect("the charts' page");
-    let tables = [
-        ("MACHINE", page.machine.clone()),
-        ("FASTER", times_faster(paper)),
-        ("COHERENCE", coherent(moved)),
-        ("RECORDED", recorded(contacts)),
-        ("INSTRUCTIONS", instructions(split)),
-    ];
-    for (name, table) in &tables {
+    for (name, table) in tables {
         let place = between_marks(&text, name).unwrap_or_else(|| panic!("no table {name}"));
         text.replace_range(place, &format!("{table}\n"));
     }
