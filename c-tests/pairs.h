@@ -19,9 +19,6 @@ typedef struct {
     int trajectory;     /* steps of one motion, 0: independent poses */
     shape_t a, b;       /* the shapes in their own frames */
     ccd_real_t *verts[2];
-    int *tris[2];       /* triangles of a polytope, for shape_edge_graph */
-    int ntris[2];
-    int *graph[2];      /* filled by pair_set_climb */
     double *records;
 } pair_set_t;
 
@@ -33,23 +30,20 @@ typedef struct {
     double cold[3];   /* the centre difference */
 } pair_truth_t;
 
-static inline int pair_read_shape(FILE *file, shape_t *s, ccd_real_t **verts, int **tris, int *ntris)
+static inline int pair_read_shape(FILE *file, shape_t *s, ccd_real_t **verts)
 {
     int32_t head[4];
     double p[3], x;
     int i;
     *verts = NULL;
-    *tris = NULL;
     if (fread(head, sizeof head, 1, file) != 1 || fread(p, sizeof p, 1, file) != 1)
         return -1;
     if (head[0] < SHAPE_SPHERE || head[0] > SHAPE_POLYTOPE || head[1] < 0 || head[2] < 0
         || head[1] > 1000000 || head[2] > 1000000)
         return -1;
     *s = shape_make(head[0], p[0], p[1], p[2]);
-    *ntris = head[2];
     *verts = (ccd_real_t *)malloc(sizeof(ccd_real_t) * 3 * ((size_t)head[1] + 1));
-    *tris = (int *)malloc(sizeof(int) * 3 * ((size_t)head[2] + 1));
-    if (!*verts || !*tris)
+    if (!*verts)
         return -1;
     for (i = 0; i < 3 * head[1]; i++) {
         if (fread(&x, sizeof x, 1, file) != 1)
@@ -60,7 +54,6 @@ static inline int pair_read_shape(FILE *file, shape_t *s, ccd_real_t **verts, in
         int32_t t;
         if (fread(&t, sizeof t, 1, file) != 1 || t < 0 || t >= head[1])
             return -1;
-        (*tris)[i] = t;
     }
     s->verts = *verts;
     s->nverts = head[1];
@@ -70,11 +63,8 @@ static inline int pair_read_shape(FILE *file, shape_t *s, ccd_real_t **verts, in
 static inline void pair_set_free(pair_set_t *set)
 {
     int i;
-    for (i = 0; i < 2; i++) {
+    for (i = 0; i < 2; i++)
         free(set->verts[i]);
-        free(set->tris[i]);
-        free(set->graph[i]);
-    }
     free(set->records);
     memset(set, 0, sizeof *set);
 }
@@ -91,8 +81,8 @@ static inline int pair_set_read(const char *path, pair_set_t *set)
         return -1;
     bad = fread(magic, 8, 1, file) != 1 || memcmp(magic, "PDBN0001", 8) != 0
         || fread(count, sizeof count, 1, file) != 1 || count[0] < 1 || count[0] > 10000000
-        || pair_read_shape(file, &set->a, &set->verts[0], &set->tris[0], &set->ntris[0]) != 0
-        || pair_read_shape(file, &set->b, &set->verts[1], &set->tris[1], &set->ntris[1]) != 0;
+        || pair_read_shape(file, &set->a, &set->verts[0]) != 0
+        || pair_read_shape(file, &set->b, &set->verts[1]) != 0;
     if (!bad) {
         set->n = count[0];
         set->trajectory = count[1];
@@ -102,26 +92,6 @@ static inline int pair_set_read(const char *path, pair_set_t *set)
     }
     fclose(file);
     return bad ? -1 : 0;
-}
-
-/* Gives both polytopes their edge graph, so that poses read from now on climb
- * instead of scanning. Returns 0, or -1 without memory. */
-static inline int pair_set_climb(pair_set_t *set)
-{
-    shape_t *s[2];
-    int i;
-    s[0] = &set->a;
-    s[1] = &set->b;
-    for (i = 0; i < 2; i++) {
-        int *neighbours;
-        if (s[i]->type != SHAPE_POLYTOPE || set->graph[i])
-            continue;
-        if (shape_edge_graph(s[i]->nverts, set->tris[i], set->ntris[i], &set->graph[i], &neighbours) != 0)
-            return -1;
-        s[i]->first = set->graph[i];
-        s[i]->neighbours = neighbours;
-    }
-    return 0;
 }
 
 /* Pose i: the two placed shapes and, unless truth is NULL, what is known of it. */

@@ -5,10 +5,8 @@
  * only, C99 and C++11, computes in ccd_real_t.
  *
  * A shape is a value: copy it, place it, hand its address to a query. Its
- * support function writes into it (it counts its calls and remembers the last
- * vertex of a hill climb), as callbacks in the field do. Only polytopes refer to
- * memory that they do not own: their vertices and, for hill climbing, the graph
- * of their edges. */
+ * support function writes into it (it counts its calls), as callbacks in the field
+ * do. Only polytopes refer to memory that they do not own: their vertices. */
 
 #ifndef TESTS_SHAPES_H
 #define TESTS_SHAPES_H
@@ -49,12 +47,9 @@ typedef struct {
     ccd_real_t p[3];
     int nverts;
     const ccd_real_t *verts; /* 3 * nverts coordinates in the local frame */
-    const int *first;        /* NULL: linear scan. Else vertex i's neighbours are */
-    const int *neighbours;   /* neighbours[first[i]] ... neighbours[first[i+1]-1] */
     ccd_real_t centre[3];    /* an inner point in the local frame */
     ccd_real_t pos[3];       /* pose: world = rot * local + pos, rot row-major */
     ccd_real_t rot[9];
-    int last;                /* where the next hill climb starts */
     unsigned long calls;     /* support calls so far */
 } shape_t;
 
@@ -164,36 +159,6 @@ static inline void shape_turn_by(shape_t *s, const double rot[9], double x, doub
     shape_move(s, p[0] + x, p[1] + y, p[2] + z);
 }
 
-/* The edge graph of a triangle mesh over nverts vertices, for hill climbing: the
- * two arrays that first and neighbours point to, in one malloc'd block that the
- * caller frees through *first. Returns 0, or -1 without memory. Every edge is
- * listed twice (once per triangle), which costs a climb little. */
-static inline int shape_edge_graph(int nverts, const int *tris, int ntris, int **first, int **neighbours)
-{
-    int i, k, at;
-    int *block = (int *)malloc(sizeof(int) * ((size_t)nverts + 1 + 6 * (size_t)ntris));
-    if (!block)
-        return -1;
-    *first = block;
-    *neighbours = block + nverts + 1;
-    memset(block, 0, sizeof(int) * ((size_t)nverts + 1));
-    for (i = 0; i < 3 * ntris; i++)
-        block[tris[i] + 1] += 2;
-    for (i = 0; i < nverts; i++)
-        block[i + 1] += block[i];
-    for (i = 0; i < ntris; i++)
-        for (k = 0; k < 3; k++) {
-            at = block[tris[3 * i + k]];
-            (*neighbours)[at] = tris[3 * i + (k + 1) % 3];
-            (*neighbours)[at + 1] = tris[3 * i + (k + 2) % 3];
-            block[tris[3 * i + k]] += 2;
-        }
-    for (i = nverts; i > 0; i--)
-        block[i] = block[i - 1];
-    block[0] = 0;
-    return 0;
-}
-
 /* --- the callbacks ---------------------------------------------------------- */
 
 /* h with the sign of d; at zero what the tie rule says. */
@@ -227,34 +192,13 @@ static inline ccd_real_t shape_vertex_value(const shape_t *s, int i, const ccd_r
 
 static inline void shape_polytope_support(shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
 {
-    int i, best, ties;
-    ccd_real_t value;
-    if (s->first) {
-        int better = 1;
-        best = s->last;
-        value = shape_vertex_value(s, best, d);
-        while (better) {
-            int from = best;
-            better = 0;
-            for (i = s->first[from]; i < s->first[from + 1]; i++) {
-                ccd_real_t x = shape_vertex_value(s, s->neighbours[i], d);
-                if (x > value) {
-                    value = x;
-                    best = s->neighbours[i];
-                    better = 1;
-                }
-            }
-        }
-        s->last = best;
-    } else {
-        best = 0;
-        value = shape_vertex_value(s, 0, d);
-        for (i = 1; i < s->nverts; i++) {
-            ccd_real_t x = shape_vertex_value(s, i, d);
-            if (x > value) {
-                value = x;
-                best = i;
-            }
+    int i, best = 0, ties;
+    ccd_real_t value = shape_vertex_value(s, 0, d);
+    for (i = 1; i < s->nverts; i++) {
+        ccd_real_t x = shape_vertex_value(s, i, d);
+        if (x > value) {
+            value = x;
+            best = i;
         }
     }
     v[0] = s->verts[3 * best];
