@@ -56,57 +56,6 @@ pub struct Same {
     pub extent2: Real,
 }
 
-/// What two support points of one object show.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Pair {
-    /// Nothing: the directions are too near each other.
-    Close,
-    /// One vertex.
-    Vertex,
-    /// A ball of this radius, metres, around one vertex.
-    Ball(Real),
-    /// One smooth piece that is no ball's, as far as a pair can tell.
-    Smooth,
-    /// Two pieces.
-    Kink,
-}
-
-impl Pair {
-    /// Of an old and a new support point.
-    ///
-    /// *Smooth*: each point exceeds the other's support plane, by e and e′. On one smooth piece the
-    /// trapezoidal rule makes these equal, to the third order of the angle; a kink between the
-    /// directions makes e : e′ whatever it likes. So they must be equal within [`ALIKE`], the
-    /// nearer the farther the point moved; and farther than an object of that size can bend there
-    /// the point did not move smoothly.
-    #[inline(always)]
-    pub fn of(old: &Seen, new: &Seen, same: &Same) -> Self {
-        let by = Move::of(old, new);
-        // Also NaN.
-        if !(by.dn2 > TOLD * TOLD) {
-            return Self::Close;
-        }
-        if by.d2 <= 4.0 * same.rounding * same.rounding {
-            return Self::Vertex;
-        }
-        const PARALLEL: Real = 0.1 * TOLD;
-        if !(by.along > 0.0) {
-            return Self::Kink;
-        }
-        let aside2 = by.d2 * by.dn2 - by.along * by.along;
-        let radius = by.along / by.dn2;
-        // From an inner point near its border a ball seems smaller, until its far side is seen.
-        if aside2 <= PARALLEL * PARALLEL * by.d2 * by.dn2 && fits(0.5 * radius, same.extent2) {
-            return Self::Ball(radius);
-        }
-        if by.is_smooth(same, ALIKE) {
-            Self::Smooth
-        } else {
-            Self::Kink
-        }
-    }
-}
-
 /// How a point moved, where its direction turned.
 pub struct Move {
     pub d: Vec3,
@@ -141,8 +90,27 @@ impl Move {
         [ahead, self.along - ahead]
     }
 
-    /// Does it look smooth ([`Pair::of`]), within this relative difference of the excesses, and by
-    /// more than rounding?
+    /// The radius of the ball, metres, if both points are a ball's around one vertex: exactly parallel.
+    #[inline(always)]
+    pub fn ball(&self, same: &Same) -> Option<Real> {
+        const PARALLEL: Real = 0.1 * TOLD;
+        let aside2 = self.d2 * self.dn2 - self.along * self.along;
+        let radius = self.along / self.dn2;
+        // From an inner point near its border a ball seems smaller, until its far side is seen.
+        (self.dn2 > TOLD * TOLD
+            && self.d2 > 4.0 * same.rounding * same.rounding
+            && aside2 <= PARALLEL * PARALLEL * self.d2 * self.dn2
+            && fits(0.5 * radius, same.extent2))
+        .then_some(radius)
+    }
+
+    /// Are both points of one smooth piece, as far as they can tell?
+    ///
+    /// Each exceeds the other's support plane, by e and e′. On one smooth piece the trapezoidal rule
+    /// makes these equal, to the third order of the angle; a kink between the directions makes e : e′
+    /// whatever it likes. So they must be equal within this relative difference, the nearer the
+    /// farther the point moved; and farther than an object of that size can bend there the point did not
+    /// move smoothly.
     #[inline(always)]
     pub fn is_smooth(&self, same: &Same, alike: Real) -> bool {
         let [ahead, behind] = self.excess();
@@ -409,22 +377,18 @@ mod tests {
         for _ in 0..1000 {
             let angle = r.within(0.05, 0.4);
             let [m, n] = two(&mut r, angle);
-            let radius = |a: &dyn Fn(&Vec3) -> Vec3, b: Vec3| match Pair::of(
-                &ask(&a, m),
-                &ask(&a, b),
-                &SAME,
-            ) {
-                Pair::Ball(radius) => radius,
-                _ => 0.0,
+            let radius = |a: &dyn Fn(&Vec3) -> Vec3, b: Vec3| {
+                let by = Move::of(&ask(&a, m), &ask(&a, b));
+                by.ball(&SAME).unwrap_or(0.0)
             };
             assert!((radius(&sphere, n) - 0.4).abs() < NEAR);
             let end = m.x * n.x > 0.0;
             assert!((radius(&rod, n) - if end { 0.3 } else { 0.0 }).abs() < NEAR);
             let (a, b) = (ask(&cube, m), ask(&cube, n));
-            let pair = Pair::of(&a, &b, &SAME);
-            assert_eq!(pair == Pair::Vertex, a.p == b.p, "{pair:?}");
-            assert!(!matches!(pair, Pair::Ball(_)), "{pair:?}");
-            assert_eq!(Pair::of(&a, &a, &SAME), Pair::Close);
+            for by in [Move::of(&a, &b), Move::of(&a, &a)] {
+                assert!(by.ball(&SAME).is_none());
+                assert!(by.d2 > 0.0 || !by.is_smooth(&SAME, ALIKE));
+            }
         }
     }
 
@@ -444,7 +408,7 @@ mod tests {
                 let [a, b, c] = [m, n, third].map(|n| ask(shape, n));
                 let one_end = a.p.z * b.p.z > 0.0 && b.p.z * c.p.z > 0.0 && a.p.z < 0.45;
                 let steep = m.z.abs().max(n.z.abs()).max(third.z.abs()) > 0.9;
-                if Pair::of(&a, &b, &SAME) != Pair::Smooth || !one_end || steep {
+                if !Move::of(&a, &b).is_smooth(&SAME, ALIKE) || !one_end || steep {
                     continue;
                 }
                 let Some(disc) = Disc::of(&a, &b) else {
@@ -475,19 +439,13 @@ mod tests {
         let core = |at: &Seen| (at.p - disc.point(&at.n)).norm();
         assert!(core(&up(0.4, 0.6)) < 10.0 * NEAR);
         assert!(core(&up(0.5, -0.5)) > 0.1);
-        assert_eq!(
-            Pair::of(&up(0.5, -0.5), &up(0.5, -0.9), &SAME),
-            Pair::Vertex
-        );
+        assert_eq!(Move::of(&up(0.5, -0.5), &up(0.5, -0.9)).d2, 0.0);
         let at = |x: Real, z: Real| ask(&teardrop, Vec3::new(x, 0.2, z));
-        let pair = Pair::of(&at(1.0, -0.2), &at(1.0, 0.1), &SAME);
-        assert!(
-            matches!(pair, Pair::Ball(r) if (r - 0.3).abs() < NEAR),
-            "{pair:?}"
-        );
+        let radius = Move::of(&at(1.0, -0.2), &at(1.0, 0.1)).ball(&SAME);
+        assert!(radius.is_some_and(|r| (r - 0.3).abs() < NEAR), "{radius:?}");
         let tip = at(0.1, 1.0);
         assert!((tip.p - tip.n * 0.3).norm() > 0.1);
-        assert_eq!(Pair::of(&at(0.1, 1.0), &at(0.2, 1.0), &SAME), Pair::Vertex);
+        assert_eq!(Move::of(&at(0.1, 1.0), &at(0.2, 1.0)).d2, 0.0);
     }
 
     #[test]
@@ -500,7 +458,8 @@ mod tests {
             n: Vec3::x(),
             p: Vec3::x(),
         };
-        assert_eq!(Pair::of(&good, &bad, &SAME), Pair::Close);
+        let by = Move::of(&good, &bad);
+        assert!(by.ball(&SAME).is_none() && !by.is_smooth(&SAME, ALIKE));
         assert!(Disc::of(&good, &good).is_none());
         let mut r = Symmetric::scaled_identity(1.0);
         r.reduce(&Vec3::x(), 0.25);

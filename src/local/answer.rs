@@ -4,7 +4,7 @@
 //! The end of a search: its answer, witness points, and what is handed on.
 
 use super::memory::{EDGES, Kind, Memory};
-use super::search::{HAIR, LATEST, Sample, Search};
+use super::search::{HAIR, Sample, Search};
 use super::walk::ROOM;
 use crate::contact::{INSIDE, Penetration};
 use crate::contacts::pressure;
@@ -29,7 +29,7 @@ impl Search {
     /// of the support planes, in the middle between its support points. `known` gains the points.
     #[cold]
     pub fn lowest_met(&self, known: &mut Known) -> Penetration {
-        let Sample { n, p, h } = self.best();
+        let Sample { n, p, h } = &self.best;
         self.name(p, true, known);
         let half = (p.v - n * *h) * 0.5;
         Penetration {
@@ -45,8 +45,12 @@ impl Search {
 
     /// The answer at a sample, with witness points, if the active points show them.
     #[inline(never)]
-    pub(super) fn conclude(&mut self, at: usize, known: &mut Known, hit: &mut Penetration) -> bool {
-        let at = &self.samples[at % LATEST];
+    pub(super) fn conclude(
+        &mut self,
+        at: &Sample,
+        known: &mut Known,
+        hit: &mut Penetration,
+    ) -> bool {
         let (n, depth) = (&at.n, at.h);
         let here = Self::points(at);
         let end = &self.step.end;

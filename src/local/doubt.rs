@@ -37,7 +37,7 @@ impl Search {
             if let Some(across) = across {
                 curved.spread = true;
                 let way = unit(&across).unwrap_or_else(|| perpendicular(b));
-                let slope = self.best().p.v.dot(&way);
+                let slope = self.best.p.v.dot(&way);
                 let d = b + way * ASIDE.copysign(-slope);
                 self.trust.no_forecast();
                 return Some(d * (1.0 / d.norm()));
@@ -83,7 +83,7 @@ impl Search {
         for (o, k) in self.step.end.points() {
             let object = &self.objects[o % 2];
             let lift = object.lift(k, &n);
-            if lift > worst && object.is_unseen(k, &self.best().n, 0.0) {
+            if lift > worst && object.is_unseen(k, &self.best.n, 0.0) {
                 (side, worst) = (object.at[k % ROOM].n - n, lift);
             }
         }

@@ -8,12 +8,9 @@ use super::curved::Curved;
 use super::memory::Kind;
 use super::object::{Found, Object, Told};
 use super::walk::ROOM;
-use crate::known::round::{ALIKE, BLUNT, Disc, Move, Pair, Same, Seen, Symmetric, TOLD, fits};
-use crate::math::{EPSILON, Real, Vec3, larger};
+use crate::known::round::{ALIKE, BLUNT, Disc, Move, Same, Seen, Symmetric, TOLD, fits};
+use crate::math::{Real, Vec3, larger};
 
-/// Relative difference of a remembered disc's radius and that of a pair that shows it again.
-/// Measured: ×2, ÷2 nothing; 1e-9 +0.1 %, +3 %.
-const BALL: Real = if EPSILON > 1e-10 { 3e-5 } else { 1e-6 };
 /// Relative difference of the two excesses of one object's points up to which they are taken for
 /// those of another smooth surface, before a disc is confirmed; a kink's are what they like.
 /// Measured: ×2 nothing, ÷3 ellipsoids beside a ball two support points more.
@@ -63,10 +60,8 @@ impl Object {
                 .disc()
                 .across(&(core(new) - core(&self.at[best % ROOM])));
             if apart.norm_squared() > same.round * same.round {
-                // The axis has turned with the object: a pair is to show it.
-                let radius = self.disc().radius;
+                // The axis has turned with the object: its points are to show it.
                 self.forget();
-                self.found.disc.radius = radius;
             }
         }
         if self.is_round() {
@@ -77,10 +72,12 @@ impl Object {
         }
         let mut shown = Shown::Nothing;
         for k in 0..self.len {
-            match Pair::of(&self.at[k % ROOM], new, same) {
-                Pair::Ball(radius) => return Shown::Ball(radius),
-                Pair::Smooth => shown = Shown::Smooth,
-                _ => (),
+            let by = Move::of(&self.at[k % ROOM], new);
+            if let Some(radius) = by.ball(same) {
+                return Shown::Ball(radius);
+            }
+            if by.is_smooth(same, ALIKE) {
+                shown = Shown::Smooth;
             }
         }
         shown
@@ -170,11 +167,8 @@ impl Object {
             }
             let disc = Disc::of(old, new).filter(|disc| fits(disc.radius, same.extent2));
             let found = disc.map(|disc| Found::of(disc, old, new));
-            let points = || self.at.iter().take(self.len);
-            let confirmed = found.is_some_and(|found| {
-                let (radius, before) = (found.disc.radius, self.disc().radius);
-                (radius - before).abs() <= BALL * radius || points().any(|at| found.is_shown_by(at))
-            });
+            let mut points = self.at.iter().take(self.len);
+            let confirmed = found.is_some_and(|found| points.any(|at| found.is_shown_by(at)));
             if k == best || confirmed {
                 let aside = 2.0 * by.along * by.along < by.d2 * by.dn2;
                 let told = if confirmed { Told::More } else { Told::Pair };

@@ -43,7 +43,7 @@ impl Search {
     /// The model's minimum near the best direction.
     #[inline(never)]
     pub(super) fn lowest(&mut self) {
-        let b = self.best().n;
+        let b = self.best.n;
         let discs = self.objects.iter().any(|object| object.kind == Kind::Disc);
         self.model.level = self.tolerance;
         self.middle = [0.0; 2];
@@ -104,6 +104,6 @@ impl Search {
         let mut end = End::default();
         let (middle, radius) = (&self.middle, self.trust.radius);
         self.model.walk(&[0.0; 2], middle, radius, &mut end);
-        self.best().h - (end.value + self.rho())
+        self.best.h - (end.value + self.rho())
     }
 }

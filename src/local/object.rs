@@ -115,7 +115,7 @@ pub struct Object {
     pub(super) span: Row,
     /// What is round of it.
     pub kind: Kind,
-    /// The ball or disc; of none, the radius of a remembered one, …
+    /// The ball or disc, …
     pub(super) found: Found,
     /// … and what told it.
     pub(super) told: Told,
@@ -322,14 +322,10 @@ impl Object {
     /// The lowest point along `b` that is not to be kept.
     #[cold]
     pub(super) fn lowest(&self, b: &Vec3, kept: usize) -> usize {
-        let mut least = (0, Real::INFINITY);
-        for k in (0..ROOM).filter(|k| *k != kept) {
-            let level = self.core(k).dot(b);
-            if level < least.1 {
-                least = (k, level);
-            }
-        }
-        least.0
+        let level = |k: &usize| self.core(*k).dot(b);
+        let others = (0..ROOM).filter(|k| *k != kept);
+        let least = others.reduce(|i, k| if level(&k) < level(&i) { k } else { i });
+        least.unwrap_or(0)
     }
 
     /// The cuts in the chart of unit `b`.
@@ -463,24 +459,15 @@ impl Object {
         if dn == ZERO || !self.curved.is_certain(&at.n) {
             return at.p;
         }
-        let near = Self::near(at, seen.clone());
         // By a tenth.
         let foretold = |by: Move| (by.d - r.times(&by.dn)).norm_squared() <= 0.01 * by.d2;
-        if !near.clone().all(foretold) {
+        // What bends along itself alone may be an edge.
+        if !(self.bends(k, seen.clone()) && Self::near(at, seen).all(foretold)) {
             return at.p;
         }
         let across = |v: Vec3| v - at.n * at.n.dot(&v);
-        let mut way = across(r.times(&dn));
-        let mut off = 0.5 * way.dot(&dn);
-        if !self.bends(k, seen) {
-            // Maybe an edge, which is left by less than half of what the nearest move bends.
-            let farther = near.filter(|by| by.d2 >= way.norm_squared());
-            let nearest = farther.reduce(|one, two| if two.d2 < one.d2 { two } else { one });
-            let Some(by) = nearest else { return at.p };
-            let share = way.dot(&by.d) / by.d2;
-            way = across(by.d) * share;
-            off = larger(0.25 * share.abs() * by.along, off);
-        }
+        let way = across(r.times(&dn));
+        let off = 0.5 * way.dot(&dn);
         // In its own support plane, above the surface by half of what R bends.
         let moved = at.p + way;
         // Behind all support planes that were seen.

@@ -36,7 +36,7 @@ const DOUBTS: u32 = 4;
 /// Support points of one search. Measured: ÷2 +0.3 %, 4 more answers that are no global minimum; ×2
 /// +0.3 %.
 pub(super) const MOST: usize = 24;
-/// The samples kept: the best one, and the latest.
+/// The samples kept: the latest.
 pub(super) const LATEST: usize = 6;
 
 /// How a search ends.
@@ -99,9 +99,9 @@ pub struct Search {
     /// Where the best direction is in it.
     pub(super) middle: Flat,
     pub(super) samples: [Sample; LATEST],
-    /// The best one's place, …
-    pub(super) best: usize,
-    /// … and those of its points.
+    /// The best one, …
+    pub(super) best: Sample,
+    /// … and the places of its points.
     pub(super) places: [usize; 2],
     /// The last step.
     pub(super) step: Step,
@@ -115,7 +115,6 @@ pub struct Search {
     /// Before rounding made it larger.
     pub(super) finest: Real,
     pub(super) rounding: Real,
-    pub(super) newest: usize,
     pub(super) asked: usize,
     pub(super) doubts: u32,
     pub(super) slopes: [Vec3; 3],
@@ -208,15 +207,16 @@ impl Search {
                     Outcome::Open
                 });
             }
-            let place = self.put(&new);
+            self.samples[self.asked % LATEST] = new;
+            self.asked += 1;
             let told = self.told && self.trust.came_true(new.h, self.tolerance);
             self.told = false;
-            self.take(place, centre, settings.tolerance);
+            self.take(&new, centre, settings.tolerance);
             if told
                 && !self.is_curved()
                 && self.step.end.is_lowest(self.trust.radius)
                 && !self.is_doubtful(&n, HAIR * self.tolerance)
-                && self.conclude(place, known, hit)
+                && self.conclude(&new, known, hit)
             {
                 return Ok(Outcome::Found);
             }
@@ -224,27 +224,6 @@ impl Search {
                 return Ok(Outcome::Open);
             }
         }
-    }
-
-    /// Keeps a sample in the place of the oldest one that is not the best.
-    #[inline(always)]
-    pub(super) fn put(&mut self, new: &Sample) -> usize {
-        let mut place = self.newest + 1;
-        if self.asked < LATEST {
-            place = self.asked;
-        } else if place % LATEST == self.best {
-            place += 1;
-        }
-        self.newest = place % LATEST;
-        self.samples[self.newest] = *new;
-        self.asked += 1;
-        self.newest
-    }
-
-    /// The best sample.
-    #[inline(always)]
-    pub(super) fn best(&self) -> &Sample {
-        &self.samples[self.best % LATEST]
     }
 
     /// The two points of a sample, as points of D.
@@ -256,8 +235,7 @@ impl Search {
 
     /// Takes a support point.
     #[inline(always)]
-    fn take(&mut self, place: usize, centre: &Vec3, tolerance: Real) {
-        let new = &self.samples[place % LATEST];
+    fn take(&mut self, new: &Sample, centre: &Vec3, tolerance: Real) {
         let (n, h, p) = (new.n, new.h, &new.p);
         self.rounding = larger(new.rounding(), self.rounding);
         self.extent2 = larger((p.v - centre).norm_squared(), self.extent2);
@@ -270,7 +248,7 @@ impl Search {
         self.tolerance = larger(self.tolerance, self.rounding);
         let same = self.same();
         let points = Self::points(new);
-        let before = self.best().h;
+        let before = self.best.h;
         let mut twins = [None; 2];
         if first {
             for object in &mut self.objects {
@@ -281,14 +259,14 @@ impl Search {
             twins = self.learn(&points, &same);
         }
         let better = first || h < before;
-        let best = if better { n } else { self.best().n };
+        let best = if better { n } else { self.best.n };
         let mut places = [0; 2];
         for o in 0..2 {
             let kept = self.places[o];
             places[o] = self.objects[o].take(&points[o], twins[o], &best, kept, &same);
         }
         if better {
-            (self.best, self.places) = (place, places);
+            (self.best, self.places) = (*new, places);
         }
     }
 
@@ -341,8 +319,7 @@ impl Search {
                 return;
             }
         }
-        for i in (0..self.asked.min(LATEST)).filter(|i| *i != self.newest) {
-            let old = &self.samples[i];
+        for old in self.samples.iter().take(self.asked) {
             let (n, p) = (old.n, old.p.v);
             if Move::of(&Seen { n, p }, &new).is_smooth(same, JOINT * ALIKE) {
                 for object in &mut self.objects {
@@ -375,7 +352,7 @@ impl Search {
             && curved == [false; 2];
         let wait = both && self.asked == 2 && shown.iter().flatten().any(|smooth| smooth.aside);
         if wait {
-            let (old, new) = (self.best(), &self.samples[self.newest % LATEST]);
+            let [old, new, ..] = &self.samples;
             let dn = new.n - old.n;
             self.slope = (new.p.v - old.p.v).dot(&dn) / dn.norm_squared();
         }
@@ -397,7 +374,7 @@ impl Search {
     /// Where to ask next, or the answer.
     #[inline(always)]
     fn next(&mut self, known: &mut Known, hit: &mut Penetration) -> Next {
-        let best = self.best();
+        let best = self.best;
         // A touch cannot be lower, and is for others to tell.
         if !(best.h > self.rounding) {
             return Break(Outcome::Open);
@@ -446,7 +423,7 @@ impl Search {
         let settled = gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST);
         self.told = inside && !settled;
         let n = if settled {
-            self.settle(&b, known, hit)?
+            self.settle(&best, known, hit)?
         } else if inside && round {
             self.towards_unseen()
         } else {
@@ -461,19 +438,20 @@ impl Search {
     /// How much lower than the best sample the model is, metres.
     #[inline(always)]
     fn gain(&self) -> Real {
-        self.best().h - self.step.depth
+        self.best.h - self.step.depth
     }
 
     /// The best direction `b` is as deep as the model's minimum: the answer, or what is to be asked
     /// before it is, if that was not done too often.
     #[inline(always)]
-    fn settle(&mut self, b: &Vec3, known: &mut Known, hit: &mut Penetration) -> Next {
+    fn settle(&mut self, best: &Sample, known: &mut Known, hit: &mut Penetration) -> Next {
+        let b = &best.n;
         let n = if let Some(n) = self.open(b) {
             n
         } else if self.is_doubtful(b, HAIR * self.tolerance) {
             self.trust.no_forecast();
             self.beside()
-        } else if self.conclude(self.best, known, hit) {
+        } else if self.conclude(best, known, hit) {
             return Break(Outcome::Found);
         } else {
             // Shallow, the best direction is near enough for the depth and not for witness points:
