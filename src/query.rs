@@ -526,8 +526,8 @@ const MPR_SUPPORTS: u64 = 160;
 /// Insensitive: 0.01 to 0.1 tried.
 const EDGE: Real = 0.02;
 /// Of a proven minimum, and of a query along a direction. Derived: no call asks more than 400, and what comes
-/// before and after takes 63 on nearly coincident bodies (`campaigns -- wide`).
-const MOST_SUPPORTS: u64 = 330;
+/// before and after takes 58 on nearly coincident bodies (`campaigns -- wide`).
+const MOST_SUPPORTS: u64 = 340;
 /// Where an MPR query may stop: a gap of this share of the depth.
 const GAP: Real = 1e-3;
 

@@ -514,7 +514,7 @@ static inline int judge_witness(const entry_t *e, const answer_t *x, const shape
 enum { MPR_POINTS = 160 };
 
 /* After so many a minimum is given up: the compatible calls cannot say so. */
-enum { MINIMUM_POINTS = 330 };
+enum { MINIMUM_POINTS = 340 };
 
 static inline int mpr_within(double depth, double least, double tol, double noise, unsigned long supports)
 {
