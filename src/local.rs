@@ -69,8 +69,8 @@
 //! the last answer, each towards one active cut and farther than the pair moved, two edges by two
 //! directions, and both proven by one more: without this search, where nothing round bends them by more than
 //! the tolerance (`hull/face.rs`); what has been asked there in vain it begins with. A smooth contact is
-//! found by the last direction and one step with R. The radii of balls and discs stay; a disc's axis turns with its object, and is found anew by
-//! two samples beside each other. What no longer fits is forgotten where the model is above a
+//! found by the last direction and one step with R. The radii of balls stay; a disc's axis turns with its object, and a disc that has turned is
+//! found anew. What no longer fits is forgotten where the model is above a
 //! sample.
 //!
 //! # Constants

@@ -108,7 +108,7 @@ impl Move {
     ///
     /// Each exceeds the other's support plane, by e and e′. On one smooth piece the trapezoidal rule
     /// makes these equal, to the third order of the angle; a kink between the directions makes e : e′
-    /// whatever it likes. So they must be equal within this relative difference, the nearer the
+    /// whatever it likes. So they must be equal within the relative difference `alike`, the nearer the
     /// farther the point moved; and farther than an object of that size can bend there the point did not
     /// move smoothly.
     #[inline(always)]

@@ -16,8 +16,8 @@
 //!
 //! *Discs* likewise; but any two points of a smooth object could be a disc's, so a third one must
 //! confirm it. A vertex carries the disc if it is above or below the one that did where the disc was
-//! found: a cone's tip has a cut without it. A *remembered* disc keeps its radius; where its axis has
-//! turned with the object, a pair finds it again ([`Disc::of`]) and is confirmed by that radius.
+//! found: a cone's tip has a cut without it. A *remembered* disc ends where its axis has turned with the
+//! object: its points show it anew ([`Disc::of`]).
 //!
 //! *R* bends the cuts of the points that were seen to be of a smooth piece, and moves them once a
 //! second pair has told that it is right.

@@ -441,7 +441,7 @@ impl Search {
         self.best.h - self.step.depth
     }
 
-    /// The best direction `b` is as deep as the model's minimum: the answer, or what is to be asked
+    /// The best direction is as deep as the model's minimum: the answer, or what is to be asked
     /// before it is, if that was not done too often.
     #[inline(always)]
     fn settle(&mut self, best: &Sample, known: &mut Known, hit: &mut Penetration) -> Next {

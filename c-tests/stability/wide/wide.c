@@ -317,9 +317,10 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
             said[k] = say(k, &p, shares[kept] * p.size, along, &warm[k]);
             said[k].moved = 1;
             /* GJK is asked without a state: it proves what a cold minimum proves */
-            memset(&cold, 0, sizeof cold);
-            if (calls[k].entry.ask == ASK_PROVEN && calls[k].bare)
+            if (calls[k].entry.ask == ASK_PROVEN && calls[k].bare) {
+                memset(&cold, 0, sizeof cold);
                 open = say(k, &p, shares[kept] * p.size, along, &cold).a.code == CCD_LIMIT;
+            }
         }
         c = known(&p, said, CALLS);
         c.may_be_deep[kept] = open || c.may_be_deep[0];
