@@ -47,14 +47,14 @@
 //!
 //! *Of exact cuts*: a model whose least value comes true at its minimum is a proof of a local
 //! minimum, for the support function is convex, and nowhere below its cuts. *Of R*: the best
-//! direction must be as deep as the model's minimum within the tolerance; with R measured in two
-//! directions; and so it must be if R bends by its error less. A ball, disc or R that an active
-//! point rests on must have been seen from two directions, or lift the cut by a hair only: else
-//! the next support point is asked beside, towards that point (`doubt.rs`).
+//! direction must be as deep as the model's minimum within the tolerance, with R measured in two
+//! directions. A ball, disc or R that an active point rests on must have been seen from two
+//! directions, or lift the cut by a hair only: else the next support point is asked beside, towards
+//! that point (`doubt.rs`).
 //!
-//! *Witness points* are means of the active points, moved along what is round to the model's
-//! minimum: by R where it has foretold a pair, and no farther than all support planes seen. Where
-//! they do not meet within the tolerance, the minimum itself is asked.
+//! *Witness points* are means of the active points, moved along a ball or disc to the answer's
+//! direction. R moves none: what it leads to may lie beside the body. Where they do not meet within
+//! the tolerance, the model's minimum itself is asked.
 //!
 //! *Level ground*: minima that form a curve or a surface are told by a model that is level over the
 //! whole first trust region.
@@ -85,7 +85,9 @@
 //!
 //! *Left out*: a second search with one R for D as a whole (as many support points on ellipsoids, a
 //! third fewer instructions there, 1,900 lines); starts beside a place where the search stalled
-//! (nothing: within 0.01 support points on all sets).
+//! (nothing: within 0.01 support points on all sets); witness points that R moves (5 % fewer support
+//! points on ellipsoids, a fifth fewer on them in motion, 120 lines, depths there forty times less
+//! exact, and four of the seven known points of the campaign that lie outside of their bodies).
 
 mod answer;
 mod curved;
@@ -105,7 +107,7 @@ use crate::known::points::Points;
 use crate::known::support::{Known, MinkowskiDifference, SupportMap};
 use crate::known::support_set::Stop;
 use crate::math::Vec3;
-use search::{Outcome, Search};
+use search::Search;
 
 /// A local minimum of the depth near the remembered direction, else near the unit
 /// vector that `start` gives.
@@ -123,8 +125,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     inner: Option<&Vec3>,
     start: impl Fn() -> Vec3,
     memory: &mut Memory,
-    settings: &Settings,
-    seen: Option<&Points>,
+    (seen, settings): (Option<&Points>, &Settings),
     (known, hit): (&mut Known, &mut Penetration),
 ) -> Result<bool, Stop> {
     let mut search = Search::default();
@@ -133,18 +134,14 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         Some(_) => [None; 3],
     };
     let centre = inner.copied().unwrap_or_default();
-    match search.run(md, &centre, (seen, queue), settings, known, hit)? {
-        Outcome::Found => {
-            search.leave(&hit.dir, memory);
-            Ok(true)
-        }
-        Outcome::Apart(n) => Err(Stop::Apart(n)),
-        Outcome::Open => {
-            *hit = search.lowest_met(known);
-            *memory = Memory::towards(hit.dir);
-            Ok(false)
-        }
+    let found = search.run(md, &centre, (seen, queue), settings, known, hit)?;
+    if found {
+        search.leave(&hit.dir, memory);
+    } else {
+        *hit = search.lowest_met(known);
+        *memory = Memory::towards(hit.dir);
     }
+    Ok(found)
 }
 
 #[cfg(test)]
@@ -245,8 +242,7 @@ mod tests {
             None,
             || start.normalize(),
             memory,
-            &settings(tolerance),
-            None,
+            (None, &settings(tolerance)),
             (&mut known, &mut hit),
         );
         let answer = match found {

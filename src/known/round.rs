@@ -59,7 +59,6 @@ pub struct Same {
 /// How a point moved, where its direction turned.
 pub struct Move {
     pub d: Vec3,
-    pub dn: Vec3,
     /// Their squares, and their product.
     pub d2: Real,
     pub dn2: Real,
@@ -74,7 +73,6 @@ impl Move {
         let (d, dn) = (new.p - old.p, new.n - old.n);
         Self {
             d,
-            dn,
             d2: d.norm_squared(),
             dn2: dn.norm_squared(),
             along: d.dot(&dn),

@@ -3,12 +3,11 @@
 
 //! The end of a search: its answer, witness points, and what is handed on.
 
-use super::memory::{EDGES, Kind, Memory};
-use super::search::{HAIR, Sample, Search};
+use super::memory::{EDGES, Memory};
+use super::search::{Sample, Search};
 use super::walk::ROOM;
-use crate::contact::{INSIDE, Penetration};
+use crate::contact::Penetration;
 use crate::contacts::pressure;
-use crate::known::round::{Same, Seen};
 use crate::known::support::{Known, SupportPoint};
 use crate::math::{Vec3, larger};
 
@@ -16,13 +15,8 @@ impl Search {
     /// What finds the cuts of the minimum along unit `dir` again stays behind.
     #[inline]
     pub fn leave(&self, dir: &Vec3, memory: &mut Memory) {
-        let round = |o: usize| {
-            let object = &self.objects[o % 2];
-            let bends = object.bends(self.step.end.active[o % 2], self.seen(o));
-            object.round(dir, bends)
-        };
-        // Spelt out: in a map that is not inlined the bounds are checked.
-        memory.keep(dir, &self.slopes, self.count, &[round(0), round(1)]);
+        let round = self.objects.each_ref().map(|object| object.round(dir));
+        memory.keep(dir, &self.slopes, self.count, &round);
     }
 
     /// The lowest direction met, after a search that found no minimum: the witness points are points
@@ -54,39 +48,31 @@ impl Search {
         let (n, depth) = (&at.n, at.h);
         let here = Self::points(at);
         let end = &self.step.end;
-        // Of what bends the witnesses are at the model's minimum: as deep, and below the origin.
-        let out = Same {
-            round: HAIR * self.finest,
-            ..self.same()
-        };
-        // As fine as rounding R leads to none.
-        let fine = self.finest * self.finest <= INSIDE * INSIDE * self.extent2;
         let near2 = larger(2.0 * depth * self.finest, self.rounding * self.rounding);
-        let meets = |(points, _): &([Vec3; 2], [Vec3; 3])| {
-            let foot = points[0] + points[1];
-            let height = foot.dot(n);
-            let across2 = (foot - n * height).norm_squared();
-            height >= depth - self.tolerance && across2 <= near2
-        };
-        // Where they are near enough the points of the bodies themselves, else those that R leads to.
-        let mut found = self.witnesses(&here, n, &out);
-        if !meets(&found) && self.is_curved() && !end.on_border && !fine {
-            found = self.witnesses(&here, &self.step.n, &out);
-        }
-        if !meets(&found) {
-            return false;
-        }
-        let (points, slopes) = found;
-        // Of one cut the point here is the witness.
-        if end.count == 0 {
-            let same = self.same().round;
-            for (o, own) in here.iter().enumerate() {
-                let object = &self.objects[o];
-                let off = object.point(end.active[o], n, &out, self.seen(o)) - own.p;
-                if object.kind != Kind::Curved && off.norm_squared() > same * same {
-                    return false;
-                }
+        // The means of the active points of both objects, obj2's turned about, and three points of D's face.
+        let own = |o: usize, k: usize| self.objects[o % 2].point(k, n);
+        // Of an object of one point that is the one found here: what is round may end before.
+        let active = |o: usize| {
+            let mut kinks = end.kinks.iter().take(end.count);
+            if self.objects[o % 2].is_round() && kinks.all(|kink| kink.object != o) {
+                here[o % 2].p
+            } else {
+                own(o, end.active[o % 2])
             }
+        };
+        let mut points = [active(0), active(1)];
+        let mut slopes = [points[0] + points[1]; 3];
+        for (i, kink) in end.kinks.iter().take(end.count).enumerate() {
+            let o = kink.object % 2;
+            let e = own(o, kink.point) - own(o, end.active[o]);
+            points[o] += e * end.weights[i];
+            slopes[i + 1] += e;
+        }
+        let foot = points[0] + points[1];
+        let height = foot.dot(n);
+        let across2 = (foot - n * height).norm_squared();
+        if !(height >= depth - self.tolerance && across2 <= near2) {
+            return false;
         }
         // Onto the support planes of both objects.
         let onto = |p: Vec3, own: &Vec3| p + n * n.dot(&(own - p));
@@ -108,40 +94,6 @@ impl Search {
             ..Penetration::default()
         };
         true
-    }
-
-    /// The means of the active points of both objects, obj2's turned about, and three points of D's face,
-    /// each of what is round where unit `m` looks to.
-    #[inline(always)]
-    fn witnesses(&self, here: &[Seen; 2], m: &Vec3, out: &Same) -> ([Vec3; 2], [Vec3; 3]) {
-        let end = &self.step.end;
-        let own = |o: usize, k: usize| self.objects[o % 2].point(k, m, out, self.seen(o % 2));
-        // Of an object of one point, on a ball or disc, that is the one found here: these may end before.
-        let active = |o: usize| {
-            let (object, k) = (&self.objects[o % 2], end.active[o % 2]);
-            let mut kinks = end.kinks.iter().take(end.count);
-            let is_cored = object.is_cored() && object.carries(k);
-            if is_cored && kinks.all(|kink| kink.object != o) {
-                here[o % 2].p
-            } else {
-                own(o, k)
-            }
-        };
-        let mut points = [active(0), active(1)];
-        let mut slopes = [points[0] + points[1]; 3];
-        for (i, kink) in end.kinks.iter().take(end.count).enumerate() {
-            let o = kink.object % 2;
-            let e = own(o, kink.point) - own(o, end.active[o]);
-            points[o] += e * end.weights[i];
-            slopes[i + 1] += e;
-        }
-        (points, slopes)
-    }
-
-    /// The latest points of an object.
-    fn seen(&self, o: usize) -> impl Iterator<Item = Seen> + Clone + '_ {
-        let samples = self.samples.iter().take(self.asked);
-        samples.map(move |sample| Self::points(sample)[o % 2])
     }
 
     /// Names the points of D for the proof: the active ones, the one here, the others.

@@ -10,18 +10,11 @@
 //! Wright, Numerical Optimization, ch. 6). What it was off by is the error of R.
 
 use crate::known::round::{BLUNT, Symmetric};
-use crate::math::{Real, Vec3, ZERO, larger};
+use crate::math::{Real, Vec3, ZERO};
 
-/// Relative error of R up to which it leads to witness points, and up to which the first pair that
-/// confirms a remembered R confirms all of it. Insensitive: 0.1 to 0.4, within 0.1 %.
-pub const FORETOLD: Real = 0.2;
-/// The least relative error of R that one pair tells: chance has a say in it. Measured: ×2 +0.2 %,
-/// +3 % (ellipsoids); without, one ellipsoid in 500 is three tolerances too deep.
-const CHANCE: Real = 0.3;
-/// What bends by less than this share of what it bends by across is taken for an edge, which moves
-/// along itself alone. Measured on needles and plates (`campaigns -- wide`): without, five times as many
-/// witness points are outside of their body; on no pair set does it cost a support point.
-const EDGE: Real = 0.05;
+/// Relative error of R up to which the first pair that confirms a remembered R confirms all of it.
+/// Insensitive: 0.1 to 0.4, within 0.1 %.
+const FORETOLD: Real = 0.2;
 /// Relative error up to which R moves cuts; also that of a remembered R, until a pair tells.
 /// Measured: ×2 +1.2 %, +19 % (hulls); ÷2 +0.2 %, +6 %.
 pub const BELIEVED: Real = 0.5;
@@ -38,24 +31,18 @@ pub struct Curved {
     r: Symmetric,
     /// Relative error, by the last pair; 1 where one alone has told, meaningless where R is not there.
     pub error: Real,
-    /// Did R foretell the last pair to within [`FORETOLD`]?
-    foretold: bool,
     /// The direction of the first pair; zero where R is remembered, until one has told.
     line: Vec3,
     /// Measured along a second direction too.
     pub spread: bool,
-    /// Did points near the last answer show that it bends both ways?
-    pub both: bool,
 }
 
 impl Curved {
     pub const NONE: Self = Self {
         r: Symmetric([0.0; 6]),
         error: 0.0,
-        foretold: false,
         line: ZERO,
         spread: false,
-        both: false,
     };
 
     /// R as an earlier search knew it, or as a ball or disc that was refuted has it: enough to look
@@ -65,21 +52,6 @@ impl Curved {
             r,
             error: BELIEVED,
             ..Self::NONE
-        }
-    }
-
-    /// For the next search: negative, if it was shown to bend both ways.
-    pub fn keep(&self, both: bool) -> [Real; 6] {
-        self.r.0.map(|entry| if both { -entry } else { entry })
-    }
-
-    /// What [`Curved::keep`] kept.
-    pub fn remembered(kept: &[Real; 6]) -> Self {
-        let both = kept[0] + kept[3] + kept[5] < 0.0;
-        let r = kept.map(|entry| if both { -entry } else { entry });
-        Self {
-            both,
-            ..Self::recall(Symmetric(r))
         }
     }
 
@@ -113,7 +85,6 @@ impl Curved {
         let w = d - self.r.times(dn);
         let dn2 = dn.norm_squared();
         self.error = (w.norm_squared() / d.norm_squared()).sqrt();
-        self.foretold = self.error <= FORETOLD;
         let line2 = self.line.norm_squared();
         if line2 > 0.0 {
             self.spread |= self.line.cross(dn).norm_squared() > SPREAD * dn2 * line2;
@@ -128,29 +99,6 @@ impl Curved {
             // Across: the least symmetric change.
             self.r.add_least(&w, dn);
         }
-    }
-
-    /// The relative error to be reckoned with.
-    pub fn worst(&self) -> Real {
-        larger(self.error, CHANCE)
-    }
-
-    /// Does it lead to witness points, of a point seen along unit `n`? Not where it was measured along
-    /// one direction alone, and is a guess across that.
-    pub fn is_certain(&self, n: &Vec3) -> bool {
-        self.spread && self.foretold && !self.is_edge(n)
-    }
-
-    /// Does it bend along one direction across `n` alone? By its eigenvalues there, through their sum
-    /// and the sum of their squares.
-    fn is_edge(&self, n: &Vec3) -> bool {
-        let [xx, xy, xz, yy, yz, zz] = self.r.0;
-        let along = self.r.times(n);
-        let height = along.dot(n);
-        let sum = xx + yy + zz - height;
-        let all = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
-        let squares = all - 2.0 * along.norm_squared() + height * height;
-        !(0.5 * (sum * sum - squares) >= EDGE * squares)
     }
 
     /// A kink along `dn` leaves R no more than this `room`. What no second pair confirmed ends: `false`.
@@ -206,7 +154,7 @@ mod tests {
                 let to = ask(n + way * step);
                 curved.learn(&(to.p - at.p), &(to.n - at.n));
             }
-            assert!(curved.is_believed() && curved.is_certain(&n) && curved.spread);
+            assert!(curved.is_believed() && curved.spread);
             assert!(curved.across(&n).is_none());
             let to = ask(n + (t * 0.6 - u * 0.3) * step);
             let (d, dn) = (to.p - at.p, to.n - at.n);

@@ -19,18 +19,9 @@ impl Search {
     }
 
     /// What R leaves open at the best direction, whose depth is the model's least: where it was
-    /// measured in one direction, across that; and where the depth may fall by more than the
-    /// tolerance, if R bends by its error less, at the model's minimum.
+    /// measured in one direction, across that.
     #[inline(never)]
     pub(super) fn open(&mut self, b: &Vec3) -> Option<Vec3> {
-        if !self.is_curved() {
-            return None;
-        }
-        // So near to the best direction another point would tell nothing.
-        let far = (self.step.n - b).norm_squared() > TOLD * TOLD;
-        if far && !(self.gain_by_less() <= self.tolerance) {
-            return Some(self.step.n);
-        }
         for object in &mut self.objects {
             let curved = &mut object.curved;
             let across = curved.across(b).filter(|_| object.kind == Kind::Curved);

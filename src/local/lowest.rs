@@ -12,7 +12,7 @@ use super::memory::Kind;
 use super::search::Search;
 use super::walk::End;
 use crate::contacts::polygon::{Flat, dot};
-use crate::math::{Real, Vec3, basis, larger};
+use crate::math::{Real, Vec3, basis};
 
 /// Charts of one walk where discs bend: Newton's method needs few. Insensitive: 3 to 12, …
 const CHARTS: usize = 6;
@@ -91,19 +91,5 @@ impl Search {
     /// The model's depth along unit `n`.
     pub(super) fn depth(&self, n: &Vec3) -> Real {
         self.objects[0].height(n) + self.objects[1].height(n)
-    }
-
-    /// How much lower than the best sample the model is, metres, if R bends by its error less.
-    pub(super) fn gain_by_less(&mut self) -> Real {
-        for (object, cuts) in self.objects.iter().zip(&mut self.model.cuts) {
-            if object.kind == Kind::Curved {
-                let left = larger(1.0 - object.curved.worst(), 0.0);
-                cuts.bend = cuts.bend.map(|g| g * left);
-            }
-        }
-        let mut end = End::default();
-        let (middle, radius) = (&self.middle, self.trust.radius);
-        self.model.walk(&[0.0; 2], middle, radius, &mut end);
-        self.best.h - (end.value + self.rho())
     }
 }

@@ -18,7 +18,7 @@ pub struct Memory {
     /// in `curvature`.
     pub slopes: [Vec3; 3],
     /// What is round of obj1, and after that of obj2, metres: a ball's radius; a disc's axis times its
-    /// radius; or R: xx, xy, xz, yy, yz, zz, all negative where it was shown to bend both ways.
+    /// radius; or R: xx, xy, xz, yy, yz, zz.
     pub curvature: [Real; 6],
     /// How far `dir` moved since the query before, radians.
     pub drift: Real,

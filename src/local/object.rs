@@ -19,13 +19,13 @@
 //! found: a cone's tip has a cut without it. A *remembered* disc ends where its axis has turned with the
 //! object: its points show it anew ([`Disc::of`]).
 //!
-//! *R* bends the cuts of the points that were seen to be of a smooth piece, and moves them once a
-//! second pair has told that it is right.
+//! *R* bends the cuts of the points that were seen to be of a smooth piece. It leads to no witness
+//! point: what it is right about to second order lies beside the object to third.
 
 use super::curved::Curved;
 use super::memory::{Kind, Round};
 use super::walk::{Cuts, ROOM, Row, each};
-use crate::known::round::{ALIKE, Disc, Move, Same, Seen, fits};
+use crate::known::round::{ALIKE, Disc, Seen, Symmetric, fits};
 use crate::math::{Real, Vec3, ZERO, larger};
 
 /// How many times as far from where it was seen as the directions are apart that showed it what is
@@ -35,18 +35,6 @@ const FAR: Real = 1.4;
 /// How much more alike the excesses of a smooth pair must be once a vertex was seen twice (a
 /// polytope, it seems). Measured: ×2, ÷2 nothing; 1 +0.1 %, +1.5 %.
 const FLAT: Real = 0.05;
-
-/// Radians from a point within which R must foretell the points seen, and these show which ways it
-/// moves, or it leads to no witness points. Measured on needles and plates (`campaigns -- wide`): without,
-/// one pair in 80 has a witness point outside of its body, by up to 4 % of that. At 0.05 ellipsoids that
-/// touch take 4 % more support points.
-const ABOUT: Real = 0.1;
-/// Squared sine of the angle between two moves from which on they go two ways. Measured: 0.04, with 0.05
-/// above, 4 % there too.
-const WIDE: Real = 0.01;
-/// How far R may move a witness point, in sizes of D a radian. Derived: corners of a polytope that look
-/// smooth by chance are as far apart as that, an ellipsoid four times as wide as thick bends by so much.
-const LONG: Real = 4.0;
 
 /// A ball, which is a disc of no axis, or a disc, and how it was found.
 #[derive(Clone, Copy, Debug)]
@@ -169,7 +157,7 @@ impl Object {
                 self.found.disc.axis = axis * (1.0 / axis.norm());
             }
             Kind::Curved => {
-                (self.curved, self.carried) = (Curved::remembered(numbers), !0);
+                (self.curved, self.carried) = (Curved::recall(Symmetric(*numbers)), !0);
             }
         }
     }
@@ -177,13 +165,13 @@ impl Object {
     /// What is round of it for the next query, of an answer along unit `n`. Along a disc's axis its
     /// points are those of a polytope.
     #[inline(always)]
-    pub fn round(&self, n: &Vec3, bends: bool) -> Round {
+    pub fn round(&self, n: &Vec3) -> Round {
         let disc = &self.found.disc;
         let small = |v: Vec3| [v.x, v.y, v.z, 0.0, 0.0, 0.0];
         match self.kind {
             Kind::Ball => (self.kind, small(Vec3::x() * disc.radius)),
             Kind::Disc if !disc.is_along(n) => (self.kind, small(disc.axis * disc.radius)),
-            Kind::Curved => (self.kind, self.curved.keep(bends)),
+            Kind::Curved => (self.kind, self.curved.r().0),
             _ => (Kind::None, [0.0; 6]),
         }
     }
@@ -403,79 +391,14 @@ impl Object {
         levels.fold(Real::NEG_INFINITY, larger)
     }
 
-    /// The `k`th point where it is along unit `n`: round where that was seen, and by R no other way than
-    /// the `seen` points near it.
+    /// The `k`th point where it is along unit `n`: on its ball or disc where that was seen.
     #[inline(always)]
-    pub fn point(
-        &self,
-        k: usize,
-        n: &Vec3,
-        same: &Same,
-        seen: impl Iterator<Item = Seen> + Clone,
-    ) -> Vec3 {
-        let k = k % ROOM;
-        if !(self.carries(k) && self.was_seen(k, n)) {
-            self.at[k].p
-        } else if self.kind == Kind::Curved {
-            self.bent(k, n, same, seen)
-        } else {
+    pub fn point(&self, k: usize, n: &Vec3) -> Vec3 {
+        if self.is_cored() && self.carries(k) && self.was_seen(k, n) {
             self.core(k) + self.disc().point(n)
+        } else {
+            self.at[k % ROOM].p
         }
-    }
-
-    /// The moves from a point to the `seen` ones near it.
-    fn near(
-        at: &Seen,
-        seen: impl Iterator<Item = Seen> + Clone,
-    ) -> impl Iterator<Item = Move> + Clone {
-        let moves = seen.map(move |to| Move::of(at, &to));
-        moves.filter(|by| by.dn2 <= ABOUT * ABOUT)
-    }
-
-    /// Do the `seen` points near the `k`th one show that it bends both ways?
-    pub fn bends(&self, k: usize, seen: impl Iterator<Item = Seen> + Clone) -> bool {
-        let near = Self::near(&self.at[k % ROOM], seen);
-        let beside = |one: &Move, two: &Move| {
-            let along = one.d.dot(&two.d);
-            one.d2 * two.d2 - along * along > WIDE * one.d2 * two.d2
-        };
-        self.kind == Kind::Curved
-            && (self.curved.both
-                || near
-                    .clone()
-                    .any(|one| near.clone().any(|two| beside(&one, &two))))
-    }
-
-    /// The `k`th point as R moves it to unit `n`, where that is certain.
-    fn bent(
-        &self,
-        k: usize,
-        n: &Vec3,
-        same: &Same,
-        seen: impl Iterator<Item = Seen> + Clone,
-    ) -> Vec3 {
-        let at = &self.at[k % ROOM];
-        let (r, dn) = (self.curved.r(), n - at.n);
-        if dn == ZERO || !self.curved.is_certain(&at.n) {
-            return at.p;
-        }
-        // By a tenth.
-        let foretold = |by: Move| (by.d - r.times(&by.dn)).norm_squared() <= 0.01 * by.d2;
-        // What bends along itself alone may be an edge.
-        if !(self.bends(k, seen.clone()) && Self::near(at, seen).all(foretold)) {
-            return at.p;
-        }
-        let across = |v: Vec3| v - at.n * at.n.dot(&v);
-        let way = across(r.times(&dn));
-        let off = 0.5 * way.dot(&dn);
-        // In its own support plane, above the surface by half of what R bends.
-        let moved = at.p + way;
-        // Behind all support planes that were seen.
-        let beyond = |at: &Seen| (moved - at.p).dot(&at.n) > same.round;
-        let blunt2 = LONG * LONG * same.extent2 * dn.norm_squared();
-        let far = !(off <= same.round && way.norm_squared() <= blunt2);
-        let out = far || self.at.iter().take(self.len).any(beyond);
-        if out { at.p } else { moved }
     }
 
     /// How far what is round lifts the cut of the `k`th point along unit `n` above the point itself,
@@ -496,8 +419,8 @@ impl Object {
     /// Was the round part of the `k`th point seen from two directions, and not too far from unit `n`?
     #[inline(always)]
     fn was_seen(&self, k: usize, n: &Vec3) -> bool {
-        let dn2 = (self.at[k].n - n).norm_squared();
-        self.seen_twice(k) && !(dn2 > FAR * FAR * self.span[k])
+        let dn2 = (self.at[k % ROOM].n - n).norm_squared();
+        self.seen_twice(k) && !(dn2 > FAR * FAR * self.span[k % ROOM])
     }
 
     /// Is the `k`th point's round part in doubt along unit `n`? Not seen twice, or too far from
@@ -506,7 +429,7 @@ impl Object {
     pub fn is_unseen(&self, k: usize, n: &Vec3, hair: Real) -> bool {
         let doubted = match self.kind {
             Kind::Curved => self.curved.is_believed(),
-            _ => !self.was_seen(k % ROOM, n),
+            _ => !self.was_seen(k, n),
         };
         self.carries(k) && doubted && self.lift(k, n) > hair
     }
@@ -583,36 +506,6 @@ mod tests {
         (object, shown)
     }
 
-    /// The rim of a thin plate is an edge, which bends along itself alone, whatever R says of the other way:
-    /// a witness point stays in the plate.
-    #[test]
-    fn an_edge_leads_along_itself() {
-        let radii = Vec3::new(0.5, 0.3, 1e-6);
-        let plate = |d: &Vec3| {
-            let w = radii.component_mul(&radii.component_mul(d));
-            w / w.dot(d).sqrt()
-        };
-        let out = |p: &Vec3| p.component_div(&radii).norm() - 1.0;
-        let n = Vec3::new(0.6, 0.5, 0.6);
-        for aside in [Vec3::x(), Vec3::z()] {
-            let seen = [n, n + aside * 0.01].map(|n| ask(plate, n));
-            let [at, beside] = seen;
-            let mut object = Object::default();
-            object.take(&at, None, &at.n, 0, &SAME);
-            (object.kind, object.carried, object.span[0]) = (Kind::Curved, 1, 0.1);
-            // As pairs far from here would have it: right along the rim, and as large across.
-            let (d, dn) = (beside.p - at.p, beside.n - at.n);
-            object.curved = Curved::first(&(dn * (d.norm() / dn.norm())), &dn);
-            for _ in 0..4 {
-                object.curved.learn(&d, &dn);
-            }
-            object.curved.spread = true;
-            let to = (at.n + Vec3::new(-1e-4, 2e-4, 1e-4)).normalize();
-            let witness = object.point(0, &to, &SAME, seen.into_iter());
-            assert!(out(&witness) < 1e-3, "{}", out(&witness));
-        }
-    }
-
     #[test]
     fn two_points_show_a_ball() {
         let mut r = Random::new(1);
@@ -642,7 +535,7 @@ mod tests {
         assert!((three.core(0) - Vec3::z() * 0.4).norm() < NEAR);
         // The rim where it is along another direction, and its support value.
         let n = Vec3::new(0.8, 0.05, 0.45).normalize();
-        assert!((three.point(0, &n, &SAME, core::iter::empty()) - cylinder(&n)).norm() < NEAR);
+        assert!((three.point(0, &n) - cylinder(&n)).norm() < NEAR);
         assert!((three.height(&n) - cylinder(&n).dot(&n)).abs() < NEAR);
     }
 

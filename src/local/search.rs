@@ -16,7 +16,8 @@ use crate::contact::{Penetration, Settings};
 use crate::contacts::polygon::Flat;
 use crate::known::points::Points;
 use crate::known::round::{ALIKE, Move, Same, Seen};
-use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support::{Known, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::known::support_set::Stop;
 use crate::math::{self, EPSILON, Real, Vec3, larger, unit};
 use core::ops::ControlFlow::{self, Break, Continue};
 
@@ -38,17 +39,6 @@ const DOUBTS: u32 = 4;
 pub(super) const MOST: usize = 24;
 /// The samples kept: the latest.
 pub(super) const LATEST: usize = 6;
-
-/// How a search ends.
-#[derive(Debug)]
-pub enum Outcome {
-    /// At a local minimum, which is written.
-    Found,
-    /// All of D is on the far side of this unit direction's support plane.
-    Apart(Vec3),
-    /// Not here: [`Search::lowest_met`].
-    Open,
-}
 
 /// A support point, asked.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,8 +71,9 @@ pub(super) struct Step {
     pub(super) depth: Real,
 }
 
-/// What comes after a support point: a direction to ask, or the end.
-type Next = ControlFlow<Outcome, Vec3>;
+/// What comes after a support point: a direction to ask, or the end; `true`: at a local minimum, which is
+/// written.
+type Next = ControlFlow<bool, Vec3>;
 
 /// A search for a local minimum.
 // In this order what is zero at first is two pieces, each less than memset fills word by word.
@@ -170,8 +161,10 @@ impl Search {
     /// `centre`: any inner point of D, its distance is the size of what was not seen.
     /// `known` gains the points of a minimum: the active ones, the one there, the others.
     ///
+    /// `true`: at a local minimum, which is written; `false`: not here, [`Search::lowest_met`].
+    ///
     /// # Errors
-    /// [`Fault::NonFinite`] from a support mapping.
+    /// [`Stop::Apart`]; [`Stop::Fault`], where a support mapping answers no number.
     pub fn run<A: SupportMap, B: SupportMap>(
         &mut self,
         md: &MinkowskiDifference<A, B>,
@@ -180,7 +173,7 @@ impl Search {
         settings: &Settings,
         known: &mut Known,
         hit: &mut Penetration,
-    ) -> Result<Outcome, Fault> {
+    ) -> Result<bool, Stop> {
         let mut first = first.into_iter().flatten();
         loop {
             let k = self.asked;
@@ -201,11 +194,8 @@ impl Search {
             if new.h < 0.0 {
                 // D holds what was seen: where that lies beyond, a callback errs.
                 let mut seen = self.samples.iter().take(self.asked);
-                return Ok(if !seen.any(|sample| sample.p.v.dot(&n) > 0.0) {
-                    Outcome::Apart(n)
-                } else {
-                    Outcome::Open
-                });
+                let errs = seen.any(|sample| sample.p.v.dot(&n) > 0.0);
+                return if errs { Ok(false) } else { Err(Stop::Apart(n)) };
             }
             self.samples[self.asked % LATEST] = new;
             self.asked += 1;
@@ -218,10 +208,10 @@ impl Search {
                 && !self.is_doubtful(&n, HAIR * self.tolerance)
                 && self.conclude(&new, known, hit)
             {
-                return Ok(Outcome::Found);
+                return Ok(true);
             }
             if self.asked as u64 >= settings.max_iterations || self.asked >= MOST {
-                return Ok(Outcome::Open);
+                return Ok(false);
             }
         }
     }
@@ -255,7 +245,7 @@ impl Search {
                 object.forget_unless_fits(self.extent2, larger(same.round, tolerance));
             }
         } else {
-            self.trust.compare(&n, h, before);
+            self.trust.compare(h, before);
             twins = self.learn(&points, &same);
         }
         let better = first || h < before;
@@ -377,7 +367,7 @@ impl Search {
         let best = self.best;
         // A touch cannot be lower, and is for others to tell.
         if !(best.h > self.rounding) {
-            return Break(Outcome::Open);
+            return Break(false);
         }
         let round = self.is_round();
         let pair = self.asked == 2 && self.slope > 0.0;
@@ -416,10 +406,10 @@ impl Search {
         let gain = self.gain();
         // Also NaN.
         if self.step.end.lost || !(gain >= -self.tolerance && gain < Real::INFINITY) {
-            return Break(Outcome::Open);
+            return Break(false);
         }
         let inside = !self.step.end.on_border;
-        self.trust.foretell(self.step.depth, !inside, &b);
+        self.trust.foretell(self.step.depth, !inside);
         let settled = gain <= self.tolerance && (inside || round && self.trust.radius >= FIRST);
         self.told = inside && !settled;
         let n = if settled {
@@ -430,7 +420,7 @@ impl Search {
             self.step.n
         };
         if (n - b).norm_squared() < EPSILON * EPSILON {
-            return Break(Outcome::Open);
+            return Break(false);
         }
         Continue(n)
     }
@@ -452,7 +442,7 @@ impl Search {
             self.trust.no_forecast();
             self.beside()
         } else if self.conclude(best, known, hit) {
-            return Break(Outcome::Found);
+            return Break(true);
         } else {
             // Shallow, the best direction is near enough for the depth and not for witness points:
             // the minimum itself is, if the model is right.
@@ -460,7 +450,7 @@ impl Search {
         };
         self.doubts += 1;
         if self.doubts > DOUBTS {
-            return Break(Outcome::Open);
+            return Break(false);
         }
         Continue(n)
     }
@@ -505,10 +495,11 @@ mod tests {
             &mut known,
             &mut hit,
         );
-        let end = match outcome.unwrap() {
-            Outcome::Found => End::Found(hit),
-            Outcome::Apart(n) => End::Apart(n),
-            Outcome::Open => End::Open,
+        let end = match outcome {
+            Ok(true) => End::Found(hit),
+            Ok(false) => End::Open,
+            Err(Stop::Apart(n)) => End::Apart(n),
+            Err(fault) => panic!("{fault:?}"),
         };
         (end, md.supports())
     }

@@ -13,12 +13,9 @@ pub const FIRST: Real = 0.1;
 pub const GROW: Real = 2.5;
 /// … to this share, … Measured: 0.9 −0.5 %, 6 more; ÷2 +0.7 %, +12 %, 10 more; never +13 %.
 const TRUE: Real = 0.7;
-/// … and shrinks by this when there was none, …  Measured: 0.8 no change, +9 % (hulls from 45°),
+/// … and shrinks by this when there was none. Measured: 0.8 no change, +9 % (hulls from 45°),
 /// 74 fewer; ÷2 +4.2 %, 93 more; never +3 %, +130 % (hulls), 220 fewer.
 const SHRINK: Real = 0.6;
-/// … if the step was longer than the root of this share of it. Measured: ×2 +0.1 %, 17 fewer; ÷2
-/// no change, 19 more; 1 +2 %, +84 % (hulls from 45°).
-const HALFWAY: Real = 0.25;
 /// Largest radius, in the chart: tan 45°. Derived: farther off it stretches more than it shows.
 const LARGEST: Real = 1.0;
 /// A step aside, radians, that shows curvature and is still near: the smallest first step, the
@@ -32,10 +29,8 @@ pub struct TrustRegion {
     pub radius: Real,
     /// The depth foretold for the direction asked next, metres; NaN without a forecast.
     foretold: Real,
-    /// Was that on the border, …
+    /// Was that on the border?
     on_border: bool,
-    /// … as seen from here?
-    from: Vec3,
 }
 
 impl Default for TrustRegion {
@@ -45,7 +40,6 @@ impl Default for TrustRegion {
             radius: FIRST,
             foretold: Real::NAN,
             on_border: false,
-            from: Vec3::zeros(),
         }
     }
 }
@@ -69,7 +63,7 @@ impl TrustRegion {
         let length = larger(length, ASIDE);
         let on_border = length == radius;
         let depth = (core - slope * length) / (1.0 + length * length).sqrt() + h - core;
-        self.foretell(depth, on_border, n);
+        self.foretell(depth, on_border);
         // No gradient but rounding: one way is as good as another.
         let down = if slope > 4.0 * EPSILON * h {
             gradient * (-1.0 / slope)
@@ -89,10 +83,9 @@ impl TrustRegion {
 
     /// The next direction is asked for this depth.
     #[inline]
-    pub fn foretell(&mut self, depth: Real, on_border: bool, from: &Vec3) {
+    pub fn foretell(&mut self, depth: Real, on_border: bool) {
         self.foretold = depth;
         self.on_border = on_border;
-        self.from = *from;
     }
 
     /// The next direction is asked for what it tells, not for its depth.
@@ -110,16 +103,14 @@ impl TrustRegion {
     /// Compares the actual with the predicted reduction: n was asked, where the depth is `h`
     /// and no longer `before`.
     #[inline]
-    pub fn compare(&mut self, n: &Vec3, h: Real, before: Real) {
+    pub fn compare(&mut self, h: Real, before: Real) {
         let (actual, predicted) = (before - h, before - self.foretold);
         if actual > 0.0 {
             // False for NaN: no forecast.
             if self.on_border && actual > TRUE * predicted {
                 self.radius = lesser(self.radius * GROW, LARGEST);
             }
-        } else if self.foretold.is_finite()
-            && (n - self.from).norm_squared() > HALFWAY * self.radius * self.radius
-        {
+        } else if self.foretold.is_finite() {
             self.radius *= SHRINK;
         }
     }
@@ -129,42 +120,39 @@ impl TrustRegion {
 mod tests {
     use super::*;
 
-    /// The radius after a step of that share of it, on the border or not, that foretold a
-    /// reduction of 0.1 and brought so much of it.
-    fn radius_after(came: Real, on_border: bool, share: Real) -> Real {
+    /// The radius after a step, on the border or not, that foretold a reduction of 0.1 and brought so much
+    /// of it.
+    fn radius_after(came: Real, on_border: bool) -> Real {
         let mut trust = TrustRegion::default();
-        trust.foretell(0.9, on_border, &Vec3::z());
-        let n = Vec3::new(share * FIRST, 0.0, 1.0);
-        trust.compare(&n, 1.0 - 0.1 * came, 1.0);
+        trust.foretell(0.9, on_border);
+        trust.compare(1.0 - 0.1 * came, 1.0);
         trust.radius
     }
 
     #[test]
     fn a_reduction_as_foretold_on_the_border_widens_it() {
-        assert_eq!(radius_after(1.0, true, 1.0), FIRST * GROW);
-        assert_eq!(radius_after(0.5, true, 1.0), FIRST);
-        assert_eq!(radius_after(1.0, false, 0.9), FIRST);
+        assert_eq!(radius_after(1.0, true), FIRST * GROW);
+        assert_eq!(radius_after(0.5, true), FIRST);
+        assert_eq!(radius_after(1.0, false), FIRST);
     }
 
     #[test]
     fn no_reduction_narrows_it() {
         for came in [-0.1, -1.0, -10.0] {
-            assert_eq!(radius_after(came, true, 1.0), FIRST * SHRINK);
-            assert_eq!(radius_after(came, false, 0.9), FIRST * SHRINK);
+            assert_eq!(radius_after(came, true), FIRST * SHRINK);
+            assert_eq!(radius_after(came, false), FIRST * SHRINK);
         }
         // Less than was foretold is no failure.
-        assert_eq!(radius_after(0.1, true, 1.0), FIRST);
-        // Of a step so short the radius is not to blame.
-        assert_eq!(radius_after(-1.0, false, 0.1), FIRST);
+        assert_eq!(radius_after(0.1, true), FIRST);
     }
 
     #[test]
     fn without_a_forecast_it_stays() {
         let mut trust = TrustRegion::default();
-        trust.compare(&Vec3::x(), 2.0, 1.0);
-        trust.foretell(0.9, true, &Vec3::z());
+        trust.compare(2.0, 1.0);
+        trust.foretell(0.9, true);
         trust.no_forecast();
-        trust.compare(&Vec3::x(), 0.0, 1.0);
+        trust.compare(0.0, 1.0);
         assert_eq!(trust.radius, FIRST);
     }
 
@@ -172,8 +160,8 @@ mod tests {
     fn it_has_an_end_both_ways() {
         let mut trust = TrustRegion::default();
         for _ in 0..20 {
-            trust.foretell(0.9, true, &Vec3::z());
-            trust.compare(&Vec3::x(), 0.9, 1.0);
+            trust.foretell(0.9, true);
+            trust.compare(0.9, 1.0);
         }
         assert_eq!(trust.radius, LARGEST);
     }

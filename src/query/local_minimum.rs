@@ -15,8 +15,8 @@ use crate::math::{Real, Vec3, larger};
 use crate::paper::incremental;
 use crate::paper::portal::{Until, rounding};
 
-/// Iterations of one local search, at most: it needs a dozen, on the hardest pairs thirty. (64, after a proof
-/// that met its cap, are 403 support points.)
+/// Iterations by which an open depth is lowered, at most: one local search needs a dozen, on the hardest
+/// pairs thirty. (64, after a proof that met its cap, are 403 support points.)
 const BUDGET: u64 = 48;
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
@@ -29,15 +29,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
-        let most = settings.max_iterations;
-        if let Some(directions) = memory
-            .face(settings.tolerance)
-            .filter(|_| most >= ROOM as u64)
-        {
+        let enough = settings.max_iterations >= ROOM as u64;
+        if let Some(directions) = memory.face(settings.tolerance).filter(|_| enough) {
             return self.in_face(memory, &directions, settings, known, hit);
         }
-        Ok(self.search(memory, None, most, settings, known, hit)?
-            || self.search_on(memory, settings, known, hit)?)
+        self.search(memory, None, settings, known, hit)
     }
 
     /// The same from [`Memory::face`].
@@ -62,85 +58,50 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         // A callback that contradicts itself is asked anew.
         let seen = Some(&face.points).filter(|_| !face.lies);
-        let most = settings.max_iterations;
-        Ok(self.search(memory, seen, most, settings, known, hit)?
-            || self.search_on(memory, settings, known, hit)?)
+        self.search(memory, seen, settings, known, hit)
     }
 
-    /// Goes on from a search that stalled: from the lowest place it met, as long as that is lower than
-    /// before; then by the paper's method.
-    #[cold]
-    #[inline(never)]
-    fn search_on(
-        &self,
-        memory: &mut Memory,
-        settings: &Settings,
-        known: &mut Known,
-        hit: &mut Penetration,
-    ) -> Result<bool, Stop> {
-        let most = settings.max_iterations;
-        let mut left = most;
-        let mut before = Real::INFINITY;
-        // Ends: `left` falls.
-        loop {
-            left = left.saturating_sub(hit.iterations.max(1));
-            // Depths that differ by less are the same.
-            let reach = larger(hit.point1.norm(), hit.point2.norm());
-            let lower = hit.depth < before - larger(settings.tolerance, rounding(reach));
-            if !lower || left == 0 {
-                break;
-            }
-            before = hit.depth;
-            *memory = Memory::towards(hit.normal);
-            if self.search(memory, None, left, settings, known, hit)? {
-                hit.iterations += most - left;
-                return Ok(true);
-            }
-        }
-        hit.iterations = most - left;
-        if left == 0 {
-            return Ok(false);
-        }
-        let rest = Settings {
-            max_iterations: left,
-            ..*settings
-        };
-        let start = hit.normal;
-        let until = Until::Shortcut;
-        match incremental::penetration(&self.md, start, None, until, &rest, |_| ()) {
-            // D reaches beyond that plane: a callback that errs must not separate.
-            Err(Stop::Apart(n)) if known.farthest(&n).is_some() => return Ok(false),
-            found => *hit = found?,
-        }
-        hit.iterations += most - left;
-        *memory = Memory::towards(hit.normal);
-        Ok(!hit.limit)
-    }
-
-    /// One local search, of so many iterations at most, or [`BUDGET`]; `seen`: what has been asked already.
+    /// Local searches, the first from what has been `seen` already, if anything: each from the lowest place
+    /// that the one before met, as long as that is lower than before; then the paper's method.
     #[inline(never)]
     fn search(
         &self,
         memory: &mut Memory,
-        seen: Option<&Points>,
-        max_iterations: u64,
+        mut seen: Option<&Points>,
         settings: &Settings,
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
-        let settings = Settings {
-            max_iterations: max_iterations.min(BUDGET),
-            ..*settings
-        };
-        local::penetration(
-            &self.md,
-            self.centre.as_ref().map(|c| &c.v),
-            || self.cold_start(),
-            memory,
-            &settings,
-            seen,
-            (known, hit),
-        )
+        let mut rest = *settings;
+        let mut before = Real::INFINITY;
+        // Ends: what is left falls.
+        loop {
+            let centre = self.centre.as_ref().map(|c| &c.v);
+            let start = || self.cold_start();
+            let asked = (seen.take(), &rest);
+            let found = local::penetration(&self.md, centre, start, memory, asked, (known, hit))?;
+            let left = rest.max_iterations.saturating_sub(hit.iterations.max(1));
+            hit.iterations += settings.max_iterations - rest.max_iterations;
+            rest.max_iterations = left;
+            if found || left == 0 {
+                return Ok(found);
+            }
+            // Depths that differ by less are the same.
+            let reach = larger(hit.point1.norm(), hit.point2.norm());
+            if !(hit.depth < before - larger(settings.tolerance, rounding(reach))) {
+                break;
+            }
+            before = hit.depth;
+        }
+        let until = Until::Shortcut;
+        match incremental::penetration(&self.md, hit.normal, None, until, &rest, |_| ()) {
+            // D reaches beyond that plane: a callback that errs must not separate.
+            Err(Stop::Apart(n)) if known.farthest(&n).is_some() => return Ok(false),
+            found => *hit = found?,
+        }
+        hit.iterations += settings.max_iterations - rest.max_iterations;
+        *memory = Memory::towards(hit.normal);
+        Ok(!hit.limit)
     }
 
     /// Lowers a depth that the global search could not prove. Where minima form a curve or a
@@ -148,7 +109,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// not be theirs to the tolerance. But its direction is near them, and a local search from
     /// there finds one: to a hundredth of the tolerance, since what falls so little over the
     /// first trust radius falls thirty times as much over the sphere.
-    /// It takes what is left of the iterations, and no more than one search's.
+    /// It takes what is left of the iterations, and no more than [`BUDGET`].
     #[cold]
     #[inline(never)]
     pub(super) fn floor(&self, hit: &mut Penetration, limits: &Limits) -> Result<(), Fault> {
