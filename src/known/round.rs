@@ -255,17 +255,9 @@ impl Symmetric {
             d2 / along
         };
         let mut r = Self::scaled_identity(slope);
-        r.correct(d, dn);
+        let w = d - r.times(dn);
+        r.add_least(&w, dn);
         r
-    }
-
-    /// Makes R (n′ − n) = d, by the least change in the sense of Powell's formula. Returns by how
-    /// much of |d| it was off.
-    #[inline]
-    pub fn correct(&mut self, d: &Vec3, dn: &Vec3) -> Real {
-        let w = d - self.times(dn);
-        self.add_least(&w, dn);
-        (w.norm_squared() / d.norm_squared()).sqrt()
     }
 
     /// Makes R (n′ − n) more by `w`, by the least change in the sense of Powell's formula.
