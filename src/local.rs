@@ -53,8 +53,8 @@
 //! that point (`doubt.rs`).
 //!
 //! *Witness points* are means of the active points, moved along a ball or disc to the answer's
-//! direction. R moves none: what it leads to may lie beside the body. Where they do not meet within
-//! the tolerance, the model's minimum itself is asked.
+//! direction, behind all planes seen. R moves none: what it leads to may lie beside the body. Where
+//! they do not meet within the tolerance, the model's minimum itself is asked.
 //!
 //! *Level ground*: minima that form a curve or a surface are told by a model that is level over the
 //! whole first trust region.

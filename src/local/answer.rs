@@ -4,7 +4,7 @@
 //! The end of a search: its answer, witness points, and what is handed on.
 
 use super::memory::{EDGES, Memory};
-use super::search::{Sample, Search};
+use super::search::{HAIR, Sample, Search};
 use super::walk::ROOM;
 use crate::contact::Penetration;
 use crate::contacts::pressure;
@@ -50,7 +50,7 @@ impl Search {
         let end = &self.step.end;
         let near2 = larger(2.0 * depth * self.finest, self.rounding * self.rounding);
         // The means of the active points of both objects, obj2's turned about, and three points of D's face.
-        let own = |o: usize, k: usize| self.objects[o % 2].point(k, n);
+        let own = |o: usize, k: usize| self.objects[o % 2].point(k, n, HAIR * self.finest);
         // Of an object of one point that is the one found here: what is round may end before.
         let active = |o: usize| {
             let mut kinks = end.kinks.iter().take(end.count);

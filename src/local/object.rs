@@ -391,14 +391,15 @@ impl Object {
         levels.fold(Real::NEG_INFINITY, larger)
     }
 
-    /// The `k`th point where it is along unit `n`: on its ball or disc where that was seen.
+    /// The `k`th point where it is along unit `n`: on its ball or disc where that was seen, and behind all
+    /// support planes of the points but for `same`, metres.
     #[inline(always)]
-    pub fn point(&self, k: usize, n: &Vec3) -> Vec3 {
-        if self.is_cored() && self.carries(k) && self.was_seen(k, n) {
-            self.core(k) + self.disc().point(n)
-        } else {
-            self.at[k % ROOM].p
-        }
+    pub fn point(&self, k: usize, n: &Vec3, same: Real) -> Vec3 {
+        let is_seen = self.is_cored() && self.carries(k) && self.was_seen(k, n);
+        let moved = is_seen.then(|| self.core(k) + self.disc().point(n));
+        let mut seen = self.at.iter().take(self.len);
+        let is_behind = |p: &Vec3| seen.all(|at| (p - at.p).dot(&at.n) <= same);
+        moved.filter(is_behind).unwrap_or(self.at[k % ROOM].p)
     }
 
     /// How far what is round lifts the cut of the `k`th point along unit `n` above the point itself,
@@ -535,7 +536,7 @@ mod tests {
         assert!((three.core(0) - Vec3::z() * 0.4).norm() < NEAR);
         // The rim where it is along another direction, and its support value.
         let n = Vec3::new(0.8, 0.05, 0.45).normalize();
-        assert!((three.point(0, &n) - cylinder(&n)).norm() < NEAR);
+        assert!((three.point(0, &n, NEAR) - cylinder(&n)).norm() < NEAR);
         assert!((three.height(&n) - cylinder(&n).dot(&n)).abs() < NEAR);
     }
 
