@@ -86,7 +86,7 @@
 //! *Left out*: a second search with one R for D as a whole (as many support points on ellipsoids, a
 //! third fewer instructions there, 1,900 lines); starts beside a place where the search stalled
 //! (nothing: within 0.01 support points on all sets); witness points that R moves (5 % fewer support
-//! points on ellipsoids, a fifth fewer on them in motion, 120 lines, depths there forty times less
+//! points on shallow ellipsoids, a fifth fewer on them in motion, 120 lines, depths there forty times less
 //! exact, and four of the seven known points of the campaign that lie outside of their bodies).
 
 mod answer;

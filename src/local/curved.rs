@@ -17,7 +17,7 @@ use crate::math::{Real, Vec3, ZERO};
 const FORETOLD: Real = 0.2;
 /// Relative error up to which R moves cuts; also that of a remembered R, until a pair tells.
 /// Measured: ×2 +1.2 %, +19 % (hulls); ÷2 +0.2 %, +6 %.
-pub const BELIEVED: Real = 0.5;
+const BELIEVED: Real = 0.5;
 /// Squared sine of the angle from which on two pairs measure R in two directions. Measured: ×2
 /// +0.1 %, +1.2 %; ÷2 no change.
 const SPREAD: Real = 0.04;
@@ -30,7 +30,7 @@ const ALONG: Real = 0.0025;
 pub struct Curved {
     r: Symmetric,
     /// Relative error, by the last pair; 1 where one alone has told, meaningless where R is not there.
-    pub error: Real,
+    error: Real,
     /// The direction of the first pair; zero where R is remembered, until one has told.
     line: Vec3,
     /// Measured along a second direction too.

@@ -100,8 +100,8 @@ impl TrustRegion {
         h - self.foretold <= tolerance
     }
 
-    /// Compares the actual with the predicted reduction: n was asked, where the depth is `h`
-    /// and no longer `before`.
+    /// Compares the actual with the predicted reduction, from the least depth `before` to `h` in the
+    /// direction asked since, metres.
     #[inline]
     pub fn compare(&mut self, h: Real, before: Real) {
         let (actual, predicted) = (before - h, before - self.foretold);
