@@ -18,10 +18,10 @@ use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::{self, Wanted};
 use crate::known::check;
 pub use crate::known::check::Check;
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Stop, if_overlapping};
 pub use crate::math::Real;
-use crate::math::{ITERATION_CAP, Vec3, unit};
+use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::query::Pair;
 use crate::state::State;
 
@@ -97,16 +97,16 @@ impl From<Fault> for Error {
 }
 
 /// A length that is neither negative nor NaN.
-fn length(value: Real, what: &'static str) -> Result<Real, Error> {
+fn length(value: Real, what: &'static str) -> Result<f64, Error> {
     if value >= 0.0 {
-        Ok(value)
+        Ok(value.into())
     } else {
         Err(Error::BadInput(what))
     }
 }
 
 fn direction(dir: [Real; 3]) -> Result<Vec3, Error> {
-    unit(&dir.into()).ok_or(Error::BadInput("a direction is zero or not finite"))
+    unit(&from_real(dir)).ok_or(Error::BadInput("a direction is zero or not finite"))
 }
 
 /// What is wanted of an answer besides depths, bounds and directions. What is not wanted is zero
@@ -191,7 +191,7 @@ impl Warm {
     /// A fresh state that starts from `dir`, a guess of the way the second shape leaves: of any
     /// length; zero or not finite is cold.
     pub fn guess(dir: [Real; 3]) -> Self {
-        Warm(State::guess(&dir.into()))
+        Warm(State::guess(&from_real(dir)))
     }
 
     /// For the same two shapes in the other order.
@@ -303,7 +303,7 @@ struct Asked<'a, S: ?Sized>(&'a S);
 impl<S: Shape + ?Sized> SupportMap for Asked<'_, S> {
     #[inline]
     fn support(&self, dir: &Vec3) -> Vec3 {
-        self.0.support((*dir).into()).into()
+        from_real(self.0.support(to_real(dir)))
     }
 }
 
@@ -316,7 +316,7 @@ where
 {
     let centre = match (a.center(), b.center()) {
         (Some(v1), Some(v2)) => {
-            let [v1, v2] = [Vec3::from(v1), Vec3::from(v2)];
+            let [v1, v2] = [from_real(v1), from_real(v2)];
             Some(SupportPoint { v: v1 - v2, v1, v2 })
         }
         _ => None,
@@ -367,12 +367,12 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     let found = with_state(warm, |state| {
         if_overlapping(solve(&pair, state, &checked, want.pos, &mut hit))
     })?;
-    let given = |wanted: bool, point: Vec3| if wanted { point.into() } else { [0.0; 3] };
+    let given = |wanted: bool, point: Vec3| if wanted { to_real(&point) } else { [0.0; 3] };
     Ok(found.map(|()| Penetration {
-        depth: hit.depth,
-        depth_lower: hit.depth_lower,
-        dir: hit.dir.into(),
-        normal: hit.normal.into(),
+        depth: hit.depth as Real,
+        depth_lower: lower_to_real(hit.depth_lower),
+        dir: to_real(&hit.dir),
+        normal: to_real(&hit.normal),
         pos: given(want.pos, hit.pos),
         point1: given(want.points, hit.point1),
         point2: given(want.points, hit.point2),
@@ -494,7 +494,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         max_distance: length(options.max_distance, "max_distance is negative or NaN")?,
         settings: settings.checked()?,
     };
-    if !(wanted.margin1 + wanted.margin2 < Real::INFINITY) {
+    if !(wanted.margin1 + wanted.margin2 < f64::from(Real::MAX)) {
         return Err(Error::BadInput(margins));
     }
     let points = settings.want.points;
@@ -505,11 +505,11 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     let d = with_state(warm, |state| {
         signed_distance::signed_distance(&pair, state, &wanted, minimum)
     })?;
-    let given = |point: Vec3| if points { point.into() } else { [0.0; 3] };
+    let given = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };
     Ok(Distance {
-        distance: d.lower,
-        distance_upper: d.upper,
-        normal: d.normal.into(),
+        distance: lower_to_real(d.lower),
+        distance_upper: -lower_to_real(-d.upper),
+        normal: to_real(&d.normal),
         point1: given(d.point1),
         point2: given(d.point2),
         support_calls: pair.md.supports(),
@@ -563,9 +563,9 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     let mut count = 0;
     for (place, contact) in room.iter_mut().zip(manifold.contacts()) {
         *place = Contact {
-            point1: contact.point1.into(),
-            point2: contact.point2.into(),
-            depth: contact.depth,
+            point1: to_real(&contact.point1),
+            point2: to_real(&contact.point2),
+            depth: contact.depth as Real,
             id: contact.name,
         };
         count += 1;
@@ -651,7 +651,7 @@ query!(
 /// assert!(ccd::check(&|d: [Real; 3]| d.map(|x| x * -0.5)).opposite);
 /// ```
 pub fn check<S: Shape + ?Sized>(shape: &S) -> Check {
-    check::check(&Asked(shape), shape.center().map(Vec3::from).as_ref())
+    check::check(&Asked(shape), shape.center().map(from_real).as_ref())
 }
 
 /// Which library this is, and in which precision: "warmccd 0.2.0 double".

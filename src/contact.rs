@@ -3,11 +3,11 @@
 
 //! What a query answers.
 
-use crate::math::{EPSILON, Real, Vec3};
+use crate::math::{EPSILON, Vec3};
 
 /// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
 /// 1e-12, or what single precision tells.
-pub const INSIDE: Real = if EPSILON > 1e-10 {
+pub const INSIDE: f64 = if EPSILON > 1e-10 {
     32.0 * EPSILON
 } else {
     1e-12
@@ -18,7 +18,7 @@ pub const INSIDE: Real = if EPSILON > 1e-10 {
 pub struct Settings {
     /// Largest error of the depth, metres; already checked to be no NaN and not negative, but
     /// it may be infinite. Solvers floor it at a few ulps of the size they see.
-    pub tolerance: Real,
+    pub tolerance: f64,
     /// Cap on the iterations of any one loop; at most the library's own cap.
     pub max_iterations: u64,
 }
@@ -27,16 +27,16 @@ pub struct Settings {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Penetration {
     /// Metres, >= 0. Moving obj2 by `depth * dir` separates the objects.
-    pub depth: Real,
+    pub depth: f64,
     /// Proven lower bound on the global minimum depth; 0 where none is proven.
-    pub depth_lower: Real,
+    pub depth_lower: f64,
     /// Unit; the way obj2 moves.
     pub dir: Vec3,
     /// Unit; normal of the separating plane (equal to `dir` but in a query along
     /// a given direction).
     pub normal: Vec3,
     /// The squares of how far the objects are known to reach from their witness points, m².
-    pub extent: [Real; 2],
+    pub extent: [f64; 2],
     /// Contact position; zero where nobody asked for it.
     pub pos: Vec3,
     /// Witness point on obj1.

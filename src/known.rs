@@ -14,6 +14,5 @@ pub mod points;
 pub mod precision;
 #[doc(hidden)]
 pub mod round;
-pub mod support;
 #[doc(hidden)]
 pub mod support_set;

@@ -49,6 +49,11 @@
     reason = "a negated comparison is how NaN ends a loop"
 )]
 #![allow(clippy::large_enum_variant, reason = "no heap")]
+#![allow(
+    clippy::unnecessary_cast,
+    clippy::useless_conversion,
+    reason = "conversions between Real and f64 are none in double precision"
+)]
 
 mod api;
 mod contact;
@@ -59,6 +64,8 @@ mod hull;
 mod known;
 mod local;
 mod math;
+#[allow(dead_code)]
+mod minkowski;
 mod paper;
 mod query;
 #[cfg(test)]
@@ -77,8 +84,8 @@ pub use api::{
 #[doc(hidden)]
 pub mod internals {
     pub use crate::contact::Settings;
-    pub use crate::known::support::MinkowskiDifference;
     pub use crate::math::Vec3;
+    pub use crate::minkowski::support::MinkowskiDifference;
     pub use crate::paper::incremental::penetration as incremental;
     pub use crate::paper::portal::Until;
 

@@ -104,9 +104,9 @@ pub use memory::Memory;
 
 use crate::contact::{Penetration, Settings};
 use crate::known::points::Points;
-use crate::known::support::{Known, MinkowskiDifference, SupportMap};
 use crate::known::support_set::Stop;
 use crate::math::Vec3;
+use crate::minkowski::support::{Known, MinkowskiDifference, SupportMap};
 use search::Search;
 
 /// A local minimum of the depth near the remembered direction, else near the unit
@@ -147,7 +147,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{EPSILON, Real, perpendicular};
+    use crate::math::{EPSILON, perpendicular};
     use crate::paper::incremental;
     use crate::paper::portal::Until;
     use crate::shapes::Random;
@@ -160,11 +160,11 @@ mod tests {
         Box::new(move |d| c + f(d))
     }
 
-    fn at_turned(c: Vec3, turn: Rotation3<Real>, f: impl Fn(&Vec3) -> Vec3 + 'static) -> Shape {
+    fn at_turned(c: Vec3, turn: Rotation3<f64>, f: impl Fn(&Vec3) -> Vec3 + 'static) -> Shape {
         Box::new(move |d| c + turn * f(&(turn.inverse() * d)))
     }
 
-    fn ball(c: Vec3, r: Real) -> Shape {
+    fn ball(c: Vec3, r: f64) -> Shape {
         at(c, move |d| d * r)
     }
 
@@ -178,11 +178,11 @@ mod tests {
         })
     }
 
-    fn capsule(c: Vec3, r: Real, half: Real) -> Shape {
+    fn capsule(c: Vec3, r: f64, half: f64) -> Shape {
         at(c, move |d| d * r + Vec3::z() * half.copysign(d.z))
     }
 
-    fn cylinder(c: Vec3, r: Real, half: Real) -> Shape {
+    fn cylinder(c: Vec3, r: f64, half: f64) -> Shape {
         at(c, move |d| {
             let t = (d.x * d.x + d.y * d.y).sqrt();
             let f = if t > 0.0 { r / t } else { 0.0 };
@@ -208,7 +208,7 @@ mod tests {
     }
 
     fn icosahedron() -> Vec<Vec3> {
-        let g = 0.5 * (1.0 + (5.0 as Real).sqrt());
+        let g = 0.5 * (1.0 + (5.0 as f64).sqrt());
         let mut points = Vec::new();
         for (a, b) in [(1.0, g), (1.0, -g), (-1.0, g), (-1.0, -g)] {
             points.push(Vec3::new(0.0, a, b).normalize());
@@ -218,9 +218,9 @@ mod tests {
         points
     }
 
-    const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
+    const TOLERANCE: f64 = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
 
-    fn settings(tolerance: Real) -> Settings {
+    fn settings(tolerance: f64) -> Settings {
         Settings {
             tolerance,
             max_iterations: 500,
@@ -232,7 +232,7 @@ mod tests {
         b: &Shape,
         start: Vec3,
         memory: &mut Memory,
-        tolerance: Real,
+        tolerance: f64,
     ) -> (Result<Penetration, Stop>, u64) {
         let md = MinkowskiDifference::new(a, b);
         let mut known = Known::default();
@@ -258,7 +258,7 @@ mod tests {
         (answer, md.supports())
     }
 
-    fn hit(a: &Shape, b: &Shape, start: Vec3, tolerance: Real) -> Penetration {
+    fn hit(a: &Shape, b: &Shape, start: Vec3, tolerance: f64) -> Penetration {
         match solve(a, b, start, &mut Memory::default(), tolerance) {
             (Ok(p), supports) if !p.limit => {
                 assert!(supports < 100, "{supports} support points");
@@ -268,12 +268,12 @@ mod tests {
         }
     }
 
-    fn h(a: &Shape, b: &Shape, n: &Vec3) -> Real {
+    fn h(a: &Shape, b: &Shape, n: &Vec3) -> f64 {
         n.dot(&(a(n) - b(&-n)))
     }
 
     /// Sound, witnessed, and nothing lower nearby: an answer must hold all of this.
-    fn check(a: &Shape, b: &Shape, p: &Penetration, tolerance: Real, size: Real) {
+    fn check(a: &Shape, b: &Shape, p: &Penetration, tolerance: f64, size: f64) {
         let slack = 64.0 * EPSILON * size;
         assert!((p.dir.norm() - 1.0).abs() < 8.0 * EPSILON);
         assert!((h(a, b, &p.dir) - p.depth).abs() <= slack);
@@ -293,7 +293,7 @@ mod tests {
         let e1 = perpendicular(&p.dir);
         let e2 = p.dir.cross(&e1);
         for k in 0..16 {
-            let (s, c) = (k as Real * 0.39).sin_cos();
+            let (s, c) = (k as f64 * 0.39).sin_cos();
             for step in [1e-3, 1e-2] {
                 let n = (p.dir + (e1 * c + e2 * s) * step).normalize();
                 let there = h(a, b, &n);
@@ -358,7 +358,7 @@ mod tests {
                 let e1 = perpendicular(&p.dir);
                 let e2 = p.dir.cross(&e1);
                 for k in 0..32 {
-                    let (s, c) = (k as Real * 0.197).sin_cos();
+                    let (s, c) = (k as f64 * 0.197).sin_cos();
                     let there = h(&a, &b, &(p.dir + (e1 * c + e2 * s) * 0.02).normalize());
                     let lower = p.depth - there;
                     assert!(lower < 4.0 * tolerance, "round {round}: {lower}");
@@ -570,9 +570,9 @@ mod tests {
         for round in 0..2000 {
             let mut real = || {
                 if round % 2 == 0 {
-                    Real::from_bits(next() as _)
+                    f64::from_bits(next() as _)
                 } else {
-                    (next() >> 40) as Real / (1 << 23) as Real - 1.0
+                    (next() >> 40) as f64 / (1 << 23) as f64 - 1.0
                 }
             };
             let mut v = || Vec3::new(real(), real(), real());
@@ -599,7 +599,7 @@ mod tests {
         // Balls, discs and R of one object or both.
         for curved in [1, 2, 3, 5, 10, 15] {
             for power in -12..13 {
-                let r = (10.0 as Real).powi(3 * power);
+                let r = (10.0 as f64).powi(3 * power);
                 let mut memory = Memory {
                     dir: Vec3::new(0.8, 0.4, 0.5),
                     slopes: [Vec3::new(r, 0.0, 0.0), Vec3::new(r, 0.0, r), Vec3::zeros()],
@@ -667,7 +667,7 @@ mod tests {
         let mut memory = Memory::default();
         let (mut supports, mut discs) = (0, 0);
         for frame in 0..50 {
-            let (sin, cos) = (0.01 * frame as Real).sin_cos();
+            let (sin, cos) = (0.01 * frame as f64).sin_cos();
             let axis = Vec3::new(0.5 * cos, 0.5 * sin, 0.8).normalize();
             let turn = Rotation3::rotation_between(&Vec3::z(), &axis).unwrap_or_default();
             let shape = cylinder(Vec3::zeros(), 0.2, 0.3);

@@ -6,24 +6,46 @@
 
 use nalgebra::{RealField, Vector3};
 
-/// The scalar of the whole library: `f64`, or `f32` with feature `single`.
+/// The scalar of the callers: `f64`, or `f32` with feature `single`. The solvers compute in `f64`
+/// in both builds; `ffi` and `api` convert.
 #[cfg(not(feature = "single"))]
 pub type Real = f64;
-/// The scalar of the whole library: `f64`, or `f32` with feature `single`.
+/// The scalar of the callers: `f64`, or `f32` with feature `single`. The solvers compute in `f64`
+/// in both builds; `ffi` and `api` convert.
 #[cfg(feature = "single")]
 pub type Real = f32;
 
 /// A point or direction in three dimensions, metres.
-pub type Vec3 = nalgebra::Vector3<Real>;
+pub type Vec3 = nalgebra::Vector3<f64>;
 
 /// No vector, where a constant is wanted.
 pub const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
-/// The same in double precision whatever [`Real`] is.
-pub type Wide3 = nalgebra::Vector3<f64>;
+/// Distance from 1 to the next larger [`Real`]: support functions round to it.
+pub const EPSILON: f64 = Real::EPSILON as f64;
 
-/// Distance from 1 to the next larger [`Real`].
-pub const EPSILON: Real = Real::EPSILON;
+/// Converts a vector of the caller's.
+#[inline(always)]
+pub fn from_real(v: [Real; 3]) -> Vec3 {
+    v.map(f64::from).into()
+}
+
+/// Converts a vector to the caller's scalars.
+#[inline(always)]
+pub fn to_real(v: &Vec3) -> [Real; 3] {
+    [v.x as Real, v.y as Real, v.z as Real]
+}
+
+/// Converts a lower bound to the caller's scalar, and never upwards.
+#[inline(always)]
+pub fn lower_to_real(x: f64) -> Real {
+    let near = x as Real;
+    if f64::from(near) > x {
+        near - Real::EPSILON * near.abs()
+    } else {
+        near
+    }
+}
 
 /// `v / |v|`, or `None` when `v` is zero or not finite.
 ///
@@ -45,7 +67,7 @@ pub fn unit(v: &Vec3) -> Option<Vec3> {
 #[inline(always)]
 pub fn normalised(v: &Vec3) -> Option<Vec3> {
     let n2 = v.norm_squared();
-    (n2 > Real::MIN_POSITIVE && n2 < Real::INFINITY).then(|| v * (1.0 / n2.sqrt()))
+    (n2 > f64::MIN_POSITIVE && n2 < f64::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
 /// A vector that is to be unit: as it is where it is to a few ulps, else [`unit()`].
@@ -76,33 +98,14 @@ pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
 /// contacts, where it chooses a portal's corners and the lowest direction: 2 % more instructions and 8 %
 /// less time a hit than with branches.
 #[inline(always)]
-pub fn replace_if(yes: bool, old: &mut Real, new: Real) {
-    let mask = (Real::to_bits(0.0)).wrapping_sub(yes.into());
-    *old = Real::from_bits(new.to_bits() & mask | old.to_bits() & !mask);
-}
-
-/// The same number as an `f64`.
-#[inline(always)]
-#[allow(clippy::useless_conversion, reason = "it is one in single precision")]
-pub fn wide(a: Real) -> f64 {
-    f64::from(a)
-}
-
-/// The same vector in double precision.
-#[inline(always)]
-pub fn wide3(v: &Vec3) -> Wide3 {
-    Wide3::new(wide(v.x), wide(v.y), wide(v.z))
-}
-
-/// The nearest vector of [`Real`]s.
-#[inline(always)]
-pub fn narrow3(v: &Wide3) -> Vec3 {
-    Vec3::new(v.x as Real, v.y as Real, v.z as Real)
+pub fn replace_if(yes: bool, old: &mut f64, new: f64) {
+    let mask = (f64::to_bits(0.0)).wrapping_sub(yes.into());
+    *old = f64::from_bits(new.to_bits() & mask | old.to_bits() & !mask);
 }
 
 /// The largest absolute coordinate.
 #[inline(always)]
-pub fn largest(v: &Vec3) -> Real {
+pub fn largest(v: &Vec3) -> f64 {
     larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
@@ -164,7 +167,7 @@ pub const ITERATION_CAP: u64 = 380;
 /// to `reach` resolve, and no coarser than a four-thousandth of the `size` of the object,
 /// of which a coarser answer would say nothing. NaN counts as infinite.
 #[inline]
-pub fn tolerance(asked: Real, size: Real, reach: Real) -> Real {
+pub fn tolerance(asked: f64, size: f64, reach: f64) -> f64 {
     asked.min(2.5e-4 * size).max(8.0 * EPSILON * reach)
 }
 
@@ -172,7 +175,7 @@ pub fn tolerance(asked: Real, size: Real, reach: Real) -> Real {
 /// (Duff et al., JCGT 6(1), 2017).
 #[inline(always)]
 pub fn basis(b: &Vec3) -> (Vec3, Vec3) {
-    let sign = (1.0 as Real).copysign(b.z);
+    let sign = 1.0_f64.copysign(b.z);
     let c = -1.0 / (sign + b.z);
     let d = b.x * b.y * c;
     (

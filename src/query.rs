@@ -35,9 +35,9 @@ use crate::gjk::proof::{Apex, behind, is_around};
 use crate::gjk::separation;
 use crate::hull::expansion::Limits;
 use crate::hull::global::{self, Arena, Basis, Request};
-use crate::known::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, perpendicular, unit};
+use crate::math::{Vec3, larger, perpendicular, unit};
+use crate::minkowski::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::paper::along;
 use crate::paper::incremental;
 use crate::paper::portal::Until;
@@ -166,7 +166,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         centre: Option<&SupportPoint>,
         hit: &mut Penetration,
         known: &Known,
-        tolerance: Real,
+        tolerance: f64,
     ) -> Result<(), Stop> {
         let mut set = SupportSet::<{ overlap::ROOM }>::EMPTY;
         let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
@@ -453,7 +453,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// The position of a hit, of which nothing is kept.
-    fn position(&self, hit: &Penetration, tolerance: Real, seen: &Seen) -> Result<Vec3, Fault> {
+    fn position(&self, hit: &Penetration, tolerance: f64, seen: &Seen) -> Result<Vec3, Fault> {
         let aside = Aside {
             centre: self.centre.as_ref(),
             seen,
@@ -472,8 +472,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let [a, b, c] = [1, 2, 3].map(|i| (left_out + i) % 4);
             let area = |i: usize, j: usize| cross(&around.points[i], &around.points[j]);
             let areas = [area(a, b), area(b, c), area(c, a)];
-            let whole: Real = areas.iter().sum();
-            let least = areas.iter().map(|x| x / whole).fold(1.0, Real::min);
+            let whole: f64 = areas.iter().sum();
+            let least = areas.iter().map(|x| x / whole).fold(1.0, f64::min);
             if least > best.0 {
                 best = (least, Some([a, b, c]));
             }
@@ -524,12 +524,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 const MPR_SUPPORTS: u64 = 160;
 /// Part of a triangle by which the origin is inside of it, at least, for the state to stand on it.
 /// Insensitive: 0.01 to 0.1 tried.
-const EDGE: Real = 0.02;
+const EDGE: f64 = 0.02;
 /// Of a proven minimum, and of a query along a direction. Derived: no call asks more than 400, and what comes
 /// before and after takes 58 on nearly coincident bodies (`campaigns -- wide`).
 const MOST_SUPPORTS: u64 = 340;
 /// Where an MPR query may stop: a gap of this share of the depth.
-const GAP: Real = 1e-3;
+const GAP: f64 = 1e-3;
 
 #[cfg(test)]
 mod tests {
@@ -544,7 +544,7 @@ mod tests {
     };
 
     /// What a query from this state costs and answers.
-    fn ask<A: SupportMap, B: SupportMap>(a: A, b: B, mut state: State) -> (u64, Real, State) {
+    fn ask<A: SupportMap, B: SupportMap>(a: A, b: B, mut state: State) -> (u64, f64, State) {
         let pair = Pair {
             md: MinkowskiDifference::new(a, b),
             centre: None,
@@ -589,12 +589,12 @@ mod tests {
             let (mut all, mut state) = (0, State::guess(&Vec3::z()));
             let axis = Unit::new_normalize(r.vector(1.0));
             for step in 0..=200 {
-                let at = step as Real;
+                let at = step as f64;
                 let whole = Rotation::from_axis_angle(&axis, turn * at);
                 let rock = Rotation::from_euler_angles(0.01 * (0.1 * at).sin(), 0.003, 0.1);
                 let slab = placed(&corners(Vec3::new(2.0, 2.0, 0.5)), &whole, Vec3::zeros());
                 let rocked = placed(&corners(half), &rock, Vec3::z() * 0.75);
-                let least = rocked.iter().fold(1.0, |least: Real, p| least.min(p.z));
+                let least = rocked.iter().fold(1.0, |least: f64, p| least.min(p.z));
                 let rocked = placed(&rocked, &whole, Vec3::zeros());
                 let v2 = whole * Vec3::z() * 0.75;
                 let pair = Pair {
@@ -618,7 +618,7 @@ mod tests {
                 }
             }
             let most = if turn > 0.0 { 4.2 } else { 3.2 };
-            assert!((all as Real) < most * 200.0, "{turn}: {all}");
+            assert!((all as f64) < most * 200.0, "{turn}: {all}");
         }
     }
 

@@ -22,7 +22,7 @@
 
 use crate::hull::global::Basis;
 use crate::local::Memory;
-use crate::math::{Real, Vec3, as_unit, normalised, unit};
+use crate::math::{Vec3, as_unit, normalised, unit};
 
 /// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1 << 31;
@@ -33,7 +33,7 @@ const COORDINATE: u32 = 10;
 /// What a coordinate is greater by there: none is 0, and all bits 0 are no direction.
 const OFFSET: u32 = 1 << (COORDINATE - 1);
 /// Lengths in it are this many times as long.
-const SCALE: Real = (OFFSET - 1) as Real;
+const SCALE: f64 = (OFFSET - 1) as f64;
 
 /// What a query leaves behind. All zero is cold; any other bits are harmless.
 #[derive(Clone, Copy, Debug, Default)]
@@ -108,7 +108,7 @@ impl State {
         if let Some(n) = normalised(centre) {
             for (i, x) in (0..).zip(n.iter()) {
                 // To the nearest whole number.
-                let x = (x * SCALE + (OFFSET as Real + 0.5)) as u32;
+                let x = (x * SCALE + (OFFSET as f64 + 0.5)) as u32;
                 self.marks |= x << (i * COORDINATE);
             }
         }
@@ -118,7 +118,7 @@ impl State {
     pub fn facing(&self) -> Option<Vec3> {
         let coordinate = |i: u32| {
             let x = self.marks >> (i * COORDINATE) & (2 * OFFSET - 1);
-            (x as i32 - OFFSET as i32) as Real / SCALE
+            (x as i32 - OFFSET as i32) as f64 / SCALE
         };
         let given = self.marks & !(RESTED | STANDS) != 0;
         given.then(|| Vec3::new(coordinate(0), coordinate(1), coordinate(2)))
@@ -144,7 +144,7 @@ impl State {
 
     /// [`State::apart`], with the directions of up to three support points around the nearest
     /// one (zero for none), and the radius of a ball that rounds D there, metres.
-    pub fn near(dir: Vec3, directions: [Vec3; 3], ball: Real) -> Self {
+    pub fn near(dir: Vec3, directions: [Vec3; 3], ball: f64) -> Self {
         let mut state = Self::apart(dir);
         state.memory.slopes = directions;
         state.memory.curvature[0] = ball;
@@ -152,7 +152,7 @@ impl State {
     }
 
     /// What [`State::near`] left.
-    pub fn nearest(&self) -> ([Vec3; 3], Real) {
+    pub fn nearest(&self) -> ([Vec3; 3], f64) {
         match self.kind {
             APART => (self.memory.slopes, self.memory.curvature[0]),
             _ => ([Vec3::zeros(); 3], 0.0),
@@ -160,7 +160,7 @@ impl State {
     }
 
     /// The margin to aim at, metres, where the pair was apart.
-    pub fn aim(&self) -> Real {
+    pub fn aim(&self) -> f64 {
         self.memory.dir.norm()
     }
 
@@ -304,7 +304,7 @@ impl State {
             for (slope, n) in self.memory.slopes.iter_mut().zip(others) {
                 *slope = *n;
             }
-            self.memory.drift = basis.hint as Real;
+            self.memory.drift = basis.hint as f64;
         }
     }
 

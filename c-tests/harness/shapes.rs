@@ -8,9 +8,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::math::{Real, Vec3, unit};
+use crate::math::{Vec3, unit};
 
-pub type Rotation = nalgebra::Rotation3<Real>;
+pub type Rotation = nalgebra::Rotation3<f64>;
 
 /// One type for all: the solvers are compiled once for it, not once for each pair of
 /// shapes.
@@ -24,11 +24,11 @@ impl Random {
         Self(Pcg64::seed_from_u64(seed))
     }
 
-    pub fn within(&mut self, low: Real, high: Real) -> Real {
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
         self.0.random_range(low..high)
     }
 
-    pub fn vector(&mut self, size: Real) -> Vec3 {
+    pub fn vector(&mut self, size: f64) -> Vec3 {
         Vec3::from_fn(|_, _| self.within(-size, size))
     }
 
@@ -51,7 +51,7 @@ impl Random {
     }
 
     /// `n` points on a sphere.
-    pub fn points(&mut self, n: usize, radius: Real) -> Vec<Vec3> {
+    pub fn points(&mut self, n: usize, radius: f64) -> Vec<Vec3> {
         (0..n).map(|_| self.direction() * radius).collect()
     }
 }
@@ -85,12 +85,12 @@ pub fn placed(points: &[Vec3], rotation: &Rotation, at: Vec3) -> Vec<Vec3> {
     points.iter().map(|p| rotation * p + at).collect()
 }
 
-pub fn ball(at: Vec3, radius: Real) -> Shape {
+pub fn ball(at: Vec3, radius: f64) -> Shape {
     Box::new(move |d| at + d * radius)
 }
 
 /// All points within `radius` of the segment.
-pub fn capsule(a: Vec3, b: Vec3, radius: Real) -> Shape {
+pub fn capsule(a: Vec3, b: Vec3, radius: f64) -> Shape {
     Box::new(move |d| (if d.dot(&(b - a)) > 0.0 { b } else { a }) + d * radius)
 }
 

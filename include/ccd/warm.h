@@ -93,7 +93,7 @@ typedef struct ccd_warm_t {
   /**
    * Private.
    */
-  ccd_real_t reals[CCD_WARM_REALS];
+  double reals[CCD_WARM_REALS];
   /**
    * Private.
    */

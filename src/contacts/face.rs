@@ -42,8 +42,8 @@ use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{
     Corner, Flat, Polygon, across, between, cross, dot, length, onto, side,
 };
-use crate::known::support::{Fault, SupportMap};
-use crate::math::{EPSILON, Real, larger, largest, lesser};
+use crate::math::{EPSILON, larger, largest, lesser};
+use crate::minkowski::support::{Fault, SupportMap};
 use core::mem::swap;
 
 /// Support points of one object, at most: what its corners cost when there are eight, each
@@ -54,16 +54,16 @@ const SUPPORTS: u32 = 24;
 pub const CORNERS: usize = 9;
 /// Tilt of the first directions: 14°. Less, and round objects seem to be smaller than the
 /// circle that their points move on; more, and the flanks beside a face are taken for it.
-const WIDE: Real = 0.25;
+const WIDE: f64 = 0.25;
 /// Points nearer than this, in units of tilt times size, may be one round corner: a ball's
 /// are 4 apart.
-const NEAR: Real = 8.0;
+const NEAR: f64 = 8.0;
 /// How far a direction across a side leans to its second corner, in tilts: what sticks out
 /// by less than this angle may be overlooked, 0.01 % of the square of the side.
-const BIAS: Real = 1.0 / 4096.0;
+const BIAS: f64 = 1.0 / 4096.0;
 /// The same of a face that is asked again: 3.6°. By as much it may have turned about the normal
 /// since. Insensitive: 1/64 to 1/8 tried.
-const LEAN: Real = 1.0 / 16.0;
+const LEAN: f64 = 1.0 / 16.0;
 /// Cosine and sine of the first directions.
 #[allow(clippy::excessive_precision)] // In single precision.
 const CIRCLE: [Flat; 3] = [
@@ -82,7 +82,7 @@ struct Sample {
     /// The tilt of its direction.
     aside: Flat,
     /// How much farther it is found for each tilt.
-    radius: Real,
+    radius: f64,
     /// Whether it is known where it is without a tilt.
     settled: bool,
     /// Whether nothing is beyond the side to the next sample, as far as can be asked.
@@ -91,7 +91,7 @@ struct Sample {
 
 impl Sample {
     /// By how much its point wins over the other's in its own direction.
-    fn wins(&self, other: &Self) -> Real {
+    fn wins(&self, other: &Self) -> f64 {
         dot(&self.aside, &side(&other.found.at, &self.found.at)) + other.found.low - self.found.low
     }
 }
@@ -100,11 +100,11 @@ impl Sample {
 pub struct Face {
     pub corners: Polygon<CORNERS>,
     /// How high its support plane is, along the way it looks.
-    pub top: Real,
+    pub top: f64,
     /// The slop in force.
-    pub slop: Real,
+    pub slop: f64,
     /// What rounding can do to a coordinate.
-    pub rounding: Real,
+    pub rounding: f64,
     /// What is kept of it.
     pub ring: Ring,
 }
@@ -115,8 +115,8 @@ impl Face {
     pub fn of<S: SupportMap>(
         object: &S,
         plane: &mut Plane,
-        sign: Real,
-        slop: Real,
+        sign: f64,
+        slop: f64,
         ring: Option<&Ring>,
     ) -> Result<(Self, Option<Motion>), Fault> {
         if let Some(ring) = ring {
@@ -128,16 +128,16 @@ impl Face {
     }
 
     /// How far below its support plane it is at a place.
-    pub fn low(&self, at: &Flat) -> Real {
+    pub fn low(&self, at: &Flat) -> f64 {
         self.corners.low(at, self.rounding)
     }
 
     /// How far aside of a round corner the surface is as much as the slop low; of a segment of the
     /// less round end.
-    pub fn round(&self) -> Real {
+    pub fn round(&self) -> f64 {
         let radii = || self.ring.corners().iter().map(|c| long(c.radius));
         let radius = match self.ring.corners() {
-            [_, _] => radii().fold(Real::INFINITY, lesser),
+            [_, _] => radii().fold(f64::INFINITY, lesser),
             _ => radii().fold(0.0, larger),
         };
         (2.0 * radius * self.slop).sqrt()
@@ -145,7 +145,7 @@ impl Face {
 
     /// How far aside of its corners it is no more than half the slop away; as far as it is round
     /// for a line that is long for that: what looks round along a curved rim is not so across.
-    pub fn reach(&self) -> Real {
+    pub fn reach(&self) -> f64 {
         let round = self.round();
         match &*self.corners {
             [a, b] if length(&side(&a.at, &b.at)) > 2.0 * round => larger(round, 0.5 * self.slop),
@@ -158,23 +158,23 @@ impl Face {
 struct Search<'a, S> {
     object: &'a S,
     plane: &'a mut Plane,
-    sign: Real,
+    sign: f64,
     /// How high the support plane is, and where it is met.
-    top: Real,
+    top: f64,
     first: Flat,
-    slop: Real,
-    size: Real,
+    slop: f64,
+    size: f64,
     /// Tilt that finds corners.
-    tilt: Real,
-    rounding: Real,
+    tilt: f64,
+    rounding: f64,
     asked: u32,
     ring: List<Sample, CORNERS>,
     /// The largest radius of a corner.
-    radius: Real,
+    radius: f64,
 }
 
 impl<'a, S: SupportMap> Search<'a, S> {
-    fn new(object: &'a S, plane: &'a mut Plane, sign: Real) -> Self {
+    fn new(object: &'a S, plane: &'a mut Plane, sign: f64) -> Self {
         Search {
             object,
             plane,
@@ -230,7 +230,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
     }
 
     /// The support plane, the size, and the first corners.
-    fn start(&mut self, slop: Real) -> Result<(), Fault> {
+    fn start(&mut self, slop: f64) -> Result<(), Fault> {
         let mut top = self.ask([0.0; 2])?;
         self.top = -top.found.low;
         self.first = top.found.at;
@@ -344,7 +344,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
     }
 
     /// What sticks out by no more is no corner: rounding, and what is left of roundness.
-    fn flat(&self) -> Real {
+    fn flat(&self) -> f64 {
         self.rounding + self.tilt * self.slop
     }
 
@@ -435,7 +435,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
     }
 
     /// The face, of which nothing is known.
-    fn anew(mut self, slop: Real) -> Result<Face, Fault> {
+    fn anew(mut self, slop: f64) -> Result<Face, Fault> {
         self.start(slop)?;
         if self.ring.len() > 1 {
             self.refine()?;
@@ -449,7 +449,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
         // One that was found twice is one, to the rounding of both.
         let corners = corners.tidy(larger(self.slop, 4.0 * self.rounding), self.flat());
         let least = corners.iter().map(|c| c.low);
-        let least = least.fold(Real::INFINITY, lesser);
+        let least = least.fold(f64::INFINITY, lesser);
         let mut ring = Ring {
             tilt: short(self.tilt),
             slop: short(self.slop),
@@ -541,7 +541,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
             self.top = -self.ask([0.0; 2])?.found.low;
         } else {
             let lows = next.iter().take(count).map(|c| c.low);
-            self.top = -lows.fold(Real::INFINITY, lesser);
+            self.top = -lows.fold(f64::INFINITY, lesser);
         }
         self.slop = larger(long(ring.slop), self.rounding);
         let slack = 0.25 * self.slop + self.rounding;
@@ -575,8 +575,8 @@ impl<'a, S: SupportMap> Search<'a, S> {
 }
 
 /// The mean of three corners that are one but for this across and along.
-fn mean(three: &[Corner; 3], across: Real, along: Real) -> Option<Corner> {
-    let third = |of: &dyn Fn(&Corner) -> Real| three.iter().map(of).sum::<Real>() / 3.0;
+fn mean(three: &[Corner; 3], across: f64, along: f64) -> Option<Corner> {
+    let third = |of: &dyn Fn(&Corner) -> f64| three.iter().map(of).sum::<f64>() / 3.0;
     let mean = Corner {
         at: [third(&|c| c.at[0]), third(&|c| c.at[1])],
         low: third(&|c| c.low),

@@ -36,14 +36,14 @@
 //! one case, and what is between them is between them.
 
 use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, dot, side};
-use crate::math::{Real, larger, lesser};
+use crate::math::{larger, lesser};
 
 /// Corners of a fan, at most.
 const ROOM: usize = 8;
 /// The deepest place may be beside the outline by so many hairs, as witness points are. Measured in single
 /// precision: ÷2 a brick on an edge steps by 1.6 mm (`extension/pressure.c`), ×2 a corner on a rim has
 /// its position outside (`campaign`).
-const BESIDE: Real = 16.0;
+const BESIDE: f64 = 16.0;
 
 /// What is seen of one object from the deepest place: corners around it, low in units of the depth.
 pub type Fan = Polygon<ROOM>;
@@ -52,7 +52,7 @@ pub type Fan = Polygon<ROOM>;
 #[derive(Clone, Copy)]
 struct Ray {
     at: Flat,
-    most: [Real; 3],
+    most: [f64; 3],
 }
 
 impl Ray {
@@ -106,19 +106,19 @@ impl Corner {
 #[derive(Clone, Copy)]
 pub struct Outer {
     pub at: Flat,
-    depth: Real,
+    depth: f64,
 }
 
 /// Volume and moment of the local depth, along the outline.
 struct Sum {
-    volume: Real,
+    volume: f64,
     moment: Flat,
     /// d / 2 s.
-    rim: Real,
+    rim: f64,
 }
 
 impl Sum {
-    fn new(rim: Real) -> Self {
+    fn new(rim: f64) -> Self {
         Self {
             volume: 0.0,
             moment: [0.0; 2],
@@ -128,11 +128,11 @@ impl Sum {
 
     /// The triangle from the deepest place to a piece of outline, times `sign`, and the rim beyond that.
     #[inline(always)]
-    fn add(&mut self, sign: Real, v: &Outer, w: &Outer) {
+    fn add(&mut self, sign: f64, v: &Outer, w: &Outer) {
         let (a, b) = (v.depth, w.depth);
         let area = sign * cross(&v.at, &w.at);
         // How long the piece is, to 4 %: the rim's width is not known better.
-        let [x, y] = side(&v.at, &w.at).map(Real::abs);
+        let [x, y] = side(&v.at, &w.at).map(f64::abs);
         let k = 2.0 * self.rim * (larger(x, y) + 0.4 * lesser(x, y));
         let (aa, ab, bb) = (a * a, a * b, b * b);
         let both = area * (1.0 + a + b) + k * (aa + 2.0 * ab + bb);
@@ -145,7 +145,7 @@ impl Sum {
 
     /// The outline in a cone, from one ray to another.
     #[inline(always)]
-    fn cone(&mut self, sign: Real, s: &Ray, e: &Ray) {
+    fn cone(&mut self, sign: f64, s: &Ray, e: &Ray) {
         let (i, j) = (s.top(), e.top());
         let mut from = s.outer(i);
         let mut to = |next: Outer| {
@@ -175,7 +175,7 @@ impl Sum {
 /// The centre of pressure of a fan on a level plane that reaches farther, from the deepest place; `rim`:
 /// d / 2 s, `hair`: what corners are moved by, metres. NaN where nothing is shared.
 #[inline(never)]
-pub fn pressed_on_plane(fan: &Fan, rim: Real, hair: Real) -> Flat {
+pub fn pressed_on_plane(fan: &Fan, rim: f64, hair: f64) -> Flat {
     let mut sum = Sum::new(rim);
     let mut p = fan.at(fan.len().max(1) - 1);
     for q in fan.iter() {
@@ -200,14 +200,14 @@ pub fn pressed_on_plane(fan: &Fan, rim: Real, hair: Real) -> Flat {
 #[derive(Clone, Copy, Default)]
 struct Place {
     /// Twice the areas of the triangles p q and r q.
-    areas: [Real; 2],
+    areas: [f64; 2],
     /// One over that of the sector from the corner before; 0 where that is none.
-    share: Real,
+    share: f64,
 }
 
 /// Twice the area of a sector, less than 0 where it turns back; 0 of none.
 #[inline(always)]
-fn whole(p: &Corner, q: &Corner, hair: Real) -> Real {
+fn whole(p: &Corner, q: &Corner, hair: f64) -> f64 {
     let whole = cross(&p.at, &q.at);
     if whole < 0.0 {
         let (way, most) = (side(&p.at, &q.at), BESIDE * hair);
@@ -220,14 +220,14 @@ fn whole(p: &Corner, q: &Corner, hair: Real) -> Real {
 
 /// The same of two fans.
 #[inline(never)]
-pub fn pressed(one: &Fan, two: &Fan, rim: Real, hair: Real) -> Flat {
+pub fn pressed(one: &Fan, two: &Fan, rim: f64, hair: f64) -> Flat {
     let mut sum = Sum::new(rim);
     let share = |p: &Corner, r: &Corner| {
         let whole = whole(p, r, hair);
         if whole == 0.0 { 0.0 } else { 1.0 / whole }
     };
     let (Some(mut p), Some(mut q)) = (one.last(), two.last()) else {
-        return [Real::NAN; 2];
+        return [f64::NAN; 2];
     };
     let mut places = [Place::default(); ROOM];
     for (place, s) in places.iter_mut().zip(two.iter()) {
@@ -250,7 +250,7 @@ pub fn pressed(one: &Fan, two: &Fan, rim: Real, hair: Real) -> Flat {
 
 /// What a sector of the first fan shares with those of the second.
 #[inline(always)]
-fn shared(sum: &mut Sum, sector: [&Corner; 2], share: Real, two: &Fan, places: &[Place; ROOM]) {
+fn shared(sum: &mut Sum, sector: [&Corner; 2], share: f64, two: &Fan, places: &[Place; ROOM]) {
     let back = usize::from(share < 0.0);
     let [p, r] = turned(share, sector);
     let share = share.abs();
@@ -271,14 +271,14 @@ fn shared(sum: &mut Sum, sector: [&Corner; 2], share: Real, two: &Fan, places: &
         }
         let its = next.0.share.abs();
         // A corner of the first fan in a sector of the second, by its shares of that one's corners.
-        let first = |c: &Corner, cq: Real, cs: Real| {
+        let first = |c: &Corner, cq: f64, cs: f64| {
             let (one, two) = (cs * its, -cq * its);
             Ray {
                 at: c.at,
                 most: [1.0, one + two, c.low + one * q.low + two * s.low],
             }
         };
-        let second = |c: &Corner, pc: Real, rc: Real| {
+        let second = |c: &Corner, pc: f64, rc: f64| {
             let (one, two) = (-rc * share, pc * share);
             Ray {
                 at: c.at,
@@ -306,7 +306,7 @@ fn shared(sum: &mut Sum, sector: [&Corner; 2], share: Real, two: &Fan, places: &
 
 /// The two ends of a sector, in the order in which it turns ahead.
 #[inline(always)]
-fn turned<T>(share: Real, [a, b]: [T; 2]) -> [T; 2] {
+fn turned<T>(share: f64, [a, b]: [T; 2]) -> [T; 2] {
     if share < 0.0 { [b, a] } else { [a, b] }
 }
 
@@ -316,8 +316,8 @@ mod tests {
     use crate::contacts::polygon::length;
     use crate::shapes::Random;
 
-    fn fan(corners: &[(Real, Real, Real)]) -> Fan {
-        let corner = |c: &(Real, Real, Real)| Corner {
+    fn fan(corners: &[(f64, f64, f64)]) -> Fan {
+        let corner = |c: &(f64, f64, f64)| Corner {
             at: [c.0, c.1],
             low: c.2,
         };
@@ -327,7 +327,7 @@ mod tests {
     }
 
     /// Of a place in a sector: w and low.
-    fn within(p: &Corner, q: &Corner, r: &Flat) -> Option<[Real; 2]> {
+    fn within(p: &Corner, q: &Corner, r: &Flat) -> Option<[f64; 2]> {
         let share = 1.0 / cross(&p.at, &q.at);
         let (one, two) = (cross(r, &q.at) * share, cross(&p.at, r) * share);
         (one >= 0.0 && two >= 0.0).then_some([one + two, one * p.low + two * q.low])
@@ -339,7 +339,7 @@ mod tests {
         const N: i32 = 400;
         for x in -N..N {
             for y in -N..N {
-                let r = [x, y].map(|x| (x as Real + 0.5) * 1.5 / N as Real);
+                let r = [x, y].map(|x| (x as f64 + 0.5) * 1.5 / N as f64);
                 let of = |f: &Fan| {
                     let mut found = f.sides().filter_map(|(p, q)| within(&p, &q, &r));
                     found.next().unwrap_or([9.0; 2])
@@ -364,9 +364,8 @@ mod tests {
                 let n = 3 + round % 4;
                 let corners: Vec<_> = (0..n)
                     .map(|k| {
-                        let angle = (k as Real + r.within(0.0, 0.4))
-                            * core::f64::consts::TAU as Real
-                            / n as Real;
+                        let angle = (k as f64 + r.within(0.0, 0.4)) * core::f64::consts::TAU as f64
+                            / n as f64;
                         let far = r.within(0.5, 1.0);
                         (far * angle.cos(), far * angle.sin(), r.within(0.0, 1.2))
                     })
@@ -407,7 +406,7 @@ mod tests {
         let c = pressed(&edge, &plate, 1e-3, 2e-6);
         assert!((c[0] - 0.25).abs() < 1e-2, "{c:?} {edge:?}");
         // The deepest place is beside it.
-        let edge = |y: Real| {
+        let edge = |y: f64| {
             fan(&[
                 (1.0, y + h, 1.0),
                 (1.0, y + h * 1.1, 1.0),

@@ -22,8 +22,8 @@ use crate::contacts::list::List;
 use crate::contacts::memory::{Memory, Names};
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, length, onto, side};
-use crate::known::support::{Fault, SupportMap};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
+use crate::minkowski::support::{Fault, SupportMap};
 
 /// One point of a contact manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,7 +33,7 @@ pub struct Contact {
     /// On obj2: `point1 - depth * normal`, unless the faces share nothing.
     pub point2: Vec3,
     /// How deep the objects overlap there, metres; negative where they are apart.
-    pub depth: Real,
+    pub depth: f64,
     /// Its name, as long as it moves with either body; 0 without a memory.
     pub name: u32,
 }
@@ -41,7 +41,7 @@ pub struct Contact {
 /// Corners of what two faces share: each side of the one adds at most one to the other's.
 pub const ROOM: usize = 2 * CORNERS;
 /// Sine of the angle up to which segments may share a strip: 10°.
-const PARALLEL: Real = 0.17;
+const PARALLEL: f64 = 0.17;
 
 /// The points of a contact.
 #[derive(Clone, Copy, Default)]
@@ -64,7 +64,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     obj1: &A,
     obj2: &B,
     normal: &Vec3,
-    slop: Real,
+    slop: f64,
     memory: Option<&mut Memory>,
     max: usize,
 ) -> Result<Manifold, Fault> {
@@ -115,7 +115,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
 
 /// At most `max` corners of the region, the deepest first. Those that have names stay while
 /// they span nine tenths of the largest area; differences by `tie` are rounding.
-fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: Real) -> Polygon<ROOM> {
+fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: f64) -> Polygon<ROOM> {
     let corners: &[Corner] = region;
     // Rounding alone makes no corner the deepest.
     let (mut deepest, mut least) = (0, corners.first().map_or(0.0, |corner| corner.low));
@@ -206,9 +206,9 @@ fn crossing([[p, q], [r, s]]: &[[Flat; 2]; 2]) -> Option<Flat> {
 /// `slack`, moved by a `share` of the way to the second. None where they are not.
 fn strip(
     [[p, q], [r, s]]: &[[Flat; 2]; 2],
-    slack: Real,
-    share: Real,
-    rounding: Real,
+    slack: f64,
+    share: f64,
+    rounding: f64,
 ) -> Polygon<ROOM> {
     let mut ends = Polygon::default();
     let (u, v) = (side(p, q), side(r, s));
@@ -234,10 +234,10 @@ mod tests {
     use crate::math::EPSILON;
     use crate::shapes::{Random, ball, capsule, corners, hull, placed};
 
-    const SLOP: Real = if EPSILON < 1e-10 { 1e-6 } else { 1e-4 };
+    const SLOP: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-4 };
 
     /// A square plate's top face at z = 0, and a box on it, turned about z.
-    fn stacked(angle: Real, max: usize) -> Manifold {
+    fn stacked(angle: f64, max: usize) -> Manifold {
         let plate = corners(Vec3::new(1.0, 1.0, 0.5));
         let turn = crate::shapes::Rotation::from_axis_angle(&Vec3::z_axis(), angle);
         let plate = placed(&plate, &turn, Vec3::z() * -0.5);
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn an_octagon_and_what_is_left_of_it() {
-        let angle = core::f64::consts::FRAC_PI_8 as Real;
+        let angle = core::f64::consts::FRAC_PI_8 as f64;
         let whole = stacked(angle, ROOM);
         assert_eq!(whole.contacts().len(), 8);
         for c in whole.contacts() {
@@ -262,14 +262,14 @@ mod tests {
             let first = m.contacts()[0].point1;
             let spokes = m.contacts().iter().map(|c| c.point1 - first);
             let pairs = spokes.clone().zip(spokes.skip(1));
-            pairs.map(|(a, b)| 0.5 * a.cross(&b).z).sum::<Real>()
+            pairs.map(|(a, b)| 0.5 * a.cross(&b).z).sum::<f64>()
         };
-        let octagon = 8.0 * (2.0 as Real).sqrt() - 8.0;
+        let octagon = 8.0 * (2.0 as f64).sqrt() - 8.0;
         assert!((area(&whole) - octagon).abs() < 8.0 * SLOP);
         // Four of a regular octagon: a square, which has 1 / sqrt(2) of its area.
         let four = stacked(angle, 4);
         assert_eq!(four.contacts().len(), 4);
-        assert!((area(&four) - octagon * (0.5 as Real).sqrt()).abs() < 8.0 * SLOP);
+        assert!((area(&four) - octagon * (0.5 as f64).sqrt()).abs() < 8.0 * SLOP);
         let two = stacked(angle, 2);
         let long = (two.contacts()[0].point1 - two.contacts()[1].point1).norm();
         let angle = 2.0 * angle.cos();

@@ -11,24 +11,24 @@ use crate::contacts::face::CORNERS;
 use crate::contacts::manifold::ROOM;
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Corner, Flat, cross, dot, length, side};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
 use core::mem::swap;
 
 /// Points whose names are kept.
 const NAMED: usize = 8;
 /// Places are kept as `f32`, and are known to this share of the size of the face.
-const KEPT: Real = 4.0 * f32::EPSILON as Real;
+const KEPT: f64 = 4.0 * f32::EPSILON as f64;
 
 /// What is kept as an `f32`.
 #[allow(clippy::unnecessary_cast, reason = "it is one in double precision")]
-pub fn short(x: Real) -> f32 {
+pub fn short(x: f64) -> f32 {
     x as f32
 }
 
 /// What was kept as an `f32`.
 #[allow(clippy::useless_conversion, reason = "it is none in double precision")]
-pub fn long(x: f32) -> Real {
-    Real::from(x)
+pub fn long(x: f32) -> f64 {
+    f64::from(x)
 }
 
 /// A corner of a face.
@@ -84,7 +84,7 @@ impl Ring {
     }
 
     /// How the corners moved to where they are now, if they did as one body does, but for the slack.
-    pub fn motion(&self, now: &[Corner], slack: Real) -> Option<Motion> {
+    pub fn motion(&self, now: &[Corner], slack: f64) -> Option<Motion> {
         let (from, to) = (self.corner(0).at.map(long), now.first()?.at);
         let spokes = || {
             let ways = self.corners().iter().zip(now);
@@ -183,7 +183,7 @@ impl Names {
 impl Memory {
     /// The plane as it was, turned as little as the normal turned, and both faces; nothing where
     /// the memory is of another plane. Of the swapped pair it is turned round first.
-    pub fn plane(&mut self, n: &Vec3, slop: Real) -> Option<Plane> {
+    pub fn plane(&mut self, n: &Vec3, slop: f64) -> Option<Plane> {
         if self.sum != self.sum() {
             *self = Self::default();
         }
@@ -243,7 +243,7 @@ impl Memory {
     }
 
     /// The names of what the faces share.
-    pub fn names(&self, motions: [Option<Motion>; 2], corners: &[Corner], slop: Real) -> Names {
+    pub fn names(&self, motions: [Option<Motion>; 2], corners: &[Corner], slop: f64) -> Names {
         let mut names = Names::default();
         let root = corners.first().map_or([0.0; 2], |c| c.at);
         let square = |a: &Flat, b: &Flat| dot(&side(a, b), &side(a, b));
@@ -287,7 +287,7 @@ impl Memory {
     }
 
     /// Keeps what the query found.
-    pub fn keep(&mut self, plane: &Plane, slop: Real, rings: [Ring; 2], points: &[(Flat, u32)]) {
+    pub fn keep(&mut self, plane: &Plane, slop: f64, rings: [Ring; 2], points: &[(Flat, u32)]) {
         self.normal = plane.n.map(short).into();
         self.axis = plane.axes[0].map(short).into();
         self.slop = short(slop);

@@ -5,8 +5,8 @@
 
 use crate::contacts::polygon::{Corner, Flat};
 use crate::contacts::view::FOUR;
-use crate::known::support::Fault;
-use crate::math::{POLE, Real, Vec3, axes};
+use crate::math::{POLE, Vec3, axes};
+use crate::minkowski::support::Fault;
 
 /// The plane through `origin` across the unit vector `n`.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +30,8 @@ impl Plane {
     /// Through `origin`, with the same axes for the objects swapped. They are turned, so that of a box whose
     /// axes are the world's no two corners are as far along any of them.
     pub fn upright(n: &Vec3, origin: &Vec3) -> Self {
-        const X: Real = 11.0 / 61.0;
-        const Y: Real = 60.0 / 61.0;
+        const X: f64 = 11.0 / 61.0;
+        const Y: f64 = 60.0 / 61.0;
         let up = if POLE.dot(n) < 0.0 { -n } else { *n };
         let [e1, e2] = axes(&up);
         Self {
@@ -43,14 +43,14 @@ impl Plane {
 
     /// The unit direction that looks along the normal (`sign` 1) or against it, tilted `aside`.
     #[inline(always)]
-    pub fn direction(&self, sign: Real, aside: &Flat) -> Vec3 {
+    pub fn direction(&self, sign: f64, aside: &Flat) -> Vec3 {
         let [e1, e2] = &self.axes;
         let share = 1.0 / (1.0 + aside[0] * aside[0] + aside[1] * aside[1]).sqrt();
         (self.n * sign + (e1 * aside[0] + e2 * aside[1])) * share
     }
 
     /// The four unit directions that are tilted so towards the axes, and away from them.
-    pub fn around(&self, tilt: Real) -> [Vec3; FOUR] {
+    pub fn around(&self, tilt: f64) -> [Vec3; FOUR] {
         let share = 1.0 / (1.0 + tilt * tilt).sqrt();
         let n = self.n * share;
         let [a, b] = self.axes.map(|e| e * (tilt * share));
@@ -60,7 +60,7 @@ impl Plane {
     /// A point of the object whose face looks along the normal or against it: where it is in the plane, and
     /// how far below it.
     #[inline(always)]
-    pub fn corner(&self, sign: Real, p: &Vec3) -> Result<Corner, Fault> {
+    pub fn corner(&self, sign: f64, p: &Vec3) -> Result<Corner, Fault> {
         let p = p - self.origin;
         // NaN ends here too; beyond that squares of squares overflow.
         let q = p.norm_squared();
@@ -76,7 +76,7 @@ impl Plane {
 
     /// The point at a place of the plane, so high above it.
     #[inline(always)]
-    pub fn point(&self, [x, y]: &Flat, height: Real) -> Vec3 {
+    pub fn point(&self, [x, y]: &Flat, height: f64) -> Vec3 {
         let [e1, e2] = &self.axes;
         self.origin + e1 * *x + e2 * *y + self.n * height
     }

@@ -5,11 +5,11 @@
 //! are polygons of two corners and of one.
 
 use crate::contacts::list::List;
-use crate::math::{Real, larger, lesser};
+use crate::math::{larger, lesser};
 use core::mem::swap;
 
 /// A point of the plane.
-pub type Flat = [Real; 2];
+pub type Flat = [f64; 2];
 
 /// `b - a`.
 #[inline]
@@ -19,32 +19,32 @@ pub fn side(a: &Flat, b: &Flat) -> Flat {
 
 /// The scalar product.
 #[inline]
-pub fn dot(a: &Flat, b: &Flat) -> Real {
+pub fn dot(a: &Flat, b: &Flat) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
 /// Twice the area of the triangle from the origin to `a` and `b`; positive
 /// counterclockwise.
 #[inline]
-pub fn cross(a: &Flat, b: &Flat) -> Real {
+pub fn cross(a: &Flat, b: &Flat) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
 /// The length.
 #[inline]
-pub fn length(a: &Flat) -> Real {
+pub fn length(a: &Flat) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// The point at `t` on the way from `a` (0) to `b` (1).
 #[inline]
-pub fn between(a: &Flat, b: &Flat, t: Real) -> Flat {
+pub fn between(a: &Flat, b: &Flat, t: f64) -> Flat {
     [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
 }
 
 /// How far along the way from `a` (0) to `b` (1) the nearest point to `p` is.
 #[inline]
-fn nearest_to(p: &Flat, a: &Flat, b: &Flat) -> Real {
+fn nearest_to(p: &Flat, a: &Flat, b: &Flat) -> f64 {
     let along = side(a, b);
     let t = dot(&along, &side(a, p)) / dot(&along, &along);
     // NaN, of a side without length, becomes 0.
@@ -62,12 +62,12 @@ pub struct Corner {
     /// Where in the plane.
     pub at: Flat,
     /// How far below the plane.
-    pub low: Real,
+    pub low: f64,
 }
 
 /// The tilt of the direction across the side from `a` to `b` of a face, outwards, in which both win alike,
 /// but for a `lean` to `b`.
-pub fn across(a: &Corner, b: &Corner, tilt: Real, lean: Real) -> Flat {
+pub fn across(a: &Corner, b: &Corner, tilt: f64, lean: f64) -> Flat {
     let along = side(&a.at, &b.at);
     let whole = length(&along);
     let [x, y] = along.map(|x| x / whole);
@@ -92,7 +92,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
     }
 
     /// Twice its area.
-    pub fn area(&self) -> Real {
+    pub fn area(&self) -> f64 {
         let Some(first) = self.first() else {
             return 0.0;
         };
@@ -104,7 +104,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
 
     /// The same without what is no corner: of those nearer than `merged` to each other the first stays;
     /// what sticks out by `flat` or less goes.
-    pub fn tidy(&self, merged: Real, flat: Real) -> Self {
+    pub fn tidy(&self, merged: f64, flat: f64) -> Self {
         let mut rest = Self::default();
         for p in self.iter() {
             let near = |k: &Corner| length(&side(&k.at, &p.at)) <= merged;
@@ -135,7 +135,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
 
     /// What of it is inside another polygon of three corners or more, or no farther than
     /// `slack` outside (Sutherland and Hodgman, Reentrant polygon clipping, CACM 17(1), 1974).
-    pub fn inside<const OTHER: usize>(&self, other: &Polygon<OTHER>, slack: Real) -> Self {
+    pub fn inside<const OTHER: usize>(&self, other: &Polygon<OTHER>, slack: f64) -> Self {
         other.sides().fold(*self, |rest, (p, q)| {
             let [x, y] = side(&p.at, &q.at);
             rest.cut(&p.at, &[-y, x], slack)
@@ -143,7 +143,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
     }
 
     /// What of it is no farther than `slack` behind the line through a place across a way.
-    pub fn cut(&self, from: &Flat, way: &Flat, slack: Real) -> Self {
+    pub fn cut(&self, from: &Flat, way: &Flat, slack: f64) -> Self {
         let room = slack * length(way);
         let within = |a: &Corner| dot(way, &side(from, &a.at)) + room;
         let mut rest = Self::default();
@@ -162,7 +162,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
 
     /// How far below the plane it is at a point of it: between its corners, as triangles
     /// about the first of them span it. Differences by `rounding` are none.
-    pub fn low(&self, at: &Flat, rounding: Real) -> Real {
+    pub fn low(&self, at: &Flat, rounding: f64) -> f64 {
         let Some(first) = self.first() else {
             return 0.0;
         };
@@ -173,7 +173,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
         if most - least <= rounding {
             return least;
         }
-        let mut best = (Real::NEG_INFINITY, first.low);
+        let mut best = (f64::NEG_INFINITY, first.low);
         for (a, b) in self.sides() {
             let [u, v, p] = [&a.at, &b.at, at].map(|x| side(&first.at, x));
             let whole = cross(&u, &v);
@@ -185,7 +185,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
                 // A segment; the sides of a polygon at its first corner.
                 let t = nearest_to(at, &a.at, &b.at);
                 let least = if self.len() > 2 {
-                    Real::NEG_INFINITY
+                    f64::NEG_INFINITY
                 } else {
                     0.0
                 };
@@ -205,7 +205,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
         &self,
         other: &Polygon<OTHER>,
     ) -> Option<([[Flat; 2]; 2], [Flat; 2])> {
-        let (mut best, mut least) = (None, Real::INFINITY);
+        let (mut best, mut least) = (None, f64::INFINITY);
         for (a, b) in self.sides() {
             for (c, d) in other.sides() {
                 let [a, b, c, d] = [a, b, c, d].map(|corner| corner.at);
@@ -237,11 +237,11 @@ impl<const ROOM: usize> Polygon<ROOM> {
         let spoke = |j: usize| side(&turned.at(0).at, &turned.at(j).at);
         // The best area of a fan that ends at a corner, and its corners, a bit each: a fan of no triangle
         // is a spoke, and then of one triangle more.
-        let mut best: [(Real, u32); ROOM] = core::array::from_fn(|j| (0.0, 1 | 1 << j));
+        let mut best: [(f64, u32); ROOM] = core::array::from_fn(|j| (0.0, 1 | 1 << j));
         for _ in 2..most {
             let shorter = best;
             for (j, best) in best.iter_mut().enumerate().skip(1) {
-                *best = (Real::NEG_INFINITY, 0);
+                *best = (f64::NEG_INFINITY, 0);
                 for (i, (area, fan)) in shorter.iter().enumerate().take(j).skip(1) {
                     let area = area + cross(&spoke(i), &spoke(j));
                     if area > best.0 {
@@ -250,7 +250,7 @@ impl<const ROOM: usize> Polygon<ROOM> {
                 }
             }
         }
-        let (mut largest, mut taken) = (Real::NEG_INFINITY, 1);
+        let (mut largest, mut taken) = (f64::NEG_INFINITY, 1);
         for (j, (area, fan)) in best.into_iter().enumerate().take(turned.len()).skip(1) {
             let score = if most == 2 { length(&spoke(j)) } else { area };
             if score > largest {
@@ -291,7 +291,7 @@ mod tests {
         p
     }
 
-    fn square(x: Real, y: Real, h: Real) -> Eight {
+    fn square(x: f64, y: f64, h: f64) -> Eight {
         polygon(&[
             [x - h, y - h],
             [x + h, y - h],
@@ -324,7 +324,7 @@ mod tests {
             let ends = polygon(turned.get(..3).unwrap()).tidy(1e-6, 1e-6);
             assert_eq!(ends.len(), 2);
             let apart = side(&ends[0].at, &ends[1].at);
-            assert_eq!(length(&apart), (8.0 as Real).sqrt());
+            assert_eq!(length(&apart), (8.0 as f64).sqrt());
         }
         assert_eq!(polygon(&[[3.0, 3.0]; 5]).tidy(0.0, 0.0).len(), 1);
         assert!(Eight::default().tidy(0.0, 0.0).is_empty());
@@ -391,7 +391,7 @@ mod tests {
                 let rest = whole.reduced(first, most);
                 assert_eq!(rest.len(), most);
                 assert_eq!(rest[0].at, points[first]);
-                let mut best: Real = 0.0;
+                let mut best: f64 = 0.0;
                 for set in 0..128_usize {
                     if set & (1 << first) != 0 && set.count_ones() as usize == most {
                         let chosen: Vec<Flat> = (0..7)
@@ -411,7 +411,7 @@ mod tests {
             let longest = points
                 .iter()
                 .map(|p| length(&side(&points[first], p)))
-                .fold(0.0, Real::max);
+                .fold(0.0, f64::max);
             assert_eq!(far, longest);
         }
     }

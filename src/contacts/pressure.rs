@@ -44,29 +44,29 @@ use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Flat, dot, side};
 use crate::contacts::seen::Seen;
 use crate::contacts::view::{FOUR, Four, View};
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::math::{EPSILON, Real, Vec3, larger, lesser};
+use crate::math::{EPSILON, Vec3, larger, lesser};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// The tilt of the directions asked, as a tangent, is this times the root of depth / extent: so a
 /// round face of that radius, or half of it, is seen no lower than half the depth, and of a flat one
 /// that leans by a depth over its width all corners. Measured (`extension/pressure.c`): ÷1.2 a corner of
 /// a leaning box is missed, ×1.2 a cone on its side steps by 7 mm.
-const TILT: Real = 1.8;
+const TILT: f64 = 1.8;
 /// At most: 14°, for what is deeper than a fiftieth of its extent.
-const MOST: Real = 0.25;
+const MOST: f64 = 0.25;
 /// The slope of flanks that nothing is known of. Insensitive: 2 to 8 tried.
-const FLANK: Real = 4.0;
+const FLANK: f64 = 4.0;
 /// By how much, in units of the depth, corners are moved outwards, so that a fan has an area and the
 /// deepest place is inside. Small beside 1 / [`FLANK`].
-const HAIR: Real = 1.0 / 512.0;
+const HAIR: f64 = 1.0 / 512.0;
 /// What ends within this share of the smaller object's extent is a point: the centre of pressure is
 /// within a quarter of that.
-const POINT: Real = 0.016;
+const POINT: f64 = 0.016;
 /// The four directions around a deepest place whose points all lie in the face of D there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Around {
     /// How low they may be, metres.
-    pub low: Real,
+    pub low: f64,
     /// Unit; zero where one was lower, or not asked for.
     pub directions: [Vec3; FOUR],
     /// What they found, in the plane.
@@ -116,7 +116,7 @@ pub struct Aside<'a> {
 pub fn centre<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     hit: &Penetration,
-    tolerance: Real,
+    tolerance: f64,
     aside: Aside,
 ) -> Result<Vec3, Fault> {
     let middle = hit.middle();
@@ -194,7 +194,7 @@ pub fn centre<A: SupportMap, B: SupportMap>(
 /// Does an object with these corners end within the root of `most2`, m², around the deepest place, as far as
 /// the depth goes?
 #[inline(always)]
-fn is_point(four: &Four, most2: Real) -> bool {
+fn is_point(four: &Four, most2: f64) -> bool {
     four.iter().all(|c| {
         let low = larger(c.low, 1.0);
         dot(&c.at, &c.at) <= most2 * low * low
@@ -203,7 +203,7 @@ fn is_point(four: &Four, most2: Real) -> bool {
 
 /// The squares of how far the objects are known to reach from their witness points, m².
 #[inline(always)]
-pub fn extent(points: impl Iterator<Item = [Vec3; 2]>, [p, q]: [&Vec3; 2]) -> [Real; 2] {
+pub fn extent(points: impl Iterator<Item = [Vec3; 2]>, [p, q]: [&Vec3; 2]) -> [f64; 2] {
     let mut far2 = [0.0; 2];
     for [v1, v2] in points {
         far2[0] = larger((v1 - p).norm_squared(), far2[0]);

@@ -8,28 +8,28 @@ use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Corner, Flat, cross, side};
 use crate::contacts::view::FOUR;
 use crate::known::points::Points;
-use crate::math::{EPSILON, Real, Vec3};
+use crate::math::{EPSILON, Vec3};
 
 /// How low a known point of a floor may be, as a share of the depth: taken for level, it turns a floor
 /// by so little that the position moves by a third of that share of the face's half width. Insensitive:
 /// 0.01 to 0.05 tried on recorded contacts.
-const LEVEL: Real = 0.01;
+const LEVEL: f64 = 0.01;
 /// Unit vectors that are made unit again differ by less.
-const ALIKE: Real = 16.0 * EPSILON;
+const ALIKE: f64 = 16.0 * EPSILON;
 /// Directions of a state that stands besides the minimum's.
 const OTHERS: usize = 3;
 
 /// Points of the two objects, 0 and 1.
 pub trait Known {
     /// Which points are at least `least` along a direction: a bit each.
-    fn level(&self, object: usize, n: &Vec3, least: Real) -> u32;
+    fn level(&self, object: usize, n: &Vec3, least: f64) -> u32;
     /// The point of that bit.
     fn point_of(&self, object: usize, i: usize) -> Vec3;
 }
 
 impl Known for Points {
     #[inline(always)]
-    fn level(&self, object: usize, n: &Vec3, least: Real) -> u32 {
+    fn level(&self, object: usize, n: &Vec3, least: f64) -> u32 {
         Points::level(self, object, n, least)
     }
 
@@ -42,7 +42,7 @@ impl Known for Points {
 /// In any order.
 impl<F: Fn(usize) -> Option<[Vec3; 2]>> Known for F {
     #[inline(always)]
-    fn level(&self, object: usize, n: &Vec3, least: Real) -> u32 {
+    fn level(&self, object: usize, n: &Vec3, least: f64) -> u32 {
         let points = (0..u32::BITS).map_while(|i| Some((i, self(i as usize)?)));
         points.fold(0, |level, (i, p)| {
             level | u32::from(n.dot(&p[object % 2]) >= least) << i
@@ -156,11 +156,11 @@ impl Floor {
 
     /// The first of these places that does not lie within, but for a `hair`, metres.
     #[inline(always)]
-    pub fn lacks(&self, mut places: impl Iterator<Item = Flat>, hair: Real) -> Option<Flat> {
+    pub fn lacks(&self, mut places: impl Iterator<Item = Flat>, hair: f64) -> Option<Flat> {
         let [a, b, c, d] = &self.corners;
         let sides = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| {
             let along = side(p, q);
-            let [x, y] = along.map(Real::abs);
+            let [x, y] = along.map(f64::abs);
             (along, cross(&along, p) - hair * (x + y))
         });
         // Of what is no wider than a hair all is beside it.
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn a_floor_is_around_the_deepest_place() {
-        let corner = |x: Real, y: Real| Vec3::new(x, y, 0.0);
+        let corner = |x: f64, y: f64| Vec3::new(x, y, 0.0);
         let hit = Penetration {
             depth: 0.01,
             normal: Vec3::z(),

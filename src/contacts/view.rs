@@ -19,14 +19,14 @@ use crate::contacts::fan::Fan;
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Corner, Flat, cross, dot, length, side};
 use crate::contacts::seen::{Floor, Seen};
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap};
-use crate::math::{EPSILON, Real, Vec3, larger, lesser};
+use crate::math::{EPSILON, Vec3, larger, lesser};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 
 /// The corners that are asked for at first: towards the plane's axes, and away from them.
 pub const FOUR: usize = 4;
 /// Cosines and sines of those directions, and of four between them.
 const CIRCLE: [Flat; 2 * FOUR] = {
-    const H: Real = core::f64::consts::FRAC_1_SQRT_2 as Real;
+    const H: f64 = core::f64::consts::FRAC_1_SQRT_2 as f64;
     [
         [1.0, 0.0],
         [H, H],
@@ -40,24 +40,24 @@ const CIRCLE: [Flat; 2 * FOUR] = {
 };
 /// How far a point of a rim may be beside it, as a share of the radius: ten times what callbacks in single
 /// precision round by.
-const RIM: Real = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
+const RIM: f64 = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
 /// How much lower than the plane of the others the fourth corner of a face may be, in units of the depth:
 /// else it is another face's, and the space before it is not as low as a line to it would say.
 /// Insensitive: 0.1 to 1 tried on recorded contacts, and 0.02 leaves a corner out.
-const SAME_FACE: Real = 0.1;
+const SAME_FACE: f64 = 0.1;
 /// The deepest place is beyond a side where it is by this share of the area of four corners: rounding is
 /// less. Insensitive: 0.005 to 0.08 tried (`extension/pressure.c`).
-const BEYOND: Real = 0.02;
+const BEYOND: f64 = 0.02;
 /// A point that was found no farther aside of a direction than this, in tilts, is the one that would
 /// be found there: less than the ÷1.2 and ×1.2 of the tilt that are seen.
-const SAME: Real = 0.1;
+const SAME: f64 = 0.1;
 /// The least height of three corners above their longest side, as a share of that: else they are a line.
 /// Insensitive: 0.005 to 0.08 tried (`extension/pressure.c`).
-const NARROW: Real = 0.02;
+const NARROW: f64 = 0.02;
 
 /// Share of what all four corners are lower by that is taken off. Measured: 0 lets a lying capsule step by 5 mm, 1
 /// leaves it 7 mm off.
-const LEVEL: Real = 0.75;
+const LEVEL: f64 = 0.75;
 
 /// Corners a right angle apart, in their order. At: from the deepest place; low: in units of the depth.
 pub type Four = [Corner; FOUR];
@@ -71,16 +71,16 @@ pub struct View<'q, A, B> {
     /// Half-way between the support planes.
     pub plane: &'q Plane,
     /// How far these are from there, metres.
-    pub half: Real,
+    pub half: f64,
     /// The unit of lows, metres, and one over it.
-    pub depth: Real,
-    pub share: Real,
+    pub depth: f64,
+    pub share: f64,
     /// Of the directions asked: the tangent of the angle to the normal.
-    pub tilt: Real,
+    pub tilt: f64,
     /// Those of D in which obj1 is asked for its four corners; obj2 is for the opposite ones.
     pub directions: [Vec3; FOUR],
     /// By how much corners are moved outwards, metres: two that are nearer than twice that are one.
-    pub hair: Real,
+    pub hair: f64,
 }
 
 impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
@@ -194,7 +194,7 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         &self,
         object: usize,
         four: &Four,
-        lengths2: &[Real; FOUR],
+        lengths2: &[f64; FOUR],
         twice: Option<usize>,
     ) -> Result<Option<(usize, Flat, Corner)>, Fault> {
         // The side beyond which there may be another, from corner `i` to the next, and a corner across from it.
@@ -208,7 +208,7 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
         } else {
             let areas = [0, 1, 2, 3].map(|i| cross(&four[i].at, &four[(i + 1) % FOUR].at));
             let least = (1..FOUR).fold(0, |k, j| if areas[j] < areas[k] { j } else { k });
-            if !(areas[least] < -BEYOND * areas.iter().sum::<Real>()) {
+            if !(areas[least] < -BEYOND * areas.iter().sum::<f64>()) {
                 return Ok(None);
             }
             (least, least + 2)
@@ -242,7 +242,7 @@ impl<A: SupportMap, B: SupportMap> View<'_, A, B> {
     }
 
     /// How low the plane through a corner is at a place.
-    fn low(&self, corner: &Corner, slope: &Flat, at: &Flat) -> Real {
+    fn low(&self, corner: &Corner, slope: &Flat, at: &Flat) -> f64 {
         corner.low + dot(slope, &side(&corner.at, at)) / self.depth
     }
 
@@ -293,6 +293,6 @@ fn ends(fan: &Fan) -> impl Iterator<Item = Flat> + '_ {
 }
 
 /// 1 of the object whose face looks along the normal, -1 of the other.
-fn sign(object: usize) -> Real {
+fn sign(object: usize) -> f64 {
     if object == 0 { 1.0 } else { -1.0 }
 }

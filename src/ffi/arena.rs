@@ -11,7 +11,7 @@ use core::ptr::NonNull;
 
 use super::{calloc, free};
 use crate::hull::global::{Arena, Room};
-use crate::known::support::Fault;
+use crate::minkowski::support::Fault;
 
 #[derive(Default)]
 struct Block(Option<NonNull<Room>>);

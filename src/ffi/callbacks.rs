@@ -7,8 +7,8 @@ use core::ffi::{c_ulong, c_void};
 
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
 use crate::contact::Settings;
-use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
-use crate::math::{ITERATION_CAP, Real, Vec3};
+use crate::math::{ITERATION_CAP, Real, Vec3, from_real};
+use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::query::Pair;
 
 /// One object behind libccd's support callback.
@@ -37,7 +37,8 @@ impl SupportMap for Object {
         // And three scalar loads, because most callees store three scalars: a packed load cannot
         // be forwarded from two stores.
         // SAFETY: a local variable.
-        unsafe { Vec3::from(point.v.each_ref().map(|x| core::ptr::read_volatile(x))) }
+        let point = unsafe { point.v.each_ref().map(|x| core::ptr::read_volatile(x)) };
+        from_real(point)
     }
 }
 
@@ -196,7 +197,7 @@ impl Query {
             #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
             let max_iterations = ITERATION_CAP.min(max as u64);
             let settings = Settings {
-                tolerance,
+                tolerance: tolerance.into(),
                 max_iterations,
             };
             Some((pair, settings))

@@ -18,7 +18,7 @@ use super::types::{
 };
 use super::{free, malloc};
 use crate::gjk::barycentric;
-use crate::math::{EPSILON, Real, Vec3};
+use crate::math::{Real, Vec3};
 
 /// An empty polytope.
 #[unsafe(no_mangle)]
@@ -290,7 +290,7 @@ unsafe fn measure(element: *mut ccd_pt_el_t) {
             }
         };
         (*element).witness = witness.into();
-        (*element).dist = dist;
+        (*element).dist = dist as Real;
     }
 }
 
@@ -332,7 +332,7 @@ unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
 fn equal(a: Real, b: Real) -> bool {
     let difference = (a - b).abs();
     let (a, b) = (a.abs(), b.abs());
-    difference < EPSILON || difference < EPSILON * if b > a { b } else { a }
+    difference < Real::EPSILON || difference < Real::EPSILON * if b > a { b } else { a }
 }
 
 /// The two vertices of the first edge, and the one of the second that is neither.

@@ -8,7 +8,7 @@
 
 use core::ffi::{c_int, c_ulong, c_void};
 
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, from_real, to_real};
 
 /// A point or direction, metres.
 #[repr(C)]
@@ -20,14 +20,14 @@ pub struct ccd_vec3_t {
 impl From<Vec3> for ccd_vec3_t {
     #[inline(always)]
     fn from(v: Vec3) -> Self {
-        Self { v: v.into() }
+        Self { v: to_real(&v) }
     }
 }
 
 impl From<ccd_vec3_t> for Vec3 {
     #[inline(always)]
     fn from(v: ccd_vec3_t) -> Self {
-        v.v.into()
+        from_real(v.v)
     }
 }
 

@@ -50,7 +50,7 @@ unsafe fn answer<const N: usize>(nearest: Nearest<N>, witness: *mut ccd_vec3_t) 
         // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
         unsafe { *witness = nearest.point.into() };
     }
-    nearest.distance2
+    nearest.distance2 as Real
 }
 
 /// Points to the origin. An object of 8 bytes, not a function: programs copy it.

@@ -5,15 +5,15 @@
 //! weights of the corners in it, and what points mix to with such weights.
 //!
 //! Projection, then the search of the violated edges or faces only (the regions are those
-//! of Ericson, Real-Time Collision Detection, 5.1.5). libccd calls a triangle degenerate by
+//! of Ericson, f64-Time Collision Detection, 5.1.5). libccd calls a triangle degenerate by
 //! an absolute area and then looks at its edges alone; here no triangle is special.
 //!
 //! The weights of a sliver are mostly rounding, and any are good that lead to the right
 //! place: here the point is what its weights lead to, and what is compared is where the
 //! points are.
 
-use crate::known::support::SupportPoint;
-use crate::math::{EPSILON, Real, Vec3, larger, normal};
+use crate::math::{EPSILON, Vec3, larger, normal};
+use crate::minkowski::support::SupportPoint;
 
 /// The point of a simplex of `N` corners that is nearest to a given one.
 #[derive(Clone, Copy, Debug)]
@@ -22,10 +22,10 @@ pub struct Nearest<const N: usize> {
     pub point: Vec3,
     /// The square of its distance from the given point, m²; NaN where that holds a
     /// NaN.
-    pub distance2: Real,
+    pub distance2: f64,
     /// One for each corner: none is negative, and their sum is 1 to an ulp. Zero exactly
     /// for the corners of no part in it.
-    pub weights: [Real; N],
+    pub weights: [f64; N],
 }
 
 impl<const N: usize> Nearest<N> {
@@ -50,7 +50,7 @@ impl<const N: usize> Nearest<N> {
 /// Counted from the first: far from the world's origin weights that miss 1 by a rounding
 /// would move it. Where a weight is 1 it is that point to an ulp.
 #[inline]
-pub fn mix<const N: usize>(weights: &[Real; N], points: [&Vec3; N]) -> Vec3 {
+pub fn mix<const N: usize>(weights: &[f64; N], points: [&Vec3; N]) -> Vec3 {
     let mut mixed = *points[0];
     for i in 1..N {
         mixed += (points[i] - points[0]) * weights[i];
@@ -61,7 +61,7 @@ pub fn mix<const N: usize>(weights: &[Real; N], points: [&Vec3; N]) -> Vec3 {
 /// What the points of obj1, and those of obj2, mix to with these weights: points of the
 /// objects, whose difference is what the points of D mix to.
 #[inline]
-pub fn witnesses<const N: usize>(weights: &[Real; N], points: [&SupportPoint; N]) -> (Vec3, Vec3) {
+pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N]) -> (Vec3, Vec3) {
     (
         mix(weights, points.map(|p| &p.v1)),
         mix(weights, points.map(|p| &p.v2)),
@@ -127,7 +127,7 @@ pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> Nearest<3> {
     let least = PARALLEL * (w * v);
     let (s, t);
     // False for fourth powers of lengths that are not numbers, or too small to be exact.
-    if det > least && least > Real::MIN_POSITIVE {
+    if det > least && least > f64::MIN_POSITIVE {
         s = (pc * r - w * pb) / det;
         t = (-s * r - pc) / w;
     } else {
@@ -151,7 +151,7 @@ pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> Nearest<3> {
     // NaN: no candidate yet. It stays when the input holds one.
     let mut best = Nearest {
         point: *a,
-        distance2: Real::NAN,
+        distance2: f64::NAN,
         weights: [1.0, 0.0, 0.0],
     };
     for (inside, (from, to), places) in [
@@ -194,22 +194,22 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
         rise[3].dot(&at_a),
     ];
     // A flat one's may be NaN or infinite.
-    let inner = |s: &Real| *s >= 0.0 && *s < Real::INFINITY;
+    let inner = |s: &f64| *s >= 0.0 && *s < f64::INFINITY;
     // No candidate yet.
     let mut best = Nearest {
         point: *corners[0],
-        distance2: Real::NAN,
+        distance2: f64::NAN,
         weights: [1.0, 0.0, 0.0, 0.0],
     };
     if shares.iter().all(inner) {
         // Where the shares lead is off by ulps over the thickness; the same shares of what
         // is missing mend that.
-        let sum: Real = shares.iter().sum();
+        let sum: f64 = shares.iter().sum();
         let missing = p - mix(&shares.map(|s| s / sum), corners);
         for (share, rise) in shares.iter_mut().zip(&rise) {
             *share = larger(*share / sum + rise.dot(&missing), 0.0);
         }
-        let sum: Real = shares.iter().sum();
+        let sum: f64 = shares.iter().sum();
         let weights = shares.map(|s| s / sum);
         let point = mix(&weights, corners);
         let distance2 = (point - p).norm_squared();
@@ -237,7 +237,7 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
 
 /// Squared sine of the angle below which two edges are almost parallel: the normal
 /// equations have lost three digits there; in single precision, which has none to spare, one.
-const PARALLEL: Real = if cfg!(feature = "single") { 1e-2 } else { 1e-6 };
+const PARALLEL: f64 = if cfg!(feature = "single") { 1e-2 } else { 1e-6 };
 
 #[cfg(test)]
 mod tests {
@@ -274,7 +274,7 @@ mod tests {
 
     /// How far the corners lie from `p` at least, by planes between: across the normals of
     /// faces, and across the way to edges and corners, made exact where rounding turns it.
-    fn least(p: &Vec3, corners: &[&Vec3]) -> Real {
+    fn least(p: &Vec3, corners: &[&Vec3]) -> f64 {
         let c: Vec<Vec3> = corners.iter().map(|c| *c - p).collect();
         let mut ways = c.clone();
         for (i, a) in c.iter().enumerate() {
@@ -288,9 +288,9 @@ mod tests {
                 }
             }
         }
-        let reach = |n: &Vec3| c.iter().map(|c| n.dot(c)).fold(Real::INFINITY, Real::min);
+        let reach = |n: &Vec3| c.iter().map(|c| n.dot(c)).fold(f64::INFINITY, f64::min);
         let units = ways.iter().filter_map(|w| w.try_normalize(0.0));
-        units.map(|n| reach(&n)).fold(0.0, Real::max)
+        units.map(|n| reach(&n)).fold(0.0, f64::max)
     }
 
     fn check<const N: usize>(p: &Vec3, corners: [&Vec3; N], found: &Nearest<N>, what: &str) {
@@ -298,7 +298,7 @@ mod tests {
         // A few times what the derivation allows where p is as good as in a sliver's plane.
         let error = size * EPSILON * if cfg!(feature = "single") { 500.0 } else { 5e4 };
         assert!(found.weights.iter().all(|w| *w >= 0.0), "{what} {found:?}");
-        let sum: Real = found.weights.iter().sum();
+        let sum: f64 = found.weights.iter().sum();
         assert!((sum - 1.0).abs() <= 4.0 * EPSILON, "{what} {found:?}");
         let led = mix(&found.weights, corners);
         assert!((led - found.point).norm() <= 8.0 * EPSILON * size, "{what}");
@@ -337,7 +337,7 @@ mod tests {
             let [a, b, c, d] = &corners;
             let volume = (b - a).cross(&(c - a)).dot(&(d - a)).abs();
             let w = [0; 4].map(|_| r.within(0.01, 1.0));
-            let sum: Real = w.iter().sum();
+            let sum: f64 = w.iter().sum();
             let w = w.map(|x| x / sum);
             let p = mix(&w, [a, b, c, d]);
             let found = tetrahedron(&p, [a, b, c, d]);
@@ -367,7 +367,7 @@ mod tests {
 
     #[test]
     fn nan_is_no_distance() {
-        let nan = Vec3::repeat(Real::NAN);
+        let nan = Vec3::repeat(f64::NAN);
         let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
         assert!(segment(&nan, &x, &y).distance2.is_nan());
         assert!(triangle(&nan, &x, &y, &z).distance2.is_nan());

@@ -19,34 +19,34 @@
 
 use crate::gjk::barycentric;
 use crate::gjk::simplex::{Simplex, direction};
-use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, SupportSet};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
+use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
 
 /// How far the two measures of a ball may differ, as a share of their sum. (Measured on the
 /// random sets moved apart: a fifth of it costs ellipsoids one support point more, six times
 /// it boxes 0.3 and cylinders 0.7.)
-const ALIKE: Real = 0.05;
+const ALIKE: f64 = 0.05;
 /// The share of what a ball promises that makes it believed again. Insensitive: 0.25 to 0.75 tried
 /// on the distances of the recorded contacts, at most 0.3 %.
-const KEPT: Real = 0.5;
+const KEPT: f64 = 0.5;
 /// The share of the tolerance that a promise must be worth: less does not pay for a support
 /// point, and rounding is less. Insensitive: 0.1 to 1 tried there.
-const WORTH: Real = 0.3;
+const WORTH: f64 = 0.3;
 /// Steps that bring the simplex no nearer before rounding is all that is left.
 const STALLS: u32 = 3;
 
 /// How near the bounds are to come.
 pub struct Goal {
     /// The width between them, metres.
-    pub tolerance: Real,
+    pub tolerance: f64,
     /// The same as a share of the upper one, where that is more.
-    pub share: Real,
+    pub share: f64,
     /// What is taken off the distance, metres: the tolerance does not tell a touch from a gap, and a
     /// plane between the objects is wanted.
-    pub margin: Real,
+    pub margin: f64,
     /// What is farther apart than this, metres, need not be refined.
-    pub far: Real,
+    pub far: f64,
     /// Support points, at most.
     pub iterations: u64,
 }
@@ -75,19 +75,19 @@ pub struct Approach<'s, 'q, A, B> {
     /// The place of the newest point, where the origin is inside.
     inside: Option<usize>,
     /// The greatest −h(n), metres, and its n.
-    pub lower: Real,
+    pub lower: f64,
     /// See `lower`; any before the first point.
     pub normal: Vec3,
     /// From the simplex to the origin, of any length.
     way: Vec3,
     /// Its length, metres: the least so far was `nearest`.
-    pub upper: Real,
-    nearest: Real,
+    pub upper: f64,
+    nearest: f64,
     stalls: u32,
     /// The last direction asked, and its point.
     last: Option<(Vec3, Vec3)>,
     /// Radius of the ball taken off, metres; 0 for none.
-    pub ball: Real,
+    pub ball: f64,
     /// Steps without a try, and how many the next failure costs.
     pause: u32,
     penalty: u32,
@@ -103,11 +103,11 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
             set: SupportSet::EMPTY,
             simplex: Simplex::new(),
             inside: None,
-            lower: -Real::INFINITY,
+            lower: -f64::INFINITY,
             normal: Vec3::x(),
             way: Vec3::x(),
-            upper: Real::INFINITY,
-            nearest: Real::INFINITY,
+            upper: f64::INFINITY,
+            nearest: f64::INFINITY,
             stalls: 0,
             last: None,
             ball: 0.0,
@@ -137,7 +137,7 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
     }
 
     /// The width that the bounds are to have, metres; NaN is none.
-    fn width(&self, goal: &Goal) -> Real {
+    fn width(&self, goal: &Goal) -> f64 {
         let least = self.inquiry.precision.tolerance(goal.tolerance);
         larger(goal.share * self.upper, least)
     }
@@ -153,7 +153,7 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
 
     /// One more support point, for bounds that are to come within `tolerance`, metres: where a ball
     /// foretells the distance, else along the way. Asks for none where that is stalled.
-    fn step(&mut self, tolerance: Real) -> Result<Option<End>, Fault> {
+    fn step(&mut self, tolerance: f64) -> Result<Option<End>, Fault> {
         let aim = self.aim(tolerance);
         if aim.is_none() {
             if !(self.upper < self.nearest) {
@@ -249,7 +249,7 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
     }
 
     /// Asks along unit `n`, which a ball chose and which promises this distance, metres.
-    fn try_out(&mut self, n: &Vec3, promise: Real) -> Result<bool, Fault> {
+    fn try_out(&mut self, n: &Vec3, promise: f64) -> Result<bool, Fault> {
         let before = self.lower;
         let point = self.sample(n)?;
         let inside = self.beyond(&point) && self.add(n, &point);
@@ -268,7 +268,7 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
 
     /// The direction that the ball foretells to be best, and the distance, metres, that it
     /// promises there; none where that is not worth a support point.
-    fn aim(&self, tolerance: Real) -> Option<(Vec3, Real)> {
+    fn aim(&self, tolerance: f64) -> Option<(Vec3, f64)> {
         if !(self.ball > 0.0) || self.pause > 0 {
             return None;
         }
@@ -306,28 +306,28 @@ impl<'s, 'q, A: SupportMap, B: SupportMap> Approach<'s, 'q, A, B> {
 pub fn separate<A: SupportMap, B: SupportMap>(
     inquiry: &mut Inquiry<'_, A, B>,
     separating: &Vec3,
-) -> Result<(Vec3, Real), Fault> {
+) -> Result<(Vec3, f64), Fault> {
     let mut approach = Approach::new(inquiry);
     approach.ask(separating)?;
     approach.run(&Goal {
         tolerance: 0.0,
         share: 1.0 - WIDE,
         margin: 0.0,
-        far: Real::INFINITY,
+        far: f64::INFINITY,
         iterations: WIDENING,
     })?;
     Ok((approach.normal, larger(approach.lower, 0.0)))
 }
 
 /// The share of the distance that is wide enough.
-const WIDE: Real = 0.8;
+const WIDE: f64 = 0.8;
 /// Support points that [`separate`] may ask for.
 const WIDENING: u64 = 8;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::known::support::MinkowskiDifference;
+    use crate::minkowski::support::MinkowskiDifference;
     use crate::shapes::{Random, ball, capsule, corners, hull, placed};
 
     /// Boxes face to face and balls: the bounds close around the known distance, and the points

@@ -11,9 +11,9 @@
 
 use crate::gjk::overlap::{ROOM, overlap};
 use crate::gjk::separation::{leave, still_apart};
-use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::math::{Vec3, unit};
+use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::state::State;
 
 /// Shows that the objects overlap. `centre`, an interior point of D, is trusted. Where there is none, the

@@ -20,9 +20,9 @@
 //! kinds in use that is a sixth fewer support points than libccd's portal asks for.
 
 use crate::gjk::simplex::{Simplex, direction, room};
-use crate::known::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, unit};
+use crate::math::{Vec3, larger, unit};
+use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::paper::portal::{Exit, Search, SupportPlane, Until};
 
 /// Do the objects overlap? `centre`, an interior point of D, is trusted. Without one, from the unit
@@ -113,7 +113,7 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
     }
     // The square of the distance from the simplex; and whether points on the other side of
     // it, where it is a triangle, are known.
-    let (mut nearest, mut backed) = (Real::INFINITY, false);
+    let (mut nearest, mut backed) = (f64::INFINITY, false);
     let mut stalls = 0;
     // Points of the set that have not been corners yet.
     let mut known = set.len() - [centre, asked].iter().flatten().count();
@@ -170,7 +170,7 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
     }
     let corners = simplex.ids().map(|i| set.point(i));
     let corners = corners.get(..simplex.len()).unwrap_or(&corners);
-    let farther = |n: &Vec3, h: Real| set.farther(n, h).is_some();
+    let farther = |n: &Vec3, h: f64| set.farther(n, h).is_some();
     let between = decide(inquiry, corners, &farther, &dir)?;
     let [i, j, k] = simplex.ids();
     Ok(Held {
@@ -189,7 +189,7 @@ pub fn overlap<A: SupportMap, B: SupportMap, const N: usize>(
 fn decide<A: SupportMap, B: SupportMap>(
     inquiry: &mut Inquiry<'_, A, B>,
     corners: &[SupportPoint],
-    farther: &dyn Fn(&Vec3, Real) -> bool,
+    farther: &dyn Fn(&Vec3, f64) -> bool,
     dir: &Vec3,
 ) -> Result<Option<[SupportPoint; 2]>, Stop> {
     // The simplex may be as flat as touching faces: the middle between it and the far
@@ -203,7 +203,7 @@ fn decide<A: SupportMap, B: SupportMap>(
     // The mean of the corners, one after the other.
     let mut inner = seen.point(0);
     for (count, corner) in (1..).zip(corners).skip(1) {
-        inner = inner.towards(corner, 1.0 / count as Real);
+        inner = inner.towards(corner, 1.0 / count as f64);
     }
     inner = inner.towards(&seen.point(last), 0.5);
     if !(inner.v.norm() > inquiry.precision.touch()) {
@@ -214,7 +214,7 @@ fn decide<A: SupportMap, B: SupportMap>(
     let mut search = Search {
         md: inquiry.md,
         // Any portal that has the origin on its inner side decides.
-        tolerance: Real::INFINITY,
+        tolerance: f64::INFINITY,
         until: Until::Normal,
         flat: None,
         budget: LAST,
@@ -237,7 +237,7 @@ fn decide<A: SupportMap, B: SupportMap>(
     inquiry.precision.note(&lowest.point);
     let touch = inquiry.precision.touch();
     // A callback that contradicts itself separates nothing.
-    let contradicted = |h: Real| farther(&lowest.normal, h);
+    let contradicted = |h: f64| farther(&lowest.normal, h);
     let grain = inquiry.precision.grain();
     if lowest.depth > touch || contradicted(larger(lowest.depth + grain, touch)) {
         Ok(between)
@@ -272,7 +272,7 @@ mod tests {
     }
 
     /// A cube turned anyhow and the same over it, aside, with this gap (less than zero: the depth).
-    fn cubes(gap: Real, r: &mut Random) -> [Vec<Vec3>; 2] {
+    fn cubes(gap: f64, r: &mut Random) -> [Vec<Vec3>; 2] {
         let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
         let turn = r.rotation();
         let aside = Vec3::new(
@@ -304,7 +304,7 @@ mod tests {
             let asked = swapped.supports();
             assert!(asked < 300, "{asked}");
             for exponent in [-20, 20] {
-                let scale = (2.0 as Real).powi(exponent);
+                let scale = (2.0 as f64).powi(exponent);
                 let [a, b] = [&a, &b].map(|of| of.iter().map(|p| p * scale).collect::<Vec<_>>());
                 let other = MinkowskiDifference::new(hull(&a), hull(&b));
                 assert_eq!(one, cold(&other, None, || dir));

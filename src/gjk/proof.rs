@@ -10,9 +10,9 @@
 //! until it holds −c. Where rounding is all that tells, [`crate::gjk::overlap`] decides.
 
 use crate::gjk::simplex::direction;
-use crate::known::support::{Known, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Stop};
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, unit};
+use crate::math::{EPSILON, Vec3, larger, perpendicular, unit};
+use crate::minkowski::support::{Known, SupportMap, SupportPoint};
 
 /// A point of D to look from.
 pub struct Apex<'a> {
@@ -119,7 +119,7 @@ fn enclose<A: SupportMap, B: SupportMap>(
             Cone::Ray(a) => across(c, a),
             Cone::Side(a, b) => {
                 let side = a.cross(b);
-                side * (1.0 as Real).copysign(-c.dot(&side))
+                side * (1.0 as f64).copysign(-c.dot(&side))
             }
         };
         if matches!(cone, Cone::Ray(_)) && n.norm() <= touch {
@@ -162,7 +162,7 @@ pub fn behind(n: &Vec3) -> Vec3 {
 
 /// Tan of the angle of [`behind`]. Insensitive: 0.01 to 0.15 tried on the recorded pair sets without
 /// centres, at most 0.7 % of a local minimum's support points; 0 takes 4 % more.
-const ASLANT: Real = 0.05;
+const ASLANT: f64 = 0.05;
 
 /// Steps of [`enclose`] before the distance algorithm takes over. Insensitive: 3 to 18 tried on the
 /// recorded contacts, where mostly it takes two.
@@ -171,9 +171,9 @@ const STEPS: usize = 9;
 /// Is −c in the cone of these, by more than rounding? Else the one that it lies farthest beyond
 /// the plane of the others from.
 #[inline(always)]
-fn open_side(c: &Vec3, [u, v, w]: [&Vec3; 3], reach2: Real) -> Option<usize> {
+fn open_side(c: &Vec3, [u, v, w]: [&Vec3; 3], reach2: f64) -> Option<usize> {
     let sides = [v.cross(w), w.cross(u), u.cross(v)];
-    let sign = (1.0 as Real).copysign(u.dot(&sides[0]));
+    let sign = (1.0 as f64).copysign(u.dot(&sides[0]));
     let outside = sides.map(|side| sign * c.dot(&side));
     let most = larger(larger(outside[0], outside[1]), outside[2]);
     let size2 = larger(larger(u.norm_squared(), v.norm_squared()), w.norm_squared());
@@ -197,7 +197,7 @@ fn across(c: &Vec3, a: &Vec3) -> Vec3 {
 }
 
 /// Is the origin in the plane of these, within a touch?
-fn in_plane(c: &Vec3, a: &Vec3, b: &Vec3, touch: Real) -> bool {
+fn in_plane(c: &Vec3, a: &Vec3, b: &Vec3, touch: f64) -> bool {
     let side = a.cross(b);
     c.dot(&side).abs() <= touch * (side + b.cross(c) + c.cross(a)).norm()
 }
@@ -234,4 +234,4 @@ fn beside(exit: &Vec3, start: &Vec3) -> Option<impl Fn(&Vec3) -> Option<Vec3> + 
 }
 
 /// The angle, radians, that tells a thin overlap by.
-const THIN: Real = 0.2;
+const THIN: f64 = 0.2;

@@ -5,27 +5,27 @@
 //! while it still separates, one support point is the whole answer.
 
 use crate::gjk::distance::separate;
-use crate::known::support::{Fault, SupportMap};
 use crate::known::support_set::{Inquiry, SupportSet};
-use crate::math::{EPSILON, Real, Vec3, larger, unit};
+use crate::math::{EPSILON, Vec3, larger, unit};
+use crate::minkowski::support::{Fault, SupportMap};
 use crate::state::State;
 
 /// Directions tried before a pair that was apart is asked about as if it were new.
 pub const TRIES: usize = 2;
 /// The share of the last aim that is aimed at next, where the margin is less. Insensitive: 0.8
 /// to 0.99 tried, at most 0.3 % of the recorded contacts' support points.
-const KEEP: Real = 0.95;
+const KEEP: f64 = 0.95;
 /// The share of the aim below which a margin has the direction turned. Insensitive: 0.5 to 0.8 tried
 /// on the recorded contacts, at most 0.3 %.
-const ENOUGH: Real = 0.7;
+const ENOUGH: f64 = 0.7;
 /// The share of the size that is aimed at, at least, where a direction has failed. Measured on
 /// pairs that stay apart: with none 1.117 support points a query, 0.01 costs as much for a
 /// cylinder over a box; contacts with 0.01 take 0.3 % more.
-const HOPE: Real = 0.0035;
+const HOPE: f64 = 0.0035;
 
 /// The length, metres, of a direction with no margin to aim at: next to none beside objects of
 /// any size, and its coordinates keep their digits. Zero would be no direction.
-const UNSURE: Real = Real::MIN_POSITIVE / EPSILON;
+const UNSURE: f64 = f64::MIN_POSITIVE / EPSILON;
 
 /// The state's direction, or what it is turned to, if that still separates, or touches within
 /// rounding. The support points of directions that fail go into the set.

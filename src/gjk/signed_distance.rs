@@ -19,26 +19,26 @@
 
 use crate::contact::{Penetration, Settings};
 use crate::gjk::distance::{Approach, End, Goal};
-use crate::known::support::{Fault, SupportMap};
 use crate::known::support_set::{Inquiry, Stop};
-use crate::math::{EPSILON, Real, Vec3, larger, unit};
+use crate::math::{EPSILON, Vec3, larger, unit};
+use crate::minkowski::support::{Fault, SupportMap};
 use crate::{query::Pair, state::State};
 
 /// What is asked for besides the objects.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
     /// Radius of the ball around obj1, metres, not negative.
-    pub margin1: Real,
+    pub margin1: f64,
     /// Radius of the ball around obj2, metres, not negative.
-    pub margin2: Real,
+    pub margin2: f64,
     /// Distances greater than this need not be refined, metres.
-    pub max_distance: Real,
+    pub max_distance: f64,
     /// The tolerance is the width of the bounds.
     pub settings: Settings,
 }
 
 impl Wanted {
-    fn margin(&self) -> Real {
+    fn margin(&self) -> f64 {
         self.margin1 + self.margin2
     }
 }
@@ -47,9 +47,9 @@ impl Wanted {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
     /// −h(normal), metres: proven, apart and overlapping.
-    pub lower: Real,
+    pub lower: f64,
     /// Proven too, metres.
-    pub upper: Real,
+    pub upper: f64,
     /// Unit, the way obj2 moves to be farther.
     pub normal: Vec3,
     /// On the surface of obj1 with its margin.
@@ -127,7 +127,7 @@ fn deep(hit: &Penetration, wanted: &Wanted) -> Distance {
 }
 
 /// The answer for cores that are this far apart, `touch` being rounding, metres.
-fn apart(cores: &Distance, touch: Real, wanted: &Wanted) -> Distance {
+fn apart(cores: &Distance, touch: f64, wanted: &Wanted) -> Distance {
     let margin = wanted.margin();
     let between = cores.point2 - cores.point1;
     // Points of the surfaces on the line between the cores' points, as far apart as those
@@ -154,7 +154,7 @@ fn apart(cores: &Distance, touch: Real, wanted: &Wanted) -> Distance {
 
 /// Corners nearer to each other than this share of the size, once the ball is off, are one
 /// round part. Insensitive: 0.01 to 0.04 tried on the distances of the recorded contacts.
-const ONE_PART: Real = 0.02;
+const ONE_PART: f64 = 0.02;
 
 /// The distance of the cores, from the state, else from the centres, else from the caller's first
 /// direction, and what of it is rounding, metres. A hit where they overlap, or so nearly that only a
@@ -165,7 +165,7 @@ fn cores<A: SupportMap, B: SupportMap>(
     pair: &Pair<A, B>,
     state: &mut State,
     wanted: &Wanted,
-) -> Result<(Distance, Real), Fault> {
+) -> Result<(Distance, f64), Fault> {
     let mut inquiry = Inquiry::new(&pair.md);
     let mut search = Approach::new(&mut inquiry);
     let margin = wanted.margin();

@@ -17,7 +17,7 @@
 
 use crate::gjk::barycentric;
 use crate::known::support_set::SupportSet;
-use crate::math::{EPSILON, Real, Vec3, normal, perpendicular, unit};
+use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
 
 /// A simplex of points of a set, seen from the origin.
 ///
@@ -45,11 +45,11 @@ struct Face {
     order: [usize; 3],
     len: usize,
     way: Vec3,
-    distance2: Real,
+    distance2: f64,
 }
 
 /// What [`Simplex::add`] returns: the way to the target, and the square of the distance, m².
-pub type Added = (Vec3, Real);
+pub type Added = (Vec3, f64);
 
 impl Simplex {
     /// No point.
@@ -109,7 +109,7 @@ impl Simplex {
     /// the target is inside the tetrahedron, off its three new faces by more than a touch;
     /// its distance from the old one, the base, is not looked at.
     #[inline(always)]
-    pub fn add(&mut self, id: usize, at: Vec3, touch: Real, size2: Real) -> Option<Added> {
+    pub fn add(&mut self, id: usize, at: Vec3, touch: f64, size2: f64) -> Option<Added> {
         let w = self.place();
         self.ids[w] = id;
         self.at[w] = at;
@@ -158,7 +158,7 @@ impl Simplex {
 
     /// As [`Simplex::add`] without a new point; and every face of the simplex counts, not
     /// only those with the newest point.
-    pub fn settle(&mut self, touch: Real) -> (Vec3, Real) {
+    pub fn settle(&mut self, touch: f64) -> (Vec3, f64) {
         let [i, j, k] = self.order;
         let at = self.order.map(|p| self.at[p & 3]);
         let face = match self.len {
@@ -230,7 +230,7 @@ impl Simplex {
 
     /// The nearest point of two; where they hold the target, any way aside.
     #[inline(always)]
-    fn line(&self, i: usize, w: usize, touch: Real) -> Face {
+    fn line(&self, i: usize, w: usize, touch: f64) -> Face {
         let mut face = self.segment(i, w);
         if !(face.distance2 > touch * touch) {
             let along = unit(&(self.at[w & 3] - self.at[i & 3])).unwrap_or(Vec3::x());
@@ -243,7 +243,7 @@ impl Simplex {
     /// the newest point w, or of its edges those with w, which alone can. Given are its outward
     /// normal `n`, and with the corners as vectors j × w and w × i.
     #[inline(always)]
-    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, touch: Real) -> Face {
+    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, touch: f64) -> Face {
         let [i, j, w] = order;
         // The weights of i and j, as multiples of n².
         let (beyond_i, beyond_j) = (!(n.dot(&jw) > 0.0), !(n.dot(&wi) > 0.0));
@@ -282,7 +282,7 @@ impl Simplex {
 
     /// The face nearest to the target; `None` where it is inside.
     #[inline(always)]
-    fn tetrahedron(&self, place: usize, touch: Real, size2: Real) -> Option<Face> {
+    fn tetrahedron(&self, place: usize, touch: f64, size2: f64) -> Option<Face> {
         let [i, j, k] = self.order;
         let [a, b, c, w] = [i, j, k, place].map(|p| &self.at[p & 3]);
         let (wa, wb, wc) = (w.cross(a), w.cross(b), w.cross(c));
@@ -295,7 +295,7 @@ impl Simplex {
         let kept = [i, j, k].map(|p| p == self.inner);
         let inside = kept != [false; 3];
         // NaN is outside.
-        let clear = |height: Real, p: &Vec3, q: &Vec3, opposite: bool| {
+        let clear = |height: f64, p: &Vec3, q: &Vec3, opposite: bool| {
             let slack = if inside && !opposite { -touch } else { touch };
             height > least || height > -least && off(height, p, q, w, slack)
         };
@@ -348,7 +348,7 @@ impl Simplex {
 /// rounding? For heights that [`Simplex::tetrahedron`]'s cheaper bound leaves open; `height` is
 /// the distance times twice the face's area.
 #[cold]
-fn off(height: Real, p: &Vec3, q: &Vec3, w: &Vec3, slack: Real) -> bool {
+fn off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     // The product itself is off by ulps of the corners' lengths, however small the face is.
     let lengths = p.norm() * q.norm() * w.norm();
     let error = if slack > 0.0 {
@@ -365,7 +365,7 @@ pub fn direction(way: &Vec3) -> Option<Vec3> {
     let length2 = way.norm_squared();
     // Squares that are neither rounded to nothing nor beyond numbers.
     // (In single precision those of areas soon are.)
-    let safe = length2 > Real::MIN_POSITIVE / EPSILON && length2 < Real::INFINITY;
+    let safe = length2 > f64::MIN_POSITIVE / EPSILON && length2 < f64::INFINITY;
     if safe && !cfg!(feature = "single") {
         Some(way / length2.sqrt())
     } else {

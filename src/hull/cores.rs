@@ -20,17 +20,17 @@ use crate::hull::portal::Portal;
 use crate::known::points::Points;
 use crate::known::round::{Disc, Seen, TOLD};
 use crate::known::support_set::Lowest;
-use crate::math::{EPSILON, Real, Vec3, normalised, perpendicular};
+use crate::math::{EPSILON, Vec3, normalised, perpendicular};
 
 /// The square of the sine of the angle up to which the moves of a point and of its direction are parallel:
 /// a ball's. Derived: a tenth of what [`TOLD`] leaves of a move.
-const PARALLEL: Real = 0.01 * TOLD * TOLD;
+const PARALLEL: f64 = 0.01 * TOLD * TOLD;
 /// The share of the size within which two vertices of Q are one, and a disc is confirmed by a third point.
 /// Derived: what is left of a disc that two points tell.
-const SAME: Real = if EPSILON > 1e-10 { 1e-3 } else { 1e-6 };
+const SAME: f64 = if EPSILON > 1e-10 { 1e-3 } else { 1e-6 };
 /// The excesses of two points of a disc over each other's planes are alike within this factor, or it is not
 /// looked for. Insensitive: 1.5 and 3 tried, as all below, on the recorded contacts.
-const ALIKE: Real = 2.0;
+const ALIKE: f64 = 2.0;
 /// Smooth pairs with one point of which none is a disc's, after which none is looked for. Measured in
 /// MuJoCo's pile, a hit of an ellipsoid: with 3 it takes 4 % more time, where one is always looked for
 /// 60 % more; the recorded contacts take the same.
@@ -38,19 +38,19 @@ const ENOUGH: u32 = 2;
 /// Steps of Newton's method: mostly two are taken.
 const STEPS: usize = 4;
 /// Radians of a step after which there is none. Derived: the next one is its square.
-const NEAR: Real = 1e-3;
+const NEAR: f64 = 1e-3;
 /// The share of the tolerance that a minimum is to be lower by to be asked for. Insensitive: 0.03 and 0.3.
-const PROMISE: Real = 0.1;
+const PROMISE: f64 = 0.1;
 /// The share of what was foretold that may be missed. Insensitive: 0.05 and 0.5.
-const MISSED: Real = 0.2;
+const MISSED: f64 = 0.2;
 /// A corner beside an edge is looked for along it too, by this share of across. Insensitive: 0.2 and 1.
-const ALONG: Real = 0.5;
+const ALONG: f64 = 0.5;
 
 /// What is round of one object.
 #[derive(Clone, Copy)]
 struct Part {
     /// Metres; 0 where nothing is yet, negative where nothing will be ([`Part::NEITHER`]).
-    radius: Real,
+    radius: f64,
     /// Of a disc, unit; zero of a ball.
     axis: Vec3,
 }
@@ -59,7 +59,7 @@ struct Part {
 pub struct Cores {
     parts: [Part; 2],
     /// The depth that was foretold last, metres.
-    foretold: Real,
+    foretold: f64,
     /// Was it not as deep?
     failed: bool,
     /// The corner that was asked for last.
@@ -84,7 +84,7 @@ pub enum Aim {
 impl Part {
     /// Smooth, and neither a ball nor a disc: an ellipsoid's. Beside the other object's radius it is nothing.
     const NEITHER: Self = Self {
-        radius: -Real::MIN_POSITIVE,
+        radius: -f64::MIN_POSITIVE,
         axis: Vec3::new(0.0, 0.0, 0.0),
     };
 
@@ -125,7 +125,7 @@ impl Cores {
         points: &Points,
         portal: &Portal,
         lowest: &Lowest,
-        (size2, tolerance): (Real, Real),
+        (size2, tolerance): (f64, f64),
         early: bool,
     ) -> Option<Aim> {
         if !self.is_at {
@@ -138,7 +138,7 @@ impl Cores {
         }
         let [r, s] = [self.parts[0].radius, self.parts[1].radius];
         // Of an object that is not round, and has shown another point each time, others are to come.
-        let fresh = |o: usize, radius: Real| !(radius > 0.0) && (early || points.is_new(o));
+        let fresh = |o: usize, radius: f64| !(radius > 0.0) && (early || points.is_new(o));
         // Of two discs the first portal tells little.
         let discs = early && !self.parts.iter().any(Part::is_ball);
         if discs || fresh(0, r) || fresh(1, s) {
@@ -165,8 +165,8 @@ impl Cores {
         points: &Points,
         portal: &Portal,
         lowest: &Lowest,
-        size2: Real,
-        tolerance: Real,
+        size2: f64,
+        tolerance: f64,
     ) -> Option<Option<Vec3>> {
         let Lowest { depth, dir } = lowest;
         let same2 = SAME * SAME * size2;
@@ -189,7 +189,7 @@ impl Cores {
     /// Where the corner farthest below the lowest plane is to be asked for, as far beside that as a point of
     /// a ball of the radius whose tolerance this is, in radii, is half the tolerance below: `tilt2`.
     #[inline(always)]
-    fn beside(&mut self, portal: &Portal, dir: &Vec3, tilt2: Real) -> Option<Vec3> {
+    fn beside(&mut self, portal: &Portal, dir: &Vec3, tilt2: f64) -> Option<Vec3> {
         let [a, b, c] = &portal.points;
         let (mut low, mut p) = (dir.dot(a), a);
         for q in [b, c] {
@@ -220,7 +220,7 @@ impl Cores {
     }
 
     /// What was foretold: has that come true?
-    pub fn learn(&mut self, h: Real, before: Real) {
+    pub fn learn(&mut self, h: f64, before: f64) {
         self.is_at = h - self.foretold <= MISSED * (before - self.foretold);
         self.failed = !self.is_at;
     }
@@ -234,7 +234,7 @@ impl Cores {
     }
 
     /// Looks for a round part that the last point of object `o` shows with those before.
-    fn look(&mut self, points: &Points, o: usize, size2: Real) {
+    fn look(&mut self, points: &Points, o: usize, size2: f64) {
         let last = points.asked() - 1;
         let new = Self::seen(points, o, last);
         let mut smooth = 0_u32;
@@ -293,7 +293,7 @@ impl Cores {
 
     /// R(n); and of its derivative the ball's part, and of each disc the way that it turns and how fast.
     #[inline(always)]
-    fn round(&self, n: &Vec3) -> (Vec3, Real, [(Vec3, Real); 2]) {
+    fn round(&self, n: &Vec3) -> (Vec3, f64, [(Vec3, f64); 2]) {
         let (mut r, mut ball, mut turns) = (Vec3::zeros(), 0.0, [(Vec3::zeros(), 0.0); 2]);
         for (part, turn) in self.parts.iter().zip(&mut turns) {
             let Part { radius, axis } = part;
@@ -320,7 +320,7 @@ impl Cores {
 
     /// The minimum of the depth of three vertices of Q, near the unit direction `dir`; and the edge that
     /// it is about, unit, if it is about one, else zero.
-    fn minimum(&self, [a, b, c]: &[Vec3; 3], dir: &Vec3, same2: Real) -> Option<(Vec3, Vec3)> {
+    fn minimum(&self, [a, b, c]: &[Vec3; 3], dir: &Vec3, same2: f64) -> Option<(Vec3, Vec3)> {
         let (x, y) = (b - a, c - a);
         let (x2, y2) = (x.norm_squared(), y.norm_squared());
         let (edge, other, e2) = if x2 > y2 { (x, y, x2) } else { (y, x, y2) };

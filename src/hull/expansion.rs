@@ -50,19 +50,19 @@ use crate::gjk::barycentric;
 use crate::hull::plane::Plane;
 use crate::hull::polytope::{Polytope, Top};
 use crate::known::precision::Precision;
-use crate::known::support::SupportMap;
 use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, lesser, normalised, unit, wide};
+use crate::math::{Vec3, larger, lesser, normalised, unit};
+use crate::minkowski::support::SupportMap;
 
 // Measured: support points of MPR and the minimum in the mean of sixteen pair sets and the
 // recorded contacts (`cargo bench -p charts -- record`), when one number changes alone.
 
 /// A point above a face by less than this share of the tolerance counts as on it. Measured:
 /// from 0.005 to 0.05 no set changes by 0.3 %; the planes' error stays below it.
-const LEVEL: Real = 0.02;
+const LEVEL: f64 = 0.02;
 /// Tolerances below this share of the size are finer than interpolated planes: derived from
 /// their error, 20 ulps a point, at 160 points; planes are double whatever points are.
-const EXACT: Real = 2e4 * f64::EPSILON as Real;
+const EXACT: f64 = 2e4 * f64::EPSILON as f64;
 /// Points before means of normals are asked: fewer make no neighbourhood. Measured: 6 costs
 /// boxes 6 %, 14 costs spheres 8 %.
 const FEW: usize = 10;
@@ -70,18 +70,18 @@ const FEW: usize = 10;
 const MANY: usize = 16;
 /// Relative difference of e and e′ up to which a pair is of one ball. Measured: 0.001 and 0.01
 /// change the mean by 0.3 % at most, 0.03 costs 0.6 %.
-const ALIKE: Real = 0.003;
+const ALIKE: f64 = 0.003;
 /// The share of the allowed gap that the ball must promise. Measured: 0.3 costs shallow
 /// ellipsoids 3 %, 0.6 costs them 5 %.
-const PROMISE: Real = 0.1;
+const PROMISE: f64 = 0.1;
 /// The share of a promise that may be missed before the ball is distrusted. Measured: 0.1 to
 /// 0.5 change no set by 0.2 %.
-const MISSED: Real = 0.2;
+const MISSED: f64 = 0.2;
 /// Steps of distrust for each failure. Measured: 2 to 8 change no set by more than 1.1 %.
 const PAUSE: i32 = 4;
 /// The tilt across an edge, as the depth's share of its length. Measured: 2 to 8 take up to
 /// 0.7 % more; without it motions take 3 %, hulls in motion 5 % more.
-const ASIDE: Real = 4.0;
+const ASIDE: f64 = 4.0;
 /// Every so many steps the plain normal is asked. Insensitive: 16 to 64 tried on the recorded
 /// contacts.
 const LOWER: u64 = 32;
@@ -90,7 +90,7 @@ const LOWER: u64 = 32;
 const CIRCLES: u32 = 24;
 /// |n′ − n|² within which two samples tell of one ball: below it rounding speaks, above it
 /// other parts of D do.
-const NEIGHBOURS: core::ops::Range<Real> = if cfg!(feature = "single") {
+const NEIGHBOURS: core::ops::Range<f64> = if cfg!(feature = "single") {
     1e-4..0.5
 } else {
     1e-8..0.5
@@ -100,10 +100,10 @@ const NEIGHBOURS: core::ops::Range<Real> = if cfg!(feature = "single") {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Limits {
     /// Largest gap between the bounds, metres, as asked for.
-    pub tolerance: Real,
+    pub tolerance: f64,
     /// The same as a share of the depth, for a search of [`MANY`] points: there the larger of the two
     /// counts.
-    pub gap: Real,
+    pub gap: f64,
     /// Cap on the support points of the query, once the origin is inside the polytope.
     pub supports: u64,
     /// Cap on those after the first tetrahedron, likewise.
@@ -135,25 +135,25 @@ pub struct Progress {
     /// The key of the nearest face, and for how many steps on end it has not changed.
     same: (f64, u32),
     /// The least depth met, metres, as far as the target knows.
-    upper: Real,
+    upper: f64,
     /// What planes may be off by for the target, metres; at most half of `allowed`.
-    error: Real,
+    error: f64,
     /// Are there [`MANY`] points? From then on [`Limits::gap`] counts too.
     coarse: bool,
     /// A nearest face with this key or a greater one proves the upper bound.
     target: f64,
     /// The tolerance in force, metres: [`Limits::tolerance`] within what the sizes allow.
-    pub tolerance: Real,
+    pub tolerance: f64,
     /// The gap between the bounds that is allowed, metres: `tolerance`, or more if `coarse`.
-    allowed: Real,
+    allowed: f64,
     /// While the origin is outside, a point is above a face by more than this, metres.
-    rounding: Real,
+    rounding: f64,
     /// Its square: a face with a key beyond has the origin inside for certain.
     rounding2: f64,
     /// Once the origin is inside, a point is above a face by more than this, metres.
-    level: Real,
+    level: f64,
     /// The square of the size that tolerance, rounding and level belong to.
-    size2: Real,
+    size2: f64,
     /// No mean of normals is asked in so many steps.
     plain: i32,
     /// How many means were asked in vain.
@@ -171,7 +171,7 @@ pub struct Progress {
 #[derive(Default)]
 struct Core {
     /// Its radius, metres; 0 while none is known.
-    radius: Real,
+    radius: f64,
     /// It is not asked in so many steps.
     pause: i32,
     /// How many promises were not kept.
@@ -179,9 +179,9 @@ struct Core {
     /// The key of the face it was asked for last: it is not asked twice.
     key: f64,
     /// The support value promised then, metres.
-    foretold: Real,
+    foretold: f64,
     /// The upper bound then, metres.
-    before: Real,
+    before: f64,
 }
 
 /// What a direction was chosen by.
@@ -219,9 +219,9 @@ impl Progress {
         self.size2 = precision.size2();
         self.tolerance = precision.tolerance(self.limits.tolerance);
         self.rounding = rounding(precision);
-        self.rounding2 = wide(self.rounding * self.rounding);
+        self.rounding2 = self.rounding * self.rounding;
         self.level = self.rounding + LEVEL * self.tolerance;
-        self.upper = Real::INFINITY;
+        self.upper = f64::INFINITY;
     }
 
     /// Sizes and bounds as they are now.
@@ -244,7 +244,7 @@ impl Progress {
     }
 
     /// The target for planes that are off by up to `error`, metres, or a tenth more later.
-    fn aim_at(&mut self, error: Real) {
+    fn aim_at(&mut self, error: f64) {
         // A share of the least depth, not of this one.
         let gap = self.limits.gap / (1.0 + self.limits.gap);
         self.allowed = if self.coarse {
@@ -253,14 +253,14 @@ impl Progress {
             self.tolerance
         };
         self.error = lesser(1.1 * error, 0.5 * self.allowed);
-        let target = wide(self.upper - self.allowed + self.error);
+        let target = self.upper - self.allowed + self.error;
         self.target = target * target.abs();
     }
 
     /// The nearest face has come to the target: is that still so with the error that planes
     /// have by now? Else the target is moved outwards. And are all faces there for certain?
     #[inline(always)]
-    fn proven<const F: usize>(&mut self, hull: &mut Polytope<F>, grain: Real) -> bool {
+    fn proven<const F: usize>(&mut self, hull: &mut Polytope<F>, grain: f64) -> bool {
         let error = hull.error() + hull.untold(self.upper) + grain;
         let good = !(error > self.error) || 0.5 * self.allowed <= self.error;
         if !good {
@@ -286,7 +286,7 @@ impl Progress {
         set: &SupportSet<P>,
         hull: &mut Polytope<F>,
         face: usize,
-        level: Real,
+        level: f64,
     ) -> Option<bool> {
         let mut left = self.spare;
         while left != 0 {
@@ -317,7 +317,7 @@ impl Progress {
 
     /// A point is above a face by more than this, metres.
     #[inline(always)]
-    fn level(&self, inside: bool) -> Real {
+    fn level(&self, inside: bool) -> f64 {
         if inside { self.level } else { self.rounding }
     }
 
@@ -329,7 +329,7 @@ impl Progress {
 
     /// A direction that was chosen so has this support value.
     #[inline(always)]
-    fn step(&mut self, aim: Aim, h: Real) {
+    fn step(&mut self, aim: Aim, h: f64) {
         self.iterations += 1;
         self.plain -= 1;
         self.core.pause -= 1;
@@ -353,18 +353,18 @@ impl Progress {
     #[cold]
     fn coarsen(&mut self) {
         self.coarse = true;
-        self.upper = Real::INFINITY;
+        self.upper = f64::INFINITY;
     }
 }
 
 /// A point above a face by no more than this, metres, is on it: products round, and the
 /// points of both are uncertain.
-fn rounding(precision: &Precision) -> Real {
+fn rounding(precision: &Precision) -> f64 {
     precision.rounding() + 2.0 * precision.grain()
 }
 
 /// Is this tolerance finer than what interpolated planes are good for?
-pub fn exact(tolerance: Real, precision: &Precision) -> bool {
+pub fn exact(tolerance: f64, precision: &Precision) -> bool {
     !(tolerance > EXACT * precision.size() && tolerance > 64.0 * precision.grain())
 }
 
@@ -521,8 +521,8 @@ impl Core {
         set: &SupportSet<P>,
         hull: &Polytope<F>,
         top: &Top,
-        upper: Real,
-        allowed: Real,
+        upper: f64,
+        allowed: f64,
     ) -> Option<Vec3> {
         let names = hull.corners(top.face);
         let [a, b, c] = names.map(|i| set.v(i) - set.direction(i) * self.radius);
@@ -553,7 +553,7 @@ impl Core {
 
     /// Was the promise kept?
     #[inline(always)]
-    fn learn(&mut self, aim: Aim, h: Real) {
+    fn learn(&mut self, aim: Aim, h: f64) {
         if aim == Aim::Core && h > self.foretold + MISSED * (self.before - self.foretold) {
             self.failures += 1;
             self.pause = PAUSE * self.failures;
@@ -568,7 +568,7 @@ impl Core {
         set: &SupportSet<P>,
         corners: &[usize; 3],
         new: [&Vec3; 2],
-        least: Real,
+        least: f64,
     ) {
         // The newest corner is the last; the first one is mostly the oldest and far away.
         for &i in corners.iter().rev().take(2) {
@@ -580,7 +580,7 @@ impl Core {
 
     /// The radius that two samples tell: are they of one ball?
     #[inline(always)]
-    fn pair(&mut self, [n, s]: [&Vec3; 2], [n_, s_]: [&Vec3; 2], least: Real) -> bool {
+    fn pair(&mut self, [n, s]: [&Vec3; 2], [n_, s_]: [&Vec3; 2], least: f64) -> bool {
         let turn2 = 2.0 - 2.0 * n.dot(n_);
         if !NEIGHBOURS.contains(&turn2) {
             return false;

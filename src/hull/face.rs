@@ -18,9 +18,9 @@ use crate::contact::Penetration;
 use crate::hull::global::mixed;
 use crate::hull::portal::View;
 use crate::hull::shallow::{LEVEL, STEPS, Sizes, Try};
-use crate::known::support::{Known, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop};
-use crate::math::{Real, Vec3, larger, normalised};
+use crate::math::{Vec3, larger, normalised};
+use crate::minkowski::support::{Known, SupportMap, SupportPoint};
 
 /// Questions along normals. Measured on the recorded contacts: with 1 hits take 5 % more
 /// instructions, with 2 1 %.
@@ -37,7 +37,7 @@ impl Try {
         &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
         last: &Vec3,
-        tolerance: Real,
+        tolerance: f64,
     ) -> Result<bool, Stop> {
         let sizes = Sizes::of(&inquiry.precision, tolerance);
         self.look_back(inquiry);

@@ -26,9 +26,9 @@ use crate::hull::polytope::Polytope;
 use crate::hull::shallow::{Handed, Try};
 use crate::hull::start;
 use crate::known::mark;
-use crate::known::support::{Fault, SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet, beside};
-use crate::math::{Real, Vec3, larger, unit};
+use crate::math::{Vec3, larger, unit};
+use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
 
 /// Points and faces of the first room, 5 KB (double): enough for shallow contacts and most polytopes.
 ///
@@ -43,12 +43,12 @@ const LENT: (usize, usize) = (376, 760);
 /// Grains more than the tolerance that proven bounds may be apart, where rounding ended the search.
 /// Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
 /// much by which the face found there is nearer than the nearest.
-const ROUNDED: Real = 32.0;
+const ROUNDED: f64 = 32.0;
 /// Points beyond the answer's plane that are asked about, at most. Insensitive: mostly there is one.
 const DOUBTS: usize = 4;
 /// The share of the centres' distance that the first depth of a shallow contact is, at most. Measured: 0.5
 /// changes no recorded contact by 0.1 %, and leaves deep pairs alone.
-const FAR: Real = 0.5;
+const FAR: f64 = 0.5;
 /// Places in the first room that are kept free for the start's own points.
 const START: usize = 9;
 
@@ -362,7 +362,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             let set = &start.set;
             // Nothing is known but the upper bound.
             let Lowest { depth, dir } = self.inquiry.lowest;
-            let lowest = set.farther(&dir, Real::NEG_INFINITY).unwrap_or(1);
+            let lowest = set.farther(&dir, f64::NEG_INFINITY).unwrap_or(1);
             self.put(depth, 0.0, set.witnesses(lowest), [0.0; 2], 0);
             false
         }))
@@ -370,7 +370,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
 
     /// The answer of a proof without a hull.
     #[inline(always)]
-    fn conclude_at_once(&mut self, known: &Try, centre: &SupportPoint, lower: Real) {
+    fn conclude_at_once(&mut self, known: &Try, centre: &SupportPoint, lower: f64) {
         let (Some(portal), Some((names, weights))) = (&known.portal, known.exit) else {
             return;
         };
@@ -403,10 +403,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     #[inline(always)]
     fn put(
         &mut self,
-        depth: Real,
-        lower: Real,
+        depth: f64,
+        lower: f64,
         [point1, point2]: [Vec3; 2],
-        extent: [Real; 2],
+        extent: [f64; 2],
         iterations: u64,
     ) {
         let dir = self.inquiry.lowest.dir;
@@ -558,8 +558,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         &mut self,
         set: &SupportSet<P>,
         dir: &Vec3,
-        depth: Real,
-    ) -> Result<Real, Fault> {
+        depth: f64,
+    ) -> Result<f64, Fault> {
         let beyond = depth + self.inquiry.precision.tie();
         let mut doubted = [0; DOUBTS];
         for place in 0..DOUBTS {
@@ -600,7 +600,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let top = hull.nearest();
         // The point that was asked for along dir; or a farther one, where a callback
         // contradicts itself.
-        let lowest = set.farther(&dir, Real::NEG_INFINITY).unwrap_or(1);
+        let lowest = set.farther(&dir, f64::NEG_INFINITY).unwrap_or(1);
         if dir.dot(&set.v(lowest)) > depth + self.inquiry.precision.tie() {
             depth = self.confirmed(set, &dir, depth)?;
         }
@@ -669,7 +669,7 @@ fn mark_rest(
 
 /// The objects' points where these corners of a face have these weights.
 #[inline(always)]
-pub fn mixed(weights: &[Real; 3], corners: [[Vec3; 2]; 3]) -> [Vec3; 2] {
+pub fn mixed(weights: &[f64; 3], corners: [[Vec3; 2]; 3]) -> [Vec3; 2] {
     let [a, b, c] = &corners;
     let point1 = barycentric::mix(weights, [&a[0], &b[0], &c[0]]);
     let point2 = barycentric::mix(weights, [&a[1], &b[1], &c[1]]);
@@ -687,8 +687,8 @@ fn exit_face<const P: usize, const F: usize>(
     hull: &Polytope<F>,
     top: usize,
     dir: &Vec3,
-    depth: Real,
-    tolerance: Real,
+    depth: f64,
+    tolerance: f64,
 ) -> (usize, barycentric::Nearest<3>) {
     let foot = dir * depth;
     let nearest = |f: usize| {
@@ -714,7 +714,7 @@ fn exit_face<const P: usize, const F: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::known::support::MinkowskiDifference;
+    use crate::minkowski::support::MinkowskiDifference;
     use crate::shapes::{Random, capsule};
 
     struct Heap(Option<Box<Room>>);
@@ -866,7 +866,7 @@ mod tests {
         let mut bad = 0;
         for round in 0..20000 {
             let rb = r.rotation();
-            let (rad, h): (Real, Real) = (0.7046, 0.583);
+            let (rad, h): (f64, f64) = (0.7046, 0.583);
             let pb = r.vector(0.3);
             let b = move |n: &Vec3| {
                 let d: Vec3 = rb.inverse() * n;

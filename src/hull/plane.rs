@@ -7,7 +7,7 @@
 //! lanes are taken apart last: plain expressions make the compiler pair other lanes and
 //! write planes in small pieces (10 to 17 % more instructions for a whole query).
 
-use crate::math::{Vec3, Wide3, wide3};
+use crate::math::Vec3;
 
 /// Two numbers side by side.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ pub struct Plane(Lanes, Lanes);
 impl Plane {
     /// The plane with this normal, N·x = d.
     #[inline(always)]
-    pub fn new(n: &Wide3, d: f64) -> Self {
+    pub fn new(n: &Vec3, d: f64) -> Self {
         Self(Lanes([n.x, n.y]), Lanes([n.z, d]))
     }
 
@@ -50,7 +50,7 @@ impl Plane {
     #[inline(always)]
     pub fn point(p: &Vec3) -> Self {
         // Were the −1 known, its product would leave the lanes.
-        Self::new(&wide3(p), core::hint::black_box(-1.0))
+        Self::new(p, core::hint::black_box(-1.0))
     }
 
     /// From the four numbers N, d.
@@ -67,8 +67,8 @@ impl Plane {
 
     /// N.
     #[inline(always)]
-    pub fn normal(&self) -> Wide3 {
-        Wide3::new(self.0.0[0], self.0.0[1], self.1.0[0])
+    pub fn normal(&self) -> Vec3 {
+        Vec3::new(self.0.0[0], self.0.0[1], self.1.0[0])
     }
 
     /// d.
@@ -130,8 +130,8 @@ mod tests {
 
     #[test]
     fn heights_distances_and_mixtures() {
-        let x = Plane::new(&(Wide3::x() * 2.0), 6.0);
-        let y = Plane::new(&Wide3::y(), -1.0);
+        let x = Plane::new(&(Vec3::x() * 2.0), 6.0);
+        let y = Plane::new(&Vec3::y(), -1.0);
         assert_eq!(x.height(&Plane::point(&Vec3::new(4.0, 9.0, 9.0))), 2.0);
         assert_eq!(x.signed_square(), (9.0, 4.0));
         assert_eq!(y.signed_square(), (-1.0, 1.0));

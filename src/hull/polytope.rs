@@ -64,7 +64,7 @@
 //! counter-clockwise seen from outside. Faces outside use have the key +∞ and are chained.
 
 use crate::hull::plane::Plane;
-use crate::math::{Real, Vec3, Wide3, larger, lesser, narrow3, wide, wide3};
+use crate::math::{Vec3, larger, lesser};
 
 /// No half-edge: the bottom of the stack of half-edges in [`Polytope::fan`]'s walk.
 const BOTTOM: u16 = u16::MAX;
@@ -118,7 +118,7 @@ pub struct Polytope<const F: usize> {
     next: [u16; F],
     free: usize,
     used: usize,
-    inner: Wide3,
+    inner: Vec3,
     /// What every plane has z below it by, at least, in units of its |N|, metres.
     margin: f64,
     error: f64,
@@ -149,7 +149,7 @@ impl<const F: usize> Polytope<F> {
         next: [0; F],
         free: 0,
         used: 0,
-        inner: Wide3::new(0.0, 0.0, 0.0),
+        inner: Vec3::new(0.0, 0.0, 0.0),
         margin: 0.0,
         error: 0.0,
         collapsed: 0.0,
@@ -159,9 +159,9 @@ impl<const F: usize> Polytope<F> {
     /// The same, for points of about this size, metres. A number between two arrays has a small
     /// hull's zeroed one by one: all at once, of 2 KB and more, they are byte by byte.
     #[inline(always)]
-    pub fn blank(size: Real) -> Self {
+    pub fn blank(size: f64) -> Self {
         Self {
-            ulp: f64::EPSILON * wide(size),
+            ulp: f64::EPSILON * size,
             ..Self::BLANK
         }
     }
@@ -216,37 +216,37 @@ impl<const F: usize> Polytope<F> {
     /// N of a face, outward, no longer than 1 by more than rounding.
     #[inline(always)]
     pub fn normal(&self, f: usize) -> Vec3 {
-        narrow3(&self.plane(f).normal())
+        self.plane(f).normal()
     }
 
     /// d of a face, for its [`Polytope::normal`].
     #[inline(always)]
-    pub fn offset(&self, f: usize) -> Real {
-        self.plane(f).offset() as Real
+    pub fn offset(&self, f: usize) -> f64 {
+        self.plane(f).offset() as f64
     }
 
     /// N·p − d of a face, for a [`Plane::point`].
     #[inline(always)]
-    pub fn height(&self, f: usize, p: &Plane) -> Real {
-        self.plane(f).height(p) as Real
+    pub fn height(&self, f: usize, p: &Plane) -> f64 {
+        self.plane(f).height(p) as f64
     }
 
     /// The distance of a face's plane from the origin, metres, negative where it is
     /// outside, less what rounding may have added.
-    pub fn distance(&self, f: usize) -> Real {
+    pub fn distance(&self, f: usize) -> f64 {
         let plane = self.plane(f);
-        (plane.offset() / plane.normal().norm() - self.error) as Real
+        (plane.offset() / plane.normal().norm() - self.error) as f64
     }
 
     /// What the distance of a plane may be off by, metres.
     #[inline(always)]
-    pub fn error(&self) -> Real {
-        self.error as Real
+    pub fn error(&self) -> f64 {
+        self.error as f64
     }
 
     /// The points have turned out to be as large as this, metres.
-    pub fn grow(&mut self, size: Real) {
-        let ulp = f64::EPSILON * wide(size);
+    pub fn grow(&mut self, size: f64) {
+        let ulp = f64::EPSILON * size;
         if ulp > self.ulp {
             self.error *= ulp / self.ulp;
             self.ulp = ulp;
@@ -281,11 +281,11 @@ impl<const F: usize> Polytope<F> {
         &mut self,
         names: [usize; 4],
         [o, a, b, c]: [Vec3; 4],
-        size: Real,
+        size: f64,
         exact: bool,
     ) -> bool {
-        let (o, mut a, mut b, c) = (wide3(&o), wide3(&a), wide3(&b), wide3(&c));
-        self.ulp = f64::EPSILON * wide(size);
+        let (o, mut a, mut b, c) = (o, a, b, c);
+        self.ulp = f64::EPSILON * size;
         let flat2 = FLAT * FLAT * self.ulp * self.ulp;
         let (e, f, g) = (a - o, b - o, c - o);
         let n = e.cross(&f);
@@ -351,19 +351,19 @@ impl<const F: usize> Polytope<F> {
     /// What a face this far away, not behind the origin, may be farther away than the nearest,
     /// metres, because keys did not tell them apart.
     #[inline(always)]
-    pub fn untold(&self, distance: Real) -> Real {
-        self.untold as Real * distance
+    pub fn untold(&self, distance: f64) -> f64 {
+        self.untold as f64 * distance
     }
 
     /// What is proven of the distance from the origin to all faces, metres.
-    pub fn bound(&self, top: &Top) -> Real {
+    pub fn bound(&self, top: &Top) -> f64 {
         if self.untold > 0.0 {
             let near = self.distance(top.face);
             return near - self.untold(near);
         }
         let most = top.key + 4.0 * UNTOLD * top.key.abs();
         let tied = (0..self.used.min(F)).filter(|&f| self.keys[f] <= most);
-        tied.fold(Real::INFINITY, |least, f| lesser(self.distance(f), least))
+        tied.fold(f64::INFINITY, |least, f| lesser(self.distance(f), least))
     }
 
     /// Takes all faces out of use.
@@ -443,10 +443,10 @@ impl<const F: usize> Polytope<F> {
         first: usize,
         name: usize,
         p: &Vec3,
-        rounding: Real,
+        rounding: f64,
         corner: &impl Fn(usize) -> Vec3,
     ) -> bool {
-        let mut above = wide(rounding);
+        let mut above = rounding;
         // Ends: `first` alone is a disc.
         loop {
             match self.fan(first, name, p, above, corner) {
@@ -655,7 +655,7 @@ impl<const F: usize> Polytope<F> {
         sided: bool,
         corner: &impl Fn(usize) -> Vec3,
     ) -> Option<(Plane, f64)> {
-        let [a, b, p] = self.corners(f).map(|i| wide3(&corner(i)));
+        let [a, b, p] = self.corners(f).map(corner);
         // Of a sliver's two long edges the product is mostly rounding: a short edge is one.
         let n = crate::math::normal(&p, &a, &b);
         let long = larger((a - p).norm_squared(), (b - p).norm_squared());
@@ -702,7 +702,7 @@ impl<const F: usize> Polytope<F> {
             }
         }
         let sum = second.map_or(first, |second| first.plus(&second.scaled(0.5)));
-        narrow3(&sum.normal())
+        sum.normal()
     }
 }
 
@@ -721,7 +721,7 @@ mod tests {
     const F: usize = 1024;
     const EPSILON: f64 = f64::EPSILON;
     /// A point is above a unit polytope by more than this.
-    const LEVEL: Real = 8.0 * EPSILON as Real;
+    const LEVEL: f64 = 8.0 * EPSILON as f64;
 
     /// What must hold of every polytope, whatever went in: a closed surface, all planes at
     /// or below their corners and above the inner point.
@@ -753,9 +753,9 @@ mod tests {
     fn farthest_below<const F: usize>(
         hull: &Polytope<F>,
         p: &Plane,
-        rounding: Real,
+        rounding: f64,
     ) -> Option<usize> {
-        let mut best = (None, wide(rounding));
+        let mut best = (None, rounding);
         for f in hull.faces() {
             let height = hull.plane(f).height(p);
             if height > best.1 {
@@ -768,7 +768,7 @@ mod tests {
     /// The hull of the points in their order; the first four are the tetrahedron.
     fn grown(points: &[Vec3], exact: bool) -> Option<Box<Polytope<F>>> {
         let mut hull = Box::new(Polytope::<F>::BLANK);
-        let size = points.iter().fold(0.0, |m: Real, p| m.max(p.norm()));
+        let size = points.iter().fold(0.0, |m: f64, p| m.max(p.norm()));
         let rounding = LEVEL * size;
         let first = [0, 1, 2, 3].map(|i| points[i]);
         if !hull.tetrahedron([0, 1, 2, 3], first, size, exact) {
@@ -787,7 +787,7 @@ mod tests {
     /// The distance from the origin to the boundary of the hull, negative outside: over
     /// all planes through three points that have all others on one side.
     fn exact_distance(points: &[Vec3]) -> f64 {
-        let points: Vec<_> = points.iter().map(wide3).collect();
+        let points: Vec<_> = points.to_vec();
         let mut least = f64::INFINITY;
         for (i, a) in points.iter().enumerate() {
             for (j, b) in points.iter().enumerate().skip(i + 1) {
@@ -876,7 +876,7 @@ mod tests {
             for round in 0..20 {
                 let mut points = r.points(120, 1.0);
                 for p in &mut points {
-                    p.z *= thin as Real;
+                    p.z *= thin as f64;
                 }
                 grown(&points, round % 2 == 0);
             }
@@ -926,8 +926,8 @@ mod tests {
             x,
             y * 0.5,
             x + y,
-            Vec3::z() * EPSILON as Real,
-            Vec3::repeat(Real::NAN),
+            Vec3::z() * EPSILON as f64,
+            Vec3::repeat(f64::NAN),
         ] {
             assert!(!hull.tetrahedron([0, 1, 2, 3], [o, x, y, d], 1.0, false));
         }

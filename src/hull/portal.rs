@@ -19,19 +19,19 @@ use crate::gjk::barycentric;
 use crate::hull::start;
 use crate::known::points::Points;
 use crate::known::support_set::Lowest;
-use crate::math::{EPSILON, Real, Vec3, larger, perpendicular, replace_if};
+use crate::math::{EPSILON, Vec3, larger, perpendicular, replace_if};
 
 /// Steps of a portal that is looked for. Insensitive: 5 to 16 tried on the recorded contacts.
 const FOUND: usize = 8;
 /// The share of a distance that a point must leave, or it is no nearer: a guard against rounding.
 /// Insensitive: 0.999 and 0.9999 tried.
-const NEARER: Real = 0.999;
+const NEARER: f64 = 0.999;
 /// Faces beyond each other on one side of the portal, at most. Insensitive: 2 to 8 tried, within 0.5 % of
 /// the instructions.
 const DEEP: usize = 4;
 /// The share of the size up to which a depth is shallow. Measured on a first version: deep pairs took
 /// a quarter more time where these were tried too.
-const SHALLOW: Real = 0.05;
+const SHALLOW: f64 = 0.05;
 
 /// A triangle of points of P, counter-clockwise as seen from outside.
 #[derive(Clone, Copy)]
@@ -74,11 +74,11 @@ pub struct View {
     a: Seen,
     /// Another corner, and what the two span; the ray passes beyond the edge between them, or
     /// through it.
-    b: Option<(Seen, Real)>,
+    b: Option<(Seen, f64)>,
     /// Across the ray, from the corner or the edge towards it; of any length.
     pub way: Vec3,
     /// How far along it corner or edge are: not positive.
-    from: Real,
+    from: f64,
 }
 
 impl View {
@@ -125,14 +125,14 @@ impl View {
     /// Is the point on the ray, or so near to it that the minimum of a ball around the apex is no lower?
     /// `far`: |c|.
     #[inline(always)]
-    pub fn is_at(&self, tolerance: Real, far: Real) -> bool {
+    pub fn is_at(&self, tolerance: f64, far: f64) -> bool {
         -self.from <= 0.5 * tolerance * far * far * far
     }
 
     /// The way that the lowest direction is to be tilted by, as [`start::tilt`] has it, and
     /// whether there is any. `far`: |c|; `length`: from there to where the ray leaves D, about.
     #[inline(always)]
-    pub fn tilt(&self, depth: Real, far: Real, length: Real, vain: usize) -> Option<Vec3> {
+    pub fn tilt(&self, depth: f64, far: f64, length: f64, vain: usize) -> Option<Vec3> {
         let way2 = self.way.norm_squared();
         let span = if self.b.is_some() { 1.0 / far } else { 0.0 };
         let tilt = start::tilt(depth, -self.from, -self.from / way2, span, length);
@@ -168,7 +168,7 @@ impl View {
             return Step::On;
         };
         // Of the same sign as the edge's, if the ray is this side of the new edges.
-        let sign = (1.0 as Real).copysign(ab);
+        let sign = (1.0 as f64).copysign(ab);
         let (bp, pa) = (b.across.dot(p), -self.a.across.dot(p));
         if sign * bp < 0.0 {
             self.a = Seen::of(names, *p, c);
@@ -193,8 +193,8 @@ impl View {
 
     /// The edge leads from `a` to this corner now, and the two span so much.
     #[inline(always)]
-    fn turn(&mut self, b: Seen, ab: Real) {
-        let sign = (1.0 as Real).copysign(ab);
+    fn turn(&mut self, b: Seen, ab: f64) {
+        let sign = (1.0 as f64).copysign(ab);
         self.way = (b.across - self.a.across) * sign;
         self.from = -ab.abs();
         self.b = Some((b, ab));
@@ -219,7 +219,7 @@ impl Portal {
     /// Does the ray from c through the origin pass it, and has the tetrahedron with c a volume? `tiny`: what
     /// three products of lengths round by.
     #[inline(always)]
-    pub fn is_pierced(&self, c: &Vec3, tiny: Real) -> bool {
+    pub fn is_pierced(&self, c: &Vec3, tiny: f64) -> bool {
         let [u, v, w] = &self.points;
         let m = w.cross(c);
         let (x, y, z) = (c.dot(&u.cross(v)), m.dot(v), -m.dot(u));
@@ -251,7 +251,7 @@ impl Portal {
     /// Moves it outwards in P: to the point farthest along its normal, if that is above it by more than
     /// `level`, metres.
     #[inline(always)]
-    pub fn advance(&mut self, points: &Points, plane: &Plane, c: &Vec3, level: Real) -> bool {
+    pub fn advance(&mut self, points: &Points, plane: &Plane, c: &Vec3, level: f64) -> bool {
         let names = points.extreme(&plane.n);
         let p = points.point(names);
         let gain = plane.n.dot(&(p - self.points[2]));
@@ -285,7 +285,7 @@ impl Portal {
     /// Is the ball of this radius, metres, inside, if the portal's plane reaches so far? Else the normal of
     /// the plane that leans out as far as may be on a side where it is not.
     #[inline(always)]
-    pub fn open_side(&self, points: &Points, c: &Vec3, least: Real, tiny: Real) -> Option<Vec3> {
+    pub fn open_side(&self, points: &Points, c: &Vec3, least: f64, tiny: f64) -> Option<Vec3> {
         let [u, v, w] = &self.points;
         let inner = Inner {
             c,
@@ -308,9 +308,9 @@ impl Portal {
         &self,
         plane: &Plane,
         lowest: &Lowest,
-        least: Real,
-        tolerance: Real,
-    ) -> Option<[Real; 3]> {
+        least: f64,
+        tolerance: f64,
+    ) -> Option<[f64; 3]> {
         let [u, v, w] = &self.points;
         let Lowest { depth, dir } = lowest;
         let Plane { n, n2, d } = *plane;
@@ -340,9 +340,9 @@ pub struct Plane {
     /// Its normal, outwards, twice as long as the portal's area.
     pub n: Vec3,
     /// The square of that length.
-    n2: Real,
+    n2: f64,
     /// The plane's distance from the origin, times that length.
-    d: Real,
+    d: f64,
 }
 
 impl Plane {
@@ -350,20 +350,20 @@ impl Plane {
     /// products of lengths round by. The normal of a small triangle is off by as much as its corners
     /// are, and that tells far from it.
     #[inline(always)]
-    pub fn reaches(&self, least: Real, tiny: Real) -> bool {
+    pub fn reaches(&self, least: f64, tiny: f64) -> bool {
         let d = self.d - tiny;
         d > 0.0 && d * d >= least * least * self.n2
     }
 
     /// How far a point is above it, metres.
     #[inline(always)]
-    pub fn above(&self, p: &Vec3) -> Real {
+    pub fn above(&self, p: &Vec3) -> f64 {
         (self.n.dot(p) - self.d) / self.n2.sqrt()
     }
 
     /// Is it too far from the origin for a shallow contact?
     #[inline(always)]
-    pub fn is_deep(&self, size2: Real) -> bool {
+    pub fn is_deep(&self, size2: f64) -> bool {
         self.d > 0.0 && self.d * self.d > SHALLOW * SHALLOW * size2 * self.n2
     }
 }
@@ -371,9 +371,9 @@ impl Plane {
 /// The ball that is to be in the surface.
 struct Inner<'c> {
     c: &'c Vec3,
-    least2: Real,
+    least2: f64,
     /// What three products of lengths round by.
-    tiny: Real,
+    tiny: f64,
 }
 
 impl Inner<'_> {
@@ -426,7 +426,7 @@ mod tests {
     use crate::math::EPSILON;
     use crate::shapes::Random;
 
-    const TOLERANCE: Real = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
+    const TOLERANCE: f64 = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
 
     /// The ray passes the portal, and nothing of P is above it.
     #[test]

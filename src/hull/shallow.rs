@@ -21,13 +21,13 @@ use crate::hull::portal::{Plane, Portal, Step, View};
 use crate::hull::start::{self, Ball, Sample};
 use crate::known::points::Points;
 use crate::known::precision::Precision;
-use crate::known::support::{SupportMap, SupportPoint};
 use crate::known::support_set::{Inquiry, Lowest, Stop, SupportSet};
-use crate::math::{EPSILON, Real, Vec3, as_unit, larger, normalised, replace_if};
+use crate::math::{EPSILON, Vec3, as_unit, larger, normalised, replace_if};
+use crate::minkowski::support::{SupportMap, SupportPoint};
 
 /// A portal is where it belongs within this share of the tolerance. Insensitive: 0.02 to 0.2 tried, within
 /// 1 % of the instructions.
-pub(super) const LEVEL: Real = 0.05;
+pub(super) const LEVEL: f64 = 0.05;
 /// Steps of a portal between two questions. Measured on the recorded contacts: with 2 of them 1.6 % more
 /// support points, with more than 3 no fewer.
 pub(super) const STEPS: usize = 3;
@@ -53,16 +53,16 @@ type Known = SupportSet<{ FIRST.0 }>;
 /// What counts for nothing.
 pub(super) struct Sizes {
     /// The gap allowed, metres.
-    pub(super) tolerance: Real,
+    pub(super) tolerance: f64,
     /// [`Precision::tie`].
-    tie: Real,
+    tie: f64,
     /// What three products of lengths round by.
-    tiny: Real,
+    tiny: f64,
 }
 
 impl Sizes {
     #[inline(always)]
-    pub(super) fn of(precision: &Precision, tolerance: Real) -> Self {
+    pub(super) fn of(precision: &Precision, tolerance: f64) -> Self {
         Self {
             tolerance: precision.tolerance(tolerance),
             tie: precision.tie(),
@@ -74,7 +74,7 @@ impl Sizes {
 /// The depth that a portal has to prove, metres; `None` where it is no more than rounding, or where
 /// c is no farther inside than the origin.
 #[inline(always)]
-fn least(lowest: &Lowest, c: &Vec3, sizes: &Sizes) -> Option<Real> {
+fn least(lowest: &Lowest, c: &Vec3, sizes: &Sizes) -> Option<f64> {
     let Lowest { depth, dir } = lowest;
     let Sizes { tolerance, tie, .. } = *sizes;
     let least = larger(depth - tolerance + tie, 0.5 * depth);
@@ -93,7 +93,7 @@ pub struct Try {
     /// The portal, once there is one.
     pub portal: Option<Portal>,
     /// The places of the corners of the face that the objects touch in, and the weights of these.
-    pub exit: Option<([[usize; 2]; 3], [Real; 3])>,
+    pub exit: Option<([[usize; 2]; 3], [f64; 3])>,
     /// Support points beyond the portal.
     pub rounds: u64,
     /// The direction whose point the portal is looked for from.
@@ -187,7 +187,7 @@ impl Try {
         cold: bool,
         hull: bool,
         hint: u32,
-    ) -> Result<Option<Real>, Stop> {
+    ) -> Result<Option<f64>, Stop> {
         // From an apex at the origin (also NaN) the ray is the lowest direction. What stands in for the apex
         // there may be outside of D: it proves nothing.
         let Lowest { depth, dir } = inquiry.lowest;
@@ -229,7 +229,7 @@ impl Try {
         &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
         n: &Vec3,
-    ) -> Result<Option<(Vec3, Real)>, Stop> {
+    ) -> Result<Option<(Vec3, f64)>, Stop> {
         let point = inquiry.point(n)?;
         let h = n.dot(&point.v);
         // NaN is no depth.
@@ -283,7 +283,7 @@ impl Try {
         &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
         cold: bool,
-        tolerance: Real,
+        tolerance: f64,
     ) -> Result<bool, Stop> {
         let c = self.c;
         let mut view = View::of(&self.points, self.from, &c);
@@ -345,7 +345,7 @@ impl Try {
 
     /// Does D look like a ball, which a hull has a ring for?
     #[inline(always)]
-    fn is_ball(&self, dir: &Vec3, tie: Real) -> bool {
+    fn is_ball(&self, dir: &Vec3, tie: f64) -> bool {
         let points = &self.points;
         let sample = |k| Sample::of(points.direction(k), points.point(points.names(k)));
         Ball::seen((0..points.asked()).map(sample), dir, tie).is_some()
@@ -361,7 +361,7 @@ impl Try {
         limits: &Limits,
         cold: bool,
         sizes: &Sizes,
-    ) -> Result<Option<Real>, Stop> {
+    ) -> Result<Option<f64>, Stop> {
         let c = self.c;
         let first = portal.names;
         let (level, rounds) = (LEVEL * sizes.tolerance, ROUNDS[usize::from(cold)]);
@@ -470,9 +470,9 @@ impl Try {
     fn settles<A: SupportMap, B: SupportMap>(
         &mut self,
         inquiry: &mut Inquiry<'_, A, B>,
-        (m, h): (&Vec3, Real),
-        above: Real,
-        before: Real,
+        (m, h): (&Vec3, f64),
+        above: f64,
+        before: f64,
         sizes: &Sizes,
     ) -> bool {
         self.lies = above < -sizes.tie;
@@ -508,8 +508,8 @@ impl Try {
         portal: &Portal,
         plane: &Plane,
         lowest: &Lowest,
-        least: Real,
-        tolerance: Real,
+        least: f64,
+        tolerance: f64,
     ) -> bool {
         self.exit = match portal.touches(plane, lowest, least, tolerance) {
             Some(weights) => Some((portal.names, weights)),
@@ -525,9 +525,9 @@ impl Try {
         &self,
         portal: &Portal,
         lowest: &Lowest,
-        least: Real,
-        tolerance: Real,
-    ) -> Option<([[usize; 2]; 3], [Real; 3])> {
+        least: f64,
+        tolerance: f64,
+    ) -> Option<([[usize; 2]; 3], [f64; 3])> {
         // As seen from far behind the origin.
         let c = -lowest.dir;
         let mut portal = portal.moved(&self.points, &c)?;
@@ -546,7 +546,7 @@ impl Try {
     /// Does no known point of an object lie beyond a plane that was asked of it? One does that a
     /// callback erred in, or that it stopped short of.
     #[inline(always)]
-    pub fn is_honest(&mut self, tie: Real) -> bool {
+    pub fn is_honest(&mut self, tie: f64) -> bool {
         self.lies = !(self.points.beyond() <= tie);
         !self.lies
     }
@@ -644,10 +644,10 @@ impl Handed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::known::support::MinkowskiDifference;
+    use crate::minkowski::support::MinkowskiDifference;
     use crate::shapes::{Random, capsule, corners, hull, placed};
 
-    const TOLERANCE: Real = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
+    const TOLERANCE: f64 = if EPSILON < 1e-10 { 1e-7 } else { 1e-4 };
 
     /// The corner of a box below the face of a plate: proven by four or five support points, and what is
     /// proven is no more than the depth.
@@ -717,7 +717,7 @@ mod tests {
                 } else {
                     side / side.norm()
                 };
-                along * (0.5 as Real).copysign(x) + round * 0.2
+                along * (0.5 as f64).copysign(x) + round * 0.2
             };
             let md = MinkowskiDifference::new(lower, upper);
             let c = SupportPoint {

@@ -31,9 +31,9 @@
 //! near the minimum, as a state has it.
 
 use crate::hull::expansion::Limits;
-use crate::known::support::SupportMap;
 use crate::known::support_set::{Asked, Inquiry, Lowest, Stop, SupportSet};
-use crate::math::{Real, Vec3, larger, lesser, normalised, perpendicular, unit};
+use crate::math::{Vec3, larger, lesser, normalised, perpendicular, unit};
+use crate::minkowski::support::SupportMap;
 
 // Measured: support points of the MPR calls in the mean of sixteen pair sets and the recorded
 // contacts (`cargo bench -p charts -- record`), when one number changes alone.
@@ -42,27 +42,27 @@ use crate::math::{Real, Vec3, larger, lesser, normalised, perpendicular, unit};
 const STEPS: usize = 6;
 /// A direction is tilted by this much of what leaves the known points no support value: at 1
 /// itself a separation hardly shows. Measured: with 1.3 contacts take 0.6 % more instructions.
-const TILT: Real = 1.15;
+const TILT: f64 = 1.15;
 /// |n′ − n|² above which two directions have nothing to do with each other: 31 degrees. Measured for GJK: 0.6
 /// costs hulls 2.5 % and contacts 1 %, 0.06 costs less than 1 %; for the ball 0.06 costs shallow
 /// ellipsoids 3 %.
-const AWAY: Real = 0.3;
+const AWAY: f64 = 0.3;
 /// Relative difference of e and e′ up to which two samples are of one ball. Measured: with
 /// 0.03 shallow ellipsoids take 5 % more, with 0.3 shallow capsules 7 %.
-const ALIKE: Real = 0.1;
+const ALIKE: f64 = 0.1;
 /// The square of the sine of the angle at one of three points below which they lie on a line.
 /// Measured: with 0.01 capsules in motion take 2 % more, with 0.3 ellipsoids 3 %.
-const BROAD: Real = 0.1;
+const BROAD: f64 = 0.1;
 /// The share of the size below which known points are no good measure of an extent. Insensitive: 0.01
 /// and 0.2 tried, no pair set takes 0.1 % more.
-const LITTLE: Real = 0.05;
+const LITTLE: f64 = 0.05;
 /// What a tilt grows by each time that it was in vain; from then on the direction lies in the
 /// plane. Measured: without the second and third misses take 4.6 % more, with a fourth the same.
-const GROWTH: [Real; 3] = [1.0, 1.5, 2.25];
+const GROWTH: [f64; 3] = [1.0, 1.5, 2.25];
 /// How wide a portal may be, for each unit of the origin's distance from its edge, and of the
 /// edge's length. Measured on the recorded contacts: 2 and 2.5 for the first cost hits 0.3 and 0.5 % of their
 /// instructions; 0.45 and 0.8 for the second 0.5 and 0.7 %.
-const WIDE: [Real; 2] = [3.0, 0.6];
+const WIDE: [f64; 2] = [3.0, 0.6];
 
 /// Is a direction so far from another that samples along the two are no neighbours?
 #[inline(always)]
@@ -94,7 +94,7 @@ pub fn known(apex: &Vec3, count: usize, point: impl Fn(usize) -> Vec3) -> Option
 /// The radius that two samples tell, from their directions and the way from one to the other, if they
 /// are of one ball.
 #[inline(always)]
-pub fn radius([n, n_]: [&Vec3; 2], between: &Vec3, rounding: Real) -> Option<Real> {
+pub fn radius([n, n_]: [&Vec3; 2], between: &Vec3, rounding: f64) -> Option<f64> {
     let (e, e_) = (n_.dot(between), -n.dot(between));
     let sum = e + e_;
     let alike = (e - e_).abs() <= ALIKE * sum && sum > rounding;
@@ -109,7 +109,7 @@ pub struct Sample {
     /// The point.
     pub s: Vec3,
     /// n·s, metres.
-    pub h: Real,
+    pub h: f64,
 }
 
 impl Sample {
@@ -126,7 +126,7 @@ pub struct Ball {
     /// The lowest sample.
     low: Sample,
     /// What the last two samples tell, metres.
-    radius: Real,
+    radius: f64,
 }
 
 impl Ball {
@@ -136,7 +136,7 @@ impl Ball {
     pub fn seen(
         samples: impl Iterator<Item = Sample> + Clone,
         dir: &Vec3,
-        rounding: Real,
+        rounding: f64,
     ) -> Option<Self> {
         let low = samples.clone().find(|sample| sample.n == *dir)?;
         let mut near = [(AWAY, Vec3::zeros(), 0.0); 2];
@@ -168,7 +168,7 @@ impl Ball {
 
     /// Is the ball's minimum no lower? It is by off² / 2 ahead, about.
     #[inline(always)]
-    fn is_lowest(&self, within: Real) -> bool {
+    fn is_lowest(&self, within: f64) -> bool {
         let (across, ahead) = self.aside();
         !(across.norm_squared() > 0.5 * within * ahead)
     }
@@ -176,7 +176,7 @@ impl Ball {
     /// Across the direction of the lowest sample, from the origin; and how far the origin is from the
     /// centre along it.
     #[inline(always)]
-    fn aside(&self) -> (Vec3, Real) {
+    fn aside(&self) -> (Vec3, f64) {
         let Self { low, radius } = self;
         (low.s - low.n * low.h, radius - low.h)
     }
@@ -249,7 +249,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const P: usize>(
     };
     let b = ball.low.n.cross(&a);
     // A third of a turn apart.
-    let (cos, sin) = (-0.5, 0.75_f64.sqrt() as Real);
+    let (cos, sin) = (-0.5, 0.75_f64.sqrt() as f64);
     let by = 1.0 / (1.0 + tilt * tilt).sqrt();
     let mut names = [0, 0, 0, old];
     for (name, (x, y)) in names[1..]
@@ -268,14 +268,14 @@ pub fn ring<A: SupportMap, B: SupportMap, const P: usize>(
 /// is `off` the known points or an edge, as seen along the axis; `off` and `span` of the edge; `length`: from
 /// the apex to where the axis leaves D, about.
 #[inline(always)]
-pub fn tilt(depth: Real, off: Real, wide: Real, span: Real, length: Real) -> Real {
+pub fn tilt(depth: f64, off: f64, wide: f64, span: f64, length: f64) -> f64 {
     let wide = larger(WIDE[0] * wide, WIDE[1] * span);
     lesser(TILT * depth / off, wide / length)
 }
 
 /// What a tilt grows by after so many in vain; `None`: there is nothing wider to try but the plane.
 #[inline(always)]
-pub fn growth(vain: usize) -> Option<Real> {
+pub fn growth(vain: usize) -> Option<f64> {
     GROWTH.get(vain).copied()
 }
 
@@ -321,7 +321,7 @@ fn extent<A: SupportMap, B: SupportMap, const P: usize>(
     set: &mut SupportSet<P>,
     from: usize,
     n: &Vec3,
-    measure: impl Fn(&Vec3) -> Real,
+    measure: impl Fn(&Vec3) -> f64,
 ) -> Result<usize, Stop> {
     let rounding = inquiry.precision.tie();
     let mut best = (from, rounding);

@@ -12,8 +12,8 @@
 //! the same planes. Asked again in the opposite order, a mapping that remembers what it should not
 //! answers otherwise.
 
-use crate::known::support::SupportMap;
-use crate::math::{EPSILON, Real, Vec3, larger, largest, perpendicular};
+use crate::math::{EPSILON, Vec3, larger, largest, perpendicular};
+use crate::minkowski::support::SupportMap;
 
 /// Directions: each of [`HALF`], its opposite, and one hardly beside it.
 const COUNT: usize = 3 * HALF;
@@ -21,10 +21,10 @@ const COUNT: usize = 3 * HALF;
 const HALF: usize = 64;
 /// How far beside, in radians: a ball's points fall back from each other's planes by half its square
 /// of the radius, and a noise that is greater shows. Derived: where that is some ulps.
-const BESIDE: Real = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
+const BESIDE: f64 = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
 /// Ulps of the largest coordinate that are rounding: a callback turns a point and moves it, and
 /// its product with a direction is rounded too. Derived; twice what that comes to.
-const ROUNDING: Real = 32.0;
+const ROUNDING: f64 = 32.0;
 
 /// What [`check`](crate::check) found wrong with a shape. Lengths are metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,15 +41,15 @@ pub struct Check {
     /// The center is outside: overlaps are missed then, and what is apart answered as deep.
     pub center_outside: bool,
     /// The greatest width of the object, about.
-    pub size: Real,
+    pub size: f64,
     /// What a point is beyond another's plane by, at most.
-    pub noise: Real,
+    pub noise: f64,
     /// How far an answer moved along its direction when it was asked for again, at most.
-    pub change: Real,
+    pub change: f64,
     /// How far the center is outside; negative: how deep inside. 0 without one.
-    pub outside: Real,
+    pub outside: f64,
     /// Unit: the direction in which the worst was found; of no meaning where nothing is wrong.
-    pub dir: [Real; 3],
+    pub dir: [f64; 3],
 }
 
 impl Check {
@@ -84,7 +84,7 @@ fn towards(i: usize) -> Vec3 {
         2 => Vec3::z(),
         _ => {
             // Equal steps down a hemisphere, the golden angle from one to the next.
-            let z = (i as Real - 2.5) / (HALF as Real - 3.0);
+            let z = (i as f64 - 2.5) / (HALF as f64 - 3.0);
             let (cos, sin) = turned(i);
             let r = (1.0 - z * z).sqrt();
             let n = Vec3::new(r * cos, r * sin, z);
@@ -94,9 +94,9 @@ fn towards(i: usize) -> Vec3 {
 }
 
 /// Cosine and sine of `i` golden angles, by complex powers: the same bits in every build.
-fn turned(i: usize) -> (Real, Real) {
+fn turned(i: usize) -> (f64, f64) {
     #[allow(clippy::excessive_precision)] // In single precision.
-    const GOLDEN: (Real, Real) = (-0.7373688780783197, 0.6754902942615238);
+    const GOLDEN: (f64, f64) = (-0.7373688780783197, 0.6754902942615238);
     let (mut cos, mut sin) = (1.0, 0.0);
     for _ in 0..i {
         (cos, sin) = (
@@ -130,7 +130,7 @@ pub fn check(object: &impl SupportMap, centre: Option<&Vec3>) -> Check {
     against_each_other(&points, &mut report, rounding);
     again(object, &points, &mut report, rounding);
     if let Some(centre) = centre.filter(|_| !report.opposite) {
-        report.outside = Real::NEG_INFINITY;
+        report.outside = f64::NEG_INFINITY;
         let mut worst = Vec3::zeros();
         for (i, point) in points.iter().enumerate() {
             let n = direction(i);
@@ -148,12 +148,12 @@ pub fn check(object: &impl SupportMap, centre: Option<&Vec3>) -> Check {
 }
 
 /// Each answer against the planes of all others.
-fn against_each_other(points: &[Vec3; COUNT], report: &mut Check, rounding: Real) {
+fn against_each_other(points: &[Vec3; COUNT], report: &mut Check, rounding: f64) {
     // Planes that no answer is in front of: of the opposite of a support mapping all.
     let mut behind = 0;
     for (i, point) in points.iter().enumerate() {
         let n = direction(i);
-        let (mut most, mut least) = (Real::NEG_INFINITY, Real::INFINITY);
+        let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
         for other in points {
             let beyond = n.dot(&(other - point));
             most = larger(beyond, most);
@@ -171,7 +171,7 @@ fn against_each_other(points: &[Vec3; COUNT], report: &mut Check, rounding: Real
 }
 
 /// The same directions from the last to the first.
-fn again(object: &impl SupportMap, points: &[Vec3; COUNT], report: &mut Check, rounding: Real) {
+fn again(object: &impl SupportMap, points: &[Vec3; COUNT], report: &mut Check, rounding: f64) {
     let mut worst = Vec3::zeros();
     for (i, point) in points.iter().enumerate().rev() {
         let n = direction(i);
@@ -244,17 +244,14 @@ mod tests {
         let centre = check(&ball(at, 0.5), Some(&Vec3::zeros()));
         assert!(centre.center_outside && (centre.outside - 0.5).abs() < 0.01);
         assert!(centre.dir[0] < -0.9);
-        let nan = check(
-            &|n: &Vec3| n * if n.x > 0.5 { Real::NAN } else { 1.0 },
-            None,
-        );
+        let nan = check(&|n: &Vec3| n * if n.x > 0.5 { f64::NAN } else { 1.0 }, None);
         assert!(nan.not_finite && nan.dir[0] > 0.5);
-        assert!(check(&ball(at, 0.5), Some(&Vec3::repeat(Real::NAN))).not_finite);
+        assert!(check(&ball(at, 0.5), Some(&Vec3::repeat(f64::NAN))).not_finite);
         let asked = Cell::new(0);
         let grows = check(
             &|n: &Vec3| {
                 asked.set(asked.get() + 1);
-                n * (1.0 + asked.get() as Real * 1e-3)
+                n * (1.0 + asked.get() as f64 * 1e-3)
             },
             None,
         );
@@ -263,7 +260,7 @@ mod tests {
         #[cfg(not(feature = "single"))]
         {
             let rounded = check(
-                &|n: &Vec3| (at + n * 0.3).map(|x| Real::from(x as f32)),
+                &|n: &Vec3| (at + n * 0.3).map(|x| f64::from(x as f32)),
                 Some(&at),
             );
             assert!(rounded.contradicts && rounded.noise > 1e-9 && rounded.noise < 1e-6);

@@ -4,7 +4,7 @@
 //! Has a pair moved since it was asked last? Not, where the same directions find the same points,
 //! and these hold it.
 
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
 
 /// A number made of points of the two objects, in any order, and the same for the objects swapped:
 /// that it is another one for other points is as sure as 64 bits can make it.
@@ -38,7 +38,7 @@ pub fn pins(points: impl Iterator<Item = [Vec3; 2]> + Clone, with_centres: bool)
 
 /// How many dimensions a set of points in a plane has, and its length, metres; what is shorter
 /// or narrower than the square root of `blur`, m², is nothing.
-fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: Real) -> (u32, Real) {
+fn dimensions(points: impl Iterator<Item = Vec3> + Clone, blur: f64) -> (u32, f64) {
     let Some(first) = points.clone().next() else {
         return (0, 0.0);
     };

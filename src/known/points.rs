@@ -8,8 +8,8 @@
 //! direction found: k support points are worth k² points of D. P is the polytope of all of them, the
 //! difference of the two objects' polytopes, and its support points cost no callback.
 
-use crate::known::support::SupportPoint;
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
+use crate::minkowski::support::SupportPoint;
 
 /// Points of each object: a portal's, mostly four, and of the rounds after it. Even, two are compared at a
 /// time. Measured on the recorded contacts: with 10 hits take 0.8 % more instructions.
@@ -20,12 +20,9 @@ const HALF: usize = ROOM / 2;
 
 /// Points of one object, coordinate by coordinate. The first one is there in all places that are not
 /// taken.
-struct Cloud([[[Real; 2]; ROOM / 2]; 3]);
+struct Cloud([[[f64; 2]; ROOM / 2]; 3]);
 
-#[cfg(not(feature = "single"))]
 type Bits = u64;
-#[cfg(feature = "single")]
-type Bits = u32;
 
 /// The low bits of a product that name its point: its place, and one bit more, which is set.
 const NAME: Bits = 31;
@@ -33,8 +30,8 @@ const NAME: Bits = 31;
 /// A number that is the same to a few ulps, and tells which. (The sum is one to the compiler, and a
 /// comparison of two an instruction.)
 #[inline(always)]
-fn named(x: Real, i: usize) -> Real {
-    Real::from_bits(x.to_bits() & !NAME | (16 + i) as Bits) + 0.0
+fn named(x: f64, i: usize) -> f64 {
+    f64::from_bits(x.to_bits() & !NAME | (16 + i) as Bits) + 0.0
 }
 
 impl Cloud {
@@ -84,7 +81,7 @@ impl Cloud {
     /// `len` points.
     #[inline(always)]
     fn farthest(&self, n: &Vec3, len: usize) -> usize {
-        let mut best = self.best::<0>(n, [Real::NEG_INFINITY; 2]);
+        let mut best = self.best::<0>(n, [f64::NEG_INFINITY; 2]);
         if len > HALF {
             best = self.best::<HALF>(n, best);
         }
@@ -96,7 +93,7 @@ impl Cloud {
     /// The [`named`] products of the farthest of half the places, those from one on, and of these: of even
     /// ones and of odd.
     #[inline(always)]
-    fn best<const FROM: usize>(&self, n: &Vec3, mut best: [Real; 2]) -> [Real; 2] {
+    fn best<const FROM: usize>(&self, n: &Vec3, mut best: [f64; 2]) -> [f64; 2] {
         let [x, y, z] = &self.0;
         for i in FROM / 2..(FROM + HALF) / 2 {
             let (x, y, z) = (x[i], y[i], z[i]);
@@ -110,7 +107,7 @@ impl Cloud {
 
     /// Which of `len` points are at least `least` along a direction: a bit each.
     #[inline(always)]
-    fn level(&self, n: &Vec3, len: usize, least: Real) -> u32 {
+    fn level(&self, n: &Vec3, len: usize, least: f64) -> u32 {
         let mut level = 0;
         let [x, y, z] = &self.0;
         for i in 0..len.div_ceil(2).min(ROOM / 2) {
@@ -125,7 +122,7 @@ impl Cloud {
 
     /// The square of how far one of `len` points is from `p`, m².
     #[inline(always)]
-    fn extent(&self, p: &Vec3, len: usize) -> Real {
+    fn extent(&self, p: &Vec3, len: usize) -> f64 {
         let mut far2 = [0.0; 2];
         let [x, y, z] = &self.0;
         for i in 0..len.div_ceil(2).min(ROOM / 2) {
@@ -233,7 +230,7 @@ impl Points {
     /// The places of the points of obj1 (`object` 0) or of obj2 that are at least `least` along a
     /// direction: a bit each.
     #[inline(always)]
-    pub fn level(&self, object: usize, n: &Vec3, least: Real) -> u32 {
+    pub fn level(&self, object: usize, n: &Vec3, least: f64) -> u32 {
         let [one, two] = self.lens;
         match object {
             0 => self.one.level(n, one, least),
@@ -265,8 +262,8 @@ impl Points {
     /// How far a known point of one of the objects lies beyond what a direction found of it, at most,
     /// metres.
     #[inline(never)]
-    pub fn beyond(&self) -> Real {
-        let mut beyond = [Real::NEG_INFINITY; 2];
+    pub fn beyond(&self) -> f64 {
+        let mut beyond = [f64::NEG_INFINITY; 2];
         let ([x, y, z], [u, v, w]) = (&self.one.0, &self.two.0);
         let [one, two] = self.lens;
         let pairs = one.max(two).div_ceil(2).min(ROOM / 2);
@@ -287,7 +284,7 @@ impl Points {
 
     /// The squares of how far the objects are known to reach from these points of theirs, m².
     #[inline(never)]
-    pub fn extent(&self, [p, q]: [&Vec3; 2]) -> [Real; 2] {
+    pub fn extent(&self, [p, q]: [&Vec3; 2]) -> [f64; 2] {
         let [one, two] = self.lens;
         [self.one.extent(p, one), self.two.extent(q, two)]
     }
@@ -327,7 +324,7 @@ pub mod tests {
                 let n = r.vector(3.0);
                 let found = n.dot(&points.point(points.extreme(&n)));
                 let all = (0..count).flat_map(|i| (0..count).map(move |j| [i, j]));
-                let best = all.fold(Real::NEG_INFINITY, |best, names| {
+                let best = all.fold(f64::NEG_INFINITY, |best, names| {
                     larger(best, n.dot(&points.point(names)))
                 });
                 assert!(

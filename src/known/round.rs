@@ -21,16 +21,16 @@
 //! Source: own derivation. R is learned by Powell's symmetric Broyden formula (Nocedal and Wright,
 //! Numerical Optimization, ch. 6).
 
-use crate::math::{EPSILON, Real, Vec3, ZERO, larger};
+use crate::math::{EPSILON, Vec3, ZERO, larger};
 
 /// The least angle, radians, between two directions that tell a piece from another. Derived: the
 /// difference of two points is known to some ulps of the object's size, so of a ball's move by
 /// this angle, r times as long, about five digits are left (in single precision three).
-pub const TOLD: Real = if EPSILON > 1e-10 { 1e-2 } else { 1e-5 };
+pub const TOLD: f64 = if EPSILON > 1e-10 { 1e-2 } else { 1e-5 };
 /// The relative difference up to which lengths of one smooth piece are alike: the two excesses of
 /// a pair, a radius and the object's extent. Measured on the pair sets: ×2 +0.1 %, +7 % (hulls);
 /// ÷2 +1.1 %, +82 % (ellipsoids in motion).
-pub const ALIKE: Real = 0.03;
+pub const ALIKE: f64 = 0.03;
 
 /// A support point of one object, and the unit direction it was asked along.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,20 +49,20 @@ impl Seen {
 #[derive(Clone, Copy, Debug)]
 pub struct Same {
     /// What each coordinate may be off by.
-    pub rounding: Real,
+    pub rounding: f64,
     /// Where a ball or disc was taken off: a radius is in error by more than rounding.
-    pub round: Real,
+    pub round: f64,
     /// The square of the largest distance of D's points from an inner one, m²: how large an object is.
-    pub extent2: Real,
+    pub extent2: f64,
 }
 
 /// How a point moved, where its direction turned.
 pub struct Move {
     pub d: Vec3,
     /// Their squares, and their product.
-    pub d2: Real,
-    pub dn2: Real,
-    pub along: Real,
+    pub d2: f64,
+    pub dn2: f64,
+    pub along: f64,
     /// The direction it turned to.
     n: Vec3,
 }
@@ -83,15 +83,15 @@ impl Move {
     /// By how much the old point is behind the new one's support plane, and the new one behind the
     /// old one's.
     #[inline(always)]
-    pub fn excess(&self) -> [Real; 2] {
+    pub fn excess(&self) -> [f64; 2] {
         let ahead = self.d.dot(&self.n);
         [ahead, self.along - ahead]
     }
 
     /// The radius of the ball, metres, if both points are a ball's around one vertex: exactly parallel.
     #[inline(always)]
-    pub fn ball(&self, same: &Same) -> Option<Real> {
-        const PARALLEL: Real = 0.1 * TOLD;
+    pub fn ball(&self, same: &Same) -> Option<f64> {
+        const PARALLEL: f64 = 0.1 * TOLD;
         let aside2 = self.d2 * self.dn2 - self.along * self.along;
         let radius = self.along / self.dn2;
         // From an inner point near its border a ball seems smaller, until its far side is seen.
@@ -110,7 +110,7 @@ impl Move {
     /// farther the point moved; and farther than an object of that size can bend there the point did not
     /// move smoothly.
     #[inline(always)]
-    pub fn is_smooth(&self, same: &Same, alike: Real) -> bool {
+    pub fn is_smooth(&self, same: &Same, alike: f64) -> bool {
         let [ahead, behind] = self.excess();
         let limit = alike * (ahead + behind);
         let gap2 = (ahead - behind) * (ahead - behind);
@@ -125,15 +125,15 @@ impl Move {
 
 /// A pair whose slope is larger than this share of the object must be more alike. Measured: ×2 no
 /// change, +4 %; ÷2 +0.9 %, +82 % (ellipsoids in motion).
-const STEEP: Real = 0.7;
+const STEEP: f64 = 0.7;
 /// A slope larger than so many times the object is a kink's, and a remembered R another object's.
 /// Measured: ×2 +0.2 %, +4 %; ÷2 −0.1 %.
-pub const BLUNT: Real = 50.0;
+pub const BLUNT: f64 = 50.0;
 
 /// May a round part of this radius, metres, be one of an object of that squared extent, m², of
 /// which a little may not have been seen?
 #[inline(always)]
-pub fn fits(radius: Real, size2: Real) -> bool {
+pub fn fits(radius: f64, size2: f64) -> bool {
     radius > 0.0 && radius * radius <= (1.0 + ALIKE) * size2
 }
 
@@ -141,7 +141,7 @@ pub fn fits(radius: Real, size2: Real) -> bool {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Disc {
     /// Metres.
-    pub radius: Real,
+    pub radius: f64,
     /// Unit; either sign.
     pub axis: Vec3,
 }
@@ -207,17 +207,17 @@ impl Disc {
         let moved2 = moved.norm_squared();
         let radius = d.dot(&moved) / moved2;
         // False for NaN.
-        (moved2 < 2.0 && radius > 0.0 && radius < Real::INFINITY).then_some(Self { radius, axis })
+        (moved2 < 2.0 && radius > 0.0 && radius < f64::INFINITY).then_some(Self { radius, axis })
     }
 }
 
 /// A symmetric matrix: xx, xy, xz, yy, yz, zz.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Symmetric(pub [Real; 6]);
+pub struct Symmetric(pub [f64; 6]);
 
 impl Symmetric {
     /// a I.
-    pub fn scaled_identity(a: Real) -> Self {
+    pub fn scaled_identity(a: f64) -> Self {
         Self([a, 0.0, 0.0, a, 0.0, a])
     }
 
@@ -233,7 +233,7 @@ impl Symmetric {
 
     /// Adds a w w′.
     #[inline(always)]
-    pub fn add_square(&mut self, a: Real, w: &Vec3) {
+    pub fn add_square(&mut self, a: f64, w: &Vec3) {
         let aw = w * a;
         let m = &mut self.0;
         m[0] += aw.x * w.x;
@@ -273,7 +273,7 @@ impl Symmetric {
     /// and the one across. Positive semidefinite, as what is convex: a negative eigenvalue becomes
     /// zero.
     #[inline]
-    pub fn within(&self, e1: &Vec3, e2: &Vec3) -> (Real, Real, Real) {
+    pub fn within(&self, e1: &Vec3, e2: &Vec3) -> (f64, f64, f64) {
         let (r1, r2) = (self.times(e1), self.times(e2));
         let (rxx, rxy, ryy) = (r1.dot(e1), r1.dot(e2), r2.dot(e2));
         let (rho, axx) = (0.5 * (rxx + ryy), 0.5 * (rxx - ryy));
@@ -288,7 +288,7 @@ impl Symmetric {
 
     /// Reduces n′ − n's share of it so that it bends by no more than `room` along it.
     #[inline]
-    pub fn reduce(&mut self, dn: &Vec3, room: Real) {
+    pub fn reduce(&mut self, dn: &Vec3, room: f64) {
         let rd = self.times(dn);
         let bend = rd.dot(dn);
         let room = larger(room, 0.0);
@@ -300,7 +300,7 @@ impl Symmetric {
 
 /// Squared cosine of the angle between the first pair's differences up to which R is as large
 /// along them as it was seen to be. Measured: 1 +0.5 %, +7 % (ellipsoids); ÷2 −0.1 %.
-const SQUARE: Real = 0.9;
+const SQUARE: f64 = 0.9;
 
 #[cfg(test)]
 mod tests {
@@ -309,7 +309,7 @@ mod tests {
     use crate::shapes::{Random, ball, capsule, corners, ellipsoid, hull};
 
     /// What the closed forms below may be off by.
-    const NEAR: Real = if EPSILON > 1e-10 { 3e-3 } else { 1e-7 };
+    const NEAR: f64 = if EPSILON > 1e-10 { 3e-3 } else { 1e-7 };
     const SAME: Same = Same {
         rounding: 4.0 * EPSILON,
         round: NEAR,
@@ -322,19 +322,19 @@ mod tests {
     }
 
     /// Two directions that far apart.
-    fn two(r: &mut Random, angle: Real) -> [Vec3; 2] {
+    fn two(r: &mut Random, angle: f64) -> [Vec3; 2] {
         let n = r.direction();
         let t = perpendicular(&n);
         let t = t * r.within(-1.0, 1.0) + n.cross(&t) * r.within(-1.0, 1.0);
         [n, (n + t.normalize() * angle).normalize()]
     }
 
-    fn rim(d: &Vec3, radius: Real) -> Vec3 {
+    fn rim(d: &Vec3, radius: f64) -> Vec3 {
         Vec3::new(d.x, d.y, 0.0) * (radius / d.x.hypot(d.y))
     }
 
     fn cylinder(d: &Vec3) -> Vec3 {
-        rim(d, 0.5) + Vec3::z() * (0.4 as Real).copysign(d.z)
+        rim(d, 0.5) + Vec3::z() * (0.4 as f64).copysign(d.z)
     }
 
     fn cone(d: &Vec3) -> Vec3 {
@@ -346,7 +346,7 @@ mod tests {
         if d.y > 0.0 {
             rim(d, 0.5)
         } else {
-            Vec3::x() * (0.5 as Real).copysign(d.x)
+            Vec3::x() * (0.5 as f64).copysign(d.x)
         }
     }
 
@@ -423,14 +423,14 @@ mod tests {
     /// carries neither the arc nor the ball.
     #[test]
     fn round_on_one_side_is_not_round_on_the_other() {
-        let up = |x: Real, y: Real| ask(&half_disc, Vec3::new(x, y, 0.1));
+        let up = |x: f64, y: f64| ask(&half_disc, Vec3::new(x, y, 0.1));
         let disc = Disc::of(&up(0.5, 0.5), &up(0.3, 0.5)).unwrap();
         assert!((disc.radius - 0.5).abs() < 10.0 * NEAR, "{disc:?}");
         let core = |at: &Seen| (at.p - disc.point(&at.n)).norm();
         assert!(core(&up(0.4, 0.6)) < 10.0 * NEAR);
         assert!(core(&up(0.5, -0.5)) > 0.1);
         assert_eq!(Move::of(&up(0.5, -0.5), &up(0.5, -0.9)).d2, 0.0);
-        let at = |x: Real, z: Real| ask(&teardrop, Vec3::new(x, 0.2, z));
+        let at = |x: f64, z: f64| ask(&teardrop, Vec3::new(x, 0.2, z));
         let radius = Move::of(&at(1.0, -0.2), &at(1.0, 0.1)).ball(&SAME);
         assert!(radius.is_some_and(|r| (r - 0.3).abs() < NEAR), "{radius:?}");
         let tip = at(0.1, 1.0);
@@ -441,7 +441,7 @@ mod tests {
     #[test]
     fn what_is_no_number_shows_nothing() {
         let bad = Seen {
-            n: Vec3::repeat(Real::NAN),
+            n: Vec3::repeat(f64::NAN),
             p: Vec3::zeros(),
         };
         let good = Seen {
@@ -467,7 +467,7 @@ mod tests {
         };
         let (x, y) = (Vec3::x(), Vec3::new(1.0, 0.1, 0.0).normalize());
         assert!(two(x, y, Vec3::zeros()).is_none());
-        assert!(two(x, y, Vec3::repeat(Real::NAN)).is_none());
+        assert!(two(x, y, Vec3::repeat(f64::NAN)).is_none());
         assert!(two(x, x, Vec3::y()).is_none());
         // The ends of a line.
         let z = Vec3::new(1.0, -0.1, 0.0).normalize();

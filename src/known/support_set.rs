@@ -17,8 +17,8 @@
 //! gives the lowest plane for an answer looks through the points first.
 
 use crate::known::precision::Precision;
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::math::{Real, Vec3, larger, perpendicular};
+use crate::math::{Vec3, larger, perpendicular};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// What is known of each object: room for `N` points of it with the directions they were asked
 /// along.
@@ -41,7 +41,7 @@ pub struct Extreme {
     /// The places of obj1's and of obj2's point.
     pub names: [usize; 2],
     /// How far it is, metres, times the length of the direction.
-    pub reach: Real,
+    pub reach: f64,
 }
 
 impl Extreme {
@@ -49,7 +49,7 @@ impl Extreme {
     /// there is none.
     #[inline(always)]
     pub fn of<'a>(n: &Vec3, points: impl Iterator<Item = (&'a Vec3, &'a Vec3)>) -> Self {
-        let (mut top, mut low) = (Real::NEG_INFINITY, Real::INFINITY);
+        let (mut top, mut low) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut names = [0; 2];
         for (i, (v1, v2)) in points.enumerate() {
             let (a, b) = (n.dot(v1), n.dot(v2));
@@ -182,7 +182,7 @@ impl<const N: usize> SupportSet<N> {
     /// is one.
     pub fn lowest(&self) -> Option<usize> {
         let reach = |i: usize| self.directions[i].dot(&self.v(i));
-        let mut best = (None, Real::INFINITY);
+        let mut best = (None, f64::INFINITY);
         for i in 0..self.len.min(N) {
             if reach(i) < best.1 {
                 best = (Some(i), reach(i));
@@ -194,7 +194,7 @@ impl<const N: usize> SupportSet<N> {
     /// The point farthest along `n` of those that were asked for, if it reaches beyond
     /// `reach`.
     #[inline(always)]
-    pub fn farther(&self, n: &Vec3, mut reach: Real) -> Option<usize> {
+    pub fn farther(&self, n: &Vec3, mut reach: f64) -> Option<usize> {
         let mut best = None;
         for i in 0..self.len.min(N) {
             let d = n.dot(&self.v(i));
@@ -211,7 +211,7 @@ impl<const N: usize> SupportSet<N> {
 #[derive(Clone, Copy, Debug)]
 pub struct Lowest {
     /// The support value, metres: moving obj2 by depth · dir separates the objects.
-    pub depth: Real,
+    pub depth: f64,
     /// Unit.
     pub dir: Vec3,
 }
@@ -222,7 +222,7 @@ pub struct Asked {
     /// Its index in the set.
     pub i: usize,
     /// Its support value, metres.
-    pub h: Real,
+    pub h: f64,
     /// The point of D.
     pub v: Vec3,
 }
@@ -271,7 +271,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
             md,
             precision: Precision::default(),
             lowest: Lowest {
-                depth: Real::INFINITY,
+                depth: f64::INFINITY,
                 dir: Vec3::x(),
             },
         }
@@ -330,7 +330,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
 
     /// Keeps a support plane if it is the lowest.
     #[inline(always)]
-    fn lower(&mut self, dir: &Vec3, h: Real) {
+    fn lower(&mut self, dir: &Vec3, h: f64) {
         if h < self.lowest.depth {
             self.lowest = Lowest {
                 depth: h,
@@ -348,7 +348,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         set: &mut SupportSet<N>,
         place: usize,
         dir: &Vec3,
-    ) -> Result<Option<(Vec3, Real)>, Stop> {
+    ) -> Result<Option<(Vec3, f64)>, Stop> {
         let point = self.point(dir)?;
         let h = dir.dot(&point.v);
         let touch = self.precision.touch();
@@ -363,7 +363,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
 
     /// How far along `dir` a point is that contradicts an answer which separates, at least.
     #[inline(always)]
-    pub fn beyond(&self, dir: &Vec3, answer: &SupportPoint) -> Real {
+    pub fn beyond(&self, dir: &Vec3, answer: &SupportPoint) -> f64 {
         let h = dir.dot(&answer.v);
         larger(h + self.precision.grain(), self.precision.touch())
     }
@@ -401,7 +401,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
         set: &SupportSet<N>,
         dir: &Vec3,
         answer: &SupportPoint,
-        least: Real,
+        least: f64,
     ) -> Result<SupportPoint, Stop> {
         let Extreme { names, .. } = set.extreme(dir, 1);
         let [mut v1, mut v2] = [answer.v1, answer.v2];
@@ -432,7 +432,7 @@ impl<'q, A: SupportMap, B: SupportMap> Inquiry<'q, A, B> {
 
 /// How far beside a point's direction it is asked for again, radians. Measured on ODE's cylinder,
 /// which errs within 1e-3 of its axis.
-const BESIDE: Real = 0.02;
+const BESIDE: f64 = 0.02;
 
 /// A unit vector that far beside one: what a callback gave along that, and does not give here, it
 /// erred in.
@@ -493,7 +493,7 @@ mod tests {
     #[test]
     fn points_that_are_not_finite_are_faults() {
         let md =
-            MinkowskiDifference::new(|_: &Vec3| Vec3::x() * Real::NAN, |_: &Vec3| Vec3::zeros());
+            MinkowskiDifference::new(|_: &Vec3| Vec3::x() * f64::NAN, |_: &Vec3| Vec3::zeros());
         let mut set = SupportSet::<4>::EMPTY;
         let stop = Inquiry::new(&md).ask(&mut set, &Vec3::x()).unwrap_err();
         assert_eq!(stop, Stop::Fault(Fault::NonFinite));
@@ -503,7 +503,7 @@ mod tests {
     fn any_two_points_make_one() {
         let mut r = Random::new(5);
         let mut set = SupportSet::<8>::EMPTY;
-        assert_eq!(set.extreme(&Vec3::x(), 0).reach, Real::NEG_INFINITY);
+        assert_eq!(set.extreme(&Vec3::x(), 0).reach, f64::NEG_INFINITY);
         for _ in 0..7 {
             let [v1, v2] = [r.vector(1.0), r.vector(1.0)];
             set.push(&Vec3::zeros(), &SupportPoint { v: v1 - v2, v1, v2 });
@@ -517,8 +517,8 @@ mod tests {
             assert_eq!(found.names, best);
             assert!((found.reach - far(best)).abs() < 64.0 * EPSILON);
         }
-        assert_eq!(set.extreme(&Vec3::x(), 7).reach, Real::NEG_INFINITY);
-        assert_eq!(set.extreme(&Vec3::x(), 9).reach, Real::NEG_INFINITY);
+        assert_eq!(set.extreme(&Vec3::x(), 7).reach, f64::NEG_INFINITY);
+        assert_eq!(set.extreme(&Vec3::x(), 9).reach, f64::NEG_INFINITY);
     }
 
     #[test]

@@ -8,8 +8,8 @@ use super::search::{HAIR, Sample, Search};
 use super::walk::ROOM;
 use crate::contact::Penetration;
 use crate::contacts::pressure;
-use crate::known::support::{Known, SupportPoint};
 use crate::math::{Vec3, larger};
+use crate::minkowski::support::{Known, SupportPoint};
 
 impl Search {
     /// What finds the cuts of the minimum along unit `dir` again stays behind.

@@ -10,27 +10,27 @@
 //! Wright, Numerical Optimization, ch. 6). What it was off by is the error of R.
 
 use crate::known::round::{BLUNT, Symmetric};
-use crate::math::{Real, Vec3, ZERO};
+use crate::math::{Vec3, ZERO};
 
 /// Relative error of R up to which the first pair that confirms a remembered R confirms all of it.
 /// Insensitive: 0.1 to 0.4, within 0.1 %.
-const FORETOLD: Real = 0.2;
+const FORETOLD: f64 = 0.2;
 /// Relative error up to which R moves cuts; also that of a remembered R, until a pair tells.
 /// Measured: ×2 +1.2 %, +19 % (hulls); ÷2 +0.2 %, +6 %.
-const BELIEVED: Real = 0.5;
+const BELIEVED: f64 = 0.5;
 /// Squared sine of the angle from which on two pairs measure R in two directions. Measured: ×2
 /// +0.1 %, +1.2 %; ÷2 no change.
-const SPREAD: Real = 0.04;
+const SPREAD: f64 = 0.04;
 /// Squared cosine of the angle between what a pair corrects and its direction from which on the
 /// symmetric rank-one formula has a say. Measured: ×2, ÷2 no change, +1.6 %; 0 +4.3 %, +28 %.
-const ALONG: Real = 0.0025;
+const ALONG: f64 = 0.0025;
 
 /// R of one object, and what is known of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Curved {
     r: Symmetric,
     /// Relative error, by the last pair; 1 where one alone has told, meaningless where R is not there.
-    error: Real,
+    error: f64,
     /// The direction of the first pair; zero where R is remembered, until one has told.
     line: Vec3,
     /// Measured along a second direction too.
@@ -66,8 +66,8 @@ impl Curved {
     }
 
     /// How large an object is at least that has it, metres.
-    pub fn size(&self) -> Real {
-        self.r.0.iter().map(|entry| entry.abs()).sum::<Real>() / BLUNT
+    pub fn size(&self) -> f64 {
+        self.r.0.iter().map(|entry| entry.abs()).sum::<f64>() / BLUNT
     }
 
     /// Of the first smooth pair: a point moved by `d` where its direction turned by `dn`.
@@ -102,7 +102,7 @@ impl Curved {
     }
 
     /// A kink along `dn` leaves R no more than this `room`. What no second pair confirmed ends: `false`.
-    pub fn refute(&mut self, dn: &Vec3, room: Real) -> bool {
+    pub fn refute(&mut self, dn: &Vec3, room: f64) -> bool {
         if !(self.r.times(dn).dot(dn) > room) {
             return true;
         }

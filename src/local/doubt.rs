@@ -8,12 +8,12 @@ use super::search::{SAME, Search};
 use super::trust_region::{ASIDE, FIRST};
 use super::walk::ROOM;
 use crate::known::round::TOLD;
-use crate::math::{Real, Vec3, larger, perpendicular, unit};
+use crate::math::{Vec3, larger, perpendicular, unit};
 
 impl Search {
     /// Are the round parts of an active point in doubt at unit `n`?
     #[inline(always)]
-    pub(super) fn is_doubtful(&self, n: &Vec3, hair: Real) -> bool {
+    pub(super) fn is_doubtful(&self, n: &Vec3, hair: f64) -> bool {
         let unseen = |(o, k): (usize, usize)| self.objects[o % 2].is_unseen(k, n, hair);
         self.step.end.points().any(unseen)
     }

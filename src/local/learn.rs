@@ -9,12 +9,12 @@ use super::memory::Kind;
 use super::object::{Found, Object, Told};
 use super::walk::ROOM;
 use crate::known::round::{ALIKE, BLUNT, Disc, Move, Same, Seen, Symmetric, TOLD, fits};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
 
 /// Relative difference of the two excesses of one object's points up to which they are taken for
 /// those of another smooth surface, before a disc is confirmed; a kink's are what they like.
 /// Measured: ×2 nothing, ÷3 ellipsoids beside a ball two support points more.
-const OWN: Real = 0.1;
+const OWN: f64 = 0.1;
 
 /// What a point shows with the points before.
 pub enum Shown {
@@ -23,7 +23,7 @@ pub enum Shown {
     /// The vertex in that place.
     Twin(usize),
     /// A ball of this radius, metres.
-    Ball(Real),
+    Ball(f64),
     /// A smooth surface that is no ball.
     Smooth,
 }
@@ -89,9 +89,9 @@ impl Object {
     fn learn_curved(&mut self, best: usize, new: &Seen, same: &Same) -> Option<usize> {
         let rounding = same.rounding;
         let mut twin = ROOM;
-        let mut nearest = Real::INFINITY;
+        let mut nearest = f64::INFINITY;
         let mut vertex = false;
-        let mut room = Real::INFINITY;
+        let mut room = f64::INFINITY;
         for k in 0..self.len.min(ROOM) {
             let old = &self.at[k];
             let by = Move::of(old, new);
@@ -110,7 +110,7 @@ impl Object {
                 room = 2.0 * ahead.min(behind);
             }
         }
-        if room < Real::INFINITY {
+        if room < f64::INFINITY {
             let dn = new.n - self.at[best % ROOM].n;
             let believed = self.curved.refute(&dn, larger(room, 0.0));
             self.believe(believed);
@@ -191,7 +191,7 @@ impl Object {
         new: &Seen,
         core: &Vec3,
         carries: bool,
-        same: Real,
+        same: f64,
     ) -> Option<Option<usize>> {
         let len = self.len.min(ROOM);
         let (disc, doubted) = (self.found.disc, self.is_doubted());

@@ -12,13 +12,13 @@ use super::memory::Kind;
 use super::search::Search;
 use super::walk::End;
 use crate::contacts::polygon::{Flat, dot};
-use crate::math::{Real, Vec3, basis};
+use crate::math::{Vec3, basis};
 
 /// Charts of one walk where discs bend: Newton's method needs few. Insensitive: 3 to 12, …
 const CHARTS: usize = 6;
 /// … until what they are off by is this share of the tolerance. Insensitive: 0.03 to 0.3 tried,
 /// within 1 % of the support points.
-const NEWTON: Real = 0.1;
+const NEWTON: f64 = 0.1;
 /// Where walks start beside the best direction, in trust radii: on all sides, off the axes. Measured:
 /// ÷2, and outside by a tenth, 21 and 30 more answers that are no global minimum.
 const AROUND: [Flat; 4] = [[0.9, 0.1], [-0.1, 0.9], [-0.9, -0.1], [0.1, -0.9]];
@@ -89,7 +89,7 @@ impl Search {
     }
 
     /// The model's depth along unit `n`.
-    pub(super) fn depth(&self, n: &Vec3) -> Real {
+    pub(super) fn depth(&self, n: &Vec3) -> f64 {
         self.objects[0].height(n) + self.objects[1].height(n)
     }
 }

@@ -4,8 +4,8 @@
 //! What a search leaves behind for the next one of the pair.
 
 use super::trust_region::ASIDE;
-use crate::known::support::SupportPoint;
-use crate::math::{EPSILON, Real, Vec3, ZERO, normalised, unit};
+use crate::math::{EPSILON, Vec3, ZERO, normalised, unit};
+use crate::minkowski::support::SupportPoint;
 
 /// What a query leaves behind for the next one of the pair: all zero is cold, and
 /// any other bits are harmless, since they only choose where to look first.
@@ -19,9 +19,9 @@ pub struct Memory {
     pub slopes: [Vec3; 3],
     /// What is round of obj1, and after that of obj2, metres: a ball's radius; a disc's axis times its
     /// radius; or R: xx, xy, xz, yy, yz, zz.
-    pub curvature: [Real; 6],
+    pub curvature: [f64; 6],
     /// How far `dir` moved since the query before, radians.
-    pub drift: Real,
+    pub drift: f64,
     /// How many of `slopes` are in use.
     pub count: u32,
     /// What `curvature` is of obj1: 0 nothing, 1 a ball, 2 a disc, 3 R; and four times that of obj2.
@@ -39,7 +39,7 @@ pub enum Kind {
 }
 
 /// What is round of an object, in numbers: a ball's radius; a disc's axis times its radius; or R.
-pub type Round = (Kind, [Real; FEW]);
+pub type Round = (Kind, [f64; FEW]);
 
 /// Bits of [`Memory::curved`] for the kind of one object's round part.
 const KIND: u32 = 2;
@@ -53,14 +53,14 @@ const FEW: usize = 6;
 pub const EDGES: u32 = 4;
 /// How much farther aside edges are asked for than corners. Measured: 1 +0.1 %, +4 % (boxes in
 /// motion); 2 no change; …
-const WIDER: Real = 1.4;
+const WIDER: f64 = 1.4;
 /// … and the second of the two directions, to the other side: not opposite to the first, where both
 /// could show the same ends. Measured: ÷2 +0.1 %, +3 %; −1 +0.9 %, +12 % (boxes in motion).
-const OPPOSITE: Real = -0.7;
+const OPPOSITE: f64 = -0.7;
 /// How many times the tolerance a disc may lift D between the corners of a face: mostly it stands on its rim,
 /// and lifts nothing. Measured: 1 +3 % (recorded contacts, 8 % more time); 1e4 +9 % (cylinders in motion at
 /// 1e-10).
-const RIM: Real = 100.0;
+const RIM: f64 = 100.0;
 
 impl Memory {
     /// Nothing but a direction.
@@ -93,14 +93,14 @@ impl Memory {
     /// Where the answer was in a face: the directions to ask first, and one to ask where these do not show
     /// it; zero for none. They are those of [`Memory::recall`]; where the face had not turned by the
     /// tolerance, the answer's own takes the place of one that shows a corner which it found itself.
-    pub fn face(&self, tolerance: Real) -> Option<[Vec3; 4]> {
+    pub fn face(&self, tolerance: f64) -> Option<[Vec3; 4]> {
         if !matches!(self.count, 3 | EDGES) {
             return None;
         }
         // What is round lifts D between its corners.
         let turn2 = self.angle() * self.angle();
         let lifted = |(kind, numbers): &Round| {
-            let size: Real = numbers.iter().map(|x| x.abs()).sum();
+            let size: f64 = numbers.iter().map(|x| x.abs()).sum();
             let times = if *kind == Kind::Disc { RIM } else { 1.0 };
             *kind != Kind::None && !(0.5 * size * turn2 <= times * tolerance)
         };
@@ -188,7 +188,7 @@ impl Memory {
     }
 
     /// How far aside the directions of [`Memory::recall`] are, radians.
-    fn angle(&self) -> Real {
+    fn angle(&self) -> f64 {
         // Farther aside than the pair moved, and not as far where R or balls alone are known, which
         // serve the better the nearer the samples are (in double precision); a disc's axis is told
         // by samples that are not as near. NaN becomes the least angle. Measured in motion: ×2, ÷2
@@ -219,10 +219,10 @@ impl Memory {
         // fourth vertex there, towards the vertex itself.
         let corner = |g: Vec3, h: Vec3, k: Vec3| {
             let across = dir.cross(&(k - h));
-            let way = across * (1.0 as Real).copysign(across.dot(&(g - h)));
+            let way = across * (1.0 as f64).copysign(across.dot(&(g - h)));
             way + g * (across.norm() / g.norm())
         };
-        let aside = |way: Vec3, far: Real| {
+        let aside = |way: Vec3, far: f64| {
             let way = normalised(&way)?;
             normalised(&(dir + way * (far * angle)))
         };
@@ -254,7 +254,7 @@ mod tests {
             let (e1, e2) = crate::math::basis(&dir);
             // Three slopes around the origin.
             let turn = r.within(0.0, 6.0);
-            let slopes = [0.0, 2.1, 4.2].map(|at: Real| {
+            let slopes = [0.0, 2.1, 4.2].map(|at: f64| {
                 let (s, c) = (at + turn + r.within(-0.4, 0.4)).sin_cos();
                 (e1 * c + e2 * s) * r.within(0.5, 1.0)
             });
@@ -318,7 +318,7 @@ mod tests {
     fn what_makes_no_sense_is_not_recalled() {
         for (place, lost) in [(0, 0), (2, 0), (3, 1)] {
             let mut memory = kept(2, &[DISC, BALL]);
-            memory.curvature[place] = Real::NAN;
+            memory.curvature[place] = f64::NAN;
             let kinds = memory.round().map(|round| {
                 let mut object = Object::default();
                 object.recall(&round);
@@ -332,9 +332,9 @@ mod tests {
         assert!(!object.is_round());
         let memory = Memory {
             dir: Vec3::z(),
-            slopes: [Vec3::repeat(Real::NAN), Vec3::zeros(), Vec3::z()],
-            curvature: [Real::INFINITY, 1.0, Real::NAN, 0.0, 0.0, 0.0],
-            drift: Real::NAN,
+            slopes: [Vec3::repeat(f64::NAN), Vec3::zeros(), Vec3::z()],
+            curvature: [f64::INFINITY, 1.0, f64::NAN, 0.0, 0.0, 0.0],
+            drift: f64::NAN,
             count: 77,
             curved: u32::MAX,
         };

@@ -26,15 +26,15 @@ use super::curved::Curved;
 use super::memory::{Kind, Round};
 use super::walk::{Cuts, ROOM, Row, each};
 use crate::known::round::{ALIKE, Disc, Seen, Symmetric, fits};
-use crate::math::{Real, Vec3, ZERO, larger};
+use crate::math::{Vec3, ZERO, larger};
 
 /// How many times as far from where it was seen as the directions are apart that showed it what is
 /// round is believed: the body may be cut off beyond. Measured: 1 +1.1 %, +8 % (cylinders); 2 −0.1 %,
 /// and half a disc is taken for a disc half a radian beyond its end.
-const FAR: Real = 1.4;
+const FAR: f64 = 1.4;
 /// How much more alike the excesses of a smooth pair must be once a vertex was seen twice (a
 /// polytope, it seems). Measured: ×2, ÷2 nothing; 1 +0.1 %, +1.5 %.
-const FLAT: Real = 0.05;
+const FLAT: f64 = 0.05;
 
 /// A ball, which is a disc of no axis, or a disc, and how it was found.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,7 @@ pub struct Found {
 
 impl Found {
     /// A ball, by its radius.
-    pub(super) const fn ball(radius: Real) -> Self {
+    pub(super) const fn ball(radius: f64) -> Self {
         Self {
             disc: Disc { radius, axis: ZERO },
             ..Self::NONE
@@ -142,9 +142,9 @@ impl Object {
     /// What was round of it in the query before, if that makes sense.
     pub fn recall(&mut self, (kind, numbers): &Round) {
         let [x, y, z, ..] = *numbers;
-        let size: Real = numbers.iter().map(|number| number.abs()).sum();
+        let size: f64 = numbers.iter().map(|number| number.abs()).sum();
         // Also NaN.
-        if !(size > 0.0 && size < Real::INFINITY) {
+        if !(size > 0.0 && size < f64::INFINITY) {
             return;
         }
         self.kind = *kind;
@@ -178,7 +178,7 @@ impl Object {
 
     /// How alike the excesses of a smooth pair must be.
     #[inline(always)]
-    pub(super) fn alike(&self) -> Real {
+    pub(super) fn alike(&self) -> f64 {
         if self.flat { ALIKE * FLAT } else { ALIKE }
     }
 
@@ -194,7 +194,7 @@ impl Object {
 
     /// The radius of its ball, metres.
     #[inline(always)]
-    pub fn ball(&self) -> Real {
+    pub fn ball(&self) -> f64 {
         if self.kind == Kind::Ball {
             self.disc().radius
         } else {
@@ -221,7 +221,7 @@ impl Object {
     }
 
     /// A round part larger than the object was another's; one of no more than `least`, metres, is none.
-    pub fn forget_unless_fits(&mut self, extent2: Real, least: Real) {
+    pub fn forget_unless_fits(&mut self, extent2: f64, least: f64) {
         let size = larger(self.curved.size(), self.disc().radius);
         if self.is_round() && !(fits(size, extent2) && size > least) {
             *self = Self::default();
@@ -240,7 +240,7 @@ impl Object {
 
     /// The vertex of a point, and whether it carries the ball or disc.
     #[inline(always)]
-    pub(super) fn vertex(&self, at: &Seen, same: Real) -> (Vec3, bool) {
+    pub(super) fn vertex(&self, at: &Seen, same: f64) -> (Vec3, bool) {
         let core = at.p - self.disc().point(&at.n);
         let aside = || self.disc().across(&(core - self.found.carrier));
         let carries = self.kind == Kind::Ball
@@ -252,7 +252,7 @@ impl Object {
     /// Takes a ball or disc off all points. Returns where the `best` one is now: of points that are
     /// one vertex now the best stays, and else the latest.
     #[inline(never)]
-    pub fn take_off(&mut self, (found, told): (&Found, Told), best: usize, same: Real) -> usize {
+    pub fn take_off(&mut self, (found, told): (&Found, Told), best: usize, same: f64) -> usize {
         (self.found, self.told) = (*found, told);
         let ball = found.disc.axis == ZERO;
         self.kind = if ball { Kind::Ball } else { Kind::Disc };
@@ -285,7 +285,7 @@ impl Object {
 
     /// The vertex in that place was seen along directions that are so far apart, squared.
     #[inline(always)]
-    pub(super) fn see(&mut self, k: usize, apart2: Real) {
+    pub(super) fn see(&mut self, k: usize, apart2: f64) {
         self.span[k % ROOM] = larger(apart2, self.span[k % ROOM]);
     }
 
@@ -300,7 +300,7 @@ impl Object {
 
     /// The point that is the same vertex as this one.
     #[inline(always)]
-    pub(super) fn twin(&self, core: &Vec3, carries: bool, same: Real) -> Option<usize> {
+    pub(super) fn twin(&self, core: &Vec3, carries: bool, same: f64) -> Option<usize> {
         (0..self.len.min(ROOM)).find(|&k| {
             let apart = core - self.core(k);
             apart.norm_squared() <= same * same && carries == self.carries(k)
@@ -384,17 +384,17 @@ impl Object {
     }
 
     /// The support value of the known points along unit `n`.
-    pub fn height(&self, n: &Vec3) -> Real {
+    pub fn height(&self, n: &Vec3) -> f64 {
         let disc = self.disc().radius * self.disc().across(n).norm();
         let level = |k| self.core(k).dot(n) + if self.carries(k) { disc } else { 0.0 };
         let levels = (0..self.len.min(ROOM)).map(level);
-        levels.fold(Real::NEG_INFINITY, larger)
+        levels.fold(f64::NEG_INFINITY, larger)
     }
 
     /// The `k`th point where it is along unit `n`: on its ball or disc where that was seen, and behind all
     /// support planes of the points but for `same`, metres.
     #[inline(always)]
-    pub fn point(&self, k: usize, n: &Vec3, same: Real) -> Vec3 {
+    pub fn point(&self, k: usize, n: &Vec3, same: f64) -> Vec3 {
         let is_seen = self.is_cored() && self.carries(k) && self.was_seen(k, n);
         let moved = is_seen.then(|| self.core(k) + self.disc().point(n));
         let mut seen = self.at.iter().take(self.len);
@@ -405,7 +405,7 @@ impl Object {
     /// How far what is round lifts the cut of the `k`th point along unit `n` above the point itself,
     /// metres.
     #[inline(always)]
-    pub fn lift(&self, k: usize, n: &Vec3) -> Real {
+    pub fn lift(&self, k: usize, n: &Vec3) -> f64 {
         let at = &self.at[k % ROOM];
         if !self.carries(k) {
             0.0
@@ -427,7 +427,7 @@ impl Object {
     /// Is the `k`th point's round part in doubt along unit `n`? Not seen twice, or too far from
     /// where, and lifting its cut by more than `hair`, metres.
     #[inline(always)]
-    pub fn is_unseen(&self, k: usize, n: &Vec3, hair: Real) -> bool {
+    pub fn is_unseen(&self, k: usize, n: &Vec3, hair: f64) -> bool {
         let doubted = match self.kind {
             Kind::Curved => self.curved.is_believed(),
             _ => !self.was_seen(k, n),
@@ -451,7 +451,7 @@ mod tests {
     use crate::math::EPSILON;
     use crate::shapes::Random;
 
-    const NEAR: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-9 };
+    const NEAR: f64 = if EPSILON > 1e-10 { 1e-4 } else { 1e-9 };
     const SAME: Same = Same {
         rounding: 4.0 * EPSILON,
         round: NEAR,
@@ -466,7 +466,7 @@ mod tests {
     /// Of radius 0.5, about the z axis, from −0.4 to 0.4.
     fn cylinder(d: &Vec3) -> Vec3 {
         let f = 0.5 / d.x.hypot(d.y);
-        Vec3::new(d.x * f, d.y * f, (0.4 as Real).copysign(d.z))
+        Vec3::new(d.x * f, d.y * f, (0.4 as f64).copysign(d.z))
     }
 
     /// The same rim, and a tip at z = 0.9.
@@ -584,7 +584,7 @@ mod tests {
         let b = Vec3::z();
         let mut object = Object::default();
         for k in 0..2 * ROOM {
-            let p = Vec3::new(k as Real, 1.0, (k * 7 % (2 * ROOM)) as Real);
+            let p = Vec3::new(k as f64, 1.0, (k * 7 % (2 * ROOM)) as f64);
             let at = Seen { n: b, p };
             let place = object.take(&at, None, &b, 2, &SAME);
             assert_eq!(object.core(place), p);

@@ -16,21 +16,21 @@ use crate::contact::{Penetration, Settings};
 use crate::contacts::polygon::Flat;
 use crate::known::points::Points;
 use crate::known::round::{ALIKE, Move, Same, Seen};
-use crate::known::support::{Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::Stop;
-use crate::math::{self, EPSILON, Real, Vec3, larger, unit};
+use crate::math::{self, EPSILON, Vec3, larger, unit};
+use crate::minkowski::support::{Known, MinkowskiDifference, SupportMap, SupportPoint};
 use core::ops::ControlFlow::{self, Break, Continue};
 
 /// Share of the tolerance by which two vertices that are the same may differ: a radius is in error
 /// by more than rounding. Insensitive: 0, ÷2, ×2 tried.
-pub(super) const SAME: Real = 0.06;
+pub(super) const SAME: f64 = 0.06;
 /// Share of the tolerance by which a depth may differ for what a round part is not: it leaves room
 /// for rounding, the radius and the model. Measured: ÷2.5 +0.2 %, +10 % (ellipsoids in motion); ×2 no
 /// change, +3 % (cylinders in motion).
-pub(super) const HAIR: Real = 0.25;
+pub(super) const HAIR: f64 = 0.25;
 /// How much less alike a pair of D may be than one of an object. Measured: ÷2 +0.4 %, +12 % (ellipsoids
 /// from 25°); ×1.5 +0.1 %.
-const JOINT: Real = 2.0;
+const JOINT: f64 = 2.0;
 /// Support points that were asked for what they tell, after which the search has lost its way.
 /// Measured: ÷2 −0.1 %, ×2 +0.2 %, +2 %.
 const DOUBTS: u32 = 4;
@@ -48,13 +48,13 @@ pub(super) struct Sample {
     /// The support point there.
     pub(super) p: SupportPoint,
     /// n·p, the support value.
-    pub(super) h: Real,
+    pub(super) h: f64,
 }
 
 impl Sample {
     /// Rounding error of the support value, metres.
     #[inline(always)]
-    fn rounding(&self) -> Real {
+    fn rounding(&self) -> f64 {
         let p = &self.p;
         let size = (p.v1.x.abs() + p.v1.y.abs() + p.v1.z.abs())
             + (p.v2.x.abs() + p.v2.y.abs() + p.v2.z.abs());
@@ -68,7 +68,7 @@ pub(super) struct Step {
     pub(super) end: End,
     /// The unit direction there, and the depth, metres.
     pub(super) n: Vec3,
-    pub(super) depth: Real,
+    pub(super) depth: f64,
 }
 
 /// What comes after a support point: a direction to ask, or the end; `true`: at a local minimum, which is
@@ -100,12 +100,12 @@ pub struct Search {
     pub(super) told: bool,
     /// Where both objects may have discs: the slope of the pair that they were seen by, metres, until
     /// the next sample shows them; else 0.
-    pub(super) slope: Real,
-    pub(super) extent2: Real,
-    pub(super) tolerance: Real,
+    pub(super) slope: f64,
+    pub(super) extent2: f64,
+    pub(super) tolerance: f64,
     /// Before rounding made it larger.
-    pub(super) finest: Real,
-    pub(super) rounding: Real,
+    pub(super) finest: f64,
+    pub(super) rounding: f64,
     pub(super) asked: usize,
     pub(super) doubts: u32,
     pub(super) slopes: [Vec3; 3],
@@ -131,7 +131,7 @@ impl Search {
     }
 
     #[inline(always)]
-    pub(super) fn rho(&self) -> Real {
+    pub(super) fn rho(&self) -> f64 {
         self.objects[0].ball() + self.objects[1].ball()
     }
 
@@ -225,7 +225,7 @@ impl Search {
 
     /// Takes a support point.
     #[inline(always)]
-    fn take(&mut self, new: &Sample, centre: &Vec3, tolerance: Real) {
+    fn take(&mut self, new: &Sample, centre: &Vec3, tolerance: f64) {
         let (n, h, p) = (new.n, new.h, &new.p);
         self.rounding = larger(new.rounding(), self.rounding);
         self.extent2 = larger((p.v - centre).norm_squared(), self.extent2);
@@ -405,7 +405,7 @@ impl Search {
         }
         let gain = self.gain();
         // Also NaN.
-        if self.step.end.lost || !(gain >= -self.tolerance && gain < Real::INFINITY) {
+        if self.step.end.lost || !(gain >= -self.tolerance && gain < f64::INFINITY) {
             return Break(false);
         }
         let inside = !self.step.end.on_border;
@@ -427,7 +427,7 @@ impl Search {
 
     /// How much lower than the best sample the model is, metres.
     #[inline(always)]
-    fn gain(&self) -> Real {
+    fn gain(&self) -> f64 {
         self.best.h - self.step.depth
     }
 
@@ -463,7 +463,7 @@ mod tests {
     use crate::math::EPSILON;
     use crate::shapes::{Random, capsule, corners, hull, placed};
 
-    const TOLERANCE: Real = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
+    const TOLERANCE: f64 = if EPSILON > 1e-10 { 1e-5 } else { 1e-8 };
 
     /// How a search ends, and with what.
     enum End {
@@ -512,7 +512,7 @@ mod tests {
         }
     }
 
-    fn ball(c: Vec3, r: Real) -> impl Fn(&Vec3) -> Vec3 {
+    fn ball(c: Vec3, r: f64) -> impl Fn(&Vec3) -> Vec3 {
         move |d| c + d * r
     }
 
@@ -605,7 +605,7 @@ mod tests {
     }
 
     /// Of this radius about the z axis, its upper rim in the plane z = 0.
-    fn cylinder(radius: Real) -> impl Fn(&Vec3) -> Vec3 {
+    fn cylinder(radius: f64) -> impl Fn(&Vec3) -> Vec3 {
         move |d| {
             let f = radius / d.x.hypot(d.y);
             Vec3::new(d.x * f, d.y * f, if d.z > 0.0 { 0.0 } else { -2.0 })
@@ -635,7 +635,7 @@ mod tests {
                 continue;
             }
             let hit = found(end);
-            let depth = (2.0 as Real).sqrt() * e;
+            let depth = (2.0 as f64).sqrt() * e;
             assert!((hit.depth - depth).abs() < 2.0 * TOLERANCE, "{}", hit.depth);
             assert!((hit.dir - n).norm() < TOLERANCE.sqrt() * 2.0);
             let near = (4.0 * depth * TOLERANCE).sqrt() + TOLERANCE;
@@ -680,7 +680,7 @@ mod tests {
         let mut random = Random::new(6);
         let wedge = |d: &Vec3| {
             let f = 1.0 / d.x.hypot(d.y);
-            let z = (1.0 as Real).copysign(d.z);
+            let z = (1.0 as f64).copysign(d.z);
             if 3.0 * d.x * f > 1.0 {
                 Vec3::new(3.0, 0.0, z)
             } else {

@@ -3,32 +3,32 @@
 
 //! The trust region: how far around the bundle's centre the model is believed.
 
-use crate::math::{EPSILON, Real, Vec3, larger, lesser, perpendicular};
+use crate::math::{EPSILON, Vec3, larger, lesser, perpendicular};
 
 /// First trust radius, radians: the error of a good guess. Measured: ×2 −2.5 %, 34 more, and 63
 /// more of those from 5°; ÷2 +4.9 %, +68 % (spheres).
-pub const FIRST: Real = 0.1;
+pub const FIRST: f64 = 0.1;
 /// The radius grows by this when a reduction foretold on its border came true … Measured: ×2
 /// +0.5 %, 12 more of the boxes from 45°; ÷2 +4 %, 100 more; 2 and 3 +0.5 %, +0.3 %.
-pub const GROW: Real = 2.5;
+pub const GROW: f64 = 2.5;
 /// … to this share, … Measured: 0.9 −0.5 %, 6 more; ÷2 +0.7 %, +12 %, 10 more; never +13 %.
-const TRUE: Real = 0.7;
+const TRUE: f64 = 0.7;
 /// … and shrinks by this when there was none. Measured: 0.8 no change, +9 % (hulls from 45°),
 /// 74 fewer; ÷2 +4.2 %, 93 more; never +3 %, +130 % (hulls), 220 fewer.
-const SHRINK: Real = 0.6;
+const SHRINK: f64 = 0.6;
 /// Largest radius, in the chart: tan 45°. Derived: farther off it stretches more than it shows.
-const LARGEST: Real = 1.0;
+const LARGEST: f64 = 1.0;
 /// A step aside, radians, that shows curvature and is still near: the smallest first step, the
 /// step across the one direction known, the largest one towards a remembered cut. Measured: ×2
 /// +0.2 %, +62 % (ellipsoids in motion); ÷2 +0.1 %, +4 % (hulls in motion).
-pub const ASIDE: Real = 0.03;
+pub const ASIDE: f64 = 0.03;
 
 /// The trust radius, and what was foretold.
 pub struct TrustRegion {
     /// Trust radius, radians.
-    pub radius: Real,
+    pub radius: f64,
     /// The depth foretold for the direction asked next, metres; NaN without a forecast.
-    foretold: Real,
+    foretold: f64,
     /// Was that on the border?
     on_border: bool,
 }
@@ -38,7 +38,7 @@ impl Default for TrustRegion {
     fn default() -> Self {
         Self {
             radius: FIRST,
-            foretold: Real::NAN,
+            foretold: f64::NAN,
             on_border: false,
         }
     }
@@ -48,7 +48,7 @@ impl TrustRegion {
     /// From the first sample (n, v), with nothing but the `size` of D to go by: down the
     /// gradient as on a ball, at least far enough to see curvature. Unit.
     #[inline]
-    pub fn first_step(&mut self, n: &Vec3, v: &Vec3, size: Real) -> Vec3 {
+    pub fn first_step(&mut self, n: &Vec3, v: &Vec3, size: f64) -> Vec3 {
         let h = n.dot(v);
         let gradient = v - n * h;
         let slope = gradient.norm();
@@ -83,7 +83,7 @@ impl TrustRegion {
 
     /// The next direction is asked for this depth.
     #[inline]
-    pub fn foretell(&mut self, depth: Real, on_border: bool) {
+    pub fn foretell(&mut self, depth: f64, on_border: bool) {
         self.foretold = depth;
         self.on_border = on_border;
     }
@@ -91,19 +91,19 @@ impl TrustRegion {
     /// The next direction is asked for what it tells, not for its depth.
     #[inline]
     pub fn no_forecast(&mut self) {
-        self.foretold = Real::NAN;
+        self.foretold = f64::NAN;
     }
 
     /// Is the depth `h` as low as foretold, but for the tolerance? False without a forecast.
     #[inline]
-    pub fn came_true(&self, h: Real, tolerance: Real) -> bool {
+    pub fn came_true(&self, h: f64, tolerance: f64) -> bool {
         h - self.foretold <= tolerance
     }
 
     /// Compares the actual with the predicted reduction, from the least depth `before` to `h` in the
     /// direction asked since, metres.
     #[inline]
-    pub fn compare(&mut self, h: Real, before: Real) {
+    pub fn compare(&mut self, h: f64, before: f64) {
         let (actual, predicted) = (before - h, before - self.foretold);
         if actual > 0.0 {
             // False for NaN: no forecast.
@@ -122,7 +122,7 @@ mod tests {
 
     /// The radius after a step, on the border or not, that foretold a reduction of 0.1 and brought so much
     /// of it.
-    fn radius_after(came: Real, on_border: bool) -> Real {
+    fn radius_after(came: f64, on_border: bool) -> f64 {
         let mut trust = TrustRegion::default();
         trust.foretell(0.9, on_border);
         trust.compare(1.0 - 0.1 * came, 1.0);

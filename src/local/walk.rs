@@ -25,19 +25,19 @@
 //! The walk ends at a minimum, on the border of the trust region, or, by rounding, nowhere.
 
 use crate::contacts::polygon::{Flat, cross, dot, side};
-use crate::math::{Real, larger};
+use crate::math::larger;
 
 /// Points of an object that a search keeps. Measured: ten take as many support points, from 45° too.
 pub const ROOM: usize = 8;
 /// Lanes that are computed together.
 pub const LANES: usize = 4;
 /// A number for each of them.
-pub type Row = [Real; ROOM];
+pub type Row = [f64; ROOM];
 /// Steps of a walk: more than any takes that has an end. Insensitive: 16 to 64.
 const STEPS: usize = 32;
 /// A weight as negative as this is rounding. Insensitive: 0 to 1e-9 on the sets; at 0 some boxes take
 /// four support points more.
-const NEGATIVE: Real = -1e-12;
+const NEGATIVE: f64 = -1e-12;
 
 /// Halvings of the way to the border, of which the first is taken where level ground falls. Derived: what
 /// bends rises by the fourth order, by x⁴/32 of the depth, more than a slope s falls where x³ > 32 s; the
@@ -64,7 +64,7 @@ pub struct Cuts {
     /// The points that carry a disc, as bits, …
     pub carried: u32,
     /// … and how these bend: xx, xy, yy, metres.
-    pub bend: [Real; 3],
+    pub bend: [f64; 3],
 }
 
 impl Cuts {
@@ -100,8 +100,8 @@ impl Cuts {
     }
 
     #[inline(always)]
-    pub fn carries(&self, k: usize) -> Real {
-        (self.carried >> k & 1) as Real
+    pub fn carries(&self, k: usize) -> f64 {
+        (self.carried >> k & 1) as f64
     }
 }
 
@@ -120,7 +120,7 @@ pub struct Kink {
 pub struct End {
     pub x: Flat,
     /// φ there, metres.
-    pub value: Real,
+    pub value: f64,
     /// On the border of the trust region, where φ goes on falling.
     pub on_border: bool,
     /// It found no end.
@@ -134,7 +134,7 @@ pub struct End {
     /// … how many of them, …
     pub count: usize,
     /// … and their weights.
-    pub weights: [Real; 2],
+    pub weights: [f64; 2],
 }
 
 impl End {
@@ -151,7 +151,7 @@ impl End {
     /// at least |x| times the distance from the origin to the nearest side of their hull, which
     /// must be ½ φ₀ times the radius.
     #[inline]
-    pub fn is_lowest(&self, radius: Real) -> bool {
+    pub fn is_lowest(&self, radius: f64) -> bool {
         if self.count < 2 || !(self.value > 0.0) {
             return !self.straight;
         }
@@ -159,7 +159,7 @@ impl End {
         let least2 = least * least;
         let [p, q] = &self.kinks;
         let area = cross(&p.e, &q.e).abs();
-        let far = |share: Real, side: &Flat| {
+        let far = |share: f64, side: &Flat| {
             let height = share * area;
             height * height >= least2 * dot(side, side)
         };
@@ -177,36 +177,36 @@ impl End {
 pub struct Model {
     pub cuts: [Cuts; 2],
     /// By how much level ground may fall, metres.
-    pub level: Real,
+    pub level: f64,
 }
 
 /// A way from x, and how far it goes, as a quotient: without an end, where that is infinite.
-type Way = (Flat, Real, Real);
+type Way = (Flat, f64, f64);
 
 /// To where a fall of this rate, which rises by that, ends.
 #[inline(always)]
-fn to_the_least(u: Flat, fall: Real, rise: Real) -> Way {
+fn to_the_least(u: Flat, fall: f64, rise: f64) -> Way {
     if rise > 0.0 {
         (u, fall, rise)
     } else {
-        (u, Real::INFINITY, 1.0)
+        (u, f64::INFINITY, 1.0)
     }
 }
 
 /// φ at a place of the chart, on one cut of each object.
 struct Place {
     /// Their height, and its slope.
-    value: Real,
+    value: f64,
     slope: Flat,
     /// 1 + x².
-    one: Real,
+    one: f64,
     /// (1 + x²) M.
     up: Flat,
 }
 
 impl Place {
     #[inline(always)]
-    fn of<const BENT: bool>(x: &Flat, linear: Real, beta: &Flat, bend: &[Real; 3]) -> Self {
+    fn of<const BENT: bool>(x: &Flat, linear: f64, beta: &Flat, bend: &[f64; 3]) -> Self {
         let (mut value, mut slope) = (linear, *beta);
         if BENT {
             let gx = times(bend, x);
@@ -227,7 +227,7 @@ impl Place {
 impl Model {
     /// From x within `radius` of `middle`, down.
     #[inline(always)]
-    pub fn walk(&self, from: &Flat, middle: &Flat, radius: Real, end: &mut End) {
+    pub fn walk(&self, from: &Flat, middle: &Flat, radius: f64, end: &mut End) {
         if self.cuts[0].carried | self.cuts[1].carried != 0 {
             self.walk_on::<true>(from, middle, radius, end);
         } else {
@@ -236,7 +236,7 @@ impl Model {
     }
 
     #[inline(never)]
-    fn walk_on<const BENT: bool>(&self, from: &Flat, middle: &Flat, radius: Real, end: &mut End) {
+    fn walk_on<const BENT: bool>(&self, from: &Flat, middle: &Flat, radius: f64, end: &mut End) {
         let cuts = &self.cuts;
         let mut x = *from;
         let mut levels = [cuts[0].levels(&x), cuts[1].levels(&x)];
@@ -312,7 +312,7 @@ impl Model {
             if BENT && end.on_border {
                 // On level ground what bends is known best near by: farther off the model is above it
                 // by the fourth order, and may hide that it falls.
-                let falls = |t: Real| {
+                let falls = |t: f64| {
                     let to = [x[0] + t * u[0], x[1] + t * u[1]];
                     let there = Place::of::<BENT>(&to, linear + t * dot(&beta, &u), &beta, &bend);
                     here.value / here.one.sqrt() - there.value / there.one.sqrt() > self.level
@@ -374,7 +374,7 @@ impl Model {
 
     /// The bend of the active points; along a kink of its two as they share the slope.
     #[inline(always)]
-    fn bend(&self, end: &End, x: &Flat, beta: &Flat, linear: Real) -> [Real; 3] {
+    fn bend(&self, end: &End, x: &Flat, beta: &Flat, linear: f64) -> [f64; 3] {
         let mut of = [0, 1].map(|o: usize| self.cuts[o % 2].carries(end.active[o % 2]));
         if end.count == 1 {
             let Kink { object, point, e } = &end.kinks[0];
@@ -389,7 +389,7 @@ impl Model {
 }
 
 #[inline(always)]
-fn times(a: &[Real; 3], x: &Flat) -> Flat {
+fn times(a: &[f64; 3], x: &Flat) -> Flat {
     [a[0] * x[0] + a[1] * x[1], a[1] * x[0] + a[2] * x[1]]
 }
 
@@ -397,12 +397,12 @@ fn times(a: &[Real; 3], x: &Flat) -> Flat {
 #[inline(always)]
 fn on_one<const BENT: bool>(
     x: &Flat,
-    linear: Real,
+    linear: f64,
     beta: &Flat,
-    bend: &[Real; 3],
+    bend: &[f64; 3],
     up: &Flat,
     middle: &Flat,
-    radius: Real,
+    radius: f64,
 ) -> Way {
     let base = linear - dot(beta, x);
     if BENT {
@@ -412,16 +412,16 @@ fn on_one<const BENT: bool>(
         ([base * x[0] - beta[0], base * x[1] - beta[1]], 1.0, -base)
     } else if *up == [0.0; 2] {
         // One way is as good as another.
-        ([1.0, 0.0], Real::INFINITY, 1.0)
+        ([1.0, 0.0], f64::INFINITY, 1.0)
     } else {
-        ([-up[0], -up[1]], Real::INFINITY, 1.0)
+        ([-up[0], -up[1]], f64::INFINITY, 1.0)
     }
 }
 
 /// Along a kink, down, to where φ is least. With φ = L/√(1+x²) and x + t u its derivative is
 /// proportional to (g·u)(1 + x²) − L x·u + t ((g·u)(x·u) − L u² + u'Gu (1 + x²)), exact where G = 0.
 #[inline(always)]
-fn along<const BENT: bool>(e: &Flat, x: &Flat, bend: &[Real; 3], here: &Place) -> Way {
+fn along<const BENT: bool>(e: &Flat, x: &Flat, bend: &[f64; 3], here: &Place) -> Way {
     let mut u = [-e[1], e[0]];
     let mut fall = -dot(&here.up, &u);
     if fall < 0.0 {
@@ -440,7 +440,7 @@ fn weigh(end: &mut End, here: &Place, left: &mut (usize, usize)) -> bool {
     let [p, q] = end.kinks;
     // All of them (1 + x²) times as large.
     let area = cross(&p.e, &q.e) * here.one;
-    let (sign, area) = ((1.0 as Real).copysign(area), area.abs());
+    let (sign, area) = ((1.0 as f64).copysign(area), area.abs());
     let (s, t) = (-cross(&here.up, &q.e) * sign, -cross(&p.e, &here.up) * sign);
     let same = p.object == q.object;
     // Of the kinks, and of the active points of their objects.
@@ -475,7 +475,7 @@ fn weigh(end: &mut End, here: &Place, left: &mut (usize, usize)) -> bool {
 /// Where α + β·x + ½ x'Kx, K = G − α I, is least within the radius: the minimum along what bends
 /// up, and along what bends down the border.
 #[inline(never)]
-fn valley(beta: &Flat, bend: &[Real; 3], base: Real, middle: &Flat, radius: Real) -> Flat {
+fn valley(beta: &Flat, bend: &[f64; 3], base: f64, middle: &Flat, radius: f64) -> Flat {
     let [xx, xy, yy] = *bend;
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let spread = (half * half + xy * xy).sqrt();
@@ -517,10 +517,10 @@ mod tests {
     use crate::shapes::Random;
 
     /// What rounding leaves.
-    const NEAR: Real = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
+    const NEAR: f64 = if EPSILON > 1e-10 { 1e-4 } else { 1e-6 };
 
     /// Both objects' points of a pair that overlaps by about `depth` along b.
-    fn model(r: &mut Random, len: [usize; 2], depth: Real, bend: Real) -> Model {
+    fn model(r: &mut Random, len: [usize; 2], depth: f64, bend: f64) -> Model {
         let mut model = Model::default();
         for (cuts, len) in model.cuts.iter_mut().zip(len) {
             cuts.len = len;
@@ -535,14 +535,14 @@ mod tests {
         model
     }
 
-    fn value(model: &Model, x: &Flat) -> Real {
-        let linear: Real = [0, 1]
+    fn value(model: &Model, x: &Flat) -> f64 {
+        let linear: f64 = [0, 1]
             .map(|o| {
                 let cuts = &model.cuts[o];
                 cuts.levels(x)[..cuts.len]
                     .iter()
                     .copied()
-                    .fold(Real::NEG_INFINITY, Real::max)
+                    .fold(f64::NEG_INFINITY, f64::max)
             })
             .iter()
             .sum();
@@ -590,15 +590,15 @@ mod tests {
             // derivative no more than three times its slopes and bends.
             let slack = if bend > 0.0 { 3.0 * off * off } else { NEAR };
             for k in 0..24 {
-                let (s, c) = (k as Real * 0.2618).sin_cos();
+                let (s, c) = (k as f64 * 0.2618).sin_cos();
                 let beside = [end.x[0] + 1e-3 * c, end.x[1] + 1e-3 * s];
                 let lower = end.value - value(&model, &beside);
                 assert!(lower <= NEAR + 1e-3 * slack, "{lower} {end:?}");
             }
             if end.count == 2 && bend == 0.0 && end.is_lowest(radius - off) {
                 for k in 0..240 {
-                    let (s, c) = (k as Real * 0.26).sin_cos();
-                    let far = (radius - off) * (k as Real / 240.0);
+                    let (s, c) = (k as f64 * 0.26).sin_cos();
+                    let far = (radius - off) * (k as f64 / 240.0);
                     let there = value(&model, &[end.x[0] + far * c, end.x[1] + far * s]);
                     assert!(there >= end.value - 1e-4 * depth.abs() - NEAR);
                 }

@@ -9,9 +9,9 @@
 //! where the ray crosses it is the lower bound, once the origin is known to be in D.
 
 use crate::contact::{Penetration, Settings};
-use crate::known::support::{MinkowskiDifference, SupportMap};
 use crate::known::support_set::Stop;
-use crate::math::{Real, Vec3};
+use crate::math::Vec3;
+use crate::minkowski::support::{MinkowskiDifference, SupportMap};
 use crate::paper::incremental::answer;
 use crate::paper::portal::{Exit, Portal, Search, SupportPlane, Until, rounding};
 
@@ -68,8 +68,8 @@ fn nearest(dir: &Vec3, first: SupportPlane, portal: Option<&Portal>) -> SupportP
 }
 
 /// Where the ray crosses the portal less its error, and that error, metres.
-fn inscribed(dir: &Vec3, portal: &Portal) -> (Real, Real) {
-    let largest = |m: Real, plane: &SupportPlane| m.max(plane.point.magnitude());
+fn inscribed(dir: &Vec3, portal: &Portal) -> (f64, f64) {
+    let largest = |m: f64, plane: &SupportPlane| m.max(plane.point.magnitude());
     let size = portal.planes.iter().fold(0.0, largest);
     portal.normal().map_or((0.0, 0.0), |n| {
         let error = rounding(size) / n.dot(dir);
@@ -82,7 +82,7 @@ fn follow<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     dir: &Vec3,
     last: Option<[Vec3; 3]>,
-    tolerance: Real,
+    tolerance: f64,
     budget: &mut u64,
 ) -> Result<(Exit, SupportPlane), Stop> {
     let first = SupportPlane::of(md, last.map_or(*dir, |[a, _, _]| a))?;

@@ -24,15 +24,15 @@
 
 use crate::contact::{Penetration, Settings};
 use crate::contacts::pressure;
-use crate::known::support::{MinkowskiDifference, SupportMap};
 use crate::known::support_set::Stop;
-use crate::math::{Real, Vec3, perpendicular};
+use crate::math::{Vec3, perpendicular};
+use crate::minkowski::support::{MinkowskiDifference, SupportMap};
 use crate::paper::portal::{Exit, Portal, Search, SupportPlane, Until, rounding};
 
 /// A step aside from a stationary direction: tan of about 6°, small enough to stay
 /// in the valley, large enough to see a slope. The two parts have no simple ratio,
 /// so that no symmetry of a shape hides the slope.
-const ASIDE: (Real, Real) = (0.093, 0.041);
+const ASIDE: (f64, f64) = (0.093, 0.041);
 
 /// A local minimum of the penetration depth, searched from the unit direction
 /// `start`: Algorithm 3, or with [`Until::Shortcut`] Algorithms 4 and 5. `flat`: the unit normal of the
@@ -46,7 +46,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     flat: Option<Vec3>,
     until: Until,
     settings: &Settings,
-    switched: impl FnMut(Real),
+    switched: impl FnMut(f64),
 ) -> Result<Penetration, Stop> {
     let ray = SupportPlane::of(md, start)?;
     let mut search = Search {
@@ -69,7 +69,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
     search: &mut Search<'_, A, B>,
     mut ray: SupportPlane,
-    mut switched: impl FnMut(Real),
+    mut switched: impl FnMut(f64),
 ) -> Result<Option<Penetration>, Stop> {
     // The ray that was stepped aside from: stationary, its depth and witnesses exact.
     let mut aside: Option<SupportPlane> = None;
@@ -163,7 +163,7 @@ mod tests {
         md: &MinkowskiDifference<A, B>,
         start: Vec3,
         shortcut: Until,
-        switched: impl FnMut(Real),
+        switched: impl FnMut(f64),
     ) -> Penetration {
         let hit = penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap();
         assert!(!hit.limit);
@@ -194,7 +194,7 @@ mod tests {
 
         /// The paper's Algorithm 2 from the boundary point `v`: the plane at v, the
         /// origin's projection z on it, the boundary on the way to z. `each` sees |z|.
-        fn sqp(&self, mut v: Vec3, mut each: impl FnMut(Real)) -> Vec3 {
+        fn sqp(&self, mut v: Vec3, mut each: impl FnMut(f64)) -> Vec3 {
             for _ in 0..3000 {
                 let n = self.normal(&v);
                 let z = n * n.dot(&v);
@@ -215,7 +215,7 @@ mod tests {
                 radii: Vec3::new(r.within(0.5, 0.7), r.within(0.8, 1.0), r.within(1.1, 1.5)),
                 centre: Vec3::zeros(),
             };
-            let mut last = Real::INFINITY;
+            let mut last = f64::INFINITY;
             let v = e.sqp(e.exit(&r.direction()), |z| {
                 assert!(z <= last * (1.0 + 4.0 * EPSILON));
                 last = z;
@@ -340,7 +340,7 @@ mod tests {
     /// Icosahedra started along a vertex: the minimum is a face of their difference.
     #[test]
     fn icosahedra_along_a_vertex() {
-        let p = (1.0 + (5.0 as Real).sqrt()) / 2.0;
+        let p = (1.0 + (5.0 as f64).sqrt()) / 2.0;
         let mut points = vec![];
         for (s, t) in [(1.0, p), (1.0, -p), (-1.0, p), (-1.0, -p)] {
             points.push(Vec3::new(0.0, s, t));
@@ -349,7 +349,7 @@ mod tests {
         }
         let md = MinkowskiDifference::new(hull(&points), hull(&points));
         // Of the icosahedron with edge 2: the distance between two opposite faces.
-        let inradius = (3.0 as Real).sqrt() * (3.0 + (5.0 as Real).sqrt()) / 6.0;
+        let inradius = (3.0 as f64).sqrt() * (3.0 + (5.0 as f64).sqrt()) / 6.0;
         for v in &points {
             let hit = solve(&md, unit(v).unwrap(), Until::Shortcut, |_| ());
             assert!((hit.depth - 2.0 * inradius).abs() <= 1e-5, "{}", hit.depth);

@@ -11,14 +11,14 @@
 #[cfg(test)]
 mod tests {
     use crate::contact::{Penetration, Settings};
-    use crate::known::support::{MinkowskiDifference, SupportMap};
     use crate::known::support_set::Stop;
-    use crate::math::{EPSILON, Real, Vec3, unit};
+    use crate::math::{EPSILON, Vec3, unit};
+    use crate::minkowski::support::{MinkowskiDifference, SupportMap};
     use crate::paper::incremental;
     use crate::paper::portal::Until;
     use crate::shapes::{Random, Rotation, hull};
 
-    const TAU: Real = core::f64::consts::TAU as Real;
+    const TAU: f64 = core::f64::consts::TAU as f64;
 
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-9 } else { 1e-5 },
@@ -70,7 +70,7 @@ mod tests {
             let angle = r.within(0.0, TAU);
             let way = x * angle.cos() + y * angle.sin();
             let distance = r.within(0.1, 1.4);
-            let disc = |centre: Vec3, radius: Real| {
+            let disc = |centre: Vec3, radius: f64| {
                 move |d: &Vec3| {
                     let flat = d - m * m.dot(d);
                     centre + unit(&flat).map_or(Vec3::zeros(), |f| f * radius)
@@ -108,7 +108,7 @@ mod tests {
                 let n = 3 + (r.within(0.0, 5.0) as usize);
                 (0..n)
                     .map(|i| {
-                        let angle = (i as Real + r.within(0.1, 0.9)) * TAU / n as Real;
+                        let angle = (i as f64 + r.within(0.1, 0.9)) * TAU / n as f64;
                         centre + x * angle.cos() + y * (0.6 * angle.sin())
                     })
                     .collect::<Vec<_>>()
@@ -125,15 +125,15 @@ mod tests {
                     edges.push((n, h(&n)));
                 }
             }
-            let least = edges.iter().fold(Real::INFINITY, |l, e| l.min(e.1));
+            let least = edges.iter().fold(f64::INFINITY, |l, e| l.min(e.1));
             // Hulls of random polygons may overlap at a point only.
             if least < 1e-3 {
                 continue;
             }
-            let mut best = Real::INFINITY;
+            let mut best = f64::INFINITY;
             for (start, _) in &edges {
                 let hit = solve(&md, &m, unit(&(start + x * 0.05)).unwrap());
-                let is = |e: Real| (e - hit.depth).abs() < 10.0 * SETTINGS.tolerance;
+                let is = |e: f64| (e - hit.depth).abs() < 10.0 * SETTINGS.tolerance;
                 assert!(edges.iter().any(|e| is(e.1)));
                 for turn in [-1e-3, 1e-3] {
                     let n = unit(&(hit.dir + m.cross(&hit.dir) * turn)).unwrap();
@@ -155,7 +155,7 @@ mod tests {
         for _ in 0..300 {
             let (_, x, y, m, at) = frame(&mut r);
             let square = |c: Vec3| [c + x, c + y, c - x, c - y];
-            let by = unit(&(x + y)).unwrap() * ((2.0 as Real).sqrt() + 0.01);
+            let by = unit(&(x + y)).unwrap() * ((2.0 as f64).sqrt() + 0.01);
             let md = MinkowskiDifference::new(hull(&square(at)), hull(&square(at + by)));
             let angle = r.within(0.0, TAU);
             let start = x * angle.cos() + y * angle.sin();

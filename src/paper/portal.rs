@@ -25,9 +25,9 @@
 //! has the segment's normal in the plane, and the ray crosses it on the segment.
 
 use crate::gjk::barycentric;
-use crate::known::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::known::support_set::Stop;
-use crate::math::{self, EPSILON, Real, Vec3, larger, largest, unit};
+use crate::math::{self, EPSILON, Vec3, larger, largest, unit};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// A support plane of D: unit normal, support point, support value.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ pub struct SupportPlane {
     /// The support point s(n).
     pub point: SupportPoint,
     /// h(n) = n · s(n), a sound depth along n when it is not negative.
-    pub depth: Real,
+    pub depth: f64,
 }
 
 impl SupportPlane {
@@ -76,7 +76,7 @@ impl Portal {
     }
 
     /// The weights of the vertices where the ray crosses, times six volumes.
-    fn weights(&self) -> [Real; 3] {
+    fn weights(&self) -> [f64; 3] {
         let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
         [
             triple(&self.ray, b, c),
@@ -127,7 +127,7 @@ impl Portal {
 
     /// Where along the ray the triangle is: |p|, negative behind the origin. A mean of
     /// the vertices with weights T, which rounding does not move out of the triangle.
-    pub fn reach(&self) -> Real {
+    pub fn reach(&self) -> f64 {
         let t = self.weights();
         let at = self.planes.each_ref().map(|p| self.ray.dot(&p.point.v));
         (t[0] * at[0] + t[1] * at[1] + t[2] * at[2]) / (t[0] + t[1] + t[2])
@@ -138,7 +138,7 @@ impl Portal {
     pub fn witnesses(&self) -> (Vec3, Vec3) {
         let points = self.planes.each_ref().map(|p| &p.point);
         let weights = self.weights().map(|t| t.max(0.0));
-        let sum: Real = weights.iter().sum();
+        let sum: f64 = weights.iter().sum();
         if !(sum > 0.0) {
             return (points[0].v1, points[0].v2);
         }
@@ -147,13 +147,13 @@ impl Portal {
 }
 
 #[inline]
-fn triple(a: &Vec3, b: &Vec3, c: &Vec3) -> Real {
+fn triple(a: &Vec3, b: &Vec3, c: &Vec3) -> f64 {
     a.dot(&b.cross(c))
 }
 
 /// Rounding of a support point of this size: below it a depth is zero, a gap a touch.
 #[inline]
-pub fn rounding(size: Real) -> Real {
+pub fn rounding(size: f64) -> f64 {
     8.0 * EPSILON * size
 }
 
@@ -190,7 +190,7 @@ pub struct Search<'q, A, B> {
     /// Who is asked.
     pub md: &'q MinkowskiDifference<A, B>,
     /// Of the bounds, metres.
-    pub tolerance: Real,
+    pub tolerance: f64,
     /// Where they are to meet.
     pub until: Until,
     /// The normal of the plane that D lies in, if it is in one.
@@ -372,7 +372,7 @@ mod tests {
     use super::*;
     use crate::shapes::{Random, Rotation, corners, ellipsoid, hull, placed};
 
-    const ULPS: Real = 100.0 * EPSILON;
+    const ULPS: f64 = 100.0 * EPSILON;
 
     /// D itself, as the difference to a point.
     fn alone<A: SupportMap>(d: A) -> MinkowskiDifference<A, fn(&Vec3) -> Vec3> {
@@ -383,7 +383,7 @@ mod tests {
     fn search<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         best: SupportPlane,
-        tolerance: Real,
+        tolerance: f64,
         until: Until,
         budget: u64,
     ) -> Search<'_, A, B> {
@@ -406,7 +406,7 @@ mod tests {
     }
 
     /// Where the ray crosses the plane of the portal, and where the support plane.
-    fn reaches(p: &Portal, plane: &SupportPlane) -> (Real, Real) {
+    fn reaches(p: &Portal, plane: &SupportPlane) -> (f64, f64) {
         let along = plane.normal.dot(&p.ray);
         (
             plane.normal.dot(&p.planes[0].point.v) / along,
@@ -416,7 +416,7 @@ mod tests {
 
     /// Algorithm 1 for the ray `d`: the exit, with its invariants checked against the
     /// distance `exact` at which the ray leaves D.
-    fn check<A: SupportMap>(support: A, d: Vec3, exact: Real, tolerance: Real) {
+    fn check<A: SupportMap>(support: A, d: Vec3, exact: f64, tolerance: f64) {
         let md = alone(support);
         let first = SupportPlane::of(&md, d).unwrap();
         let mut search = search(&md, first, tolerance, Until::Ray, 1000);
@@ -430,7 +430,7 @@ mod tests {
                 // By hand: every update keeps the ray inside, and the portal only
                 // moves on along it (it may begin behind the origin).
                 let mut portal = found;
-                let mut before = Real::NEG_INFINITY;
+                let mut before = f64::NEG_INFINITY;
                 for _ in 0..8 {
                     let Some(n) = portal.normal() else { break };
                     let plane = SupportPlane::of(&md, n).unwrap();
@@ -484,7 +484,7 @@ mod tests {
                 _ => (at, r.direction()),
             };
             // Slabs: the nearest of the three planes ahead.
-            let exact = (0..3).fold(Real::INFINITY, |t, i| {
+            let exact = (0..3).fold(f64::INFINITY, |t, i| {
                 t.min((half[i].copysign(d[i]) + at[i]) / d[i]).max(0.0)
             });
             let points = placed(&corners(half), &turn, turn * at);

@@ -8,10 +8,10 @@ use crate::contact::{INSIDE, Penetration, Settings};
 use crate::hull::expansion::Limits;
 use crate::hull::shallow::Try;
 use crate::known::points::{Points, ROOM};
-use crate::known::support::{Fault, Known, SupportMap};
 use crate::known::support_set::{Inquiry, Stop};
 use crate::local::{self, Memory};
-use crate::math::{Real, Vec3, larger};
+use crate::math::{Vec3, larger};
+use crate::minkowski::support::{Fault, Known, SupportMap};
 use crate::paper::incremental;
 use crate::paper::portal::{Until, rounding};
 
@@ -73,7 +73,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
         let mut rest = *settings;
-        let mut before = Real::INFINITY;
+        let mut before = f64::INFINITY;
         // Ends: what is left falls.
         loop {
             let centre = self.centre.as_ref().map(|c| &c.v);

@@ -9,7 +9,7 @@ use super::super::callbacks::{Object, centre_of};
 use super::super::types::{ccd_center_fn, ccd_support_fn, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use crate::known::check::check;
-use crate::math::Real;
+use crate::math::{Real, Vec3};
 
 /// A point, or the centre, is NaN or infinite. Nothing else is told.
 pub const CCD_CHECK_NOT_FINITE: c_int = 1;
@@ -79,11 +79,11 @@ pub unsafe extern "C-unwind" fn ccdCheck(
         (centre.is_none(), CCD_CHECK_CENTER_MISSING),
     ];
     let found = ccd_check_t {
-        size: report.size,
-        noise: report.noise,
-        change: report.change,
-        center_outside: report.outside,
-        dir: ccd_vec3_t { v: report.dir },
+        size: report.size as Real,
+        noise: report.noise as Real,
+        change: report.change as Real,
+        center_outside: report.outside as Real,
+        dir: Vec3::from(report.dir).into(),
     };
     if !out.is_null() {
         // SAFETY: [outputs].

@@ -96,7 +96,8 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     let max = (max as usize).min(manifold::ROOM);
     // SAFETY: [inputs]; every bit pattern is a Memory of the same layout.
     let mut known = unsafe { memory.cast::<Memory>().as_ref() }.copied();
-    let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop, known.as_mut(), max) else {
+    let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop.into(), known.as_mut(), max)
+    else {
         return CCD_BAD_INPUT;
     };
     if let Some(known) = known {
@@ -109,7 +110,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
             let out = contacts.add(i);
             (&raw mut (*out).point1).write(contact.point1.into());
             (&raw mut (*out).point2).write(contact.point2.into());
-            (&raw mut (*out).depth).write(contact.depth);
+            (&raw mut (*out).depth).write(contact.depth as Real);
             (&raw mut (*out).id).write(contact.name);
         }
     }

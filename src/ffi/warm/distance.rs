@@ -13,7 +13,7 @@ use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, given};
 use super::state::{ccd_warm_t, with_state};
 use crate::contact::Settings;
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
-use crate::math::Real;
+use crate::math::{Real, lower_to_real};
 use crate::{query::Pair, state::State};
 
 /// What ccdSignedDistance answers. What was not wanted is zero.
@@ -42,8 +42,8 @@ pub struct ccd_distance_t {
 impl ccd_distance_t {
     fn new(distance: &Distance, want: c_uint, supports: u64) -> Self {
         Self {
-            distance: distance.lower,
-            distance_upper: distance.upper,
+            distance: lower_to_real(distance.lower),
+            distance_upper: -lower_to_real(-distance.upper),
             normal: distance.normal.into(),
             point1: given(want & CCD_WANT_POINTS, &distance.point1),
             point2: given(want & CCD_WANT_POINTS, &distance.point2),
@@ -93,9 +93,9 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
             return CCD_BAD_INPUT;
         };
         let wanted = Wanted {
-            margin1,
-            margin2,
-            max_distance,
+            margin1: margin1.into(),
+            margin2: margin2.into(),
+            max_distance: max_distance.into(),
             settings,
         };
         let points = want & CCD_WANT_POINTS != 0;

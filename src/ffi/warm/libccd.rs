@@ -37,7 +37,7 @@ pub(in crate::ffi) unsafe fn write(
     // SAFETY: [outputs].
     unsafe {
         if let Some(depth) = depth.as_mut() {
-            *depth = hit.depth;
+            *depth = hit.depth as Real;
         }
         if let Some(dir) = dir.as_mut() {
             *dir = hit.dir.into();

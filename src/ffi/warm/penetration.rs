@@ -11,7 +11,7 @@ use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::state::{ccd_warm_t, with_state};
 use crate::contact::{Penetration, Settings};
 use crate::known::support_set::{Stop, if_overlapping};
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, lower_to_real};
 use crate::{query::Pair, state::State};
 
 /// Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
@@ -66,8 +66,8 @@ pub(in crate::ffi) fn given(flag: c_uint, point: &Vec3) -> ccd_vec3_t {
 impl ccd_penetration_t {
     fn new(hit: &Penetration, want: c_uint, supports: u64) -> Self {
         Self {
-            depth: hit.depth,
-            depth_lower: hit.depth_lower,
+            depth: hit.depth as Real,
+            depth_lower: lower_to_real(hit.depth_lower),
             dir: hit.dir.into(),
             normal: hit.normal.into(),
             pos: given(want & CCD_WANT_POS, &hit.pos),

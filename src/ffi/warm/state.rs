@@ -7,8 +7,7 @@ use core::ffi::{c_int, c_uint};
 
 use super::super::types::ccd_vec3_t;
 use super::codes::{CCD_BAD_INPUT, CCD_NO_MEMORY};
-use crate::known::support::Fault;
-use crate::math::Real;
+use crate::minkowski::support::Fault;
 use crate::state::State;
 
 /// How many numbers a ccd_warm_t holds.
@@ -28,7 +27,7 @@ pub const CCD_WARM_REALS: usize = 19;
 #[derive(Clone, Copy)]
 pub struct ccd_warm_t {
     /// Private.
-    pub reals: [Real; CCD_WARM_REALS],
+    pub reals: [f64; CCD_WARM_REALS],
     /// Private.
     pub words: [c_uint; 4],
 }

@@ -6,8 +6,8 @@
 
 use core::cell::Cell;
 
-use super::support_set::Extreme;
-use crate::math::{Real, Vec3, larger, largest};
+use crate::known::support_set::Extreme;
+use crate::math::{Vec3, larger, largest};
 
 /// A convex object, known only by its support mapping.
 pub trait SupportMap {
@@ -38,13 +38,13 @@ impl SupportPoint {
     /// Largest absolute coordinate of the two witnesses: the size against which
     /// the rounding error of `v` is measured.
     #[inline]
-    pub fn magnitude(&self) -> Real {
+    pub fn magnitude(&self) -> f64 {
         larger(largest(&self.v1), largest(&self.v2))
     }
 
     /// The point that share of the way to another.
     #[inline]
-    pub fn towards(&self, other: &Self, share: Real) -> Self {
+    pub fn towards(&self, other: &Self, share: f64) -> Self {
         Self {
             v: self.v.lerp(&other.v, share),
             v1: self.v1.lerp(&other.v1, share),
@@ -85,7 +85,7 @@ impl Known {
     /// The point of D farthest along `n` of all that the points of obj1 and those of obj2 make,
     /// those of `c` too, if it reaches beyond `reach`.
     #[inline]
-    pub fn made_beyond(&self, c: &SupportPoint, n: &Vec3, reach: Real) -> Option<Vec3> {
+    pub fn made_beyond(&self, c: &SupportPoint, n: &Vec3, reach: f64) -> Option<Vec3> {
         let pairs = self.points().iter().chain([c]).map(|p| (&p.v1, &p.v2));
         let farthest = Extreme::of(n, pairs);
         let [p, q] = farthest.names.map(|i| self.points().get(i).unwrap_or(c));

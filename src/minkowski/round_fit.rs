@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Sphere fits of the two objects, which choose where to query. They prove nothing.
+//!
+//! 1. *Fit.* Two samples (n, p) and (n′, p′) of a sphere of radius ρ lie beyond each other's planes by
+//!    half of ρ |n′ − n|²: with e = n′·(p′ − p) and f = n·(p − p′), e = f and ρ = (e + f) / |n′ − n|². Each
+//!    new entry of the vertex set is compared with the entry of the least support value.
+//! 2. *Prediction.* With the spheres taken off, the corners of a face are corners of the core of D. The
+//!    foot w of the origin on their triangle predicts the least support value ρ − |w| along −w / |w|, or
+//!    ρ + |w| along w where the origin is on the inner side.
+//! 3. *Confirmation.* A prediction that comes true confirms the fit; one that misses resets the radii, and
+//!    after [`MAX_MISSES`] of them the fit is not used any more.
+//! 4. *Beside.* Where the fit is confirmed, the least direction tilted towards a face finds a corner as far
+//!    from it as a face may lie within the gap.
+
+use crate::math::{Vec3, lesser};
+use crate::minkowski::query::{Stop, SupportQuery, SupportSample};
+use crate::minkowski::support::SupportMap;
+use crate::minkowski::vertex_set::{VertexPair, VertexSet};
+
+/// The relative difference of e and f up to which two samples fit one sphere. Insensitive: 0.02 to 0.1.
+const SPHERE_FIT_REL_TOL: f64 = 0.03;
+/// The least square of the cosine between the moves of direction and vertex on one sphere.
+const SPHERE_FIT_COS2: f64 = 0.999;
+/// The least square of the angle between two samples that tell a radius.
+const MIN_ANGLE2: f64 = 1e-10;
+/// The number of support calls before fits are used.
+const MIN_SAMPLES: usize = 4;
+/// The share of the gap that a prediction must gain.
+const MIN_GAIN: f64 = 0.3;
+/// The share of a prediction that may be missed.
+const MAX_MISS: f64 = 0.2;
+/// The number of missed predictions after which the fit is not used any more.
+const MAX_MISSES: u32 = 3;
+/// The tilt beside the least direction, in units of √(2 gap / ρ). Insensitive: 1.2 to 1.7.
+const BESIDE_TILT: f64 = 1.4;
+/// The upper bound, as a share of ρ, up to which a query beside the least direction pays.
+const BESIDE_MAX_DEPTH: f64 = 0.3;
+
+/// Three corners of a face of D: a portal, or a face of the polytope.
+pub type Corners = [(Vec3, VertexPair); 3];
+
+/// What a direction was chosen by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// The normal of the face.
+    Normal,
+    /// The prediction of the sphere fit.
+    Prediction,
+    /// The least direction, tilted towards the face.
+    Beside,
+}
+
+/// The sphere fits of a pair.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SphereFit {
+    /// The radii of obj1 and obj2, metres; 0 without a fit.
+    pub radius: [f64; 2],
+    /// Whether the last prediction came true.
+    pub is_confirmed: bool,
+    /// The number of entries that were compared.
+    compared: usize,
+    misses: u32,
+    pause: u32,
+}
+
+impl SphereFit {
+    /// Returns the radius of the sphere of D, metres; 0 without a fit.
+    #[inline(always)]
+    pub fn sum(&self) -> f64 {
+        self.radius[0] + self.radius[1]
+    }
+
+    /// Compares the new entries of the set with entry `lowest`.
+    pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, lowest: usize) {
+        let m = set.dir(lowest);
+        let [p1, p2] = [set.vertex1(lowest), -set.vertex2(lowest)];
+        while self.compared < set.len() {
+            let i = self.compared;
+            self.compared += 1;
+            let n = set.dir(i);
+            let turn = n - m;
+            let turn2 = turn.norm_squared();
+            if !(turn2 > MIN_ANGLE2) {
+                continue;
+            }
+            let moves = [set.vertex1(i) - p1, -set.vertex2(i) - p2];
+            for (radius, d) in self.radius.iter_mut().zip(&moves) {
+                let (e, f) = (n.dot(d), -m.dot(d));
+                let sum = e + f;
+                if sum > 1e-9 * turn2
+                    && (e - f).abs() <= SPHERE_FIT_REL_TOL * sum
+                    && sum * sum > SPHERE_FIT_COS2 * turn2 * d.norm_squared()
+                {
+                    *radius = sum / turn2;
+                }
+            }
+        }
+    }
+
+    /// Returns the corners with the spheres taken off.
+    #[inline(always)]
+    pub fn core<const N: usize>(&self, set: &VertexSet<N>, corners: &Corners) -> [Vec3; 3] {
+        let [r1, r2] = self.radius;
+        corners.map(|(w, pair)| w - set.dir(pair.a.into()) * r1 - set.dir(pair.b.into()) * r2)
+    }
+
+    /// Returns the direction, unit, and the support value that the fit predicts to be the least near a
+    /// face, of outward normal `normal`; `None` without a prediction.
+    fn predict<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        corners: &Corners,
+        normal: &Vec3,
+    ) -> Option<(Vec3, f64)> {
+        let rho = self.sum();
+        if !(rho > 0.0) {
+            return None;
+        }
+        let (foot, is_inside) = foot_of_origin(&self.core(set, corners));
+        let distance = foot.norm();
+        if !(distance > 1e-9 * rho) {
+            return None;
+        }
+        let dir = foot / distance;
+        if normal.dot(&foot) < 0.0 {
+            Some((-dir, rho - distance))
+        } else {
+            is_inside.then_some((dir, rho + distance))
+        }
+    }
+
+    /// Returns a direction beside the least one, `lowest`, towards the unit normal of a face; `None` where
+    /// the face is as near.
+    fn beside(&self, lowest: &Vec3, upper: f64, normal: &Vec3, gap: f64) -> Option<Vec3> {
+        let rho = self.sum();
+        let tilt = BESIDE_TILT * (2.0 * gap / rho).sqrt();
+        let along = normal.dot(lowest);
+        let across = normal - lowest * along;
+        let sine = across.norm();
+        if !(sine > 1.5 * tilt) || along < 0.5 || upper > BESIDE_MAX_DEPTH * rho {
+            return None;
+        }
+        let dir = lowest + across * (tilt / sine);
+        Some(dir / dir.norm())
+    }
+}
+
+/// Returns the point of the triangle closest to the origin, and whether it lies inside. Sliver triangles
+/// are taken as their edges.
+fn foot_of_origin(v: &[Vec3; 3]) -> (Vec3, bool) {
+    let m = (v[1] - v[0]).cross(&(v[2] - v[0]));
+    let m2 = m.norm_squared();
+    let size = v[0].norm_squared() + v[1].norm_squared() + v[2].norm_squared();
+    if m2 > 1e-18 * size * size {
+        let is_left = |a: &Vec3, b: &Vec3| m.dot(&a.cross(b)) > 0.0;
+        if is_left(&v[0], &v[1]) && is_left(&v[1], &v[2]) && is_left(&v[2], &v[0]) {
+            return (m * (m.dot(&v[0]) / m2), true);
+        }
+    }
+    let mut best = (Vec3::zeros(), f64::INFINITY);
+    for (a, b) in [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])] {
+        let edge = b - a;
+        let length2 = edge.norm_squared();
+        let t = if length2 > 0.0 {
+            lesser(-a.dot(&edge) / length2, 1.0).max(0.0)
+        } else {
+            0.0
+        };
+        let foot = a + edge * t;
+        let distance2 = foot.norm_squared();
+        if distance2 < best.1 {
+            best = (foot, distance2);
+        }
+    }
+    (best.0, false)
+}
+
+/// Evaluates the support function for a face with these corners and this normal, which need not be unit:
+/// where the fit predicts the least support value, else beside the least direction, else along the normal.
+/// `is_plain`: along the normal. `gap` is what the bounds may be apart, metres.
+///
+/// # Errors
+/// As [`SupportQuery::evaluate`].
+#[inline(always)]
+pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    fit: &mut SphereFit,
+    corners: &Corners,
+    normal: &Vec3,
+    gap: f64,
+    is_plain: bool,
+) -> Result<(SupportSample, Choice), Stop> {
+    let unit_normal = normal / normal.norm();
+    if is_plain || set.len() < MIN_SAMPLES || corners.iter().any(|(_, pair)| pair.is_interior()) {
+        return Ok((query.evaluate(set, &unit_normal)?, Choice::Normal));
+    }
+    fit_and_evaluate(query, set, fit, corners, &unit_normal, gap)
+}
+
+/// As [`evaluate_beyond`], where the fit may choose.
+#[inline(never)]
+fn fit_and_evaluate<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    fit: &mut SphereFit,
+    corners: &Corners,
+    normal: &Vec3,
+    gap: f64,
+) -> Result<(SupportSample, Choice), Stop> {
+    let upper = query.upper;
+    fit.update(set, upper.index);
+    if fit.pause > 0 {
+        fit.pause -= 1;
+    } else if fit.misses < MAX_MISSES {
+        let predicted = fit.predict(set, corners, normal);
+        if let Some((dir, value)) = predicted.filter(|p| p.1 < upper.depth - MIN_GAIN * gap) {
+            let sample = query.evaluate(set, &dir)?;
+            fit.is_confirmed = sample.h < value + MAX_MISS * (upper.depth - value);
+            if !fit.is_confirmed {
+                fit.misses += 1;
+                fit.radius = [0.0; 2];
+            }
+            return Ok((sample, Choice::Prediction));
+        }
+    }
+    if fit.is_confirmed && fit.sum() > 0.0 {
+        if let Some(dir) = fit.beside(&upper.dir, upper.depth, normal, gap) {
+            let sample = query.evaluate(set, &dir)?;
+            // On a sphere the least direction was the least one.
+            fit.is_confirmed = !(sample.h < upper.depth);
+            return Ok((sample, Choice::Beside));
+        }
+    }
+    Ok((query.evaluate(set, normal)?, Choice::Normal))
+}
+
+impl SphereFit {
+    /// Pauses predictions for two queries: the last one found nothing beyond its face.
+    #[inline(always)]
+    pub fn set_pause(&mut self) {
+        self.pause = 2;
+    }
+}

@@ -1,0 +1,268 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The known vertices of both objects, and the support function of their k² differences.
+//!
+//! Entry i holds the vertex of obj1 and the vertex of obj2 that one support call of D returned, and the
+//! unit direction of that call. The coordinates of the two objects are interleaved, obj2's negated: a
+//! difference is then a sum, and one loop of two-lane operations finds the farthest vertex of both.
+
+use crate::math::{Vec3, ZERO};
+use crate::minkowski::support::SupportPoint;
+
+/// A known difference: the index of obj1's vertex and of obj2's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct VertexPair {
+    /// Index of obj1's vertex.
+    pub a: u16,
+    /// Index of obj2's vertex.
+    pub b: u16,
+}
+
+/// The known vertices of a pair: room for `N` support calls.
+pub struct VertexSet<const N: usize> {
+    /// x, y and z of each entry: obj1's vertex, and minus obj2's.
+    coords: [[[f64; 2]; N]; 3],
+    /// The unit direction of D that found each entry; zero for a point that no call returned.
+    dirs: [Vec3; N],
+    len: usize,
+}
+
+impl VertexPair {
+    /// Stands for the interior point, which is no difference of vertices.
+    pub const INTERIOR: Self = Self {
+        a: u16::MAX,
+        b: u16::MAX,
+    };
+
+    /// Returns whether this is the interior point.
+    #[inline(always)]
+    pub fn is_interior(self) -> bool {
+        self.a == u16::MAX
+    }
+}
+
+impl<const N: usize> VertexSet<N> {
+    /// The set without vertices.
+    pub const EMPTY: Self = Self {
+        coords: [[[0.0; 2]; N]; 3],
+        dirs: [ZERO; N],
+        len: 0,
+    };
+    /// The bits of a dot product that hold the index of its vertex.
+    const INDEX_MASK: u64 = (N.next_power_of_two() - 1) as u64;
+
+    /// Returns an index that is in range for any `i`, so that no access is checked.
+    #[inline(always)]
+    fn in_range(i: usize) -> usize {
+        const { assert!(N > 0 && N <= 1024) };
+        if N.is_power_of_two() {
+            i & (N - 1)
+        } else {
+            i.min(N - 1)
+        }
+    }
+
+    /// Returns the number of entries.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Returns whether another entry has no room.
+    #[inline(always)]
+    pub fn is_full(&self) -> bool {
+        self.len >= N
+    }
+
+    /// Adds an entry and returns its index. A full set replaces its last entry.
+    #[inline(always)]
+    pub fn push(&mut self, dir: &Vec3, point: &SupportPoint) -> usize {
+        let i = Self::in_range(self.len.min(N - 1));
+        self.set(i, dir, point);
+        self.len = i + 1;
+        i
+    }
+
+    /// Replaces the entry with index `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, dir: &Vec3, point: &SupportPoint) {
+        let i = Self::in_range(i);
+        for (k, coords) in self.coords.iter_mut().enumerate() {
+            coords[i] = [point.v1[k], -point.v2[k]];
+        }
+        self.dirs[i] = *dir;
+    }
+
+    /// Removes the entry with index `i`; the last entry takes its index.
+    pub fn remove(&mut self, i: usize) {
+        let (i, last) = (Self::in_range(i), Self::in_range(self.len.wrapping_sub(1)));
+        for coords in &mut self.coords {
+            coords[i] = coords[last];
+        }
+        self.dirs[i] = self.dirs[last];
+        self.len = self.len.saturating_sub(1);
+    }
+
+    /// Removes the entries from index `len` on.
+    #[inline(always)]
+    pub fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
+    }
+
+    /// Copies the entries of another set, with their indices, as far as there is room.
+    pub fn copy_from<const M: usize>(&mut self, other: &VertexSet<M>) {
+        let len = other.len.min(M).min(N);
+        for (coords, others) in self.coords.iter_mut().zip(&other.coords) {
+            coords[..len].copy_from_slice(&others[..len]);
+        }
+        self.dirs[..len].copy_from_slice(&other.dirs[..len]);
+        self.len = len;
+    }
+
+    /// Returns the direction that found an entry, unit; zero for a point that no call returned.
+    #[inline(always)]
+    pub fn dir(&self, i: usize) -> Vec3 {
+        self.dirs[Self::in_range(i)]
+    }
+
+    /// Returns the vertex of obj1 of an entry.
+    #[inline(always)]
+    pub fn vertex1(&self, i: usize) -> Vec3 {
+        let [x, y, z] = &self.coords;
+        let i = Self::in_range(i);
+        Vec3::new(x[i][0], y[i][0], z[i][0])
+    }
+
+    /// Returns the vertex of obj2 of an entry.
+    #[inline(always)]
+    pub fn vertex2(&self, i: usize) -> Vec3 {
+        let [x, y, z] = &self.coords;
+        let i = Self::in_range(i);
+        Vec3::new(-x[i][1], -y[i][1], -z[i][1])
+    }
+
+    /// Returns a known difference, a point of D.
+    #[inline(always)]
+    pub fn difference(&self, pair: VertexPair) -> Vec3 {
+        let [x, y, z] = &self.coords;
+        let (a, b) = (Self::in_range(pair.a.into()), Self::in_range(pair.b.into()));
+        Vec3::new(x[a][0] + x[b][1], y[a][0] + y[b][1], z[a][0] + z[b][1])
+    }
+
+    /// Returns a known difference with its two vertices.
+    #[inline(always)]
+    pub fn point(&self, pair: VertexPair) -> SupportPoint {
+        SupportPoint {
+            v: self.difference(pair),
+            v1: self.vertex1(pair.a.into()),
+            v2: self.vertex2(pair.b.into()),
+        }
+    }
+
+    /// Returns the known difference that is the support point of entry `i`.
+    #[inline(always)]
+    pub fn sample(i: usize) -> VertexPair {
+        VertexPair {
+            a: i as u16,
+            b: i as u16,
+        }
+    }
+
+    /// Returns the support value of entry `i` in its own direction.
+    pub fn value(&self, i: usize) -> f64 {
+        self.dir(i).dot(&self.difference(Self::sample(i)))
+    }
+
+    /// Returns the known difference farthest along `n`, which need not be unit; the first entry where
+    /// there is none.
+    ///
+    /// Indices ride in the low bits of the dot products, so that the maximum carries its index: vertices
+    /// that differ by less than 2⁻⁴² of a product tie. Callers compute heights from the coordinates.
+    #[inline(always)]
+    pub fn farthest(&self, n: &Vec3) -> VertexPair {
+        let [x, y, z] = &self.coords;
+        let mut best = [f64::NEG_INFINITY; 2];
+        for i in 0..self.len.min(N) {
+            for lane in 0..2 {
+                let h = n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane];
+                // The sum with zero is one to the compiler: the comparison then is a maximum.
+                let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | i as u64) + 0.0;
+                best[lane] = if h > best[lane] { h } else { best[lane] };
+            }
+        }
+        let [a, b] = best.map(|h| (h.to_bits() & Self::INDEX_MASK) as u16);
+        if self.len == 0 {
+            return VertexPair::default();
+        }
+        VertexPair { a, b }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::Random;
+
+    fn random_set<const N: usize>(r: &mut Random, count: usize) -> VertexSet<N> {
+        let mut set = VertexSet::EMPTY;
+        for _ in 0..count {
+            let (v1, v2) = (r.vector(1.0), r.vector(1.0));
+            set.push(&r.direction(), &SupportPoint { v: v1 - v2, v1, v2 });
+        }
+        set
+    }
+
+    #[test]
+    fn the_farthest_difference_is_that_of_all_pairs() {
+        let mut r = Random::new(1);
+        for count in 1..=21 {
+            let set = random_set::<21>(&mut r, count);
+            for _ in 0..50 {
+                let n = r.vector(3.0);
+                let pairs = (0..count as u16).flat_map(|a| (0..count as u16).map(move |b| (a, b)));
+                let most = pairs
+                    .map(|(a, b)| n.dot(&set.difference(VertexPair { a, b })))
+                    .fold(f64::NEG_INFINITY, f64::max);
+                let found = n.dot(&set.difference(set.farthest(&n)));
+                assert!((found - most).abs() <= 1e-12, "{count} {found} {most}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_negative_product_keeps_its_index() {
+        let mut set = VertexSet::<8>::EMPTY;
+        for x in [-3.0, -1.0, -2.0] {
+            let v1 = Vec3::x() * x;
+            set.push(
+                &Vec3::x(),
+                &SupportPoint {
+                    v: v1 * 2.0,
+                    v1,
+                    v2: -v1,
+                },
+            );
+        }
+        assert_eq!(set.farthest(&Vec3::x()), VertexPair { a: 1, b: 1 });
+        assert_eq!(set.farthest(&-Vec3::x()), VertexPair { a: 0, b: 0 });
+    }
+
+    #[test]
+    fn entries_are_kept_and_removed() {
+        let mut r = Random::new(2);
+        let mut set = random_set::<4>(&mut r, 4);
+        assert!(set.is_full());
+        let [first, last] = [0, 3].map(|i| (set.point(VertexSet::<4>::sample(i)), set.dir(i)));
+        assert_eq!(first.0.v, first.0.v1 - first.0.v2);
+        let mut large = VertexSet::<9>::EMPTY;
+        large.copy_from(&set);
+        assert_eq!(large.point(VertexSet::<9>::sample(3)), last.0);
+        set.remove(0);
+        assert_eq!((set.len(), set.dir(0)), (3, last.1));
+        assert_eq!(set.point(VertexSet::<4>::sample(0)), last.0);
+        set.push(&first.1, &first.0);
+        set.push(&last.1, &last.0);
+        assert_eq!((set.len(), set.dir(3)), (4, last.1));
+    }
+}
