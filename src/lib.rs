@@ -66,6 +66,8 @@ mod local;
 mod math;
 #[allow(dead_code)]
 mod minkowski;
+#[allow(dead_code)]
+mod mpr;
 mod paper;
 mod query;
 #[cfg(test)]

@@ -26,7 +26,7 @@
 use crate::math::{Vec3, from_real, larger, perpendicular, to_real};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::vertex_set::{VertexPair, VertexSet};
+use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The angle beside a direction at which its vertex is looked for again, radians. Measured on ODE's
 /// cylinder, whose vertices are wrong within 1e-3 of its axis.
@@ -66,6 +66,17 @@ pub struct SupportSample {
     pub h: f64,
     /// The vertices of `w` in the vertex set.
     pub pair: VertexPair,
+}
+
+impl SupportSample {
+    /// Returns the sample as a corner.
+    #[inline(always)]
+    pub fn vertex(&self) -> Vertex {
+        Vertex {
+            w: self.w,
+            pair: self.pair,
+        }
+    }
 }
 
 /// The least support value met.

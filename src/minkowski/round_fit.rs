@@ -17,7 +17,7 @@
 use crate::math::{Vec3, lesser};
 use crate::minkowski::query::{Stop, SupportQuery, SupportSample};
 use crate::minkowski::support::SupportMap;
-use crate::minkowski::vertex_set::{VertexPair, VertexSet};
+use crate::minkowski::vertex_set::{Vertex, VertexSet};
 
 /// The relative difference of e and f up to which two samples fit one sphere. Insensitive: 0.02 to 0.1.
 const SPHERE_FIT_REL_TOL: f64 = 0.03;
@@ -37,9 +37,6 @@ const MAX_MISSES: u32 = 3;
 const BESIDE_TILT: f64 = 1.4;
 /// The upper bound, as a share of ρ, up to which a query beside the least direction pays.
 const BESIDE_MAX_DEPTH: f64 = 0.3;
-
-/// Three corners of a face of D: a portal, or a face of the polytope.
-pub type Corners = [(Vec3, VertexPair); 3];
 
 /// What a direction was chosen by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,9 +98,9 @@ impl SphereFit {
 
     /// Returns the corners with the spheres taken off.
     #[inline(always)]
-    pub fn core<const N: usize>(&self, set: &VertexSet<N>, corners: &Corners) -> [Vec3; 3] {
+    pub fn core<const N: usize>(&self, set: &VertexSet<N>, corners: &[Vertex; 3]) -> [Vec3; 3] {
         let [r1, r2] = self.radius;
-        corners.map(|(w, pair)| w - set.dir(pair.a.into()) * r1 - set.dir(pair.b.into()) * r2)
+        corners.map(|v| v.w - set.dir(v.pair.a.into()) * r1 - set.dir(v.pair.b.into()) * r2)
     }
 
     /// Returns the direction, unit, and the support value that the fit predicts to be the least near a
@@ -111,7 +108,7 @@ impl SphereFit {
     fn predict<const N: usize>(
         &self,
         set: &VertexSet<N>,
-        corners: &Corners,
+        corners: &[Vertex; 3],
         normal: &Vec3,
     ) -> Option<(Vec3, f64)> {
         let rho = self.sum();
@@ -188,13 +185,13 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
-    corners: &Corners,
+    corners: &[Vertex; 3],
     normal: &Vec3,
     gap: f64,
     is_plain: bool,
 ) -> Result<(SupportSample, Choice), Stop> {
     let unit_normal = normal / normal.norm();
-    if is_plain || set.len() < MIN_SAMPLES || corners.iter().any(|(_, pair)| pair.is_interior()) {
+    if is_plain || set.len() < MIN_SAMPLES || corners.iter().any(|v| v.pair.is_interior()) {
         return Ok((query.evaluate(set, &unit_normal)?, Choice::Normal));
     }
     fit_and_evaluate(query, set, fit, corners, &unit_normal, gap)
@@ -206,7 +203,7 @@ fn fit_and_evaluate<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
-    corners: &Corners,
+    corners: &[Vertex; 3],
     normal: &Vec3,
     gap: f64,
 ) -> Result<(SupportSample, Choice), Stop> {

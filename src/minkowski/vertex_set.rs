@@ -19,6 +19,15 @@ pub struct VertexPair {
     pub b: u16,
 }
 
+/// A known difference with its coordinates: a corner of a portal or of the polytope.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Vertex {
+    /// The point of D.
+    pub w: Vec3,
+    /// Its two vertices.
+    pub pair: VertexPair,
+}
+
 /// The known vertices of a pair: room for `N` support calls.
 pub struct VertexSet<const N: usize> {
     /// x, y and z of each entry: obj1's vertex, and minus obj2's.
@@ -148,6 +157,16 @@ impl<const N: usize> VertexSet<N> {
         let [x, y, z] = &self.coords;
         let (a, b) = (Self::in_range(pair.a.into()), Self::in_range(pair.b.into()));
         Vec3::new(x[a][0] + x[b][1], y[a][0] + y[b][1], z[a][0] + z[b][1])
+    }
+
+    /// Returns the known difference farthest along `n` with its coordinates.
+    #[inline(always)]
+    pub fn farthest_vertex(&self, n: &Vec3) -> Vertex {
+        let pair = self.farthest(n);
+        Vertex {
+            w: self.difference(pair),
+            pair,
+        }
     }
 
     /// Returns a known difference with its two vertices.

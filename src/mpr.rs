@@ -1,0 +1,6 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Minkowski portal refinement on known vertices.
+
+pub mod portal;
