@@ -23,6 +23,22 @@ pub struct Settings {
     pub max_iterations: u64,
 }
 
+/// How a solver ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Status {
+    /// The bounds are as close as wanted.
+    #[default]
+    Converged,
+    /// `max_iterations` came first; the answer is sound.
+    IterationLimit,
+    /// The library's own limit of support calls came first; the answer is sound.
+    SupportLimit,
+    /// Rounding ended the search; the answer is sound.
+    Rounding,
+    /// A callback contradicts itself; nothing is proven.
+    InconsistentSupport,
+}
+
 /// An overlap: how far, which way, where.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Penetration {

@@ -57,9 +57,13 @@
 
 mod api;
 mod contact;
+#[allow(dead_code)]
 mod contacts;
+#[allow(dead_code)]
+mod epa;
 mod ffi;
 mod gjk;
+#[allow(dead_code)]
 mod hull;
 mod known;
 mod local;
@@ -73,6 +77,7 @@ mod query;
 #[cfg(test)]
 #[path = "../c-tests/harness/shapes.rs"]
 mod shapes;
+#[allow(dead_code)]
 mod state;
 
 pub use api::{

@@ -23,25 +23,30 @@
 //!    is spent on it.
 
 mod local_minimum;
+pub mod warm_start;
 
-use crate::contact::{Penetration, Settings};
+use crate::contact::{Penetration, Settings, Status};
 use crate::contacts::polygon::cross;
 use crate::contacts::pressure::{self, Around, Aside};
 use crate::contacts::seen::Seen;
+use crate::epa::penetration::{Arena, EpaAnswer, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
+use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::barycentric;
 use crate::gjk::intersect;
 use crate::gjk::overlap;
 use crate::gjk::proof::{Apex, behind, is_around};
 use crate::gjk::separation;
-use crate::hull::expansion::Limits;
-use crate::hull::global::{self, Arena, Basis, Request};
 use crate::known::support_set::{Inquiry, Stop, SupportSet};
 use crate::math::{Vec3, larger, perpendicular, unit};
+use crate::minkowski::query::SupportQuery;
 use crate::minkowski::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::tolerance::{GAP_REL, GapLimit};
+use crate::minkowski::vertex_set::VertexSet;
 use crate::paper::along;
 use crate::paper::incremental;
 use crate::paper::portal::Until;
 use crate::state::State;
+use warm_start::WarmStart;
 
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
@@ -320,11 +325,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let limits = Limits {
-            tolerance: settings.tolerance,
-            gap: GAP,
-            supports: MPR_SUPPORTS,
-            iterations: settings.max_iterations,
+        let limits = EpaLimits {
+            gap: GapLimit {
+                tolerance: settings.tolerance,
+                share: GAP_REL,
+            },
+            max_samples: MAX_SAMPLES,
+            max_iterations: settings.max_iterations,
         };
         self.global(self.centre.as_ref(), state, &limits, None, wants_pos, hit)
     }
@@ -339,11 +346,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let limits = Limits {
-            tolerance: settings.tolerance,
-            gap: 0.0,
-            supports: MOST_SUPPORTS,
-            iterations: settings.max_iterations,
+        let limits = EpaLimits {
+            gap: GapLimit {
+                tolerance: settings.tolerance,
+                share: 0.0,
+            },
+            max_samples: MAX_PROVEN_SAMPLES,
+            max_iterations: settings.max_iterations,
         };
         self.global(None, state, &limits, Some(arena), wants_pos, hit)
     }
@@ -354,100 +363,43 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         apex: Option<&SupportPoint>,
         state: &mut State,
-        limits: &Limits,
+        limits: &EpaLimits,
         arena: Option<&mut dyn Arena>,
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        self.asked(state, |state, nearest| {
-            let (first, asked) = match nearest {
-                Some((first, point)) => (first, Some(point)),
-                None => (state.leaving().unwrap_or_else(|| self.cold_start()), None),
-            };
-            // Before all that a search needs: most misses are told by the first support point.
-            let mut inquiry = Inquiry::new(&self.md);
-            let point = inquiry.first(&first, asked)?;
-            let request = Request {
-                centre: apex,
-                first,
-                others: state.others(),
-                hint: state.hint(),
-                limits,
-                wants_pos,
-                mark: state.mark(),
-                stands: wants_pos && state.stands(),
-            };
-            let mut basis = Basis::default();
-            let kept = self.lasting.then_some(&mut basis);
+        let request = EpaRequest {
+            center: apex,
+            ray: self.cold_start(),
+            warm: state.warm_start(),
+            limits: *limits,
+            wants_pos,
+        };
+        let mut warm = WarmStart::COLD;
+        let mut set = VertexSet::EMPTY;
+        let mut answer = EpaAnswer {
+            hit,
+            warm: &mut warm,
+            set: &mut set,
+        };
+        let query = SupportQuery::new(&self.md, apex);
+        let arena = arena.map(|arena| arena as &mut dyn Arena);
+        let found = epa::penetration::penetration(query, &request, arena, &mut answer);
+        if self.lasting && !matches!(found, Err(Stop::Fault(_))) {
+            state.store(&warm);
+            if found.is_ok() {
+                self.face(state);
+            }
+        }
+        hit.limit = found? != Status::Converged;
+        if hit.limit {
+            self.floor(hit, limits)?;
+            hit.pos = hit.middle();
+        } else if wants_pos {
             let mut seen = Seen::Nothing;
-            let arena = arena.map(|arena| arena as &mut dyn Arena);
-            let out = (&mut *hit, &mut seen);
-            hit.limit = !global::minimum(inquiry, &point, &request, arena, kept, out)?;
-            if hit.depth <= limits.tolerance && !(hit.depth_lower > 0.0) {
-                seen = Seen::Nothing;
-                let mut inquiry = Inquiry::new(&self.md);
-                let known = Known::default();
-                self.touching(&mut inquiry, None, hit, &known, limits.tolerance)?;
-            }
-            if hit.limit {
-                self.floor(hit, limits)?;
-                hit.pos = hit.middle();
-            } else if wants_pos {
-                self.place(state, &basis, &seen, hit, limits)?;
-                return Ok(());
-            }
-            self.keep(state, &basis, None, 0);
-            Ok(())
-        })
-    }
-
-    /// Leaves the basis of a proof behind, where somebody keeps the state. `middle`: of a face
-    /// that rests.
-    fn keep(&self, state: &mut State, basis: &Basis, middle: Option<Vec3>, asked: u64) {
-        if !self.lasting {
-            return;
-        }
-        // Many triangles of a resting face prove the same: the one that needed no other
-        // point stays.
-        if !(middle.is_some() && state.rested() && asked == state.asks()) {
-            state.prove(basis);
-        }
-        if let Some(middle) = middle {
-            state.rest(middle, basis.mark);
-        }
-        self.face(state);
-    }
-
-    /// The position of a hit, and what its state keeps. (Not in the frame that the search runs in.)
-    #[inline(never)]
-    fn place(
-        &self,
-        state: &mut State,
-        basis: &Basis,
-        seen: &Seen,
-        hit: &mut Penetration,
-        limits: &Limits,
-    ) -> Result<(), Fault> {
-        let asked = self.md.supports();
-        let mut around = Around {
-            low: 0.25 * larger(limits.tolerance, limits.gap * hit.depth),
-            ..Around::default()
-        };
-        hit.pos = match state.position().filter(|_| basis.unmoved) {
-            Some(pos) => pos,
-            None => {
-                let aside = Aside {
-                    centre: self.centre.as_ref(),
-                    seen,
-                    others: state.others(),
-                    around: self.lasting.then_some(&mut around),
-                };
-                pressure::centre(&self.md, hit, limits.tolerance, aside)?
-            }
-        };
-        self.keep(state, basis, Some(hit.pos), asked);
-        if self.md.supports() > asked + 1 && around.directions[0] != Vec3::zeros() {
-            self.stand_on(state, &around, hit);
+            let known = |i: usize| (i < set.len()).then(|| [set.vertex1(i), set.vertex2(i)]);
+            seen.rest(&known, hit);
+            hit.pos = self.position(hit, limits.gap.tolerance, &seen)?;
         }
         Ok(())
     }
@@ -463,31 +415,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         pressure::centre(&self.md, hit, tolerance, aside)
     }
 
-    /// Where the four points around the deepest place lie in one face of D, three of them prove the
-    /// minimum as well as what the search found: the state keeps those, and the next query has asked
-    /// three of the four.
-    fn stand_on(&self, state: &mut State, around: &Around, hit: &Penetration) {
-        let mut best = (EDGE, None);
-        for left_out in 0..4 {
-            let [a, b, c] = [1, 2, 3].map(|i| (left_out + i) % 4);
-            let area = |i: usize, j: usize| cross(&around.points[i], &around.points[j]);
-            let areas = [area(a, b), area(b, c), area(c, a)];
-            let whole: f64 = areas.iter().sum();
-            let least = areas.iter().map(|x| x / whole).fold(1.0, f64::min);
-            if least > best.0 {
-                best = (least, Some([a, b, c]));
-            }
-        }
-        let Some(three) = best.1 else { return };
-        let mut stands = Basis::default();
-        stands.add(&hit.normal);
-        three
-            .iter()
-            .for_each(|i| stands.add(&around.directions[*i]));
-        state.stand(&stands, hit.pos);
-        self.face(state);
-    }
-
     /// How far obj2 must move along the unit direction `dir`.
     pub fn along(
         &self,
@@ -499,7 +426,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.asked(state, |state, _| {
             let last = state.portal();
             let capped = Settings {
-                max_iterations: settings.max_iterations.min(MOST_SUPPORTS),
+                max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),
                 ..*settings
             };
             let (found, portal) = along::penetration(&self.md, &dir, last, &capped)?;
@@ -519,17 +446,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         })
     }
 }
-
-/// Support points of an MPR query, at most.
-const MPR_SUPPORTS: u64 = 160;
-/// Part of a triangle by which the origin is inside of it, at least, for the state to stand on it.
-/// Insensitive: 0.01 to 0.1 tried.
-const EDGE: f64 = 0.02;
-/// Of a proven minimum, and of a query along a direction. Derived: no call asks more than 400, and what comes
-/// before and after takes 58 on nearly coincident bodies (`campaigns -- wide`).
-const MOST_SUPPORTS: u64 = 340;
-/// Where an MPR query may stop: a gap of this share of the depth.
-const GAP: f64 = 1e-3;
 
 #[cfg(test)]
 mod tests {

@@ -23,6 +23,7 @@
 use crate::hull::global::Basis;
 use crate::local::Memory;
 use crate::math::{Vec3, as_unit, normalised, unit};
+use crate::query::warm_start::{WarmKind, WarmStart};
 
 /// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.
 const RESTED: u32 = 1 << 31;
@@ -76,6 +77,15 @@ impl State {
     /// this one's mirror image in the origin: points, directions and slopes change sign,
     /// lengths and curvatures stay, and the balls of the objects change places.
     pub fn flip(&mut self) {
+        if self.kind == PROVEN {
+            let (mut warm, facing) = (self.warm_start(), self.facing());
+            warm.flip();
+            self.store(&warm);
+            if let Some(centre) = facing {
+                self.face(&-centre);
+            }
+            return;
+        }
         let before = self.memory;
         if self.rested() {
             // What is round of the objects has given way.
@@ -292,6 +302,43 @@ impl State {
     /// How many support points the directions of the last proof are worth.
     pub fn asks(&self) -> u64 {
         1 + self.others().iter().filter(|n| n.norm() > 0.0).count() as u64
+    }
+
+    /// Returns what the global query starts from.
+    pub fn warm_start(&self) -> WarmStart {
+        let [depth, radius1, radius2, ..] = self.memory.curvature;
+        match self.kind {
+            PROVEN => WarmStart {
+                dir: self.memory.dir,
+                depth,
+                radius: [radius1, radius2],
+                kind: if self.memory.count == 1 {
+                    WarmKind::Round
+                } else {
+                    WarmKind::Plain
+                },
+            },
+            APART => WarmStart {
+                kind: WarmKind::Apart,
+                ..WarmStart::guess(&self.memory.dir)
+            },
+            OVERLAP | ALONG => WarmStart::guess(&self.memory.dir),
+            _ => WarmStart::COLD,
+        }
+    }
+
+    /// Keeps what the global query left.
+    pub fn store(&mut self, warm: &WarmStart) {
+        *self = match warm.kind {
+            WarmKind::Cold => Self::default(),
+            WarmKind::Apart => Self::apart(warm.dir * (f64::MIN_POSITIVE / crate::math::EPSILON)),
+            _ => Self::of(PROVEN, warm.dir),
+        };
+        if self.kind == PROVEN {
+            let [depth, radius1, radius2, ..] = &mut self.memory.curvature;
+            [*depth, *radius1, *radius2] = [warm.depth, warm.radius[0], warm.radius[1]];
+            self.memory.count = u32::from(warm.kind == WarmKind::Round);
+        }
     }
 
     /// The pair overlaps: its minimum is proven by support points along these directions.

@@ -10,11 +10,11 @@
 use core::ptr::NonNull;
 
 use super::{calloc, free};
-use crate::hull::global::{Arena, Room};
+use crate::epa::penetration::{Arena, EpaBuffers};
 use crate::minkowski::support::Fault;
 
 #[derive(Default)]
-struct Block(Option<NonNull<Room>>);
+struct Block(Option<NonNull<EpaBuffers>>);
 
 impl Block {
     fn free(&mut self) {
@@ -26,17 +26,17 @@ impl Block {
 }
 
 impl Arena for Block {
-    fn room(&mut self) -> Result<&mut Room, Fault> {
+    fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault> {
         let block = match self.0 {
             Some(block) => block,
             None => {
                 // SAFETY: [heap]; calloc takes any size.
-                let block = unsafe { calloc(1, size_of::<Room>()) };
+                let block = unsafe { calloc(1, size_of::<EpaBuffers>()) };
                 NonNull::new(block.cast()).ok_or(Fault::NoMemory)?
             }
         };
         self.0 = Some(block);
-        // SAFETY: [heap]; and zero bytes are a Room, which holds numbers alone.
+        // SAFETY: [heap]; and zero bytes are a EpaBuffers, which holds numbers alone.
         Ok(unsafe { &mut *block.as_ptr() })
     }
 }
@@ -54,8 +54,8 @@ pub fn with<R>(query: impl FnOnce(&mut dyn Arena) -> R) -> R {
 pub struct Heap(Block);
 
 impl Arena for Heap {
-    fn room(&mut self) -> Result<&mut Room, Fault> {
-        self.0.room()
+    fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault> {
+        self.0.buffers()
     }
 }
 

@@ -227,31 +227,7 @@ pub struct Asked {
     pub v: Vec3,
 }
 
-/// Why a query ends where it asks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stop {
-    /// The objects are apart, or touch within rounding: along this unit direction D
-    /// reaches no farther than the origin, but for rounding.
-    Apart(Vec3),
-    /// A callback's answer that no query can work with, or no memory.
-    Fault(Fault),
-}
-
-impl From<Fault> for Stop {
-    fn from(fault: Fault) -> Self {
-        Self::Fault(fault)
-    }
-}
-
-/// What a query found; `None` of objects that are apart.
-#[inline(always)]
-pub fn if_overlapping<T>(found: Result<T, Stop>) -> Result<Option<T>, Fault> {
-    match found {
-        Ok(found) => Ok(Some(found)),
-        Err(Stop::Apart(_)) => Ok(None),
-        Err(Stop::Fault(fault)) => Err(fault),
-    }
-}
+pub use crate::minkowski::query::{Stop, if_overlapping};
 
 /// What a query has learned by asking, wherever its points are kept.
 pub struct Inquiry<'q, A, B> {

@@ -14,7 +14,7 @@
 //! 4. *Beside.* Where the fit is confirmed, the least direction tilted towards a face finds a corner as far
 //!    from it as a face may lie within the gap.
 
-use crate::math::{Vec3, lesser};
+use crate::math::{Vec3, lesser, normalised};
 use crate::minkowski::query::{Stop, SupportQuery, SupportSample};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
@@ -56,6 +56,8 @@ pub struct SphereFit {
     pub radius: [f64; 2],
     /// Whether the last prediction came true.
     pub is_confirmed: bool,
+    /// Whether the radii are those of a warm state, which are used from the first query on.
+    pub is_warm: bool,
     /// The number of entries that were compared.
     compared: usize,
     misses: u32,
@@ -96,6 +98,12 @@ impl SphereFit {
         }
     }
 
+    /// Pauses predictions for two queries: the last one found nothing beyond its face.
+    #[inline(always)]
+    pub fn set_pause(&mut self) {
+        self.pause = 2;
+    }
+
     /// Returns the corners with the spheres taken off.
     #[inline(always)]
     pub fn core<const N: usize>(&self, set: &VertexSet<N>, corners: &[Vertex; 3]) -> [Vec3; 3] {
@@ -105,7 +113,7 @@ impl SphereFit {
 
     /// Returns the direction, unit, and the support value that the fit predicts to be the least near a
     /// face, of outward normal `normal`; `None` without a prediction.
-    fn predict<const N: usize>(
+    pub fn predict<const N: usize>(
         &self,
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
@@ -190,8 +198,9 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     gap: f64,
     is_plain: bool,
 ) -> Result<(SupportSample, Choice), Stop> {
-    let unit_normal = normal / normal.norm();
-    if is_plain || set.len() < MIN_SAMPLES || corners.iter().any(|v| v.pair.is_interior()) {
+    let unit_normal = normalised(normal).unwrap_or(query.upper.dir);
+    let has_samples = set.len() >= MIN_SAMPLES || fit.is_warm;
+    if is_plain || !has_samples || corners.iter().any(|v| v.pair.is_interior()) {
         return Ok((query.evaluate(set, &unit_normal)?, Choice::Normal));
     }
     fit_and_evaluate(query, set, fit, corners, &unit_normal, gap)
@@ -232,12 +241,4 @@ fn fit_and_evaluate<A: SupportMap, B: SupportMap, const N: usize>(
         }
     }
     Ok((query.evaluate(set, normal)?, Choice::Normal))
-}
-
-impl SphereFit {
-    /// Pauses predictions for two queries: the last one found nothing beyond its face.
-    #[inline(always)]
-    pub fn set_pause(&mut self) {
-        self.pause = 2;
-    }
 }

@@ -5,7 +5,7 @@
 
 use super::Pair;
 use crate::contact::{INSIDE, Penetration, Settings};
-use crate::hull::expansion::Limits;
+use crate::epa::expand::EpaLimits;
 use crate::hull::shallow::Try;
 use crate::known::points::{Points, ROOM};
 use crate::known::support_set::{Inquiry, Stop};
@@ -112,13 +112,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// It takes what is left of the iterations, and no more than [`BUDGET`].
     #[cold]
     #[inline(never)]
-    pub(super) fn floor(&self, hit: &mut Penetration, limits: &Limits) -> Result<(), Fault> {
-        let left = limits.iterations.saturating_sub(hit.iterations);
+    pub(super) fn floor(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<(), Fault> {
+        let left = limits.max_iterations.saturating_sub(hit.iterations);
         if left == 0 {
             return Ok(());
         }
         let level = Settings {
-            tolerance: limits.tolerance * 0.01,
+            tolerance: limits.gap.tolerance * 0.01,
             max_iterations: left.min(BUDGET),
         };
         let mut memory = Memory::towards(hit.normal);
@@ -129,7 +129,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 // The polytope's witness points are points of the objects, the local search's lie on
                 // the planes, and beside their objects where it found no minimum.
                 let reach = larger(floor.point1.norm(), floor.point2.norm());
-                let near = larger(limits.tolerance, INSIDE * reach);
+                let near = larger(limits.gap.tolerance, INSIDE * reach);
                 let [one, two] = [hit.point1 - floor.point1, hit.point2 - floor.point2];
                 let n = &floor.normal;
                 if one.dot(n).abs() <= near && two.dot(n).abs() <= near {

@@ -1,0 +1,786 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The global minimum of the penetration depth, from start to end.
+//!
+//! 1. *Separating axis*: the first direction, the warm state's or the way from the interior point through
+//!    the origin. Most misses end here.
+//! 2. *Interior point*: the difference of the centres where they are trusted; else the middle of the
+//!    support points along the ray and against it, which is in D for certain.
+//! 3. *Portal*: discovery and refinement ([`crate::mpr::portal`]).
+//! 4. *Certificate*: where the tetrahedron of interior point and portal holds the ball whose radius is the
+//!    upper bound less the allowed gap, the minimum is proven. Most shallow contacts end here.
+//! 5. *Polytope*: EPA from that tetrahedron ([`crate::epa::expand`]), else from the points farthest from a
+//!    point, a line and a plane, else from the tetrahedron of GJK; in buffers that grow.
+//! 6. *Result*: depth and direction are the upper bound's, lower bound and witness points the polytope's.
+//!
+//! Departures. Steps 3 to 5 take known differences before callbacks. A known difference beyond the final
+//! plane that is not found again is removed, and the query starts again from the vertices left. So it does
+//! where a plane shows that the centres' difference is outside D, without trusting them.
+//!
+//! Validity. `depth`, `dir`: always; a sound depth. `depth_lower`: proven, of the global minimum (a trusted
+//! centre is part of the proof); 0 where nothing is proven. Witness points: always, each in its object.
+//! [`Status::Converged`]: depth − depth_lower is within the gap.
+
+use crate::contact::{Penetration, Status};
+use crate::contacts::pressure;
+use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, Expansion, exit_face, expand};
+use crate::epa::plane::Tetrahedron;
+use crate::epa::polytope::EpaPolytope;
+use crate::gjk::barycentric;
+use crate::math::{Vec3, larger, normalised, perpendicular};
+use crate::minkowski::query::{Stop, SupportQuery};
+use crate::minkowski::round_fit::SphereFit;
+use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
+use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
+use crate::mpr::portal::{discover, refine};
+use crate::query::warm_start::{WarmKind, WarmStart};
+
+/// The support calls of a default query, at most.
+pub const MAX_SAMPLES: u64 = 160;
+/// The support calls of a query that proves the tolerance, at most. Derived: no call takes more than 400,
+/// and what comes before and after takes 58 on nearly coincident bodies (`campaigns -- wide`).
+pub const MAX_PROVEN_SAMPLES: u64 = 340;
+
+/// The vertices of the small buffers, 5 KB on the stack with their corners and faces: enough for shallow
+/// contacts and most polytopes.
+pub const SMALL_VERTICES: usize = 24;
+const SMALL_CORNERS: usize = max_corners(SMALL_VERTICES);
+const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
+/// The vertices of the large buffers, on the stack.
+const LARGE_VERTICES: usize = MAX_SAMPLES as usize + SPARE_VERTICES;
+const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
+const LARGE_FACES: usize = max_faces(LARGE_CORNERS);
+/// The vertices of the buffers that the caller lends.
+const LENT_VERTICES: usize = MAX_PROVEN_SAMPLES as usize + SPARE_VERTICES;
+const LENT_CORNERS: usize = max_corners(LENT_VERTICES);
+const LENT_FACES: usize = max_faces(LENT_CORNERS);
+/// What may be evaluated beyond the limit: the limits hold only while the origin is inside.
+const SPARE_VERTICES: usize = 8;
+/// The entries that the first tetrahedron may add, for which there must be room.
+const START_VERTICES: usize = 9;
+
+/// Returns the corners for so many vertices. Known differences become corners without a callback: a
+/// quarter more (measured, deep ellipsoids).
+const fn max_corners(vertices: usize) -> usize {
+    vertices + vertices / 4
+}
+
+/// Returns the faces for so many corners: a closed surface has 2 C − 4, and a fan is made before the faces
+/// that it replaces are freed.
+const fn max_faces(corners: usize) -> usize {
+    (2 * corners).next_multiple_of(8)
+}
+
+const _: () = assert!(LENT_CORNERS < 32768 && LENT_FACES <= crate::epa::polytope::MAX_FACES);
+const _: () = assert!(LENT_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
+
+/// The gap beyond the tolerance that still counts as converged where rounding ended the search, in support
+/// epsilons. Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
+/// much by which the face found there is closer than the closest.
+const ROUNDING_GAP_EPS: f64 = 32.0;
+/// The known differences beyond the final plane that are looked for again, at most.
+const MAX_CONTRADICTIONS: u32 = 4;
+/// The support calls of a polytope after which D counts as round there.
+const MAX_PLAIN_ITERATIONS: u64 = 3;
+/// A warm direction whose support value is more than twice the last depth, and this share of the centres'
+/// distance, is stale.
+const STALE_REL: f64 = 0.1;
+
+/// Memory for the largest polytopes. All bytes zero is a valid value.
+pub struct EpaBuffers {
+    set: VertexSet<LENT_VERTICES>,
+    corners: EpaCorners<LENT_CORNERS>,
+    polytope: EpaPolytope<LENT_FACES>,
+}
+
+/// A source of [`EpaBuffers`], used once and only if a query needs them.
+pub trait Arena {
+    /// Returns buffers with any contents.
+    ///
+    /// # Errors
+    /// [`Fault::NoMemory`].
+    fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault>;
+}
+
+/// What is known of a pair besides its support functions, and what is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct EpaRequest<'a> {
+    /// The difference of the centres that is trusted to lie in D.
+    pub center: Option<&'a SupportPoint>,
+    /// The unit direction of a cold start: from an interior point through the origin.
+    pub ray: Vec3,
+    /// The state of the last query.
+    pub warm: WarmStart,
+    /// How far to go.
+    pub limits: EpaLimits,
+    /// Whether the caller reads the contact position.
+    pub wants_pos: bool,
+}
+
+/// The answer of a query.
+pub struct EpaAnswer<'a> {
+    /// The overlap, without its contact position.
+    pub hit: &'a mut Penetration,
+    /// The state for the next query; also written where the pair is apart.
+    pub warm: &'a mut WarmStart,
+    /// The vertices of the first support calls, for the contact position.
+    pub set: &'a mut VertexSet<SMALL_VERTICES>,
+}
+
+/// Finds the global minimum of the penetration depth. Without an `arena` the buffers on the stack are all
+/// there is.
+///
+/// # Errors
+/// [`Stop::Apart`]: apart, or touching within rounding. [`Fault::NonFinite`]; [`Fault::NoMemory`].
+#[inline(always)]
+pub fn penetration<A: SupportMap, B: SupportMap>(
+    mut query: SupportQuery<'_, A, B>,
+    request: &EpaRequest<'_>,
+    arena: Option<&mut dyn Arena>,
+    answer: &mut EpaAnswer<'_>,
+) -> Result<Status, Stop> {
+    let dir = match request.warm.kind {
+        WarmKind::Apart | WarmKind::Plain => request.warm.dir,
+        WarmKind::Cold | WarmKind::Round => request.ray,
+    };
+    // Before all that a search needs: most misses end here.
+    let found = query
+        .evaluate_first(&dir)
+        .and_then(|first| solve(&mut query, &dir, &first, request, arena, answer));
+    if let Err(Stop::Apart(axis)) = found {
+        *answer.warm = WarmStart {
+            dir: axis,
+            depth: 0.0,
+            radius: request.warm.radius,
+            kind: WarmKind::Apart,
+        };
+    }
+    found
+}
+
+/// A tetrahedron to start the polytope from.
+type Start = [Vertex; 4];
+
+/// The ways to a first tetrahedron, in the order of their cost.
+const STARTS: [StartKind; 3] = [StartKind::Portal, StartKind::Farthest, StartKind::Gjk];
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum StartKind {
+    /// The interior point and the portal.
+    Portal,
+    /// The interior point and the points farthest from it, from a line and from a plane.
+    Farthest,
+    /// The tetrahedron in which GJK finds the origin.
+    Gjk,
+}
+
+/// A query on its way.
+struct Solver<'q, 'm, A, B> {
+    query: &'q mut SupportQuery<'m, A, B>,
+    limits: &'q EpaLimits,
+    /// The interior point with the points of the objects that it is the difference of.
+    interior: SupportPoint,
+    fit: SphereFit,
+    /// Support calls of the polytopes.
+    iterations: u64,
+    /// How far the answer in `hit` is from its lower bound, metres; infinite before the first.
+    gap: f64,
+    hit: &'q mut Penetration,
+    wants_pos: bool,
+}
+
+/// Does all that comes after the first support point.
+#[inline(never)]
+fn solve<A: SupportMap, B: SupportMap>(
+    query: &mut SupportQuery<'_, A, B>,
+    dir: &Vec3,
+    first: &SupportPoint,
+    request: &EpaRequest<'_>,
+    mut arena: Option<&mut dyn Arena>,
+    answer: &mut EpaAnswer<'_>,
+) -> Result<Status, Stop> {
+    let set = &mut *answer.set;
+    set.push(dir, first);
+    let warm = &request.warm;
+    let is_warm = matches!(warm.kind, WarmKind::Apart | WarmKind::Plain);
+    if is_warm && is_stale(warm, request.center, query.upper.depth) {
+        query.evaluate(set, &request.ray)?;
+    }
+    let mut fit = SphereFit::default();
+    let rho = warm.radius[0] + warm.radius[1];
+    let distance = request.center.map_or(0.0, |c| c.v.norm());
+    if rho > 0.0 && rho < 1.5 * (distance + query.upper.depth) {
+        (fit.radius, fit.is_confirmed, fit.is_warm) = (warm.radius, true, is_warm);
+    }
+    let mut solver = Solver {
+        query,
+        limits: &request.limits,
+        interior: SupportPoint::default(),
+        fit,
+        iterations: 0,
+        gap: f64::INFINITY,
+        hit: answer.hit,
+        wants_pos: request.wants_pos,
+    };
+    let mut center = request.center;
+    let mut status = Status::InconsistentSupport;
+    for _ in 0..=MAX_CONTRADICTIONS {
+        status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
+        let is_contradicted = center.is_some() && solver.query.interior.is_none();
+        if is_contradicted {
+            // A plane shows that the centre is outside D.
+            center = None;
+        } else if !solver.has_contradiction(set)? {
+            break;
+        }
+        status = Status::InconsistentSupport;
+        solver.gap = f64::INFINITY;
+        if set.len() == 0 {
+            solver.query.evaluate(set, dir)?;
+        }
+    }
+    let Solver {
+        query,
+        fit,
+        iterations,
+        ..
+    } = solver;
+    let is_round = iterations > MAX_PLAIN_ITERATIONS;
+    *answer.warm = WarmStart {
+        dir: query.upper.dir,
+        depth: query.upper.depth,
+        radius: if fit.is_confirmed {
+            fit.radius
+        } else {
+            [0.0; 2]
+        },
+        kind: if is_round {
+            WarmKind::Round
+        } else {
+            WarmKind::Plain
+        },
+    };
+    Ok(status)
+}
+
+/// Returns whether a warm direction with this support value is no start of its own.
+fn is_stale(warm: &WarmStart, center: Option<&SupportPoint>, depth: f64) -> bool {
+    let distance = center.map_or(0.0, |c| c.v.norm());
+    let is_round = warm.kind == WarmKind::Plain && warm.radius[0] * warm.radius[1] > 0.0;
+    // Negated for NaN.
+    is_round || !(depth <= 2.0 * warm.depth + STALE_REL * distance)
+}
+
+impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
+    /// Finds an interior point, a portal, a certificate, or expands polytopes.
+    fn run(
+        &mut self,
+        set: &mut VertexSet<SMALL_VERTICES>,
+        center: Option<&SupportPoint>,
+        ray: &Vec3,
+        is_warm: bool,
+        arena: &mut Option<&mut dyn Arena>,
+    ) -> Result<Status, Stop> {
+        let mut ray = *ray;
+        let opposite = match center {
+            Some(center) => {
+                self.interior = *center;
+                None
+            }
+            None => Some(self.find_interior(set, &mut ray)?),
+        };
+        let portal = self.find_portal(set, &ray)?;
+        if let Some((dir, point)) = &opposite {
+            let index = set.push(dir, point);
+            if self.query.upper.dir == *dir {
+                self.query.upper.index = index;
+            }
+        }
+        if let Some(portal) = &portal {
+            if self.certify(set, portal, is_warm)? {
+                return Ok(Status::Converged);
+            }
+        }
+        self.expand_from(set, portal.as_ref(), is_warm, arena)
+    }
+
+    /// Takes the middle of the support points along the ray and against it for the interior point, and
+    /// returns the opposite sample, which is removed from the set: it would be a corner of a wide portal.
+    /// Turns the ray to start in that point.
+    fn find_interior<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        ray: &mut Vec3,
+    ) -> Result<(Vec3, SupportPoint), Stop> {
+        let newest = set.point(VertexSet::<N>::sample(set.len().saturating_sub(1)));
+        let sample = self.query.evaluate(set, &-*ray)?;
+        let index = usize::from(sample.pair.a);
+        let opposite = (set.dir(index), set.point(sample.pair));
+        set.truncate(index);
+        if self.query.upper.index == index {
+            self.query.upper.index = 0;
+        }
+        self.interior = newest.towards(&opposite.1, 0.5);
+        if let Some(n) = normalised(&-self.interior.v) {
+            let turn2 = (n - *ray).norm_squared();
+            *ray = n;
+            if turn2 > 0.3 {
+                self.query.evaluate(set, ray)?;
+            }
+        }
+        Ok(opposite)
+    }
+
+    /// Finds a portal of the ray and refines it.
+    #[inline(always)]
+    fn find_portal<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        ray: &Vec3,
+    ) -> Result<Option<[Vertex; 3]>, Stop> {
+        let query = &mut *self.query;
+        let tolerance = query.scale.tolerance(self.limits.gap.tolerance);
+        let gap = self.limits.gap.allowed(query.upper.depth, tolerance);
+        let along = set.farthest_vertex(ray).w.dot(ray);
+        let length = along - self.interior.v.dot(ray);
+        let Some(mut portal) = discover(query, set, ray, length, gap)? else {
+            return Ok(None);
+        };
+        refine(
+            query,
+            set,
+            &mut self.fit,
+            ray,
+            &mut portal,
+            &self.limits.gap,
+        )?;
+        Ok(Some(portal))
+    }
+
+    /// Returns the interior point as a corner.
+    fn interior_vertex(&self) -> Vertex {
+        Vertex {
+            w: self.interior.v,
+            pair: VertexPair::INTERIOR,
+        }
+    }
+
+    /// Proves the minimum from the tetrahedron of interior point and portal, if it can, and writes the
+    /// answer.
+    #[inline(always)]
+    fn certify(
+        &mut self,
+        set: &mut VertexSet<SMALL_VERTICES>,
+        portal: &[Vertex; 3],
+        is_warm: bool,
+    ) -> Result<bool, Stop> {
+        let [a, b, c] = portal.each_ref().map(|v| v.w);
+        let scale = &self.query.scale;
+        let ulp = f64::EPSILON * scale.size();
+        let Some(tetrahedron) = Tetrahedron::new([self.interior.v, a, b, c], ulp) else {
+            return Ok(false);
+        };
+        let lower = tetrahedron.inner_radius() - tetrahedron.error - scale.support_eps();
+        let tolerance = scale.tolerance(self.limits.gap.tolerance);
+        let allowed = self.limits.gap.allowed(self.query.upper.depth, tolerance);
+        if !(lower > 0.0 && lower >= self.query.upper.depth - allowed) {
+            return Ok(false);
+        }
+        if is_warm && self.query.upper.depth - lower > tolerance {
+            let normal = (b - a).cross(&(c - a));
+            self.polish(set, portal, &normal)?;
+        }
+        self.write_answer(set, *portal, lower);
+        Ok(true)
+    }
+
+    /// Evaluates one more direction where a warm start has ended within the gap but not within the
+    /// tolerance, so that directions of moving pairs follow them: the prediction of the sphere fits where
+    /// they are confirmed, else the normal of the closest face.
+    fn polish<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        corners: &[Vertex; 3],
+        normal: &Vec3,
+    ) -> Result<(), Stop> {
+        let upper = self.query.upper;
+        let predicted = match self.fit.is_confirmed {
+            true => self.fit.predict(set, corners, &upper.dir),
+            false => normalised(normal).map(|n| (n, 0.0)),
+        };
+        match predicted {
+            Some((n, value)) if value < upper.depth && !set.is_full() => {
+                self.query.evaluate(set, &n)?;
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Expands polytopes from the starts there are, until one shows the origin inside.
+    #[inline(never)]
+    fn expand_from(
+        &mut self,
+        set: &mut VertexSet<SMALL_VERTICES>,
+        portal: Option<&[Vertex; 3]>,
+        is_warm: bool,
+        arena: &mut Option<&mut dyn Arena>,
+    ) -> Result<Status, Stop> {
+        let mut status = Status::Rounding;
+        let mut corners = EpaCorners::<SMALL_CORNERS>::EMPTY;
+        let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
+        for kind in STARTS {
+            if kind != StartKind::Portal && set.len() + START_VERTICES > SMALL_VERTICES {
+                set.truncate(SMALL_VERTICES - START_VERTICES);
+            }
+            let start = match (kind, portal) {
+                (StartKind::Portal, Some([a, b, c])) => Some([self.interior_vertex(), *a, *b, *c]),
+                (StartKind::Portal, None) => None,
+                (StartKind::Farthest, _) => self.find_farthest(set)?,
+                (StartKind::Gjk, _) => self.find_gjk_tetrahedron(set)?,
+            };
+            let Some(start) = start else { continue };
+            let ulp = f64::EPSILON * self.query.scale.size();
+            let Some(tetrahedron) = Tetrahedron::new(start.map(|v| v.w), ulp) else {
+                continue;
+            };
+            let mut progress = Expansion::new(self.iterations, &self.query.scale, self.limits);
+            polytope.start(&tetrahedron, progress.needs_exact_planes());
+            corners.start(&start);
+            let interior = self.interior.v;
+            let end = expand(
+                self.query,
+                set,
+                &mut self.fit,
+                &interior,
+                &mut corners,
+                &mut polytope,
+                &mut progress,
+                self.limits,
+            )?;
+            self.iterations = progress.iterations;
+            let found = match end {
+                ExpandEnd::NoRoom => self.widen(set, &corners, &polytope, &mut progress, arena)?,
+                end => self.conclude(set, &corners, &polytope, &progress, end, is_warm)?,
+            };
+            self.iterations = progress.iterations;
+            // From another tetrahedron rounding may end the search later.
+            match found {
+                Some(Status::Rounding) => {}
+                Some(found) => return Ok(found),
+                None => {}
+            }
+        }
+        if self.gap == f64::INFINITY {
+            // Nothing is known but the upper bound.
+            let index = self.query.upper.index;
+            let point = set.point(VertexSet::<SMALL_VERTICES>::sample(index));
+            self.write(0.0, [point.v1, point.v2], [0.0; 2]);
+            status = Status::Rounding;
+        }
+        Ok(status)
+    }
+
+    /// Goes on in the large buffers, and in the lent ones after them.
+    #[cold]
+    #[inline(never)]
+    fn widen(
+        &mut self,
+        small: &VertexSet<SMALL_VERTICES>,
+        small_corners: &EpaCorners<SMALL_CORNERS>,
+        small_polytope: &EpaPolytope<SMALL_FACES>,
+        progress: &mut Expansion,
+        arena: &mut Option<&mut dyn Arena>,
+    ) -> Result<Option<Status>, Stop> {
+        let mut set = VertexSet::<LARGE_VERTICES>::EMPTY;
+        let mut corners = EpaCorners::<LARGE_CORNERS>::EMPTY;
+        let mut polytope = EpaPolytope::<LARGE_FACES>::BLANK;
+        set.copy_from(small);
+        small_corners.copy_to(&mut corners);
+        small_polytope.copy_to(&mut polytope);
+        let interior = self.interior.v;
+        let end = expand(
+            self.query,
+            &mut set,
+            &mut self.fit,
+            &interior,
+            &mut corners,
+            &mut polytope,
+            progress,
+            self.limits,
+        )?;
+        // They are lent once.
+        if let (ExpandEnd::NoRoom, Some(arena)) = (end, arena.take()) {
+            return self.widen_to_lent(&set, &corners, &polytope, progress, arena.buffers()?);
+        }
+        self.conclude(&mut set, &corners, &polytope, progress, end, false)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn widen_to_lent(
+        &mut self,
+        large: &VertexSet<LARGE_VERTICES>,
+        large_corners: &EpaCorners<LARGE_CORNERS>,
+        large_polytope: &EpaPolytope<LARGE_FACES>,
+        progress: &mut Expansion,
+        buffers: &mut EpaBuffers,
+    ) -> Result<Option<Status>, Stop> {
+        let EpaBuffers {
+            set,
+            corners,
+            polytope,
+        } = buffers;
+        set.copy_from(large);
+        large_corners.copy_to(corners);
+        large_polytope.copy_to(polytope);
+        let interior = self.interior.v;
+        let end = expand(
+            self.query,
+            set,
+            &mut self.fit,
+            &interior,
+            corners,
+            polytope,
+            progress,
+            self.limits,
+        )?;
+        self.conclude(set, corners, polytope, progress, end, false)
+    }
+
+    /// Returns the interior point and the points farthest from it, from a line and from a plane, known or
+    /// queried; `None` where D is flat within rounding.
+    #[cold]
+    #[inline(never)]
+    fn find_farthest<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+    ) -> Result<Option<Start>, Stop> {
+        let apex = self.interior_vertex();
+        let mut found = [apex; 4];
+        let c = apex.w;
+        for i in 1..4 {
+            let axes = match i {
+                1 => [self.query.upper.dir, perpendicular(&self.query.upper.dir)],
+                2 => {
+                    let e = perpendicular(&(found[1].w - c));
+                    [e, e.cross(&(found[1].w - c))]
+                }
+                _ => {
+                    let n = (found[1].w - c).cross(&(found[2].w - c));
+                    [n, n]
+                }
+            };
+            let mut best = 0.0;
+            // Known differences first; then queries along the axes, the second only where the first finds
+            // nothing.
+            for pass in 0..3 {
+                let Some(n) = normalised(&axes[usize::from(pass > 1)]) else {
+                    continue;
+                };
+                for m in [n, -n] {
+                    if pass > 0 {
+                        self.query.evaluate(set, &m)?;
+                    }
+                    let v = set.farthest_vertex(&m);
+                    let distance = m.dot(&(v.w - c));
+                    if distance > best {
+                        (best, found[i]) = (distance, v);
+                    }
+                }
+                // A known difference need not be the farthest, but must be far.
+                let size = self.query.scale.size();
+                let least = if pass == 0 {
+                    1e-3 * size
+                } else {
+                    32.0 * self.query.scale.height_eps()
+                };
+                if best > least {
+                    break;
+                }
+            }
+            if !(best > 32.0 * self.query.scale.height_eps()) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(found))
+    }
+
+    /// Returns the tetrahedron of GJK, which decides whether the objects overlap where no polytope has come
+    /// to hold the origin.
+    #[cold]
+    #[inline(never)]
+    fn find_gjk_tetrahedron<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+    ) -> Result<Option<Start>, Stop> {
+        use crate::gjk::overlap;
+        use crate::known::support_set::{Inquiry, SupportSet};
+        let mut inquiry = Inquiry::new(self.query.md);
+        let mut around = SupportSet::<{ overlap::ROOM }>::EMPTY;
+        let dir = self.query.upper.dir;
+        let held = overlap::overlap(&mut inquiry, &mut around, None, None, &dir)?;
+        Ok(Some(held.corners.map(|i| {
+            let index = set.push(&around.direction(i), &around.point(i));
+            let pair = VertexSet::<N>::sample(index);
+            Vertex {
+                w: set.difference(pair),
+                pair,
+            }
+        })))
+    }
+
+    /// Writes the answer of an expansion, unless an earlier one is as close to its lower bound. `None`: the
+    /// polytope has not shown the origin inside.
+    #[inline(never)]
+    fn conclude<const N: usize, const C: usize, const F: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        corners: &EpaCorners<C>,
+        polytope: &EpaPolytope<F>,
+        progress: &Expansion,
+        end: ExpandEnd,
+        is_warm: bool,
+    ) -> Result<Option<Status>, Stop> {
+        let closest = polytope.closest_face();
+        let support_eps = self.query.scale.support_eps();
+        let is_inside = polytope.encloses_interior_point() && closest.key >= 0.0;
+        let lower = if is_inside {
+            larger(polytope.lower_bound(&closest) - support_eps, 0.0)
+        } else {
+            0.0
+        };
+        let interior = self.interior.v;
+        let vertices = |f: usize| {
+            polytope
+                .corners(f)
+                .map(|id| corners.vertex(set, &interior, id))
+        };
+        if is_warm
+            && end == ExpandEnd::Converged
+            && self.query.upper.depth - lower > progress.tolerance
+        {
+            let face = vertices(closest.face);
+            self.polish(set, &face, &polytope.normal(closest.face))?;
+        }
+        let upper = self.query.upper;
+        if self.gap == f64::INFINITY || upper.depth - lower < self.gap {
+            let corner = |id: usize| corners.vertex(set, &interior, id).w;
+            let (dir, depth) = (&upper.dir, upper.depth);
+            let tolerance = progress.tolerance;
+            let face = exit_face(polytope, &corner, closest.face, dir, depth, tolerance);
+            let face = polytope
+                .corners(face)
+                .map(|id| corners.vertex(set, &interior, id));
+            self.write_answer(set, face, lower);
+            self.hit.iterations = progress.iterations;
+        }
+        if N > SMALL_VERTICES {
+            let pair = set.farthest(&upper.dir);
+            let height = upper.dir.dot(&set.difference(pair)) - upper.depth;
+            if height > self.query.scale.tie_eps() {
+                self.query.is_inconsistent = true;
+                self.hit.depth_lower = 0.0;
+                return Ok(Some(Status::InconsistentSupport));
+            }
+        }
+        // The bound as it is rounded down must be within the gap, whatever ended the search.
+        let tolerance = larger(self.limits.gap.tolerance, progress.tolerance);
+        let allowed = self
+            .limits
+            .gap
+            .allowed(upper.depth, tolerance + ROUNDING_GAP_EPS * support_eps);
+        let status = match end {
+            _ if upper.depth - lower <= allowed => Status::Converged,
+            ExpandEnd::Converged | ExpandEnd::Rounding => Status::Rounding,
+            ExpandEnd::SupportLimit | ExpandEnd::NoRoom => Status::SupportLimit,
+            ExpandEnd::IterationLimit => Status::IterationLimit,
+        };
+        Ok(is_inside.then_some(status))
+    }
+
+    /// Writes the answer along the direction of the upper bound; `face`: where the ray along it leaves D.
+    #[inline(always)]
+    fn write_answer<const N: usize>(&mut self, set: &VertexSet<N>, face: [Vertex; 3], lower: f64) {
+        let upper = self.query.upper;
+        let foot = upper.dir * upper.depth;
+        let [a, b, c] = face.each_ref().map(|v| &v.w);
+        let weights = barycentric::triangle(&foot, a, b, c).weights;
+        let mut points = [Vec3::zeros(); 2];
+        for (weight, v) in weights.iter().zip(&face) {
+            let point = if v.pair.is_interior() {
+                self.interior
+            } else {
+                set.point(v.pair)
+            };
+            points[0] += point.v1 * *weight;
+            points[1] += point.v2 * *weight;
+        }
+        let extent = match self.wants_pos {
+            true => {
+                let known = (0..set.len()).map(|i| [set.vertex1(i), set.vertex2(i)]);
+                pressure::extent(known, points.each_ref())
+            }
+            false => [0.0; 2],
+        };
+        self.write(lower, points, extent);
+    }
+
+    #[inline(always)]
+    fn write(&mut self, lower: f64, [point1, point2]: [Vec3; 2], extent: [f64; 2]) {
+        let upper = self.query.upper;
+        let lower = lower.min(upper.depth);
+        self.gap = upper.depth - lower;
+        *self.hit = Penetration {
+            depth: upper.depth,
+            depth_lower: lower,
+            dir: upper.dir,
+            normal: upper.dir,
+            point1,
+            point2,
+            extent,
+            iterations: self.iterations,
+            ..Penetration::default()
+        };
+    }
+
+    /// Returns whether a known difference beyond the final plane was not found again, and its entries were
+    /// removed. One that is found again shows that the callback stopped short along the final direction:
+    /// its height is the depth.
+    #[inline(always)]
+    fn has_contradiction(&mut self, set: &mut VertexSet<SMALL_VERTICES>) -> Result<bool, Stop> {
+        let dir = self.query.upper.dir;
+        let pair = set.farthest(&dir);
+        let height = dir.dot(&set.difference(pair)) - self.query.upper.depth;
+        if !(height > self.query.scale.tie_eps()) {
+            return Ok(false);
+        }
+        self.resolve_contradiction(set, &dir, pair)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn resolve_contradiction(
+        &mut self,
+        set: &mut VertexSet<SMALL_VERTICES>,
+        dir: &Vec3,
+        pair: VertexPair,
+    ) -> Result<bool, Stop> {
+        self.query.is_inconsistent = true;
+        let again = self.query.find_again(set, dir, pair)?;
+        let depth = dir.dot(&again.v);
+        if depth > self.query.upper.depth + self.query.scale.tie_eps() {
+            self.hit.depth = depth;
+            self.hit.depth_lower = self.hit.depth_lower.min(self.query.upper.depth);
+            return Ok(false);
+        }
+        let (first, second) = (pair.a.max(pair.b), pair.a.min(pair.b));
+        set.remove(first.into());
+        if second != first {
+            set.remove(second.into());
+        }
+        self.query.reset_upper(set);
+        Ok(true)
+    }
+}

@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Homogeneous planes: all x with N·x = d, where N is not normalised; and the four of a tetrahedron.
+//!
+//! What the polytope computes most is written in whole lanes of two numbers, and lanes are taken apart
+//! last: plain expressions make the compiler pair other lanes and write planes in small pieces (10 to
+//! 17 % more instructions for a whole query).
+
+use crate::math::{Vec3, larger, lesser};
+
+/// The extent below which a triangle has no area, in ulps of the size. Derived: twice the error of a plane
+/// through its corners.
+pub const MIN_EXTENT_ULPS: f64 = 16.0;
+/// The error of a plane that is computed from its corners, in ulps of the size. Derived: two products of a
+/// unit vector with a point, three each and their sums, the length of the unit vector and the coordinates
+/// of the interior point.
+pub const PLANE_ERROR_ULPS: f64 = 8.0;
+/// The least six-fold volume of a tetrahedron, in ulps of the cube of its longest edge. Derived: a face's
+/// normal is off by six ulps of the square of that edge, which is as much of its height as its area is
+/// smaller; the interior point is a quarter of that height below the face, half of which is to remain.
+const MIN_VOLUME_ULPS: f64 = 64.0;
+
+/// Two numbers side by side.
+#[derive(Clone, Copy, Debug)]
+struct Lanes([f64; 2]);
+
+impl Lanes {
+    #[inline(always)]
+    fn plus(self, o: Self) -> Self {
+        Self([self.0[0] + o.0[0], self.0[1] + o.0[1]])
+    }
+
+    #[inline(always)]
+    fn minus(self, o: Self) -> Self {
+        Self([self.0[0] - o.0[0], self.0[1] - o.0[1]])
+    }
+
+    #[inline(always)]
+    fn times(self, o: Self) -> Self {
+        Self([self.0[0] * o.0[0], self.0[1] * o.0[1]])
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self([self.0[0].abs(), self.0[1].abs()])
+    }
+}
+
+/// A plane (N, d); also a point (p, −1), so that their product is the height of p.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane(Lanes, Lanes);
+
+impl Plane {
+    /// Makes the plane with this normal, N·x = d.
+    #[inline(always)]
+    pub fn new(n: &Vec3, d: f64) -> Self {
+        Self(Lanes([n.x, n.y]), Lanes([n.z, d]))
+    }
+
+    /// Makes a point, to take heights of.
+    #[inline(always)]
+    pub fn point(p: &Vec3) -> Self {
+        // If the compiler knew the −1, its product would leave the lanes.
+        Self::new(p, core::hint::black_box(-1.0))
+    }
+
+    /// Makes a plane of the four numbers N, d.
+    #[inline(always)]
+    pub fn of(a: &[f64; 4]) -> Self {
+        Self(Lanes([a[0], a[1]]), Lanes([a[2], a[3]]))
+    }
+
+    /// Returns the four numbers N, d.
+    #[inline(always)]
+    pub fn array(&self) -> [f64; 4] {
+        [self.0.0[0], self.0.0[1], self.1.0[0], self.1.0[1]]
+    }
+
+    /// Returns N.
+    #[inline(always)]
+    pub fn normal(&self) -> Vec3 {
+        Vec3::new(self.0.0[0], self.0.0[1], self.1.0[0])
+    }
+
+    /// Returns d.
+    #[inline(always)]
+    pub fn offset(&self) -> f64 {
+        self.1.0[1]
+    }
+
+    /// Returns N·p − d for a [`Plane::point`]: its height above the plane, times |N|.
+    #[inline(always)]
+    pub fn height(&self, point: &Self) -> f64 {
+        let x = self.0.times(point.0).plus(self.1.times(point.1));
+        x.0[0] + x.0[1]
+    }
+
+    /// Returns the plane a share `w` of the way to another: it holds their common line.
+    #[inline(always)]
+    pub fn towards(&self, other: &Self, w: f64) -> Self {
+        let w = Lanes([w, w]);
+        Self(
+            self.0.plus(w.times(other.0.minus(self.0))),
+            self.1.plus(w.times(other.1.minus(self.1))),
+        )
+    }
+
+    /// Returns the square of the distance from the origin with the sign of d, m², and |N|².
+    #[inline(always)]
+    pub fn signed_square(&self) -> (f64, f64) {
+        let a = self.0.times(self.0);
+        let b = self.1.times(self.1.abs());
+        let n2 = (a.0[0] + a.0[1]) + b.0[0].abs();
+        (b.0[1] / n2, n2)
+    }
+
+    /// Returns the same plane with N and d times `k`.
+    #[inline(always)]
+    pub fn scaled(&self, k: f64) -> Self {
+        let k = Lanes([k, k]);
+        Self(self.0.times(k), self.1.times(k))
+    }
+}
+
+/// A tetrahedron that is not flat, with its planes.
+#[derive(Clone, Copy, Debug)]
+pub struct Tetrahedron {
+    /// The planes of the faces (0 2 1), (0 1 3), (1 2 3), (2 0 3), of unit normals that look outwards.
+    pub planes: [Plane; 4],
+    /// Whether the points 1 and 2 have changed places, so that the faces look outwards.
+    pub is_flipped: bool,
+    /// The middle of the four points: below every plane by at least `margin`.
+    pub middle: Vec3,
+    /// Metres.
+    pub margin: f64,
+    /// The error of the planes, metres.
+    pub error: f64,
+}
+
+impl Tetrahedron {
+    /// Makes the tetrahedron of four points; `None` where it is flat within rounding. `ulp`: of the size
+    /// of D, metres.
+    #[inline(always)]
+    pub fn new([o, mut a, mut b, c]: [Vec3; 4], ulp: f64) -> Option<Self> {
+        let extent = MIN_EXTENT_ULPS * ulp;
+        let (e, f, g) = (a - o, b - o, c - o);
+        let base = e.cross(&f);
+        let volume = base.dot(&g);
+        let long2 = larger(larger(e.norm_squared(), f.norm_squared()), g.norm_squared());
+        let min_area2 = extent * extent * long2;
+        // The sign of a smaller volume is rounding, and with it what is outside.
+        let min_volume = MIN_VOLUME_ULPS * f64::EPSILON * long2;
+        // Negated for NaN.
+        if !(volume * volume > min_volume * min_volume * long2) {
+            return None;
+        }
+        let is_flipped = volume < 0.0;
+        let (mut x, mut y, mut below) = (e, f, -base);
+        if is_flipped {
+            (x, y, below) = (f, e, base);
+            (a, b) = (b, a);
+        }
+        // Not minus the sum of the others, which is rounding for a thin tetrahedron.
+        let normals = [below, x.cross(&g), (y - x).cross(&(g - x)), g.cross(&y)];
+        let corners = [[o, b, a], [o, a, c], [a, b, c], [b, o, c]];
+        let mut planes = [Plane::new(&o, 0.0); 4];
+        let mut widest2 = 0.0;
+        for ((plane, n), [p, q, r]) in planes.iter_mut().zip(normals).zip(corners) {
+            let n2 = n.norm_squared();
+            if !(n2 > min_area2) {
+                return None;
+            }
+            let n = n / n2.sqrt();
+            widest2 = larger(n2, widest2);
+            *plane = Plane::new(&n, lesser(lesser(n.dot(&p), n.dot(&q)), n.dot(&r)));
+        }
+        let error = PLANE_ERROR_ULPS * ulp;
+        // The middle is a quarter of the opposite corner's height below a face.
+        let margin = 0.25 * volume.abs() / widest2.sqrt();
+        (margin >= error).then_some(Self {
+            planes,
+            is_flipped,
+            middle: (o + a + b + c) * 0.25,
+            margin,
+            error,
+        })
+    }
+
+    /// Returns the least signed distance of a plane from the origin, metres: a ball of that radius around
+    /// the origin, less the error, lies inside.
+    #[inline(always)]
+    pub fn inner_radius(&self) -> f64 {
+        let [a, b, c, d] = self.planes.each_ref().map(Plane::offset);
+        lesser(lesser(a, b), lesser(c, d))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_distances_and_mixtures() {
+        let x = Plane::new(&(Vec3::x() * 2.0), 6.0);
+        let y = Plane::new(&Vec3::y(), -1.0);
+        assert_eq!(x.height(&Plane::point(&Vec3::new(4.0, 9.0, 9.0))), 2.0);
+        assert_eq!(x.signed_square(), (9.0, 4.0));
+        assert_eq!(y.signed_square(), (-1.0, 1.0));
+        // A point of both planes is one of every mixture.
+        let both = Plane::point(&Vec3::new(3.0, -1.0, 7.0));
+        assert_eq!(x.towards(&y, 0.25).height(&both), 0.0);
+        assert_eq!(x.towards(&y, 1.0).array(), y.array());
+        assert_eq!(x.scaled(2.0).array(), [4.0, 0.0, 0.0, 12.0]);
+    }
+
+    #[test]
+    fn a_tetrahedron_around_the_origin_has_its_inner_radius() {
+        let points = [
+            [1.0, 1.0, 1.0],
+            [1.0, -1.0, -1.0],
+            [-1.0, 1.0, -1.0],
+            [-1.0, -1.0, 1.0],
+        ];
+        let [o, a, b, c] = points.map(|p| Vec3::from(p));
+        for points in [[o, a, b, c], [o, b, a, c]] {
+            let made = Tetrahedron::new(points, f64::EPSILON).unwrap();
+            assert!((made.inner_radius() - 1.0 / 3.0_f64.sqrt()).abs() < 1e-15);
+            assert!(
+                made.planes
+                    .iter()
+                    .all(|p| p.offset() - p.normal().dot(&made.middle) >= made.margin)
+            );
+        }
+    }
+
+    #[test]
+    fn flat_tetrahedra_are_refused() {
+        let [o, x, y] = [Vec3::zeros(), Vec3::x(), Vec3::y()];
+        for d in [
+            o,
+            x,
+            y * 0.5,
+            x + y,
+            Vec3::z() * f64::EPSILON,
+            Vec3::repeat(f64::NAN),
+        ] {
+            assert!(Tetrahedron::new([o, x, y, d], f64::EPSILON).is_none());
+        }
+        assert!(Tetrahedron::new([o, x, y, Vec3::z()], f64::EPSILON).is_some());
+    }
+}
