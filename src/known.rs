@@ -9,7 +9,6 @@
 //! ([`support_set::SupportSet::extreme`]).
 
 pub mod check;
-pub mod mark;
 pub mod points;
 pub mod precision;
 #[doc(hidden)]

@@ -64,7 +64,6 @@ mod epa;
 mod ffi;
 mod gjk;
 #[allow(dead_code)]
-mod hull;
 mod known;
 mod local;
 mod math;

@@ -14,21 +14,16 @@
 //! | `OVERLAP` | the local search: its [`Memory`] | the minimum's | slopes of the active cuts | what is round of the objects |
 //! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | the directions of the other points that the proof stands on | after face on face: [`State::position`] and [`State::mark`]; in `drift` [`State::hint`] |
+//! | `PROVEN` | the global search | the minimum's | | its [`WarmStart`] |
 //! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none. What a query for the depth of an overlap leaves
 //! behind also tells how the centres lay, where they are given ([`State::face`]).
 
-use crate::hull::global::Basis;
 use crate::local::Memory;
 use crate::math::{Vec3, as_unit, normalised, unit};
 use crate::query::warm_start::{WarmKind, WarmStart};
 
-/// The bit of [`State::marks`] for a pair that rested face on face when its minimum was proven.
-const RESTED: u32 = 1 << 31;
-/// The bit for one whose other directions are those that a position is asked by.
-const STANDS: u32 = 1 << 30;
 /// The bits of [`State::marks`] for a coordinate of the direction of the centres' difference.
 const COORDINATE: u32 = 10;
 /// What a coordinate is greater by there: none is 0, and all bits 0 are no direction.
@@ -44,7 +39,7 @@ pub struct State {
     memory: Memory,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
-    /// [`RESTED`], [`STANDS`], and the direction of the centres' difference.
+    /// The direction of the centres' difference.
     marks: u32,
 }
 
@@ -86,27 +81,7 @@ impl State {
             }
             return;
         }
-        let before = self.memory;
-        if self.rested() {
-            // What is round of the objects has given way.
-            self.memory.curved = 0;
-        }
         self.memory.flip();
-        if self.rested() {
-            // A position and a mark, which no order matters to.
-            let Memory {
-                curvature,
-                count,
-                curved,
-                ..
-            } = before;
-            self.memory.curvature = curvature;
-            (self.memory.count, self.memory.curved) = (count, curved);
-        }
-        // A hint names the objects.
-        if self.kind == PROVEN {
-            self.memory.drift = 0.0;
-        }
         if let Some(centre) = self.facing() {
             self.face(&-centre);
         }
@@ -114,7 +89,7 @@ impl State {
 
     /// Keeps the direction of the centres' difference, obj1's less obj2's.
     pub fn face(&mut self, centre: &Vec3) {
-        self.marks &= RESTED | STANDS;
+        self.marks = 0;
         if let Some(n) = normalised(centre) {
             for (i, x) in (0..).zip(n.iter()) {
                 // To the nearest whole number.
@@ -130,7 +105,7 @@ impl State {
             let x = self.marks >> (i * COORDINATE) & (2 * OFFSET - 1);
             (x as i32 - OFFSET as i32) as f64 / SCALE
         };
-        let given = self.marks & !(RESTED | STANDS) != 0;
+        let given = self.marks != 0;
         given.then(|| Vec3::new(coordinate(0), coordinate(1), coordinate(2)))
     }
 
@@ -244,71 +219,18 @@ impl State {
         }
     }
 
-    /// Did the pair rest face on face when its minimum was proven?
-    pub fn rested(&self) -> bool {
-        self.kind == PROVEN && self.marks & RESTED != 0
-    }
-
-    /// Are its other directions those of [`State::stand`]?
-    pub fn stands(&self) -> bool {
-        self.rested() && self.marks & STANDS != 0
-    }
-
-    /// The pair overlaps, and rests face on face: its minimum is proven by support points along these
-    /// directions, of which all but the first are asked for the position too.
-    pub fn stand(&mut self, basis: &Basis, pos: Vec3) {
-        self.prove(basis);
-        // What these find is not known to the last bit: no mark is that of another pose.
-        self.rest(pos, 0);
-        self.marks |= STANDS;
-    }
-
-    /// Its [`Basis::mark`], if it did.
-    pub fn mark(&self) -> Option<u64> {
-        let [low, high] = [self.memory.count, self.memory.curved].map(u64::from);
-        self.rested().then_some(high << 32 | low)
-    }
-
-    /// Its contact position, if it did.
-    pub fn position(&self) -> Option<Vec3> {
-        let [x, y, z, ..] = self.memory.curvature;
-        self.rested().then_some(Vec3::new(x, y, z))
-    }
-
     /// Keeps the directions of a portal besides.
     pub fn keep_portal(&mut self, directions: [Vec3; 3]) {
         self.kind = ALONG;
         self.memory.slopes = directions;
     }
 
-    /// The directions that the last proof stood on, besides the minimum's own; zero for none.
-    pub fn others(&self) -> &[Vec3] {
-        match self.kind {
-            PROVEN => &self.memory.slopes,
-            _ => &[],
-        }
-    }
-
-    /// The [`Basis::hint`] beside them; 0 for none.
-    #[inline]
-    pub fn hint(&self) -> u32 {
-        match self.kind {
-            // Of any number a whole one.
-            PROVEN => self.memory.drift as u32,
-            _ => 0,
-        }
-    }
-
-    /// How many support points the directions of the last proof are worth.
-    pub fn asks(&self) -> u64 {
-        1 + self.others().iter().filter(|n| n.norm() > 0.0).count() as u64
-    }
-
     /// Returns what the global query starts from.
     pub fn warm_start(&self) -> WarmStart {
         let [depth, radius1, radius2, ..] = self.memory.curvature;
+        let off = (self.memory.dir.norm_squared() - 1.0).abs();
         match self.kind {
-            PROVEN => WarmStart {
+            PROVEN if off <= 16.0 * crate::math::EPSILON => WarmStart {
                 dir: self.memory.dir,
                 depth,
                 radius: [radius1, radius2],
@@ -318,9 +240,12 @@ impl State {
                     WarmKind::Plain
                 },
             },
-            APART => WarmStart {
-                kind: WarmKind::Apart,
-                ..WarmStart::guess(&self.memory.dir)
+            APART => match WarmStart::guess(&self.memory.dir) {
+                guess if guess.kind == WarmKind::Plain => WarmStart {
+                    kind: WarmKind::Apart,
+                    ..guess
+                },
+                cold => cold,
             },
             OVERLAP | ALONG => WarmStart::guess(&self.memory.dir),
             _ => WarmStart::COLD,
@@ -341,32 +266,9 @@ impl State {
         }
     }
 
-    /// The pair overlaps: its minimum is proven by support points along these directions.
-    pub fn prove(&mut self, basis: &Basis) {
-        // In its place: nothing is copied.
-        self.forget();
-        if let Some((first, others)) = basis.directions().split_first() {
-            self.kind = PROVEN;
-            self.memory.dir = *first;
-            for (slope, n) in self.memory.slopes.iter_mut().zip(others) {
-                *slope = *n;
-            }
-            self.memory.drift = basis.hint as f64;
-        }
-    }
-
     /// Cold.
     fn forget(&mut self) {
         *self = Self::default();
-    }
-
-    /// The same, and it rests face on face: the middle of where it does, obj1's witness point, and
-    /// the [`Basis::mark`].
-    pub fn rest(&mut self, middle: Vec3, mark: u64) {
-        self.marks |= RESTED;
-        let [x, y, z, ..] = &mut self.memory.curvature;
-        [*x, *y, *z] = middle.into();
-        (self.memory.count, self.memory.curved) = (mark as u32, (mark >> 32) as u32);
     }
 }
 
@@ -388,27 +290,11 @@ mod tests {
         assert_eq!(state.memory.dir, dir);
     }
 
-    /// Whatever bits the mark has.
-    #[test]
-    fn a_rested_pair_flipped_keeps_its_position() {
-        let middle = Vec3::new(1.0, 2.0, 3.0);
-        for bit in 0..64 {
-            let mut state = State::of(PROVEN, Vec3::x());
-            state.rest(middle, 1 << bit);
-            state.flip();
-            assert_eq!(
-                (state.mark(), state.position()),
-                (Some(1 << bit), Some(middle))
-            );
-        }
-    }
-
     #[test]
     fn where_the_other_object_lay_is_kept() {
         let mut r = Random::new(3);
         let mut state = State::guess(&Vec3::y());
         assert!(state.facing().is_none());
-        state.rest(Vec3::x(), 7);
         for _ in 0..1000 {
             let n = r.direction();
             state.face(&(n * 0.001));
@@ -417,6 +303,6 @@ mod tests {
             assert!((state.facing().unwrap() + n).norm() < 0.007);
         }
         state.face(&Vec3::zeros());
-        assert!(state.facing().is_none() && state.marks == RESTED);
+        assert!(state.facing().is_none() && state.marks == 0);
     }
 }

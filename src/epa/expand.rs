@@ -97,13 +97,6 @@ impl<const C: usize> EpaCorners<C> {
         };
         Vertex { w, pair }
     }
-
-    /// Copies the corners to a larger list.
-    pub fn copy_to<const D: usize>(&self, to: &mut EpaCorners<D>) {
-        let len = self.len.min(C).min(D);
-        to.pairs[..len].copy_from_slice(&self.pairs[..len]);
-        to.len = len;
-    }
 }
 
 /// How an expansion ended.
@@ -223,7 +216,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             (progress.height_eps, progress.height_eps)
         };
         let mut w = set.farthest_vertex(&normal);
-        let mut height = normal.dot(&w.w) - offset;
+        let height = normal.dot(&w.w) - offset;
         let distance = closest.key.sqrt();
         let is_gain =
             !(closest.key > 0.0) || height * distance > GAIN_REL * (upper - distance) * offset;
@@ -240,7 +233,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             progress.iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
             if queried_height > queried_level {
-                (w, height) = (sample.vertex(), queried_height);
+                w = sample.vertex();
             } else if choice != Choice::Normal {
                 if choice == Choice::Prediction {
                     fit.set_pause();
@@ -293,7 +286,7 @@ pub fn exit_face<const F: usize>(
         triangle(&foot, &a, &b, &c).distance2
     };
     let mut best = (closest, distance2(closest));
-    if best.1 <= tolerance * tolerance {
+    if best.1 <= tolerance * lesser(tolerance, depth) {
         return best.0;
     }
     for f in polytope.faces() {

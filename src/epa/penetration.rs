@@ -60,10 +60,10 @@ const SPARE_VERTICES: usize = 8;
 /// The entries that the first tetrahedron may add, for which there must be room.
 const START_VERTICES: usize = 9;
 
-/// Returns the corners for so many vertices. Known differences become corners without a callback: a
-/// quarter more (measured, deep ellipsoids).
+/// Returns the corners for so many vertices. Known differences become corners without a callback: an
+/// eighth more (measured, deep ellipsoids).
 const fn max_corners(vertices: usize) -> usize {
-    vertices + vertices / 4
+    vertices + vertices / 8 + 5
 }
 
 /// Returns the faces for so many corners: a closed surface has 2 C − 4, and a fan is made before the faces
@@ -173,6 +173,17 @@ enum StartKind {
     Farthest,
     /// The tetrahedron in which GJK finds the origin.
     Gjk,
+}
+
+/// How a polytope ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Expanded {
+    /// The origin is shown inside, and the answer is written.
+    Inside(Status),
+    /// The origin is not shown inside.
+    Outside,
+    /// The buffers are full.
+    NoRoom,
 }
 
 /// A query on its way.
@@ -428,8 +439,6 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<Status, Stop> {
         let mut status = Status::Rounding;
-        let mut corners = EpaCorners::<SMALL_CORNERS>::EMPTY;
-        let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
         for kind in STARTS {
             if kind != StartKind::Portal && set.len() + START_VERTICES > SMALL_VERTICES {
                 set.truncate(SMALL_VERTICES - START_VERTICES);
@@ -441,35 +450,21 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 (StartKind::Gjk, _) => self.find_gjk_tetrahedron(set)?,
             };
             let Some(start) = start else { continue };
-            let ulp = f64::EPSILON * self.query.scale.size();
-            let Some(tetrahedron) = Tetrahedron::new(start.map(|v| v.w), ulp) else {
-                continue;
-            };
-            let mut progress = Expansion::new(self.iterations, &self.query.scale, self.limits);
-            polytope.start(&tetrahedron, progress.needs_exact_planes());
-            corners.start(&start);
-            let interior = self.interior.v;
-            let end = expand(
-                self.query,
-                set,
-                &mut self.fit,
-                &interior,
-                &mut corners,
-                &mut polytope,
-                &mut progress,
-                self.limits,
-            )?;
-            self.iterations = progress.iterations;
-            let found = match end {
-                ExpandEnd::NoRoom => self.widen(set, &corners, &polytope, &mut progress, arena)?,
-                end => self.conclude(set, &corners, &polytope, &progress, end, is_warm)?,
-            };
-            self.iterations = progress.iterations;
+            let mut found = self.expand_small(set, &start, is_warm)?;
+            if found == Expanded::NoRoom {
+                // From the same tetrahedron: the known vertices rebuild the polytope without a callback.
+                let mut buffers = None;
+                found = self.expand_large(set, &start, arena, &mut buffers)?;
+                if let Some(buffers) = buffers {
+                    found = self.expand_lent(&start, buffers)?;
+                }
+            }
             // From another tetrahedron rounding may end the search later.
-            match found {
-                Some(Status::Rounding) => {}
-                Some(found) => return Ok(found),
-                None => {}
+            if let Expanded::Inside(found) = found {
+                status = found;
+                if status != Status::Rounding {
+                    return Ok(status);
+                }
             }
         }
         if self.gap == f64::INFINITY {
@@ -482,71 +477,97 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(status)
     }
 
-    /// Goes on in the large buffers, and in the lent ones after them.
+    /// Expands a polytope in the small buffers.
+    #[inline(never)]
+    fn expand_small(
+        &mut self,
+        set: &mut VertexSet<SMALL_VERTICES>,
+        start: &Start,
+        is_warm: bool,
+    ) -> Result<Expanded, Stop> {
+        let mut corners = EpaCorners::<SMALL_CORNERS>::EMPTY;
+        let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
+        self.expand_in(set, &mut corners, &mut polytope, start, is_warm, true)
+    }
+
+    /// Expands a polytope in the large buffers. Where they are full and there is an arena, its buffers take
+    /// the vertices.
     #[cold]
     #[inline(never)]
-    fn widen(
+    fn expand_large<'m>(
         &mut self,
         small: &VertexSet<SMALL_VERTICES>,
-        small_corners: &EpaCorners<SMALL_CORNERS>,
-        small_polytope: &EpaPolytope<SMALL_FACES>,
-        progress: &mut Expansion,
-        arena: &mut Option<&mut dyn Arena>,
-    ) -> Result<Option<Status>, Stop> {
+        start: &Start,
+        arena: &mut Option<&'m mut dyn Arena>,
+        buffers: &mut Option<&'m mut EpaBuffers>,
+    ) -> Result<Expanded, Stop> {
         let mut set = VertexSet::<LARGE_VERTICES>::EMPTY;
         let mut corners = EpaCorners::<LARGE_CORNERS>::EMPTY;
         let mut polytope = EpaPolytope::<LARGE_FACES>::BLANK;
         set.copy_from(small);
-        small_corners.copy_to(&mut corners);
-        small_polytope.copy_to(&mut polytope);
-        let interior = self.interior.v;
-        let end = expand(
-            self.query,
+        let has_larger = arena.is_some();
+        let found = self.expand_in(
             &mut set,
-            &mut self.fit,
-            &interior,
             &mut corners,
             &mut polytope,
-            progress,
-            self.limits,
+            start,
+            false,
+            has_larger,
         )?;
-        // They are lent once.
-        if let (ExpandEnd::NoRoom, Some(arena)) = (end, arena.take()) {
-            return self.widen_to_lent(&set, &corners, &polytope, progress, arena.buffers()?);
+        if let (Expanded::NoRoom, Some(arena)) = (found, arena.take()) {
+            let lent = arena.buffers()?;
+            lent.set.copy_from(&set);
+            *buffers = Some(lent);
         }
-        self.conclude(&mut set, &corners, &polytope, progress, end, false)
+        Ok(found)
     }
 
+    /// Expands a polytope in the buffers of an arena, which hold the vertices.
     #[cold]
     #[inline(never)]
-    fn widen_to_lent(
-        &mut self,
-        large: &VertexSet<LARGE_VERTICES>,
-        large_corners: &EpaCorners<LARGE_CORNERS>,
-        large_polytope: &EpaPolytope<LARGE_FACES>,
-        progress: &mut Expansion,
-        buffers: &mut EpaBuffers,
-    ) -> Result<Option<Status>, Stop> {
+    fn expand_lent(&mut self, start: &Start, buffers: &mut EpaBuffers) -> Result<Expanded, Stop> {
         let EpaBuffers {
             set,
             corners,
             polytope,
         } = buffers;
-        set.copy_from(large);
-        large_corners.copy_to(corners);
-        large_polytope.copy_to(polytope);
-        let interior = self.interior.v;
+        self.expand_in(set, corners, polytope, start, false, false)
+    }
+
+    /// Expands a polytope from a tetrahedron and writes the answer, unless larger buffers are needed and
+    /// there are any.
+    #[inline(always)]
+    fn expand_in<const N: usize, const C: usize, const F: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        corners: &mut EpaCorners<C>,
+        polytope: &mut EpaPolytope<F>,
+        start: &Start,
+        is_warm: bool,
+        has_larger: bool,
+    ) -> Result<Expanded, Stop> {
+        let ulp = f64::EPSILON * self.query.scale.size();
+        let Some(tetrahedron) = Tetrahedron::new(start.map(|v| v.w), ulp) else {
+            return Ok(Expanded::Outside);
+        };
+        let mut progress = Expansion::new(self.iterations, &self.query.scale, self.limits);
+        polytope.start(&tetrahedron, progress.needs_exact_planes());
+        corners.start(start);
         let end = expand(
             self.query,
             set,
             &mut self.fit,
-            &interior,
+            &self.interior.v,
             corners,
             polytope,
-            progress,
+            &mut progress,
             self.limits,
         )?;
-        self.conclude(set, corners, polytope, progress, end, false)
+        self.iterations = progress.iterations;
+        if end == ExpandEnd::NoRoom && has_larger {
+            return Ok(Expanded::NoRoom);
+        }
+        self.conclude(set, corners, polytope, &progress, end, is_warm)
     }
 
     /// Returns the interior point and the points farthest from it, from a line and from a plane, known or
@@ -631,8 +652,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         })))
     }
 
-    /// Writes the answer of an expansion, unless an earlier one is as close to its lower bound. `None`: the
-    /// polytope has not shown the origin inside.
+    /// Writes the answer of an expansion, unless an earlier one is as close to its lower bound.
     #[inline(never)]
     fn conclude<const N: usize, const C: usize, const F: usize>(
         &mut self,
@@ -642,7 +662,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         progress: &Expansion,
         end: ExpandEnd,
         is_warm: bool,
-    ) -> Result<Option<Status>, Stop> {
+    ) -> Result<Expanded, Stop> {
         let closest = polytope.closest_face();
         let support_eps = self.query.scale.support_eps();
         let is_inside = polytope.encloses_interior_point() && closest.key >= 0.0;
@@ -682,7 +702,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             if height > self.query.scale.tie_eps() {
                 self.query.is_inconsistent = true;
                 self.hit.depth_lower = 0.0;
-                return Ok(Some(Status::InconsistentSupport));
+                return Ok(Expanded::Inside(Status::InconsistentSupport));
             }
         }
         // The bound as it is rounded down must be within the gap, whatever ended the search.
@@ -697,16 +717,47 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             ExpandEnd::SupportLimit | ExpandEnd::NoRoom => Status::SupportLimit,
             ExpandEnd::IterationLimit => Status::IterationLimit,
         };
-        Ok(is_inside.then_some(status))
+        Ok(if is_inside {
+            Expanded::Inside(status)
+        } else {
+            Expanded::Outside
+        })
     }
 
-    /// Writes the answer along the direction of the upper bound; `face`: where the ray along it leaves D.
+    /// Writes the answer along the direction of the upper bound; `face`: where the ray along it leaves the
+    /// polytope. The witness points are those of the closest point to the foot depth · dir: on the face, or
+    /// on a triangle of two of its corners and the support vertex of the direction or the interior point.
+    /// (The ball of the lower bound is in the hull of these: a point of the ray between the bounds is.)
     #[inline(always)]
-    fn write_answer<const N: usize>(&mut self, set: &VertexSet<N>, face: [Vertex; 3], lower: f64) {
+    fn write_answer<const N: usize>(
+        &mut self,
+        set: &VertexSet<N>,
+        mut face: [Vertex; 3],
+        lower: f64,
+    ) {
         let upper = self.query.upper;
         let foot = upper.dir * upper.depth;
-        let [a, b, c] = face.each_ref().map(|v| &v.w);
-        let weights = barycentric::triangle(&foot, a, b, c).weights;
+        let closest = |[a, b, c]: &[Vertex; 3]| barycentric::triangle(&foot, &a.w, &b.w, &c.w);
+        let mut best = closest(&face);
+        if best.distance2 > self.query.scale.height_eps() * self.query.scale.height_eps() {
+            let pair = VertexSet::<N>::sample(upper.index);
+            let support = Vertex {
+                w: set.difference(pair),
+                pair,
+            };
+            let corners = face;
+            for apex in [support, self.interior_vertex()] {
+                for i in 0..3 {
+                    let mut triangle = corners;
+                    triangle[i] = apex;
+                    let other = closest(&triangle);
+                    if other.distance2 < best.distance2 {
+                        (best, face) = (other, triangle);
+                    }
+                }
+            }
+        }
+        let weights = best.weights;
         let mut points = [Vec3::zeros(); 2];
         for (weight, v) in weights.iter().zip(&face) {
             let point = if v.pair.is_interior() {

@@ -6,11 +6,10 @@
 use super::Pair;
 use crate::contact::{INSIDE, Penetration, Settings};
 use crate::epa::expand::EpaLimits;
-use crate::hull::shallow::Try;
-use crate::known::points::{Points, ROOM};
-use crate::known::support_set::{Inquiry, Stop};
+use crate::known::points::Points;
+use crate::known::support_set::Stop;
 use crate::local::{self, Memory};
-use crate::math::{Vec3, larger};
+use crate::math::larger;
 use crate::minkowski::support::{Fault, Known, SupportMap};
 use crate::paper::incremental;
 use crate::paper::portal::{Until, rounding};
@@ -29,36 +28,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         known: &mut Known,
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
-        let enough = settings.max_iterations >= ROOM as u64;
-        if let Some(directions) = memory.face(settings.tolerance).filter(|_| enough) {
-            return self.in_face(memory, &directions, settings, known, hit);
-        }
         self.search(memory, None, settings, known, hit)
-    }
-
-    /// The same from [`Memory::face`].
-    #[inline(never)]
-    fn in_face(
-        &self,
-        memory: &mut Memory,
-        [dir, others @ .., last]: &[Vec3; 4],
-        settings: &Settings,
-        known: &mut Known,
-        hit: &mut Penetration,
-    ) -> Result<bool, Stop> {
-        let mut inquiry = Inquiry::new(&self.md);
-        let first = inquiry.first(dir, None)?;
-        let mut face = Try::new(dir, &first);
-        if face.recall(&mut inquiry, others)?
-            && face.face(&mut inquiry, last, settings.tolerance)?
-        {
-            face.conclude(&inquiry.lowest, known, hit);
-            memory.touch(&hit.dir, known.points());
-            return Ok(true);
-        }
-        // A callback that contradicts itself is asked anew.
-        let seen = Some(&face.points).filter(|_| !face.lies);
-        self.search(memory, seen, settings, known, hit)
     }
 
     /// Local searches, the first from what has been `seen` already, if anything: each from the lowest place
