@@ -222,7 +222,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             !(closest.key > 0.0) || height * distance > GAIN_REL * (upper - distance) * offset;
         if !(height > level && is_gain) {
             let is_plain = !is_inside || closest.key == progress.last_failed_key;
-            let (sample, choice) = if is_shallow(query) {
+            let (sample, choice) = if true {
                 let vertices = polytope
                     .corners(face)
                     .map(|id| corners.vertex(set, interior, id));

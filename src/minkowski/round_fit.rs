@@ -35,8 +35,13 @@ const MAX_MISS: f64 = 0.2;
 const MAX_MISSES: u32 = 3;
 /// The tilt beside the least direction, in units of √(2 gap / ρ). Insensitive: 1.2 to 1.7.
 const BESIDE_TILT: f64 = 1.4;
-/// The upper bound, as a share of ρ, up to which a query beside the least direction pays.
-const BESIDE_MAX_DEPTH: f64 = 0.3;
+/// The share of the ratio of two rings around the least direction that is used: what lies between two
+/// points of one ring is farther out. Insensitive: 0.7 to 1.
+const BESIDE_MARGIN: f64 = 0.8;
+/// The largest ratio of two rings.
+const BESIDE_MAX_RATIO: f64 = 100.0;
+/// The k below which a second ring is no wider than EPA's own. Insensitive: 0.33 to 0.6.
+const BESIDE_MIN_K: f64 = 0.5;
 
 /// What a direction was chosen by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -138,13 +143,39 @@ impl SphereFit {
 
     /// Returns a direction beside the least one, `lowest`, towards the unit normal of a face; `None` where
     /// the face is as near.
-    fn beside(&self, lowest: &Vec3, upper: f64, normal: &Vec3, gap: f64) -> Option<Vec3> {
+    ///
+    /// On a sphere of radius ρ, with the origin at e = ρ − upper from its centre, a chord between the
+    /// angles α and γ from the least direction is as far from the origin as the upper bound where
+    /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ.
+    pub fn beside<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        corners: &[Vertex; 3],
+        lowest: &Vec3,
+        upper: f64,
+        normal: &Vec3,
+        gap: f64,
+    ) -> Option<Vec3> {
         let rho = self.sum();
-        let tilt = BESIDE_TILT * (2.0 * gap / rho).sqrt();
         let along = normal.dot(lowest);
         let across = normal - lowest * along;
         let sine = across.norm();
-        if !(sine > 1.5 * tilt) || along < 0.5 || upper > BESIDE_MAX_DEPTH * rho {
+        let k = (1.0 - upper / rho).max(0.0).sqrt();
+        // The sines of the corners' angles; the second is that of the inner edge.
+        let sines = corners.each_ref().map(|v| {
+            let cosine = |i: u16| set.dir(i.into()).dot(lowest);
+            let c = lesser(cosine(v.pair.a), cosine(v.pair.b));
+            if c > 0.0 {
+                (1.0 - c * c).max(0.0).sqrt()
+            } else {
+                1.0
+            }
+        });
+        let least = lesser(lesser(sines[0], sines[1]), sines[2]);
+        let ratio = BESIDE_MARGIN * lesser((1.0 + k) / (1.0 - k), BESIDE_MAX_RATIO);
+        let first = BESIDE_TILT * (2.0 * gap / rho).sqrt();
+        let tilt = (ratio * least).max(first);
+        if !(sine > 1.5 * tilt) || along < 0.5 || k < BESIDE_MIN_K && least > 0.5 * first {
             return None;
         }
         let dir = lowest + across * (tilt / sine);
@@ -222,6 +253,10 @@ fn fit_and_evaluate<A: SupportMap, B: SupportMap, const N: usize>(
         fit.pause -= 1;
     } else if fit.misses < MAX_MISSES {
         let predicted = fit.predict(set, corners, normal);
+        if predicted.is_some_and(|p| (p.1 - upper.depth).abs() <= MIN_GAIN * gap) {
+            // The least direction is what the fit predicts.
+            fit.is_confirmed = true;
+        }
         if let Some((dir, value)) = predicted.filter(|p| p.1 < upper.depth - MIN_GAIN * gap) {
             let sample = query.evaluate(set, &dir)?;
             fit.is_confirmed = sample.h < value + MAX_MISS * (upper.depth - value);
@@ -233,7 +268,7 @@ fn fit_and_evaluate<A: SupportMap, B: SupportMap, const N: usize>(
         }
     }
     if fit.is_confirmed && fit.sum() > 0.0 {
-        if let Some(dir) = fit.beside(&upper.dir, upper.depth, normal, gap) {
+        if let Some(dir) = fit.beside(set, corners, &upper.dir, upper.depth, normal, gap) {
             let sample = query.evaluate(set, &dir)?;
             // On a sphere the least direction was the least one.
             fit.is_confirmed = !(sample.h < upper.depth);
