@@ -390,9 +390,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 self.face(state);
             }
         }
-        hit.limit = found? != Status::Converged;
+        let status = found?;
+        hit.limit = status != Status::Converged;
         if hit.limit {
-            self.floor(hit, limits)?;
+            if status != Status::InconsistentSupport {
+                self.floor(hit, limits)?;
+            }
             hit.pos = hit.middle();
         } else if wants_pos {
             let mut seen = Seen::Nothing;

@@ -15,8 +15,9 @@
 //! 6. *Result*: depth and direction are the upper bound's, lower bound and witness points the polytope's.
 //!
 //! Departures. Steps 3 to 5 take known differences before callbacks. A known difference beyond the final
-//! plane that is not found again is removed, and the query starts again from the vertices left. So it does
-//! where a plane shows that the centres' difference is outside D, without trusting them.
+//! plane shows that callbacks contradict themselves, and a plane that the centres' difference lies beyond
+//! that it is outside D: the query then starts again, once, with every direction evaluated twice or
+//! without the centres.
 //!
 //! Validity. `depth`, `dir`: always; a sound depth. `depth_lower`: proven, of the global minimum (a trusted
 //! centre is part of the proof); 0 where nothing is proven. Witness points: always, each in its object.
@@ -79,8 +80,6 @@ const _: () = assert!(LENT_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
 /// epsilons. Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
 /// much by which the face found there is closer than the closest.
 const ROUNDING_GAP_EPS: f64 = 32.0;
-/// The known differences beyond the final plane that are looked for again, at most.
-const MAX_CONTRADICTIONS: u32 = 4;
 /// The support calls of a polytope after which D counts as round there.
 const MAX_PLAIN_ITERATIONS: u64 = 3;
 /// A warm direction whose support value is more than twice the last depth, and this share of the centres'
@@ -235,20 +234,24 @@ fn solve<A: SupportMap, B: SupportMap>(
         wants_pos: request.wants_pos,
     };
     let mut center = request.center;
-    let mut status = Status::InconsistentSupport;
-    for _ in 0..=MAX_CONTRADICTIONS {
-        status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
-        let is_contradicted = center.is_some() && solver.query.interior.is_none();
-        if is_contradicted {
-            // A plane shows that the centre is outside D.
-            center = None;
-        } else if !solver.has_contradiction(set)? {
-            break;
-        }
-        status = Status::InconsistentSupport;
+    let mut status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
+    // A plane shows that the centre is outside D, or callbacks contradict themselves: once more.
+    let is_outside = center.is_some() && solver.query.interior.is_none();
+    let is_inconsistent = solver.query.is_inconsistent;
+    if is_outside || is_inconsistent {
         solver.gap = f64::INFINITY;
-        if set.len() == 0 {
+        if is_outside {
+            center = None;
+        }
+        if is_inconsistent {
+            set.truncate(0);
+            solver.query.restart_inconsistent();
             solver.query.evaluate(set, dir)?;
+        }
+        status = solver.run(set, center, &request.ray, false, &mut arena)?;
+        if is_inconsistent {
+            solver.hit.depth_lower = 0.0;
+            status = Status::InconsistentSupport;
         }
     }
     let Solver {
@@ -468,10 +471,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             }
         }
         if self.gap == f64::INFINITY {
-            // Nothing is known but the upper bound.
-            let index = self.query.upper.index;
-            let point = set.point(VertexSet::<SMALL_VERTICES>::sample(index));
-            self.write(0.0, [point.v1, point.v2], [0.0; 2]);
+            self.write_upper(set);
             status = Status::Rounding;
         }
         Ok(status)
@@ -696,15 +696,6 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             self.write_answer(set, face, lower);
             self.hit.iterations = progress.iterations;
         }
-        if N > SMALL_VERTICES {
-            let pair = set.farthest(&upper.dir);
-            let height = upper.dir.dot(&set.difference(pair)) - upper.depth;
-            if height > self.query.scale.tie_eps() {
-                self.query.is_inconsistent = true;
-                self.hit.depth_lower = 0.0;
-                return Ok(Expanded::Inside(Status::InconsistentSupport));
-            }
-        }
         // The bound as it is rounded down must be within the gap, whatever ended the search.
         let tolerance = larger(self.limits.gap.tolerance, progress.tolerance);
         let allowed = self
@@ -736,6 +727,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         lower: f64,
     ) {
         let upper = self.query.upper;
+        self.query.is_inconsistent |= self.query.has_contradiction(set, &face);
         let foot = upper.dir * upper.depth;
         let closest = |[a, b, c]: &[Vertex; 3]| barycentric::triangle(&foot, &a.w, &b.w, &c.w);
         let mut best = closest(&face);
@@ -778,6 +770,12 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.write(lower, points, extent);
     }
 
+    /// Writes the answer where nothing is known but the upper bound.
+    fn write_upper<const N: usize>(&mut self, set: &VertexSet<N>) {
+        let point = set.point(VertexSet::<N>::sample(self.query.upper.index));
+        self.write(0.0, [point.v1, point.v2], [0.0; 2]);
+    }
+
     #[inline(always)]
     fn write(&mut self, lower: f64, [point1, point2]: [Vec3; 2], extent: [f64; 2]) {
         let upper = self.query.upper;
@@ -794,44 +792,5 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             iterations: self.iterations,
             ..Penetration::default()
         };
-    }
-
-    /// Returns whether a known difference beyond the final plane was not found again, and its entries were
-    /// removed. One that is found again shows that the callback stopped short along the final direction:
-    /// its height is the depth.
-    #[inline(always)]
-    fn has_contradiction(&mut self, set: &mut VertexSet<SMALL_VERTICES>) -> Result<bool, Stop> {
-        let dir = self.query.upper.dir;
-        let pair = set.farthest(&dir);
-        let height = dir.dot(&set.difference(pair)) - self.query.upper.depth;
-        if !(height > self.query.scale.tie_eps()) {
-            return Ok(false);
-        }
-        self.resolve_contradiction(set, &dir, pair)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn resolve_contradiction(
-        &mut self,
-        set: &mut VertexSet<SMALL_VERTICES>,
-        dir: &Vec3,
-        pair: VertexPair,
-    ) -> Result<bool, Stop> {
-        self.query.is_inconsistent = true;
-        let again = self.query.find_again(set, dir, pair)?;
-        let depth = dir.dot(&again.v);
-        if depth > self.query.upper.depth + self.query.scale.tie_eps() {
-            self.hit.depth = depth;
-            self.hit.depth_lower = self.hit.depth_lower.min(self.query.upper.depth);
-            return Ok(false);
-        }
-        let (first, second) = (pair.a.max(pair.b), pair.a.min(pair.b));
-        set.remove(first.into());
-        if second != first {
-            set.remove(second.into());
-        }
-        self.query.reset_upper(set);
-        Ok(true)
     }
 }

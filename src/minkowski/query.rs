@@ -13,9 +13,9 @@
 //! A callback that is no support function can contradict itself: its answer along n is less far along n
 //! than a vertex that it returned before (cylinders that divide by the sine near their axis, hill
 //! climbing that stops early). One wrong vertex taints the k differences that it is part of. There is
-//! one policy: a known difference that lies beyond a queried plane counts only if queries beside the
-//! directions that found its vertices find them again ([`SupportQuery::find_again`]). Else the plane
-//! stands and the entries are removed.
+//! one policy. A contradiction is noticed where a plane separates, and of the final plane of a query: a
+//! known difference lies beyond it. From then on every direction is evaluated twice, along n and beside
+//! n ([`SupportQuery::evaluate_twice`]), and the query starts again without known vertices.
 //!
 //! # Interior point
 //!
@@ -28,9 +28,9 @@ use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportP
 use crate::minkowski::tolerance::Scale;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// The angle beside a direction at which its vertex is looked for again, radians. Measured on ODE's
+/// The angle beside a direction at which it is evaluated a second time, radians. Measured on ODE's
 /// cylinder, whose vertices are wrong within 1e-3 of its axis.
-const REQUERY_ANGLE_RAD: f64 = 0.02;
+const REQUERY_ANGLE_RAD: f64 = 0.002;
 
 /// Why a query ends where it evaluates the support function.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +100,7 @@ pub struct SupportQuery<'q, A, B> {
     pub upper: UpperBound,
     /// The difference of the callers' centres, while no plane contradicts it.
     pub interior: Option<Vec3>,
-    /// Whether a callback contradicted itself.
+    /// Whether a callback contradicted itself: directions are evaluated twice.
     pub is_inconsistent: bool,
 }
 
@@ -174,6 +174,10 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         let dir = representable(dir);
         let mut point = self.evaluate_point(&dir)?;
         let mut h = dir.dot(&point.v);
+        if self.is_inconsistent {
+            point = self.evaluate_twice(&dir, &point)?;
+            h = dir.dot(&point.v);
+        }
         // Negated for NaN.
         if !self.scale.is_depth(h) {
             point = self.confirm_separation(set, &dir, &point)?;
@@ -214,8 +218,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
-    /// Returns the support point along `dir` where `answer` separates but known vertices that are found
-    /// again lie beyond the contact epsilon.
+    /// Evaluates again where `answer` separates but known vertices lie beyond it: one of them is wrong.
     ///
     /// # Errors
     /// [`Stop::Apart`]: the axis separates. [`Fault::NonFinite`].
@@ -229,68 +232,67 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     ) -> Result<SupportPoint, Stop> {
         let h = dir.dot(&answer.v);
         let least = larger(h + self.scale.support_eps(), self.scale.contact_eps());
-        let pair = set.farthest(dir);
-        if set.len() == 0 || !(dir.dot(&set.difference(pair)) > least) {
+        // Of each object the answer, or a known vertex that is farther.
+        let VertexPair { a, b } = set.farthest(dir);
+        let known = larger(dir.dot(&set.vertex1(a.into())), dir.dot(&answer.v1))
+            + larger(-dir.dot(&set.vertex2(b.into())), -dir.dot(&answer.v2));
+        if self.is_inconsistent || set.len() == 0 || !(known > least) {
             return Err(Stop::Apart(*dir));
         }
         self.is_inconsistent = true;
-        let again = self.find_again(set, dir, pair)?;
-        let v1 = farther(dir, &answer.v1, &again.v1);
-        let v2 = farther(&-dir, &answer.v2, &again.v2);
-        let v = v1 - v2;
-        if dir.dot(&v) > least {
-            Ok(SupportPoint { v, v1, v2 })
+        let point = self.evaluate_twice(dir, answer)?;
+        if dir.dot(&point.v) > least {
+            Ok(point)
         } else {
             Err(Stop::Apart(*dir))
         }
     }
 
-    /// Queries beside the directions that found a known difference. Returns, of each object, the known
-    /// vertex or the one found again, whichever is less far along `dir`.
+    /// Evaluates beside `dir`. Returns, of each object, the vertex of `answer`, the support point along
+    /// `dir`; or the one found beside, where that is farther along `dir` or has the other beyond its plane.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[cold]
     #[inline(never)]
-    pub fn find_again<const N: usize>(
-        &mut self,
-        set: &VertexSet<N>,
-        dir: &Vec3,
-        pair: VertexPair,
-    ) -> Result<SupportPoint, Fault> {
-        let SupportPoint { mut v1, mut v2, .. } = set.point(pair);
-        let [n1, n2] = [pair.a, pair.b].map(|i| set.dir(i.into()));
-        // A point that no call returned has no direction, and stays.
-        if n1 != Vec3::zeros() {
-            let again = self.evaluate_point(&beside(&n1))?;
-            v1 = -farther(dir, &-v1, &-again.v1);
-        }
-        if n2 != Vec3::zeros() {
-            let again = self.evaluate_point(&beside(&n2))?;
-            v2 = -farther(&-dir, &-v2, &-again.v2);
-        }
+    fn evaluate_twice(&mut self, dir: &Vec3, answer: &SupportPoint) -> Result<SupportPoint, Fault> {
+        let beside = beside(dir);
+        let near = self.evaluate_point(&beside)?;
+        let eps = self.scale.support_eps();
+        let choose = |n: &Vec3, m: &Vec3, p: &Vec3, q: &Vec3| {
+            let is_wrong = n.dot(q) > n.dot(p) + eps || m.dot(p) > m.dot(q) + eps;
+            if is_wrong { *q } else { *p }
+        };
+        let v1 = choose(dir, &beside, &answer.v1, &near.v1);
+        let v2 = choose(&-dir, &-beside, &answer.v2, &near.v2);
         Ok(SupportPoint { v: v1 - v2, v1, v2 })
     }
 
-    /// Recomputes the upper bound from the entries of the set: after entries were removed.
-    pub fn reset_upper<const N: usize>(&mut self, set: &VertexSet<N>) {
-        self.upper.depth = f64::INFINITY;
+    /// Returns whether a known difference lies beyond the plane of the upper bound, or the points that the
+    /// answer stands on beyond any queried plane: its support point and the corners of its face.
+    #[inline(always)]
+    pub fn has_contradiction<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        face: &[Vertex; 3],
+    ) -> bool {
+        let tie = self.scale.tie_eps();
+        let UpperBound { depth, dir, index } = self.upper;
+        let support = set.difference(VertexSet::<N>::sample(index));
+        let mut is_beyond = dir.dot(&set.difference(set.farthest(&dir))) > depth + tie;
         for i in 0..set.len() {
-            let (dir, h) = (set.dir(i), set.value(i));
-            if dir != Vec3::zeros() && h < self.upper.depth {
-                self.upper = UpperBound {
-                    depth: h,
-                    dir,
-                    index: i,
-                };
-            }
+            let n = set.dir(i);
+            let h = n.dot(&set.difference(VertexSet::<N>::sample(i))) + tie;
+            is_beyond |= n.dot(&support) > h || face.iter().any(|v| n.dot(&v.w) > h);
         }
+        is_beyond
     }
-}
 
-/// Returns the point that is farther along `dir`.
-fn farther(dir: &Vec3, a: &Vec3, b: &Vec3) -> Vec3 {
-    if dir.dot(a) < dir.dot(b) { *b } else { *a }
+    /// Starts again with every direction evaluated twice: forgets the upper bound.
+    pub fn restart_inconsistent(&mut self) {
+        self.is_inconsistent = true;
+        self.upper.depth = f64::INFINITY;
+    }
 }
 
 /// Returns the unit vector [`REQUERY_ANGLE_RAD`] beside unit `n`.
@@ -324,9 +326,6 @@ mod tests {
         let UpperBound { depth, dir, index } = query.upper;
         assert_eq!((depth, dir, index), (0.5, Vec3::x(), 1));
         assert_eq!(query.sample_count(), 2);
-        set.remove(1);
-        query.reset_upper(&set);
-        assert_eq!((query.upper.depth, query.upper.index), (2.0, 0));
     }
 
     #[test]
@@ -345,7 +344,7 @@ mod tests {
 
     /// A callback that returns its vertex everywhere but along x.
     #[test]
-    fn a_vertex_that_is_found_again_contradicts_a_separating_axis() {
+    fn a_vertex_found_beside_contradicts_a_separating_axis() {
         let short = |n: &Vec3| Vec3::x() * if *n == Vec3::x() { -1.0 } else { 1.0 };
         let md = MinkowskiDifference::new(short, |_: &Vec3| Vec3::zeros());
         let mut query = SupportQuery::new(&md, None);
@@ -358,7 +357,7 @@ mod tests {
 
     /// A callback that returned a wrong vertex once.
     #[test]
-    fn a_vertex_that_is_not_found_again_contradicts_nothing() {
+    fn a_wrong_vertex_contradicts_no_axis_that_separates_twice() {
         let calls = Cell::new(0);
         let wrong = |_: &Vec3| {
             calls.set(calls.get() + 1);
@@ -370,6 +369,23 @@ mod tests {
         query.evaluate(&mut set, &Vec3::new(0.8, 0.6, 0.0)).unwrap();
         let stop = query.evaluate(&mut set, &Vec3::x()).unwrap_err();
         assert_eq!(stop, Stop::Apart(Vec3::x()));
+    }
+
+    /// A disc whose vertices are 5 cm too high within 1e-3 of its axis: a second evaluation takes the
+    /// vertex found beside.
+    #[test]
+    fn a_vertex_beyond_the_plane_beside_is_replaced() {
+        let disc = |n: &Vec3| {
+            let r = n.x.hypot(n.y);
+            let height = if r < 1e-3 { 0.05 } else { 0.0 };
+            Vec3::new(n.x / r.max(1e-300), n.y / r.max(1e-300), height)
+        };
+        let md = MinkowskiDifference::new(disc, |_: &Vec3| -Vec3::z());
+        let mut query = SupportQuery::new(&md, None);
+        let mut set = VertexSet::<4>::EMPTY;
+        assert_eq!(query.evaluate(&mut set, &Vec3::z()).unwrap().h, 1.05);
+        query.restart_inconsistent();
+        assert_eq!(query.evaluate(&mut set, &Vec3::z()).unwrap().h, 1.0);
     }
 
     #[test]
