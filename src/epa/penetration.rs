@@ -29,7 +29,7 @@ use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, Expansion, exit_face,
 use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
-use crate::math::{Vec3, larger, normalised, perpendicular};
+use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
@@ -43,10 +43,10 @@ pub const MAX_SAMPLES: u64 = 160;
 /// and what comes before and after takes 58 on nearly coincident bodies (`campaigns -- wide`).
 pub const MAX_PROVEN_SAMPLES: u64 = 340;
 
-/// The vertices of the small buffers, 5 KB on the stack with their corners and faces: enough for shallow
-/// contacts and most polytopes.
+/// The vertices of the small buffers, 6 KB on the stack with their corners and faces: enough for shallow
+/// contacts and most polytopes. Less than 2 KB is zeroed by stores, more byte by byte.
 pub const SMALL_VERTICES: usize = 24;
-const SMALL_CORNERS: usize = max_corners(SMALL_VERTICES);
+const SMALL_CORNERS: usize = 32;
 const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
 /// The vertices of the large buffers, on the stack.
 const LARGE_VERTICES: usize = MAX_SAMPLES as usize + SPARE_VERTICES;
@@ -405,7 +405,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             let normal = (b - a).cross(&(c - a));
             self.polish(set, portal, &normal)?;
         }
-        self.write_answer(set, *portal, lower);
+        self.write_answer(set, *portal, lower, allowed);
         Ok(true)
     }
 
@@ -693,7 +693,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             let face = polytope
                 .corners(face)
                 .map(|id| corners.vertex(set, &interior, id));
-            self.write_answer(set, face, lower);
+            self.write_answer(set, face, lower, tolerance);
             self.hit.iterations = progress.iterations;
         }
         // The bound as it is rounded down must be within the gap, whatever ended the search.
@@ -717,21 +717,23 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
 
     /// Writes the answer along the direction of the upper bound; `face`: where the ray along it leaves the
     /// polytope. The witness points are those of the closest point to the foot depth · dir: on the face, or
-    /// on a triangle of two of its corners and the support vertex of the direction or the interior point.
-    /// (The ball of the lower bound is in the hull of these: a point of the ray between the bounds is.)
+    /// where that is farther away than the gap, on a triangle of two of its corners and the support vertex
+    /// of the direction or the interior point. (The ball of the lower bound is in the hull of these: a point
+    /// of the ray between the bounds is.)
     #[inline(always)]
     fn write_answer<const N: usize>(
         &mut self,
         set: &VertexSet<N>,
         mut face: [Vertex; 3],
         lower: f64,
+        gap: f64,
     ) {
         let upper = self.query.upper;
         self.query.is_inconsistent |= self.query.has_contradiction(set, &face);
         let foot = upper.dir * upper.depth;
         let closest = |[a, b, c]: &[Vertex; 3]| barycentric::triangle(&foot, &a.w, &b.w, &c.w);
         let mut best = closest(&face);
-        if best.distance2 > self.query.scale.height_eps() * self.query.scale.height_eps() {
+        if best.distance2 > gap * lesser(gap, upper.depth) {
             let pair = VertexSet::<N>::sample(upper.index);
             let support = Vertex {
                 w: set.difference(pair),

@@ -280,10 +280,15 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         let UpperBound { depth, dir, index } = self.upper;
         let support = set.difference(VertexSet::<N>::sample(index));
         let mut is_beyond = dir.dot(&set.difference(set.farthest(&dir))) > depth + tie;
+        let [a, b, c] = face.each_ref().map(|v| &v.w);
         for i in 0..set.len() {
             let n = set.dir(i);
             let h = n.dot(&set.difference(VertexSet::<N>::sample(i))) + tie;
-            is_beyond |= n.dot(&support) > h || face.iter().any(|v| n.dot(&v.w) > h);
+            let most = larger(
+                larger(n.dot(a), n.dot(b)),
+                larger(n.dot(c), n.dot(&support)),
+            );
+            is_beyond |= most > h;
         }
         is_beyond
     }

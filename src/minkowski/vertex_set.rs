@@ -60,6 +60,8 @@ impl<const N: usize> VertexSet<N> {
     };
     /// The bits of a dot product that hold the index of its vertex.
     const INDEX_MASK: u64 = (N.next_power_of_two() - 1) as u64;
+    /// The bit above them, which is set: no product is zero then, and a maximum is one instruction.
+    const INDEX_MARK: u64 = N.next_power_of_two() as u64;
 
     /// Returns an index that is in range for any `i`, so that no access is checked.
     #[inline(always)]
@@ -183,15 +185,15 @@ impl<const N: usize> VertexSet<N> {
     ///
     /// Indices ride in the low bits of the dot products, so that the maximum carries its index: vertices
     /// that differ by less than 2⁻⁴² of a product tie. Callers compute heights from the coordinates.
-    #[inline(always)]
+    #[inline(never)]
     pub fn farthest(&self, n: &Vec3) -> VertexPair {
         let [x, y, z] = &self.coords;
         let mut best = [f64::NEG_INFINITY; 2];
         for i in 0..self.len.min(N) {
             for lane in 0..2 {
                 let h = n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane];
-                // The sum with zero is one to the compiler: the comparison then is a maximum.
-                let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | i as u64) + 0.0;
+                let index = Self::INDEX_MARK | i as u64;
+                let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | index) + 0.0;
                 best[lane] = if h > best[lane] { h } else { best[lane] };
             }
         }

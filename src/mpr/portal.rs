@@ -228,6 +228,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
     portal: &mut [Vertex; 3],
     limit: &GapLimit,
 ) -> Result<(), Stop> {
+    let tolerance = query.scale.tolerance(limit.tolerance);
     let mut inner_queries = 0;
     let mut is_plain = false;
     for _ in 0..MAX_REFINEMENT_STEPS {
@@ -240,7 +241,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
         }
         let length = n2.sqrt();
         let upper = query.upper.depth;
-        let gap = limit.allowed(upper, query.scale.tolerance(limit.tolerance));
+        let gap = limit.allowed(upper, tolerance);
         let mut w = set.farthest_vertex(&normal);
         if !(normal.dot(&w.w) - offset > KNOWN_LEVEL * gap * length) {
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
