@@ -356,9 +356,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let query = &mut *self.query;
         let tolerance = query.scale.tolerance(self.limits.gap.tolerance);
         let gap = self.limits.gap.allowed(query.upper.depth, tolerance);
-        let along = set.farthest_vertex(ray).w.dot(ray);
-        let length = along - self.interior.v.dot(ray);
-        let Some(mut portal) = discover(query, set, ray, length, gap)? else {
+        let first = set.farthest_vertex(ray);
+        let length = (first.w - self.interior.v).dot(ray);
+        let Some(mut portal) = discover(query, set, ray, &first, length, gap)? else {
             return Ok(None);
         };
         refine(

@@ -23,7 +23,7 @@
 //! polytope. [`refine`] leaves a valid portal in place, whatever ended it. `Stop::Apart`: a queried
 //! direction is a separating axis; that is the separation test.
 
-use crate::math::{Vec3, lesser, perpendicular};
+use crate::math::{Vec3, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::round_fit::{Choice, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
@@ -65,8 +65,8 @@ pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) 
     upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
 
-/// Finds a portal of the ray along unit `ray` through the origin. `length`: of the ray in D, about,
-/// metres. `gap`: what the bounds may be apart, metres. The corners wind around the ray so that their
+/// Finds a portal of the ray along unit `ray` through the origin. `first`: the known difference farthest
+/// along it. `length`: of the ray in D, about, metres. `gap`: what the bounds may be apart, metres. The corners wind around the ray so that their
 /// normal looks along it. The set must have room for [`MAX_DISCOVERY_SAMPLES`] more entries.
 ///
 /// # Errors
@@ -76,10 +76,11 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     ray: &Vec3,
+    first: &Vertex,
     length: f64,
     gap: f64,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
-    let mut a = set.farthest_vertex(ray);
+    let mut a = *first;
     let mut b: Option<Vertex> = None;
     // Across the ray, from A towards it.
     let mut across = ray * a.w.dot(ray) - a.w;
@@ -117,18 +118,20 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
             } else {
                 across
             };
-            let norm = n.norm();
-            if !(norm > 0.0) {
+            let Some(n) = normalised(&n) else {
                 return Ok(None);
-            }
-            let sample = query.evaluate(set, &(n / norm))?;
-            if !(across.dot(&sample.w) > 0.0) {
+            };
+            let sample = query.evaluate(set, &n)?;
+            let ahead = across.dot(&sample.w);
+            if !(ahead > 0.0) {
                 if failures >= MAX_TILTS {
                     return Ok(None);
                 }
                 failures += 1;
             }
-            p = set.farthest_vertex(&across);
+            if ahead > across.dot(&p.w) {
+                p = sample.vertex();
+            }
             if !is_closer(&p.w) {
                 continue;
             }
@@ -308,9 +311,10 @@ mod tests {
         let mut set = VertexSet::<64>::EMPTY;
         let ray = -c.v.normalize();
         query.evaluate(&mut set, &ray).ok()?;
+        let first = set.farthest_vertex(&ray);
         let length = query.upper.depth + c.v.norm();
         let gap = LIMIT.allowed(query.upper.depth, query.scale.tolerance(LIMIT.tolerance));
-        let found = discover(&mut query, &mut set, &ray, length, gap).ok()??;
+        let found = discover(&mut query, &mut set, &ray, &first, length, gap).ok()??;
         let mut portal = found;
         let mut fit = SphereFit::default();
         refine(&mut query, &mut set, &mut fit, &ray, &mut portal, &LIMIT).ok()?;
