@@ -15,7 +15,7 @@ use crate::contacts::manifold;
 use crate::contacts::memory::Memory;
 use crate::ffi::arena::Heap;
 use crate::ffi::warm::NAME;
-use crate::gjk::signed_distance::{self, Wanted};
+use crate::gjk::signed_distance::Wanted;
 use crate::known::check;
 pub use crate::known::check::Check;
 use crate::known::support_set::{Stop, if_overlapping};
@@ -502,9 +502,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     let minimum = |pair: &Asking<'_, A, B>, state: &mut State, settings: &_, hit: &mut _| {
         pair.minimum(state, settings, &mut Heap::default(), points, hit)
     };
-    let d = with_state(warm, |state| {
-        signed_distance::signed_distance(&pair, state, &wanted, minimum)
-    })?;
+    let d = with_state(warm, |state| pair.signed_distance(state, &wanted, minimum))?;
     let given = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };
     Ok(Distance {
         distance: lower_to_real(d.lower),
@@ -514,7 +512,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         point2: given(d.point2),
         support_calls: pair.md.supports(),
         iterations: d.iterations,
-        limit: d.limit,
+        limit: d.is_limited,
     })
 }
 

@@ -1,19 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Apart or not, how far, and the proof of an overlap: the distance algorithm (Gilbert,
-//! Johnson and Keerthi 1988) and what stands on it.
+//! The intersection test, the distance, and the proof that D contains the origin: the GJK algorithm on
+//! known vertices.
 //!
-//! [`simplex`] is its step, on [`barycentric`]; [`overlap`] asks for yes or no, [`distance`] for how
-//! far; [`proof`] for the overlap behind a depth that another search found. [`separation`] and
-//! [`intersect`] are these with memory, [`signed_distance`] is the query with margins.
-//! Called by [`crate::query`], and for a proof by [`crate::hull`] and [`crate::local`].
+//! | file | what it owns |
+//! |---|---|
+//! | [`simplex`] | the simplex and its closest feature |
+//! | [`intersect`] | yes or no; the proof of an overlap from known vertices |
+//! | [`separating_axis`] | the axis of a pair that stays apart |
+//! | [`closest_points`] | the distance between bounds |
+//! | [`signed_distance`] | margins, and one function through the touch |
+//! | [`barycentric`] | the closest point of a segment, a triangle, a tetrahedron |
 
 pub mod barycentric;
-pub mod distance;
+pub mod closest_points;
 pub mod intersect;
-pub mod overlap;
-pub mod proof;
-pub mod separation;
+pub mod separating_axis;
 pub mod signed_distance;
 pub mod simplex;

@@ -5,17 +5,15 @@
 //! is [`crate::gjk::intersect`]'s, the distance [`crate::gjk::signed_distance`].)
 //!
 //! 1. A pair that was apart is asked about the direction that separated it: while
-//!    that still separates, one support point is the whole answer, and turns the
-//!    direction for the next time ([`crate::gjk::separation`]).
+//!    that still separates, one support point is the whole answer.
 //! 2. The solver starts from what the state holds, else from the centres, else from
 //!    the caller's first direction. (`along` starts from the last portal, `planar` from
 //!    the part of that direction in its plane.)
 //! 3. An overlap is proven. A local minimum of the support function can be positive
 //!    though the objects are apart (a plate that an object has passed through, seen
 //!    from the old side), so the origin must be shown to lie among points of D: in a
-//!    tetrahedron of the centres' difference and three others ([`is_around`]), else by
-//!    [`proof`]. Both put the points the solver saw together anew, and ask for more only
-//!    where these leave a side open. The global search (`mpr`, `minimum`) proves its
+//!    tetrahedron of the centres' difference and three others ([`contains_origin`]). It puts
+//!    the points the solver saw together anew, and asks for more only where these leave a side open. The global search (`mpr`, `minimum`) proves its
 //!    overlaps itself.
 //! 4. Where the contact position is wanted, it is the centre of pressure ([`pressure`]); the middle
 //!    of the witness points in `along` and `planar`, and where a cap came first.
@@ -30,16 +28,13 @@ use crate::contacts::pressure::{self, Aside};
 use crate::contacts::seen::Seen;
 use crate::epa::penetration::{Arena, EpaAnswer, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
 use crate::epa::{self, expand::EpaLimits};
-use crate::gjk::barycentric;
-use crate::gjk::intersect;
-use crate::gjk::overlap;
-use crate::gjk::proof::{Apex, behind, is_around};
-use crate::gjk::separation;
-use crate::known::support_set::{Inquiry, Stop, SupportSet};
+use crate::gjk::intersect::{contains_origin, intersect};
+use crate::gjk::separating_axis::SeparatingAxis;
+use crate::gjk::signed_distance::{Distance, Start, Wanted, signed_distance};
 use crate::math::{Vec3, larger, perpendicular, unit};
-use crate::minkowski::query::SupportQuery;
+use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::tolerance::{GAP_REL, GapLimit};
+use crate::minkowski::tolerance::{GAP_REL, GapLimit, Scale};
 use crate::minkowski::vertex_set::VertexSet;
 use crate::paper::along;
 use crate::paper::incremental;
@@ -62,43 +57,34 @@ pub struct Pair<A, B> {
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Steps 1 and 5 around what comes between: `solve` is asked where the direction that separated
-    /// the pair last time does not, and is told what came nearest to it; a miss leaves behind what the
-    /// next query asks first.
+    /// the pair last time does not; a miss leaves behind what the next query asks first.
     #[inline(always)]
     fn asked(
         &self,
         state: &mut State,
-        solve: impl FnOnce(&mut State, Option<(Vec3, SupportPoint)>) -> Result<(), Stop>,
+        solve: impl FnOnce(&mut State) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
-        let mut nearest = None;
-        if state.was_apart() {
-            let mut failed = SupportSet::EMPTY;
-            self.still_apart(state, &mut failed)?;
-            nearest = failed
-                .lowest()
-                .map(|i| (failed.direction(i), failed.point(i)));
-        }
-        let found = solve(state, nearest);
-        match &found {
-            Err(Stop::Apart(n)) if self.lasting => {
-                let was_apart = state.was_apart();
-                separation::leave(&mut Inquiry::new(&self.md), state, was_apart, *n)?;
-            }
-            _ => {}
+        let aim = self.still_apart(state)?;
+        let found = solve(state);
+        if let Err(Stop::Apart(n)) = &found {
+            *state = State::apart(&SeparatingAxis { dir: *n, aim }, state.radius());
         }
         found
     }
 
-    /// Step 1: [`Stop::Apart`] where the separating direction still separates. The support points of
-    /// directions that fail go into the set.
-    #[inline(never)]
-    fn still_apart(
-        &self,
-        state: &mut State,
-        failed: &mut SupportSet<{ separation::TRIES }>,
-    ) -> Result<(), Stop> {
-        let apart = separation::still_apart(&mut Inquiry::new(&self.md), failed, state)?;
-        apart.map_or(Ok(()), |n| Err(Stop::Apart(n)))
+    /// Step 1: [`Stop::Apart`] where the axis of the state still separates. Else the margin to aim at with
+    /// another one, metres.
+    #[inline(always)]
+    fn still_apart(&self, state: &mut State) -> Result<f64, Stop> {
+        let Some(mut axis) = state.separating() else {
+            return Ok(0.0);
+        };
+        let found = axis.test(&mut SupportQuery::new(&self.md, None))?;
+        if let Some(n) = found {
+            *state = State::apart(&axis, state.radius());
+            return Err(Stop::Apart(n));
+        }
+        Ok(axis.aim)
     }
 
     /// The way from the centre of D through the origin, or the caller's first
@@ -119,77 +105,49 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         planar: bool,
     ) -> Result<(), Stop> {
-        let mut inquiry = Inquiry::new(&self.md);
+        let mut scale = Scale::default();
         let met = SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
             v2: hit.point2,
         };
-        inquiry.precision.note(&met);
+        scale.note(&met);
         // A touch within rounding is a miss, in every query.
-        if !(hit.depth * hit.dir.dot(&hit.normal) > inquiry.precision.touch()) {
+        if !(hit.depth * hit.dir.dot(&hit.normal) > scale.contact_eps()) {
             return Err(Stop::Apart(hit.normal));
         }
         // A depth of a few times a touch's tells nothing of where.
-        let tolerance = larger(settings.tolerance, 4.0 * inquiry.precision.touch());
-        // A touch within the tolerance is for support points to tell.
-        if !(hit.depth > tolerance || planar) {
-            return self.touching(&mut inquiry, self.centre.as_ref(), hit, known, tolerance);
-        }
+        let tolerance = larger(settings.tolerance, 4.0 * scale.contact_eps());
         if known.points().is_empty() {
             known.push(&met);
         }
-        let far;
-        let apex = match &self.centre {
-            Some(point) => Apex {
-                point,
-                inside: true,
-            },
-            None => {
-                far = self.md.support(&behind(&hit.normal))?;
-                Apex {
-                    point: &far,
-                    inside: planar,
-                }
-            }
-        };
-        if is_around(&mut inquiry, &apex, known, &(hit.normal * hit.depth))? {
-            return Ok(());
-        }
-        self.touching(&mut inquiry, self.centre.as_ref(), hit, known, tolerance)
+        self.touching(self.centre.as_ref(), hit, known, tolerance, planar)
     }
 
     /// Shows that the origin lies among support points, known ones and others, and the `centre`,
     /// where it is trusted. Where a touch, within the tolerance, has witness points that do not
     /// meet, the points that meet at the origin take their place.
-    #[cold]
     #[inline(never)]
     fn touching(
         &self,
-        inquiry: &mut Inquiry<'_, A, B>,
         centre: Option<&SupportPoint>,
         hit: &mut Penetration,
         known: &Known,
         tolerance: f64,
+        planar: bool,
     ) -> Result<(), Stop> {
-        let mut set = SupportSet::<{ overlap::ROOM }>::EMPTY;
+        let mut query = SupportQuery::new(&self.md, centre);
+        let mut set = VertexSet::<16>::EMPTY;
         let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
-        let centre = centre.map(|c| set.push(&Vec3::zeros(), c));
         for point in known.points() {
-            inquiry.precision.note(point);
+            query.scale.note(point);
             // All were asked for near there.
             set.push(&hit.normal, point);
         }
-        let held = overlap::overlap(inquiry, &mut set, centre, None, &dir)?;
-        let corners = match held.between {
-            Some([p, q]) => [p, q, q, q],
-            None => held.corners.map(|i| set.point(i)),
-        };
+        let found = contains_origin(&mut query, &mut set, centre, &dir, planar)?;
         let apart = hit.point1 - hit.point2 - hit.dir * hit.depth;
         if hit.depth <= tolerance && apart.norm() > tolerance {
-            let corners = corners.each_ref();
-            let inside = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
-            let (p1, p2) = barycentric::witnesses(&inside.weights, corners);
+            let (p1, p2) = found.witnesses();
             // What the rounding of the weights leaves between them.
             let rest = (p1 - p2) * 0.5;
             (hit.point1, hit.point2) = (p1 - rest, p2 + rest);
@@ -227,11 +185,54 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Do the objects overlap? With memory, or cold. [`Stop::Apart`] where they do not.
     #[inline]
     pub fn intersect(&self, state: Option<&mut State>) -> Result<(), Stop> {
-        let first = || self.cold_start();
-        match state {
-            None => overlap::cold(&self.md, self.centre.as_ref(), first),
-            Some(state) => intersect::intersect(&self.md, self.centre.as_ref(), first, state),
+        let Some(state) = state else {
+            let first = self.cold_start();
+            return intersect(&self.md, self.centre.as_ref(), &first).map(|_| ());
+        };
+        self.asked(state, |state| {
+            let first = match state.was_apart() {
+                true => self.cold_start(),
+                false => state.leaving().unwrap_or_else(|| self.cold_start()),
+            };
+            let dir = intersect(&self.md, self.centre.as_ref(), &first)?;
+            // What a depth query left is worth more than this.
+            if !state.overlapped() {
+                *state = State::towards(dir);
+                self.face(state);
+            }
+            Ok(())
+        })
+    }
+
+    /// How far apart, or how deep; `minimum` is the global minimum of the depth of objects that overlap.
+    pub fn signed_distance(
+        &self,
+        state: &mut State,
+        wanted: &Wanted,
+        minimum: impl Fn(&Self, &mut State, &Settings, &mut Penetration) -> Result<(), Stop>,
+    ) -> Result<Distance, Fault> {
+        let start = Start {
+            dir: state
+                .separating()
+                .map_or_else(|| self.cold_start(), |axis| axis.dir),
+            radius: state.radius(),
+            is_overlapping: state.overlapped(),
+        };
+        let depth = |from: Option<&Vec3>, hit: &mut Penetration| {
+            if let Some(dir) = from {
+                *state = State::guess(dir);
+            }
+            minimum(self, state, &wanted.settings, hit)
+        };
+        let (distance, left) = signed_distance(&self.md, wanted, &start, depth)?;
+        if let Some(left) = left {
+            let axis = SeparatingAxis {
+                dir: left.dir,
+                aim: 0.0,
+            };
+            *state = State::apart(&axis, left.radius);
         }
+        Ok(distance)
     }
 
     /// A local minimum of the depth.
@@ -242,7 +243,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        self.asked(state, |state, _| {
+        self.asked(state, |state| {
             let cold = self.is_behind(state)?;
             let mut known = Known::default();
             let memory = state.solver(cold);
@@ -294,7 +295,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        self.asked(state, |state, _| {
+        self.asked(state, |state| {
             let mut start = state.leaving().unwrap_or_else(|| self.cold_start());
             if let Some(m) = flat {
                 let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
@@ -367,10 +368,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
+        let aim = self.still_apart(state)?;
+        let was_apart = state.was_apart();
         let request = EpaRequest {
             center: apex,
             ray: self.cold_start(),
-            warm: state.warm_start(),
+            // Its axis has been queried.
+            warm: if was_apart {
+                WarmStart::COLD
+            } else {
+                state.warm_start()
+            },
             limits: *limits,
             wants_pos,
         };
@@ -385,7 +393,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let arena = arena.map(|arena| arena as &mut dyn Arena);
         let found = epa::penetration::penetration(query, &request, arena, &mut answer);
         if self.lasting && !matches!(found, Err(Stop::Fault(_))) {
-            state.store(&warm);
+            state.store(&WarmStart {
+                depth: if found.is_ok() { warm.depth } else { aim },
+                ..warm
+            });
             if found.is_ok() {
                 self.face(state);
             }
@@ -425,7 +436,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        self.asked(state, |state, _| {
+        self.asked(state, |state| {
             let last = state.portal();
             let capped = Settings {
                 max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),

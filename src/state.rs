@@ -10,16 +10,16 @@
 //! | kind | left by | `dir` | `slopes` | `curvature`, `count` and `curved` |
 //! |---|---|---|---|---|
 //! | cold: 0, or no other | | | | |
-//! | `APART` | every query of a pair that is apart | the separating direction, as long as the margin to aim at | after [`State::near`] (the distance): the directions of the points around the nearest one | the radius of a ball |
+//! | `APART` | every query of a pair that is apart | the separating direction | | the radii of two spheres |
 //! | `OVERLAP` | the local search: its [`Memory`] | the minimum's | slopes of the active cuts | what is round of the objects |
-//! | | a guess, the paper's method, the plane | the way obj2 leaves | | |
+//! | | a guess, yes or no, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
 //! | `PROVEN` | the global search | the minimum's | | its [`WarmStart`] |
-//! | `SURROUNDED` | yes or no | a direction | three more: the support points along the four surround the origin | |
 //!
 //! A direction that is zero stands for none. What a query for the depth of an overlap leaves
 //! behind also tells how the centres lay, where they are given ([`State::face`]).
 
+use crate::gjk::separating_axis::SeparatingAxis;
 use crate::local::Memory;
 use crate::math::{Vec3, as_unit, normalised, unit};
 use crate::query::warm_start::{WarmKind, WarmStart};
@@ -51,8 +51,6 @@ const OVERLAP: u32 = 2;
 const ALONG: u32 = 3;
 /// The pair overlapped, and its minimum was proven.
 const PROVEN: u32 = 4;
-/// The pair overlapped, and was asked yes or no.
-const SURROUNDED: u32 = 5;
 
 impl State {
     /// A fresh state that starts from `dir`; cold when it is zero or not finite.
@@ -122,31 +120,20 @@ impl State {
         }
     }
 
-    /// The pair is apart: the length of `dir`, metres, is the margin to aim at.
-    pub fn apart(dir: Vec3) -> Self {
-        Self::of(APART, dir)
-    }
-
-    /// [`State::apart`], with the directions of up to three support points around the nearest
-    /// one (zero for none), and the radius of a ball that rounds D there, metres.
-    pub fn near(dir: Vec3, directions: [Vec3; 3], ball: f64) -> Self {
-        let mut state = Self::apart(dir);
-        state.memory.slopes = directions;
-        state.memory.curvature[0] = ball;
+    /// The pair is apart: what the next query asks first, and the radii of the objects' spheres, metres.
+    pub fn apart(axis: &SeparatingAxis, radius: [f64; 2]) -> Self {
+        let mut state = Self::of(APART, axis.dir);
+        let [aim, radius1, radius2, ..] = &mut state.memory.curvature;
+        (*aim, [*radius1, *radius2]) = (axis.aim, radius);
         state
     }
 
-    /// What [`State::near`] left.
-    pub fn nearest(&self) -> ([Vec3; 3], f64) {
+    /// The radii of [`State::apart`].
+    pub fn radius(&self) -> [f64; 2] {
         match self.kind {
-            APART => (self.memory.slopes, self.memory.curvature[0]),
-            _ => ([Vec3::zeros(); 3], 0.0),
+            APART => [self.memory.curvature[1], self.memory.curvature[2]],
+            _ => [0.0; 2],
         }
-    }
-
-    /// The margin to aim at, metres, where the pair was apart.
-    pub fn aim(&self) -> f64 {
-        self.memory.dir.norm()
     }
 
     /// Did the pair overlap when its depth was asked?
@@ -154,32 +141,23 @@ impl State {
         matches!(self.kind, OVERLAP | ALONG | PROVEN)
     }
 
-    /// The pair overlaps: support points along these directions surround the origin. Zero
-    /// for none.
-    pub fn surrounded([a, b, c, d]: [Vec3; 4]) -> Self {
-        let mut state = Self::of(SURROUNDED, a);
-        state.memory.slopes = [b, c, d];
-        state
-    }
-
-    /// The directions of [`State::surrounded`], where the pair was.
-    pub fn surrounding(&self) -> [Vec3; 4] {
-        let [b, c, d] = self.memory.slopes;
-        match self.kind {
-            SURROUNDED => [self.memory.dir, b, c, d],
-            _ => [Vec3::zeros(); 4],
-        }
-    }
-
     /// Was the pair apart?
     pub fn was_apart(&self) -> bool {
         self.kind == APART
     }
 
-    /// The direction that separated the pair.
-    pub fn separating(&self) -> Option<Vec3> {
+    /// The axis that separated the pair.
+    pub fn separating(&self) -> Option<SeparatingAxis> {
+        let aim = self.memory.curvature[0];
         match self.kind {
-            APART => unit(&self.memory.dir),
+            APART => Some(SeparatingAxis {
+                dir: unit(&self.memory.dir)?,
+                aim: if aim > 0.0 && aim < f64::INFINITY {
+                    aim
+                } else {
+                    0.0
+                },
+            }),
             _ => None,
         }
     }
@@ -256,7 +234,13 @@ impl State {
     pub fn store(&mut self, warm: &WarmStart) {
         *self = match warm.kind {
             WarmKind::Cold => Self::default(),
-            WarmKind::Apart => Self::apart(warm.dir * (f64::MIN_POSITIVE / crate::math::EPSILON)),
+            WarmKind::Apart => {
+                let axis = SeparatingAxis {
+                    dir: warm.dir,
+                    aim: warm.depth,
+                };
+                Self::apart(&axis, warm.radius)
+            }
             _ => Self::of(PROVEN, warm.dir),
         };
         if self.kind == PROVEN {

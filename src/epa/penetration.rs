@@ -29,6 +29,7 @@ use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, Expansion, exit_face,
 use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
+use crate::gjk::intersect::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::round_fit::SphereFit;
@@ -636,19 +637,13 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
     ) -> Result<Option<Start>, Stop> {
-        use crate::gjk::overlap;
-        use crate::known::support_set::{Inquiry, SupportSet};
-        let mut inquiry = Inquiry::new(self.query.md);
-        let mut around = SupportSet::<{ overlap::ROOM }>::EMPTY;
+        let mut known = VertexSet::<16>::EMPTY;
         let dir = self.query.upper.dir;
-        let held = overlap::overlap(&mut inquiry, &mut around, None, None, &dir)?;
-        Ok(Some(held.corners.map(|i| {
-            let index = set.push(&around.direction(i), &around.point(i));
-            let pair = VertexSet::<N>::sample(index);
-            Vertex {
-                w: set.difference(pair),
-                pair,
-            }
+        let found = contains_origin(&mut self.query, &mut known, None, &dir, false)?;
+        // The points may be no support points: they have no direction.
+        Ok(Some(found.corners.map(|point| {
+            let pair = VertexSet::<N>::sample(set.push(&Vec3::zeros(), &point));
+            Vertex { w: point.v, pair }
         })))
     }
 

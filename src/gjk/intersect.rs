@@ -1,76 +1,522 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Do two objects overlap, with memory: the yes or no of [`crate::gjk::overlap`], and what one
-//! query of a pair leaves behind for the next.
+//! The intersection test, and the proof that D contains the origin: by a portal from an interior point
+//! (G. Snethen, "XenoCollide", Game Programming Gems 7), else by GJK ([`Simplex`]).
 //!
-//! A pair that was apart is asked about its separating direction first
-//! ([`crate::gjk::separation`]). A pair that overlapped is asked along the directions of the tetrahedron that proved
-//! it: where those points still surround the origin, they are the whole answer. Whatever
-//! fails is not lost: the points go into the search.
+//! 1. Query the first direction: most pairs that are apart end here.
+//! 2. The interior point is the difference of the centres; where there are none, a point of a chord of D.
+//!    Find a portal of its origin ray, and move it outwards until the origin is on its inner side
+//!    ([`crate::mpr::portal`]).
+//! 3. Where vertices tie: move a simplex towards the origin until it contains it.
+//! 4. Where the origin stays within rounding of the simplex (it lies on an edge of known vertices, as in
+//!    stacks of aligned boxes), a portal from a point well inside D decides.
+//!
+//! Departures. A known difference beyond the origin replaces a query: the direction does not separate. The
+//! simplex starts from the interior point where there is one. A touch within the contact epsilon is no
+//! intersection: the origin must be inside by more, and a D without volume has no inside.
+//!
+//! Outputs: `Err(Stop::Apart(n))`: n is a separating axis, or D reaches no farther along it than the
+//! contact epsilon. `Ok`: D contains the origin, or no queried direction separates.
 
-use crate::gjk::overlap::{ROOM, overlap};
-use crate::gjk::separation::{leave, still_apart};
-use crate::known::support_set::{Inquiry, Stop, SupportSet};
-use crate::math::{Vec3, unit};
+use crate::gjk::barycentric;
+use crate::gjk::simplex::{Simplex, compact, direction};
+use crate::math::{Vec3, larger, lesser, normal, unit};
+use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
-use crate::state::State;
+use crate::minkowski::vertex_set::{Vertex, VertexSet};
+use crate::mpr::portal::{discover, replace_corner};
 
-/// Shows that the objects overlap. `centre`, an interior point of D, is trusted. Where there is none, the
-/// search begins along `first`, unit.
-///
-/// # Errors
-/// [`Stop::Apart`]; a callback's answer that is not finite.
-pub fn intersect<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    centre: Option<&SupportPoint>,
-    first: impl FnOnce() -> Vec3,
-    state: &mut State,
-) -> Result<(), Stop> {
-    let mut inquiry = Inquiry::new(md);
-    let mut set = SupportSet::<ROOM>::EMPTY;
-    // A centre at the origin is no corner to look from.
-    let dir = centre.and_then(|c| unit(&-c.v));
-    let inner = match (centre, dir) {
-        (Some(centre), Some(_)) => Some(set.push(&Vec3::zeros(), centre)),
-        _ => None,
-    };
-    if let Some(centre) = centre {
-        inquiry.precision.note(centre);
-    }
-    let was_apart = state.separating().is_some();
-    if let Some(n) = still_apart(&mut inquiry, &mut set, state)? {
-        return Err(Stop::Apart(n));
-    }
-    let answer = surround(&mut inquiry, &mut set, state).and_then(|()| {
-        overlap(
-            &mut inquiry,
-            &mut set,
-            inner,
-            None,
-            &dir.unwrap_or_else(first),
-        )
-    });
-    match &answer {
-        // What a depth query left is worth more than this.
-        Ok(held) if !state.overlapped() => {
-            *state = State::surrounded(held.corners.map(|i| set.direction(i)));
-        }
-        Err(Stop::Apart(n)) => leave(&mut inquiry, state, was_apart, *n)?,
-        _ => {}
-    }
-    answer.map(|_| ())
+/// Steps of GJK before the portal decides. Of a hundred thousand pairs none needs forty.
+const MAX_STEPS: u32 = 64;
+/// Steps within rounding of the surface of the simplex before the portal decides. One finds the other side
+/// of a face that the origin lies on.
+const MAX_STALLS: u32 = 3;
+/// The number of support calls of an intersection test before its vertex set is compacted.
+const CAPACITY: usize = 16;
+/// Steps of a portal. Each brings a corner nearer to the surface of D, and what is open after so many is
+/// rounding.
+const MAX_PORTAL_STEPS: u32 = 100;
+/// The share of a chord that is left at either end of it, so that a point in between is in the interior.
+/// Measured on the recorded contacts: 0.05 takes 7 % more support points of pairs apart, 0.5 takes 10 %.
+const CHORD: f64 = 0.25;
+/// The square of the angle between a ray and the first direction from which on the ray is queried too.
+const MAX_TURN2: f64 = 0.3;
+
+/// Points of D whose hull contains the origin, within rounding.
+#[derive(Clone, Copy, Debug)]
+pub struct Enclosing {
+    /// The corners, the last one repeated where there are fewer than four.
+    pub corners: [SupportPoint; 4],
 }
 
-/// Asks along the directions of the state's last tetrahedron. `Err`: one separates.
-fn surround<A: SupportMap, B: SupportMap>(
-    inquiry: &mut Inquiry<'_, A, B>,
-    set: &mut SupportSet<ROOM>,
-    state: &State,
-) -> Result<(), Stop> {
-    for n in state.surrounding().iter().filter_map(unit) {
-        let place = set.len();
-        inquiry.ask_at(set, place, &n)?;
+impl Enclosing {
+    /// Returns a point of obj1 and a point of obj2 that meet, within rounding.
+    pub fn witnesses(&self) -> (Vec3, Vec3) {
+        let corners = self.corners.each_ref();
+        let origin = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
+        barycentric::witnesses(&origin.weights, corners)
     }
-    Ok(())
+}
+
+/// The corners of a simplex that contains the origin.
+enum Found {
+    /// Known differences, and the interior point.
+    Known([Vertex; 4]),
+    /// Points that the portal which decides has found.
+    Points([SupportPoint; 4]),
+}
+
+/// Tests whether the objects intersect, from unit `first`. `interior`: the difference of trusted centres.
+/// Returns the direction of the least support value met, from which the next query of the pair starts.
+///
+/// # Errors
+/// [`Stop::Apart`]; [`Stop::Fault`] for a point that is not finite.
+#[inline]
+pub fn intersect<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    interior: Option<&SupportPoint>,
+    first: &Vec3,
+) -> Result<Vec3, Stop> {
+    let mut query = SupportQuery::new(md, interior);
+    let point = query.evaluate_first(first)?;
+    intersect_after_first(&mut query, interior, &point)?;
+    Ok(query.upper.dir)
+}
+
+/// As [`intersect`], where the first direction does not separate.
+#[inline(never)]
+fn intersect_after_first<A: SupportMap, B: SupportMap>(
+    query: &mut SupportQuery<'_, A, B>,
+    interior: Option<&SupportPoint>,
+    first: &SupportPoint,
+) -> Result<(), Stop> {
+    let mut set = VertexSet::<CAPACITY>::EMPTY;
+    set.push(&query.upper.dir, first);
+    let c = match query.interior {
+        Some(c) => c,
+        None => find_interior(query, &mut set, first)?,
+    };
+    let is_shown = find_enclosing_portal(query, &mut set, &c)?.is_some();
+    let has_interior = query.interior.is_some() == interior.is_some();
+    if is_shown && has_interior && !query.is_inconsistent {
+        return Ok(());
+    }
+    if query.is_inconsistent {
+        set.truncate(0);
+    }
+    let dir = query.upper.dir;
+    find_enclosing_simplex(query, &mut set, interior, &dir, false).map(|_| ())
+}
+
+/// Shows that D contains the origin by more than the contact epsilon: from the known vertices of the set,
+/// and from queries where these leave a side open. `interior`, a point in the interior of D, is used while
+/// the query trusts it. `dir`, unit, is where the first vertex is looked for. `is_planar`: D lies in a plane,
+/// and a triangle or a segment that contains the origin is enough. A full set is compacted: indices change.
+///
+/// # Errors
+/// As [`intersect`].
+#[inline(never)]
+pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    interior: Option<&SupportPoint>,
+    dir: &Vec3,
+    is_planar: bool,
+) -> Result<Enclosing, Stop> {
+    let corners = match find_enclosing_simplex(query, set, interior, dir, is_planar)? {
+        Found::Points(points) => points,
+        Found::Known(corners) => corners.map(|corner| point_of(set, &corner, interior)),
+    };
+    Ok(Enclosing { corners })
+}
+
+/// Returns the point of D that a corner is.
+fn point_of<const N: usize>(
+    set: &VertexSet<N>,
+    corner: &Vertex,
+    interior: Option<&SupportPoint>,
+) -> SupportPoint {
+    match interior {
+        Some(point) if corner.pair.is_interior() => *point,
+        _ => set.point(corner.pair),
+    }
+}
+
+/// Returns a point in the interior of D: on the chord from the first vertex through D towards the origin, as
+/// close to the origin as [`CHORD`] allows. Queries the chord's other end, and along the ray from the point
+/// where that is far from the first direction.
+fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    first: &SupportPoint,
+) -> Result<Vec3, Stop> {
+    let dir = query.upper.dir;
+    let a = first.v;
+    let b = query.evaluate(set, &direction(&-a).unwrap_or(-dir))?.w;
+    let ab = b - a;
+    let closest = barycentric::segment(&Vec3::zeros(), &a, &b).weights[1];
+    let c = a + ab * lesser(larger(closest, CHORD), 1.0 - CHORD);
+    if let Some(ray) = direction(&-c) {
+        if (ray - dir).norm_squared() > MAX_TURN2 {
+            query.evaluate(set, &ray)?;
+        }
+    }
+    Ok(c)
+}
+
+/// Returns a portal of the ray from the interior point `c` that has the origin on its inner side; `None`
+/// where that is not shown.
+#[inline(always)]
+fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    c: &Vec3,
+) -> Result<Option<[Vertex; 3]>, Stop> {
+    let distance = c.norm();
+    if !(distance > query.scale.contact_eps()) {
+        return Ok(None);
+    }
+    let ray = -c / distance;
+    let length = distance + query.upper.depth;
+    let gap = query.scale.contact_eps();
+    let Some(mut portal) = discover(query, set, &ray, length, gap)? else {
+        return Ok(None);
+    };
+    // Each step replaces a corner by a point beyond the origin, or finds nothing above the portal.
+    for _ in 0..MAX_PORTAL_STEPS {
+        let [a, b, d] = &portal.each_ref().map(|corner| corner.w);
+        let n = normal(a, b, d);
+        let length = n.norm();
+        let touch = query.scale.contact_eps() * length;
+        let offset = n.dot(a);
+        if offset > touch {
+            let is_enclosing =
+                n.dot(c) < 0.0 && is_crossed(&portal, &ray, query.scale.height_eps());
+            return Ok(is_enclosing.then_some(portal));
+        }
+        let mut w = set.farthest_vertex(&n);
+        if !(n.dot(&w.w) > touch) {
+            if !(length > 0.0) {
+                return Ok(None);
+            }
+            if set.is_full() {
+                compact(query, set, &mut portal);
+            }
+            w = query.evaluate(set, &(n / length))?.vertex();
+        }
+        if !(n.dot(&w.w) - offset > query.scale.height_eps() * length) {
+            return Ok(None);
+        }
+        replace_corner(&mut portal, &ray, w);
+    }
+    Ok(None)
+}
+
+/// Returns whether the ray passes through a portal, within `eps`, metres. The first portal may be a ring
+/// that it does not pass through.
+fn is_crossed(portal: &[Vertex; 3], ray: &Vec3, eps: f64) -> bool {
+    let [a, b, c] = portal.each_ref().map(|corner| &corner.w);
+    [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| {
+        // A product with the edge keeps the digits of small portals.
+        let edge = q - p;
+        let side = ray.dot(&p.cross(&edge));
+        side >= 0.0 || side * side <= eps * eps * edge.norm_squared()
+    })
+}
+
+/// Moves a simplex towards the origin until it contains it. Again without the interior point where that turns
+/// out to lie outside, and without known vertices where callbacks contradict themselves.
+fn find_enclosing_simplex<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    interior: Option<&SupportPoint>,
+    dir: &Vec3,
+    is_planar: bool,
+) -> Result<Found, Stop> {
+    let interior = interior.filter(|_| query.interior.is_some());
+    let was_inconsistent = query.is_inconsistent;
+    let found = run_gjk(query, set, interior, dir, is_planar)?;
+    let is_outside = interior.is_some() && query.interior.is_none();
+    let is_tainted = query.is_inconsistent && !was_inconsistent;
+    if !is_outside && !is_tainted {
+        return Ok(found);
+    }
+    if is_tainted {
+        set.truncate(0);
+    }
+    run_gjk(query, set, None, dir, is_planar)
+}
+
+/// As [`find_enclosing_simplex`], with this interior point or without one.
+fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    interior: Option<&SupportPoint>,
+    dir: &Vec3,
+    is_planar: bool,
+) -> Result<Found, Stop> {
+    const { assert!(N >= 16) };
+    let mut dir = *dir;
+    let mut simplex = interior.map_or(Simplex::EMPTY, |point| Simplex::of_interior(&point.v));
+    // The square of the distance from the simplex; and whether points on the other side of it, where it is
+    // a triangle, are known.
+    let (mut closest2, mut is_backed) = (f64::INFINITY, false);
+    let mut stalls = 0;
+    for _ in 0..MAX_STEPS {
+        let mut w = set.farthest_vertex(&dir);
+        let is_corner = |w: &Vertex| simplex.corners().iter().any(|c| c.pair == w.pair);
+        let is_beyond = dir.dot(&w.w) > query.scale.contact_eps();
+        if set.len() == 0 || !is_beyond || is_corner(&w) {
+            if set.is_full() {
+                compact(query, set, simplex.slots());
+            }
+            w = query.evaluate(set, &dir)?.vertex();
+        }
+        let touch = query.scale.contact_eps();
+        let was_triangle = simplex.len() == 3;
+        let Some((to, distance2)) = simplex.add(w, touch, query.scale.size2()) else {
+            if !(closest2 > touch * touch || is_backed || simplex.has_interior()) {
+                // The origin is in the plane of the old face, within rounding: D must have another side.
+                if set.is_full() {
+                    compact(query, set, simplex.slots());
+                }
+                query.evaluate(set, &-dir)?;
+            }
+            return Ok(Found::Known(simplex.tetrahedron()));
+        };
+        if is_planar && distance2 <= touch * touch {
+            let [a, b, c] = simplex.corners();
+            return Ok(Found::Known([a, b, c, c]));
+        }
+        // Negated for NaN.
+        if !(distance2 > touch * touch && distance2 < closest2) {
+            stalls += 1;
+            if stalls > MAX_STALLS {
+                break;
+            }
+        }
+        (closest2, is_backed) = (distance2, was_triangle && simplex.len() == 3);
+        match direction(&to) {
+            Some(n) => dir = n,
+            None => break,
+        }
+    }
+    let mut corners = simplex.corners();
+    let len = simplex.len().min(3);
+    decide(query, set, &mut corners[..len], interior, &dir)
+}
+
+/// Decides where the origin is on the surface of a simplex, within rounding: a portal from the middle between
+/// the simplex and the far side of D, which is well inside however flat the simplex is. Returns the corners
+/// of the simplex where there is no portal: no direction separates.
+#[cold]
+#[inline(never)]
+fn decide<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    corners: &mut [Vertex],
+    interior: Option<&SupportPoint>,
+    dir: &Vec3,
+) -> Result<Found, Stop> {
+    compact(query, set, corners);
+    // The last one is repeated.
+    let points: [SupportPoint; 4] = core::array::from_fn(|i| {
+        let corner = corners.get(i).or(corners.last());
+        corner.map_or(SupportPoint::default(), |c| point_of(set, c, interior))
+    });
+    // The mean of the corners, one after the other.
+    let mut inner = points[0];
+    for (count, point) in (1..=corners.len()).zip(&points) {
+        inner = inner.towards(point, 1.0 / count as f64);
+    }
+    let far = query.evaluate(set, &-dir)?;
+    let far = set.point(far.pair);
+    inner = inner.towards(&far, 0.5);
+    if !(inner.v.norm() > query.scale.contact_eps()) {
+        inner = inner.towards(&far, 0.5);
+    }
+    let ray = unit(&-inner.v).unwrap_or(*dir);
+    query.evaluate(set, &ray)?;
+    let found = find_enclosing_portal(query, set, &inner.v)?;
+    Ok(match found {
+        Some(portal) => {
+            let [a, b, c] = portal.map(|corner| set.point(corner.pair));
+            Found::Points([inner, a, b, c])
+        }
+        None => Found::Points(points),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::shapes::{Random, ball, corners, hull, placed};
+
+    fn test_cold<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        first: &Vec3,
+    ) -> Result<Vec3, Stop> {
+        intersect(md, None, first)
+    }
+
+    /// The portal that decides gives corners around the origin.
+    #[test]
+    fn a_portal_decides_between_points_around_the_origin() {
+        let mut r = Random::new(43);
+        let mut found = 0;
+        for _ in 0..200 {
+            let half = Vec3::new(0.5, 0.4, 0.3);
+            let turned = placed(&corners(half), &r.rotation(), r.vector(0.2));
+            let md = MinkowskiDifference::new(hull(&corners(half)), hull(&turned));
+            let mut query = SupportQuery::new(&md, None);
+            let n = r.direction();
+            let point = query.evaluate_first(&n).unwrap();
+            let mut set = VertexSet::<16>::EMPTY;
+            set.push(&n, &point);
+            let mut corner = [set.farthest_vertex(&n)];
+            let decided = decide(&mut query, &mut set, &mut corner, None, &n).unwrap();
+            if let Found::Points(corners) = decided {
+                found += 1;
+                let (p, q) = Enclosing { corners }.witnesses();
+                assert!((p - q).norm() <= 64.0 * EPSILON);
+            }
+        }
+        assert!(found > 190, "{found}");
+    }
+
+    /// A cube turned anyhow and the same over it, aside, with this gap (less than zero: the depth).
+    fn cubes(gap: f64, r: &mut Random) -> [Vec<Vec3>; 2] {
+        let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
+        let turn = r.rotation();
+        let aside = Vec3::new(
+            r.within(-0.5, 0.5) * half.x,
+            r.within(-0.5, 0.5) * half.y,
+            2.0 * half.z + gap,
+        );
+        [Vec3::zeros(), turn * aside].map(|at| placed(&corners(half), &turn, at))
+    }
+
+    /// The same bits at every power of two from a micrometre to 1000 km and beyond; a miss comes with a
+    /// separating axis, and swapped objects give the same answer.
+    #[test]
+    fn free_of_scale_and_order() {
+        let mut r = Random::new(2);
+        for _ in 0..1000 {
+            let gap = r.within(-0.1, 0.1);
+            let [a, b] = cubes(gap, &mut r);
+            let dir = r.direction();
+            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let one = test_cold(&md, &dir);
+            assert_eq!(one.is_ok(), gap < 0.0, "{gap}");
+            if let Err(Stop::Apart(n)) = one {
+                assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
+                assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
+            }
+            let swapped = MinkowskiDifference::new(hull(&b), hull(&a));
+            assert_eq!(test_cold(&swapped, &-dir).is_ok(), one.is_ok());
+            assert!(swapped.supports() < 100, "{}", swapped.supports());
+            for exponent in [-20, 20] {
+                let scale = (2.0 as f64).powi(exponent);
+                let [a, b] = [&a, &b].map(|of| of.iter().map(|p| p * scale).collect::<Vec<_>>());
+                let other = MinkowskiDifference::new(hull(&a), hull(&b));
+                assert_eq!(one, test_cold(&other, &dir));
+            }
+        }
+    }
+
+    /// Known vertices do not change the answer, and where they surround the origin no call is made. Points
+    /// of the objects meet.
+    #[test]
+    fn known_vertices_prove_an_intersection() {
+        let mut r = Random::new(6);
+        let mut without = 0;
+        for round in 0..3000 {
+            let gap = r.within(-0.1, 0.1);
+            let [a, b] = cubes(gap, &mut r);
+            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let mut query = SupportQuery::new(&md, None);
+            let mut set = VertexSet::<16>::EMPTY;
+            for _ in 0..round % 17 {
+                let n = r.direction();
+                let point = query.evaluate_point(&n).unwrap();
+                set.push(&n, &point);
+            }
+            let dir = r.direction();
+            let mut before = 0;
+            for again in [false, true] {
+                before = if again { md.supports() } else { before };
+                let found = contains_origin(&mut query, &mut set, None, &dir, false);
+                assert_eq!(found.is_ok(), gap < 0.0, "gap {gap}");
+                if let Ok(found) = found {
+                    let (p, q) = found.witnesses();
+                    assert!((p - q).norm() <= 1e3 * EPSILON, "{}", (p - q).norm());
+                }
+            }
+            without += u32::from(gap < 0.0 && md.supports() == before);
+        }
+        assert!(without > 1000, "{without}");
+    }
+
+    /// From the centres, which are trusted: the same answers, also a few ulps from the touch.
+    #[test]
+    fn from_centres() {
+        let mut r = Random::new(7);
+        for ulps in [100.0, 1e6, 1e13] {
+            for _ in 0..300 {
+                let size = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
+                let turn = r.rotation();
+                let cube = placed(&corners(size), &turn, Vec3::zeros());
+                let mut gap = (ulps * EPSILON).min(0.2) * r.within(0.5, 1.0);
+                gap *= if r.within(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
+                let up = turn * Vec3::z();
+                let centre = |at: Vec3| SupportPoint {
+                    v: -at,
+                    v1: Vec3::zeros(),
+                    v2: at,
+                };
+                // On the line of the centres, beside it, and round.
+                let aside = turn * Vec3::x() * (0.3 * size.x);
+                for by in [Vec3::zeros(), aside] {
+                    let at = up * (2.0 * size.z + gap) + by;
+                    let other: Vec<_> = cube.iter().map(|p| p + at).collect();
+                    let md = MinkowskiDifference::new(hull(&cube), hull(&other));
+                    let found = intersect(&md, Some(&centre(at)), &at.normalize());
+                    assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
+                    assert!(md.supports() < 100, "{}", md.supports());
+                }
+                let at = up * (1.5 + gap);
+                let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
+                let found = intersect(&md, Some(&centre(at)), &up);
+                assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
+            }
+        }
+        // The same centre.
+        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
+        let found = intersect(&md, Some(&SupportPoint::default()), &Vec3::x());
+        assert!(found.is_ok());
+    }
+
+    /// A centre outside its object costs queries, and changes no answer that a queried plane can correct.
+    #[test]
+    fn a_centre_outside_is_not_used() {
+        let mut r = Random::new(8);
+        for _ in 0..500 {
+            let gap = r.within(0.02, 0.3);
+            let [a, b] = cubes(gap, &mut r);
+            let v1 = r.vector(0.3);
+            let centre = SupportPoint {
+                v: v1,
+                v1,
+                v2: Vec3::zeros(),
+            };
+            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let mut query = SupportQuery::new(&md, Some(&centre));
+            query.interior = None;
+            let mut set = VertexSet::<16>::EMPTY;
+            let found = contains_origin(&mut query, &mut set, Some(&centre), &r.direction(), false);
+            assert!(matches!(found, Err(Stop::Apart(_))));
+        }
+    }
 }

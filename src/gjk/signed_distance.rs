@@ -1,30 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! How far apart two objects are, or how deep they overlap: one continuous function.
+//! The signed distance of two objects: one continuous function through the touch.
 //!
-//! The signed distance is −min h(n) over unit n, apart and overlapping alike: apart the
-//! minimum is the one plane between the objects that is farthest from both, overlapping it is the
-//! penetration depth. For *any* n, −h(n) is a lower bound (moving obj2 nearer by it along
-//! n keeps the plane between them), and apart any two points of the objects are an upper
-//! one. Apart both come from the distance algorithm ([`crate::gjk::distance`]): the simplex's
-//! nearest point, and the support plane asked across the way to it. Overlapping they are the
-//! global minimum's.
+//! 1. The signed distance is −min h(n) over unit n. Apart, the minimum is the separating plane farthest
+//!    from both objects; overlapping, it is the penetration depth. −h(n) is a lower bound for every n.
+//! 2. Apart, both bounds come from [`closest_points`]. Overlapping, they are those of the global minimum,
+//!    which the caller provides.
+//! 3. *Margins* are balls added all around: h grows by their radii for every n, so the signed distance is
+//!    that of the cores less both margins, exactly, on both sides of the touch.
 //!
-//! **Margins** are balls added all around: h grows by their radii, for every n. The signed
-//! distance of the rounded objects is that of the cores less both margins, exactly, on both
-//! sides of the touch.
+//! What a query leaves ([`Start`]) chooses where the next one starts, and proves nothing.
 //!
-//! The centres and the state choose where to look first, and prove nothing.
+//! Outputs: both bounds are proven, whatever `is_limited` says; the points are on the surfaces with their
+//! margins.
 
 use crate::contact::{Penetration, Settings};
-use crate::gjk::distance::{Approach, End, Goal};
-use crate::known::support_set::{Inquiry, Stop};
-use crate::math::{EPSILON, Vec3, larger, unit};
-use crate::minkowski::support::{Fault, SupportMap};
-use crate::{query::Pair, state::State};
+use crate::gjk::closest_points::{ClosestPoints, End, Goal, closest_points};
+use crate::math::{EPSILON, Vec3, larger};
+use crate::minkowski::query::{Stop, SupportQuery};
+use crate::minkowski::round_fit::SphereFit;
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 
-/// What is asked for besides the objects.
+/// What is wanted of the objects.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
     /// Radius of the ball around obj1, metres, not negative.
@@ -33,7 +31,7 @@ pub struct Wanted {
     pub margin2: f64,
     /// Distances greater than this need not be refined, metres.
     pub max_distance: f64,
-    /// The tolerance is the width of the bounds.
+    /// The tolerance is that of the gap between the bounds.
     pub settings: Settings,
 }
 
@@ -59,53 +57,88 @@ pub struct Distance {
     /// Of the solver.
     pub iterations: u64,
     /// Overlap; a touch within rounding is none, and its distance is 0.
-    pub hit: bool,
-    /// The iterations were used up before the bounds met.
-    pub limit: bool,
+    pub is_hit: bool,
+    /// The bounds have not met within the support limit.
+    pub is_limited: bool,
 }
 
-/// The signed distance of a pair's objects with their margins. `minimum` is the global
-/// minimum of the depth of objects that overlap.
+/// Where a query starts, and what it leaves for the next one of the pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// Unit; queried first.
+    pub dir: Vec3,
+    /// The radii of the sphere fits, metres; 0 for none.
+    pub radius: [f64; 2],
+    /// Whether the cores overlapped: the penetration depth is looked for first.
+    pub is_overlapping: bool,
+}
+
+/// Computes the signed distance of the objects with their margins. `minimum` computes the penetration depth
+/// of the cores, from a direction. What is left where they overlap is the caller's, of `minimum`.
+///
+/// # Errors
+/// [`Fault`].
 pub fn signed_distance<A: SupportMap, B: SupportMap>(
-    pair: &Pair<A, B>,
-    state: &mut State,
+    md: &MinkowskiDifference<A, B>,
     wanted: &Wanted,
-    minimum: impl Fn(&Pair<A, B>, &mut State, &Settings, &mut Penetration) -> Result<(), Stop>,
-) -> Result<Distance, Fault> {
-    let depth = |state: &mut State| {
+    start: &Start,
+    mut minimum: impl FnMut(Option<&Vec3>, &mut Penetration) -> Result<(), Stop>,
+) -> Result<(Distance, Option<Start>), Fault> {
+    let mut depth = |from: Option<&Vec3>| {
         let mut hit = Penetration::default();
-        match minimum(pair, state, &wanted.settings, &mut hit) {
-            Ok(()) => Ok(Ok(deep(&hit, wanted))),
+        match minimum(from, &mut hit) {
+            Ok(()) => Ok(Ok((overlapping(&hit, wanted), None))),
             Err(Stop::Apart(normal)) => Ok(Err(normal)),
             Err(Stop::Fault(fault)) => Err(fault),
         }
     };
-    // Cores that overlapped are asked for their depth at once.
-    if state.overlapped() {
-        if let Ok(distance) = depth(state)? {
-            return Ok(distance);
+    let mut start = *start;
+    if start.is_overlapping {
+        match depth(None)? {
+            Ok(found) => return Ok(found),
+            Err(normal) => start.dir = normal,
         }
     }
-    let (mut gap, mut touch) = cores(pair, state, wanted)?;
-    if gap.hit {
-        *state = State::guess(&gap.normal);
-        let normal = match depth(state)? {
-            Ok(distance) => return Ok(distance),
+    let mut query = SupportQuery::new(md, None);
+    let mut fit = SphereFit::from_radius(start.radius);
+    let goal = Goal {
+        tolerance: wanted.settings.tolerance,
+        margin: wanted.margin(),
+        max_distance: wanted.max_distance,
+        max_samples: wanted.settings.max_iterations,
+    };
+    let mut cores = closest_points(&mut query, &mut fit, &start.dir, &goal)?;
+    let mut touch = query.scale.contact_eps();
+    // Without a separating plane the proof decides, however close the bounds are.
+    let is_open = cores.end != End::Limit && !(cores.lower >= -touch);
+    if cores.end == End::Inside || is_open {
+        let normal = match depth(Some(&cores.normal))? {
+            Ok(found) => return Ok(found),
             Err(normal) => normal,
         };
-        // The proof's word, whatever one support value says of it. The points are those where the
-        // search came upon the origin, or left off before.
-        let mut inquiry = Inquiry::new(&pair.md);
-        let h = normal.dot(&inquiry.point(&normal)?.v);
-        touch = larger(inquiry.precision.touch(), h.abs());
-        (gap.lower, gap.normal, gap.iterations) = (-h, normal, 0);
-        gap.limit = !(gap.upper <= larger(touch, wanted.settings.tolerance));
+        // The proof decides, whatever one support value is. The points stay those where the origin was
+        // met.
+        let point = query.evaluate_point(&normal)?;
+        let h = normal.dot(&point.v);
+        touch = larger(query.scale.contact_eps(), h.abs());
+        (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
+        let is_closed = cores.upper <= larger(touch, wanted.settings.tolerance);
+        cores.end = if is_closed { End::Met } else { End::Limit };
     }
-    Ok(apart(&gap, touch, wanted))
+    let kept = Start {
+        dir: cores.normal,
+        radius: if fit.is_confirmed {
+            fit.radius
+        } else {
+            [0.0; 2]
+        },
+        is_overlapping: false,
+    };
+    Ok((apart(&cores, touch, wanted), Some(kept)))
 }
 
-/// The answer for cores that overlap by this much.
-fn deep(hit: &Penetration, wanted: &Wanted) -> Distance {
+/// Returns the answer for cores that overlap.
+fn overlapping(hit: &Penetration, wanted: &Wanted) -> Distance {
     let n = hit.normal;
     let margin = wanted.margin();
     // No depth is minus nothing.
@@ -121,19 +154,18 @@ fn deep(hit: &Penetration, wanted: &Wanted) -> Distance {
         point1: hit.point1 + n * wanted.margin1,
         point2: hit.point2 - n * wanted.margin2,
         iterations: hit.iterations,
-        hit: lower < 0.0,
-        limit: hit.limit,
+        is_hit: lower < 0.0,
+        is_limited: hit.limit,
     }
 }
 
-/// The answer for cores that are this far apart, `touch` being rounding, metres.
-fn apart(cores: &Distance, touch: f64, wanted: &Wanted) -> Distance {
+/// Returns the answer for cores that are apart, `touch` being rounding, metres.
+fn apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted) -> Distance {
     let margin = wanted.margin();
-    let between = cores.point2 - cores.point1;
-    // Points of the surfaces on the line between the cores' points, as far apart as those
-    // less the margins. Of points that touch the line is rounding.
+    // Points of the surfaces on the line through the closest points of the cores. Of cores that touch, the
+    // line is rounding.
     let along = if cores.upper > touch {
-        between / cores.upper
+        (cores.point2 - cores.point1) / cores.upper
     } else {
         cores.normal
     };
@@ -145,102 +177,11 @@ fn apart(cores: &Distance, touch: f64, wanted: &Wanted) -> Distance {
     Distance {
         lower,
         upper: larger(upper, lower),
+        normal: cores.normal,
         point1: cores.point1 + along * wanted.margin1,
         point2: cores.point2 - along * wanted.margin2,
-        hit: lower < 0.0,
-        ..*cores
+        iterations: cores.iterations,
+        is_hit: lower < 0.0,
+        is_limited: cores.end != End::Met,
     }
-}
-
-/// Corners nearer to each other than this share of the size, once the ball is off, are one
-/// round part. Insensitive: 0.01 to 0.04 tried on the distances of the recorded contacts.
-const ONE_PART: f64 = 0.02;
-
-/// The distance of the cores, from the state, else from the centres, else from the caller's first
-/// direction, and what of it is rounding, metres. A hit where they overlap, or so nearly that only a
-/// proof tells: along the normal the overlap was least, and the points are at most a touch apart. A
-/// frame of its own, that is left before a minimum is looked for.
-#[inline(never)]
-fn cores<A: SupportMap, B: SupportMap>(
-    pair: &Pair<A, B>,
-    state: &mut State,
-    wanted: &Wanted,
-) -> Result<(Distance, f64), Fault> {
-    let mut inquiry = Inquiry::new(&pair.md);
-    let mut search = Approach::new(&mut inquiry);
-    let margin = wanted.margin();
-    if !resume(&mut search, state)? {
-        let start = state.separating().unwrap_or_else(|| pair.cold_start());
-        search.ask(&start)?;
-    }
-    let end = search.run(&Goal {
-        tolerance: wanted.settings.tolerance,
-        share: 0.0,
-        margin,
-        far: wanted.max_distance,
-        iterations: wanted.settings.max_iterations,
-    })?;
-    let touch = search.inquiry.precision.touch();
-    let hit = end == End::Inside || end == End::Stalled && !(search.lower >= -touch);
-    let (point1, point2) = search.witnesses();
-    if !hit {
-        *state = left_behind(&search);
-    }
-    let distance = Distance {
-        lower: search.lower,
-        upper: (point2 - point1).norm(),
-        normal: search.normal,
-        point1,
-        point2,
-        iterations: search.iterations,
-        hit,
-        limit: !hit && end != End::Met,
-    };
-    Ok((distance, touch))
-}
-
-/// Starts from the directions that the state holds, if it holds any.
-///
-/// Where a face is nearest, three find its corners and a fourth proves its plane: fewer cannot do,
-/// for after any turn a support point says nothing of another direction's. (Measured on six slow
-/// motions, the `_trajS` pair sets, moved apart, tolerance 1e-6: boxes and hulls 4.0 to 4.2 support
-/// points, 6.3 in the mean of all.)
-fn resume<A: SupportMap, B: SupportMap>(
-    search: &mut Approach<'_, '_, A, B>,
-    state: &State,
-) -> Result<bool, Fault> {
-    let (corners, ball) = state.nearest();
-    for n in corners.iter().filter_map(unit) {
-        search.ask_again(&n)?;
-    }
-    if search.iterations == 0 {
-        return Ok(false);
-    }
-    // What the state says of it counts where the points say nothing.
-    if search.ball == 0.0 && ball > 0.0 && ball < search.inquiry.precision.size() {
-        search.ball = ball;
-    }
-    search.settle();
-    Ok(true)
-}
-
-/// The directions that find the corners again: one for each part, the best direction for the
-/// part that it touches.
-fn left_behind<A: SupportMap, B: SupportMap>(search: &Approach<'_, '_, A, B>) -> State {
-    let ids = search.simplex.ids();
-    let bare = search.bare();
-    let near2 = ONE_PART * ONE_PART * search.inquiry.precision.size2();
-    let mut directions = [Vec3::zeros(); 3];
-    for i in 0..search.simplex.len().min(3) {
-        let alone = (0..i).all(|k| (bare[k] - bare[i]).norm_squared() > near2);
-        if search.ball == 0.0 || alone {
-            directions[i] = search.set.direction(ids[i]);
-        }
-    }
-    if directions[1] == directions[2] {
-        directions[0] = search.normal;
-    }
-    // The length is the margin to aim at; a touch has none.
-    let margin = larger(search.lower, search.inquiry.precision.touch());
-    State::near(search.normal * margin, directions, search.ball)
 }

@@ -1,266 +1,214 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! A simplex of points of D, and its point nearest to the origin: one step of the distance
-//! algorithm of Gilbert, Johnson and Keerthi (1988).
+//! The simplex of the GJK algorithm: its closest feature to the origin, after each new point (E. Gilbert,
+//! D. Johnson and S. Keerthi, "A Fast Procedure for Computing the Distance between Complex Objects in
+//! Three-Dimensional Space", IEEE J. Robotics and Automation 4(2), 1988).
 //!
-//! The way from the nearest point to the origin, of unit length n, is asked next. The new
-//! point lies beyond the simplex as seen along n, so that of the new simplex only the faces
-//! with the newest point can hold the nearest: with w newest and the base abc wound such that
-//! its normal is n, the origin is on the inner side of the face w a b when det(w, a, b) > 0,
-//! and inside the tetrahedron when all three such are. No product but these decides, and none
-//! is compared with an absolute epsilon.
+//! 1. n points from the closest point of the simplex to the origin. The new point w is farther along n
+//!    than the simplex, so that only features with w can be closest.
+//! 2. Of two or three points, the signs of the barycentric coordinates tell the feature.
+//! 3. Of four, the origin is on the inner side of face w, a, b when det(w, a, b) > 0 (base abc wound so
+//!    that its normal is n), and inside the tetrahedron when that holds for all three new faces.
 //!
-//! **Near the origin** the nearest point is mostly rounding error, and the way from it is
-//! noise; the normal of a face is not. So the way from a face is its normal, outwards, and
-//! an origin within rounding of an edge counts as one in the face.
+//! Departures. Near the origin the closest point is mostly rounding error, the normal of a face is not: a
+//! face is left along its normal, and an origin within the contact epsilon of an edge counts as one in the
+//! face. No length is compared with an absolute epsilon. The new point need not be a support point: step 1
+//! holds for any known difference that is farther along n.
 
-use crate::gjk::barycentric;
-use crate::known::support_set::SupportSet;
 use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
+use crate::minkowski::query::SupportQuery;
+use crate::minkowski::support::SupportMap;
+use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// A simplex of points of a set, seen from the origin.
+/// A simplex of points of D: at most three corners, and a slot for the next point.
 ///
-/// A point stays in its place as long as it is a corner: what changes is the order.
+/// A corner keeps its slot: only the order changes.
 #[derive(Clone, Copy)]
 pub struct Simplex {
-    /// The points' indices in their set, by place.
-    ids: [usize; 4],
-    /// The points less the target, by place.
-    at: [Vec3; 4],
-    /// The places of the corners, the last repeated where there are fewer. Of three the
-    /// winding tells the way: outwards, where the target is.
+    slots: [Vertex; 4],
+    /// The slots of the corners, the last one repeated where there are fewer. Three are wound so that
+    /// their normal looks to the origin.
     order: [usize; 3],
     len: usize,
-    /// The place of a point that is well inside D, if one is a corner; else [`NOWHERE`].
-    inner: usize,
+    /// The slot of the interior point, if it is a corner, else [`NO_SLOT`].
+    interior: usize,
+    /// The slot of the point added last.
+    newest: usize,
 }
 
-/// No place.
-const NOWHERE: usize = 4;
+const NO_SLOT: usize = 4;
 
-/// A face of a simplex that holds the point nearest to the target.
+/// The closest feature of a simplex.
 #[derive(Clone, Copy)]
-struct Face {
+struct Feature {
     order: [usize; 3],
     len: usize,
-    way: Vec3,
+    /// To the origin, of any length.
+    dir: Vec3,
     distance2: f64,
 }
 
-/// What [`Simplex::add`] returns: the way to the target, and the square of the distance, m².
-pub type Added = (Vec3, f64);
-
 impl Simplex {
-    /// No point.
+    /// The simplex without corners.
+    pub const EMPTY: Self = Self {
+        slots: [Vertex {
+            w: crate::math::ZERO,
+            pair: VertexPair::INTERIOR,
+        }; 4],
+        order: [3; 3],
+        len: 0,
+        interior: NO_SLOT,
+        newest: 0,
+    };
+
+    /// Returns the simplex whose one corner is a point in the interior of D.
     #[inline(always)]
-    pub fn new() -> Self {
-        Self {
-            ids: [0; 4],
-            at: [Vec3::zeros(); 4],
-            order: [3; 3],
-            len: 0,
-            inner: NOWHERE,
-        }
+    pub fn of_interior(c: &Vec3) -> Self {
+        let mut simplex = Self::EMPTY;
+        simplex.slots[0].w = *c;
+        (simplex.order, simplex.len, simplex.interior) = ([0; 3], 1, 0);
+        simplex
     }
 
-    /// One point, well inside D.
+    /// Returns the corners, the last one repeated where there are fewer than three.
     #[inline(always)]
-    pub fn around(id: usize, at: &Vec3) -> Self {
-        let mut simplex = Self::new();
-        simplex.add(id, *at, 0.0, 0.0);
-        Self {
-            inner: 0,
-            ..simplex
-        }
+    pub fn corners(&self) -> [Vertex; 3] {
+        self.order.map(|i| self.slots[i & 3])
     }
 
-    /// The corners' indices, as many as there are corners.
-    #[inline(always)]
-    pub fn ids(&self) -> [usize; 3] {
-        self.order.map(|p| self.ids[p & 3])
-    }
-
-    /// Is a point a corner that is well inside D?
-    #[inline(always)]
-    pub fn has_inner(&self) -> bool {
-        self.inner != NOWHERE
-    }
-
-    /// Is this point a corner?
-    #[inline(always)]
-    pub fn has(&self, id: usize) -> bool {
-        self.ids().iter().take(self.len).any(|i| *i == id)
-    }
-
-    /// A place where there is no corner.
-    #[inline(always)]
-    pub fn place(&self) -> usize {
-        let [i, j, k] = self.order;
-        (!(1_u32 << i | 1 << j | 1 << k)).trailing_zeros() as usize & 3
-    }
-
-    /// Adds a point, `at` from the target, and keeps the face that holds the point nearest
-    /// to it. What is nearer than `touch`, metres, touches; `size2` is
-    /// the square of a length that no corner is farther from the target than.
-    ///
-    /// Returns the way from there to the target, of any length, and the square of the
-    /// distance, m². The way is zero where a triangle without area holds the target. `None`:
-    /// the target is inside the tetrahedron, off its three new faces by more than a touch;
-    /// its distance from the old one, the base, is not looked at.
-    #[inline(always)]
-    pub fn add(&mut self, id: usize, at: Vec3, touch: f64, size2: f64) -> Option<Added> {
-        let w = self.place();
-        self.ids[w] = id;
-        self.at[w] = at;
-        if w == self.inner {
-            self.inner = NOWHERE;
-        }
-        let [i, j, _] = self.order;
-        let face = match self.len {
-            0 => self.corner(w),
-            1 => self.line(i, w, touch),
-            2 => {
-                let [a, b] = [i, j].map(|p| self.at[p & 3]);
-                let n = normal(&a, &b, &at);
-                // Outwards is where the target is. NaN, or a flat D: either.
-                if n.dot(&at) > 0.0 {
-                    self.triangle([j, i, w], -n, a.cross(&at), at.cross(&b), touch)
-                } else {
-                    self.triangle([i, j, w], n, b.cross(&at), at.cross(&a), touch)
-                }
-            }
-            _ => self.tetrahedron(w, touch, size2)?,
-        };
-        self.order = face.order;
-        self.len = face.len;
-        Some((face.way, face.distance2))
-    }
-
-    /// How many corners there are: at most three.
+    /// Returns the number of corners, at most three.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Adds a corner, one of at most three, wherever it is: [`Simplex::settle`] tells the rest.
-    pub fn put(&mut self, id: usize, at: Vec3) {
-        let w = self.place();
-        self.ids[w] = id;
-        self.at[w] = at;
-        self.order = match (self.order, self.len) {
-            ([i, ..], 1) => [i, w, w],
-            ([i, j, _], 2) => [i, j, w],
-            _ => [w; 3],
-        };
-        self.len = (self.len + 1).min(3);
+    /// Returns the corners and the point added last: the tetrahedron where [`Simplex::add`] returned `None`.
+    #[inline(always)]
+    pub fn tetrahedron(&self) -> [Vertex; 4] {
+        let [a, b, c] = self.corners();
+        [a, b, c, self.slots[self.newest & 3]]
     }
 
-    /// As [`Simplex::add`] without a new point; and every face of the simplex counts, not
-    /// only those with the newest point.
-    pub fn settle(&mut self, touch: f64) -> (Vec3, f64) {
+    /// Returns the corners and the points that were corners.
+    #[inline(always)]
+    pub fn slots(&mut self) -> &mut [Vertex] {
+        &mut self.slots
+    }
+
+    /// Returns whether the interior point is a corner.
+    #[inline(always)]
+    pub fn has_interior(&self) -> bool {
+        self.interior != NO_SLOT
+    }
+
+    /// Adds a point and keeps the feature closest to the origin. `touch`: the distance below which the
+    /// origin lies on a feature, metres. `size2`: the square of a length that no corner exceeds.
+    ///
+    /// Returns the direction to the origin, of any length, and the square of the distance, m². `None`: the
+    /// origin is inside the tetrahedron, and off its three new faces by more than `touch`; the distance
+    /// from the old face is not tested.
+    #[inline(always)]
+    pub fn add(&mut self, point: Vertex, touch: f64, size2: f64) -> Option<(Vec3, f64)> {
         let [i, j, k] = self.order;
-        let at = self.order.map(|p| self.at[p & 3]);
-        let face = match self.len {
-            0 | 1 => self.corner(i),
-            2 => self.line(i, j, touch),
-            _ => {
-                let [a, b, c] = &at;
-                let weights = barycentric::triangle(&Vec3::zeros(), a, b, c).weights;
-                match weights.map(|w| w > 0.0) {
-                    [true, true, true] => {
-                        let n = normal(a, b, c);
-                        let height = n.dot(a);
-                        let inner = height > 0.0;
-                        Face {
-                            order: if inner { [j, i, k] } else { [i, j, k] },
-                            len: 3,
-                            way: if inner { -n } else { n },
-                            distance2: height / n.norm_squared() * height,
-                        }
-                    }
-                    [true, true, _] => self.line(i, j, touch),
-                    [true, _, true] => self.line(i, k, touch),
-                    [_, true, true] => self.line(j, k, touch),
-                    [_, _, true] => self.corner(k),
-                    [_, true, _] => self.corner(j),
-                    _ => self.corner(i),
+        let free = (!(1_u32 << i | 1 << j | 1 << k)).trailing_zeros() as usize & 3;
+        self.slots[free] = point;
+        self.newest = free;
+        if free == self.interior {
+            self.interior = NO_SLOT;
+        }
+        let w = point.w;
+        let feature = match self.len {
+            0 => self.corner(free),
+            1 => self.line(i, free, touch),
+            2 => {
+                let [a, b] = [i, j].map(|slot| self.slots[slot & 3].w);
+                let n = normal(&a, &b, &w);
+                // NaN, or a flat D: either side.
+                if n.dot(&w) > 0.0 {
+                    self.triangle([j, i, free], -n, a.cross(&w), w.cross(&b), touch)
+                } else {
+                    self.triangle([i, j, free], n, b.cross(&w), w.cross(&a), touch)
                 }
             }
+            _ => self.faces(free, touch, size2)?,
         };
-        (self.order, self.len) = (face.order, face.len);
-        (face.way, face.distance2)
+        self.order = feature.order;
+        self.len = feature.len;
+        Some((feature.dir, feature.distance2))
     }
 
     #[inline(always)]
-    fn corner(&self, i: usize) -> Face {
-        Face {
+    fn corner(&self, i: usize) -> Feature {
+        let w = &self.slots[i & 3].w;
+        Feature {
             order: [i; 3],
             len: 1,
-            way: -self.at[i & 3],
-            distance2: self.at[i & 3].norm_squared(),
+            dir: -w,
+            distance2: w.norm_squared(),
         }
     }
 
-    /// The nearest point of the segment from `i` to the newest point `w`.
+    /// Returns the closest feature of the segment from `i` to the newest point.
     #[inline(always)]
-    fn segment(&self, i: usize, w: usize) -> Face {
-        let (a, b) = (&self.at[i & 3], &self.at[w & 3]);
+    fn segment(&self, i: usize, newest: usize) -> Feature {
+        let (a, b) = (&self.slots[i & 3].w, &self.slots[newest & 3].w);
         let ab = a - b;
         let t = -b.dot(&ab);
         let length2 = ab.norm_squared();
         // NaN and a segment without length end at a corner.
         if !(t > 0.0) {
-            self.corner(w)
+            self.corner(newest)
         } else if !(t < length2) {
             self.corner(i)
         } else {
-            // Close to the target the sum is all rounding error: what of it lies along
-            // the segment is taken away, so that the way stays perpendicular.
+            // Close to the origin the sum is all rounding error: the part along the segment is taken
+            // away, so that the direction stays perpendicular.
             let v = b + ab * (t / length2);
             let v = v - ab * (v.dot(&ab) / length2);
-            Face {
-                order: [i, w, w],
+            Feature {
+                order: [i, newest, newest],
                 len: 2,
-                way: -v,
+                dir: -v,
                 distance2: v.norm_squared(),
             }
         }
     }
 
-    /// The nearest point of two; where they hold the target, any way aside.
+    /// As [`Simplex::segment`] for a simplex of two points; where they hold the origin, the direction is any
+    /// across.
     #[inline(always)]
-    fn line(&self, i: usize, w: usize, touch: f64) -> Face {
-        let mut face = self.segment(i, w);
-        if !(face.distance2 > touch * touch) {
-            let along = unit(&(self.at[w & 3] - self.at[i & 3])).unwrap_or(Vec3::x());
-            face.way = perpendicular(&along);
+    fn line(&self, i: usize, newest: usize, touch: f64) -> Feature {
+        let mut feature = self.segment(i, newest);
+        if !(feature.distance2 > touch * touch) {
+            let along = self.slots[newest & 3].w - self.slots[i & 3].w;
+            feature.dir = perpendicular(&unit(&along).unwrap_or(Vec3::x()));
         }
-        face
+        feature
     }
 
-    /// The part of a triangle that holds its nearest point: the triangle of `order` = i, j and
-    /// the newest point w, or of its edges those with w, which alone can. Given are its outward
-    /// normal `n`, and with the corners as vectors j × w and w × i.
+    /// Returns the closest feature of the triangle i, j, newest (`order`): the face, or an edge or corner
+    /// with the newest point. `n` is its normal, to the origin; `jw` and `wi` are cross products of corners.
     #[inline(always)]
-    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, touch: f64) -> Face {
-        let [i, j, w] = order;
-        // The weights of i and j, as multiples of n².
+    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, touch: f64) -> Feature {
+        let [i, j, newest] = order;
+        // The barycentric coordinates of i and j, times n².
         let (beyond_i, beyond_j) = (!(n.dot(&jw) > 0.0), !(n.dot(&wi) > 0.0));
+        let face = |distance2| Feature {
+            order,
+            len: 3,
+            dir: n,
+            distance2,
+        };
         let edge = match (beyond_i, beyond_j) {
             (false, false) => {
-                let height = n.dot(&self.at[w & 3]);
-                return Face {
-                    order,
-                    len: 3,
-                    way: n,
-                    distance2: height / n.norm_squared() * height,
-                };
+                let height = n.dot(&self.slots[newest & 3].w);
+                return face(height / n.norm_squared() * height);
             }
-            (true, false) => self.segment(j, w),
-            (false, true) => self.segment(i, w),
+            (true, false) => self.segment(j, newest),
+            (false, true) => self.segment(i, newest),
             (true, true) => {
-                let (one, other) = (self.segment(i, w), self.segment(j, w));
+                let (one, other) = (self.segment(i, newest), self.segment(j, newest));
                 if other.distance2 < one.distance2 {
                     other
                 } else {
@@ -271,43 +219,40 @@ impl Simplex {
         if edge.distance2 > touch * touch {
             return edge;
         }
-        // On the edge within rounding.
-        Face {
-            order,
-            len: 3,
-            way: n,
-            distance2: edge.distance2,
-        }
+        face(edge.distance2)
     }
 
-    /// The face nearest to the target; `None` where it is inside.
+    /// Returns the closest feature of the three new faces; `None` where the origin is inside.
     #[inline(always)]
-    fn tetrahedron(&self, place: usize, touch: f64, size2: f64) -> Option<Face> {
+    fn faces(&self, newest: usize, touch: f64, size2: f64) -> Option<Feature> {
         let [i, j, k] = self.order;
-        let [a, b, c, w] = [i, j, k, place].map(|p| &self.at[p & 3]);
+        let [a, b, c, w] = [i, j, k, newest].map(|slot| &self.slots[slot & 3].w);
         let (wa, wb, wc) = (w.cross(a), w.cross(b), w.cross(c));
         let heights = [wa.dot(b), wb.dot(c), wc.dot(a)];
-        // The normal of a face is at most four squares of the farthest corner long: what is
-        // higher is off it by more than twice the rounding.
+        // The normal of a face is at most four squares of the farthest corner long.
         let least = 8.0 * size2 * touch;
-        // A face that has the inner point for a corner is inside D, and so is the target where
-        // rounding puts it on either side of that: what counts is the face opposite.
-        let kept = [i, j, k].map(|p| p == self.inner);
-        let inside = kept != [false; 3];
+        // A face with the interior point is inside D, and rounding there decides nothing: the face
+        // opposite to that point does.
+        let interior = [i, j, k].map(|slot| slot == self.interior);
+        let has_interior = interior != [false; 3];
         // NaN is outside.
-        let clear = |height: f64, p: &Vec3, q: &Vec3, opposite: bool| {
-            let slack = if inside && !opposite { -touch } else { touch };
-            height > least || height > -least && off(height, p, q, w, slack)
+        let is_clear = |height: f64, p: &Vec3, q: &Vec3, is_opposite: bool| {
+            let slack = if has_interior && !is_opposite {
+                -touch
+            } else {
+                touch
+            };
+            height > least || height > -least && is_off(height, p, q, w, slack)
         };
-        let mut best: Option<Face> = None;
+        let mut best: Option<Feature> = None;
         let corners = [i, j, k, i];
         let crosses = [wa, wb, wc, wa];
         for s in 0..3 {
-            let (p, q) = (&self.at[corners[s] & 3], &self.at[corners[s + 1] & 3]);
-            if clear(heights[s], p, q, kept[(s + 2) % 3]) {
+            let [p, q] = [corners[s], corners[s + 1]].map(|slot| &self.slots[slot & 3].w);
+            if is_clear(heights[s], p, q, interior[(s + 2) % 3]) {
                 continue;
             }
-            let order = [corners[s], corners[s + 1], place];
+            let order = [corners[s], corners[s + 1], newest];
             let n = normal(p, q, w);
             let face = self.triangle(order, n, -crosses[s + 1], crosses[s], touch);
             if best.as_ref().is_none_or(|b| face.distance2 < b.distance2) {
@@ -316,40 +261,13 @@ impl Simplex {
         }
         best
     }
-
-    /// The points of the objects whose difference is nearest to the origin; the fourth corner is
-    /// `inside`, the newest point, where the origin is in the tetrahedron that it makes.
-    pub fn witnesses<const N: usize>(
-        &self,
-        set: &SupportSet<N>,
-        inside: Option<usize>,
-    ) -> (Vec3, Vec3) {
-        let origin = Vec3::zeros();
-        let [a, b, c] = self.ids().map(|i| set.point(i));
-        match (self.len, inside.map(|i| set.point(i))) {
-            (3, Some(d)) => {
-                let nearest = barycentric::tetrahedron(&origin, [&a.v, &b.v, &c.v, &d.v]);
-                barycentric::witnesses(&nearest.weights, [&a, &b, &c, &d])
-            }
-            (3, None) => {
-                let nearest = barycentric::triangle(&origin, &a.v, &b.v, &c.v);
-                barycentric::witnesses(&nearest.weights, [&a, &b, &c])
-            }
-            (2, _) => {
-                let nearest = barycentric::segment(&origin, &a.v, &b.v);
-                barycentric::witnesses(&nearest.weights, [&a, &b])
-            }
-            _ => (a.v1, a.v2),
-        }
-    }
 }
 
-/// Is the target off the face of p, q and w by more than twice the slack, and by more than
-/// rounding? For heights that [`Simplex::tetrahedron`]'s cheaper bound leaves open; `height` is
-/// the distance times twice the face's area.
+/// Returns whether the origin is off the face of p, q and w by more than twice the slack and by more than
+/// rounding. `height` is the distance times twice the area of the face.
 #[cold]
-fn off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
-    // The product itself is off by ulps of the corners' lengths, however small the face is.
+fn is_off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
+    // The product is off by ulps of the corners' lengths, however small the face is.
     let lengths = p.norm() * q.norm() * w.norm();
     let error = if slack > 0.0 {
         8.0 * EPSILON * lengths
@@ -359,36 +277,56 @@ fn off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     height > 2.0 * slack * normal(p, q, w).norm() + error
 }
 
-/// The unit vector along `way`, and `None` for none.
+/// Returns the unit vector along `v`, `None` where it has no direction.
 #[inline(always)]
-pub fn direction(way: &Vec3) -> Option<Vec3> {
-    let length2 = way.norm_squared();
-    // Squares that are neither rounded to nothing nor beyond numbers.
-    // (In single precision those of areas soon are.)
-    let safe = length2 > f64::MIN_POSITIVE / EPSILON && length2 < f64::INFINITY;
-    if safe && !cfg!(feature = "single") {
-        Some(way / length2.sqrt())
+pub fn direction(v: &Vec3) -> Option<Vec3> {
+    let length2 = v.norm_squared();
+    // Squares that are neither rounded to nothing nor infinite.
+    if length2 > f64::MIN_POSITIVE / f64::EPSILON && length2 < f64::INFINITY {
+        Some(v / length2.sqrt())
     } else {
-        unit(way)
+        unit(v)
     }
 }
 
-/// Where the next point goes: behind the others, or, in a set without room, in the place of
-/// one that is no corner.
-#[inline(always)]
-pub fn room<const N: usize>(set: &SupportSet<N>, simplex: &Simplex) -> usize {
-    if !set.is_full() {
-        return set.len();
+/// Makes room in a full set: keeps the entries of at most four corners and that of the least support value.
+/// Their indices change.
+#[cold]
+#[inline(never)]
+pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    corners: &mut [Vertex],
+) {
+    let mut kept = VertexSet::<N>::EMPTY;
+    let mut olds = [usize::MAX; 9];
+    let mut keep = |old: usize| {
+        if let Some(new) = olds.iter().position(|o| *o == old) {
+            return new;
+        }
+        let new = kept.push(&set.dir(old), &set.point(VertexSet::<N>::sample(old)));
+        if let Some(slot) = olds.get_mut(new) {
+            *slot = old;
+        }
+        new
+    };
+    query.upper.index = keep(query.upper.index);
+    for corner in corners {
+        if !corner.pair.is_interior() {
+            let [a, b] = [corner.pair.a, corner.pair.b].map(|i| keep(i.into()) as u16);
+            corner.pair = VertexPair { a, b };
+        }
     }
-    (0..N).find(|i| !simplex.has(*i)).unwrap_or(N - 1)
+    set.copy_from(&kept);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gjk::barycentric;
     use crate::shapes::Random;
 
-    /// Corners that lie in a plane with the target, and near each other.
+    /// Corners in a plane with the origin, and close to each other.
     #[test]
     fn rounding_of_a_small_face_is_no_height() {
         let mut r = Random::new(41);
@@ -399,8 +337,78 @@ mod tests {
             let w = p * r.within(0.5, 2.0) + q * r.within(-1.0, 1.0);
             let height = p.cross(&q).dot(&w);
             // Of an object a thousand times as large.
-            assert!(!off(height, &p, &q, &w, EPSILON));
-            assert!(off(1e3 * EPSILON * 1e-9, &p, &q, &w, EPSILON));
+            assert!(!is_off(height, &p, &q, &w, EPSILON));
+            assert!(is_off(1e3 * EPSILON * 1e-9, &p, &q, &w, EPSILON));
+        }
+    }
+
+    /// Points added one after the other, each farther along than the simplex: the distance is that of all
+    /// points, and falls.
+    #[test]
+    fn the_closest_feature_is_that_of_the_corners() {
+        let mut r = Random::new(42);
+        let mut met = [0; 4];
+        for _ in 0..2000 {
+            let at = r.direction() * r.within(0.0, 1.5);
+            let points: Vec<Vec3> = (0..6).map(|_| at + r.vector(1.0)).collect();
+            let mut simplex = Simplex::EMPTY;
+            let mut dir = r.direction();
+            let mut before = f64::INFINITY;
+            for _ in 0..30 {
+                let w = *points
+                    .iter()
+                    .max_by(|p, q| dir.dot(p).total_cmp(&dir.dot(q)))
+                    .unwrap();
+                if simplex.len() > 0 && dir.dot(&(w - simplex.corners()[0].w)) <= 1e-12 {
+                    break;
+                }
+                let pair = VertexPair::INTERIOR;
+                let Some((to, distance2)) = simplex.add(Vertex { w, pair }, 1e-14, 100.0) else {
+                    met[3] += 1;
+                    let [a, b, c, d] = &simplex.tetrahedron().map(|v| v.w);
+                    let inside = barycentric::tetrahedron(&Vec3::zeros(), [a, b, c, d]);
+                    assert!(inside.distance2 <= 1e-24);
+                    break;
+                };
+                assert!(distance2 <= before);
+                (before, dir) = (distance2, to);
+                let [a, b, c] = &simplex.corners().map(|v| v.w);
+                let closest = barycentric::triangle(&Vec3::zeros(), a, b, c);
+                assert!((closest.distance2.sqrt() - distance2.sqrt()).abs() < 1e-9);
+                met[simplex.len() - 1] += 1;
+            }
+        }
+        assert!(met.iter().all(|n| *n > 100), "{met:?}");
+    }
+
+    #[test]
+    fn a_compacted_set_keeps_what_is_in_use() {
+        let mut r = Random::new(44);
+        let md = crate::minkowski::support::MinkowskiDifference::new(
+            crate::shapes::ball(Vec3::zeros(), 1.0),
+            crate::shapes::ball(Vec3::x() * 3.0, 1.0),
+        );
+        for _ in 0..100 {
+            let mut query = SupportQuery::new(&md, None);
+            let mut set = VertexSet::<16>::EMPTY;
+            while !set.is_full() {
+                query.evaluate_signed(&mut set, &r.direction()).unwrap();
+            }
+            let mut simplex = Simplex::EMPTY;
+            for _ in 0..3 {
+                let pair = VertexPair {
+                    a: r.within(0.0, 16.0) as u16,
+                    b: r.within(0.0, 16.0) as u16,
+                };
+                let w = set.difference(pair);
+                simplex.add(Vertex { w, pair }, 1e-14, 100.0);
+            }
+            compact(&mut query, &mut set, simplex.slots());
+            assert!(set.len() < 10);
+            for corner in simplex.corners() {
+                assert_eq!(corner.w, set.difference(corner.pair));
+            }
+            assert_eq!(set.dir(query.upper.index), query.upper.dir);
         }
     }
 }

@@ -192,6 +192,29 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         })
     }
 
+    /// As [`SupportQuery::evaluate`], for a query that goes on beyond a separating axis: the upper bound then
+    /// is below 0.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(always)]
+    pub fn evaluate_signed<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        dir: &Vec3,
+    ) -> Result<SupportSample, Fault> {
+        let dir = representable(dir);
+        let point = self.evaluate_point(&dir)?;
+        let h = dir.dot(&point.v);
+        let index = set.push(&dir, &point);
+        self.store_upper(&dir, h, index);
+        Ok(SupportSample {
+            w: point.v,
+            h,
+            pair: VertexSet::<N>::sample(index),
+        })
+    }
+
     /// Keeps a support value if it is the least, and tests the interior point against its plane.
     #[inline(always)]
     fn store_upper(&mut self, dir: &Vec3, h: f64, index: usize) {

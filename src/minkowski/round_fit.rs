@@ -103,6 +103,14 @@ impl SphereFit {
         }
     }
 
+    /// Returns a fit that has compared nothing yet, with radii of an earlier one, metres.
+    pub fn from_radius(radius: [f64; 2]) -> Self {
+        Self {
+            radius,
+            ..Self::default()
+        }
+    }
+
     /// Pauses predictions for two queries: the last one found nothing beyond its face.
     #[inline(always)]
     pub fn set_pause(&mut self) {

@@ -12,7 +12,7 @@ use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, given};
 use super::state::{ccd_warm_t, with_state};
 use crate::contact::Settings;
-use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
+use crate::gjk::signed_distance::{Distance, Wanted};
 use crate::math::{Real, lower_to_real};
 use crate::{query::Pair, state::State};
 
@@ -103,9 +103,9 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
             arena::with(|arena| pair.minimum(state, settings, arena, points, hit))
         };
         with_state(warm, |state| {
-            let distance = signed_distance(&pair, state, &wanted, minimum)?;
+            let distance = pair.signed_distance(state, &wanted, minimum)?;
             *out = ccd_distance_t::new(&distance, want, pair.md.supports());
-            Ok(match (distance.limit, distance.hit) {
+            Ok(match (distance.is_limited, distance.is_hit) {
                 (true, _) => CCD_LIMIT,
                 (false, true) => CCD_HIT,
                 (false, false) => CCD_MISS,
