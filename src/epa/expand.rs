@@ -7,8 +7,7 @@
 //!    inside and the gap to the upper bound is allowed: converged.
 //! 2. The known difference farthest along its normal becomes a corner, without a callback, where it closes
 //!    [`GAIN_REL`] of the gap between the face and the upper bound.
-//! 3. Else the callbacks are evaluated: along the face's normal, or for shallow contacts where a sphere fit
-//!    tells ([`evaluate_beyond`]). The point becomes a corner if it is above the face.
+//! 3. Else the callbacks are evaluated: along the face's normal, or where a sphere fit tells ([`evaluate_beyond`]). The point becomes a corner if it is above the face.
 //! 4. A normal that finds nothing above lowers the upper bound, or rounding ends the search.
 //!
 //! Departures from van den Bergen's EPA: planes are interpolated, not computed from corners
@@ -22,13 +21,13 @@
 
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric::triangle;
-use crate::math::{Vec3, lesser, normalised};
-use crate::minkowski::query::{Stop, SupportQuery, SupportSample};
+use crate::math::{Vec3, lesser};
+use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::round_fit::{Choice, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::{GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::mpr::portal::{KNOWN_LEVEL, is_shallow};
+use crate::mpr::portal::KNOWN_LEVEL;
 
 /// The share of the gap that a queried point must lie above a face to become a corner.
 const QUERIED_LEVEL: f64 = 0.04;
@@ -222,14 +221,11 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             !(closest.key > 0.0) || height * distance > GAIN_REL * (upper - distance) * offset;
         if !(height > level && is_gain) {
             let is_plain = !is_inside || closest.key == progress.last_failed_key;
-            let (sample, choice) = if true {
-                let vertices = polytope
-                    .corners(face)
-                    .map(|id| corners.vertex(set, interior, id));
-                evaluate_beyond(query, set, fit, &vertices, &normal, allowed, is_plain)?
-            } else {
-                (evaluate_normal(query, set, &normal)?, Choice::Normal)
-            };
+            let vertices = polytope
+                .corners(face)
+                .map(|id| corners.vertex(set, interior, id));
+            let (sample, choice) =
+                evaluate_beyond(query, set, fit, &vertices, &normal, allowed, is_plain)?;
             progress.iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
             if queried_height > queried_level {
@@ -254,17 +250,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             return Ok(ExpandEnd::NoRoom);
         }
     }
-}
-
-/// Evaluates along the normal of a face, which need not be unit.
-#[inline(always)]
-fn evaluate_normal<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
-    set: &mut VertexSet<N>,
-    normal: &Vec3,
-) -> Result<SupportSample, Stop> {
-    let n = normalised(normal).unwrap_or(query.upper.dir);
-    query.evaluate(set, &n)
 }
 
 /// Returns the face through which the ray along `dir` leaves the polytope, about, and the point of it that
