@@ -3,4 +3,5 @@
 
 //! Minkowski portal refinement on known vertices.
 
+pub mod local;
 pub mod portal;

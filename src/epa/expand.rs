@@ -28,7 +28,7 @@ use crate::minkowski::round_fit::{Choice, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::{GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::mpr::portal::{KNOWN_LEVEL, is_shallow};
+use crate::mpr::portal::KNOWN_LEVEL;
 
 /// The share of the gap that a queried point must lie above a face to become a corner.
 const QUERIED_LEVEL: f64 = 0.04;
