@@ -37,10 +37,7 @@ use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::{GAP_REL, GapLimit, Scale};
 use crate::minkowski::vertex_set::VertexSet;
-use crate::mpr;
-use crate::paper::along;
-use crate::paper::incremental;
-use crate::paper::portal::Until;
+use crate::mpr::{self, gao::{self, Until}};
 use crate::state::State;
 use warm_start::{WarmKind, WarmStart};
 
@@ -333,7 +330,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 start = in_plane(start).unwrap_or_else(|| perpendicular(&m));
             }
             let until = Until::Shortcut;
-            *hit = incremental::penetration(&self.md, start, flat, until, settings, |_| ())?;
+            *hit = gao::penetration(&self.md, start, flat, until, settings, |_| ())?;
             self.prove(hit, &mut Known::default(), settings, flat.is_some())?;
             *state = State::towards(hit.normal);
             self.face(state);
@@ -473,7 +470,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),
                 ..*settings
             };
-            let (found, portal) = along::penetration(&self.md, &dir, last, &capped)?;
+            let (found, portal) = mpr::directional::along(&self.md, &dir, last, &capped)?;
             *hit = found;
             let mut known = Known::default();
             for plane in portal.iter().flat_map(|p| &p.planes) {
