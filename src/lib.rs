@@ -71,7 +71,6 @@ mod math;
 mod minkowski;
 #[allow(dead_code)]
 mod mpr;
-mod paper;
 mod query;
 #[cfg(test)]
 #[path = "../c-tests/harness/shapes.rs"]
@@ -92,8 +91,8 @@ pub mod internals {
     pub use crate::contact::Settings;
     pub use crate::math::Vec3;
     pub use crate::minkowski::support::MinkowskiDifference;
-    pub use crate::paper::incremental::penetration as incremental;
-    pub use crate::paper::portal::Until;
+    pub use crate::mpr::gao::penetration as incremental;
+    pub use crate::mpr::gao::Until;
 
     /// The exported functions, called as C calls them.
     pub mod ffi {

@@ -3,4 +3,7 @@
 
 //! Minkowski portal refinement on known vertices.
 
+pub mod directional;
+pub mod gao;
+pub mod local;
 pub mod portal;

@@ -33,14 +33,13 @@ use crate::gjk::separating_axis::SeparatingAxis;
 use crate::gjk::signed_distance::{Distance, Start, Wanted, signed_distance};
 use crate::math::{Vec3, larger, perpendicular, unit};
 use crate::minkowski::query::{Stop, SupportQuery};
+use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::{GAP_REL, GapLimit, Scale};
 use crate::minkowski::vertex_set::VertexSet;
-use crate::paper::along;
-use crate::paper::incremental;
-use crate::paper::portal::Until;
+use crate::mpr::{self, gao::{self, Until}};
 use crate::state::State;
-use warm_start::WarmStart;
+use warm_start::{WarmKind, WarmStart};
 
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
@@ -155,26 +154,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(())
     }
 
-    /// Does a state lead to the far side, as that of the swapped pair does? It was left when the
-    /// centres looked the other way; or, a guess, it looks away from them, and D reaches farther
-    /// there.
-    fn is_behind(&self, state: &State) -> Result<bool, Fault> {
-        let Some(centre) = self.centre else {
-            return Ok(false);
-        };
-        if let Some(before) = state.facing() {
-            return Ok(before.dot(&centre.v) < 0.0);
-        }
-        if !state.looks_along(&centre.v) {
-            return Ok(false);
-        }
-        let Some(n) = state.leaving() else {
-            return Ok(false);
-        };
-        let reach = |n: &Vec3| Ok(n.dot(&self.md.support(n)?.v));
-        Ok(reach(&self.cold_start())? < reach(&n)?)
-    }
-
     /// The state tells where the centres are.
     fn face(&self, state: &mut State) {
         if let Some(centre) = &self.centre {
@@ -235,7 +214,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(distance)
     }
 
-    /// A local minimum of the depth.
+    /// Finds a local minimum of the depth by a walk on the known vertices; where that ends without one, the
+    /// global minimum, from the direction of the least support value.
     pub fn local(
         &self,
         state: &mut State,
@@ -243,24 +223,72 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        self.asked(state, |state| {
-            let cold = self.is_behind(state)?;
-            let mut known = Known::default();
-            let memory = state.solver(cold);
-            hit.limit = !self.local_minimum(memory, settings, &mut known, hit)?;
-            self.prove(hit, &mut known, settings, false)?;
-            state.overlap();
-            self.face(state);
-            if hit.limit {
-                hit.pos = hit.middle();
-            } else if wants_pos {
-                let mut seen = Seen::Nothing;
-                let points = |k: usize| known.points().get(k).map(|p| [p.v1, p.v2]);
-                seen.rest(&points, hit);
-                hit.pos = self.position(hit, settings.tolerance, &seen)?;
-            }
-            Ok(())
-        })
+        let status = self.walk(state, settings, wants_pos, hit)?;
+        if status == Status::Converged {
+            return Ok(());
+        }
+        let walked = hit.iterations;
+        let limits = EpaLimits {
+            gap: GapLimit {
+                tolerance: settings.tolerance,
+                share: 0.0,
+            },
+            max_samples: MAX_SAMPLES,
+            max_iterations: settings.max_iterations.saturating_sub(walked),
+        };
+        self.global(self.centre.as_ref(), state, &limits, None, wants_pos, hit)?;
+        hit.iterations += walked;
+        Ok(())
+    }
+
+    /// Walks to a local minimum. (In a frame of its own: the global query needs its stack.)
+    #[inline(never)]
+    fn walk(
+        &self,
+        state: &mut State,
+        settings: &Settings,
+        wants_pos: bool,
+        hit: &mut Penetration,
+    ) -> Result<Status, Stop> {
+        let warm = state.warm_start();
+        let start = match warm.kind {
+            WarmKind::Cold => self.cold_start(),
+            _ => warm.dir,
+        };
+        let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
+        let mut set = VertexSet::<{ mpr::local::MAX_SAMPLES }>::EMPTY;
+        let mut fit = SphereFit::default();
+        (fit.radius, fit.is_warm) = (warm.radius, warm.radius != [0.0; 2]);
+        let found = mpr::local::penetration(&mut query, &mut set, &mut fit, &start, settings);
+        let left = match &found {
+            Ok((walked, _)) => WarmStart {
+                dir: walked.dir,
+                depth: walked.depth,
+                radius: if fit.is_confirmed {
+                    fit.radius
+                } else {
+                    [0.0; 2]
+                },
+                kind: WarmKind::Plain,
+            },
+            Err(Stop::Apart(axis)) => WarmStart {
+                dir: *axis,
+                depth: 0.0,
+                kind: WarmKind::Apart,
+                ..warm
+            },
+            Err(Stop::Fault(fault)) => return Err((*fault).into()),
+        };
+        state.store(&left);
+        let (walked, status) = found?;
+        *hit = walked;
+        if status == Status::Converged && wants_pos {
+            let mut seen = Seen::Nothing;
+            let known = |i: usize| (i < set.len()).then(|| [set.vertex1(i), set.vertex2(i)]);
+            seen.rest(&known, hit);
+            hit.pos = self.position(hit, settings.tolerance, &seen)?;
+        }
+        Ok(status)
     }
 
     /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
@@ -302,7 +330,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 start = in_plane(start).unwrap_or_else(|| perpendicular(&m));
             }
             let until = Until::Shortcut;
-            *hit = incremental::penetration(&self.md, start, flat, until, settings, |_| ())?;
+            *hit = gao::penetration(&self.md, start, flat, until, settings, |_| ())?;
             self.prove(hit, &mut Known::default(), settings, flat.is_some())?;
             *state = State::towards(hit.normal);
             self.face(state);
@@ -442,7 +470,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),
                 ..*settings
             };
-            let (found, portal) = along::penetration(&self.md, &dir, last, &capped)?;
+            let (found, portal) = mpr::directional::along(&self.md, &dir, last, &capped)?;
             *hit = found;
             let mut known = Known::default();
             for plane in portal.iter().flat_map(|p| &p.planes) {

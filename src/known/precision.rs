@@ -4,7 +4,7 @@
 //! How large the objects are, as far as their support points tell, and what rounding
 //! that means. What is asked through an [`Inquiry`](crate::known::support_set::Inquiry) takes its
 //! tolerances from here; the paper's solvers, which keep no sizes, from the point at hand
-//! ([`crate::paper::portal::rounding`]).
+//! ([`crate::mpr::gao::rounding`]).
 //!
 //! Two lengths count. The *reach* is the largest distance of a witness from the world's
 //! origin: a callback computes its points to about an ulp of it, and so does the

@@ -14,15 +14,20 @@
 //! 4. *Beside.* Where the fit is confirmed, the least direction tilted towards a face finds a corner as far
 //!    from it as a face may lie within the gap.
 
+use crate::gjk::barycentric;
 use crate::math::{Vec3, lesser, normalised};
-use crate::minkowski::query::{Stop, SupportQuery, SupportSample};
+use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
 use crate::minkowski::support::SupportMap;
-use crate::minkowski::vertex_set::{Vertex, VertexSet};
+use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The relative difference of e and f up to which two samples fit one sphere. Insensitive: 0.02 to 0.1.
 const SPHERE_FIT_REL_TOL: f64 = 0.03;
 /// The least square of the cosine between the moves of direction and vertex on one sphere.
 const SPHERE_FIT_COS2: f64 = 0.999;
+/// The same of an exact fit, far above rounding; the centres are then equal to this share of the radius.
+const EXACT_FIT_REL_TOL: f64 = 1e-6;
+const EXACT_FIT_COS2: f64 = 1.0 - 1e-9;
+const EXACT_CENTER_REL: f64 = 1e-9;
 /// The least square of the angle between two samples that tell a radius.
 const MIN_ANGLE2: f64 = 1e-10;
 /// The number of support calls before fits are used.
@@ -189,6 +194,133 @@ impl SphereFit {
         let dir = lowest + across * (tilt / sine);
         Some(dir / dir.norm())
     }
+}
+
+/// The exact fits of the local query, whose minimum a prediction may be: e = f and the moves parallel but for
+/// rounding.
+impl SphereFit {
+    /// Compares the new entries of the set with all before them, entry `lowest` the last: of several spheres
+    /// of an object it is the one at the least support value.
+    pub fn update_exact<const N: usize>(&mut self, set: &VertexSet<N>, lowest: usize) {
+        while self.compared < set.len() {
+            let i = self.compared;
+            self.compared += 1;
+            for k in (0..i).chain([lowest]) {
+                if k == i {
+                    continue;
+                }
+                let found = exact_radii(set, k, i);
+                for (radius, found) in self.radius.iter_mut().zip(found) {
+                    if found > 0.0 && (k == lowest || !(*radius > 0.0)) {
+                        *radius = found;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Forgets radii that no entry of the set confirms, and compares all entries again.
+    pub fn reset_exact(&mut self) {
+        (self.radius, self.compared) = ([0.0; 2], 0);
+        (self.is_warm, self.is_confirmed) = (false, false);
+    }
+
+    /// Returns whether the vertex of entry `i`, its spheres taken off, is one at which the direction of the upper
+    /// bound finds the upper bound.
+    pub fn is_active<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        i: usize,
+        upper: &UpperBound,
+        tolerance: f64,
+    ) -> bool {
+        let vertex = set.vertex(VertexSet::<N>::sample(i));
+        self.is_core_active(set, &vertex, upper, tolerance)
+    }
+
+    fn is_core_active<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        vertex: &Vertex,
+        upper: &UpperBound,
+        tolerance: f64,
+    ) -> bool {
+        let [core, ..] = self.core(set, &[*vertex; 3]);
+        (upper.dir.dot(&core) + self.sum() - upper.depth).abs() <= tolerance
+    }
+
+    /// Returns whether the centres of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
+    /// directions each. The tip of a drop looks like the centre of a sphere from one direction.
+    pub fn is_seen_twice<const N: usize>(&self, set: &VertexSet<N>, pair: VertexPair) -> bool {
+        let [r1, r2] = self.radius;
+        let center1 = |i: usize| set.vertex1(i) - set.dir(i) * r1;
+        let center2 = |i: usize| set.vertex2(i) + set.dir(i) * r2;
+        let (a, b) = (usize::from(pair.a), usize::from(pair.b));
+        let is_other =
+            |i: usize, k: usize| k != i && (set.dir(k) - set.dir(i)).norm_squared() > 1e-8;
+        let is_twice = |radius: f64, i: usize, center: &dyn Fn(usize) -> Vec3| {
+            let at = center(i);
+            !(radius > 0.0)
+                || (0..set.len()).any(|k| {
+                    is_other(i, k) && (center(k) - at).norm() <= EXACT_CENTER_REL * self.sum()
+                })
+        };
+        is_twice(r1, a, &center1) && is_twice(r2, b, &center2)
+    }
+
+    /// Returns whether the spheres at which the upper bound is found were seen twice: that of its entry, and those
+    /// of the corners.
+    pub fn is_real<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        corners: &[Vertex; 3],
+        upper: &UpperBound,
+        tolerance: f64,
+    ) -> bool {
+        self.is_seen_twice(set, VertexSet::<N>::sample(upper.index))
+            && corners.iter().all(|v| {
+                !self.is_core_active(set, v, upper, tolerance) || self.is_seen_twice(set, v.pair)
+            })
+    }
+
+    /// Returns the witness points of unit `dir` on the spheres of the corners: where the line along it through the
+    /// origin meets the triangle of the centres.
+    pub fn witnesses<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        corners: &[Vertex; 3],
+        dir: &Vec3,
+    ) -> [Vec3; 2] {
+        let [a, b, c] = self.core(set, corners);
+        let weights = barycentric::triangle(&Vec3::zeros(), &a, &b, &c).weights;
+        let [r1, r2] = self.radius;
+        let mut points = [dir * r1, -dir * r2];
+        for (weight, v) in weights.iter().zip(corners) {
+            let (a, b) = (usize::from(v.pair.a), usize::from(v.pair.b));
+            points[0] += (set.vertex1(a) - set.dir(a) * r1) * *weight;
+            points[1] += (set.vertex2(b) + set.dir(b) * r2) * *weight;
+        }
+        points
+    }
+}
+
+/// Returns the radii of the spheres of obj1 and obj2 that two entries lie on, 0 where they do on none.
+fn exact_radii<const N: usize>(set: &VertexSet<N>, k: usize, i: usize) -> [f64; 2] {
+    let (m, n) = (set.dir(k), set.dir(i));
+    let turn2 = (n - m).norm_squared();
+    let moves = [
+        set.vertex1(i) - set.vertex1(k),
+        set.vertex2(k) - set.vertex2(i),
+    ];
+    moves.map(|d| {
+        let (e, f) = (n.dot(&d), -m.dot(&d));
+        let sum = e + f;
+        let is_exact = turn2 > MIN_ANGLE2
+            && sum > 1e-9 * turn2
+            && (e - f).abs() <= EXACT_FIT_REL_TOL * sum
+            && sum * sum > EXACT_FIT_COS2 * turn2 * d.norm_squared();
+        if is_exact { sum / turn2 } else { 0.0 }
+    })
 }
 
 /// Returns the point of the triangle closest to the origin, and whether it lies inside. Sliver triangles
