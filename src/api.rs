@@ -16,14 +16,14 @@ use crate::contacts::memory::Memory;
 use crate::ffi::arena::Heap;
 use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::Wanted;
-use crate::known::check;
-pub use crate::known::check::Check;
-use crate::known::support_set::{Stop, if_overlapping};
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
+use crate::minkowski::query::{Stop, if_overlapping};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::validate as check;
+pub use crate::minkowski::validate::Check;
 use crate::query::Pair;
-use crate::state::State;
+use crate::query::warm_start::WarmStart;
 
 /// A convex shape, known by its support function alone.
 ///
@@ -185,13 +185,13 @@ impl Default for Settings {
 /// One is for one pair in one order. A stale, foreign or random state costs time and may lead
 /// [`penetration_local`] to another local minimum; every answer stays sound.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Warm(State);
+pub struct Warm(WarmStart);
 
 impl Warm {
     /// A fresh state that starts from `dir`, a guess of the way the second shape leaves: of any
     /// length; zero or not finite is cold.
     pub fn guess(dir: [Real; 3]) -> Self {
-        Warm(State::guess(&from_real(dir)))
+        Warm(WarmStart::guess(&from_real(dir)))
     }
 
     /// For the same two shapes in the other order.
@@ -336,9 +336,9 @@ where
 /// there is no answer.
 fn with_state<R>(
     warm: Option<&mut Warm>,
-    ask: impl FnOnce(&mut State) -> Result<R, Fault>,
+    ask: impl FnOnce(&mut WarmStart) -> Result<R, Fault>,
 ) -> Result<R, Error> {
-    let mut state = warm.as_ref().map_or(State::default(), |warm| warm.0);
+    let mut state = warm.as_ref().map_or(WarmStart::COLD, |warm| warm.0);
     let answer = ask(&mut state)?;
     if let Some(warm) = warm {
         warm.0 = state;
@@ -354,7 +354,7 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     warm: Option<&mut Warm>,
     solve: impl FnOnce(
         &Asking<'_, A, B>,
-        &mut State,
+        &mut WarmStart,
         &contact::Settings,
         bool,
         &mut contact::Penetration,
@@ -499,7 +499,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     }
     let points = settings.want.points;
     let pair = pair(a, b, warm.is_some())?;
-    let minimum = |pair: &Asking<'_, A, B>, state: &mut State, settings: &_, hit: &mut _| {
+    let minimum = |pair: &Asking<'_, A, B>, state: &mut WarmStart, settings: &_, hit: &mut _| {
         pair.minimum(state, settings, &mut Heap::default(), points, hit)
     };
     let d = with_state(warm, |state| pair.signed_distance(state, &wanted, minimum))?;

@@ -57,26 +57,17 @@
 
 mod api;
 mod contact;
-#[allow(dead_code)]
 mod contacts;
-#[allow(dead_code)]
 mod epa;
 mod ffi;
 mod gjk;
-#[allow(dead_code)]
-mod known;
-mod local;
 mod math;
-#[allow(dead_code)]
 mod minkowski;
-#[allow(dead_code)]
 mod mpr;
 mod query;
 #[cfg(test)]
 #[path = "../c-tests/harness/shapes.rs"]
 mod shapes;
-#[allow(dead_code)]
-mod state;
 
 pub use api::{
     Check, Contact, Distance, DistanceOptions, Error, Manifold, Penetration, Real, Settings, Shape,
@@ -91,8 +82,8 @@ pub mod internals {
     pub use crate::contact::Settings;
     pub use crate::math::Vec3;
     pub use crate::minkowski::support::MinkowskiDifference;
-    pub use crate::mpr::gao::penetration as incremental;
     pub use crate::mpr::gao::Until;
+    pub use crate::mpr::gao::penetration as incremental;
 
     /// The exported functions, called as C calls them.
     pub mod ffi {

@@ -70,17 +70,6 @@ pub fn normalised(v: &Vec3) -> Option<Vec3> {
     (n2 > f64::MIN_POSITIVE && n2 < f64::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
-/// A vector that is to be unit: as it is where it is to a few ulps, else [`unit()`].
-#[inline(always)]
-pub fn as_unit(v: &Vec3) -> Option<Vec3> {
-    // False for NaN.
-    if (v.norm_squared() - 1.0).abs() <= 2.0 * EPSILON {
-        Some(*v)
-    } else {
-        unit(v)
-    }
-}
-
 /// The larger of two numbers, the second where one is NaN: one instruction, where `max`
 /// takes several to pass over a NaN on either side.
 #[inline(always)]
@@ -153,24 +142,3 @@ pub fn axes(n: &Vec3) -> [Vec3; 2] {
 /// points are the most that a query takes. Measured (`campaigns -- wide`): of the minima that 360
 /// support points do not prove, most are not proven by 1,400.
 pub const ITERATION_CAP: u64 = 380;
-
-/// The tolerance in force where `asked` is wanted, metres: no finer than coordinates up
-/// to `reach` resolve, and no coarser than a four-thousandth of the `size` of the object,
-/// of which a coarser answer would say nothing. NaN counts as infinite.
-#[inline]
-pub fn tolerance(asked: f64, size: f64, reach: f64) -> f64 {
-    asked.min(2.5e-4 * size).max(8.0 * EPSILON * reach)
-}
-
-/// Two unit vectors that make an orthonormal basis with the unit vector b, without a branch
-/// (Duff et al., JCGT 6(1), 2017).
-#[inline(always)]
-pub fn basis(b: &Vec3) -> (Vec3, Vec3) {
-    let sign = 1.0_f64.copysign(b.z);
-    let c = -1.0 / (sign + b.z);
-    let d = b.x * b.y * c;
-    (
-        Vec3::new(1.0 + sign * b.x * b.x * c, sign * d, -sign * b.x),
-        Vec3::new(d, sign + b.y * b.y * c, -b.y),
-    )
-}

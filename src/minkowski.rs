@@ -17,9 +17,11 @@
 //! | [`query`] | evaluation, upper bound, separating-axis test, inconsistent support functions |
 //! | [`tolerance`] | tolerance in force, contact epsilon, rounding |
 //! | [`round_fit`] | sphere fits, which choose where to query |
+//! | [`validate`] | what is wrong with a support function and a centre |
 
 pub mod query;
 pub mod round_fit;
 pub mod support;
 pub mod tolerance;
+pub mod validate;
 pub mod vertex_set;

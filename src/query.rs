@@ -17,7 +17,7 @@
 //!    overlaps itself.
 //! 4. Where the contact position is wanted, it is the centre of pressure ([`pressure`]); the middle
 //!    of the witness points in `along` and `planar`, and where a cap came first.
-//! 5. What was learned stays behind in the [`State`]; where the caller keeps none, nothing
+//! 5. What was learned stays behind in the [`WarmStart`]; where the caller keeps none, nothing
 //!    is spent on it.
 
 mod local_minimum;
@@ -31,15 +31,20 @@ use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{contains_origin, intersect};
 use crate::gjk::separating_axis::SeparatingAxis;
 use crate::gjk::signed_distance::{Distance, Start, Wanted, signed_distance};
-use crate::math::{Vec3, larger, perpendicular, unit};
+use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::round_fit::SphereFit;
-use crate::minkowski::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::tolerance::{GAP_REL, GapLimit, Scale};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::tolerance::{GAP_REL, GapLimit};
 use crate::minkowski::vertex_set::VertexSet;
-use crate::mpr::{self, gao::{self, Until}};
-use crate::state::State;
+use crate::mpr::{
+    self,
+    gao::{self, Until},
+};
 use warm_start::{WarmKind, WarmStart};
+
+/// The vertices of the proof of an overlap.
+const PROOF_VERTICES: usize = 16;
 
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
@@ -60,13 +65,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(always)]
     fn asked(
         &self,
-        state: &mut State,
-        solve: impl FnOnce(&mut State) -> Result<(), Stop>,
+        state: &mut WarmStart,
+        solve: impl FnOnce(&mut WarmStart) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
         let aim = self.still_apart(state)?;
         let found = solve(state);
         if let Err(Stop::Apart(n)) = &found {
-            *state = State::apart(&SeparatingAxis { dir: *n, aim }, state.radius());
+            *state = WarmStart::apart(&SeparatingAxis { dir: *n, aim }, state.radius);
         }
         found
     }
@@ -74,13 +79,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Step 1: [`Stop::Apart`] where the axis of the state still separates. Else the margin to aim at with
     /// another one, metres.
     #[inline(always)]
-    fn still_apart(&self, state: &mut State) -> Result<f64, Stop> {
-        let Some(mut axis) = state.separating() else {
+    fn still_apart(&self, state: &mut WarmStart) -> Result<f64, Stop> {
+        let Some(mut axis) = state.separating_axis() else {
             return Ok(0.0);
         };
         let found = axis.test(&mut SupportQuery::new(&self.md, None))?;
         if let Some(n) = found {
-            *state = State::apart(&axis, state.radius());
+            *state = WarmStart::apart(&axis, state.radius);
             return Err(Stop::Apart(n));
         }
         Ok(axis.aim)
@@ -95,55 +100,39 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             .unwrap_or(Vec3::x())
     }
 
-    /// Step 3: proves the overlap of a solver's `hit`, from points that are known, or refutes it:
-    /// [`Stop::Apart`]. `planar`: D lies in a plane.
+    /// Proves the overlap of a solver's `hit` from known vertices, and queries where they leave a side open.
+    /// Where a touch, within the tolerance, has witness points that do not meet, the points that meet at the
+    /// origin take their place. `is_planar`: D lies in a plane.
+    ///
+    /// # Errors
+    /// [`Stop::Apart`]: a queried direction separates. [`Fault::NonFinite`].
+    #[inline(never)]
     fn prove(
         &self,
         hit: &mut Penetration,
-        known: &mut Known,
+        set: &mut VertexSet<PROOF_VERTICES>,
         settings: &Settings,
-        planar: bool,
+        is_planar: bool,
     ) -> Result<(), Stop> {
-        let mut scale = Scale::default();
+        let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
         let met = SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
             v2: hit.point2,
         };
-        scale.note(&met);
+        query.scale.note(&met);
         // A touch within rounding is a miss, in every query.
-        if !(hit.depth * hit.dir.dot(&hit.normal) > scale.contact_eps()) {
+        if !(hit.depth * hit.dir.dot(&hit.normal) > query.scale.contact_eps()) {
             return Err(Stop::Apart(hit.normal));
         }
-        // A depth of a few times a touch's tells nothing of where.
-        let tolerance = larger(settings.tolerance, 4.0 * scale.contact_eps());
-        if known.points().is_empty() {
-            known.push(&met);
+        if set.len() == 0 {
+            set.push(&hit.normal, &met);
         }
-        self.touching(self.centre.as_ref(), hit, known, tolerance, planar)
-    }
-
-    /// Shows that the origin lies among support points, known ones and others, and the `centre`,
-    /// where it is trusted. Where a touch, within the tolerance, has witness points that do not
-    /// meet, the points that meet at the origin take their place.
-    #[inline(never)]
-    fn touching(
-        &self,
-        centre: Option<&SupportPoint>,
-        hit: &mut Penetration,
-        known: &Known,
-        tolerance: f64,
-        planar: bool,
-    ) -> Result<(), Stop> {
-        let mut query = SupportQuery::new(&self.md, centre);
-        let mut set = VertexSet::<16>::EMPTY;
+        // A depth of a few contact epsilons has no place.
+        let tolerance = larger(settings.tolerance, 4.0 * query.scale.contact_eps());
+        let centre = self.centre.as_ref();
         let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
-        for point in known.points() {
-            query.scale.note(point);
-            // All were asked for near there.
-            set.push(&hit.normal, point);
-        }
-        let found = contains_origin(&mut query, &mut set, centre, &dir, planar)?;
+        let found = contains_origin(&mut query, set, centre, &dir, is_planar)?;
         let apart = hit.point1 - hit.point2 - hit.dir * hit.depth;
         if hit.depth <= tolerance && apart.norm() > tolerance {
             let (p1, p2) = found.witnesses();
@@ -154,30 +143,22 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(())
     }
 
-    /// The state tells where the centres are.
-    fn face(&self, state: &mut State) {
-        if let Some(centre) = &self.centre {
-            state.face(&centre.v);
-        }
-    }
-
     /// Do the objects overlap? With memory, or cold. [`Stop::Apart`] where they do not.
     #[inline]
-    pub fn intersect(&self, state: Option<&mut State>) -> Result<(), Stop> {
+    pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
         let Some(state) = state else {
             let first = self.cold_start();
             return intersect(&self.md, self.centre.as_ref(), &first).map(|_| ());
         };
         self.asked(state, |state| {
-            let first = match state.was_apart() {
+            let first = match state.kind == WarmKind::Apart {
                 true => self.cold_start(),
-                false => state.leaving().unwrap_or_else(|| self.cold_start()),
+                false => state.direction().unwrap_or_else(|| self.cold_start()),
             };
             let dir = intersect(&self.md, self.centre.as_ref(), &first)?;
             // What a depth query left is worth more than this.
-            if !state.overlapped() {
-                *state = State::towards(dir);
-                self.face(state);
+            if !state.is_overlap() {
+                *state = WarmStart::towards(dir);
             }
             Ok(())
         })
@@ -186,20 +167,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// How far apart, or how deep; `minimum` is the global minimum of the depth of objects that overlap.
     pub fn signed_distance(
         &self,
-        state: &mut State,
+        state: &mut WarmStart,
         wanted: &Wanted,
-        minimum: impl Fn(&Self, &mut State, &Settings, &mut Penetration) -> Result<(), Stop>,
+        minimum: impl Fn(&Self, &mut WarmStart, &Settings, &mut Penetration) -> Result<(), Stop>,
     ) -> Result<Distance, Fault> {
         let start = Start {
             dir: state
-                .separating()
+                .separating_axis()
                 .map_or_else(|| self.cold_start(), |axis| axis.dir),
-            radius: state.radius(),
-            is_overlapping: state.overlapped(),
+            radius: state.radius,
+            is_overlapping: state.is_overlap(),
         };
         let depth = |from: Option<&Vec3>, hit: &mut Penetration| {
             if let Some(dir) = from {
-                *state = State::guess(dir);
+                *state = WarmStart::guess(dir);
             }
             minimum(self, state, &wanted.settings, hit)
         };
@@ -209,7 +190,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 dir: left.dir,
                 aim: 0.0,
             };
-            *state = State::apart(&axis, left.radius);
+            *state = WarmStart::apart(&axis, left.radius);
         }
         Ok(distance)
     }
@@ -218,7 +199,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// global minimum, from the direction of the least support value.
     pub fn local(
         &self,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         wants_pos: bool,
         hit: &mut Penetration,
@@ -245,12 +226,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(never)]
     fn walk(
         &self,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<Status, Stop> {
-        let warm = state.warm_start();
+        let aim = self.still_apart(state)?;
+        let warm = *state;
         let start = match warm.kind {
             WarmKind::Cold => self.cold_start(),
             _ => warm.dir,
@@ -273,13 +255,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             },
             Err(Stop::Apart(axis)) => WarmStart {
                 dir: *axis,
-                depth: 0.0,
+                depth: aim,
                 kind: WarmKind::Apart,
                 ..warm
             },
             Err(Stop::Fault(fault)) => return Err((*fault).into()),
         };
-        state.store(&left);
+        *state = left;
         let (walked, status) = found?;
         *hit = walked;
         if status == Status::Converged && wants_pos {
@@ -295,7 +277,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// the last direction, else from the centres.
     pub fn incremental(
         &self,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         wants_pos: bool,
         hit: &mut Penetration,
@@ -307,7 +289,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     pub fn planar(
         &self,
         m: Vec3,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
@@ -318,22 +300,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     fn as_published(
         &self,
         flat: Option<Vec3>,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
         self.asked(state, |state| {
-            let mut start = state.leaving().unwrap_or_else(|| self.cold_start());
-            if let Some(m) = flat {
-                let in_plane = |d: Vec3| unit(&(d - m * m.dot(&d)));
-                start = in_plane(start).unwrap_or_else(|| perpendicular(&m));
-            }
-            let until = Until::Shortcut;
-            *hit = gao::penetration(&self.md, start, flat, until, settings, |_| ())?;
-            self.prove(hit, &mut Known::default(), settings, flat.is_some())?;
-            *state = State::towards(hit.normal);
-            self.face(state);
+            let start = state.direction().unwrap_or_else(|| self.cold_start());
+            *hit = match flat {
+                Some(m) => mpr::directional::planar(&self.md, &m, &start, settings)?,
+                None => gao::penetration(&self.md, start, None, Until::Shortcut, settings, |_| ())?,
+            };
+            let mut set = VertexSet::EMPTY;
+            self.prove(hit, &mut set, settings, flat.is_some())?;
+            *state = WarmStart::towards(hit.normal);
             hit.pos = if wants_pos && !hit.limit {
                 self.position(hit, settings.tolerance, &Seen::Nothing)?
             } else {
@@ -348,7 +328,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// the depth. Trusts the centre.
     pub fn mpr(
         &self,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         wants_pos: bool,
         hit: &mut Penetration,
@@ -368,7 +348,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// else from the centres, else from the first direction.
     pub fn minimum(
         &self,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         arena: &mut dyn Arena,
         wants_pos: bool,
@@ -390,23 +370,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     fn global(
         &self,
         apex: Option<&SupportPoint>,
-        state: &mut State,
+        state: &mut WarmStart,
         limits: &EpaLimits,
         arena: Option<&mut dyn Arena>,
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
         let aim = self.still_apart(state)?;
-        let was_apart = state.was_apart();
+        let was_apart = state.kind == WarmKind::Apart;
         let request = EpaRequest {
             center: apex,
             ray: self.cold_start(),
             // Its axis has been queried.
-            warm: if was_apart {
-                WarmStart::COLD
-            } else {
-                state.warm_start()
-            },
+            warm: if was_apart { WarmStart::COLD } else { *state },
             limits: *limits,
             wants_pos,
         };
@@ -421,13 +397,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let arena = arena.map(|arena| arena as &mut dyn Arena);
         let found = epa::penetration::penetration(query, &request, arena, &mut answer);
         if self.lasting && !matches!(found, Err(Stop::Fault(_))) {
-            state.store(&WarmStart {
+            *state = WarmStart {
                 depth: if found.is_ok() { warm.depth } else { aim },
                 ..warm
-            });
-            if found.is_ok() {
-                self.face(state);
-            }
+            };
         }
         let status = found?;
         hit.limit = status != Status::Converged;
@@ -460,28 +433,23 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     pub fn along(
         &self,
         dir: Vec3,
-        state: &mut State,
+        state: &mut WarmStart,
         settings: &Settings,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
         self.asked(state, |state| {
-            let last = state.portal();
             let capped = Settings {
                 max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),
                 ..*settings
             };
-            let (found, portal) = mpr::directional::along(&self.md, &dir, last, &capped)?;
+            let (found, portal) = mpr::directional::along(&self.md, &dir, &capped)?;
             *hit = found;
-            let mut known = Known::default();
+            let mut set = VertexSet::EMPTY;
             for plane in portal.iter().flat_map(|p| &p.planes) {
-                known.add(&plane.point);
+                set.push(&plane.normal, &plane.point);
             }
-            self.prove(hit, &mut known, settings, false)?;
-            *state = State::towards(hit.normal);
-            self.face(state);
-            if let Some(portal) = portal {
-                state.keep_portal(portal.planes.map(|plane| plane.normal));
-            }
+            self.prove(hit, &mut set, settings, false)?;
+            *state = WarmStart::towards(hit.normal);
             hit.pos = hit.middle();
             Ok(())
         })
@@ -492,8 +460,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, Rotation, capsule, corners, hull, placed};
-    use nalgebra::Unit;
+    use crate::shapes::{Random, capsule, corners, hull, placed};
 
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-4 },
@@ -501,7 +468,11 @@ mod tests {
     };
 
     /// What a query from this state costs and answers.
-    fn ask<A: SupportMap, B: SupportMap>(a: A, b: B, mut state: State) -> (u64, f64, State) {
+    fn ask<A: SupportMap, B: SupportMap>(
+        a: A,
+        b: B,
+        mut state: WarmStart,
+    ) -> (u64, f64, WarmStart) {
         let pair = Pair {
             md: MinkowskiDifference::new(a, b),
             centre: None,
@@ -525,7 +496,7 @@ mod tests {
             );
             let (p, q) = (r.vector(0.5), r.vector(0.5));
             let (cube, rod) = (|| hull(&points), || capsule(p, q, 0.3));
-            let start = State::guess(&r.direction());
+            let start = WarmStart::guess(&r.direction());
             let (_, _, after) = ask(cube(), rod(), start);
             let (supports, depth, _) = ask(cube(), rod(), after);
             let mut flipped = after;
@@ -554,7 +525,7 @@ mod tests {
                 first_dir: None,
                 lasting: true,
             };
-            let mut state = State::guess(&r.direction());
+            let mut state = WarmStart::guess(&r.direction());
             let mut hit = Penetration::default();
             if pair.local(&mut state, &SETTINGS, true, &mut hit).is_ok() {
                 assert_eq!(hit.depth_lower, 0.0);

@@ -27,7 +27,7 @@ const RTLD_DEEPBIND: c_int = 8;
 /// A state that is cold.
 pub const COLD: ccd_warm_t = ccd_warm_t {
     reals: [0.0; CCD_WARM_REALS],
-    words: [0; 4],
+    words: [0; 2],
 };
 
 /// An answer of the extension's, to be filled.

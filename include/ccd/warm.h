@@ -75,7 +75,7 @@ extern "C" {
 /**
  * How many numbers a ccd_warm_t holds.
  */
-#define CCD_WARM_REALS 19
+#define CCD_WARM_REALS 6
 
 /**
  * State of one pair between queries. Plain data, no pointers, nothing to free: all
@@ -97,7 +97,7 @@ typedef struct ccd_warm_t {
   /**
    * Private.
    */
-  unsigned int words[4];
+  unsigned int words[2];
 } ccd_warm_t;
 
 /**

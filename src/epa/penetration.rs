@@ -357,9 +357,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let query = &mut *self.query;
         let tolerance = query.scale.tolerance(self.limits.gap.tolerance);
         let gap = self.limits.gap.allowed(query.upper.depth, tolerance);
-        let first = set.farthest_vertex(ray);
-        let length = (first.w - self.interior.v).dot(ray);
-        let Some(mut portal) = discover(query, set, ray, &first, length, gap)? else {
+        let length = query.upper.depth - self.interior.v.dot(ray);
+        let Some(mut portal) = discover(query, set, ray, length, gap)? else {
             return Ok(None);
         };
         refine(

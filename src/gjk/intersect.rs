@@ -180,8 +180,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     let ray = -c / distance;
     let length = distance + query.upper.depth;
     let gap = query.scale.contact_eps();
-    let first = set.farthest_vertex(&ray);
-    let Some(mut portal) = discover(query, set, &ray, &first, length, gap)? else {
+    let Some(mut portal) = discover(query, set, &ray, length, gap)? else {
         return Ok(None);
     };
     // Each step replaces a corner by a point beyond the origin, or finds nothing above the portal.

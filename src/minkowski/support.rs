@@ -6,7 +6,6 @@
 
 use core::cell::Cell;
 
-use crate::known::support_set::Extreme;
 use crate::math::{Vec3, larger, largest};
 
 /// A convex object, known only by its support mapping.
@@ -49,62 +48,6 @@ impl SupportPoint {
             v: self.v.lerp(&other.v, share),
             v1: self.v1.lerp(&other.v1, share),
             v2: self.v2.lerp(&other.v2, share),
-        }
-    }
-}
-
-/// Points of D that a local search has come to know, each once: what the proof of the overlap
-/// starts from.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Known {
-    points: [SupportPoint; Known::ROOM],
-    len: usize,
-}
-
-impl Known {
-    /// How many points there is room for.
-    pub const ROOM: usize = 8;
-
-    /// The points.
-    pub fn points(&self) -> &[SupportPoint] {
-        self.points.get(..self.len).unwrap_or(&[])
-    }
-
-    /// The point farthest along `n`, if it lies beyond the origin.
-    pub fn farthest(&self, n: &Vec3) -> Option<SupportPoint> {
-        let mut best = (None, 0.0);
-        for p in self.points() {
-            let reach = n.dot(&p.v);
-            if reach > best.1 {
-                best = (Some(*p), reach);
-            }
-        }
-        best.0
-    }
-
-    /// The point of D farthest along `n` of all that the points of obj1 and those of obj2 make,
-    /// those of `c` too, if it reaches beyond `reach`.
-    #[inline]
-    pub fn made_beyond(&self, c: &SupportPoint, n: &Vec3, reach: f64) -> Option<Vec3> {
-        let pairs = self.points().iter().chain([c]).map(|p| (&p.v1, &p.v2));
-        let farthest = Extreme::of(n, pairs);
-        let [p, q] = farthest.names.map(|i| self.points().get(i).unwrap_or(c));
-        (farthest.reach > reach).then(|| p.v1 - q.v2)
-    }
-
-    /// Adds a point that is not there, if there is room.
-    #[inline(always)]
-    pub fn push(&mut self, p: &SupportPoint) {
-        if let Some(place) = self.points.get_mut(self.len) {
-            *place = *p;
-            self.len += 1;
-        }
-    }
-
-    /// Adds a point, unless it is there or there is no room.
-    pub fn add(&mut self, p: &SupportPoint) {
-        if !self.points().iter().any(|k| k.v == p.v) {
-            self.push(p);
         }
     }
 }

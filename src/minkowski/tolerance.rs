@@ -45,12 +45,6 @@ impl Scale {
         self.size2.sqrt()
     }
 
-    /// Returns the square of [`Scale::reach`], m².
-    #[inline(always)]
-    pub fn reach2(&self) -> f64 {
-        self.reach2
-    }
-
     /// Returns the largest distance of a vertex from the world's origin, metres.
     #[inline(always)]
     pub fn reach(&self) -> f64 {

@@ -3,8 +3,7 @@
 
 //! The penetration depth along a direction, and among the directions of a plane.
 //!
-//! [`along`]: the origin ray of W. Gao, Algorithm 1, followed to where it leaves D, from the portal of the last
-//! query where there is one. The support plane that the ray meets first is the upper bound; where it crosses the
+//! [`along`]: the origin ray of W. Gao, Algorithm 1, followed to where it leaves D. The support plane that the ray meets first is the upper bound; where it crosses the
 //! portal, which is inscribed in D, less the rounding, is the lower bound once the origin is known to be in D.
 //! [`planar`]: Algorithms 4 and 5 with n = 2.
 //!
@@ -14,25 +13,33 @@
 //! whatever ended the search. The overlap is not proven here.
 
 use crate::contact::{Penetration, Settings};
-use crate::math::Vec3;
+use crate::math::{Vec3, perpendicular, unit};
 use crate::minkowski::query::Stop;
 use crate::minkowski::support::{MinkowskiDifference, SupportMap};
 use crate::mpr::gao::{self, Portal, RayEnd, RaySearch, SupportPlane, Until, answer, rounding};
 
-/// Follows the ray along unit `dir` to where it leaves D, as long as the origin is in D; `last` are the
-/// normals of the portal to begin with. The answer with its lower bound, and the last portal, where
-/// there was one.
+/// Follows the ray along unit `dir` to where it leaves D, as long as the origin is in D. Returns the
+/// answer with its lower bound, and the last portal, where there was one.
 ///
 /// # Errors
 /// [`Stop::Apart`]; a callback's answer that is not finite.
 pub fn along<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     dir: &Vec3,
-    last: Option<[Vec3; 3]>,
     settings: &Settings,
 ) -> Result<(Penetration, Option<Portal>), Stop> {
     let mut budget = settings.max_iterations;
-    let (end, first) = follow(md, dir, last, settings.tolerance, &mut budget)?;
+    let first = SupportPlane::of(md, *dir)?;
+    let mut search = RaySearch {
+        md,
+        tolerance: settings.tolerance,
+        until: Until::Ray,
+        flat: None,
+        budget,
+        best: first,
+    };
+    let end = search.follow(&first)?;
+    budget = search.budget;
     let (portal, plane) = match end {
         RayEnd::Converged(portal, plane) => (Some(portal), plane),
         RayEnd::Limit(portal) => (portal, first),
@@ -64,17 +71,19 @@ pub fn along<A: SupportMap, B: SupportMap>(
 /// The finest tolerance in force, in units of the rounding of a support point.
 const FLOOR_ROUNDINGS: f64 = 8.0;
 
-/// Finds a local minimum of the depth among the directions perpendicular to unit `m`, from unit `start`, one of them.
+/// Finds a local minimum of the depth among the directions perpendicular to unit `m`, from the part of unit
+/// `start` across it.
 ///
 /// # Errors
 /// As [`gao::penetration`].
 pub fn planar<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     m: &Vec3,
-    start: Vec3,
+    start: &Vec3,
     settings: &Settings,
 ) -> Result<Penetration, Stop> {
-    gao::penetration(md, start, Some(*m), Until::Shortcut, settings, |_| ())
+    let across = unit(&(start - m * m.dot(start))).unwrap_or_else(|| perpendicular(m));
+    gao::penetration(md, across, Some(*m), Until::Shortcut, settings, |_| ())
 }
 
 /// Returns the support plane that the ray meets first, of `plane` and those of the portal: all are sound.
@@ -97,43 +106,6 @@ fn inscribed(dir: &Vec3, portal: &Portal) -> f64 {
         .map_or(0.0, |n| portal.reach() - rounding(size) / n.dot(dir))
 }
 
-/// Returns how the search along the ray ended, and the first support plane.
-fn follow<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    dir: &Vec3,
-    last: Option<[Vec3; 3]>,
-    tolerance: f64,
-    budget: &mut u64,
-) -> Result<(RayEnd, SupportPlane), Stop> {
-    let first = SupportPlane::of(md, last.map_or(*dir, |[a, _, _]| a))?;
-    let mut search = RaySearch {
-        md,
-        tolerance,
-        until: Until::Ray,
-        flat: None,
-        budget: *budget,
-        best: first,
-    };
-    // The last portal, found again by its three directions.
-    if let Some([_, b, c]) = last {
-        if first.depth < 0.0 {
-            return Err(Stop::Apart(first.normal));
-        }
-        let planes = [first, search.plane(b)?, search.plane(c)?];
-        if let Some(portal) = Portal::of(*dir, planes) {
-            let exit = search.refine(portal)?;
-            *budget = search.budget;
-            if matches!(exit, RayEnd::Converged(..)) {
-                return Ok((exit, first));
-            }
-        }
-        return follow(md, dir, None, tolerance, budget);
-    }
-    let exit = search.follow(&first)?;
-    *budget = search.budget;
-    Ok((exit, first))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,7 +113,7 @@ mod tests {
     use crate::shapes::{Random, Rotation, ellipsoid};
 
     /// On an ellipsoid around the origin the ray along d leaves at 1 / |d / radii|; the
-    /// bounds hold it, cold and from the portal that the last query left.
+    /// bounds hold it, from every direction.
     #[test]
     fn the_bounds_hold_where_the_ray_leaves() {
         let mut r = Random::new(1);
@@ -155,14 +127,11 @@ mod tests {
             let exact = 1.0 / d.component_div(&radii).norm();
             let support = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
             let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
-            let mut last = None;
             for _ in 0..2 {
-                let (hit, portal) =
-                    along(&md, &d, last, &settings).expect("the origin is inside");
+                let (hit, _) = along(&md, &d, &settings).expect("the origin is inside");
                 let slack = 100.0 * EPSILON;
                 assert!(hit.depth >= exact - slack && hit.depth_lower <= exact + slack);
                 assert!(!hit.limit && hit.depth - hit.depth_lower <= 2e-4);
-                last = portal.map(|p| p.planes.map(|plane| plane.normal));
             }
         }
     }
@@ -192,7 +161,7 @@ mod tests {
             let other = move |n: &Vec3| turned(n) + at;
             let md = MinkowskiDifference::new(turned, other);
             let d = turn * (Vec3::x() + r.vector(1e-3)).normalize();
-            let Ok((hit, _)) = along(&md, &d, None, &settings) else {
+            let Ok((hit, _)) = along(&md, &d, &settings) else {
                 panic!("the centres coincide");
             };
             closed += u32::from(!hit.limit);

@@ -207,15 +207,6 @@ impl Portal {
         ]
     }
 
-    /// The portal of three support planes, if the ray crosses their triangle from
-    /// the origin's side, in either order of the vertices.
-    pub fn of(ray: Vec3, planes: [SupportPlane; 3]) -> Option<Self> {
-        let [a, b, c] = planes;
-        let orders = [planes, [a, c, b]].map(|planes| Self { ray, planes });
-        let crossed = |portal: &Self| portal.weights().iter().all(|t| *t > 0.0);
-        orders.into_iter().find(crossed)
-    }
-
     /// The portal in the plane with normal m, from one side of the ray to the other.
     fn segment(ray: Vec3, left: SupportPlane, right: SupportPlane, m: &Vec3) -> Self {
         let mut beside = right;
@@ -488,7 +479,6 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         Ok(RayEnd::Limit(Some(portal)))
     }
 }
-
 
 #[cfg(test)]
 mod tests {

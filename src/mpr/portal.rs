@@ -68,9 +68,9 @@ fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> b
     upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
 
-/// Finds a portal of the ray along unit `ray` through the origin. `first`: the known difference farthest
-/// along it. `length`: of the ray in D, about, metres. `gap`: what the bounds may be apart, metres. The corners wind around the ray so that their
-/// normal looks along it. The set must have room for [`MAX_DISCOVERY_SAMPLES`] more entries.
+/// Finds a portal of the ray along unit `ray` through the origin. `length`: of the ray in D, about,
+/// metres. `gap`: what the bounds may be apart, metres. The corners wind around the ray so that their
+/// normal looks along it. A full set ends the discovery: `None`.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -79,11 +79,10 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     ray: &Vec3,
-    first: &Vertex,
     length: f64,
     gap: f64,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
-    let mut a = *first;
+    let mut a = set.farthest_vertex(ray);
     let mut b: Option<Vertex> = None;
     // Across the ray, from A towards it.
     let mut across = ray * a.w.dot(ray) - a.w;
@@ -163,9 +162,6 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     }
     Ok(None)
 }
-
-/// The largest number of entries that [`discover`] adds.
-pub const MAX_DISCOVERY_SAMPLES: usize = (3 * MAX_RINGS + MAX_DISCOVERY_STEPS) as usize;
 
 /// Queries three directions around a ray that passes through its own support vertex, as wide as the face
 /// of a sphere of radius `length` may be for a gap; `gap_over_length` is their quotient. The inner error
@@ -351,10 +347,9 @@ mod tests {
         let mut set = VertexSet::<64>::EMPTY;
         let ray = -c.v.normalize();
         query.evaluate(&mut set, &ray).ok()?;
-        let first = set.farthest_vertex(&ray);
         let length = query.upper.depth + c.v.norm();
         let gap = LIMIT.allowed(query.upper.depth, query.scale.tolerance(LIMIT.tolerance));
-        let found = discover(&mut query, &mut set, &ray, &first, length, gap).ok()??;
+        let found = discover(&mut query, &mut set, &ray, length, gap).ok()??;
         let mut portal = found;
         let mut fit = SphereFit::default();
         refine(&mut query, &mut set, &mut fit, &ray, &mut portal, &LIMIT).ok()?;

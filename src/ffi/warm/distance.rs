@@ -14,7 +14,7 @@ use super::state::{ccd_warm_t, with_state};
 use crate::contact::Settings;
 use crate::gjk::signed_distance::{Distance, Wanted};
 use crate::math::{Real, lower_to_real};
-use crate::{query::Pair, state::State};
+use crate::query::{Pair, warm_start::WarmStart};
 
 /// What ccdSignedDistance answers. What was not wanted is zero.
 #[repr(C)]
@@ -99,9 +99,10 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
             settings,
         };
         let points = want & CCD_WANT_POINTS != 0;
-        let minimum = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, hit: &mut _| {
-            arena::with(|arena| pair.minimum(state, settings, arena, points, hit))
-        };
+        let minimum =
+            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, hit: &mut _| {
+                arena::with(|arena| pair.minimum(state, settings, arena, points, hit))
+            };
         with_state(warm, |state| {
             let distance = pair.signed_distance(state, &wanted, minimum)?;
             *out = ccd_distance_t::new(&distance, want, pair.md.supports());

@@ -8,8 +8,8 @@ use core::ffi::{c_int, c_void};
 use super::super::callbacks::{Call, Object, Query};
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, with_state};
-use crate::known::support_set::if_overlapping;
-use crate::{query::Pair, state::State};
+use crate::minkowski::query::if_overlapping;
+use crate::query::{Pair, warm_start::WarmStart};
 
 /// Yes or no of a pair, with the caller's state.
 ///
@@ -25,7 +25,7 @@ pub(in crate::ffi) unsafe fn intersect(
     if warm.is_null() {
         return c_int::from(pair.intersect(None).is_ok());
     }
-    let ask = |state: &mut State| {
+    let ask = |state: &mut WarmStart| {
         let overlap = if_overlapping(pair.intersect(Some(state)))?;
         Ok(c_int::from(overlap.is_some()))
     };

@@ -10,9 +10,9 @@ use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::state::{ccd_warm_t, with_state};
 use crate::contact::{Penetration, Settings};
-use crate::known::support_set::{Stop, if_overlapping};
 use crate::math::{Real, Vec3, lower_to_real};
-use crate::{query::Pair, state::State};
+use crate::minkowski::query::{Stop, if_overlapping};
+use crate::query::{Pair, warm_start::WarmStart};
 
 /// Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
 /// where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). For it the objects
@@ -91,7 +91,7 @@ pub(in crate::ffi) unsafe fn run(
     warm: *mut ccd_warm_t,
     solve: impl FnOnce(
         &Pair<Object, Object>,
-        &mut State,
+        &mut WarmStart,
         &Settings,
         &mut Penetration,
     ) -> Result<(), Stop>,
@@ -126,7 +126,7 @@ pub(in crate::ffi) unsafe fn answer(
     out: *mut ccd_penetration_t,
     solve: impl FnOnce(
         &Pair<Object, Object>,
-        &mut State,
+        &mut WarmStart,
         &Settings,
         bool,
         &mut Penetration,

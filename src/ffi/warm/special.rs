@@ -13,7 +13,7 @@ use super::penetration::{answer, ccd_penetration_t};
 use super::state::ccd_warm_t;
 use super::unit_of;
 use crate::contact::Settings;
-use crate::{query::Pair, state::State};
+use crate::query::{Pair, warm_start::WarmStart};
 
 /// A local minimum of the penetration depth, by the fastest search there is: cutting planes
 /// with curvature. For who has a direction that is roughly right, or follows one valley; from far
@@ -55,9 +55,10 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     out: *mut ccd_penetration_t,
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
-    let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, wants, hit: &mut _| {
-        arena::with(|arena| pair.minimum(state, settings, arena, wants, hit))
-    };
+    let solve =
+        |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, wants, hit: &mut _| {
+            arena::with(|arena| pair.minimum(state, settings, arena, wants, hit))
+        };
     // SAFETY: passed on.
     unsafe { answer(query, Call::Proven, warm, want, out, solve) }
 }
@@ -85,9 +86,10 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
             return CCD_BAD_INPUT;
         };
         let query = Query { obj1, obj2, ccd };
-        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _, hit: &mut _| {
-            pair.along(dir, state, settings, hit)
-        };
+        let solve =
+            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
+                pair.along(dir, state, settings, hit)
+            };
         answer(query, Call::Refined, warm, want, out, solve)
     }
 }
@@ -116,9 +118,10 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
             return CCD_BAD_INPUT;
         };
         let query = Query { obj1, obj2, ccd };
-        let solve = |pair: &Pair<_, _>, state: &mut State, settings: &Settings, _, hit: &mut _| {
-            pair.planar(m, state, settings, hit)
-        };
+        let solve =
+            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
+                pair.planar(m, state, settings, hit)
+            };
         answer(query, Call::Refined, warm, want, out, solve)
     }
 }

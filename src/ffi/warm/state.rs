@@ -8,10 +8,10 @@ use core::ffi::{c_int, c_uint};
 use super::super::types::ccd_vec3_t;
 use super::codes::{CCD_BAD_INPUT, CCD_NO_MEMORY};
 use crate::minkowski::support::Fault;
-use crate::state::State;
+use crate::query::warm_start::WarmStart;
 
 /// How many numbers a ccd_warm_t holds.
-pub const CCD_WARM_REALS: usize = 19;
+pub const CCD_WARM_REALS: usize = 6;
 
 /// State of one pair between queries. Plain data, no pointers, nothing to free: all
 /// bytes zero is cold, and it may be copied and stored freely.
@@ -29,25 +29,23 @@ pub struct ccd_warm_t {
     /// Private.
     pub reals: [f64; CCD_WARM_REALS],
     /// Private.
-    pub words: [c_uint; 4],
+    pub words: [c_uint; 2],
 }
 
 const _: () = {
-    assert!(size_of::<ccd_warm_t>() == size_of::<State>());
-    assert!(align_of::<ccd_warm_t>() == align_of::<State>());
-    assert!(size_of::<ccd_warm_t>() <= 256);
+    assert!(CCD_WARM_REALS == WarmStart::REALS);
+    assert!(size_of::<ccd_warm_t>() == 56);
 };
 
 /// The caller's state; cold where there is none.
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn read(warm: *const ccd_warm_t) -> State {
-    if warm.is_null() {
-        State::default()
-    } else {
-        // SAFETY: [inputs]; every bit pattern is a State of the same layout.
-        unsafe { *warm.cast::<State>() }
+unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
+    // SAFETY: [inputs].
+    match unsafe { warm.as_ref() } {
+        Some(warm) => WarmStart::unpack(warm.reals, warm.words[0]),
+        None => WarmStart::COLD,
     }
 }
 
@@ -60,7 +58,7 @@ unsafe fn read(warm: *const ccd_warm_t) -> State {
 #[inline(always)]
 pub(in crate::ffi) unsafe fn with_state(
     warm: *mut ccd_warm_t,
-    ask: impl FnOnce(&mut State) -> Result<c_int, Fault>,
+    ask: impl FnOnce(&mut WarmStart) -> Result<c_int, Fault>,
 ) -> c_int {
     // SAFETY: passed on.
     unsafe {
@@ -78,10 +76,12 @@ pub(in crate::ffi) unsafe fn with_state(
 
 /// # Safety
 /// \[outputs\] of the module contract.
-unsafe fn store(warm: *mut ccd_warm_t, state: &State) {
+unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
     if !warm.is_null() {
+        let (reals, kind) = state.pack();
+        let words = [kind, 0];
         // SAFETY: [outputs].
-        unsafe { *warm.cast::<State>() = *state };
+        unsafe { *warm = ccd_warm_t { reals, words } };
     }
 }
 
@@ -95,8 +95,8 @@ pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const 
     // SAFETY: [inputs], [outputs].
     unsafe {
         let guess = match dir.as_ref() {
-            Some(dir) => State::guess(&(*dir).into()),
-            None => State::default(),
+            Some(dir) => WarmStart::guess(&(*dir).into()),
+            None => WarmStart::COLD,
         };
         store(warm, &guess);
     }
