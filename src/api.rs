@@ -16,12 +16,12 @@ use crate::contacts::memory::Memory;
 use crate::ffi::arena::Heap;
 use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::Wanted;
-use crate::known::check;
-pub use crate::known::check::Check;
-use crate::known::support_set::{Stop, if_overlapping};
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
+use crate::minkowski::query::{Stop, if_overlapping};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::validate;
+pub use crate::minkowski::validate::Check;
 use crate::query::Pair;
 use crate::state::State;
 
@@ -649,7 +649,7 @@ query!(
 /// assert!(ccd::check(&|d: [Real; 3]| d.map(|x| x * -0.5)).opposite);
 /// ```
 pub fn check<S: Shape + ?Sized>(shape: &S) -> Check {
-    check::check(&Asked(shape), shape.center().map(from_real).as_ref())
+    validate::check(&Asked(shape), shape.center().map(from_real).as_ref())
 }
 
 /// Which library this is, and in which precision: "warmccd 0.2.0 double".

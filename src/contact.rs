@@ -3,15 +3,7 @@
 
 //! What a query answers.
 
-use crate::math::{EPSILON, Vec3};
-
-/// What witness points may be off by where the tolerance is finer, as a share of the objects' reach:
-/// 1e-12, or what single precision tells.
-pub const INSIDE: f64 = if EPSILON > 1e-10 {
-    32.0 * EPSILON
-} else {
-    1e-12
-};
+use crate::math::Vec3;
 
 /// How much work a query may do, and how exact its depth must be.
 #[derive(Clone, Copy, Debug)]

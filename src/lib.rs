@@ -64,8 +64,6 @@ mod epa;
 mod ffi;
 mod gjk;
 #[allow(dead_code)]
-mod known;
-mod local;
 mod math;
 #[allow(dead_code)]
 mod minkowski;
@@ -91,8 +89,8 @@ pub mod internals {
     pub use crate::contact::Settings;
     pub use crate::math::Vec3;
     pub use crate::minkowski::support::MinkowskiDifference;
-    pub use crate::mpr::gao::penetration as incremental;
     pub use crate::mpr::gao::Until;
+    pub use crate::mpr::gao::penetration as incremental;
 
     /// The exported functions, called as C calls them.
     pub mod ffi {

@@ -161,16 +161,3 @@ pub const ITERATION_CAP: u64 = 380;
 pub fn tolerance(asked: f64, size: f64, reach: f64) -> f64 {
     asked.min(2.5e-4 * size).max(8.0 * EPSILON * reach)
 }
-
-/// Two unit vectors that make an orthonormal basis with the unit vector b, without a branch
-/// (Duff et al., JCGT 6(1), 2017).
-#[inline(always)]
-pub fn basis(b: &Vec3) -> (Vec3, Vec3) {
-    let sign = 1.0_f64.copysign(b.z);
-    let c = -1.0 / (sign + b.z);
-    let d = b.x * b.y * c;
-    (
-        Vec3::new(1.0 + sign * b.x * b.x * c, sign * d, -sign * b.x),
-        Vec3::new(d, sign + b.y * b.y * c, -b.y),
-    )
-}

@@ -16,10 +16,12 @@
 //! | [`vertex_set`] | the known vertices and the support function of their differences |
 //! | [`query`] | evaluation, upper bound, separating-axis test, inconsistent support functions |
 //! | [`tolerance`] | tolerance in force, contact epsilon, rounding |
+//! | [`validate`] | what is wrong with a support function |
 //! | [`round_fit`] | sphere fits, which choose where to query |
 
 pub mod query;
 pub mod round_fit;
 pub mod support;
 pub mod tolerance;
+pub mod validate;
 pub mod vertex_set;

@@ -37,7 +37,10 @@ use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, Known, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::{GAP_REL, GapLimit, Scale};
 use crate::minkowski::vertex_set::VertexSet;
-use crate::mpr::{self, gao::{self, Until}};
+use crate::mpr::{
+    self,
+    gao::{self, Until},
+};
 use crate::state::State;
 use warm_start::{WarmKind, WarmStart};
 
@@ -238,6 +241,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         self.global(self.centre.as_ref(), state, &limits, None, wants_pos, hit)?;
         hit.iterations += walked;
+        // A trusted centre was part of its proof.
+        hit.depth_lower = 0.0;
         Ok(())
     }
 
@@ -250,6 +255,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<Status, Stop> {
+        let aim = self.still_apart(state)?;
         let warm = state.warm_start();
         let start = match warm.kind {
             WarmKind::Cold => self.cold_start(),
@@ -273,7 +279,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             },
             Err(Stop::Apart(axis)) => WarmStart {
                 dir: *axis,
-                depth: 0.0,
+                depth: aim,
                 kind: WarmKind::Apart,
                 ..warm
             },
@@ -281,6 +287,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         state.store(&left);
         let (walked, status) = found?;
+        self.face(state);
         *hit = walked;
         if status == Status::Converged && wants_pos {
             let mut seen = Seen::Nothing;
@@ -509,7 +516,7 @@ mod tests {
             lasting: true,
         };
         let mut hit = Penetration::default();
-        pair.local(&mut state, &SETTINGS, true, &mut hit).unwrap();
+        pair.local(&mut state, &SETTINGS, false, &mut hit).unwrap();
         assert!(!hit.limit);
         (pair.md.supports(), hit.depth, state)
     }

@@ -7,20 +7,18 @@
 //!
 //! What it holds depends on the query that left it:
 //!
-//! | kind | left by | `dir` | `slopes` | `curvature`, `count` and `curved` |
+//! | kind | left by | `dir` | `slopes` | `numbers` and `count` |
 //! |---|---|---|---|---|
 //! | cold: 0, or no other | | | | |
 //! | `APART` | every query of a pair that is apart | the separating direction | | the radii of two spheres |
-//! | `OVERLAP` | the local search: its [`Memory`] | the minimum's | slopes of the active cuts | what is round of the objects |
-//! | | a guess, yes or no, the paper's method, the plane | the way obj2 leaves | | |
+//! | `OVERLAP` | a guess, yes or no, the paper's method, the plane | the way obj2 leaves | | |
 //! | `ALONG` | a query along a direction | the support plane's normal | the last portal's directions | |
-//! | `PROVEN` | the global search | the minimum's | | its [`WarmStart`] |
+//! | `PROVEN` | the global and the local query | the minimum's | | its [`WarmStart`] |
 //!
 //! A direction that is zero stands for none. What a query for the depth of an overlap leaves
 //! behind also tells how the centres lay, where they are given ([`State::face`]).
 
 use crate::gjk::separating_axis::SeparatingAxis;
-use crate::local::Memory;
 use crate::math::{Vec3, as_unit, normalised, unit};
 use crate::query::warm_start::{WarmKind, WarmStart};
 
@@ -36,7 +34,14 @@ const SCALE: f64 = (OFFSET - 1) as f64;
 #[repr(C)]
 pub struct State {
     /// See the table at the head of this file.
-    memory: Memory,
+    dir: Vec3,
+    slopes: [Vec3; 3],
+    numbers: [f64; 6],
+    /// Not in use.
+    spare: f64,
+    count: u32,
+    /// Not in use.
+    spare_word: u32,
     /// One of the constants below; anything else is cold.
     pub kind: u32,
     /// The direction of the centres' difference.
@@ -79,7 +84,12 @@ impl State {
             }
             return;
         }
-        self.memory.flip();
+        if self.kind == 0 {
+            return;
+        }
+        self.dir = -self.dir;
+        self.slopes = self.slopes.map(|n| -n);
+        self.numbers.swap(1, 2);
         if let Some(centre) = self.facing() {
             self.face(&-centre);
         }
@@ -107,23 +117,18 @@ impl State {
         given.then(|| Vec3::new(coordinate(0), coordinate(1), coordinate(2)))
     }
 
-    /// The pair overlaps, as the local search left it in [`State::solver`].
-    pub fn overlap(&mut self) {
-        (self.kind, self.marks) = (OVERLAP, 0);
-    }
-
     fn of(kind: u32, dir: Vec3) -> Self {
         Self {
-            memory: Memory::towards(dir),
+            dir,
             kind,
-            marks: 0,
+            ..Self::default()
         }
     }
 
     /// The pair is apart: what the next query asks first, and the radii of the objects' spheres, metres.
     pub fn apart(axis: &SeparatingAxis, radius: [f64; 2]) -> Self {
         let mut state = Self::of(APART, axis.dir);
-        let [aim, radius1, radius2, ..] = &mut state.memory.curvature;
+        let [aim, radius1, radius2, ..] = &mut state.numbers;
         (*aim, [*radius1, *radius2]) = (axis.aim, radius);
         state
     }
@@ -131,7 +136,7 @@ impl State {
     /// The radii of [`State::apart`].
     pub fn radius(&self) -> [f64; 2] {
         match self.kind {
-            APART => [self.memory.curvature[1], self.memory.curvature[2]],
+            APART => [self.numbers[1], self.numbers[2]],
             _ => [0.0; 2],
         }
     }
@@ -148,10 +153,10 @@ impl State {
 
     /// The axis that separated the pair.
     pub fn separating(&self) -> Option<SeparatingAxis> {
-        let aim = self.memory.curvature[0];
+        let aim = self.numbers[0];
         match self.kind {
             APART => Some(SeparatingAxis {
-                dir: unit(&self.memory.dir)?,
+                dir: unit(&self.dir)?,
                 aim: if aim > 0.0 && aim < f64::INFINITY {
                     aim
                 } else {
@@ -166,31 +171,14 @@ impl State {
     /// was apart and is no longer has just met there.
     pub fn leaving(&self) -> Option<Vec3> {
         match self.kind {
-            APART | OVERLAP | ALONG | PROVEN => as_unit(&self.memory.dir),
+            APART | OVERLAP | ALONG | PROVEN => as_unit(&self.dir),
             _ => None,
         }
     }
 
-    /// Does its direction lead the way that `v` does?
-    #[inline]
-    pub fn looks_along(&self, v: &Vec3) -> bool {
-        self.memory.dir.dot(v) > 0.0
-    }
-
-    /// What the local search starts from, and where it leaves what it learns; `cold`: from nothing.
-    pub fn solver(&mut self, cold: bool) -> &mut Memory {
-        match self.kind {
-            _ if cold => self.memory = Memory::default(),
-            OVERLAP => (),
-            APART | ALONG | PROVEN => self.memory = Memory::towards(self.memory.dir),
-            _ => self.memory = Memory::default(),
-        }
-        &mut self.memory
-    }
-
     /// The directions of the last portal.
     pub fn portal(&self) -> Option<[Vec3; 3]> {
-        let [a, b, c] = &self.memory.slopes;
+        let [a, b, c] = &self.slopes;
         match self.kind {
             ALONG => Some([unit(a)?, unit(b)?, unit(c)?]),
             _ => None,
@@ -200,32 +188,32 @@ impl State {
     /// Keeps the directions of a portal besides.
     pub fn keep_portal(&mut self, directions: [Vec3; 3]) {
         self.kind = ALONG;
-        self.memory.slopes = directions;
+        self.slopes = directions;
     }
 
     /// Returns what the global query starts from.
     pub fn warm_start(&self) -> WarmStart {
-        let [depth, radius1, radius2, ..] = self.memory.curvature;
-        let off = (self.memory.dir.norm_squared() - 1.0).abs();
+        let [depth, radius1, radius2, ..] = self.numbers;
+        let off = (self.dir.norm_squared() - 1.0).abs();
         match self.kind {
             PROVEN if off <= 16.0 * crate::math::EPSILON => WarmStart {
-                dir: self.memory.dir,
+                dir: self.dir,
                 depth,
                 radius: [radius1, radius2],
-                kind: if self.memory.count == 1 {
+                kind: if self.count == 1 {
                     WarmKind::Round
                 } else {
                     WarmKind::Plain
                 },
             },
-            APART => match WarmStart::guess(&self.memory.dir) {
+            APART => match WarmStart::guess(&self.dir) {
                 guess if guess.kind == WarmKind::Plain => WarmStart {
                     kind: WarmKind::Apart,
                     ..guess
                 },
                 cold => cold,
             },
-            OVERLAP | ALONG => WarmStart::guess(&self.memory.dir),
+            OVERLAP | ALONG => WarmStart::guess(&self.dir),
             _ => WarmStart::COLD,
         }
     }
@@ -244,15 +232,10 @@ impl State {
             _ => Self::of(PROVEN, warm.dir),
         };
         if self.kind == PROVEN {
-            let [depth, radius1, radius2, ..] = &mut self.memory.curvature;
+            let [depth, radius1, radius2, ..] = &mut self.numbers;
             [*depth, *radius1, *radius2] = [warm.depth, warm.radius[0], warm.radius[1]];
-            self.memory.count = u32::from(warm.kind == WarmKind::Round);
+            self.count = u32::from(warm.kind == WarmKind::Round);
         }
-    }
-
-    /// Cold.
-    fn forget(&mut self) {
-        *self = Self::default();
     }
 }
 
@@ -265,13 +248,13 @@ mod tests {
     fn flipped_twice_is_as_it_was() {
         let mut cold = State::default();
         cold.flip();
-        assert!(cold.memory.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
+        assert!(cold.dir.iter().all(|x| x.is_sign_positive()) && cold.kind == 0);
         let mut state = State::guess(&Vec3::new(1.0, -2.0, 3.0));
-        let dir = state.memory.dir;
+        let dir = state.dir;
         state.flip();
-        assert_eq!(state.memory.dir, -dir);
+        assert_eq!(state.dir, -dir);
         state.flip();
-        assert_eq!(state.memory.dir, dir);
+        assert_eq!(state.dir, dir);
     }
 
     #[test]

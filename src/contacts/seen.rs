@@ -7,7 +7,6 @@ use crate::contact::Penetration;
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{Corner, Flat, cross, side};
 use crate::contacts::view::FOUR;
-use crate::known::points::Points;
 use crate::math::{EPSILON, Vec3};
 
 /// How low a known point of a floor may be, as a share of the depth: taken for level, it turns a floor
@@ -25,18 +24,6 @@ pub trait Known {
     fn level(&self, object: usize, n: &Vec3, least: f64) -> u32;
     /// The point of that bit.
     fn point_of(&self, object: usize, i: usize) -> Vec3;
-}
-
-impl Known for Points {
-    #[inline(always)]
-    fn level(&self, object: usize, n: &Vec3, least: f64) -> u32 {
-        Points::level(self, object, n, least)
-    }
-
-    #[inline(always)]
-    fn point_of(&self, object: usize, i: usize) -> Vec3 {
-        Points::point_of(self, object, i)
-    }
 }
 
 /// In any order.

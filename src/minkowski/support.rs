@@ -6,7 +6,6 @@
 
 use core::cell::Cell;
 
-use crate::known::support_set::Extreme;
 use crate::math::{Vec3, larger, largest};
 
 /// A convex object, known only by its support mapping.
@@ -68,28 +67,6 @@ impl Known {
     /// The points.
     pub fn points(&self) -> &[SupportPoint] {
         self.points.get(..self.len).unwrap_or(&[])
-    }
-
-    /// The point farthest along `n`, if it lies beyond the origin.
-    pub fn farthest(&self, n: &Vec3) -> Option<SupportPoint> {
-        let mut best = (None, 0.0);
-        for p in self.points() {
-            let reach = n.dot(&p.v);
-            if reach > best.1 {
-                best = (Some(*p), reach);
-            }
-        }
-        best.0
-    }
-
-    /// The point of D farthest along `n` of all that the points of obj1 and those of obj2 make,
-    /// those of `c` too, if it reaches beyond `reach`.
-    #[inline]
-    pub fn made_beyond(&self, c: &SupportPoint, n: &Vec3, reach: f64) -> Option<Vec3> {
-        let pairs = self.points().iter().chain([c]).map(|p| (&p.v1, &p.v2));
-        let farthest = Extreme::of(n, pairs);
-        let [p, q] = farthest.names.map(|i| self.points().get(i).unwrap_or(c));
-        (farthest.reach > reach).then(|| p.v1 - q.v2)
     }
 
     /// Adds a point that is not there, if there is room.

@@ -157,8 +157,7 @@ mod tests {
             let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
             let mut last = None;
             for _ in 0..2 {
-                let (hit, portal) =
-                    along(&md, &d, last, &settings).expect("the origin is inside");
+                let (hit, portal) = along(&md, &d, last, &settings).expect("the origin is inside");
                 let slack = 100.0 * EPSILON;
                 assert!(hit.depth >= exact - slack && hit.depth_lower <= exact + slack);
                 assert!(!hit.limit && hit.depth - hit.depth_lower <= 2e-4);

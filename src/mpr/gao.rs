@@ -489,7 +489,6 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,8 +8,8 @@ use core::ffi::{c_int, c_void};
 use super::super::callbacks::{Object, centre_of};
 use super::super::types::{ccd_center_fn, ccd_support_fn, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
-use crate::known::check::check;
 use crate::math::{Real, Vec3};
+use crate::minkowski::validate::check;
 
 /// A point, or the centre, is NaN or infinite. Nothing else is told.
 pub const CCD_CHECK_NOT_FINITE: c_int = 1;

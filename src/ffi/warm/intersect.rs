@@ -8,7 +8,7 @@ use core::ffi::{c_int, c_void};
 use super::super::callbacks::{Call, Object, Query};
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, with_state};
-use crate::known::support_set::if_overlapping;
+use crate::minkowski::query::if_overlapping;
 use crate::{query::Pair, state::State};
 
 /// Yes or no of a pair, with the caller's state.

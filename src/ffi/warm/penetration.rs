@@ -10,8 +10,8 @@ use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::state::{ccd_warm_t, with_state};
 use crate::contact::{Penetration, Settings};
-use crate::known::support_set::{Stop, if_overlapping};
 use crate::math::{Real, Vec3, lower_to_real};
+use crate::minkowski::query::{Stop, if_overlapping};
 use crate::{query::Pair, state::State};
 
 /// Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
