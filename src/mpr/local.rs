@@ -17,8 +17,8 @@
 //! 5. *Fit*: a prediction that came true to the tolerance is a minimum as well.
 //! 6. *Confirmation*: a foot on an edge is stationary and need not be a minimum, nor is a tip that looks like
 //!    a sphere. Directions tilted by [`TILT_RAD`] are queried where no known one is near.
-//! 7. *Overlap*: the tetrahedron of the interior point and the face holds the origin; otherwise a portal of the
-//!    ray from the interior point through the origin encloses it, or a queried direction separates.
+//! 7. *Overlap*: the tetrahedron of the interior point and the face holds the origin; otherwise GJK shows it on
+//!    the known vertices, or a queried direction separates.
 //!
 //! Departures. The outer steps of the paper's Algorithm 4, a support call each, are steps of the inner model
 //! here. A fixed ray is never refined until the callbacks confirm it. Steps 5 and 6 are new.
@@ -31,12 +31,13 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::contact::{Penetration, Settings, Status};
 use crate::gjk::barycentric;
+use crate::gjk::intersect::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
 use crate::minkowski::round_fit::SphereFit;
-use crate::minkowski::support::SupportMap;
+use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::{KNOWN_LEVEL, discover, enclose, replace_corner};
+use crate::mpr::portal::{KNOWN_LEVEL, discover, replace_corner};
 
 /// The support calls of a walk, at most. Measured: one walk in 3,000 takes more than 40.
 pub const MAX_SAMPLES: usize = 60;
@@ -263,7 +264,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         for _ in 0..MAX_RAYS {
             let tolerance = self.tolerance();
             self.check_limits()?;
-            let length = self.length_along(&ray);
+            let first = self.set.farthest_vertex(&ray);
+            let length = self.length_along(&ray, &first);
             let portal = discover(self.query, self.set, &ray, length, tolerance)?;
             let mut portal = portal.ok_or(Halt::Status(Status::Rounding))?;
             let (step, face) = self.refine(&ray, &mut portal, tolerance)?;
@@ -283,9 +285,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Returns the length of the ray in D from behind the origin, about, metres.
-    fn length_along(&self, ray: &Vec3) -> f64 {
-        let along = self.set.farthest_vertex(ray).w.dot(ray) - self.interior.dot(ray);
-        larger(along, 0.1 * self.query.scale.size())
+    fn length_along(&self, ray: &Vec3, first: &Vertex) -> f64 {
+        larger(
+            (first.w - self.interior).dot(ray),
+            0.1 * self.query.scale.size(),
+        )
     }
 
     /// Evaluates unit `dir`, within the limits.
@@ -643,44 +647,33 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
     }
 
-    /// Proves that the origin is in D: in the tetrahedron of the apex and the face, else in that of the apex and a
-    /// portal of the ray from there through the origin.
+    /// Proves that the origin is in D: in the tetrahedron of the apex and the face, else by GJK on the known vertices.
     fn prove_overlap(&mut self, face: &Face) -> Result<(), Halt> {
-        if self.is_centered && self.query.interior.is_none() {
+        let is_trusted = self.query.interior.is_some();
+        if self.is_centered && !is_trusted {
             return Err(Halt::Status(Status::InconsistentSupport));
         }
-        let apex = self.apex;
         // A trusted centre is well inside D: an edge or a side of the tetrahedron may hold the origin.
-        let slack = if self.query.interior.is_some() {
-            -SIDE_EPS
-        } else {
-            SIDE_EPS
-        };
+        let slack = if is_trusted { -SIDE_EPS } else { SIDE_EPS };
         let eps = self.query.scale.height_eps();
-        if is_beyond_origin(&face.corners, eps) && is_crossed(&face.corners, &apex, slack) {
+        if is_beyond_origin(face, eps) && is_crossed(&face.corners, &self.apex, slack) {
             return Ok(());
         }
-        let ray = normalised(&-apex).ok_or(Halt::Status(Status::Rounding))?;
-        let mut portal = face.corners;
-        if !is_crossed(&portal, &apex, slack) {
-            let tolerance = self.tolerance();
-            let length = self.set.farthest_vertex(&ray).w.dot(&ray) + apex.norm();
-            portal = discover(self.query, self.set, &ray, length, tolerance)?
-                .ok_or(Halt::Status(Status::Rounding))?;
-        }
-        let is_enclosed = enclose(self.query, self.set, &ray, &mut portal)?;
-        if is_enclosed && is_beyond_origin(&portal, eps) && is_crossed(&portal, &apex, slack) {
-            Ok(())
-        } else {
-            Err(Halt::Status(Status::Rounding))
-        }
+        let v = self.interior;
+        let center = SupportPoint {
+            v,
+            v1: v,
+            v2: Vec3::zeros(),
+        };
+        let center = is_trusted.then_some(&center);
+        contains_origin(self.query, self.set, center, &face.normal, false)?;
+        Ok(())
     }
 }
 
-/// Returns whether all of a portal is beyond the origin, along its normal, by `eps`, metres.
-fn is_beyond_origin(portal: &[Vertex; 3], eps: f64) -> bool {
-    Face::new(portal)
-        .is_some_and(|face| portal.iter().all(|v| face.normal.dot(&v.w) > eps) && face.offset > eps)
+/// Returns whether all of a face is beyond the origin, along its normal, by `eps`, metres.
+fn is_beyond_origin(face: &Face, eps: f64) -> bool {
+    (face.corners.iter()).all(|v| face.normal.dot(&v.w) > eps)
 }
 
 /// Returns whether the ray from a point through the origin passes through a portal, by `slack`, a share of the lengths
@@ -774,7 +767,7 @@ fn newton_step<const N: usize>(
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
+    use crate::minkowski::support::{Fault, MinkowskiDifference};
     use crate::shapes::{Random, Rotation, ball, capsule, corners, ellipsoid, hull, placed};
 
     const SETTINGS: Settings = Settings {

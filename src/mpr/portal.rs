@@ -53,8 +53,6 @@ const MAX_DISCOVERY_STEPS: u32 = 24;
 /// Steps of refinement, and queries among them while the origin is inside the portal.
 const MAX_REFINEMENT_STEPS: u32 = 20;
 const MAX_INNER_QUERIES: u32 = 4;
-/// Steps of [`enclose`].
-const MAX_ENCLOSING_STEPS: u32 = 40;
 /// The share of the gap that a known difference must lie above a plane to replace a query.
 pub const KNOWN_LEVEL: f64 = 0.2;
 /// The upper bound, as a share of the size, up to which a contact is shallow: a portal near the minimum
@@ -271,43 +269,6 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
         replace_corner(portal, ray, w);
     }
     Ok(())
-}
-
-/// Moves a portal outwards until the origin is inside: between the ray's start and the portal. `false`: nothing
-/// lies above a portal that the origin is beyond or on, or the set is full.
-///
-/// # Errors
-/// As [`SupportQuery::evaluate`].
-#[inline(never)]
-pub fn enclose<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
-    set: &mut VertexSet<N>,
-    ray: &Vec3,
-    portal: &mut [Vertex; 3],
-) -> Result<bool, Stop> {
-    for _ in 0..MAX_ENCLOSING_STEPS {
-        let [a, b, c] = portal.each_ref().map(|v| v.w);
-        let Some(normal) = normalised(&(b - a).cross(&(c - a))) else {
-            return Ok(false);
-        };
-        let offset = normal.dot(&a);
-        let height_eps = query.scale.height_eps();
-        if offset > height_eps {
-            return Ok(true);
-        }
-        let mut w = set.farthest_vertex(&normal);
-        if !(normal.dot(&w.w) - offset > height_eps) {
-            if set.is_full() {
-                return Ok(false);
-            }
-            w = query.evaluate(set, &normal)?.vertex();
-            if !(normal.dot(&w.w) - offset > height_eps) {
-                return Ok(false);
-            }
-        }
-        replace_corner(portal, ray, w);
-    }
-    Ok(false)
 }
 
 #[cfg(test)]
