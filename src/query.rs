@@ -184,11 +184,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             minimum(self, state, &wanted.settings, hit)
         };
-        let (distance, left) = signed_distance(&self.md, wanted, &start, depth)?;
-        if let Some(left) = left {
+        let mut distance = Distance::default();
+        if let Some(left) = signed_distance(&self.md, wanted, &start, depth, &mut distance)? {
             let axis = SeparatingAxis {
                 dir: left.dir,
-                aim: 0.0,
+                aim: larger(distance.lower, 0.0),
             };
             *state = WarmStart::apart(&axis, left.radius);
         }

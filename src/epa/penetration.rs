@@ -638,7 +638,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     ) -> Result<Option<Start>, Stop> {
         let mut known = VertexSet::<16>::EMPTY;
         let dir = self.query.upper.dir;
-        let found = contains_origin(&mut self.query, &mut known, None, &dir, false)?;
+        let found = contains_origin(self.query, &mut known, None, &dir, false)?;
         // The points may be no support points: they have no direction.
         Ok(Some(found.corners.map(|point| {
             let pair = VertexSet::<N>::sample(set.push(&Vec3::zeros(), &point));

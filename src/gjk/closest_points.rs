@@ -168,7 +168,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         self.add(first);
         let mut closest = f64::INFINITY;
         let mut stalls = 0;
-        let mut has_failed = false;
+        // Of the last query: whether it was to bring the simplex closer; whether it was tilted in vain.
+        let (mut is_step, mut has_failed) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_KNOWN_STEPS {
                 match self.add_farthest(KNOWN_LEVEL * self.gap(goal)) {
@@ -180,17 +181,25 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if self.has_met(goal) {
                 return Ok(End::Met);
             }
+            if is_step {
+                if !(self.upper < closest) {
+                    stalls += 1;
+                }
+                closest = self.upper;
+            }
             let Some(dir) = direction(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
                 return Ok(End::Stalled);
             };
-            if self.has_predicted(&dir, self.gap(goal))? {
+            is_step = !self.has_predicted(&dir, self.gap(goal))?;
+            if !is_step {
                 continue;
             }
             let tilted = self.tilted(&dir).filter(|_| !has_failed);
             if let Some(n) = tilted {
                 self.query.evaluate_signed(&mut self.set, &n)?;
                 let w = self.set.farthest_vertex(&dir);
-                has_failed = !(self.height(&dir, &w.w) > KNOWN_LEVEL * self.gap(goal));
+                is_step = self.height(&dir, &w.w) > KNOWN_LEVEL * self.gap(goal);
+                has_failed = !is_step;
                 continue;
             }
             has_failed = false;
@@ -198,10 +207,6 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if self.height(&dir, &w.w) > 0.5 * self.query.scale.contact_eps() && !self.add(w) {
                 return Ok(End::Inside);
             }
-            if !(self.upper < closest) {
-                stalls += 1;
-            }
-            closest = self.upper;
         }
         Ok(if self.has_met(goal) {
             End::Met

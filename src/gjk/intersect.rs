@@ -285,7 +285,9 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
             }
             return Ok(Found::Known(simplex.tetrahedron()));
         };
-        if is_planar && distance2 <= touch * touch {
+        // Between a point in the interior and another one, the origin is in the interior.
+        let is_between = simplex.has_interior() && simplex.len() == 2;
+        if (is_planar || is_between) && distance2 <= touch * touch {
             let [a, b, c] = simplex.corners();
             return Ok(Found::Known([a, b, c, c]));
         }

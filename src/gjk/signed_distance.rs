@@ -42,7 +42,7 @@ impl Wanted {
 }
 
 /// How far apart, or how deep.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
     /// −h(normal), metres: proven, apart and overlapping.
     pub lower: f64,
@@ -74,7 +74,8 @@ pub struct Start {
 }
 
 /// Computes the signed distance of the objects with their margins. `minimum` computes the penetration depth
-/// of the cores, from a direction. What is left where they overlap is the caller's, of `minimum`.
+/// of the cores, from a direction or from what the caller has kept. Returns what the next query of the pair
+/// starts from; `None` where the cores overlap: it is then what `minimum` has kept.
 ///
 /// # Errors
 /// [`Fault`].
@@ -83,22 +84,58 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
     wanted: &Wanted,
     start: &Start,
     mut minimum: impl FnMut(Option<&Vec3>, &mut Penetration) -> Result<(), Stop>,
-) -> Result<(Distance, Option<Start>), Fault> {
-    let mut depth = |from: Option<&Vec3>| {
+    out: &mut Distance,
+) -> Result<Option<Start>, Fault> {
+    // Returns a separating axis, `None` where the cores overlap and the answer is written.
+    let mut depth = |from: Option<&Vec3>, out: &mut Distance| {
         let mut hit = Penetration::default();
         match minimum(from, &mut hit) {
-            Ok(()) => Ok(Ok((overlapping(&hit, wanted), None))),
-            Err(Stop::Apart(normal)) => Ok(Err(normal)),
+            Ok(()) => {
+                write_overlapping(&hit, wanted, out);
+                Ok(None)
+            }
+            Err(Stop::Apart(normal)) => Ok(Some(normal)),
             Err(Stop::Fault(fault)) => Err(fault),
         }
     };
     let mut start = *start;
     if start.is_overlapping {
-        match depth(None)? {
-            Ok(found) => return Ok(found),
-            Err(normal) => start.dir = normal,
+        match depth(None, out)? {
+            None => return Ok(None),
+            Some(normal) => start.dir = normal,
         }
     }
+    let (mut cores, radius, mut touch) = find_cores(md, wanted, &start)?;
+    // Without a separating plane the proof decides, however close the bounds are.
+    let is_open = cores.end != End::Limit && !(cores.lower >= -touch);
+    if cores.end == End::Inside || is_open {
+        let Some(normal) = depth(Some(&cores.normal), out)? else {
+            return Ok(None);
+        };
+        // The proof decides, whatever one support value is. The points stay those where the origin was
+        // met.
+        let h = normal.dot(&md.support(&normal)?.v);
+        touch = larger(touch, h.abs());
+        (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
+        let is_closed = cores.upper <= larger(touch, wanted.settings.tolerance);
+        cores.end = if is_closed { End::Met } else { End::Limit };
+    }
+    write_apart(&cores, touch, wanted, out);
+    Ok(Some(Start {
+        dir: cores.normal,
+        radius,
+        is_overlapping: false,
+    }))
+}
+
+/// Finds the closest points of the cores. Returns them with the radii of the sphere fits and the contact
+/// epsilon, metres. In a frame of its own, which is left before a minimum is looked for.
+#[inline(never)]
+fn find_cores<A: SupportMap, B: SupportMap>(
+    md: &MinkowskiDifference<A, B>,
+    wanted: &Wanted,
+    start: &Start,
+) -> Result<(ClosestPoints, [f64; 2], f64), Fault> {
     let mut query = SupportQuery::new(md, None);
     let mut fit = SphereFit::from_radius(start.radius);
     let goal = Goal {
@@ -107,38 +144,17 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
         max_distance: wanted.max_distance,
         max_samples: wanted.settings.max_iterations,
     };
-    let mut cores = closest_points(&mut query, &mut fit, &start.dir, &goal)?;
-    let mut touch = query.scale.contact_eps();
-    // Without a separating plane the proof decides, however close the bounds are.
-    let is_open = cores.end != End::Limit && !(cores.lower >= -touch);
-    if cores.end == End::Inside || is_open {
-        let normal = match depth(Some(&cores.normal))? {
-            Ok(found) => return Ok(found),
-            Err(normal) => normal,
-        };
-        // The proof decides, whatever one support value is. The points stay those where the origin was
-        // met.
-        let point = query.evaluate_point(&normal)?;
-        let h = normal.dot(&point.v);
-        touch = larger(query.scale.contact_eps(), h.abs());
-        (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
-        let is_closed = cores.upper <= larger(touch, wanted.settings.tolerance);
-        cores.end = if is_closed { End::Met } else { End::Limit };
-    }
-    let kept = Start {
-        dir: cores.normal,
-        radius: if fit.is_confirmed {
-            fit.radius
-        } else {
-            [0.0; 2]
-        },
-        is_overlapping: false,
+    let cores = closest_points(&mut query, &mut fit, &start.dir, &goal)?;
+    let radius = if fit.is_confirmed {
+        fit.radius
+    } else {
+        [0.0; 2]
     };
-    Ok((apart(&cores, touch, wanted), Some(kept)))
+    Ok((cores, radius, query.scale.contact_eps()))
 }
 
-/// Returns the answer for cores that overlap.
-fn overlapping(hit: &Penetration, wanted: &Wanted) -> Distance {
+/// Writes the answer for cores that overlap.
+fn write_overlapping(hit: &Penetration, wanted: &Wanted, out: &mut Distance) {
     let n = hit.normal;
     let margin = wanted.margin();
     // No depth is minus nothing.
@@ -147,7 +163,7 @@ fn overlapping(hit: &Penetration, wanted: &Wanted) -> Distance {
     } else {
         0.0
     };
-    Distance {
+    *out = Distance {
         lower,
         upper: larger(-hit.depth_lower - margin, lower),
         normal: n,
@@ -156,11 +172,11 @@ fn overlapping(hit: &Penetration, wanted: &Wanted) -> Distance {
         iterations: hit.iterations,
         is_hit: lower < 0.0,
         is_limited: hit.limit,
-    }
+    };
 }
 
-/// Returns the answer for cores that are apart, `touch` being rounding, metres.
-fn apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted) -> Distance {
+/// Writes the answer for cores that are apart, `touch` being rounding, metres.
+fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Distance) {
     let margin = wanted.margin();
     // Points of the surfaces on the line through the closest points of the cores. Of cores that touch, the
     // line is rounding.
@@ -174,7 +190,7 @@ fn apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted) -> Distance {
         lower = 0.0;
         upper = larger(upper, 0.0);
     }
-    Distance {
+    *out = Distance {
         lower,
         upper: larger(upper, lower),
         normal: cores.normal,
@@ -183,5 +199,5 @@ fn apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted) -> Distance {
         iterations: cores.iterations,
         is_hit: lower < 0.0,
         is_limited: cores.end != End::Met,
-    }
+    };
 }
