@@ -95,10 +95,12 @@ impl WarmStart {
         (self.kind != WarmKind::Cold).then_some(self.dir)
     }
 
-    /// Makes the state of the pair (obj1, obj2) that of (obj2, obj1).
+    /// Makes the state of the pair (obj1, obj2) that of (obj2, obj1). Cold stays cold, bit for bit.
     pub fn flip(&mut self) {
-        self.dir = -self.dir;
-        self.radius.swap(0, 1);
+        if self.kind != WarmKind::Cold {
+            self.dir = -self.dir;
+            self.radius.swap(0, 1);
+        }
     }
 
     /// Packs the state into plain numbers. All zero is cold.
