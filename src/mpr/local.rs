@@ -63,6 +63,9 @@ const MAX_NEWTON_MISS: f64 = 0.3;
 const ASLANT_TAN: f64 = 0.05;
 /// The rounding of a triple product, as a share of the three lengths. Derived: twice three products and two sums.
 const SIDE_EPS: f64 = 8.0 * f64::EPSILON;
+/// A start is stale beyond so many times its last depth and this share of the centres' distance.
+const STALE_DEPTHS: f64 = 2.0;
+const STALE_REL: f64 = 0.1;
 /// The largest trusted radius, as a share of the distance of the centres and the depth.
 const MAX_RADIUS: f64 = 1.5;
 /// The predictions that miss before a fit is not used any more.
@@ -186,7 +189,16 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     is_newton_confirmed: bool,
 }
 
-/// Finds a local minimum of the penetration depth from unit `start`. The set may hold entries. `fit` brings
+/// Where a walk starts.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkStart {
+    /// Unit.
+    pub dir: Vec3,
+    /// The depth of the last answer, which had this direction, metres; 0 where it is a guess.
+    pub depth: f64,
+}
+
+/// Finds a local minimum of the penetration depth from `start`. The set may hold entries. `fit` brings
 /// radii that are trusted, or none, and takes those that a prediction confirmed. See the head of this file.
 ///
 /// # Errors
@@ -195,7 +207,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
-    start: &Vec3,
+    start: &WalkStart,
     settings: &Settings,
 ) -> Result<(Penetration, Status), Stop> {
     const { assert!(N >= MAX_SAMPLES) };
@@ -235,14 +247,15 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
-    fn run(&mut self, start: &Vec3) -> Result<Minimum, Halt> {
-        let ahead = self.query.evaluate(self.set, start)?;
-        // The least turn to the way from the interior point that is worth a query: a start that leads to the far
-        // side, as the state of the swapped pair does; any start that was no guess.
-        let mut most = 0.0;
+    fn run(&mut self, start: &WalkStart) -> Result<Minimum, Halt> {
+        let ahead = self.query.evaluate(self.set, &start.dir)?;
+        // The least cosine to the way from the interior point through the origin for which that is not queried as
+        // well: a start that leads to the far side, as the state of the swapped pair does; one that is stale; any
+        // start without a centre.
+        let mut least = 0.0;
         if self.query.interior.is_none() {
             // Aslant: the point opposite to a minimum mostly is on one line with it and the origin.
-            let aslant = perpendicular(start) * ASLANT_TAN - start;
+            let aslant = perpendicular(&start.dir) * ASLANT_TAN - start.dir;
             let upper = self.query.upper;
             let behind = self.query.evaluate(self.set, &(aslant / aslant.norm()))?;
             self.apex = behind.w;
@@ -250,9 +263,13 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.set.truncate(self.set.len() - 1);
             self.query.upper = upper;
             self.interior = (ahead.w + behind.w) * 0.5;
-            most = 0.85;
+            least = 0.85;
         }
-        if let Some(n) = normalised(&-self.interior).filter(|n| n.dot(start) < most) {
+        let fresh = STALE_DEPTHS * start.depth + STALE_REL * self.interior.norm();
+        if start.depth > 0.0 && ahead.h > fresh {
+            least = 1.0;
+        }
+        if let Some(n) = normalised(&-self.interior).filter(|n| n.dot(&start.dir) < least) {
             self.query.evaluate(self.set, &n)?;
         }
         let mut ray = self.query.upper.dir;
@@ -386,7 +403,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         } else {
             0.25 * cone * cone
         };
-        let is_level = (face.offset - depth).abs() <= tolerance;
+        // The rest is left for the witness points.
+        let is_level = (face.offset - depth).abs() <= 0.8 * tolerance;
         if is_inside && is_level && angle2 <= allowed2 {
             return Some(Step::Face { dir, depth });
         }
@@ -449,11 +467,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 }
             }
             Choice::Sphere(_)
-                if self.refuted_spheres < 2 && (value - upper.depth).abs() <= tolerance =>
+                if self.refuted_spheres < 2 && (value - upper.depth).abs() <= 0.5 * tolerance =>
             {
                 // The support value is the prediction's within the tolerance; the witness points meet.
                 let off = (self.fit.sum() - upper.depth).powi(2);
-                if turn2 * self.fit.sum() <= 8.0 * tolerance
+                if turn2 * self.fit.sum() <= 0.5 * tolerance
                     && turn2 * off <= upper.depth * tolerance
                 {
                     Err(Step::Sphere)
@@ -512,7 +530,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     return None;
                 }
                 self.sphere_misses = 0;
-                let is_met = (h - value).abs() <= tolerance && self.refuted_spheres < 2;
+                let is_met = (h - value).abs() <= 0.5 * tolerance && self.refuted_spheres < 2;
                 Some(if is_met {
                     Step::Sphere
                 } else {
@@ -793,7 +811,11 @@ mod tests {
         let mut query = SupportQuery::new(md, center.as_ref());
         let mut set = VertexSet::<MAX_SAMPLES>::EMPTY;
         let mut fit = SphereFit::default();
-        let found = penetration(&mut query, &mut set, &mut fit, start, settings);
+        let start = WalkStart {
+            dir: *start,
+            depth: 0.0,
+        };
+        let found = penetration(&mut query, &mut set, &mut fit, &start, settings);
         (found, md.supports() - before)
     }
 
