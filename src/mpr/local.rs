@@ -63,9 +63,10 @@ const MAX_NEWTON_MISS: f64 = 0.3;
 const ASLANT_TAN: f64 = 0.05;
 /// The rounding of a triple product, as a share of the three lengths. Derived: twice three products and two sums.
 const SIDE_EPS: f64 = 8.0 * f64::EPSILON;
-/// A start is stale beyond so many times its last depth and this share of the centres' distance.
-const STALE_DEPTHS: f64 = 2.0;
+/// A start is stale whose support value differs from its depth by this share of the depth and the centres'
+/// distance. One that is stale and leads to the far side is that of the swapped pair.
 const STALE_REL: f64 = 0.1;
+const STALE_BEHIND_REL: f64 = 0.01;
 /// The largest trusted radius, as a share of the distance of the centres and the depth.
 const MAX_RADIUS: f64 = 1.5;
 /// The predictions that miss before a fit is not used any more.
@@ -265,14 +266,23 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.interior = (ahead.w + behind.w) * 0.5;
             least = 0.85;
         }
-        let fresh = STALE_DEPTHS * start.depth + STALE_REL * self.interior.norm();
-        if start.depth > 0.0 && ahead.h > fresh {
-            least = 1.0;
+        let to_origin = normalised(&-self.interior).unwrap_or(start.dir);
+        let cosine = to_origin.dot(&start.dir);
+        let share = if cosine < 0.0 {
+            STALE_BEHIND_REL
+        } else {
+            STALE_REL
+        };
+        let change = (ahead.h - start.depth).abs();
+        let is_stale = start.depth > 0.0 && change > share * (start.depth + self.interior.norm());
+        if cosine < least || is_stale {
+            self.query.evaluate(self.set, &to_origin)?;
         }
-        if let Some(n) = normalised(&-self.interior).filter(|n| n.dot(&start.dir) < least) {
-            self.query.evaluate(self.set, &n)?;
-        }
-        let mut ray = self.query.upper.dir;
+        let mut ray = if cosine < 0.0 && is_stale {
+            to_origin
+        } else {
+            self.query.upper.dir
+        };
         let most = MAX_RADIUS * (self.interior.norm() + self.query.upper.depth);
         // Negated for NaN.
         if !(self.fit.radius.iter().all(|r| *r >= 0.0) && self.fit.sum() < most) {
