@@ -25,7 +25,9 @@
 //!
 //! Validity. [`Status::Converged`]: the overlap is proven, `dir` is a local minimum of the support function,
 //! the witness points meet and lie in their bodies. Any other status: `depth` and `dir` are sound if the
-//! objects overlap, which is not proven; ask the global query.
+//! objects overlap, which is not proven: use the global query.
+//!
+//! The file is longer than 400 lines: a walk is one loop, and its tests of a face share the walk's state.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -39,7 +41,7 @@ use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{KNOWN_LEVEL, discover, replace_corner};
 
-/// The support calls of a walk, at most. Measured: one walk in 3,000 takes more than 40.
+/// The support calls of a walk, at most. Measured: 12 of 12,000 walks on the pair sets end without a minimum.
 pub const MAX_SAMPLES: usize = 60;
 /// The rays of a walk, at most.
 const MAX_RAYS: u32 = 40;
@@ -66,7 +68,6 @@ const SIDE_EPS: f64 = 8.0 * f64::EPSILON;
 /// A start is stale whose support value differs from its depth by this share of the depth and the centres'
 /// distance. One that is stale and leads to the far side is that of the swapped pair.
 const STALE_REL: f64 = 0.1;
-const STALE_BEHIND_REL: f64 = 0.01;
 /// The largest trusted radius, as a share of the distance of the centres and the depth.
 const MAX_RADIUS: f64 = 1.5;
 /// The predictions that miss before a fit is not used any more.
@@ -268,13 +269,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
         let to_origin = normalised(&-self.interior).unwrap_or(start.dir);
         let cosine = to_origin.dot(&start.dir);
-        let share = if cosine < 0.0 {
-            STALE_BEHIND_REL
-        } else {
-            STALE_REL
-        };
         let change = (ahead.h - start.depth).abs();
-        let is_stale = start.depth > 0.0 && change > share * (start.depth + self.interior.norm());
+        let is_stale =
+            start.depth > 0.0 && change > STALE_REL * (start.depth + self.interior.norm());
         if cosine < least || is_stale {
             self.query.evaluate(self.set, &to_origin)?;
         }
@@ -747,7 +744,8 @@ fn newton_step<const N: usize>(
             }
             let x = tangent(&set.dir(k)) / cosine;
             let x2 = x.norm_squared();
-            if !(x2 < least && x2 > 1e-10) || !is_alike(set, upper.index, k, SMOOTH_REL_TOL) {
+            let is_near = x2 < least && x2 > 1e-10;
+            if !is_near || !is_alike(set, upper.index, k, SMOOTH_REL_TOL) {
                 continue;
             }
             let d = set.difference(VertexSet::<N>::sample(k)) - at;
@@ -773,7 +771,8 @@ fn newton_step<const N: usize>(
     let h = upper.depth;
     let hessian = curvature - Matrix2::identity() * h;
     let (a, c) = (hessian.m11, hessian.m22);
-    if !(a > 0.0 && hessian.determinant() > 0.01 * a * c) {
+    let is_minimum = a > 0.0 && hessian.determinant() > 0.01 * a * c;
+    if !is_minimum {
         return None;
     }
     let g = tangent(&at);
