@@ -237,9 +237,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<Status, Stop> {
         let aim = self.still_apart(state)?;
         let warm = *state;
-        let start = match warm.kind {
-            WarmKind::Cold => self.cold_start(),
-            _ => warm.dir,
+        let start = mpr::local::WalkStart {
+            dir: warm.direction().unwrap_or_else(|| self.cold_start()),
+            depth: if warm.is_overlap() { warm.depth } else { 0.0 },
         };
         let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
         let mut set = VertexSet::<{ mpr::local::MAX_SAMPLES }>::EMPTY;

@@ -34,7 +34,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
         let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
         let mut fit = SphereFit::default();
-        match local::penetration(&mut query, &mut set, &mut fit, &hit.normal, &settings) {
+        let start = local::WalkStart {
+            dir: hit.normal,
+            depth: hit.depth,
+        };
+        match local::penetration(&mut query, &mut set, &mut fit, &start, &settings) {
             Ok((floor, Status::Converged)) if floor.depth < hit.depth => {
                 *hit = Penetration {
                     depth_lower: hit.depth_lower.min(floor.depth),
