@@ -783,11 +783,28 @@ fn newton_step<const N: usize>(
     }
     let value = (h + g.dot(&x) + 0.5 * x.dot(&(curvature * x))) / (1.0 + x2).sqrt();
     let dir = normalised(&(n + e1 * x.x + e2 * x.y))?;
-    let eigen = curvature.symmetric_eigen();
-    let i = usize::from(eigen.eigenvalues[1] < eigen.eigenvalues[0]);
-    let v = eigen.eigenvectors.column(i);
-    let flattest = normalised(&(e1 * v[0] + e2 * v[1]))?;
-    Some((dir, value, flattest))
+    let v = flattest_axis(&curvature);
+    Some((dir, value, e1 * v.x + e2 * v.y))
+}
+
+/// Returns the unit eigenvector of the least eigenvalue of a symmetric matrix. In closed form: nalgebra's
+/// decomposition can panic.
+fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
+    let (a, b, c) = (m.m11, m.m12, m.m22);
+    let least = 0.5 * (a + c) - (0.5 * (a - c)).hypot(b);
+    // Both are eigenvectors; the longer one has digits.
+    let (p, q) = (Vector2::new(b, least - a), Vector2::new(least - c, b));
+    let longer = if p.norm_squared() > q.norm_squared() {
+        p
+    } else {
+        q
+    };
+    let norm = longer.norm();
+    if norm > 0.0 {
+        longer / norm
+    } else {
+        Vector2::x()
+    }
 }
 
 #[cfg(test)]
@@ -796,6 +813,19 @@ mod tests {
     use crate::math::EPSILON;
     use crate::minkowski::support::{Fault, MinkowskiDifference};
     use crate::shapes::{Random, Rotation, ball, capsule, corners, ellipsoid, hull, placed};
+
+    #[test]
+    fn the_flattest_axis_is_an_eigenvector() {
+        let mut r = Random::new(3);
+        for _ in 0..100 {
+            let (a, b, c) = (r.within(0.1, 2.0), r.within(-1.0, 1.0), r.within(0.1, 2.0));
+            let m = Matrix2::new(a, b, b, c);
+            let v = flattest_axis(&m);
+            let least = v.dot(&(m * v));
+            assert!((m * v - v * least).norm() < 1e-12 && least <= a.min(c) + 1e-12);
+        }
+        assert_eq!(flattest_axis(&Matrix2::identity()), Vector2::x());
+    }
 
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-4 },
