@@ -159,7 +159,8 @@ impl Expansion {
     }
 }
 
-/// Expands the polytope until the bounds meet. See the head of this file.
+/// Expands the polytope until the bounds meet. See the head of this file. `has_larger`: whether larger
+/// buffers take over where these are full.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -174,6 +175,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     polytope: &mut EpaPolytope<F>,
     progress: &mut Expansion,
     limits: &EpaLimits,
+    has_larger: bool,
 ) -> Result<ExpandEnd, Stop> {
     // Terminates: each turn evaluates, which fills the set, or inserts, which fills the corners, or makes a
     // key exact.
@@ -219,7 +221,9 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let distance = closest.key.sqrt();
         let is_gain =
             !(closest.key > 0.0) || height * distance > GAIN_REL * (upper - distance) * offset;
-        if !(height > level && is_gain) {
+        // Of the largest buffers the queries that are left have theirs.
+        let has_room = has_larger || C - corners.len > N - set.len();
+        if !(height > level && is_gain && has_room) {
             let is_plain = !is_inside || closest.key == progress.last_failed_key;
             let vertices = polytope
                 .corners(face)

@@ -55,7 +55,7 @@ const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
 const LARGE_FACES: usize = max_faces(LARGE_CORNERS);
 /// The vertices of the buffers that the caller lends.
 const LENT_VERTICES: usize = MAX_PROVEN_SAMPLES as usize + SPARE_VERTICES;
-const LENT_CORNERS: usize = max_corners(LENT_VERTICES);
+const LENT_CORNERS: usize = 2 * LENT_VERTICES;
 const LENT_FACES: usize = max_faces(LENT_CORNERS);
 /// What may be evaluated beyond the limit: the limits hold only while the origin is inside.
 const SPARE_VERTICES: usize = 8;
@@ -562,6 +562,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             polytope,
             &mut progress,
             self.limits,
+            has_larger,
         )?;
         self.iterations = progress.iterations;
         if end == ExpandEnd::NoRoom && has_larger {
