@@ -58,6 +58,15 @@ pub struct Penetration {
 }
 
 impl Penetration {
+    /// Returns whether the witness points are the depth apart along the normal, within the tolerance, and
+    /// across it as far as a plane of that tolerance allows.
+    pub fn has_sound_witnesses(&self, tolerance: f64) -> bool {
+        let apart = self.point1 - self.point2;
+        let along = apart.dot(&self.normal);
+        let across2 = (apart - self.normal * along).norm_squared();
+        (along - self.depth).abs() <= tolerance && across2 <= 2.0 * self.depth * tolerance
+    }
+
     /// The middle of the witness points.
     pub fn middle(&self) -> Vec3 {
         (self.point1 + self.point2) * 0.5

@@ -143,6 +143,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(())
     }
 
+    /// Returns the state with the direction of the difference of the centres, where they are given.
+    fn facing(&self, mut state: WarmStart) -> WarmStart {
+        if let Some(centre) = &self.centre {
+            state.set_facing(&centre.v);
+        }
+        state
+    }
+
     /// Do the objects overlap? With memory, or cold. [`Stop::Apart`] where they do not.
     #[inline]
     pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
@@ -158,7 +166,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let dir = intersect(&self.md, self.centre.as_ref(), &first)?;
             // What a depth query left is worth more than this.
             if !state.is_overlap() {
-                *state = WarmStart::towards(dir);
+                *state = self.facing(WarmStart::towards(dir));
             }
             Ok(())
         })
@@ -218,6 +226,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_iterations: settings.max_iterations.saturating_sub(walked),
         };
         self.global(self.centre.as_ref(), state, &limits, None, wants_pos, hit)?;
+        if hit.limit {
+            // No proof is wanted: a walk that ends at its direction is the answer.
+            hit.limit = !self.floor(hit, &limits)?;
+        }
         if self.centre.is_some() {
             // The bound of a local query stands on no centre.
             hit.depth_lower = 0.0;
@@ -236,7 +248,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<Status, Stop> {
         let aim = self.still_apart(state)?;
-        let warm = *state;
+        let warm = match &self.centre {
+            Some(c) if state.is_swapped(&c.v) => WarmStart::COLD,
+            _ => *state,
+        };
         let start = mpr::local::WalkStart {
             dir: warm.direction().unwrap_or_else(|| self.cold_start()),
             depth: if warm.is_overlap() { warm.depth } else { 0.0 },
@@ -246,28 +261,25 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut fit = SphereFit::default();
         (fit.radius, fit.is_warm) = (warm.radius, warm.radius != [0.0; 2]);
         let found = mpr::local::penetration(&mut query, &mut set, &mut fit, &start, settings);
-        let left = match &found {
-            Ok((walked, _)) => WarmStart {
-                dir: walked.dir,
-                depth: walked.depth,
-                radius: if fit.is_confirmed {
+        *state = match &found {
+            Ok((walked, _)) => {
+                let radius = if fit.is_confirmed {
                     fit.radius
                 } else {
                     [0.0; 2]
-                },
-                kind: WarmKind::Plain,
-            },
-            Err(Stop::Apart(axis)) => WarmStart {
-                dir: *axis,
-                depth: aim,
-                kind: WarmKind::Apart,
-                ..warm
-            },
+                };
+                self.facing(WarmStart::hit(walked.dir, walked.depth, radius, false))
+            }
+            Err(Stop::Apart(axis)) => {
+                WarmStart::apart(&SeparatingAxis { dir: *axis, aim }, warm.radius)
+            }
             Err(Stop::Fault(fault)) => return Err((*fault).into()),
         };
-        *state = left;
-        let (walked, status) = found?;
+        let (walked, mut status) = found?;
         *hit = walked;
+        if !hit.has_sound_witnesses(query.scale.tolerance(settings.tolerance)) {
+            status = Status::Rounding;
+        }
         if status == Status::Converged && wants_pos {
             let mut seen = Seen::Nothing;
             let known = |i: usize| (i < set.len()).then(|| [set.vertex1(i), set.vertex2(i)]);
@@ -317,7 +329,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             };
             let mut set = VertexSet::EMPTY;
             self.prove(hit, &mut set, settings, flat.is_some())?;
-            *state = WarmStart::towards(hit.normal);
+            *state = self.facing(WarmStart::towards(hit.normal));
             hit.pos = if wants_pos && !hit.limit {
                 self.position(hit, settings.tolerance, &Seen::Nothing)?
             } else {
@@ -401,9 +413,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let arena = arena.map(|arena| arena as &mut dyn Arena);
         let found = epa::penetration::penetration(query, &request, arena, &mut answer);
         if self.lasting && !matches!(found, Err(Stop::Fault(_))) {
-            *state = WarmStart {
-                depth: if found.is_ok() { warm.depth } else { aim },
-                ..warm
+            *state = match &found {
+                Ok(_) => self.facing(warm),
+                Err(_) => {
+                    warm.depth = aim;
+                    warm
+                }
             };
         }
         let status = found?;
@@ -453,7 +468,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 set.push(&plane.normal, &plane.point);
             }
             self.prove(hit, &mut set, settings, false)?;
-            *state = WarmStart::towards(hit.normal);
+            *state = self.facing(WarmStart::towards(hit.normal));
             hit.pos = hit.middle();
             Ok(())
         })

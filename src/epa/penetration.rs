@@ -30,8 +30,9 @@ use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::contains_origin;
+use crate::gjk::separating_axis::SeparatingAxis;
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
-use crate::minkowski::query::{Stop, SupportQuery};
+use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
@@ -149,12 +150,11 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         .evaluate_first(&dir)
         .and_then(|first| solve(&mut query, &dir, &first, request, arena, answer));
     if let Err(Stop::Apart(axis)) = found {
-        *answer.warm = WarmStart {
+        let axis = SeparatingAxis {
             dir: axis,
-            depth: 0.0,
-            radius: request.warm.radius,
-            kind: WarmKind::Apart,
+            aim: 0.0,
         };
+        *answer.warm = WarmStart::apart(&axis, request.warm.radius);
     }
     found
 }
@@ -261,21 +261,13 @@ fn solve<A: SupportMap, B: SupportMap>(
         iterations,
         ..
     } = solver;
-    let is_round = iterations > MAX_PLAIN_ITERATIONS;
-    *answer.warm = WarmStart {
-        dir: query.upper.dir,
-        depth: query.upper.depth,
-        radius: if fit.is_confirmed {
-            fit.radius
-        } else {
-            [0.0; 2]
-        },
-        kind: if is_round {
-            WarmKind::Round
-        } else {
-            WarmKind::Plain
-        },
+    let radius = if fit.is_confirmed {
+        fit.radius
+    } else {
+        [0.0; 2]
     };
+    let UpperBound { dir, depth, .. } = query.upper;
+    *answer.warm = WarmStart::hit(dir, depth, radius, iterations > MAX_PLAIN_ITERATIONS);
     Ok(status)
 }
 
@@ -724,7 +716,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         gap: f64,
     ) {
         let upper = self.query.upper;
-        self.query.is_inconsistent |= self.query.has_contradiction(set, &face);
+        self.query.is_inconsistent |= self.query.has_contradiction(set);
         let foot = upper.dir * upper.depth;
         let closest = |[a, b, c]: &[Vertex; 3]| barycentric::triangle(&foot, &a.w, &b.w, &c.w);
         let mut best = closest(&face);

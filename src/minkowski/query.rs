@@ -291,29 +291,15 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(SupportPoint { v: v1 - v2, v1, v2 })
     }
 
-    /// Returns whether a known difference lies beyond the plane of the upper bound, or the points that the
-    /// answer stands on beyond any queried plane: its support point and the corners of its face.
+    /// Returns whether a known difference lies beyond a queried plane.
     #[inline(always)]
-    pub fn has_contradiction<const N: usize>(
-        &self,
-        set: &VertexSet<N>,
-        face: &[Vertex; 3],
-    ) -> bool {
+    pub fn has_contradiction<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let tie = self.scale.tie_eps();
-        let UpperBound { depth, dir, index } = self.upper;
-        let support = set.difference(VertexSet::<N>::sample(index));
-        let mut is_beyond = dir.dot(&set.difference(set.farthest(&dir))) > depth + tie;
-        let [a, b, c] = face.each_ref().map(|v| &v.w);
-        for i in 0..set.len() {
+        (0..set.len()).any(|i| {
             let n = set.dir(i);
-            let h = n.dot(&set.difference(VertexSet::<N>::sample(i))) + tie;
-            let most = larger(
-                larger(n.dot(a), n.dot(b)),
-                larger(n.dot(c), n.dot(&support)),
-            );
-            is_beyond |= most > h;
-        }
-        is_beyond
+            let support = set.difference(VertexSet::<N>::sample(i));
+            n.dot(&(set.difference(set.farthest(&n)) - support)) > tie
+        })
     }
 
     /// Starts again with every direction evaluated twice: forgets the upper bound.

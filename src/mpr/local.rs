@@ -654,7 +654,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             }
             Step::Smooth(_) | Step::Ray(_) => {}
         }
-        if self.query.has_contradiction(self.set, &face.corners) {
+        if self.query.has_contradiction(self.set) {
             return Err(Halt::Status(Status::InconsistentSupport));
         }
         self.prove_overlap(face)?;

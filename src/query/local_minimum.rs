@@ -20,12 +20,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Lowers a depth that the global query could not prove. Where minima form a curve or a surface, no polytope
     /// proves them in the steps there are, and the least depth met need not be theirs to the tolerance. But its
     /// direction is near them, and a walk from there finds one, to a hundredth of the tolerance.
+    /// Returns whether the depth is that of a local minimum, within the tolerance.
     #[cold]
     #[inline(never)]
-    pub(super) fn floor(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<(), Fault> {
+    pub(super) fn floor(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<bool, Fault> {
         let left = limits.max_iterations.saturating_sub(hit.iterations);
         if left == 0 {
-            return Ok(());
+            return Ok(false);
         }
         let settings = Settings {
             tolerance: limits.gap.tolerance * 0.01,
@@ -39,16 +40,18 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             depth: hit.depth,
         };
         match local::penetration(&mut query, &mut set, &mut fit, &start, &settings) {
-            Ok((floor, Status::Converged)) if floor.depth < hit.depth => {
-                *hit = Penetration {
-                    depth_lower: hit.depth_lower.min(floor.depth),
-                    iterations: hit.iterations + floor.iterations,
-                    limit: true,
-                    ..floor
-                };
-                Ok(())
+            Ok((floor, Status::Converged)) => {
+                if floor.depth < hit.depth {
+                    *hit = Penetration {
+                        depth_lower: hit.depth_lower.min(floor.depth),
+                        iterations: hit.iterations + floor.iterations,
+                        limit: true,
+                        ..floor
+                    };
+                }
+                Ok(floor.depth <= hit.depth + limits.gap.tolerance)
             }
-            Ok(_) | Err(Stop::Apart(_)) => Ok(()),
+            Ok(_) | Err(Stop::Apart(_)) => Ok(false),
             Err(Stop::Fault(fault)) => Err(fault),
         }
     }

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! What one query of a pair leaves for the next (W. Gao, Sec. III-D): one direction, its depth, the radii
-//! of sphere fits, and a kind. A random, stale or foreign state costs time; it proves nothing.
+//! of sphere fits, and a kind; and, rounded, the direction between the centres, which shows a state of the
+//! swapped pair. A random, stale or foreign state costs time; it proves nothing.
 
 use crate::gjk::separating_axis::SeparatingAxis;
 use crate::math::{EPSILON, Vec3, ZERO, unit};
@@ -32,6 +33,32 @@ pub struct WarmStart {
     pub radius: [f64; 2],
     /// How the last query ended.
     pub kind: WarmKind,
+    /// The direction of the difference of the centres, packed; 0 where they are not given.
+    facing: u32,
+}
+
+/// The bits of a packed coordinate, and what 0 is packed as.
+const COORDINATE_BITS: u32 = 10;
+const COORDINATE_ZERO: u32 = 1 << (COORDINATE_BITS - 1);
+
+/// Packs the direction of a vector into 30 bits; 0 for a vector without one.
+fn pack_direction(v: &Vec3) -> u32 {
+    let Some(n) = unit(v) else { return 0 };
+    let scale = f64::from(COORDINATE_ZERO - 1);
+    (0..3).fold(0, |packed, i| {
+        // Rounded to the closest integer.
+        let x = (n[i] * scale + f64::from(COORDINATE_ZERO) + 0.5) as u32;
+        packed | x << (COORDINATE_BITS * i as u32)
+    })
+}
+
+/// Unpacks a direction; not quite unit.
+fn unpack_direction(packed: u32) -> Vec3 {
+    let coordinate = |i: u32| {
+        let x = packed >> (COORDINATE_BITS * i) & (2 * COORDINATE_ZERO - 1);
+        f64::from(x) - f64::from(COORDINATE_ZERO)
+    };
+    Vec3::new(coordinate(0), coordinate(1), coordinate(2))
 }
 
 impl Default for WarmStart {
@@ -50,6 +77,7 @@ impl WarmStart {
         depth: 0.0,
         radius: [0.0; 2],
         kind: WarmKind::Cold,
+        facing: 0,
     };
 
     /// Makes the state of a pair that overlaps, and whose obj2 leaves along a unit direction.
@@ -74,7 +102,34 @@ impl WarmStart {
             depth: axis.aim,
             radius,
             kind: WarmKind::Apart,
+            facing: 0,
         }
+    }
+
+    /// Makes the state of a hit. `is_round`: D is round there.
+    pub fn hit(dir: Vec3, depth: f64, radius: [f64; 2], is_round: bool) -> Self {
+        Self {
+            dir,
+            depth,
+            radius,
+            kind: if is_round {
+                WarmKind::Round
+            } else {
+                WarmKind::Plain
+            },
+            facing: 0,
+        }
+    }
+
+    /// Stores the direction of the difference of the centres.
+    pub fn set_facing(&mut self, center: &Vec3) {
+        self.facing = pack_direction(center);
+    }
+
+    /// Returns whether the centres looked the other way when the state was left: it is that of the swapped
+    /// pair.
+    pub fn is_swapped(&self, center: &Vec3) -> bool {
+        self.facing != 0 && unpack_direction(self.facing).dot(center) < 0.0
     }
 
     /// Returns whether the pair overlapped.
@@ -100,11 +155,14 @@ impl WarmStart {
         if self.kind != WarmKind::Cold {
             self.dir = -self.dir;
             self.radius.swap(0, 1);
+            if self.facing != 0 {
+                self.facing = pack_direction(&-unpack_direction(self.facing));
+            }
         }
     }
 
     /// Packs the state into plain numbers. All zero is cold.
-    pub fn pack(&self) -> ([f64; Self::REALS], u32) {
+    pub fn pack(&self) -> ([f64; Self::REALS], [u32; 2]) {
         let [x, y, z] = self.dir.into();
         let [radius1, radius2] = self.radius;
         let kind = match self.kind {
@@ -113,11 +171,12 @@ impl WarmStart {
             WarmKind::Plain => 2,
             WarmKind::Round => 3,
         };
-        ([x, y, z, self.depth, radius1, radius2], kind)
+        ([x, y, z, self.depth, radius1, radius2], [kind, self.facing])
     }
 
     /// Unpacks a state; what [`WarmStart::pack`] did not make, and a direction that is not unit, is cold.
-    pub fn unpack([x, y, z, depth, radius1, radius2]: [f64; Self::REALS], kind: u32) -> Self {
+    pub fn unpack(reals: [f64; Self::REALS], [kind, facing]: [u32; 2]) -> Self {
+        let [x, y, z, depth, radius1, radius2] = reals;
         let dir = Vec3::new(x, y, z);
         let kind = match kind {
             1 => WarmKind::Apart,
@@ -141,6 +200,7 @@ impl WarmStart {
             depth,
             radius: [radius1, radius2],
             kind,
+            facing,
         }
     }
 }
@@ -151,16 +211,12 @@ mod tests {
 
     #[test]
     fn a_state_packed_is_the_same_unpacked() {
-        for kind in [WarmKind::Apart, WarmKind::Plain, WarmKind::Round] {
-            let state = WarmStart {
-                dir: Vec3::new(0.6, 0.0, -0.8),
-                depth: 0.25,
-                radius: [1.0, 0.5],
-                kind,
-            };
-            let (reals, packed) = state.pack();
-            let again = WarmStart::unpack(reals, packed);
-            assert_eq!((again.pack(), again.kind), (state.pack(), kind));
+        for is_round in [false, true] {
+            let mut state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5], is_round);
+            state.set_facing(&Vec3::new(3.0, -1.0, 2.0));
+            let (reals, words) = state.pack();
+            let again = WarmStart::unpack(reals, words);
+            assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
             let mut flipped = again;
             flipped.flip();
             assert_eq!((flipped.dir, flipped.radius), (-state.dir, [0.5, 1.0]));
@@ -170,11 +226,26 @@ mod tests {
     }
 
     #[test]
+    fn a_state_of_the_swapped_pair_is_noticed() {
+        let mut r = crate::shapes::Random::new(3);
+        for _ in 0..1000 {
+            let n = r.direction();
+            let mut state = WarmStart::towards(Vec3::x());
+            assert!(!state.is_swapped(&n));
+            state.set_facing(&(n * 0.001));
+            assert!(!state.is_swapped(&n) && state.is_swapped(&-n));
+            state.flip();
+            assert!(state.is_swapped(&n) && !state.is_swapped(&-n));
+        }
+    }
+
+    #[test]
     fn foreign_numbers_are_cold() {
         let good = [1.0, 0.0, 0.0, 0.1, 0.0, 0.0];
-        assert_eq!(WarmStart::unpack(good, 2).kind, WarmKind::Plain);
-        assert_eq!(WarmStart::unpack(good, 4).kind, WarmKind::Cold);
-        assert_eq!(WarmStart::unpack([0.0; 6], 0).kind, WarmKind::Cold);
+        let kind = |reals, kind| WarmStart::unpack(reals, [kind, 0]).kind;
+        assert_eq!(kind(good, 2), WarmKind::Plain);
+        assert_eq!(kind(good, 4), WarmKind::Cold);
+        assert_eq!(kind([0.0; 6], 0), WarmKind::Cold);
         for (i, x) in [
             (0, 2.0),
             (0, f64::NAN),
@@ -184,7 +255,7 @@ mod tests {
         ] {
             let mut bad = good;
             bad[i] = x;
-            assert_eq!(WarmStart::unpack(bad, 2).kind, WarmKind::Cold);
+            assert_eq!(kind(bad, 2), WarmKind::Cold);
         }
     }
 }

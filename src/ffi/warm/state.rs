@@ -44,7 +44,7 @@ const _: () = {
 unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
     // SAFETY: [inputs].
     match unsafe { warm.as_ref() } {
-        Some(warm) => WarmStart::unpack(warm.reals, warm.words[0]),
+        Some(warm) => WarmStart::unpack(warm.reals, warm.words),
         None => WarmStart::COLD,
     }
 }
@@ -78,8 +78,7 @@ pub(in crate::ffi) unsafe fn with_state(
 /// \[outputs\] of the module contract.
 unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
     if !warm.is_null() {
-        let (reals, kind) = state.pack();
-        let words = [kind, 0];
+        let (reals, words) = state.pack();
         // SAFETY: [outputs].
         unsafe { *warm = ccd_warm_t { reals, words } };
     }
