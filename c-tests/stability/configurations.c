@@ -9,6 +9,7 @@
  *                                                  libccd is wrong */
 
 #include "configurations.h"
+#include "judge.h"
 
 static int ledger, failed, checked;
 static const char *group;

@@ -10,7 +10,10 @@
 #ifndef STABILITY_CONFIGURATIONS_H
 #define STABILITY_CONFIGURATIONS_H
 
-#include "judge.h"
+#include "tolerances.h"
+#include "truth.h"
+
+#include <stdio.h>
 
 typedef struct {
     char id[48];
@@ -99,8 +102,8 @@ static const configuration_row_t configuration_rows[] = {
      {CYLINDER(.08, .001), AT(0, 0, .0085)}, 0, 1e-15, 1e-8, EVERYWHERE | TOUCHING},
     {"T10", "cube in cube on the diagonal", {BOX(.5, .5, .5)},
      {BOX(.1, .1, .1), AT(.4, .4, .4)}, .2, 1e-12, 1e-6, EVERYWHERE},
-    {"T11", "cylinder through a huge triangle", {CYLINDER(.02, .07), ABOUT(-.16498479, .36682746, -.48718625, 1.367667908687469),
-     AT(28.87991333, 260.53430176, .00036136055)},
+    {"T11", "cylinder through a huge triangle", {CYLINDER(.02, .07), AT(28.87991333, 260.53430176, .00036136055),
+     ABOUT(-.16498479, .36682746, -.48718625, 1.367667908687469)},
      {HULL(huge_triangle)}, .0617191506, 1e-9, 1e-3, 0},
     {"T12 coaxial", "capsules on one axis", {CAPSULE(.1, .5)},
      {CAPSULE(.1, .5), AT(0, 0, .3)}, .2, 1e-12, 1e-6, EVERYWHERE | SURFACE},
