@@ -8,8 +8,9 @@
  *   configurations --ledger                        a Markdown table of those where
  *                                                  libccd is wrong */
 
-#include "configurations.h"
 #include "judge.h"
+
+#include "configurations.h"
 
 static int ledger, failed, checked;
 static const char *group;

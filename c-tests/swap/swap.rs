@@ -20,6 +20,9 @@ mod fcl_scene;
 #[path = "fcl_distance.rs"]
 mod fcl_distance;
 
+#[path = "wheel.rs"]
+mod wheel;
+
 use checks::Piles;
 
 fn piles_must_pass(p: &Piles) {
@@ -66,6 +69,18 @@ fn fcl_signed_distance_by_preloading() {
         let bad = ["threw", "endless", "wrong", "outside"];
         let bad = bad.iter().any(|key| counts[*key] != 0.0);
         assert!(!bad, "{set}:\n{}", preloaded.wrong.join("\n"));
+    }
+}
+
+/// A preloaded library takes the place of the shared libccd that python-fcl's wheel carries.
+#[test]
+fn python_wheel_by_preloading() {
+    match wheel::wheels(1000) {
+        Err(said) => println!("skipped: python-fcl does not install: {said}"),
+        Ok([theirs, ours]) => {
+            assert!(ours["missed"] == 0.0 && ours["deep"] == 0.0, "{ours:?}");
+            assert!(theirs["deep"] > 0.0, "nothing to mend: {theirs:?}");
+        }
     }
 }
 
