@@ -8,6 +8,8 @@
  *   configurations --ledger                        a Markdown table of those where
  *                                                  libccd is wrong */
 
+#include "judge.h"
+
 #include "configurations.h"
 
 static int ledger, failed, checked;

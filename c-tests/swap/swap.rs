@@ -17,6 +17,12 @@ mod checks;
 #[path = "fcl_scene.rs"]
 mod fcl_scene;
 
+#[path = "fcl_distance.rs"]
+mod fcl_distance;
+
+#[path = "wheel.rs"]
+mod wheel;
+
 use checks::Piles;
 
 fn piles_must_pass(p: &Piles) {
@@ -49,6 +55,33 @@ fn fcl_collide_and_signed_distance() {
     let (distances, _, [theirs, ours], against) = checks::judge_distances(&lines);
     assert!(distances > 1000 && ours <= theirs, "{distances}, {ours}");
     assert!(against.is_empty(), "{}", against.join("\n"));
+}
+
+/// With `libwarmccd-fcl.so` FCL answers every configuration, touching boxes and random pairs right,
+/// and throws nothing; without it, it takes its own function.
+#[test]
+fn fcl_signed_distance_by_preloading() {
+    let [theirs, _, preloaded] = fcl_distance::distances(1000);
+    assert!(theirs.function.starts_with("libfcl.so"));
+    assert_eq!(preloaded.function, "libwarmccd-fcl.so");
+    for (set, counts) in fcl_distance::SETS.iter().zip(&preloaded.sets) {
+        assert!(counts["queries"] >= 100.0, "{set}: {counts:?}");
+        let bad = ["threw", "endless", "wrong", "outside"];
+        let bad = bad.iter().any(|key| counts[*key] != 0.0);
+        assert!(!bad, "{set}:\n{}", preloaded.wrong.join("\n"));
+    }
+}
+
+/// A preloaded library takes the place of the shared libccd that python-fcl's wheel carries.
+#[test]
+fn python_wheel_by_preloading() {
+    match wheel::wheels(1000) {
+        Err(said) => println!("skipped: python-fcl does not install: {said}"),
+        Ok([theirs, ours]) => {
+            assert!(ours["missed"] == 0.0 && ours["deep"] == 0.0, "{ours:?}");
+            assert!(theirs["deep"] > 0.0, "nothing to mend: {theirs:?}");
+        }
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@
 //! `cargo run --example swap` the static queries of the test run, on more poses (a minute)
 //! `cargo run --example swap -- world` ODE worlds collided by this library alone (3 minutes)
 //! `cargo run --example swap -- scene` a scene through FCL's broad phase (half a minute)
+//! `cargo run --example swap -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
 //! `cargo run --example swap -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --example swap -- long` whole simulations, longer and nastier (3 minutes)
 
@@ -18,6 +19,9 @@ mod checks;
 
 #[path = "fcl_scene.rs"]
 mod fcl_scene;
+
+#[path = "fcl_distance.rs"]
+mod fcl_distance;
 
 use checks::{Piles, Swapped, piles};
 
@@ -114,11 +118,14 @@ fn main() {
     match std::env::args().nth(1).as_deref() {
         None => table(),
         Some("long") => long(),
+        Some("distance") => println!("{}", fcl_distance::table(&fcl_distance::distances(10_000))),
         Some("scene") => scene(),
         Some("screens") => screens(),
         Some("world") => world(),
         Some(other) => {
-            eprintln!("unknown: {other}; nothing, `scene`, `screens`, `world` or `long`");
+            eprintln!(
+                "unknown: {other}; nothing, `distance`, `scene`, `screens`, `world` or `long`"
+            );
             std::process::exit(2);
         }
     }

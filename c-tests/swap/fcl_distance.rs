@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! FCL's signed distance on libccd, on this library, and on this library with
+//! `libwarmccd-fcl.so` preloaded.
+
+// Each driver uses a part.
+#![allow(dead_code)]
+
+use crate::checks::{cpp, head};
+use crate::harness::{self, Executable, Precision, Program, fields, must_succeed};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::Duration;
+
+pub const SETS: [&str; 3] = ["configurations", "kissing", "random"];
+
+/// What FCL answered with one choice of libraries.
+pub struct Distances {
+    name: &'static str,
+    /// The file that FCL's function was taken from.
+    pub function: String,
+    /// The counts of each of [`SETS`].
+    pub sets: [BTreeMap<String, f64>; 3],
+    /// A line for each answer that is wrong.
+    pub wrong: Vec<String>,
+}
+
+/// Compiles `libwarmccd-fcl.so`.
+fn preloaded() -> PathBuf {
+    let library = harness::library(Precision::Double);
+    let path = harness::output_dir().join("libwarmccd-fcl.so");
+    let mut compile = harness::compile_with(&harness::compiler(true));
+    let source = harness::root().join("cmake/fcl/signed_distance.cpp");
+    compile.args(["-std=c++11", "-fPIC", "-shared", "-Wextra", "-Werror"]);
+    compile.args(["-fvisibility=hidden", "-isystem/usr/include/eigen3"]);
+    compile.arg("-I").arg(harness::root().join("include"));
+    compile.arg(source).arg("-o").arg(&path);
+    compile.arg("-L").arg(&library.dir).arg("-lccd");
+    must_succeed(&mut compile, "the compiler (for libwarmccd-fcl.so)");
+    path
+}
+
+fn run(name: &'static str, program: &Executable, preload: bool, pairs: u32) -> Distances {
+    let mut command = program.command();
+    command.arg(pairs.to_string());
+    if preload {
+        command.env("LD_PRELOAD", preloaded());
+    }
+    let (status, written) = harness::run_command(&mut command, Duration::from_secs(300));
+    assert!(status.success(), "{name}: {status}\n{}", written.stderr);
+    let lines: Vec<String> = written.stdout.lines().map(String::from).collect();
+    let library = ["library libccd", "library warmccd "][usize::from(name.contains("this"))];
+    assert!(lines[0].starts_with(library), "{name}: on {}", lines[0]);
+    let function = lines.iter().find_map(|line| line.strip_prefix("function "));
+    Distances {
+        name,
+        function: function.expect("a file").to_owned(),
+        sets: SETS.map(|set| fields(&lines, set)),
+        wrong: lines
+            .iter()
+            .filter(|line| line.split(' ').next().is_some_and(|w| w.ends_with(':')))
+            .cloned()
+            .collect(),
+    }
+}
+
+pub fn distances(pairs: u32) -> [Distances; 3] {
+    let program: Program = cpp("fcl_distance").library("fcl").without_tools();
+    // The rows of configurations.h name the fields that they set.
+    let program = program.flag("-Wno-missing-field-initializers");
+    let theirs = program.link_system().build().quiet();
+    let ours = theirs.swapped();
+    [
+        run("FCL on libccd", &theirs, false, pairs),
+        run("FCL on this library", &ours, false, pairs),
+        run("this library and `libwarmccd-fcl.so`", &ours, true, pairs),
+    ]
+}
+
+/// Markdown.
+pub fn table(all: &[Distances]) -> String {
+    let columns = ["", "pairs", "threw", "endless", "wrong", "µs a distance"];
+    let mut out = head(&columns);
+    for (i, set) in SETS.iter().enumerate() {
+        for d in all {
+            let of = |key: &str| d.sets[i][key];
+            let _ = writeln!(
+                out,
+                "| {set}: {} | {} | {} | {} | {} | {:.1} |",
+                d.name,
+                of("queries"),
+                of("threw"),
+                of("endless"),
+                of("wrong") + of("outside"),
+                1e-3 * of("nanoseconds"),
+            );
+        }
+    }
+    out
+}

@@ -1,0 +1,105 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Replaces the distance functions of FCL 0.7's default solver, without a new build of FCL.
+ *
+ * libfcl.so exports fcl::detail::GJKSignedDistance and GJKDistance as weak symbols and calls them
+ * through its PLT. A library that is preloaded, or linked before libfcl, and defines both takes
+ * their place. FCL's shapes, closed forms, broad phase and collide stay FCL's own.
+ *
+ * Meaning of the results, as in FCL's gjk_libccd-inl.h:
+ *   GJKSignedDistance  apart or touching: the distance, witness points, true; overlapping: minus
+ *                      the penetration depth, witness points, false
+ *   GJKDistance        apart or touching: the same; overlapping: -1, points at the origin, false
+ * FCL throws FailedAtThisConfiguration where its EPA fails, which its solver turns into a
+ * std::logic_error. Here support points that are not finite alone raise std::invalid_argument,
+ * which is a std::logic_error. */
+
+#include <ccd/warm.h>
+
+#include <Eigen/Core>
+#include <fcl/config.h>
+
+#include <cmath>
+#include <new>
+#include <stdexcept>
+
+#if FCL_MAJOR_VERSION != 0 || FCL_MINOR_VERSION != 7
+#error "written for FCL 0.7, whose function signatures it repeats"
+#endif
+
+namespace {
+
+template <typename S>
+using Vector3 = Eigen::Matrix<S, 3, 1>;
+
+template <typename S>
+void store(const ccd_vec3_t &point, Vector3<S> *out)
+{
+    if (out)
+        *out << static_cast<S>(point.v[0]), static_cast<S>(point.v[1]), static_cast<S>(point.v[2]);
+}
+
+/* Writes the signed distance and the witness points; returns whether the objects are apart. */
+template <typename S>
+bool distance(void *obj1, ccd_support_fn support1, void *obj2, ccd_support_fn support2, unsigned int max_iterations,
+              S tolerance, bool with_depth, S *dist, Vector3<S> *p1, Vector3<S> *p2)
+{
+    ccd_t ccd;
+    ccd_distance_t out;
+    CCD_INIT(&ccd);
+    ccd.support1 = support1;
+    ccd.support2 = support2;
+    ccd.max_iterations = max_iterations;
+    ccd.dist_tolerance = static_cast<ccd_real_t>(tolerance);
+    const int code = ccdSignedDistance(obj1, obj2, &ccd, 0, 0, INFINITY, nullptr, CCD_WANT_POINTS, &out);
+    if (code == CCD_NO_MEMORY)
+        throw std::bad_alloc();
+    if (code == CCD_BAD_INPUT)
+        throw std::invalid_argument("warmccd: a shape, a pose or a tolerance is not finite");
+
+    /* The upper bound is the distance of the witness points, the lower one that of their planes.
+     * At CCD_LIMIT the sign alone tells whether the objects overlap. */
+    const bool is_apart = code == CCD_MISS || (code == CCD_LIMIT && out.distance >= 0);
+    if (!is_apart && !with_depth) {
+        out.distance = -1;
+        out.point1 = out.point2 = ccd_vec3_t();
+    }
+    if (dist)
+        *dist = static_cast<S>(is_apart ? std::fmax(out.distance_upper, CCD_ZERO) : out.distance);
+    store(out.point1, p1);
+    store(out.point2, p2);
+    return is_apart;
+}
+
+} // namespace
+
+namespace fcl {
+namespace detail {
+
+template <typename S>
+bool GJKSignedDistance(void *, ccd_support_fn, void *, ccd_support_fn, unsigned int, S, S *, Vector3<S> *, Vector3<S> *);
+template <typename S>
+bool GJKDistance(void *, ccd_support_fn, void *, ccd_support_fn, unsigned int, S, S *, Vector3<S> *, Vector3<S> *);
+
+#define REPLACE(S)                                                                                                     \
+    template <>                                                                                                        \
+    __attribute__((visibility("default"))) bool GJKSignedDistance<S>(                                                  \
+        void *obj1, ccd_support_fn supp1, void *obj2, ccd_support_fn supp2, unsigned int max_iterations, S tolerance,  \
+        S *res, Vector3<S> *p1, Vector3<S> *p2)                                                                        \
+    {                                                                                                                  \
+        return distance(obj1, supp1, obj2, supp2, max_iterations, tolerance, true, res, p1, p2);                       \
+    }                                                                                                                  \
+    template <>                                                                                                        \
+    __attribute__((visibility("default"))) bool GJKDistance<S>(                                                        \
+        void *obj1, ccd_support_fn supp1, void *obj2, ccd_support_fn supp2, unsigned int max_iterations, S tolerance,  \
+        S *res, Vector3<S> *p1, Vector3<S> *p2)                                                                        \
+    {                                                                                                                  \
+        return distance(obj1, supp1, obj2, supp2, max_iterations, tolerance, false, res, p1, p2);                      \
+    }
+
+REPLACE(double)
+REPLACE(float)
+
+} // namespace detail
+} // namespace fcl
