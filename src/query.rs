@@ -23,8 +23,8 @@
 mod local_minimum;
 pub mod warm_start;
 
-use crate::contact::{Penetration, Settings, Status};
 use crate::contact::center_of_pressure::center_of_pressure;
+use crate::contact::{Penetration, Settings, Status};
 use crate::epa::penetration::{Arena, EpaAnswer, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
 use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{contains_origin, intersect};

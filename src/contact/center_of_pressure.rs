@@ -397,3 +397,177 @@ impl PressureSum {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{Random, ball, corners, hull, placed};
+    use nalgebra::{Rotation3, Vector3};
+
+    fn fan(corners: &[(f64, f64, f64)]) -> Fan {
+        let mut fan = Fan::EMPTY;
+        for &(x, y, low) in corners {
+            fan.push(FeatureVertex { x, y, low });
+        }
+        assert!(fan.close());
+        fan
+    }
+
+    /// Returns w and low of a fan at a place.
+    fn bounds(fan: &Fan, r: &FeatureVertex) -> [f64; 2] {
+        let mut found = (0..fan.len).filter_map(|i| {
+            let (p, q) = (&fan.vertices[i], &fan.vertices[i + 1]);
+            let (one, two) = (r.cross(q) / fan.areas[i], p.cross(r) / fan.areas[i]);
+            (one >= 0.0 && two >= 0.0).then_some([one + two, one * p.low + two * q.low])
+        });
+        found.next().unwrap_or([9.0; 2])
+    }
+
+    /// Returns the centroid of what the fans share, by sums over a grid.
+    fn center_by_grid(fans: &[Fan; 2]) -> [f64; 2] {
+        const N: i32 = 400;
+        let mut sum = [0.0; 3];
+        for (x, y) in (-N..N).flat_map(|x| (-N..N).map(move |y| (x, y))) {
+            let [x, y] = [x, y].map(|x| (x as f64 + 0.5) * 1.5 / N as f64);
+            let r = FeatureVertex { x, y, low: 0.0 };
+            let [[w1, low1], [w2, low2]] = [0, 1].map(|i| bounds(&fans[i], &r));
+            let depth = 1.0 - low1 - low2;
+            if w1 <= 1.0 && w2 <= 1.0 && depth > 0.0 {
+                sum = [sum[0] + depth, sum[1] + depth * x, sum[2] + depth * y];
+            }
+        }
+        [sum[1] / sum[0], sum[2] / sum[0]]
+    }
+
+    #[test]
+    fn two_fans_have_the_center_of_a_grid() {
+        let mut r = Random::new(1);
+        for round in 0..40 {
+            let fans = [0, 1].map(|_| {
+                let n = 3 + round % 4;
+                let corners: Vec<_> = (0..n)
+                    .map(|k| {
+                        let turn = (k as f64 + r.within(0.0, 0.4)) / n as f64;
+                        let (y, x) = (turn * core::f64::consts::TAU).sin_cos();
+                        let far = r.within(0.5, 1.0);
+                        (far * x, far * y, r.within(0.0, 1.2))
+                    })
+                    .collect();
+                fan(&corners)
+            });
+            let mut sum = PressureSum::new(1e-9, 1e-9);
+            sum.add_fans(&fans[0], &fans[1]);
+            let ([x, y], [u, v]) = (sum.center(), center_by_grid(&fans));
+            assert!((x - u).hypot(y - v) < 3e-3, "{round}: {x} {y} {u} {v}");
+        }
+    }
+
+    /// Returns the center of pressure of obj1 on the plane that obj2 has along −z, so deep, from vertices that
+    /// `dirs` find; and the calls.
+    fn position(points: &[Vec3], depth: f64, dirs: &[Vec3]) -> (Vec3, u64) {
+        let lowest = points.iter().fold(f64::INFINITY, |z, p| z.min(p.z));
+        let body = placed(
+            points,
+            &Rotation3::identity(),
+            Vec3::z() * (-depth - lowest),
+        );
+        let floor = placed(
+            &corners(Vec3::new(2.0, 2.0, 1.0)),
+            &Rotation3::identity(),
+            -Vec3::z(),
+        );
+        let md = MinkowskiDifference::new(hull(&floor), hull(&body));
+        let mut set = VertexSet::<16>::EMPTY;
+        for dir in dirs {
+            set.push(dir, &md.support(dir).unwrap());
+        }
+        let found = md.support(&Vec3::z()).unwrap();
+        let point1 = Vec3::new(found.v2.x, found.v2.y, 0.0);
+        let hit = Penetration {
+            depth,
+            dir: Vec3::z(),
+            normal: Vec3::z(),
+            point1,
+            point2: found.v2,
+            ..Penetration::default()
+        };
+        let v2 = Vec3::z() * (-depth - lowest);
+        let centers = SupportPoint {
+            v: -Vec3::z() - v2,
+            v1: -Vec3::z(),
+            v2,
+        };
+        let before = md.supports();
+        let pos = center_of_pressure(&md, &set, &hit, Some(&centers), 1e-9).unwrap();
+        (pos, md.supports() - before)
+    }
+
+    fn leaning(half: Vec3, degrees: f64) -> Vec<Vec3> {
+        let axis = Vector3::y_axis();
+        let rotation = Rotation3::from_axis_angle(&axis, degrees.to_radians());
+        placed(&corners(half), &rotation, Vec3::zeros())
+    }
+
+    /// A box that leans by less than its depth over its width: the centroid of the wedge. No query is needed
+    /// where known directions cover the tilts.
+    #[test]
+    fn known_vertices_replace_queries() {
+        let half = Vec3::new(0.125, 0.125, 0.1);
+        let body = leaning(half, 0.1);
+        // δ falls linearly from d by `fall` over the width: (d/2 − fall/3) / (d − fall/2) of it.
+        let (depth, fall) = (1e-3, 0.25 * 0.1_f64.to_radians().sin());
+        let share = (depth / 2.0 - fall / 3.0) / (depth - fall / 2.0);
+        let (unaided, calls) = position(&body, depth, &[]);
+        let found = (unaided.x.abs() - 0.25 * (0.5 - share)).abs();
+        assert!(found < 1e-3, "{unaided:?} {share}");
+        let tilts = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+        let dirs = tilts.map(|(x, y)| Vec3::new(0.2 * x, 0.2 * y, 1.0).normalize());
+        let all: Vec<_> = dirs.iter().chain(&dirs).copied().collect();
+        let (aided, aided_calls) = position(&body, depth, &all);
+        assert!((aided - unaided).norm() < 1e-4, "{aided:?} {unaided:?}");
+        assert_eq!((calls > 0, aided_calls), (true, 0));
+    }
+
+    /// The position is continuous in the depth, from the center of pressure to the middle of the witness points.
+    #[test]
+    fn the_position_is_continuous_in_the_depth() {
+        for half in [Vec3::repeat(0.125), Vec3::new(0.125, 0.1, 0.005)] {
+            let body = leaning(half, 1.0);
+            let at = |depth| position(&body, depth, &[]).0;
+            let (mut depth, mut last) = (1e-4, at(1e-4));
+            while depth < 0.2 {
+                let step = 0.002 * depth;
+                depth += step;
+                let next = at(depth);
+                let (x, y) = (next.x - last.x, next.y - last.y);
+                assert!(x.hypot(y) < 8e-4, "{half:?} {depth}: {last:?} {next:?}");
+                last = next;
+            }
+        }
+        // A plate that is pressed by a tenth of its thickness keeps its center of pressure.
+        let plate = leaning(Vec3::new(0.125, 0.125, 0.005), 0.02);
+        let (pos, _) = position(&plate, 1e-3, &[]);
+        assert!(pos.x.abs() < 3e-3, "{pos:?}");
+    }
+
+    #[test]
+    fn a_point_that_is_not_finite_is_a_fault() {
+        let calls = core::cell::Cell::new(0);
+        let broken = |n: &Vec3| {
+            calls.set(calls.get() + 1);
+            n * if calls.get() > 1 { f64::NAN } else { 1.0 }
+        };
+        let md = MinkowskiDifference::new(broken, ball(Vec3::z() * 1.9, 1.0));
+        let mut set = VertexSet::<4>::EMPTY;
+        set.push(&Vec3::z(), &md.support(&Vec3::z()).unwrap());
+        let hit = Penetration {
+            depth: 0.1,
+            normal: Vec3::z(),
+            point1: Vec3::z(),
+            point2: Vec3::z() * 0.9,
+            ..Penetration::default()
+        };
+        let pos = center_of_pressure(&md, &set, &hit, None, 1e-9);
+        assert_eq!(pos, Err(Fault::NonFinite));
+    }
+}

@@ -393,11 +393,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// Looks beside a feature that is one vertex or an edge, where a face may be that no direction has found:
     /// queries across it, unless a known direction that found one of its vertices is tilted so.
     #[inline(always)]
-    fn confirm(
-        &self,
-        object: usize,
-        feature: &mut Feature,
-    ) -> Result<(), Fault> {
+    fn confirm(&self, object: usize, feature: &mut Feature) -> Result<(), Fault> {
         let [a, rest @ ..] = feature.vertices;
         let is_same = |p: &FeatureVertex, q: &FeatureVertex| p.is_within(q, self.same());
         let end = rest.iter().find(|v| !is_same(v, &a));
@@ -419,7 +415,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                 let dir = self.set.dir(self.first + i);
                 let cosine = self.frame.normal.dot(&dir);
                 let [x, y] = self.frame.axes.map(|e| e.dot(&dir) / cosine);
-                let is_across = x * u + y * v - 2.0 * (x * v - y * u).abs() >= MIN_COVER * self.tilt;
+                let is_across =
+                    x * u + y * v - 2.0 * (x * v - y * u).abs() >= MIN_COVER * self.tilt;
                 cosine > MIN_COSINE && is_across && (is_same(&p, &a) || is_same(&p, &b))
             });
             if !is_covered {
@@ -483,7 +480,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         if self.is_point(fan.vertices.get(..fan.len).unwrap_or(&[])) {
             return Ok(false);
         }
-        let lows = vertices.iter().chain(between.iter().flatten()).map(|v| v.low);
+        let lows = vertices
+            .iter()
+            .chain(between.iter().flatten())
+            .map(|v| v.low);
         let level = LEVEL * lows.fold(1.0, lesser);
         for v in fan.vertices.iter_mut().take(fan.len) {
             v.low -= level;
