@@ -25,7 +25,7 @@ use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;
 
 /// The known vertices that are looked at: the last of more.
-pub const MAX_KNOWN: usize = 24;
+pub const MAX_KNOWN: usize = 16;
 /// T, as a tangent, is this times the root of depth / extent, so that a round surface of that radius, or of
 /// half of it, is seen no lower than half the depth, and of a flat one that leans by a depth over its
 /// width all corners. Measured: ÷1.2 a corner of a leaning box is missed, ×1.2 a cone on its side steps by
@@ -193,6 +193,10 @@ pub struct FeatureQuery<'q, A, B, const N: usize> {
     half: f64,
     /// T, a tangent.
     tilt: f64,
+    /// Depth over T, metres.
+    fall: f64,
+    /// One over the length of a tilted normal.
+    cosine: f64,
     /// How far vertices are moved outwards, metres.
     pub margin: f64,
 }
@@ -233,6 +237,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         let [x, y, _] = project([[c1.x, -c2.x], [c1.y, -c2.y], [c1.z, -c2.z]]);
         let smaller = usize::from(far2[1] < far2[0]);
         let extent = far2[smaller].sqrt();
+        let tilt = lesser(TILT * (depth / extent).sqrt(), MAX_TILT);
         Self {
             md,
             set,
@@ -244,7 +249,9 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             extent,
             depth,
             half,
-            tilt: lesser(TILT * (depth / extent).sqrt(), MAX_TILT),
+            tilt,
+            fall: depth / tilt,
+            cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
             margin: larger(depth * MARGIN, 64.0 * EPSILON * extent),
         }
     }
@@ -266,10 +273,16 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// [`Fault::NonFinite`].
     #[inline(always)]
     fn query(&self, object: usize, x: f64, y: f64) -> Result<FeatureVertex, Fault> {
-        let unit = 1.0 / (1.0 + x * x + y * y).sqrt();
-        let dir = self.frame.tilted_normal(x, y) * unit;
+        self.query_unit(
+            object,
+            &(self.frame.tilted_normal(x, y) / (1.0 + x * x + y * y).sqrt()),
+        )
+    }
+
+    #[inline(always)]
+    fn query_unit(&self, object: usize, dir: &Vec3) -> Result<FeatureVertex, Fault> {
         let side = if object == 0 { 1.0 } else { -1.0 };
-        let p = (self.md.point_of(object, &dir) - self.frame.origin) * side;
+        let p = (self.md.point_of(object, dir) - self.frame.origin) * side;
         // NaN ends here too; beyond that squares of squares overflow.
         let q = p.norm_squared();
         if !(q * q).is_finite() {
@@ -286,7 +299,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// Returns how far a vertex is along each of the tilted normals, over T.
     #[inline(always)]
     fn scores(&self, v: &FeatureVertex) -> [f64; 4] {
-        let low = v.low * (self.depth / self.tilt);
+        let low = v.low * self.fall;
         [v.x - low, v.y - low, -v.x - low, -v.y - low]
     }
 
@@ -299,38 +312,32 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// Predicts the support vertices of the tilted normals.
     #[inline(always)]
     fn predict(&self, object: usize) -> Prediction {
-        let mut most = [f64::NEG_INFINITY; 4];
-        for v in self.known(object) {
-            for (most, score) in most.iter_mut().zip(self.scores(&v)) {
-                *most = larger(score, *most);
-            }
-        }
-        let least = most.map(|most| most - self.same());
         let mut found = Prediction {
             vertices: [FeatureVertex::default(); 4],
-            scores: most,
+            scores: [f64::NEG_INFINITY; 4],
             cover: [0.0; 4],
             is_polytope: false,
         };
         let mut is_found = [false; 4];
+        let [e1, e2] = &self.frame.axes;
+        let same = self.same();
         for (i, v) in self.known(object).enumerate() {
             let scores = self.scores(&v);
-            let is_best = [0, 1, 2, 3].map(|k| scores[k] >= least[k]);
-            if is_best == [false; 4] {
-                continue;
-            }
             let dir = self.set.dir(self.first + i);
             let is_facing = self.frame.normal.dot(&dir) > MIN_COSINE;
-            let [x, y] = self.frame.axes.map(|e| e.dot(&dir));
-            let tilts = [x, y, -x, -y];
-            for k in 0..4 {
-                if is_best[k] {
-                    found.vertices[k] = v;
+            let (x, y) = (e1.dot(&dir), e2.dot(&dir));
+            for (k, tilt) in [x, y, -x, -y].into_iter().enumerate() {
+                let gain = scores[k] - found.scores[k];
+                if gain > same {
+                    (found.scores[k], found.vertices[k]) = (scores[k], v);
+                    (is_found[k], found.cover[k]) = (is_facing, 0.0);
                     if is_facing {
-                        found.is_polytope |= is_found[k];
-                        is_found[k] = true;
-                        found.cover[k] = larger(tilts[k], found.cover[k]);
+                        found.cover[k] = tilt;
                     }
+                } else if gain >= -same && is_facing {
+                    found.is_polytope |= is_found[k];
+                    is_found[k] = true;
+                    found.cover[k] = larger(tilt, found.cover[k]);
                 }
             }
         }
@@ -356,8 +363,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                     break;
                 }
             }
-            let [x, y] = WAYS[next % 4].map(|x| x * self.tilt);
-            let v = self.query(object, x, y)?;
+            let axis = self.frame.axes[next % 2] * if next < 2 { self.tilt } else { -self.tilt };
+            let v = self.query_unit(object, &((self.frame.normal + axis) * self.cosine))?;
             if v.is_within(&found.vertices[next % 4], self.same()) {
                 (found.is_polytope, hits) = (true, hits + 1);
             } else {
@@ -366,14 +373,17 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                 found.is_polytope &= hits > 0 || misses < 2;
             }
             is_queried[next % 4] = true;
-            found.take(next % 4, &v, &self.scores(&v), &is_queried);
+            if found.is_polytope {
+                found.consider(&v, &self.scores(&v), &is_queried);
+            }
+            (found.vertices[next % 4], found.cover[next % 4]) = (v, f64::INFINITY);
             if !found.is_polytope {
                 let opposite = (next + 2) % 4;
                 if misses == 2 && is_queried[opposite] {
                     if self.is_symmetric(&v, &found.vertices[opposite]) {
                         return Ok(Feature::new(FeatureKind::Symmetric, found.vertices));
                     }
-                    next += 1;
+                    next = (next + 1) % 4;
                 } else {
                     next = opposite;
                 }
@@ -609,16 +619,14 @@ impl Feature {
 }
 
 impl Prediction {
-    /// Takes the queried vertex of tilt `next`, and takes it for a prediction of the others that it is farther
-    /// along.
+    /// Takes a queried vertex for the prediction of the other tilts that it is farther along.
     #[inline(always)]
-    fn take(&mut self, next: usize, v: &FeatureVertex, scores: &[f64; 4], is_queried: &[bool; 4]) {
+    fn consider(&mut self, v: &FeatureVertex, scores: &[f64; 4], is_queried: &[bool; 4]) {
         for k in 0..4 {
-            if !is_queried[k] && scores[k] > self.scores[k] && self.is_polytope {
+            if !is_queried[k] && scores[k] > self.scores[k] {
                 (self.scores[k], self.vertices[k], self.cover[k]) = (scores[k], *v, 0.0);
             }
         }
-        (self.vertices[next], self.cover[next]) = (*v, f64::INFINITY);
     }
 }
 
