@@ -12,11 +12,14 @@
 //! 3. *Polytope*, where two known directions found one vertex: a prediction holds where a known direction
 //!    that found the vertex is tilted that way by [`MIN_COVER`] T; the least covered is queried first. (A
 //!    vertex is the support vertex of a convex set of directions, and the contact normal is mostly one.)
+//!    Beside an edge (the four are two vertices) a face may be that no direction has found: both sides are
+//!    queried, unless a known direction that found an end is tilted across it.
 //! 4. *Round* otherwise: opposite tilts are queried. Where two vertices are symmetric about the deepest
 //!    point, so is the contact. A query that returns its prediction shows a polytope.
 //! 5. *Fan*: the four in their order around the deepest point, with a fifth corner of a polytope, or the
 //!    points between them of a disc.
 //!
+//! One file, because each step reads the same projection; projection, prediction, queries and fan are its parts.
 //! No reference is known to us; the figures are from `c-tests/extension/pressure.c` and recorded contacts.
 
 use crate::contact::frame::ContactFrame;
