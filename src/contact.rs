@@ -3,6 +3,10 @@
 
 //! What a query answers.
 
+pub mod center_of_pressure;
+pub mod feature;
+pub mod frame;
+
 use crate::math::Vec3;
 
 /// How much work a query may do, and how exact its depth must be.
@@ -43,8 +47,6 @@ pub struct Penetration {
     /// Unit; normal of the separating plane (equal to `dir` but in a query along
     /// a given direction).
     pub normal: Vec3,
-    /// The squares of how far the objects are known to reach from their witness points, m².
-    pub extent: [f64; 2],
     /// Contact position; zero where nobody asked for it.
     pub pos: Vec3,
     /// Witness point on obj1.

@@ -3,18 +3,12 @@
 
 //! Where the objects touch, once depth and direction are known.
 //!
-//! Both objects are seen in one [`plane`]. [`pressure`] finds the position of one contact: it asks for
-//! corners as [`view`] tells, leaves out what the search has [`seen`], and integrates over a [`fan`] of
-//! them. [`manifold`] finds several contacts: in what two [`face`]s share, as [`polygon`]s; what it
+//! Both objects are seen in one [`plane`]. [`manifold`] finds several contacts: in what two [`face`]s share, as [`polygon`]s; what it
 //! found is kept in a [`memory`].
 
 pub mod face;
-pub mod fan;
 pub mod list;
 pub mod manifold;
 pub mod memory;
 pub mod plane;
 pub mod polygon;
-pub mod pressure;
-pub mod seen;
-pub mod view;

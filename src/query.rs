@@ -15,7 +15,7 @@
 //!    tetrahedron of the centres' difference and three others ([`contains_origin`]). It puts
 //!    the points the solver saw together anew, and asks for more only where these leave a side open. The global search (`mpr`, `minimum`) proves its
 //!    overlaps itself.
-//! 4. Where the contact position is wanted, it is the centre of pressure ([`pressure`]); the middle
+//! 4. Where the contact position is wanted, it is the [`center_of_pressure`]; the middle
 //!    of the witness points in `along` and `planar`, and where a cap came first.
 //! 5. What was learned stays behind in the [`WarmStart`]; where the caller keeps none, nothing
 //!    is spent on it.
@@ -23,9 +23,8 @@
 mod local_minimum;
 pub mod warm_start;
 
+use crate::contact::center_of_pressure::center_of_pressure;
 use crate::contact::{Penetration, Settings, Status};
-use crate::contacts::pressure::{self, Aside};
-use crate::contacts::seen::Seen;
 use crate::epa::penetration::{Arena, EpaAnswer, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
 use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{contains_origin, intersect};
@@ -126,7 +125,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Err(Stop::Apart(hit.normal));
         }
         if set.len() == 0 {
-            set.push(&hit.normal, &met);
+            // No support call returned it.
+            set.push(&Vec3::zeros(), &met);
         }
         // A depth of a few contact epsilons has no place.
         let tolerance = larger(settings.tolerance, 4.0 * query.scale.contact_eps());
@@ -281,10 +281,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             status = Status::Rounding;
         }
         if status == Status::Converged && wants_pos {
-            let mut seen = Seen::Nothing;
-            let known = |i: usize| (i < set.len()).then(|| [set.vertex1(i), set.vertex2(i)]);
-            seen.rest(&known, hit);
-            hit.pos = self.position(hit, settings.tolerance, &seen)?;
+            hit.pos = self.position(&set, hit, settings.tolerance)?;
         }
         Ok(status)
     }
@@ -331,7 +328,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             self.prove(hit, &mut set, settings, flat.is_some())?;
             *state = self.facing(WarmStart::towards(hit.normal));
             hit.pos = if wants_pos && !hit.limit {
-                self.position(hit, settings.tolerance, &Seen::Nothing)?
+                self.position(&set, hit, settings.tolerance)?
             } else {
                 hit.middle()
             };
@@ -400,7 +397,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             // Its axis has been queried.
             warm: if was_apart { WarmStart::COLD } else { *state },
             limits: *limits,
-            wants_pos,
         };
         let mut warm = WarmStart::COLD;
         let mut set = VertexSet::EMPTY;
@@ -429,23 +425,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             hit.pos = hit.middle();
         } else if wants_pos {
-            let mut seen = Seen::Nothing;
-            let known = |i: usize| (i < set.len()).then(|| [set.vertex1(i), set.vertex2(i)]);
-            seen.rest(&known, hit);
-            hit.pos = self.position(hit, limits.gap.tolerance, &seen)?;
+            hit.pos = self.position(&set, hit, limits.gap.tolerance)?;
         }
         Ok(())
     }
 
-    /// The position of a hit, of which nothing is kept.
-    fn position(&self, hit: &Penetration, tolerance: f64, seen: &Seen) -> Result<Vec3, Fault> {
-        let aside = Aside {
-            centre: self.centre.as_ref(),
-            seen,
-            others: &[],
-            around: None,
-        };
-        pressure::centre(&self.md, hit, tolerance, aside)
+    /// Returns the center of pressure of a hit, from the vertices that its search has found.
+    #[inline(always)]
+    fn position<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        hit: &Penetration,
+        tolerance: f64,
+    ) -> Result<Vec3, Fault> {
+        center_of_pressure(&self.md, set, hit, self.centre.as_ref(), tolerance)
     }
 
     /// How far obj2 must move along the unit direction `dir`.

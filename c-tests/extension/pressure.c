@@ -5,7 +5,11 @@
  * stand, tip, roll and turn on a floor, a millimetre and a hundredth of one deep, in steps so small
  * that what jumps shows.
  *
- *   pressure [tilt]   tilt, which needs libccd beside this library, asks no more than MPR, a
+ * Besides, pairs at random, pushed apart to depths of 1 to 30 % of the smaller body's reach.
+ *
+ *   pressure [range | tilt]
+ *                     range prints the errors of the random pairs, and of the middle of the witness
+ *                     points, in % of that reach. tilt, which needs libccd beside this library, asks no more than MPR, a
  *                     millimetre deep: a line a pose, body, degrees, and how many metres off the
  *                     body's middle the truth, this library's pos and libccd's are */
 
@@ -13,6 +17,7 @@
 
 #include "contract/check.h"
 #include "ours.h"
+#include "truth.h"
 
 #include <float.h>
 
@@ -228,6 +233,99 @@ static void tilt(const sweep_t *s)
 }
 #endif
 
+static double next_random(unsigned long long *state)
+{
+    *state = *state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return (double)(*state >> 11) * (2.0 / 9007199254740992.0) - 1;
+}
+
+/* Kinds of pairs at random, and by how much pos may be off at most, in % of the reach (root mean square). */
+static const struct {
+    const char *name;
+    int first, last; /* shapes, -1: flat boxes */
+    double most[4];  /* by RANGE */
+} KINDS[] = {{"boxes", SHAPE_BOX, SHAPE_BOX, {2, 3, 8, 22}}, {"plates", -1, -1, {2, 3, 8, 25}}, {"round", SHAPE_CAPSULE, SHAPE_ELLIPSOID, {3, 5, 8, 18}}};
+static const double RANGE[] = {0.01, 0.03, 0.1, 0.3};
+
+static shape_t random_body(unsigned long long *state, int kind)
+{
+    double p[3], q[4], rot[9];
+    shape_t s;
+    int i;
+    for (i = 0; i < 3; i++)
+        p[i] = 0.3 + 0.2 * next_random(state);
+    for (i = 0; i < 4; i++)
+        q[i] = next_random(state);
+    s = kind < 0 ? shape_box(p[0], p[1], 0.1 * p[2]) : shape_make(kind, kind == SHAPE_CAPSULE ? 0.5 * p[0] : p[0], p[1], p[2]);
+    rotation_quaternion(q[0], q[1], q[2], q[3], rot);
+    shape_turn(&s, rot);
+    return s;
+}
+
+/* The errors of pos [0] and of the middle of the witness points [1] at a depth, root mean square. */
+static void range_errors(unsigned kind, double share, double error[2])
+{
+    unsigned long long state = 9;
+    double square[2] = {0, 0};
+    int n = 0, k;
+    for (k = 0; k < 400; k++) {
+        const int kinds = KINDS[kind].last - KINDS[kind].first + 1;
+        shape_t a = random_body(&state, KINDS[kind].first + k % kinds), b = random_body(&state, KINDS[kind].first + k / kinds % kinds);
+        ccd_penetration_t p;
+        ccd_t ccd;
+        double normal[3], middle[3], pos[3], truth[3], reach, move;
+        const double x = 0.3 * next_random(&state), y = 0.3 * next_random(&state), z = 0.3 * next_random(&state);
+        int i;
+        shape_move(&b, x, y, z);
+        shape_query(&ccd);
+        ccd.max_iterations = 500;
+        ccd.mpr_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-8);
+        if (OURS(ccdPenetration)(&a, &b, &ccd, NULL, 0, &p) != CCD_HIT)
+            continue;
+        reach = fmin(shape_reach(&a), shape_reach(&b));
+        move = (double)p.depth - share * reach;
+        if (move < 0)
+            continue;
+        shape_move(&b, x + move * (double)p.dir.v[0], y + move * (double)p.dir.v[1], z + move * (double)p.dir.v[2]);
+        if (OURS(ccdPenetration)(&a, &b, &ccd, NULL, CCD_WANT_POS | CCD_WANT_POINTS, &p) != CCD_HIT)
+            continue;
+        for (i = 0; i < 3; i++) {
+            normal[i] = (double)p.normal.v[i];
+            middle[i] = 0.5 * ((double)p.point1.v[i] + (double)p.point2.v[i]);
+            pos[i] = (double)p.pos.v[i];
+        }
+        if (!(pressure_centre(&a, &b, normal, middle, truth) > 0))
+            continue;
+        for (i = 0; i < 2; i++) {
+            double *at = i == 0 ? pos : middle, along = 0;
+            int j;
+            for (j = 0; j < 3; j++)
+                along += normal[j] * (at[j] - truth[j]);
+            for (j = 0; j < 3; j++)
+                at[j] -= along * normal[j];
+            square[i] += pow(apart(at, truth) / reach, 2);
+        }
+        n++;
+    }
+    error[0] = 100 * sqrt(square[0] / n);
+    error[1] = 100 * sqrt(square[1] / n);
+}
+
+static void range(int prints)
+{
+    unsigned k, i;
+    for (k = 0; k < sizeof KINDS / sizeof *KINDS; k++)
+        for (i = 0; i < sizeof RANGE / sizeof *RANGE; i++) {
+            double error[2];
+            range_errors(k, RANGE[i], error);
+            if (prints)
+                printf("%s, depth %g %% of the reach: pos %.2f %%, middle of the witness points %.2f %%\n", KINDS[k].name, 100 * RANGE[i],
+                       error[0], error[1]);
+            CHECK(error[0] <= KINDS[k].most[i] && error[0] < error[1], "%s, depth %g of the reach: pos %.2f %%, middle %.2f %%", KINDS[k].name,
+                  RANGE[i], error[0], error[1]);
+        }
+}
+
 int main(int argc, char **argv)
 {
     const double q = deg(90);
@@ -282,10 +380,15 @@ int main(int argc, char **argv)
         return 0;
     }
 #endif
+    if (argc > 1 && strcmp(argv[1], "range") == 0) {
+        range(1);
+        return checks_end();
+    }
     if (argc > 1) {
-        fprintf(stderr, "usage: %s [tilt]\n", argv[0]);
+        fprintf(stderr, "usage: %s [range | tilt]\n", argv[0]);
         return 2;
     }
+    range(0);
     for (i = 0; i < sizeof all / sizeof *all; i++) {
         int d, c, w;
         for (d = 0; d < (single ? 1 : 2); d++) {

@@ -66,13 +66,6 @@ impl<T, const ROOM: usize> List<T, ROOM> {
         }
     }
 
-    /// Holds these alone.
-    #[inline(always)]
-    pub fn fill<const N: usize>(&mut self, new: [T; N]) {
-        let places = self.all.iter_mut().zip(new);
-        self.len = places.map(|(place, new)| *place = new).count();
-    }
-
     /// Puts one in its place; those from there on move up, the last out of a full list.
     #[inline(always)]
     pub fn insert(&mut self, i: usize, mut new: T) {

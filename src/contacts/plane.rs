@@ -4,8 +4,7 @@
 //! The plane across the normal of a contact, in which the faces of both objects are seen.
 
 use crate::contacts::polygon::{Corner, Flat};
-use crate::contacts::view::FOUR;
-use crate::math::{POLE, Vec3, axes};
+use crate::math::{Vec3, axes};
 use crate::minkowski::support::Fault;
 
 /// The plane through `origin` across the unit vector `n`.
@@ -27,34 +26,12 @@ impl Plane {
         }
     }
 
-    /// Through `origin`, with the same axes for the objects swapped. They are turned, so that of a box whose
-    /// axes are the world's no two corners are as far along any of them.
-    pub fn upright(n: &Vec3, origin: &Vec3) -> Self {
-        const X: f64 = 11.0 / 61.0;
-        const Y: f64 = 60.0 / 61.0;
-        let up = if POLE.dot(n) < 0.0 { -n } else { *n };
-        let [e1, e2] = axes(&up);
-        Self {
-            n: *n,
-            axes: [e1 * X + e2 * Y, e2 * X - e1 * Y],
-            origin: *origin,
-        }
-    }
-
     /// The unit direction that looks along the normal (`sign` 1) or against it, tilted `aside`.
     #[inline(always)]
     pub fn direction(&self, sign: f64, aside: &Flat) -> Vec3 {
         let [e1, e2] = &self.axes;
         let share = 1.0 / (1.0 + aside[0] * aside[0] + aside[1] * aside[1]).sqrt();
         (self.n * sign + (e1 * aside[0] + e2 * aside[1])) * share
-    }
-
-    /// The four unit directions that are tilted so towards the axes, and away from them.
-    pub fn around(&self, tilt: f64) -> [Vec3; FOUR] {
-        let share = 1.0 / (1.0 + tilt * tilt).sqrt();
-        let n = self.n * share;
-        let [a, b] = self.axes.map(|e| e * (tilt * share));
-        [n + a, n + b, n - a, n - b]
     }
 
     /// A point of the object whose face looks along the normal or against it: where it is in the plane, and

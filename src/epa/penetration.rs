@@ -24,7 +24,6 @@
 //! [`Status::Converged`]: depth − depth_lower is within the gap.
 
 use crate::contact::{Penetration, Status};
-use crate::contacts::pressure;
 use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, Expansion, exit_face, expand};
 use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
@@ -115,8 +114,6 @@ pub struct EpaRequest<'a> {
     pub warm: WarmStart,
     /// How far to go.
     pub limits: EpaLimits,
-    /// Whether the caller reads the contact position.
-    pub wants_pos: bool,
 }
 
 /// The answer of a query.
@@ -198,7 +195,6 @@ struct Solver<'q, 'm, A, B> {
     /// How far the answer in `hit` is from its lower bound, metres; infinite before the first.
     gap: f64,
     hit: &'q mut Penetration,
-    wants_pos: bool,
 }
 
 /// Does all that comes after the first support point.
@@ -232,7 +228,6 @@ fn solve<A: SupportMap, B: SupportMap>(
         iterations: 0,
         gap: f64::INFINITY,
         hit: answer.hit,
-        wants_pos: request.wants_pos,
     };
     let mut center = request.center;
     let mut status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
@@ -749,24 +744,17 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             points[0] += point.v1 * *weight;
             points[1] += point.v2 * *weight;
         }
-        let extent = match self.wants_pos {
-            true => {
-                let known = (0..set.len()).map(|i| [set.vertex1(i), set.vertex2(i)]);
-                pressure::extent(known, points.each_ref())
-            }
-            false => [0.0; 2],
-        };
-        self.write(lower, points, extent);
+        self.write(lower, points);
     }
 
     /// Writes the answer where nothing is known but the upper bound.
     fn write_upper<const N: usize>(&mut self, set: &VertexSet<N>) {
         let point = set.point(VertexSet::<N>::sample(self.query.upper.index));
-        self.write(0.0, [point.v1, point.v2], [0.0; 2]);
+        self.write(0.0, [point.v1, point.v2]);
     }
 
     #[inline(always)]
-    fn write(&mut self, lower: f64, [point1, point2]: [Vec3; 2], extent: [f64; 2]) {
+    fn write(&mut self, lower: f64, [point1, point2]: [Vec3; 2]) {
         let upper = self.query.upper;
         let lower = lower.min(upper.depth);
         self.gap = upper.depth - lower;
@@ -777,7 +765,6 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             normal: upper.dir,
             point1,
             point2,
-            extent,
             iterations: self.iterations,
             ..Penetration::default()
         };

@@ -127,6 +127,13 @@ impl<const N: usize> VertexSet<N> {
         self.dirs[Self::in_range(i)]
     }
 
+    /// Returns x, y and z of an entry: obj1's vertex, and minus obj2's.
+    #[inline(always)]
+    pub fn coords(&self, i: usize) -> [[f64; 2]; 3] {
+        let i = Self::in_range(i);
+        self.coords.each_ref().map(|coords| coords[i])
+    }
+
     /// Returns the vertex of obj1 of an entry.
     #[inline(always)]
     pub fn vertex1(&self, i: usize) -> Vec3 {

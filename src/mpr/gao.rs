@@ -27,7 +27,6 @@
 //! library is [`crate::mpr::local`].
 
 use crate::contact::{Penetration, Settings};
-use crate::contacts::pressure;
 use crate::gjk::barycentric;
 use crate::math::{self, EPSILON, Vec3, larger, largest, perpendicular, unit};
 use crate::minkowski::query::Stop;
@@ -112,15 +111,10 @@ fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
                 let stationary = plane.depth / along - plane.depth <= floor;
                 let lower_elsewhere = search.best.depth < plane.depth - floor;
                 if stationary && !lower_elsewhere {
-                    let mut hit = match &aside {
+                    let hit = match &aside {
                         Some(first) if first.depth <= plane.depth => answer(first, None),
                         _ => answer(&plane, Some(&last)),
                     };
-                    let points = last
-                        .planes
-                        .iter()
-                        .map(|plane| [plane.point.v1, plane.point.v2]);
-                    hit.extent = pressure::extent(points, [&hit.point1, &hit.point2]);
                     return Ok(Some(hit));
                 }
                 if lower_elsewhere { search.best } else { plane }

@@ -39,8 +39,10 @@ pub struct ccd_penetration_t {
     pub normal: ccd_vec3_t,
     /// Contact position, CCD_WANT_POS: the centre of pressure, which is the centroid of the volume
     /// that the objects share, but for its height along normal. It moves as the objects do, where
-    /// a deepest point jumps from corner to corner. For objects of a quarter metre it is off by
-    /// 3 mm (boxes) to 7 mm (round ones) at most, a cone on its side by 15 mm, root mean square. Of CCD_LIMIT, and of ccdPenetrationAlong and
+    /// a deepest point jumps from corner to corner. For objects of a quarter metre that are no deeper
+    /// than a millimetre it is off by 3 mm (boxes) to 7 mm (round ones) at most, a cone on its side by
+    /// 15 mm, root mean square; deeper, by 3 % of the smaller object's size where the depth is 3 % of
+    /// that, 6 % at 10 %, 20 % at 30 %. Of CCD_LIMIT, and of ccdPenetrationAlong and
     /// ccdPenetrationPlanar, the middle of the witness points.
     pub pos: ccd_vec3_t,
     /// Witness point of obj1, CCD_WANT_POINTS, at the deepest place: a point of obj1, and of its

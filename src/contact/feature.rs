@@ -1,0 +1,722 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The feature of an object in a contact: the vertices that its surface has around the deepest point.
+//!
+//! Wanted are the support vertices of four tilted normals, a right angle apart: n + T (±e1), n + T (±e2).
+//! Of a face they are the corners that reach farthest, of a round surface they are evenly around.
+//!
+//! 1. *Project* the known vertices of both objects into the contact frame, in one pass. obj2 is mirrored
+//!    (−b for b), so that the normal leaves both objects, and all that follows serves either.
+//! 2. *Predict* of the four the known vertex that is farthest along each.
+//! 3. *Polytope*, where two known directions found one vertex: a prediction holds where a known direction
+//!    that found the vertex is tilted that way by [`MIN_COVER`] T; the least covered is queried first. (A
+//!    vertex is the support vertex of a convex set of directions, and the contact normal is mostly one.)
+//!    Beside an edge (the four are two vertices) a face may be that no direction has found: both sides are
+//!    queried, unless a known direction that found an end is tilted across it.
+//! 4. *Round* otherwise: opposite tilts are queried. Where two vertices are symmetric about the deepest
+//!    point, so is the contact. A query that returns its prediction shows a polytope.
+//! 5. *Fan*: the four in their order around the deepest point, with a fifth corner of a polytope, or the
+//!    points between them of a disc.
+//!
+//! One file, because each step reads the same projection; projection, prediction, queries and fan are its parts.
+//! No reference is known to us; the figures are from `c-tests/extension/pressure.c` and recorded contacts.
+
+use crate::contact::frame::ContactFrame;
+use crate::math::{EPSILON, Vec3, larger, lesser};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::minkowski::vertex_set::VertexSet;
+
+/// The known vertices that are looked at: the last of more.
+pub const MAX_KNOWN: usize = 16;
+/// T, as a tangent, is this times the root of depth / extent, so that a round surface of that radius, or of
+/// half of it, is seen no lower than half the depth, and of a flat one that leans by a depth over its
+/// width all corners. Measured: ÷1.2 a corner of a leaning box is missed, ×1.2 a cone on its side steps by
+/// 7 mm.
+const TILT: f64 = 1.8;
+/// T at most: 14°, for what is deeper than a fiftieth of its extent.
+const MAX_TILT: f64 = 0.25;
+/// The share of T that a known direction must be tilted by to find what T would. Measured: 0.4 errs by
+/// 7.5 mm rms where 0.6 errs by 1.8.
+const MIN_COVER: f64 = 0.6;
+/// The cosine between the normal and a known direction that tells of a feature: others look at the object from
+/// the side or from behind.
+const MIN_COSINE: f64 = 0.1;
+/// How far the sum of two opposite vertices that are symmetric may be from zero, as a share of the extent.
+const SYMMETRY_REL_TOL: f64 = 0.004;
+/// A feature that ends within this share of the extent is a point: the center of pressure is within a
+/// quarter of that.
+const POINT_REL: f64 = 0.016;
+/// Vertices closer than this share of the extent are one.
+const SAME_REL: f64 = 1e-7;
+/// How much lower than the plane of three corners a fourth of the same face may be, in depths: else the
+/// surface before it is not as low as a line to it. Insensitive: 0.1 to 1 tried.
+const SAME_FACE: f64 = 0.1;
+/// The deepest point is beyond a side, and three corners are no line, by this share. Insensitive: 0.005 to
+/// 0.08 tried.
+const NARROW_REL: f64 = 0.02;
+/// How far a point of a rim may be beside it, as a share of the radius: ten times what callbacks in single
+/// precision round by.
+const RIM_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
+/// The part of what all vertices are lower by that is taken off: a round surface of radius R is lower by
+/// R T²/2 all around. Measured: 0 lets a lying capsule step by 5 mm; 1, right for spheres, leaves it 7 mm off.
+const LEVEL: f64 = 0.75;
+/// How far vertices are moved outwards, in depths, so that an edge has an area and the deepest point is
+/// inside. Small beside the flank of an edge.
+const MARGIN: f64 = 1.0 / 512.0;
+
+/// The four tilts: the way of each, along the axes.
+const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
+/// The ways between them.
+const DIAGONALS: [[f64; 2]; 4] = [[H, H], [-H, H], [-H, -H], [H, -H]];
+
+/// A vertex in the contact frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FeatureVertex {
+    /// From the deepest point along the axes, metres.
+    pub x: f64,
+    pub y: f64,
+    /// How far below the support plane, in depths.
+    pub low: f64,
+}
+
+impl FeatureVertex {
+    /// Returns twice the area of the triangle of the deepest point, this vertex and another, positive
+    /// counterclockwise.
+    #[inline(always)]
+    pub fn cross(&self, other: &Self) -> f64 {
+        self.x * other.y - self.y * other.x
+    }
+
+    #[inline(always)]
+    fn minus(&self, other: &Self) -> Self {
+        Self {
+            x: self.x - other.x,
+            y: self.y - other.y,
+            low: self.low - other.low,
+        }
+    }
+
+    #[inline(always)]
+    fn length2(&self) -> f64 {
+        self.x * self.x + self.y * self.y
+    }
+
+    #[inline(always)]
+    fn is_within(&self, other: &Self, distance: f64) -> bool {
+        let d = self.minus(other);
+        d.x.abs() <= distance && d.y.abs() <= distance
+    }
+}
+
+/// What a feature is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeatureKind {
+    /// Vertices of a polytope.
+    Polytope,
+    /// Each tilt found another vertex.
+    Round,
+    /// Opposite vertices are symmetric about the deepest point.
+    Symmetric,
+}
+
+/// Four vertices of an object around the deepest point, counterclockwise: the support vertices of the tilted
+/// normals, or those about an edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Feature {
+    pub kind: FeatureKind,
+    pub vertices: [FeatureVertex; 4],
+    /// The way outwards of each, unit.
+    ways: [[f64; 2]; 4],
+}
+
+/// What is known of the four tilts.
+struct Prediction {
+    vertices: [FeatureVertex; 4],
+    /// How far each is along its tilted normal, over T.
+    scores: [f64; 4],
+    /// How far towards the way a known direction that found it is tilted.
+    cover: [f64; 4],
+    /// Whether two known directions found one of them.
+    is_polytope: bool,
+}
+
+/// The vertices of a feature, counterclockwise around the deepest point.
+#[derive(Clone, Copy, Debug)]
+pub struct Fan {
+    /// `vertices[len]` is the first one again.
+    pub vertices: [FeatureVertex; Fan::CAPACITY],
+    /// Twice the area of the triangle of the deepest point, each vertex and the next one.
+    pub areas: [f64; Fan::CAPACITY],
+    pub len: usize,
+}
+
+/// The slope of a plane: how much lower it is a metre along each axis, in depths.
+struct Slope {
+    x: f64,
+    y: f64,
+}
+
+impl Slope {
+    /// Returns that of the plane of three vertices.
+    fn of([a, b, c]: [&FeatureVertex; 3]) -> Self {
+        let (v, w) = (b.minus(a), c.minus(a));
+        let share = 1.0 / v.cross(&w);
+        Self {
+            x: (v.low * w.y - w.low * v.y) * share,
+            y: (w.low * v.x - v.low * w.x) * share,
+        }
+    }
+
+    /// Returns how low the plane through a vertex is at a place.
+    fn low(&self, through: &FeatureVertex, x: f64, y: f64) -> f64 {
+        through.low + self.x * (x - through.x) + self.y * (y - through.y)
+    }
+}
+
+/// The vertices of both objects around the deepest point of a contact: known ones and queries.
+pub struct FeatureQuery<'q, A, B, const N: usize> {
+    md: &'q MinkowskiDifference<A, B>,
+    set: &'q VertexSet<N>,
+    pub frame: ContactFrame,
+    /// x, y and low of each known vertex; low in depths.
+    known: &'q [[[f64; 2]; 3]],
+    /// The index in the set of the first of them.
+    first: usize,
+    /// x and y of the centre of each object; that of the witness points where none is known.
+    centers: [[f64; 2]; 2],
+    /// The object that is known to reach less far from the contact, 0 or 1.
+    pub smaller: usize,
+    /// How far it does, metres.
+    extent: f64,
+    /// The unit of lows, metres.
+    pub depth: f64,
+    /// How far the support planes are from the frame's origin, metres.
+    half: f64,
+    /// T, a tangent.
+    tilt: f64,
+    /// Depth over T, metres.
+    fall: f64,
+    /// One over the length of a tilted normal.
+    cosine: f64,
+    /// How far vertices are moved outwards, metres.
+    pub margin: f64,
+}
+
+impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N> {
+    /// Projects the known vertices, to `known`. The frame's origin is half-way between the support planes, which are
+    /// `gap` apart; `depth`: that, or the tolerance where it is larger.
+    #[inline(always)]
+    pub fn new(
+        md: &'q MinkowskiDifference<A, B>,
+        set: &'q VertexSet<N>,
+        known: &'q mut [[[f64; 2]; 3]; MAX_KNOWN],
+        frame: ContactFrame,
+        centers: Option<[Vec3; 2]>,
+        [gap, depth]: [f64; 2],
+    ) -> Self {
+        let (half, share) = (0.5 * gap, 1.0 / depth);
+        let (o, n, [e1, e2]) = (frame.origin, frame.normal, frame.axes);
+        let mut far2 = [0.0; 2];
+        let mut project = |[x, y, z]: [[f64; 2]; 3]| {
+            let mut projected = [[0.0; 2]; 3];
+            for (k, side) in [1.0, -1.0].into_iter().enumerate() {
+                let (x, y, z) = (x[k] - side * o.x, y[k] - side * o.y, z[k] - side * o.z);
+                far2[k] = larger(x * x + y * y + z * z, far2[k]);
+                projected[0][k] = e1.x * x + e1.y * y + e1.z * z;
+                projected[1][k] = e2.x * x + e2.y * y + e2.z * z;
+                let height = n.x * x + n.y * y + n.z * z;
+                projected[2][k] = larger((half - height) * share, 0.0);
+            }
+            projected
+        };
+        let first = set.len().saturating_sub(MAX_KNOWN);
+        let len = set.len() - first;
+        for (i, projected) in known.iter_mut().enumerate().take(len) {
+            *projected = project(set.coords(first + i));
+        }
+        let [c1, c2] = centers.unwrap_or([o; 2]);
+        let [x, y, _] = project([[c1.x, -c2.x], [c1.y, -c2.y], [c1.z, -c2.z]]);
+        let smaller = usize::from(far2[1] < far2[0]);
+        let extent = far2[smaller].sqrt();
+        let tilt = lesser(TILT * (depth / extent).sqrt(), MAX_TILT);
+        Self {
+            md,
+            set,
+            frame,
+            known: known.get(..len).unwrap_or(&[]),
+            first,
+            centers: [x, y],
+            smaller,
+            extent,
+            depth,
+            half,
+            tilt,
+            fall: depth / tilt,
+            cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
+            margin: larger(depth * MARGIN, 64.0 * EPSILON * extent),
+        }
+    }
+
+    /// Returns the known vertices of an object.
+    #[inline(always)]
+    pub fn known(&self, object: usize) -> impl Iterator<Item = FeatureVertex> + '_ {
+        let k = object % 2;
+        self.known.iter().map(move |[x, y, low]| FeatureVertex {
+            x: x[k],
+            y: y[k],
+            low: low[k],
+        })
+    }
+
+    /// Queries an object along the normal tilted by the tangents `x` and `y`.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(always)]
+    fn query(&self, object: usize, x: f64, y: f64) -> Result<FeatureVertex, Fault> {
+        self.query_unit(
+            object,
+            &(self.frame.tilted_normal(x, y) / (1.0 + x * x + y * y).sqrt()),
+        )
+    }
+
+    #[inline(always)]
+    fn query_unit(&self, object: usize, dir: &Vec3) -> Result<FeatureVertex, Fault> {
+        let side = if object == 0 { 1.0 } else { -1.0 };
+        let p = (self.md.point_of(object, dir) - self.frame.origin) * side;
+        // NaN ends here too; beyond that squares of squares overflow.
+        let q = p.norm_squared();
+        if !(q * q).is_finite() {
+            return Err(Fault::NonFinite);
+        }
+        let [e1, e2] = &self.frame.axes;
+        Ok(FeatureVertex {
+            x: e1.dot(&p),
+            y: e2.dot(&p),
+            low: larger((self.half - self.frame.normal.dot(&p)) / self.depth, 0.0),
+        })
+    }
+
+    /// Returns how far a vertex is along each of the tilted normals, over T.
+    #[inline(always)]
+    fn scores(&self, v: &FeatureVertex) -> [f64; 4] {
+        let low = v.low * self.fall;
+        [v.x - low, v.y - low, -v.x - low, -v.y - low]
+    }
+
+    /// Returns the distance below which two vertices are one, metres.
+    #[inline(always)]
+    fn same(&self) -> f64 {
+        SAME_REL * self.extent
+    }
+
+    /// Predicts the support vertices of the tilted normals.
+    #[inline(always)]
+    fn predict(&self, object: usize) -> Prediction {
+        let mut found = Prediction {
+            vertices: [FeatureVertex::default(); 4],
+            scores: [f64::NEG_INFINITY; 4],
+            cover: [0.0; 4],
+            is_polytope: false,
+        };
+        let mut is_found = [false; 4];
+        let [e1, e2] = &self.frame.axes;
+        let same = self.same();
+        for (i, v) in self.known(object).enumerate() {
+            let scores = self.scores(&v);
+            let dir = self.set.dir(self.first + i);
+            let is_facing = self.frame.normal.dot(&dir) > MIN_COSINE;
+            let (x, y) = (e1.dot(&dir), e2.dot(&dir));
+            for (k, tilt) in [x, y, -x, -y].into_iter().enumerate() {
+                let gain = scores[k] - found.scores[k];
+                if gain > same {
+                    (found.scores[k], found.vertices[k]) = (scores[k], v);
+                    (is_found[k], found.cover[k]) = (is_facing, 0.0);
+                    if is_facing {
+                        found.cover[k] = tilt;
+                    }
+                } else if gain >= -same && is_facing {
+                    found.is_polytope |= is_found[k];
+                    is_found[k] = true;
+                    found.cover[k] = larger(tilt, found.cover[k]);
+                }
+            }
+        }
+        found
+    }
+
+    /// Finds the feature of an object. `towards`: the way that is queried first of what may be round.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(never)]
+    pub fn find(&self, object: usize, towards: [f64; 2]) -> Result<Feature, Fault> {
+        let mut found = self.predict(object);
+        let mut is_queried = [false; 4];
+        let mut next = usize::from(towards[1].abs() > towards[0].abs());
+        let (mut hits, mut misses) = (0, 0);
+        // Each turn queries another one of the four.
+        for _ in 0..4 {
+            if found.is_polytope {
+                let cover = &found.cover;
+                next = (1..4).fold(0, |k, i| if cover[i] < cover[k] { i } else { k });
+                if !(cover[next] < MIN_COVER * self.tilt) {
+                    break;
+                }
+            }
+            let axis = self.frame.axes[next % 2] * if next < 2 { self.tilt } else { -self.tilt };
+            let v = self.query_unit(object, &((self.frame.normal + axis) * self.cosine))?;
+            if v.is_within(&found.vertices[next % 4], self.same()) {
+                (found.is_polytope, hits) = (true, hits + 1);
+            } else {
+                misses += 1;
+                // Directions that share a plane with the axis of a disc find one point of its rim.
+                found.is_polytope &= hits > 0 || misses < 2;
+            }
+            is_queried[next % 4] = true;
+            if found.is_polytope {
+                found.consider(&v, &self.scores(&v), &is_queried);
+            }
+            (found.vertices[next % 4], found.cover[next % 4]) = (v, f64::INFINITY);
+            if !found.is_polytope {
+                let opposite = (next + 2) % 4;
+                if misses == 2 && is_queried[opposite] {
+                    if self.is_symmetric(&v, &found.vertices[opposite]) {
+                        return Ok(Feature::new(FeatureKind::Symmetric, found.vertices));
+                    }
+                    next = (next + 1) % 4;
+                } else {
+                    next = opposite;
+                }
+                if is_queried[next % 4] {
+                    next = is_queried.iter().position(|q| !*q).unwrap_or(0);
+                }
+            }
+        }
+        let mut feature = Feature::new(FeatureKind::Round, found.vertices);
+        if found.is_polytope {
+            feature.kind = FeatureKind::Polytope;
+            self.confirm(object, &mut feature)?;
+        }
+        Ok(feature)
+    }
+
+    /// Looks beside a feature that is one vertex or an edge, where a face may be that no direction has found:
+    /// queries across it, unless a known direction that found one of its vertices is tilted so.
+    #[inline(always)]
+    fn confirm(&self, object: usize, feature: &mut Feature) -> Result<(), Fault> {
+        let [a, rest @ ..] = feature.vertices;
+        let is_same = |p: &FeatureVertex, q: &FeatureVertex| p.is_within(q, self.same());
+        let end = rest.iter().find(|v| !is_same(v, &a));
+        let b = *end.unwrap_or(&a);
+        if !rest.iter().all(|v| is_same(v, &a) || is_same(v, &b)) {
+            return Ok(());
+        }
+        if end.is_none() {
+            return Ok(());
+        }
+        let along = b.minus(&a);
+        let length = along.length2().sqrt();
+        let (x, y) = (along.x / length, along.y / length);
+        feature.vertices = [a, a, b, b];
+        feature.ways = [[-x, -y], [y, -x], [x, y], [-y, x]];
+        for k in [1, 3] {
+            let [u, v] = feature.ways[k];
+            let is_covered = self.known(object).enumerate().any(|(i, p)| {
+                let dir = self.set.dir(self.first + i);
+                let cosine = self.frame.normal.dot(&dir);
+                let [x, y] = self.frame.axes.map(|e| e.dot(&dir) / cosine);
+                let is_across =
+                    x * u + y * v - 2.0 * (x * v - y * u).abs() >= MIN_COVER * self.tilt;
+                cosine > MIN_COSINE && is_across && (is_same(&p, &a) || is_same(&p, &b))
+            });
+            if !is_covered {
+                let p = self.query(object, u * self.tilt, v * self.tilt)?;
+                if u * (p.x - a.x) + v * (p.y - a.y) > 2.0 * self.margin {
+                    feature.vertices[k] = p;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the way from the deepest point to the centre of an object.
+    #[inline(always)]
+    pub fn towards_center(&self, object: usize) -> [f64; 2] {
+        self.centers.map(|xy| xy[object % 2])
+    }
+
+    /// Returns whether two vertices are symmetric about the deepest point.
+    fn is_symmetric(&self, a: &FeatureVertex, b: &FeatureVertex) -> bool {
+        let (x, y) = (a.x + b.x, a.y + b.y);
+        let most = SYMMETRY_REL_TOL * self.extent;
+        x * x + y * y < most * most && (a.low - b.low).abs() < SAME_FACE
+    }
+
+    fn is_point(&self, vertices: &[FeatureVertex]) -> bool {
+        vertices.iter().all(|v| {
+            let most = POINT_REL * self.extent * larger(v.low, 1.0);
+            v.length2() <= most * most
+        })
+    }
+
+    /// Makes the fan of a feature. Returns false where that ends close to the deepest point, as far as the
+    /// depth goes.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(never)]
+    pub fn fan(&self, object: usize, feature: &Feature, fan: &mut Fan) -> Result<bool, Fault> {
+        let vertices = &feature.vertices;
+        let between = match feature.kind {
+            FeatureKind::Round => self.rim(vertices),
+            _ => None,
+        };
+        let is_round = feature.kind == FeatureKind::Round;
+        if is_round && self.is_point(vertices) {
+            return Ok(false);
+        }
+        fan.len = 0;
+        for k in 0..4 {
+            fan.push(self.moved(&vertices[k], feature.ways[k]));
+            if let Some(between) = &between {
+                fan.push(self.moved(&between[k], DIAGONALS[k]));
+            }
+        }
+        if between.is_none() {
+            if let Some((i, v)) = self.fifth(object, vertices)? {
+                fan.insert(i, v);
+            }
+        }
+        if self.is_point(fan.vertices.get(..fan.len).unwrap_or(&[])) {
+            return Ok(false);
+        }
+        let lows = vertices
+            .iter()
+            .chain(between.iter().flatten())
+            .map(|v| v.low);
+        let level = LEVEL * lows.fold(1.0, lesser);
+        for v in fan.vertices.iter_mut().take(fan.len) {
+            v.low -= level;
+        }
+        if !fan.close() {
+            fan.enclose(self.margin);
+        }
+        Ok(true)
+    }
+
+    /// Returns a vertex moved outwards by the margin.
+    #[inline(always)]
+    fn moved(&self, v: &FeatureVertex, [x, y]: [f64; 2]) -> FeatureVertex {
+        FeatureVertex {
+            x: v.x + self.margin * x,
+            y: v.y + self.margin * y,
+            low: v.low,
+        }
+    }
+
+    /// Returns the corner that a polytope has beyond a side of the four, moved outwards, and its place
+    /// among them.
+    ///
+    /// Where two tilts found one corner, there is another beyond the longest side of the triangle; where
+    /// the deepest point is beyond a side, there is one that way. The normal of the plane of three corners,
+    /// tilted across that side, finds it.
+    #[inline(always)]
+    fn fifth(
+        &self,
+        object: usize,
+        vertices: &[FeatureVertex; 4],
+    ) -> Result<Option<(usize, FeatureVertex)>, Fault> {
+        let at = |i: usize| &vertices[i % 4];
+        let lengths2 = [0, 1, 2, 3].map(|i| at(i + 1).minus(at(i)).length2());
+        let areas = [0, 1, 2, 3].map(|i| at(i).cross(at(i + 1)));
+        let twice = (0..4).find(|i| at(*i).is_within(at(i + 1), 2.0 * self.margin));
+        let (side, opposite) = if let Some(twice) = twice {
+            let side = (1..4).fold(0, |k, i| if lengths2[i] > lengths2[k] { i } else { k });
+            let is_next = (side + 1) % 4 == twice;
+            (side, side + if is_next { 3 } else { 2 })
+        } else {
+            let side = (1..4).fold(0, |k, i| if areas[i] < areas[k] { i } else { k });
+            if !(areas[side] < -NARROW_REL * areas.iter().sum::<f64>()) {
+                return Ok(None);
+            }
+            (side, side + 2)
+        };
+        let [o, p, q] = [opposite, side, side + 1].map(at);
+        let area = p.minus(o).cross(&q.minus(o));
+        let length = lengths2[side].sqrt();
+        // Beyond a side that is all too low nothing is shared.
+        let is_wide = area > NARROW_REL * lengths2[side] && area > 2.0 * self.margin * length;
+        if !(is_wide && (p.low < 1.0 || q.low < 1.0)) {
+            return Ok(None);
+        }
+        let slope = Slope::of([o, p, q]);
+        let [x, y] = [(q.y - p.y) / length, (p.x - q.x) / length];
+        let v = self.query(
+            object,
+            slope.x * self.depth + x * self.tilt,
+            slope.y * self.depth + y * self.tilt,
+        )?;
+        let is_beyond = x * (v.x - p.x) + y * (v.y - p.y) > 2.0 * self.margin;
+        let is_in_plane = v.low <= slope.low(o, v.x, v.y) + SAME_FACE;
+        Ok((is_beyond && is_in_plane).then(|| (side + 1, self.moved(&v, [x, y]))))
+    }
+
+    /// Returns the points between four vertices, where these are on the rim of a disc. A disc returns, for a
+    /// direction, its middle and the radius that way; so may corners of a square, where it lies as the ways do
+    /// to a ten thousandth of a radian.
+    fn rim(&self, vertices: &[FeatureVertex; 4]) -> Option<[FeatureVertex; 4]> {
+        let [a, b, c, d] = vertices;
+        let slope = Slope::of([a, b, c]);
+        let (sx, sy) = (slope.x * self.depth, slope.y * self.depth);
+        let share = 1.0 / (1.0 + sx * sx + sy * sy);
+        // The way in which a disc that leans so reaches farthest: the tilted normal without its part along the
+        // axis of the disc.
+        let outwards = |way: [f64; 2]| {
+            let (x, y) = (way[0] * self.tilt - sx, way[1] * self.tilt - sy);
+            let down = (sx * x + sy * y) * share;
+            let (x, y) = (x - sx * down, y - sy * down);
+            let share = 1.0 / (x * x + y * y + down * down).sqrt();
+            (x * share, y * share)
+        };
+        let [first, second, third, fourth] = WAYS.map(outwards);
+        let (x, y) = (first.0 - third.0, first.1 - third.1);
+        let chord = a.minus(c);
+        let whole2 = x * x + y * y;
+        // Other faces' corners mostly lie in other directions.
+        let cross = x * chord.y - y * chord.x;
+        if !(cross * cross <= RIM_REL_TOL * whole2 * chord.length2()) {
+            return None;
+        }
+        let radius = (x * chord.x + y * chord.y) / whole2;
+        let on_rim = |(x, y): (f64, f64)| {
+            let (x, y) = (a.x + radius * (x - first.0), a.y + radius * (y - first.1));
+            let low = slope.low(a, x, y);
+            FeatureVertex { x, y, low }
+        };
+        let is_there = |way, found: &FeatureVertex| {
+            let off = on_rim(way).minus(found);
+            let most = RIM_REL_TOL * radius;
+            off.length2() <= most * most && off.low.abs() <= SAME_FACE
+        };
+        // False for NaN.
+        let is_rim = radius > 2.0 * self.margin
+            && is_there(second, b)
+            && is_there(third, c)
+            && is_there(fourth, d);
+        is_rim.then(|| DIAGONALS.map(|way| on_rim(outwards(way))))
+    }
+}
+
+impl Feature {
+    #[inline(always)]
+    fn new(kind: FeatureKind, vertices: [FeatureVertex; 4]) -> Self {
+        Self {
+            kind,
+            vertices,
+            ways: WAYS,
+        }
+    }
+}
+
+impl Prediction {
+    /// Takes a queried vertex for the prediction of the other tilts that it is farther along.
+    #[inline(always)]
+    fn consider(&mut self, v: &FeatureVertex, scores: &[f64; 4], is_queried: &[bool; 4]) {
+        for k in 0..4 {
+            if !is_queried[k] && scores[k] > self.scores[k] {
+                (self.scores[k], self.vertices[k], self.cover[k]) = (scores[k], *v, 0.0);
+            }
+        }
+    }
+}
+
+impl Fan {
+    /// Eight of a disc, or five corners, and the two that enclose the deepest point; the first one again.
+    pub const CAPACITY: usize = 11;
+    pub const EMPTY: Self = Self {
+        vertices: [FeatureVertex {
+            x: 0.0,
+            y: 0.0,
+            low: 0.0,
+        }; Self::CAPACITY],
+        areas: [0.0; Self::CAPACITY],
+        len: 0,
+    };
+
+    /// Returns the vertex with an index that counts on from the first.
+    #[inline(always)]
+    fn around(&self, i: usize) -> FeatureVertex {
+        self.vertices[(i % self.len.max(1)).min(Self::CAPACITY - 1)]
+    }
+
+    #[inline(always)]
+    pub fn push(&mut self, v: FeatureVertex) {
+        if self.len < Self::CAPACITY - 1 {
+            self.vertices[self.len] = v;
+            self.len += 1;
+        }
+    }
+
+    fn insert(&mut self, i: usize, v: FeatureVertex) {
+        self.push(v);
+        if let Some(rest) = self.vertices.get_mut(i..self.len) {
+            rest.rotate_right(1);
+        }
+    }
+
+    /// Closes the fan. Returns whether the deepest point is within.
+    #[inline(always)]
+    pub fn close(&mut self) -> bool {
+        let len = self.len.min(Self::CAPACITY - 1);
+        self.vertices[len] = self.vertices[0];
+        let mut least = f64::INFINITY;
+        for i in 0..len {
+            self.areas[i] = self.vertices[i].cross(&self.vertices[i + 1]);
+            least = lesser(self.areas[i], least);
+        }
+        least > 0.0
+    }
+
+    /// Takes the deepest point, which is outside, in: the sides that it is beyond go, and a vertex `margin`
+    /// behind it comes in their place.
+    #[cold]
+    #[inline(never)]
+    fn enclose(&mut self, margin: f64) {
+        let n = self.len.clamp(1, Self::CAPACITY - 1);
+        let is_seen = |i: usize| !(self.areas[i % n] > 0.0);
+        let first = (0..n).find(|i| !is_seen(*i) && is_seen(i + n - 1));
+        let first = first.unwrap_or(0);
+        let mut fan = Self::EMPTY;
+        let kept = (0..n).find(|k| is_seen(first + k)).unwrap_or(n);
+        for k in 0..=kept {
+            fan.push(self.around(first + k));
+        }
+        let (p, q) = (self.around(first + kept), self.around(first));
+        let (x, y) = (q.y - p.y, p.x - q.x);
+        let share = margin / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
+        fan.push(FeatureVertex {
+            x: x * share,
+            y: y * share,
+            low: 0.0,
+        });
+        fan.close();
+        for area in fan.areas.iter_mut().take(fan.len) {
+            // What rounding leaves of a triangle without area divides nothing by zero.
+            *area = larger(*area, MIN_AREA);
+        }
+        *self = fan;
+    }
+
+    /// Mirrors the fan through the deepest point.
+    pub fn mirror(&mut self) {
+        for v in &mut self.vertices {
+            (v.x, v.y) = (-v.x, -v.y);
+        }
+    }
+}
+
+/// Twice the area of a triangle that has none, m²: its inverse is finite, and so are products with it.
+const MIN_AREA: f64 = 1e-250;
