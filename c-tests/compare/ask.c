@@ -125,6 +125,10 @@ static void write_down(const watched_t *w, const ccd_vec3_t *dir, const ccd_vec3
             s->least = h;
             for (k = 0; k < 3; k++)
                 s->least_dir.v[k] = -dir->v[k] / (ccd_real_t)length;
+            s->least_point[0].dir = *a->pending;
+            s->least_point[0].point = a->pending_point;
+            s->least_point[1].dir = *dir;
+            s->least_point[1].point = *point;
         }
     }
     a->pending = NULL;

@@ -56,6 +56,7 @@ typedef struct {
     int centred[2], has_first_dir;
     double least;
     ccd_vec3_t least_dir;
+    seen_point_t least_point[2]; /* the directions and points that gave the least value */
 } seen_t;
 
 /* How a query went: support points of the difference, and where to write. */

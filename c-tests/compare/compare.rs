@@ -138,6 +138,16 @@ fn a_callback_that_lies_is_noticed() {
     w.assert_ours_right();
 }
 
+/// In few directions, which give the upper bound: no library is accused of what the callback does.
+#[test]
+fn a_callback_that_lies_in_few_directions_is_noticed() {
+    let w = Watched::run("seldom", EVERY);
+    w.assert_unchanged();
+    assert!(w.counted["no_shape"] > 50.0, "{:?}", w.counted);
+    assert!(w.counted["judged"] > 50.0, "{:?}", w.counted);
+    w.assert_ours_right();
+}
+
 #[test]
 fn a_callback_with_memory_is_noticed_and_said() {
     let w = Watched::run("drift", EVERY);

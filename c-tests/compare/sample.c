@@ -149,27 +149,43 @@ verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict
     return verdict(&a, truth);
 }
 
-/* By how much a point answered for one direction lies beyond what another was answered, or the
- * centre does: of a convex shape nothing but rounding. Of many directions 64 are held against
- * all points. */
-static double inconsistency(const seen_t *seen, int all)
+/* Returns how far the points answered for other directions, or the centre, are beyond the point
+ * answered for this one: of a convex shape nothing but rounding. */
+static double inconsistency_at(const seen_t *seen, int which, const seen_point_t *p)
 {
-    double most = 0;
-    int which, i, j;
-    for (which = 0; which < 2; which++) {
-        const seen_point_t *p = seen->point[which];
-        const int n = seen->count[which], step = all ? 1 : n / 64 + 1;
-        for (i = 0; i < n; i += step) {
-            const double length = sqrt((double)ccdVec3Len2(&p[i].dir)), h = (double)ccdVec3Dot(&p[i].dir, &p[i].point);
-            double beyond = seen->centred[which] ? (double)ccdVec3Dot(&p[i].dir, &seen->centre[which]) - h : 0;
-            for (j = 0; j < n && beyond < HUGE_VAL; j++) {
-                const double further = (double)ccdVec3Dot(&p[i].dir, &p[j].point) - h;
-                beyond = further <= beyond ? beyond : further == further ? further : HUGE_VAL; /* NaN is no point */
-            }
-            most = fmax(most, beyond / length);
-        }
+    const double length = sqrt((double)ccdVec3Len2(&p->dir)), h = (double)ccdVec3Dot(&p->dir, &p->point);
+    double beyond = seen->centred[which] ? (double)ccdVec3Dot(&p->dir, &seen->centre[which]) - h : 0;
+    int i;
+    for (i = 0; i < seen->count[which] && beyond < HUGE_VAL; i++) {
+        const double further = (double)ccdVec3Dot(&p->dir, &seen->point[which][i].point) - h;
+        beyond = further <= beyond ? beyond : further == further ? further : HUGE_VAL; /* NaN is no point */
     }
-    return most;
+    return beyond / length;
+}
+
+/* Returns the largest inconsistency of the direction that gave the upper bound and of at most so
+ * many other directions of each object. */
+static double inconsistency(const seen_t *seen, int most)
+{
+    double largest = 0;
+    int which, i;
+    for (which = 0; which < 2; which++) {
+        const int n = seen->count[which];
+        for (i = 0; i < n; i += (n + most - 1) / most)
+            largest = fmax(largest, inconsistency_at(seen, which, &seen->point[which][i]));
+        if (seen->least < HUGE_VAL)
+            largest = fmax(largest, inconsistency_at(seen, which, &seen->least_point[which]));
+    }
+    return largest;
+}
+
+/* Directions that are checked of each query, and of a query with a wrong answer: all. */
+enum { CHECKED = 64, ALL = SEEN };
+
+/* Whether the callbacks describe convex shapes: what is within the tolerance changes no verdict. */
+static int is_shape(const sample_t *s, int most)
+{
+    return inconsistency(s->seen, most) <= fmax(s->truth.tolerance, 10 * s->truth.touch);
 }
 
 static int same_answer(int call, const answer_t *a, const answer_t *b)
@@ -200,13 +216,13 @@ static void check_move(const compare_t *compare, sample_t *s, int side)
     work_t w = work_on(&compare->library[COMPARE_OURS], s->q, &asked, a);
     if (guard_run(work_value, &w) != GUARD_RETURNED || (double)a->depth >= w.value - t->tolerance - t->touch)
         return;
-    count_add(&compare->counts->call[s->q->call].side[side].slanted, 1);
+    s->slanted[side] = 1;
     ccdVec3Scale(&shift, a->depth);
     asked.seen = NULL; /* of another pose */
     asked.shift = &shift;
     if (guard_run(work_minimum, &w) == GUARD_RETURNED && (w.code == CCD_HIT || w.code == CCD_LIMIT)
         && (double)w.least.depth_lower > 2 * t->tolerance + t->touch) {
-        count_add(&compare->counts->call[s->q->call].side[side].aside, 1);
+        s->aside[side] = 1;
         s->verdict[side] = VERDICT_UNSOUND;
     }
 }
@@ -295,6 +311,8 @@ static void count_side(compare_side_t *to, const sample_t *s, int side)
     count_add(&to->verdict[s->verdict[side]], 1);
     count_add(&to->hits, (uint64_t)a->hit);
     count_add(&to->calls, s->asked[side].calls);
+    count_add(&to->slanted, (uint64_t)s->slanted[side]);
+    count_add(&to->aside, (uint64_t)s->aside[side]);
     if (judged.has_depth && verdict_has_error(&judged, s->verdict[side])) {
         const uint64_t error = (uint64_t)(PICO * fmin(verdict_error(&judged, &s->truth), 1e6));
         count_add(&to->with_error, 1);
@@ -323,7 +341,6 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
     compare_call_t *c = &compare->counts->call[s->q->call];
     answer_t again;
     guard_t how[COMPARE_SIDES];
-    uint64_t calls = 0;
     const int base = compare->base, other = 1 - base;
     asked_t unused;
     how[base] = sample_ask(&compare->library[base], s->q, s->seen, &s->asked[base], &s->answer[base]);
@@ -333,7 +350,7 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
         return -1;
     }
     if (how[base] != GUARD_RETURNED || how[other] != GUARD_RETURNED
-        || sample_truth(&compare->library[COMPARE_OURS], s->q, s->seen, s, &calls) != 0) {
+        || sample_truth(&compare->library[COMPARE_OURS], s->q, s->seen, s, &s->minimum_calls) != 0) {
         count_add(&c->threw, 1);
         return -1;
     }
@@ -343,19 +360,35 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
         count_add(&c->memory, 1);
     s->truth.upper = s->seen->least;
     s->truth_dir = s->seen->least_dir;
-    /* what is within the tolerance changes no verdict */
-    if (!(inconsistency(s->seen, 0) <= fmax(s->truth.tolerance, 10 * s->truth.touch))) {
+    if (!is_shape(s, CHECKED)) {
         count_add(&c->no_shape, 1);
         return -1;
     }
     if (s->truth.lower > s->truth.upper + s->truth.touch) {
-        if (s->truth.lower > s->truth.upper + s->truth.touch + 2 * inconsistency(s->seen, 1)) {
+        if (s->truth.lower > s->truth.upper + s->truth.touch + 2 * inconsistency(s->seen, ALL)) {
             count_add(&c->contradicted, 1);
             s->truth.lower = -HUGE_VAL; /* what rests on the upper bound alone is judged all the same */
         } else
             s->truth.lower = s->truth.upper;
     }
-    count_add(&c->minimum_calls, calls);
+    return 0;
+}
+
+/* Judges both answers. Returns 0, or -1 where one is wrong and the callbacks, checked in full, are
+ * to blame; that is counted. */
+static int judge(const compare_t *compare, sample_t *s)
+{
+    int side, wrong = 0;
+    for (side = 0; side < COMPARE_SIDES; side++) {
+        s->verdict[side] = sample_verdict(s->q, &s->answer[side], &s->truth);
+        if (s->verdict[side] == VERDICT_RIGHT && sample_has_depth(s->q, &s->answer[side]))
+            check_move(compare, s, side);
+        wrong |= s->verdict[side] != VERDICT_RIGHT;
+    }
+    if (wrong && !is_shape(s, ALL)) {
+        count_add(&compare->counts->call[s->q->call].no_shape, 1);
+        return -1;
+    }
     return 0;
 }
 
@@ -371,13 +404,9 @@ void sample_query(const compare_t *compare, const query_t *q, const answer_t *ow
         return;
     seen_clear(s.seen);
     count_add(&c->sampled, 1);
-    if (ask_all(compare, &s, own) == 0) {
-        for (side = 0; side < COMPARE_SIDES; side++) {
-            s.verdict[side] = sample_verdict(q, &s.answer[side], &s.truth);
-            if (s.verdict[side] == VERDICT_RIGHT && sample_has_depth(q, &s.answer[side]))
-                check_move(compare, &s, side);
-        }
+    if (ask_all(compare, &s, own) == 0 && judge(compare, &s) == 0) {
         count_add(&c->judged, 1);
+        count_add(&c->minimum_calls, s.minimum_calls);
         count_add(&c->overlaps, s.truth.lower > s.truth.touch);
         for (side = 0; side < COMPARE_SIDES; side++)
             count_side(&c->side[side], &s, side);

@@ -30,7 +30,9 @@ typedef struct {
     double size;          /* of the smaller object */
     answer_t answer[COMPARE_SIDES];
     verdict_t verdict[COMPARE_SIDES];
+    int slanted[COMPARE_SIDES], aside[COMPARE_SIDES]; /* as counted: counts.h */
     asked_t asked[COMPARE_SIDES];
+    uint64_t minimum_calls;
 } sample_t;
 
 /* Calls of the callbacks that a query may make before it counts as endless: a hundred times
