@@ -219,15 +219,26 @@ fn git_tag() {
         .and_then(|(_, rest)| rest.split([' ', ')']).next())
         .expect("the page names a branch");
     assert_eq!(tag, "main");
-    // The files as they are now; HEAD where git knows no change.
-    let mut commit = git(root(), &[&"stash", &"create"]);
-    if commit.is_empty() {
-        commit = git(root(), &[&"rev-parse", &"HEAD"]);
-    }
+    // The files as they are now, copied into a repository of their own: the time stamps of the
+    // index and the name of whoever works here do not matter.
     let upstream = fresh("upstream");
-    git(&upstream, &[&"init", &"--quiet", &"--bare"]);
-    let to = format!("{commit}:refs/heads/{tag}");
-    git(root(), &[&"push", &"--quiet", &upstream, &to]);
+    let branch = format!("--initial-branch={tag}");
+    git(&upstream, &[&"init", &"--quiet", &branch]);
+    let files = git(root(), &[&"ls-files", &"-z", &"--cached"]);
+    for file in files.split_terminator('\0') {
+        let to = upstream.join(file);
+        fs::create_dir_all(to.parent().expect("a directory")).expect("a directory can be made");
+        // One that is deleted and not committed is not there.
+        if root().join(file).exists() {
+            fs::copy(root().join(file), to).expect("a file can be copied");
+        }
+    }
+    git(&upstream, &[&"add", &"--all", &"--force"]);
+    let mut commit = Command::new("git");
+    commit.arg("-C").arg(&upstream);
+    commit.args(["-c", "user.name=Test", "-c", "user.email=test@localhost"]);
+    commit.args(["commit", "--quiet", "--no-gpg-sign", "-m", "files"]);
+    ran(commit, &[]);
 
     // Behind the consumer's own.
     let options = [define("TAG", tag), define("REPOSITORY", upstream)];
