@@ -55,11 +55,11 @@ apt_install() {
 case $job in
 main)
     oldest=$(rust_version Cargo.toml)
-    from="Debian 12's rustc-web and cargo-web, Debian 13's rustc and cargo, or https://rustup.rs"
+    from="Debian 12's or 13's rustc-web and cargo-web, Debian 13's rustc and cargo, or https://rustup.rs"
     ;;
 tests | check)
     oldest=$(rust_version c-tests/setup/Cargo.toml)
-    from="https://rustup.rs"
+    from="Debian 12's or 13's rustc-web and cargo-web, or https://rustup.rs"
     ;;
 *)
     echo "usage: setup.sh [tests|main|check]" >&2

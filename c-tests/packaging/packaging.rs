@@ -272,6 +272,13 @@ fn the_archive_alone_without_shared_libraries() {
     }
 }
 
+/// Writes a program that says one line.
+fn executable(path: &Path, line: &str) {
+    fs::write(path, format!("#!/bin/sh\necho '{line}'\n")).expect("a script");
+    let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    fs::set_permissions(path, mode).expect("a mode");
+}
+
 /// A Rust that is missing or too old is named when CMake configures.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
@@ -279,9 +286,7 @@ fn a_missing_or_old_rust_is_named() {
     let dir = fresh("rust");
     let says = |name: &str, line: &str| {
         let script = dir.join(name);
-        fs::write(&script, format!("#!/bin/sh\necho '{line}'\n")).expect("a script");
-        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
-        fs::set_permissions(&script, mode).expect("a mode");
+        executable(&script, line);
         define("CARGO", script)
     };
     let oldest = env!("CARGO_PKG_RUST_VERSION");
@@ -305,9 +310,33 @@ fn a_missing_or_old_rust_is_named() {
         let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(said.contains(expected), "{name}: {said}");
         if name != "odd" {
-            let sentence = format!("Rust {oldest} or later (Debian 12's rustc-web");
+            let sentence = format!("Rust {oldest} or later (Debian 12's or 13's rustc-web");
             assert!(said.contains(&sentence), "{said}");
         }
+    }
+}
+
+/// setup.sh names a Rust that is too old, and Debian's packages of a newer one.
+#[test]
+#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
+fn setup_names_where_a_newer_rust_is() {
+    let dir = fresh("old-rust");
+    for tool in ["cargo", "rustc"] {
+        executable(
+            &dir.join(tool),
+            &format!("{tool} 1.63.0 (fd9c4297c 2022-07-01)"),
+        );
+    }
+    let path = std::env::var("PATH").expect("a path");
+    for job in ["check", "main", "tests"] {
+        let mut setup = Command::new("sh");
+        setup.arg(root().join("c-tests/setup.sh")).arg(job);
+        setup.env("PATH", format!("{}:{path}", dir.display()));
+        let said = setup.output().expect("a shell runs");
+        assert_eq!(said.status.code(), Some(1), "{job}");
+        let said = String::from_utf8_lossy(&said.stderr);
+        assert!(said.contains("cargo is 1.63.0, too old: Rust 1."), "{said}");
+        assert!(said.contains("13's rustc-web and cargo-web"), "{said}");
     }
 }
 
