@@ -24,11 +24,13 @@ void compare_answered(int call, int hit, double depth, double length);
 /* Of the tool, which is there when the program runs and not when it is linked. */
 const compare_counts_t *compare_counts(void) __attribute__((weak));
 
-/* Queries so far. */
+/* Queries so far; 0 where the program runs without the tool. */
 static inline unsigned long compare_queries(void)
 {
     unsigned long n = 0;
     int i;
+    if (!compare_counts)
+        return 0;
     for (i = 0; i < COMPARE_CALLS; i++)
         n += (unsigned long)compare_counts()->call[i].queries;
     return n;

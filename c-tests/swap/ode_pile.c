@@ -3,7 +3,8 @@
 
 /* A simulation in ODE, from a start that is moved by up to 1e-3 m a coordinate, by
  * a stream named SEED. Prints what the second half of the run looked like and,
- * of every 20th step, what ODE made of its pairs against the truth. Scenes:
+ * of every 20th step, what ODE made of its pairs against the truth: under compare.sh, which
+ * counts its queries. Without it no pair is judged. Scenes:
  *
  *   pile   boxes, cylinders, capsules and hulls fall into a pen and come to rest
  *   hulls  convex hulls alone
