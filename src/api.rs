@@ -229,7 +229,8 @@ pub struct Penetration {
     pub point1: [Real; 3],
     /// Witness point of the second shape, [`Want::points`]; the same.
     pub point2: [Real; 3],
-    /// Calls of both shapes' [`Shape::support`], halved and rounded up; without a position, calls of each.
+    /// Half of the calls of both shapes' [`Shape::support`] together, rounded up: a support point of the
+    /// Minkowski difference is one call of each. Positions need further calls of one alone.
     pub support_calls: u64,
     /// Iterations of the solver.
     pub iterations: u64,
@@ -276,7 +277,8 @@ pub struct Distance {
     pub point1: [Real; 3],
     /// Witness point of the second shape, [`Want::points`].
     pub point2: [Real; 3],
-    /// Calls of both shapes' [`Shape::support`], halved and rounded up; without a position, calls of each.
+    /// Half of the calls of both shapes' [`Shape::support`] together, rounded up: a support point of the
+    /// Minkowski difference is one call of each. Positions need further calls of one alone.
     pub support_calls: u64,
     /// Iterations of the solver.
     pub iterations: u64,

@@ -180,7 +180,8 @@ typedef struct ccd_penetration_t {
    */
   ccd_vec3_t point2;
   /**
-   * Half as often as support1 and support2 were called, rounded up; each as often, where no position was wanted.
+   * Half of the calls of support1 and support2 together, rounded up: a support point of the
+   * Minkowski difference is one call of each. Positions need further calls of one alone.
    */
   unsigned long support_calls;
   /**
@@ -258,7 +259,8 @@ typedef struct ccd_distance_t {
    */
   ccd_vec3_t point2;
   /**
-   * Half as often as support1 and support2 were called, rounded up; each as often, where no position was wanted.
+   * Half of the calls of support1 and support2 together, rounded up: a support point of the
+   * Minkowski difference is one call of each. Positions need further calls of one alone.
    */
   unsigned long support_calls;
   /**

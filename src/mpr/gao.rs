@@ -41,7 +41,7 @@ const ASIDE_TAN: (f64, f64) = (0.093, 0.041);
 /// plane that D and `start` lie in, where there is one. `switched` gets |z| at each switch of the ray.
 ///
 /// # Errors
-/// [`Stop::Apart`]; a callback's answer that is not finite.
+/// `Stop::Apart`; a callback's answer that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,

@@ -33,7 +33,8 @@ pub struct ccd_distance_t {
     pub point1: ccd_vec3_t,
     /// Witness point on the surface of obj2 with its margin; CCD_WANT_POINTS.
     pub point2: ccd_vec3_t,
-    /// Half as often as support1 and support2 were called, rounded up; each as often, where no position was wanted.
+    /// Half of the calls of support1 and support2 together, rounded up: a support point of the
+    /// Minkowski difference is one call of each. Positions need further calls of one alone.
     pub support_calls: c_ulong,
     /// Iterations of the solver.
     pub iterations: c_ulong,
