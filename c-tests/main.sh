@@ -91,23 +91,35 @@ supports  support points a query            ns        a query, best of turns
 
 END
 
-# The wrong answers, the support points and the time of MPR, which a program that
-# exists is most likely to call.
+# Prints the wrong answers, the support points and the time of the two calls that answer a depth,
+# which a program that exists is most likely to make.
 verdict() {
     awk '
-        $1 == "MPR" { wrong[FILENAME] = $2 + $3 + $4 + $5 + $6; supports[FILENAME] = $9; ns[FILENAME] = $10 }
+        function call(name, before, ratio, word) {
+            n = ours SUBSEP name
+            m = theirs SUBSEP name
+            printf "%s%s: %d of %d answers wrong", before, name, wrong[n], pairs
+            if (!(m in ns)) {
+                printf ", %.1f supports, %d ns", supports[n], ns[n]
+                return
+            }
+            ratio = ns[n] / ns[m]
+            word = "slower"
+            if (ratio < 1) { ratio = 1 / ratio; word = "faster" }
+            printf " (libccd %d), %.1f supports (%.1f), %.1f x %s", wrong[m], supports[n], supports[m], ratio, word
+        }
+        $1 == "MPR" || /^GJK [+] EPA / {
+            n = FILENAME SUBSEP ($1 == "MPR" ? "MPR" : "GJK + EPA")
+            wrong[n] = $(NF - 8) + $(NF - 7) + $(NF - 6) + $(NF - 5) + $(NF - 4)
+            supports[n] = $(NF - 1)
+            ns[n] = $NF
+        }
         / pairs, / { pairs = $5 }
         END {
             ours = ARGV[1]; theirs = ARGV[2]
-            printf "MPR: %d of %d answers wrong", wrong[ours], pairs
-            if (!(theirs in ns)) {
-                printf ", %.1f supports, %d ns\n", supports[ours], ns[ours]
-                exit
-            }
-            ratio = ns[ours] / ns[theirs]
-            word = "slower"
-            if (ratio < 1) { ratio = 1 / ratio; word = "faster" }
-            printf " (libccd %d), %.1f supports (%.1f), %.1f x %s\n", wrong[theirs], supports[ours], supports[theirs], ratio, word
+            call("MPR", "")
+            call("GJK + EPA", "; ")
+            print ""
         }' "$@"
 }
 
