@@ -229,6 +229,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if hit.limit {
             // No proof is wanted: a walk that ends at its direction is the answer.
             hit.limit = !self.floor(hit, &limits)?;
+            hit.pos = hit.middle();
         }
         if self.centre.is_some() {
             // The bound of a local query stands on no centre.

@@ -222,7 +222,7 @@ mod tests {
             [-1.0, 1.0, -1.0],
             [-1.0, -1.0, 1.0],
         ];
-        let [o, a, b, c] = points.map(|p| Vec3::from(p));
+        let [o, a, b, c] = points.map(Vec3::from);
         for points in [[o, a, b, c], [o, b, a, c]] {
             let made = Tetrahedron::new(points, f64::EPSILON).unwrap();
             assert!((made.inner_radius() - 1.0 / 3.0_f64.sqrt()).abs() < 1e-15);

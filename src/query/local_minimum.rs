@@ -41,7 +41,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         match local::penetration(&mut query, &mut set, &mut fit, &start, &settings) {
             Ok((floor, Status::Converged)) => {
-                if floor.depth < hit.depth {
+                let tolerance = query.scale.tolerance(limits.gap.tolerance);
+                if !floor.has_sound_witnesses(tolerance) {
+                    return Ok(false);
+                }
+                let is_minimum = floor.depth <= hit.depth + settings.tolerance;
+                if is_minimum {
                     *hit = Penetration {
                         depth_lower: hit.depth_lower.min(floor.depth),
                         iterations: hit.iterations + floor.iterations,
@@ -49,7 +54,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                         ..floor
                     };
                 }
-                Ok(floor.depth <= hit.depth + limits.gap.tolerance)
+                Ok(is_minimum)
             }
             Ok(_) | Err(Stop::Apart(_)) => Ok(false),
             Err(Stop::Fault(fault)) => Err(fault),
