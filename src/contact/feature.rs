@@ -695,7 +695,9 @@ impl Fan {
             fan.push(self.around(first + k));
         }
         let (p, q) = (self.around(first + kept), self.around(first));
-        let (x, y) = (q.y - p.y, p.x - q.x);
+        // Across the bisector of the two, so that it is beyond the deepest point also where both are on one side.
+        let [a, b] = [&p, &q].map(|v| 1.0 / (v.length2() + f64::MIN_POSITIVE).sqrt());
+        let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
         let share = margin / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
         fan.push(FeatureVertex {
             x: x * share,
