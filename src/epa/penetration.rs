@@ -41,8 +41,8 @@ use crate::query::warm_start::{WarmKind, WarmStart};
 /// The support calls of a default query, at most.
 pub const MAX_SAMPLES: u64 = 160;
 /// The support calls of a query that proves the tolerance, at most. Derived: no call takes more than 400,
-/// and what comes before and after takes 58 on nearly coincident bodies (`campaigns -- wide`).
-pub const MAX_PROVEN_SAMPLES: u64 = 340;
+/// and what comes before and after takes up to 80 on nearly coincident bodies (`campaigns -- wide`).
+pub const MAX_PROVEN_SAMPLES: u64 = 320;
 
 /// The vertices of the small buffers, 6 KB on the stack with their corners and faces: enough for shallow
 /// contacts and most polytopes. Less than 2 KB is zeroed by stores, more byte by byte.
