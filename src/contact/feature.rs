@@ -423,7 +423,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         feature.vertices = [a, a, b, b];
         feature.ways = [[-x, -y], [y, -x], [x, y], [-y, x]];
         for k in [1, 3] {
-            let [u, v] = feature.ways[k];
+            let [u, v] = feature.ways[k % 4];
             let is_covered = self.known(object).enumerate().any(|(i, p)| {
                 let dir = self.set.dir(self.first + i);
                 let cosine = self.frame.normal.dot(&dir);
@@ -435,7 +435,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             if !is_covered {
                 let p = self.query(object, u * self.tilt, v * self.tilt)?;
                 if u * (p.x - a.x) + v * (p.y - a.y) > 2.0 * self.margin {
-                    feature.vertices[k] = p;
+                    feature.vertices[k % 4] = p;
                 }
             }
         }
@@ -662,8 +662,9 @@ impl Fan {
 
     fn insert(&mut self, i: usize, v: FeatureVertex) {
         self.push(v);
-        if let Some(rest) = self.vertices.get_mut(i..self.len) {
-            rest.rotate_right(1);
+        let mut moved = v;
+        for place in self.vertices.iter_mut().take(self.len).skip(i) {
+            core::mem::swap(place, &mut moved);
         }
     }
 
@@ -686,7 +687,7 @@ impl Fan {
     #[inline(never)]
     fn enclose(&mut self, margin: f64) {
         let n = self.len.clamp(1, Self::CAPACITY - 1);
-        let is_seen = |i: usize| !(self.areas[i % n] > 0.0);
+        let is_seen = |i: usize| !(self.areas[(i % n).min(Self::CAPACITY - 1)] > 0.0);
         let first = (0..n).find(|i| !is_seen(*i) && is_seen(i + n - 1));
         let first = first.unwrap_or(0);
         let mut fan = Self::EMPTY;
