@@ -156,7 +156,7 @@ fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
         return false;
     }
     (0..4).all(|i| {
-        let (p, q) = (&face[i], &face[(i + 1) % 4]);
+        let (p, q) = (&face[i % 4], &face[(i + 1) % 4]);
         let (x, y) = (q.x - p.x, q.y - p.y);
         let least = x * p.y - y * p.x - margin * (x.abs() + y.abs());
         // The other object's outline is mirrored.
