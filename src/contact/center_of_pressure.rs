@@ -242,7 +242,7 @@ impl Ray {
         let [i, j] = [i, j].map(|i| i.min(2));
         let (a, b) = (&self.bounds, &next.bounds);
         let t = (a[i] - a[j]) / ((a[i] - a[j]) - (b[i] - b[j]));
-        let at = |k: usize| a[k] + (b[k] - a[k]) * t;
+        let at = |k: usize| a[k.min(2)] + (b[k.min(2)] - a[k.min(2)]) * t;
         let (x, y) = (
             self.x + (next.x - self.x) * t,
             self.y + (next.y - self.y) * t,
