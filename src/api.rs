@@ -574,8 +574,8 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
 }
 
 query!(
-    /// A local minimum of the depth, by the fastest search there is. For who has a direction that is
-    /// roughly right ([`Warm::guess`]), or follows one valley; from far off it may end in another.
+    /// Returns a local minimum of the depth, by a walk on known vertices. Asks few support points with a
+    /// direction that is roughly right ([`Warm::guess`]); from far off it may end in another minimum.
     /// Allocates nothing.
     ///
     /// # Errors

@@ -340,8 +340,8 @@ int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<C
     return count;
 }
 
-/** A local minimum of the depth, from the state, else from the centres, by the fastest search
- * there is: ccdPenetrationLocal. */
+/** A local minimum of the depth, from the state, else from the centres, by a walk on known
+ * vertices: ccdPenetrationLocal. */
 template <class A, class B>
 Penetration penetration_local(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {

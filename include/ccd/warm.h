@@ -386,9 +386,9 @@ int ccdContacts(const void *obj1,
 /* For special wishes: one valley, a proof, a direction, a plane. */
 
 /**
- * A local minimum of the penetration depth, by the fastest search there is: cutting planes
- * with curvature. For who has a direction that is roughly right, or follows one valley; from far
- * off it may end in another. From the state, else from the centres, else from first_dir.
+ * Returns a local minimum of the penetration depth, by a walk on known vertices. Faster than
+ * ccdPenetration with a state or a guess that is roughly right; from far off it may end in
+ * another minimum. Where the walk ends without one, the global search follows. From the state, else from the centres, else from first_dir.
  *
  * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
  * flags. Allocates nothing.

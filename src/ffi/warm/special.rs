@@ -15,9 +15,9 @@ use super::unit_of;
 use crate::contact::Settings;
 use crate::query::{Pair, warm_start::WarmStart};
 
-/// A local minimum of the penetration depth, by the fastest search there is: cutting planes
-/// with curvature. For who has a direction that is roughly right, or follows one valley; from far
-/// off it may end in another. From the state, else from the centres, else from first_dir.
+/// Returns a local minimum of the penetration depth, by a walk on known vertices. Faster than
+/// ccdPenetration with a state or a guess that is roughly right; from far off it may end in
+/// another minimum. Where the walk ends without one, the global search follows. From the state, else from the centres, else from first_dir.
 ///
 /// Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
 /// flags. Allocates nothing.
