@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* ccdCheck: every kind of fault by its flag, and none where nothing is wrong. (How large what is found
- * is, and finer faults: src/known/check.rs.) */
+ * is, and finer faults: src/minkowski/validate.rs.) */
 
 #include "contract/check.h"
 #include "ours.h"
