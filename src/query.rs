@@ -151,7 +151,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state
     }
 
-    /// Do the objects overlap? With memory, or cold. [`Stop::Apart`] where they do not.
+    /// Queries whether the objects overlap, from a state or cold. [`Stop::Apart`] where they do not.
     #[inline]
     pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
         let Some(state) = state else {
@@ -172,7 +172,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         })
     }
 
-    /// How far apart, or how deep; `minimum` is the global minimum of the depth of objects that overlap.
+    /// Computes the signed distance; `minimum` computes the least depth of objects that overlap.
     pub fn signed_distance(
         &self,
         state: &mut WarmStart,
@@ -232,7 +232,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             hit.pos = hit.middle();
         }
         if self.centre.is_some() {
-            // The bound of a local query stands on no centre.
+            // The lower bound would rest on the caller's centre.
             hit.depth_lower = 0.0;
         }
         hit.iterations += walked;

@@ -45,7 +45,7 @@ impl<const N: usize> Nearest<N> {
     }
 }
 
-/// What points mix to with these weights, whose sum is 1.
+/// Returns the weighted mean of points; the weights sum to 1.
 ///
 /// Counted from the first: far from the world's origin weights that miss 1 by a rounding
 /// would move it. Where a weight is 1 it is that point to an ulp.

@@ -168,7 +168,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         self.add(first);
         let mut closest = f64::INFINITY;
         let mut stalls = 0;
-        // Of the last query: whether it was to bring the simplex closer; whether it was tilted in vain.
+        // Of the last query: whether it was to bring the simplex closer; whether its tilt found nothing closer.
         let (mut is_step, mut has_failed) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_KNOWN_STEPS {
