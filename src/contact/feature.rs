@@ -723,3 +723,36 @@ impl Fan {
 
 /// Twice the area of a triangle that has none, m²: its inverse is finite, and so are products with it.
 const MIN_AREA: f64 = 1e-250;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::Random;
+
+    /// A fan beside the deepest point, from a triangle to a sliver that points at it, contains that point
+    /// afterwards: no triangle is turned over.
+    #[test]
+    fn an_enclosed_fan_contains_the_deepest_point() {
+        let mut r = Random::new(1);
+        for round in 0..1000 {
+            let width = 10.0_f64.powf(-r.within(0.0, 4.0));
+            let corners = [
+                (2.0, width),
+                (1.0, -width),
+                (3.0, -width * r.within(-0.4, 0.9)),
+            ];
+            let (sin, cos) = r.within(0.0, core::f64::consts::TAU).sin_cos();
+            let mut fan = Fan::EMPTY;
+            for (x, y) in [corners[0], corners[1], corners[2]] {
+                let (x, y) = (x * cos - y * sin, x * sin + y * cos);
+                fan.push(FeatureVertex { x, y, low: 0.0 });
+            }
+            assert!(!fan.close());
+            fan.enclose(1e-3);
+            assert!(
+                fan.areas[..fan.len].iter().all(|a| *a > MIN_AREA),
+                "{round} {fan:?}"
+            );
+        }
+    }
+}
