@@ -272,25 +272,20 @@ unsafe fn measure(element: *mut ccd_pt_el_t) {
     let origin = Vec3::zeros();
     // SAFETY: [polytope]; an element's kind is that of its block.
     unsafe {
-        let (witness, dist) = match (*element).kind {
-            CCD_PT_VERTEX => {
-                let v = Vec3::from((*element.cast::<ccd_pt_vertex_t>()).v.v);
-                (v, v.norm_squared())
-            }
+        let witness = match (*element).kind {
+            CCD_PT_VERTEX => Vec3::from((*element.cast::<ccd_pt_vertex_t>()).v.v),
             CCD_PT_EDGE => {
                 let ends = (*element.cast::<ccd_pt_edge_t>()).vertex;
                 let [a, b] = ends.map(|v| Vec3::from((*v).v.v));
-                let nearest = barycentric::segment(&origin, &a, &b);
-                (nearest.point, nearest.distance2)
+                barycentric::segment(&origin, &a, &b).point
             }
             _ => {
                 let [a, b, c] = corners(element.cast()).map(|v| Vec3::from((*v).v.v));
-                let nearest = barycentric::triangle(&origin, &a, &b, &c);
-                (nearest.point, nearest.distance2)
+                barycentric::triangle(&origin, &a, &b, &c).point
             }
         };
         (*element).witness = witness.into();
-        (*element).dist = dist as Real;
+        (*element).dist = super::vec3::distance2(&(*element).witness, &Vec3::zeros().into());
     }
 }
 

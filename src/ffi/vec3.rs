@@ -19,7 +19,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
     // SAFETY: [inputs].
     let (p, a, b) = unsafe { (read(p), read(a), read(b)) };
     // SAFETY: [outputs].
-    unsafe { answer(barycentric::segment(&p, &a, &b), witness) }
+    unsafe { answer(&p, barycentric::segment(&p, &a, &b), witness) }
 }
 
 /// Squared distance, m², of point `p` from triangle `abc`; the nearest point goes to
@@ -35,7 +35,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     // SAFETY: [inputs].
     let (p, a, b, c) = unsafe { (read(p), read(a), read(b), read(c)) };
     // SAFETY: [outputs].
-    unsafe { answer(barycentric::triangle(&p, &a, &b, &c), witness) }
+    unsafe { answer(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
 }
 
 #[inline(always)]
@@ -45,12 +45,20 @@ unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
 }
 
 #[inline(always)]
-unsafe fn answer<const N: usize>(nearest: Nearest<N>, witness: *mut ccd_vec3_t) -> Real {
+unsafe fn answer<const N: usize>(p: &Vec3, nearest: Nearest<N>, witness: *mut ccd_vec3_t) -> Real {
+    let point = ccd_vec3_t::from(nearest.point);
     if !witness.is_null() {
         // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
-        unsafe { *witness = nearest.point.into() };
+        unsafe { *witness = point };
     }
-    nearest.distance2 as Real
+    distance2(&(*p).into(), &point)
+}
+
+/// Returns the squared distance of two points, in the caller's precision, as `ccdVec3Dist2` does.
+#[inline(always)]
+pub(super) fn distance2(a: &ccd_vec3_t, b: &ccd_vec3_t) -> Real {
+    let [x, y, z] = [0, 1, 2].map(|i| a.v[i] - b.v[i]);
+    x * x + y * y + z * z
 }
 
 /// Points to the origin. An object of 8 bytes, not a function: programs copy it.
