@@ -21,7 +21,7 @@ use crate::contacts::face::{CORNERS, Face};
 use crate::contacts::list::List;
 use crate::contacts::memory::{Memory, Names};
 use crate::contacts::plane::Plane;
-use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, length, onto, side};
+use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, dot, length, side};
 use crate::math::{Vec3, larger};
 use crate::minkowski::support::{Fault, SupportMap};
 
@@ -202,8 +202,9 @@ fn crossing([[p, q], [r, s]]: &[[Flat; 2]; 2]) -> Option<Flat> {
     on.then(|| between(p, q, t))
 }
 
-/// The ends of what two nearly parallel segments share, where they are no farther apart than
-/// `slack`, moved by a `share` of the way to the second. None where they are not.
+/// Returns the ends of what two nearly parallel segments share, where they are no farther apart than `slack`,
+/// moved by a `share` of the way to the second. These lie between the ends of both segments: across the
+/// second one they may be moved beyond an end of the first. None where nothing is shared.
 fn strip(
     [[p, q], [r, s]]: &[[Flat; 2]; 2],
     slack: f64,
@@ -216,15 +217,19 @@ fn strip(
     if !(cross(&u, &v).abs() <= PARALLEL * whole && whole > 0.0) {
         return ends;
     }
-    for at in [*p, *q] {
+    let longer = slack / length(&u);
+    for at in [between(p, q, -longer), between(p, q, 1.0 + longer)] {
         ends.push(Corner { at, low: 0.0 });
     }
-    let (back, left, right) = (v.map(|x| -x), [-v[1], v[0]], [v[1], -v[0]]);
-    let ends = ends.cut(r, &left, slack).cut(r, &right, slack);
-    let mut ends = ends.cut(r, &v, rounding).cut(s, &back, rounding);
+    let (left, right) = ([-v[1], v[0]], [v[1], -v[0]]);
+    let mut ends = ends.cut(r, &left, slack).cut(r, &right, slack);
     for end in ends.iter_mut() {
-        end.at = between(&end.at, &onto(&end.at, r, s), share);
+        let t = dot(&v, &side(r, &end.at)) / dot(&v, &v);
+        end.at = between(&end.at, &between(r, s, t), share);
     }
+    let [back_u, back_v] = [u, v].map(|way| way.map(|x| -x));
+    let ends = ends.cut(p, &u, rounding).cut(q, &back_u, rounding);
+    let ends = ends.cut(r, &v, rounding).cut(s, &back_v, rounding);
     ends.tidy(rounding, 0.0)
 }
 

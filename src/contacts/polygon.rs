@@ -133,13 +133,33 @@ impl<const ROOM: usize> Polygon<ROOM> {
         rest
     }
 
-    /// What of it is inside another polygon of three corners or more, or no farther than
-    /// `slack` outside (Sutherland and Hodgman, Reentrant polygon clipping, CACM 17(1), 1974).
+    /// Returns what of it is inside another polygon of three corners or more (Sutherland and Hodgman,
+    /// Reentrant polygon clipping, CACM 17(1), 1974). What is no farther than `slack` outside is moved
+    /// onto it: beyond a sharp corner the lines of two sides, moved by the slack, meet farther away.
     pub fn inside<const OTHER: usize>(&self, other: &Polygon<OTHER>, slack: f64) -> Self {
-        other.sides().fold(*self, |rest, (p, q)| {
+        let mut rest = other.sides().fold(*self, |rest, (p, q)| {
             let [x, y] = side(&p.at, &q.at);
             rest.cut(&p.at, &[-y, x], slack)
-        })
+        });
+        for corner in rest.iter_mut() {
+            corner.at = other.closest(&corner.at);
+        }
+        rest
+    }
+
+    /// Returns the closest point to `p` of a polygon of three corners or more.
+    fn closest(&self, p: &Flat) -> Flat {
+        let (mut best, mut least) = (*p, f64::INFINITY);
+        let mut is_inside = true;
+        for (a, b) in self.sides() {
+            is_inside &= cross(&side(&a.at, &b.at), &side(&a.at, p)) >= 0.0;
+            let at = onto(p, &a.at, &b.at);
+            let apart = length(&side(&at, p));
+            if apart < least {
+                (best, least) = (at, apart);
+            }
+        }
+        if is_inside { *p } else { best }
     }
 
     /// What of it is no farther than `slack` behind the line through a place across a way.
@@ -340,6 +360,10 @@ mod tests {
             ends.iter().map(|c| c.at).collect::<Vec<_>>(),
             [[-1.0, 0.5], [0.5, 0.5]]
         );
+        // The slack reaches farther beyond a sharp corner.
+        let sliver = polygon(&[[0.0, 0.0], [1.0, -1e-3], [1.0, 1e-3]]);
+        let ends = polygon(&[[-1.0, 0.0], [0.5, 0.0]]).inside(&sliver, 1e-6);
+        assert!(ends.iter().all(|c| c.at[0] >= 0.0), "{:?}", &*ends);
         assert!(
             polygon(&[[3.0, 0.0]])
                 .inside(&square(0.0, 0.0, 1.0), 0.0)
