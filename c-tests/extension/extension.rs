@@ -94,6 +94,27 @@ fn fcl_header() {
     }
 }
 
+/// The example for FCL: nothing meets at first; then the box rests on its corners, the ball on a point.
+#[cfg(not(feature = "single"))]
+#[test]
+fn fcl_example() {
+    let example = Program::cpp("fcl_example").source("examples/fcl.cpp");
+    let example = example.flag("-isystem/usr/include/eigen3").library("fcl");
+    let said = example.link_ours_shared().build().run(NO_ARGS).stdout;
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(
+        lines[..4],
+        [
+            "frame 0: 0 contacts, box and ball 0.200 m apart",
+            "frame 1: 0 contacts, box and ball 0.180 m apart",
+            "frame 2: 0 contacts, box and ball 0.160 m apart",
+            "frame 3: 5 contacts, box and ball 0.140 m apart",
+        ]
+    );
+    let deep = lines[4..].iter().filter(|l| l.ends_with("3.0 mm deep"));
+    assert_eq!(deep.count(), 5);
+}
+
 /// What the hash table of states prints: no more room than the pairs that meet need, and a tenth of
 /// the callbacks saved for these pairs, fast as they turn.
 #[test]

@@ -16,7 +16,8 @@
  * `missed`, `spurious`, `off` (beyond the promised depth) and `error` (largest, metres) are
  * those of pairs put to libccd or this library, `own_` of pairs that FCL has closed forms for.
  *
- * usage: fcl_scene FRAMES BODIES EXACT CONTACTS   (CONTACTS: of a pair, with BY_HEADER) */
+ * usage: fcl_scene FRAMES BODIES EXACT CONTACTS [mixed|round|hulls]   (CONTACTS: of a pair, with
+ * BY_HEADER; round: spheres and capsules) */
 
 #include "swap/fcl_shapes.h"
 #include "harness/identity.h"
@@ -48,7 +49,7 @@ static int counted(Call *call, unsigned long queries, const void *a, const void 
     behind.support1 = asked_count;
     return call(a, b, &behind, rest...);
 }
-#define ccdMPRPenetrationWarm(...) counted(ccdMPRPenetrationWarm, 1, __VA_ARGS__)
+#define ccdPenetration(...) counted(ccdPenetration, 1, __VA_ARGS__)
 #define ccdSignedDistance(...) counted(ccdSignedDistance, 1, __VA_ARGS__)
 #define ccdContacts(...) counted(ccdContacts, 0, __VA_ARGS__)
 #endif
@@ -56,6 +57,7 @@ static int counted(Call *call, unsigned long queries, const void *a, const void 
 #include <ccd/fcl.hpp>
 #endif
 
+#include <string>
 #include <time.h>
 #include <vector>
 
@@ -77,15 +79,19 @@ struct scene_t {
     fcl::DynamicAABBTreeCollisionManagerd manager;
     double half_width;
 
-    explicit scene_t(int n) : bodies((size_t)n)
+    scene_t(int n, const std::string &which) : bodies((size_t)n)
     {
-        static const int kinds[] = {SHAPE_BOX, SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE, KIND_PLATE};
+        std::vector<int> kinds = {SHAPE_BOX, SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE, KIND_PLATE};
+        if (which == "round")
+            kinds = {SHAPE_SPHERE, SHAPE_CAPSULE};
+        else if (which == "hulls")
+            kinds = {SHAPE_POLYTOPE};
         half_width = 0.55 * cbrt((double)n); /* a third of the bodies overlap another, whatever their number */
         uniform_seed(14);
         objects.reserve(bodies.size());
         for (moving_t &m : bodies) {
             double q[4];
-            body_random(&m.body, kinds[(&m - &bodies[0]) % 8]);
+            body_random(&m.body, kinds[(size_t)(&m - &bodies[0]) % kinds.size()]);
             uniform_rotation(q);
             m.turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
             for (int i = 0; i < 3; i++) {
@@ -273,15 +279,16 @@ static void run(scene_t &scene, long frames, long every)
 
 int main(int argc, char **argv)
 {
-    if (argc != 5) {
-        fprintf(stderr, "usage: fcl_scene FRAMES BODIES EXACT CONTACTS\n");
+    const std::string which = argc > 5 ? argv[5] : "mixed";
+    if (argc < 5 || (which != "mixed" && which != "round" && which != "hulls")) {
+        fprintf(stderr, "usage: fcl_scene FRAMES BODIES EXACT CONTACTS [mixed|round|hulls]\n");
         return 2;
     }
     tell_library();
 #ifdef BY_HEADER
     settings.contacts_per_pair = (size_t)atol(argv[4]);
 #endif
-    scene_t scene(atoi(argv[2]));
+    scene_t scene(atoi(argv[2]), which);
     run(scene, atol(argv[1]), atol(argv[3]));
     return 0;
 }

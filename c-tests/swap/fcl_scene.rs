@@ -8,9 +8,10 @@
 #![allow(dead_code)]
 
 use crate::checks::{Way, cpp, head};
-use crate::harness::fields;
+use crate::harness::{Executable, fields, must_succeed, output_dir};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::process::Command;
 
 /// What one way to collide the scene answered.
 #[derive(Clone)]
@@ -21,6 +22,18 @@ pub struct Scene {
     milliseconds: f64,
     judged: BTreeMap<String, f64>,
     watched: BTreeMap<String, f64>,
+}
+
+/// The scene through the header.
+fn by_header(timed: bool) -> Executable {
+    let program = cpp("fcl_scene").library("fcl").without_tools();
+    let program = program.flag("-DBY_HEADER").flag("-DOURS_ALONE");
+    let program = if timed {
+        program.flag("-DTIMED")
+    } else {
+        program
+    };
+    program.link_ours_shared().build().quiet()
 }
 
 /// FCL on libccd, FCL on this library, the header with one contact a pair and with several;
@@ -39,8 +52,7 @@ fn ways(timed: bool) -> [Way; 4] {
         let theirs = both.compared(&["--every", "1", "--no-times"]);
         (theirs.clone(), theirs.with_option("--swap"))
     };
-    let header = program().flag("-DBY_HEADER").flag("-DOURS_ALONE");
-    let header = header.link_ours_shared().build().quiet();
+    let header = by_header(timed);
     let by_header = |name| Way::new(name, "ours", header.clone());
     [
         Way::new("`fcl::collide` on libccd", "theirs", theirs).with("0"),
@@ -130,6 +142,105 @@ pub fn table(scenes: &[Scene]) -> String {
         cells.extend(keys.iter().map(|key| s.judged[*key].to_string()));
         cells.extend(["error", "own_error"].map(|key| format!("{:.3}", 1e3 * s.judged[key])));
         let _ = writeln!(out, "| {} |", cells.join(" | "));
+    }
+    out
+}
+
+/// What the header itself costs in a scene.
+pub struct HeaderCost {
+    scene: &'static str,
+    /// Of `fcl::collide` on libccd, with one contact a pair.
+    time_ratio: f64,
+    /// Instructions of a call of the header.
+    instructions: f64,
+    /// What is spent outside the library's calls, and so outside the solver and the callbacks.
+    pub share: f64,
+}
+
+/// The cost of the header in scenes of 200 bodies, with one contact a pair; timed `times` times,
+/// in turn with FCL on libccd.
+pub fn header_costs(times: usize) -> Vec<HeaderCost> {
+    let header = by_header(true);
+    let plain = cpp("fcl_scene").library("fcl").without_tools();
+    let plain = plain.flag("-DTIMED").link_system().build().quiet();
+    let cost = |scene| {
+        let arguments = |frames| [frames, "200", "1", "1", scene];
+        let mut least = [f64::INFINITY; 2];
+        for _ in 0..times {
+            for (least, program) in least.iter_mut().zip([&plain, &header]) {
+                let said = program.run(arguments("100")).stdout;
+                let lines: Vec<String> = said.lines().map(String::from).collect();
+                *least = least.min(fields(&lines, "timed")["nanoseconds"]);
+            }
+        }
+        let (calls, all, library) = instructions_of(&header, &arguments("60"));
+        HeaderCost {
+            scene,
+            time_ratio: least[1] / least[0],
+            instructions: all / calls,
+            share: 1.0 - library / all,
+        }
+    };
+    ["mixed", "round", "hulls"].map(cost).into()
+}
+
+/// Counts the calls of the header's callback for FCL's manager, their instructions, and those that the
+/// library's calls take among them, by callgrind.
+fn instructions_of(program: &Executable, arguments: &[&str]) -> (f64, f64, f64) {
+    let direct = program.command();
+    let out = output_dir().join("fcl_scene.callgrind");
+    let mut valgrind = Command::new("valgrind");
+    valgrind.args([
+        "--tool=callgrind",
+        "--toggle-collect=*ccd_fcl::CollisionFunction*",
+    ]);
+    valgrind.args(["--compress-strings=no", "--compress-pos=no"]);
+    valgrind.arg(format!("--callgrind-out-file={}", out.display()));
+    valgrind.arg(direct.get_program()).args(arguments);
+    valgrind.envs(direct.get_envs().filter_map(|(k, v)| Some((k, v?))));
+    let said = must_succeed(&mut valgrind, "valgrind").stdout;
+    let lines: Vec<String> = said.lines().map(String::from).collect();
+    let text = std::fs::read_to_string(&out).expect("callgrind's file");
+    let (mut all, mut library) = (0.0, 0.0);
+    let (mut object, mut callee, mut is_call) = ("", "", false);
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix("ob=") {
+            object = name;
+        } else if let Some(name) = line.strip_prefix("cob=") {
+            callee = name;
+        } else if line.starts_with("calls=") {
+            is_call = true;
+        } else if line.starts_with(|c: char| c.is_ascii_digit()) {
+            let cost = line.split(' ').nth(1).and_then(|n| n.parse().ok());
+            let cost: f64 = cost.unwrap_or(0.0);
+            // The callbacks call nothing of the library's. What a call costs is counted where it is
+            // spent, too.
+            if !is_call {
+                all += cost;
+            } else if callee.contains("libccd") && !object.contains("libccd") {
+                library += cost;
+            }
+            (callee, is_call) = ("", false);
+        }
+    }
+    (fields(&lines, "timed")["pairs"], all, library)
+}
+
+/// Markdown.
+pub fn header_table(costs: &[HeaderCost]) -> String {
+    let mut out = head(&[
+        "scene",
+        "time ratio",
+        "instructions a pair",
+        "of them the header",
+    ]);
+    for c in costs {
+        let share = 100.0 * c.share;
+        let _ = writeln!(
+            out,
+            "| {} | {:.2} | {:.0} | {share:.1} % |",
+            c.scene, c.time_ratio, c.instructions
+        );
     }
     out
 }

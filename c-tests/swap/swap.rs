@@ -147,3 +147,10 @@ fn fcl_scene_with_a_state_a_pair() {
         assert!(rest.iter().all(same), "{key}");
     }
 }
+
+/// `<ccd/fcl.hpp>` spends little outside the library and the callbacks.
+#[test]
+fn fcl_header_costs_little() {
+    let costs = fcl_scene::header_costs(0);
+    assert!(costs[0].share < 0.12, "{}", fcl_scene::header_table(&costs));
+}

@@ -112,6 +112,7 @@ fn scene() {
         eprintln!("{line}");
     }
     println!("{}", fcl_scene::table(&scenes));
+    println!("{}", fcl_scene::header_table(&fcl_scene::header_costs(7)));
 }
 
 fn main() {

@@ -43,14 +43,95 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <new>
 #include <stdexcept>
-#include <unordered_map>
-#include <utility>
+#include <vector>
 
 namespace ccd_fcl {
+
+/** @cond the header's own */
+namespace detail {
+
+/* A value for each pair of objects, in the order in which the pairs were first met, which is
+ * about the order in which they are met again. */
+template <typename Value>
+class PairTable {
+public:
+    /* The pair's value, made where there is none; good until the next call of this object. */
+    Value &at(const void *low, const void *high, unsigned long frame)
+    {
+        if (2 * (entries_.size() + 1) > index_.size())
+            make_index();
+        std::size_t i = place(low, high);
+        while (index_[i] != 0 && !entries_[index_[i] - 1].is_of(low, high))
+            i = next(i);
+        if (index_[i] == 0) {
+            entries_.push_back(Entry{low, high, frame, Value()});
+            index_[i] = static_cast<std::uint32_t>(entries_.size());
+        }
+        Entry &entry = entries_[index_[i] - 1];
+        entry.frame = frame;
+        return entry.value;
+    }
+
+    /* Drops the pairs of an object, or with NULL those that were not asked for in the frame. */
+    void drop(const void *object, unsigned long frame)
+    {
+        const auto is_dropped = [=](const Entry &e) {
+            return object ? e.low == object || e.high == object : e.frame != frame;
+        };
+        const auto end = std::remove_if(entries_.begin(), entries_.end(), is_dropped);
+        if (end == entries_.end())
+            return;
+        entries_.erase(end, entries_.end());
+        make_index();
+    }
+
+    void clear() { *this = PairTable(); }
+
+    std::size_t size() const { return entries_.size(); }
+
+private:
+    struct Entry {
+        bool is_of(const void *first, const void *second) const { return low == first && high == second; }
+        const void *low, *high;
+        unsigned long frame; /* when it was asked for last */
+        Value value;
+    };
+
+    /* Where the search for a pair starts. (The multiplier is the golden ratio's.) */
+    std::size_t place(const void *low, const void *high) const
+    {
+        const std::uint64_t ratio = 0x9E3779B97F4A7C15u;
+        const std::uint64_t mixed = (reinterpret_cast<std::uintptr_t>(low) * ratio ^ reinterpret_cast<std::uintptr_t>(high)) * ratio;
+        return static_cast<std::size_t>(mixed >> 32) & (index_.size() - 1);
+    }
+
+    std::size_t next(std::size_t i) const { return (i + 1) & (index_.size() - 1); }
+
+    void make_index()
+    {
+        std::size_t size = 64;
+        while (size < 4 * (entries_.size() + 1))
+            size *= 2;
+        index_.assign(size, 0);
+        for (std::size_t k = 0; k < entries_.size(); k++) {
+            std::size_t i = place(entries_[k].low, entries_[k].high);
+            while (index_[i] != 0)
+                i = next(i);
+            index_[i] = static_cast<std::uint32_t>(k + 1);
+        }
+    }
+
+    std::vector<Entry> entries_;
+    std::vector<std::uint32_t> index_; /* one more than an entry's place; 0: none. A power of two, at least twice the entries */
+};
+
+} // namespace detail
+/** @endcond */
 
 /** What each pair of objects leaves for its next query, found in either order. Not for two
  * threads at once. A state is never wrong, only useless: objects may be moved, changed and
@@ -61,84 +142,54 @@ public:
     ccd_warm_t *state(const void *first, const void *second)
     {
         const bool ordered = std::less<const void *>()(first, second);
-        Entry &entry = pairs_[ordered ? Key(first, second) : Key(second, first)];
-        if (entry.ordered != ordered)
-            ccdWarmFlip(&entry.warm);
-        entry.ordered = ordered;
-        entry.frame = frame_;
-        return &entry.warm;
+        State &state = ordered ? states_.at(first, second, frame_) : states_.at(second, first, frame_);
+        if (state.ordered != ordered)
+            ccdWarmFlip(&state.warm);
+        state.ordered = ordered;
+        return &state.warm;
     }
 
     /** The memory of the pair's contacts, for ccdContacts, made where it is asked for; the same. */
     ccd_manifold_t *contacts(const void *first, const void *second)
     {
         const bool ordered = std::less<const void *>()(first, second);
-        Manifold &entry = contacts_[ordered ? Key(first, second) : Key(second, first)];
-        entry.frame = frame_;
-        return &entry.memory;
+        return ordered ? &contacts_.at(first, second, frame_) : &contacts_.at(second, first, frame_);
     }
 
     /** Drops the pairs that were not asked for since the last call: once a frame, and what
      * belongs to objects that are gone goes by itself. */
     void next_frame()
     {
-        drop(pairs_, [this](const Key &, unsigned long frame) { return frame != frame_; });
-        drop(contacts_, [this](const Key &, unsigned long frame) { return frame != frame_; });
+        states_.drop(nullptr, frame_);
+        contacts_.drop(nullptr, frame_);
         frame_++;
     }
 
     /** Drops the pairs of an object at once. Looks at every pair. */
     void forget(const void *object)
     {
-        const auto of = [object](const Key &key, unsigned long) { return key.first == object || key.second == object; };
-        drop(pairs_, of);
-        drop(contacts_, of);
+        states_.drop(object, frame_);
+        contacts_.drop(object, frame_);
     }
 
     /** Drops everything. */
     void clear()
     {
-        pairs_.clear();
+        states_.clear();
         contacts_.clear();
     }
 
     /** How many pairs there are. */
-    std::size_t size() const { return pairs_.size(); }
+    std::size_t size() const { return states_.size(); }
 
 private:
-    using Key = std::pair<const void *, const void *>;
-    struct Entry {
+    struct State {
         ccd_warm_t warm = ccd_warm_t();
-        bool ordered = true; /* the state's obj1 is the key's first */
-        unsigned long frame = 0;
-    };
-    struct Manifold {
-        ccd_manifold_t memory = ccd_manifold_t();
-        unsigned long frame = 0;
-    };
-    struct Hash {
-        std::size_t operator()(const Key &key) const
-        {
-            /* Addresses differ in few of their bits, and never in the last four: an odd
-             * multiplier spreads them. (The golden ratio's; free.) */
-            const std::hash<const void *> hash = std::hash<const void *>();
-            return (hash(key.first) * static_cast<std::size_t>(0x9E3779B1u)) ^ (hash(key.second) >> 4);
-        }
+        bool ordered = true; /* the state's obj1 is the pair's lower address */
     };
 
-    template <typename Map, typename Which>
-    static void drop(Map &map, Which which)
-    {
-        for (auto it = map.begin(); it != map.end();) {
-            if (which(it->first, it->second.frame))
-                it = map.erase(it);
-            else
-                ++it;
-        }
-    }
-
-    std::unordered_map<Key, Entry, Hash> pairs_;
-    std::unordered_map<Key, Manifold, Hash> contacts_;
+    detail::PairTable<State> states_;
+    detail::PairTable<ccd_manifold_t> contacts_;
     unsigned long frame_ = 0;
 };
 
@@ -176,6 +227,10 @@ namespace detail {
  * takes memory for each support point. */
 const std::size_t SCANNED = 128;
 
+const unsigned long CONVEX_TYPES = 1ul << fcl::GEOM_BOX | 1ul << fcl::GEOM_SPHERE | 1ul << fcl::GEOM_ELLIPSOID
+                                   | 1ul << fcl::GEOM_CAPSULE | 1ul << fcl::GEOM_CONE | 1ul << fcl::GEOM_CYLINDER
+                                   | 1ul << fcl::GEOM_CONVEX | 1ul << fcl::GEOM_TRIANGLE;
+
 /* A convex geometry in its pose: a core, and the ball of radius margin around it. */
 template <typename S>
 struct Placed {
@@ -184,10 +239,13 @@ struct Placed {
     Placed(const fcl::CollisionGeometry<S> *shape, const fcl::Transform3<S> &at)
         : geometry(shape), pose(&at), type(shape->getNodeType())
     {
+        is_ours = shape->isOccupied() && (CONVEX_TYPES >> type & 1) != 0;
         if (type == fcl::GEOM_SPHERE)
             margin = as<fcl::Sphere<S>>().radius;
         else if (type == fcl::GEOM_CAPSULE)
             margin = as<fcl::Capsule<S>>().radius;
+        else if (type == fcl::GEOM_CONVEX && as<fcl::Convex<S>>().getVertices().empty())
+            is_ours = false;
     }
 
     template <typename Shape>
@@ -271,6 +329,7 @@ struct Placed {
     const fcl::CollisionGeometry<S> *geometry;
     const fcl::Transform3<S> *pose;
     fcl::NODE_TYPE type;
+    bool is_ours; /* whether this library answers for the geometry */
     S margin = 0;
 };
 
@@ -313,24 +372,6 @@ ccd_t query(S tolerance)
     return c;
 }
 
-/* Does this library answer for the geometry? */
-template <typename S>
-bool is_ours(const fcl::CollisionGeometry<S> *geometry)
-{
-    switch (geometry->getNodeType()) {
-    case fcl::GEOM_BOX:
-    case fcl::GEOM_SPHERE:
-    case fcl::GEOM_ELLIPSOID:
-    case fcl::GEOM_CAPSULE:
-    case fcl::GEOM_CONE:
-    case fcl::GEOM_CYLINDER:
-    case fcl::GEOM_TRIANGLE: return geometry->isOccupied();
-    case fcl::GEOM_CONVEX:
-        return geometry->isOccupied() && !static_cast<const fcl::Convex<S> *>(geometry)->getVertices().empty();
-    default: return false;
-    }
-}
-
 inline void must_be_answered(int code)
 {
     if (code == CCD_NO_MEMORY)
@@ -339,40 +380,42 @@ inline void must_be_answered(int code)
         throw std::invalid_argument("ccd/fcl.hpp: a pose, a shape or a tolerance is no number");
 }
 
-/* The sum tells in a few additions; each number is looked at where that overflows. */
 template <typename S>
-void must_be_finite(const Placed<S> &a, const Placed<S> &b)
+int distance_of(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, ccd_real_t farthest, ccd_warm_t *warm,
+                unsigned want, ccd_distance_t *d)
 {
-    if (!std::isfinite((a.pose->matrix() + b.pose->matrix()).sum())
-        && !(a.pose->matrix().allFinite() && b.pose->matrix().allFinite()))
-        must_be_answered(CCD_BAD_INPUT);
+    const int code = ccdSignedDistance(&a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
+                                       farthest, warm, want, d);
+    must_be_answered(code);
+    return code;
 }
 
-/* An overlap, the margins counted in. */
-struct Overlap {
-    ccd_real_t depth;
-    ccd_vec3_t normal, pos;
-};
-
-/* Where there is a margin the signed distance takes it exactly; else MPR's penetration, the
- * global minimum within the larger of the tolerance and a thousandth of the depth. */
+/* Whether they overlap, and with `contact` how deep and where, the margins counted in: the global
+ * minimum within the larger of the tolerance and a thousandth of the depth. */
 template <typename S>
-bool overlap(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, bool contact, ccd_warm_t *warm, Overlap *out)
+bool overlap(const Placed<S> &a, const Placed<S> &b, ccd_t &ccd, bool contact, ccd_warm_t *warm, ccd_penetration_t *hit)
 {
     if (!(a.margin > 0 || b.margin > 0)) {
-        return contact ? ccdMPRPenetrationWarm(&a, &b, &ccd, warm, &out->depth, &out->normal, &out->pos) == 0
-                       : ccdMPRIntersectWarm(&a, &b, &ccd, warm) == 1;
+        const int code = contact ? ccdPenetration(&a, &b, &ccd, warm, CCD_WANT_POS, hit) : ccdIntersect(&a, &b, &ccd, warm);
+        must_be_answered(code);
+        return contact ? code >= 0 : code == 1;
     }
+    /* A thousandth of both margins is enough for cores that overlap, which are deeper than that. Of
+     * others the bounds tell whether it was. */
+    const ccd_real_t tolerance = ccd.dist_tolerance;
+    const unsigned want = contact ? CCD_WANT_POINTS : 0;
     ccd_distance_t d;
-    const int code = ccdSignedDistance(&a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
-                                       0, warm, contact ? CCD_WANT_POINTS : 0, &d);
-    must_be_answered(code);
+    ccd.dist_tolerance = std::max(tolerance, static_cast<ccd_real_t>(a.margin + b.margin) / 1000);
+    int code = distance_of(a, b, ccd, 0, warm, want, &d);
+    ccd.dist_tolerance = tolerance;
+    if (d.distance < 0 && d.distance_upper - d.distance > std::max(tolerance, -d.distance / 1000))
+        code = distance_of(a, b, ccd, 0, warm, want, &d);
     if (code == CCD_MISS || !(d.distance < 0))
         return false;
-    out->depth = -d.distance;
-    out->normal = d.normal;
+    hit->depth = -d.distance;
+    hit->dir = d.normal;
     for (int i = 0; i < 3; i++)
-        out->pos.v[i] = (d.point1.v[i] + d.point2.v[i]) / 2;
+        hit->pos.v[i] = (d.point1.v[i] + d.point2.v[i]) / 2;
     return true;
 }
 
@@ -389,8 +432,8 @@ ccd_real_t slop_of(const Placed<S> &a, const Placed<S> &b, const Settings &setti
 template <typename S>
 class Contacts {
 public:
-    Contacts(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, const Overlap &hit, fcl::CollisionResult<S> &result)
-        : a_(a), b_(b), ccd_(ccd), hit_(hit), normal_(to_fcl<S>(hit.normal)), result_(result)
+    Contacts(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, const ccd_penetration_t &hit, fcl::CollisionResult<S> &result)
+        : a_(a), b_(b), ccd_(ccd), hit_(hit), normal_(to_fcl<S>(hit.dir)), result_(result)
     {
     }
 
@@ -403,7 +446,7 @@ public:
         const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
         const std::size_t asked = std::min(std::min(room, settings.contacts_per_pair), MOST);
         ccd_contact_t found[MOST];
-        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.normal, slop_of(a_, b_, settings), memory(), found,
+        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.dir, slop_of(a_, b_, settings), memory(), found,
                                                   static_cast<int>(asked))
                                     : 0;
         must_be_answered(count);
@@ -437,10 +480,53 @@ private:
 
     const Placed<S> &a_, &b_;
     const ccd_t &ccd_;
-    const Overlap &hit_;
+    const ccd_penetration_t &hit_;
     const fcl::Vector3<S> normal_;
     fcl::CollisionResult<S> &result_;
 };
+
+/* Does this library answer for the pair and the request? */
+template <typename S>
+bool is_ours(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest<S> &request)
+{
+    return a.is_ours && b.is_ours && !request.enable_cost && request.num_max_contacts > 0;
+}
+
+/* Of two geometries that this library answers for. `memory` gives that of their contacts. */
+template <typename S, typename Memory>
+std::size_t collide(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest<S> &request,
+                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings, Memory memory)
+{
+    const std::size_t before = result.numContacts();
+    if (before >= request.num_max_contacts)
+        return before;
+    ccd_t ccd = query<S>(request.gjk_tolerance);
+    ccd_penetration_t hit;
+    if (!overlap(a, b, ccd, request.enable_contact, warm, &hit))
+        return before;
+    if (request.enable_contact)
+        Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - before, settings, memory);
+    else
+        result.addContact(fcl::Contact<S>(a.geometry, b.geometry, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
+    return result.numContacts();
+}
+
+/* Of two geometries that this library answers for. */
+template <typename S>
+S distance(const Placed<S> &a, const Placed<S> &b, const fcl::DistanceRequest<S> &request, fcl::DistanceResult<S> &result,
+           ccd_warm_t *warm)
+{
+    if (request.isSatisfied(result))
+        return result.min_distance;
+    const ccd_t ccd = query<S>(request.distance_tolerance);
+    const bool first = !(result.min_distance < std::numeric_limits<S>::max());
+    ccd_distance_t d;
+    distance_of(a, b, ccd, first ? std::numeric_limits<ccd_real_t>::infinity() : static_cast<ccd_real_t>(result.min_distance), warm,
+                CCD_WANT_POINTS, &d);
+    result.update(static_cast<S>(d.distance), a.geometry, b.geometry, fcl::DistanceResult<S>::NONE,
+                  fcl::DistanceResult<S>::NONE, to_fcl<S>(d.point1), to_fcl<S>(d.point2));
+    return result.min_distance;
+}
 
 } // namespace detail
 /** @endcond */
@@ -449,42 +535,9 @@ private:
 template <typename S>
 bool is_ours(const fcl::CollisionGeometry<S> *a, const fcl::CollisionGeometry<S> *b)
 {
-    return detail::is_ours(a) && detail::is_ours(b);
+    const fcl::Transform3<S> anywhere = fcl::Transform3<S>::Identity();
+    return detail::Placed<S>(a, anywhere).is_ours && detail::Placed<S>(b, anywhere).is_ours;
 }
-
-/** @cond */
-namespace detail {
-
-/* Of two geometries that this library answers for. `memory` gives that of their contacts. */
-template <typename S, typename Memory>
-std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, const fcl::CollisionGeometry<S> *g2,
-                    const fcl::Transform3<S> &tf2, const fcl::CollisionRequest<S> &request,
-                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings, Memory memory)
-{
-    if (request.isSatisfied(result))
-        return result.numContacts();
-    const Placed<S> a(g1, tf1), b(g2, tf2);
-    must_be_finite(a, b);
-    const ccd_t ccd = query<S>(request.gjk_tolerance);
-    Overlap hit = Overlap();
-    if (!overlap(a, b, ccd, request.enable_contact, warm, &hit))
-        return result.numContacts();
-    if (request.enable_contact)
-        Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - result.numContacts(), settings, memory);
-    else
-        result.addContact(fcl::Contact<S>(g1, g2, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
-    return result.numContacts();
-}
-
-/* Does this library answer for the pair and the request? */
-template <typename S>
-bool answers(const fcl::CollisionGeometry<S> *g1, const fcl::CollisionGeometry<S> *g2, const fcl::CollisionRequest<S> &request)
-{
-    return !request.enable_cost && request.num_max_contacts > 0 && ccd_fcl::is_ours(g1, g2);
-}
-
-} // namespace detail
-/** @endcond */
 
 /** fcl::collide of two geometries in their poses, with a state (NULL: cold). Depths within the
  * larger of request.gjk_tolerance (metres) and a thousandth of the depth. Returns the number
@@ -494,9 +547,10 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
                     const fcl::Transform3<S> &tf2, const fcl::CollisionRequest<S> &request,
                     fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings = Settings())
 {
-    return detail::answers(g1, g2, request) ? detail::collide(g1, tf1, g2, tf2, request, result, warm, settings,
-                                                            [] { return static_cast<ccd_manifold_t *>(nullptr); })
-                                            : fcl::collide(g1, tf1, g2, tf2, request, result);
+    const detail::Placed<S> a(g1, tf1), b(g2, tf2);
+    if (!detail::is_ours(a, b, request))
+        return fcl::collide(g1, tf1, g2, tf2, request, result);
+    return detail::collide(a, b, request, result, warm, settings, [] { return static_cast<ccd_manifold_t *>(nullptr); });
 }
 
 /** fcl::collide of two objects, with their state. */
@@ -505,11 +559,11 @@ std::size_t collide(const fcl::CollisionObject<S> *o1, const fcl::CollisionObjec
                     const fcl::CollisionRequest<S> &request, fcl::CollisionResult<S> &result, PairCache &cache,
                     const Settings &settings = Settings())
 {
-    const fcl::CollisionGeometry<S> *g1 = o1->collisionGeometry().get(), *g2 = o2->collisionGeometry().get();
-    return detail::answers(g1, g2, request)
-               ? detail::collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result, cache.state(o1, o2), settings,
-                                 [&] { return cache.contacts(o1, o2); })
-               : fcl::collide(g1, o1->getTransform(), g2, o2->getTransform(), request, result);
+    const detail::Placed<S> a(o1->collisionGeometry().get(), o1->getTransform());
+    const detail::Placed<S> b(o2->collisionGeometry().get(), o2->getTransform());
+    if (!detail::is_ours(a, b, request))
+        return fcl::collide(a.geometry, *a.pose, b.geometry, *b.pose, request, result);
+    return detail::collide(a, b, request, result, cache.state(o1, o2), settings, [&] { return cache.contacts(o1, o2); });
 }
 
 /** fcl::distance of two geometries in their poses, with a state (NULL: cold): min_distance is
@@ -522,22 +576,9 @@ S distance(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, c
            const fcl::Transform3<S> &tf2, const fcl::DistanceRequest<S> &request, fcl::DistanceResult<S> &result,
            ccd_warm_t *warm)
 {
-    if (!is_ours(g1, g2))
-        return fcl::distance(g1, tf1, g2, tf2, request, result);
-    if (request.isSatisfied(result))
-        return result.min_distance;
     const detail::Placed<S> a(g1, tf1), b(g2, tf2);
-    const ccd_t ccd = detail::query<S>(request.distance_tolerance);
-    const bool first = !(result.min_distance < std::numeric_limits<S>::max());
-    ccd_distance_t d;
-    detail::must_be_finite(a, b);
-    detail::must_be_answered(ccdSignedDistance(
-        &a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
-        first ? std::numeric_limits<ccd_real_t>::infinity() : static_cast<ccd_real_t>(result.min_distance), warm,
-        CCD_WANT_POINTS, &d));
-    result.update(static_cast<S>(d.distance), g1, g2, fcl::DistanceResult<S>::NONE, fcl::DistanceResult<S>::NONE,
-                  detail::to_fcl<S>(d.point1), detail::to_fcl<S>(d.point2));
-    return result.min_distance;
+    return a.is_ours && b.is_ours ? detail::distance(a, b, request, result, warm)
+                                  : fcl::distance(g1, tf1, g2, tf2, request, result);
 }
 
 /** fcl::distance of two objects, with their state. */
@@ -545,9 +586,10 @@ template <typename S>
 S distance(const fcl::CollisionObject<S> *o1, const fcl::CollisionObject<S> *o2, const fcl::DistanceRequest<S> &request,
            fcl::DistanceResult<S> &result, PairCache &cache)
 {
-    const fcl::CollisionGeometry<S> *g1 = o1->collisionGeometry().get(), *g2 = o2->collisionGeometry().get();
-    ccd_warm_t *warm = is_ours(g1, g2) ? cache.state(o1, o2) : nullptr;
-    return distance(g1, o1->getTransform(), g2, o2->getTransform(), request, result, warm);
+    const detail::Placed<S> a(o1->collisionGeometry().get(), o1->getTransform());
+    const detail::Placed<S> b(o2->collisionGeometry().get(), o2->getTransform());
+    return a.is_ours && b.is_ours ? detail::distance(a, b, request, result, cache.state(o1, o2))
+                                  : fcl::distance(a.geometry, *a.pose, b.geometry, *b.pose, request, result);
 }
 
 /** For the collide() of a broad phase manager; data is a CollisionData<S>. As
@@ -557,8 +599,8 @@ bool CollisionFunction(fcl::CollisionObject<S> *o1, fcl::CollisionObject<S> *o2,
 {
     CollisionData<S> &d = *static_cast<CollisionData<S> *>(data);
     if (!d.done) {
-        collide(o1, o2, d.request, d.result, *d.cache, d.settings);
-        d.done = d.request.isSatisfied(d.result);
+        const std::size_t count = collide(o1, o2, d.request, d.result, *d.cache, d.settings);
+        d.done = count >= d.request.num_max_contacts && d.request.isSatisfied(d.result);
     }
     return d.done;
 }
