@@ -34,12 +34,21 @@ impl SupportMap for Object {
         let mut point = ccd_vec3_t::default();
         // SAFETY: [callbacks]; nothing with a destructor is alive here.
         unsafe { (self.support)(self.obj, &dir, &mut point) };
-        // And three scalar loads, because most callees store three scalars: a packed load cannot
-        // be forwarded from two stores.
-        // SAFETY: a local variable.
-        let point = unsafe { point.v.each_ref().map(|x| core::ptr::read_volatile(x)) };
-        from_real(point)
+        load(&point)
     }
+}
+
+/// Reads a vector that a callback has just written, in three scalar loads: most callbacks store three
+/// scalars, and a packed load would wait for two stores.
+#[inline(always)]
+fn load(written: &ccd_vec3_t) -> Vec3 {
+    // SAFETY: a reference.
+    from_real(
+        written
+            .v
+            .each_ref()
+            .map(|x| unsafe { core::ptr::read_volatile(x) }),
+    )
 }
 
 /// What a call needs and reads of a [`ccd_t`].
@@ -213,5 +222,5 @@ pub unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
     let mut c = ccd_vec3_t::default();
     // SAFETY: [callbacks].
     unsafe { center(obj, &mut c) };
-    c.into()
+    load(&c)
 }

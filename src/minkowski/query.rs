@@ -295,11 +295,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     #[inline(always)]
     pub fn has_contradiction<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let tie = self.scale.tie_eps();
-        (0..set.len()).any(|i| {
-            let n = set.dir(i);
-            let support = set.difference(VertexSet::<N>::sample(i));
-            n.dot(&(set.difference(set.farthest(&n)) - support)) > tie
-        })
+        (0..set.len()).any(|i| set.excess(i) > tie)
     }
 
     /// Starts again with every direction evaluated twice: forgets the upper bound.

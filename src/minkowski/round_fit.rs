@@ -59,6 +59,16 @@ pub enum Choice {
     Beside,
 }
 
+/// A direction to evaluate.
+#[derive(Clone, Copy, Debug)]
+struct Aim {
+    /// Unit.
+    dir: Vec3,
+    choice: Choice,
+    /// The support value that a prediction tells, metres.
+    value: f64,
+}
+
 /// The sphere fits of a pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SphereFit {
@@ -193,6 +203,45 @@ impl SphereFit {
         }
         let dir = lowest + across * (tilt / sine);
         Some(dir / dir.norm())
+    }
+
+    /// Returns where to evaluate next about a face of these corners and this unit normal. `gap`: what the
+    /// bounds may be apart, metres.
+    #[inline(never)]
+    fn choose<const N: usize>(
+        &mut self,
+        set: &VertexSet<N>,
+        corners: &[Vertex; 3],
+        normal: &Vec3,
+        upper: &UpperBound,
+        gap: f64,
+    ) -> Aim {
+        self.update(set, upper.index);
+        if self.pause > 0 {
+            self.pause -= 1;
+        } else if self.misses < MAX_MISSES {
+            if let Some((dir, value)) = self.predict(set, corners, normal) {
+                if (value - upper.depth).abs() <= MIN_GAIN * gap {
+                    // The least direction is what the fit predicts.
+                    self.is_confirmed = true;
+                }
+                if value < upper.depth - MIN_GAIN * gap {
+                    let choice = Choice::Prediction;
+                    return Aim { dir, choice, value };
+                }
+            }
+        }
+        let beside = if self.is_confirmed && self.sum() > 0.0 {
+            self.beside(set, corners, &upper.dir, upper.depth, normal, gap)
+        } else {
+            None
+        };
+        let (dir, choice) = match beside {
+            Some(dir) => (dir, Choice::Beside),
+            None => (*normal, Choice::Normal),
+        };
+        let value = upper.depth;
+        Aim { dir, choice, value }
     }
 }
 
@@ -374,46 +423,20 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     if is_plain || !has_samples || corners.iter().any(|v| v.pair.is_interior()) {
         return Ok((query.evaluate(set, &unit_normal)?, Choice::Normal));
     }
-    fit_and_evaluate(query, set, fit, corners, &unit_normal, gap)
-}
-
-/// As [`evaluate_beyond`], where the fit may choose.
-#[inline(never)]
-fn fit_and_evaluate<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
-    set: &mut VertexSet<N>,
-    fit: &mut SphereFit,
-    corners: &[Vertex; 3],
-    normal: &Vec3,
-    gap: f64,
-) -> Result<(SupportSample, Choice), Stop> {
     let upper = query.upper;
-    fit.update(set, upper.index);
-    if fit.pause > 0 {
-        fit.pause -= 1;
-    } else if fit.misses < MAX_MISSES {
-        let predicted = fit.predict(set, corners, normal);
-        if predicted.is_some_and(|p| (p.1 - upper.depth).abs() <= MIN_GAIN * gap) {
-            // The least direction is what the fit predicts.
-            fit.is_confirmed = true;
-        }
-        if let Some((dir, value)) = predicted.filter(|p| p.1 < upper.depth - MIN_GAIN * gap) {
-            let sample = query.evaluate(set, &dir)?;
-            fit.is_confirmed = sample.h < value + MAX_MISS * (upper.depth - value);
+    let aim = fit.choose(set, corners, &unit_normal, &upper, gap);
+    let sample = query.evaluate(set, &aim.dir)?;
+    match aim.choice {
+        Choice::Normal => {}
+        Choice::Prediction => {
+            fit.is_confirmed = sample.h < aim.value + MAX_MISS * (upper.depth - aim.value);
             if !fit.is_confirmed {
                 fit.misses += 1;
                 fit.radius = [0.0; 2];
             }
-            return Ok((sample, Choice::Prediction));
         }
+        // On a sphere the least direction was the least one.
+        Choice::Beside => fit.is_confirmed = !(sample.h < upper.depth),
     }
-    if fit.is_confirmed && fit.sum() > 0.0 {
-        if let Some(dir) = fit.beside(set, corners, &upper.dir, upper.depth, normal, gap) {
-            let sample = query.evaluate(set, &dir)?;
-            // On a sphere the least direction was the least one.
-            fit.is_confirmed = !(sample.h < upper.depth);
-            return Ok((sample, Choice::Beside));
-        }
-    }
-    Ok((query.evaluate(set, normal)?, Choice::Normal))
+    Ok((sample, aim.choice))
 }

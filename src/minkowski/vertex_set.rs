@@ -7,7 +7,7 @@
 //! unit direction of that call. The coordinates of the two objects are interleaved, obj2's negated: a
 //! difference is then a sum, and one loop of two-lane operations finds the farthest vertex of both.
 
-use crate::math::{Vec3, ZERO};
+use crate::math::{Vec3, ZERO, larger};
 use crate::minkowski::support::SupportPoint;
 
 /// A known difference: the index of obj1's vertex and of obj2's.
@@ -201,13 +201,19 @@ impl<const N: usize> VertexSet<N> {
     ///
     /// Indices ride in the low bits of the dot products, so that the maximum carries its index: vertices
     /// that differ by less than 2⁻⁴² of a product tie. Callers compute heights from the coordinates.
-    #[inline(never)]
+    #[inline(always)]
     pub fn farthest(&self, n: &Vec3) -> VertexPair {
+        // By value: a packed load of a vector that scalar stores have just written waits for them.
+        self.farthest_along(n.x, n.y, n.z)
+    }
+
+    #[inline(never)]
+    fn farthest_along(&self, nx: f64, ny: f64, nz: f64) -> VertexPair {
         let [x, y, z] = &self.coords;
         let mut best = [f64::NEG_INFINITY; 2];
         for i in 0..self.len.min(N) {
             for lane in 0..2 {
-                let h = n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane];
+                let h = nx * x[i][lane] + ny * y[i][lane] + nz * z[i][lane];
                 let index = Self::INDEX_MARK | i as u64;
                 let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | index) + 0.0;
                 best[lane] = if h > best[lane] { h } else { best[lane] };
@@ -218,6 +224,26 @@ impl<const N: usize> VertexSet<N> {
             return VertexPair::default();
         }
         VertexPair { a, b }
+    }
+
+    /// Returns how far the known difference farthest along the direction of entry `i` lies beyond the
+    /// support point of that entry, metres.
+    #[inline(always)]
+    pub fn excess(&self, i: usize) -> f64 {
+        let [x, y, z] = &self.coords;
+        let i = Self::in_range(i);
+        let n = self.dirs[i];
+        let height =
+            |i: usize| [0, 1].map(|lane| n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane]);
+        let own = height(i);
+        let mut best = own;
+        for j in 0..self.len.min(N) {
+            let h = height(j);
+            for lane in 0..2 {
+                best[lane] = larger(h[lane], best[lane]);
+            }
+        }
+        best[0] - own[0] + (best[1] - own[1])
     }
 }
 

@@ -204,14 +204,14 @@ pub fn replace_corner(portal: &mut [Vertex; 3], ray: &Vec3, w: Vertex) {
     // On which side of the plane through the ray and w each corner lies.
     let across = ray.cross(&w.w);
     let [a, b, c] = portal.each_ref().map(|v| across.dot(&v.w) > 0.0);
-    let replaced = if a && !b {
-        2
+    // Constant indices keep the corners in registers.
+    if a && !b {
+        portal[2] = w;
     } else if b && !c {
-        0
+        portal[0] = w;
     } else {
-        1
-    };
-    portal[replaced] = w;
+        portal[1] = w;
+    }
 }
 
 /// Moves a portal outwards: to known differences as far as they go, to queried ones while the origin is
