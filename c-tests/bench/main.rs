@@ -34,6 +34,8 @@ enum Command {
     Charts(charts::Options),
     /// The pictures and their page again, from the CSV that is there.
     Redraw(charts::Options),
+    /// This library beside other engines, over the recorded contacts; downloads what it can.
+    Engines(charts::engines::Options),
     /// Instructions of a query, as Markdown; runs this program under valgrind.
     Instructions(charts::instructions::Options),
 }
@@ -43,6 +45,7 @@ fn main() {
         Command::Record => lab::recorded::record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),
+        Command::Engines(options) => charts::engines::run(&options),
         Command::Instructions(options) => charts::instructions::run(&options),
     }
 }

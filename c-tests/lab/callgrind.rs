@@ -16,10 +16,11 @@ use super::scene::Scene;
 pub struct Count {
     pub solver: u64,
     pub callbacks: u64,
+    /// What the watched program itself spends.
+    pub program: u64,
 }
 
-/// Self cost of a callgrind file written without name compression, but for what the watched
-/// program itself spends.
+/// Self cost of a callgrind file written without name compression.
 fn parse(text: &str, program: &str) -> Count {
     let mut count = Count::default();
     let (mut object, mut called) = ("", false);
@@ -33,7 +34,8 @@ fn parse(text: &str, program: &str) -> Count {
             let cost = line.split_whitespace().nth(1);
             let cost = cost.and_then(|c| c.parse::<u64>().ok()).unwrap_or(0);
             match object {
-                _ if std::mem::take(&mut called) || object == program => (),
+                _ if std::mem::take(&mut called) => (),
+                _ if object == program => count.program += cost,
                 _ if object.ends_with("callbacks.so") => count.callbacks += cost,
                 _ => count.solver += cost,
             }
@@ -89,6 +91,7 @@ mod tests {
         let expected = super::Count {
             solver: 1014,
             callbacks: 10,
+            program: 77,
         };
         assert_eq!(super::parse(text, "/bin/charts"), expected);
     }

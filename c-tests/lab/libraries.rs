@@ -86,6 +86,7 @@ functions! {
         mpr: fn ccdMPRPenetrationWarm(Object, Object, Settings, State, *mut f64, Point, Point) -> c_int;
         mpr_intersect: fn ccdMPRIntersectWarm(Object, Object, Settings, State) -> c_int;
         local: fn ccdPenetrationLocal(Object, Object, Settings, State, c_uint, Full) -> c_int;
+        penetration: fn ccdPenetration(Object, Object, Settings, State, c_uint, Full) -> c_int;
         minimum: fn ccdPenetrationProven(Object, Object, Settings, State, c_uint, Full) -> c_int;
     }
 }
@@ -233,14 +234,12 @@ impl Libraries {
     /// Compiles another helper of `c-tests/bench`, in C++, and opens it; why not, where that fails.
     pub fn helper(
         &self,
+        name: &str,
         source: &str,
         flags: &[&str],
         libraries: &[&str],
     ) -> Result<&'static Library, String> {
-        let object = self
-            .work
-            .path()
-            .join(format!("{source}{}.so", flags.concat().replace('/', "_")));
+        let object = self.work.path().join(format!("{name}.so"));
         let source: PathBuf = harness::root().join("c-tests/bench").join(source);
         compile(true, flags, &source, &object, libraries)?;
         open(&object).map_err(|e| e.to_string())

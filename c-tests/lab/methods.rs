@@ -70,6 +70,8 @@ pub struct Method<'a> {
     pub tolerance: Option<f64>,
     /// A call of this library's interface.
     pub ours: bool,
+    /// Compiled into the measuring program itself: callgrind counts what that spends for it.
+    pub inside: bool,
     run: Run<'a>,
 }
 
@@ -80,6 +82,7 @@ impl<'a> Method<'a> {
             start: Start::None,
             tolerance: None,
             ours: false,
+            inside: false,
             run: Box::new(run),
         }
     }
@@ -96,6 +99,11 @@ impl<'a> Method<'a> {
 
     pub fn of_ours(mut self) -> Self {
         self.ours = true;
+        self
+    }
+
+    pub fn of_this_program(mut self) -> Self {
+        self.inside = true;
         self
     }
 
@@ -149,6 +157,8 @@ pub enum Ask {
     IntersectWarm,
     Local,
     Minimum,
+    /// `ccdPenetration`, with witness points.
+    Penetration,
     /// Algorithms 4 and 5, without later improvements.
     Paper,
     /// Algorithm 3: without the shortcut.
@@ -176,6 +186,7 @@ pub fn of<'a>(libraries: &'a Libraries, ask: Ask, start: Start, tolerance: f64) 
         Ask::IntersectWarm => Method::new("MPR intersect", extension()).of_ours(),
         Ask::Local => Method::new("local", extension()).of_ours(),
         Ask::Minimum => Method::new("minimum", extension()).of_ours(),
+        Ask::Penetration => Method::new("penetration", extension()).of_ours(),
         Ask::Paper => Method::new("Algorithm 4/5", paper(Until::Shortcut)),
         Ask::PaperBare => Method::new("Algorithm 3", paper(Until::Normal)),
     };
@@ -210,6 +221,7 @@ fn extension<'a>(
         let code = unsafe {
             match ask {
                 Ask::Local => (calls.local)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
+                Ask::Penetration => (calls.penetration)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
                 Ask::Minimum => (calls.minimum)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
                 // 1 is yes, 0 no.
                 Ask::IntersectWarm => (calls.mpr_intersect)(a, b, ccd, warm) - 1,

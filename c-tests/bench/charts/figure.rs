@@ -328,3 +328,43 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
         notes_below(&foot, notes)
     });
 }
+
+/// A bar of a bar chart: its two parts, the first drawn pale, and what is written behind it.
+pub struct Bar {
+    pub label: String,
+    pub parts: [f64; 2],
+    pub note: String,
+    /// Ours.
+    pub bold: bool,
+}
+
+/// Draws bars from the left over a common scale, with their sums and notes; then the notes below.
+pub fn bars(path: &Path, title: &str, bars: &[Bar], notes: &[String]) {
+    const ROW: i32 = 26;
+    const LEFT: i32 = 300;
+    const ROOM: f64 = 430.0;
+    let top = ROW as u32 * bars.len() as u32 + 8;
+    let sum = |bar: &Bar| bar.parts.iter().sum::<f64>();
+    let most = bars.iter().map(sum).fold(1.0, f64::max);
+    write(path, (900, 40 + top + LINE * notes.len() as u32), |root| {
+        let (area, foot) = root.titled(title, ink(20))?.split_vertically(top);
+        for (k, bar) in bars.iter().enumerate() {
+            let y = ROW * k as i32 + 4;
+            let colour = if bar.bold {
+                RGBColor(37, 99, 235)
+            } else {
+                RGBColor(107, 114, 128)
+            };
+            let at = |x: f64| LEFT + (ROOM * x / most) as i32;
+            let rectangle =
+                |from, to, style| Rectangle::new([(at(from), y), (at(to), y + ROW - 8)], style);
+            area.draw(&rectangle(0.0, bar.parts[0], colour.mix(0.45).filled()))?;
+            area.draw(&rectangle(bar.parts[0], sum(bar), colour.filled()))?;
+            let middle = y + (ROW - 8) / 2;
+            text(&area, (16, middle), &bar.label, 14)?;
+            let behind = format!("{:.0}, {}", sum(bar), bar.note);
+            text(&area, (at(sum(bar)) + 8, middle), &behind, 14)?;
+        }
+        notes_below(&foot, notes)
+    });
+}

@@ -6,6 +6,7 @@
 
 pub mod accuracy;
 pub mod coherence;
+pub mod engines;
 pub mod figure;
 pub mod instructions;
 pub mod models;
@@ -39,8 +40,16 @@ pub struct Options {
     #[arg(long)]
     pub only: Option<String>,
     /// Where CSV and pictures go.
-    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../charts"))]
+    #[arg(long, default_value = OUT)]
     pub out: PathBuf,
+}
+
+const OUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../charts");
+
+impl Options {
+    pub fn default_out() -> PathBuf {
+        PathBuf::from(OUT)
+    }
 }
 
 /// What every measurement needs.

@@ -13,7 +13,10 @@ use super::paper::{AS_PUBLISHED, PAPER};
 use crate::lab::measure::Row;
 
 /// The head's cells are between bars.
-fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
+pub fn markdown<const N: usize>(
+    head: &str,
+    lines: impl IntoIterator<Item = [String; N]>,
+) -> String {
     let mut table = Table::new();
     table.load_style(ASCII_MARKDOWN);
     table.set_header(head.split('|'));
@@ -157,6 +160,15 @@ pub fn write(page: &Page, tables: &[(&str, String)]) {
         text.replace_range(place, &format!("{table}\n"));
     }
     let path = page.file("README.md");
+    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+}
+
+/// Writes a table of README.md between its marks.
+pub fn write_root_page(name: &str, table: &str) {
+    let path = crate::harness::root().join("README.md");
+    let mut text = std::fs::read_to_string(&path).expect("README.md");
+    let place = between_marks(&text, name).unwrap_or_else(|| panic!("no table {name}"));
+    text.replace_range(place, &format!("{table}\n"));
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
 }
 
