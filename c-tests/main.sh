@@ -5,9 +5,8 @@
 # The main job: one unmodified C program over a recorded contact sequence, on the
 # system's libccd where there is one, and on this library; and the same pairs through
 # this library's extension, cold and warm. They take turns, a process a turn, and time is
-# that of the process: what else the machine does meets all of them, and counts for none.
-# Of each frame the best pass of a turn counts, and of each method the best turn. The last
-# line is the verdict. Sets itself up.
+# that of the process. Of each frame the best pass of a turn counts, and of each method the best
+# turn. The last lines are the verdict. Sets itself up.
 #   main.sh readme   writes the table of README.md too
 
 set -eu
@@ -19,7 +18,7 @@ cargo build --release --lib
 release=$(cd "${CARGO_TARGET_DIR:-target}/release" && pwd)
 work=$release/main-job
 recording=c-tests/record/contacts.bin
-turns=8
+turns=${TURNS:-8}
 passes=4
 mkdir -p "$work"
 # LD_LIBRARY_PATH needs the file under the name that programs ask for.
@@ -35,15 +34,26 @@ libccd_of() {
     ldd "$1" | sed -n 's|.*libccd\.so\.2 => \(/[^ ]*\).*|\1|p'
 }
 
-# turn PROGRAM TABLE [LIBRARY]: some passes, of which the table keeps the best times. Its
-# lines are otherwise the same in every turn.
+# turn PROGRAM TABLE [LIBRARY]: some passes, of which the table keeps the best times: the last two
+# columns. Its lines are otherwise the same in every turn.
 turn() {
     LD_LIBRARY_PATH=${3:-} "$work/$1" "$recording" "$passes" >"$work/pass.txt"
     touch "$work/$2"
     awk '
-        { time = $NF == "ns" ? $(NF - 1) : $NF }
-        FILENAME ~ /pass.txt$/ && (!(FNR in line) || time + 0 < least[FNR] + 0) { line[FNR] = $0 }
-        FILENAME !~ /pass.txt$/ { line[FNR] = $0; least[FNR] = time }
+        function time() { return $NF == "ns" ? $(NF - 1) : $NF }
+        FILENAME !~ /pass.txt$/ { line[FNR] = $0; least[FNR] = time(); hits[FNR] = NF > 1 ? $(NF - 1) : 0; next }
+        !(FNR in line) { line[FNR] = $0; next }
+        # A method is one line of 11 columns, its name of one to three words besides.
+        NF >= 11 && $NF ~ /^[0-9]+$/ {
+            if (hits[FNR] + 0 < $(NF - 1) + 0) $(NF - 1) = hits[FNR]
+            if (least[FNR] + 0 < $NF + 0) $NF = least[FNR]
+            name = $1
+            for (i = 2; i <= NF - 10; i++) name = name " " $i
+            line[FNR] = sprintf("%-13s %6s %5s %6s %5s %7s %7s %6s %8s %5s %5s", name, $(NF - 9), $(NF - 8), $(NF - 7),
+                                $(NF - 6), $(NF - 5), $(NF - 4), $(NF - 3), $(NF - 2), $(NF - 1), $NF)
+            next
+        }
+        time() + 0 < least[FNR] + 0 { line[FNR] = $0 }
         END { for (i = 1; i in line; i++) print line[i] }' "$work/$2" "$work/pass.txt" >"$work/best.txt"
     mv "$work/best.txt" "$work/$2"
 }
@@ -87,78 +97,77 @@ cat <<'END'
 missed    overlaps that are not seen        deep      more than 1 % too deep
 false     overlaps that are none            unsound   the move does not separate
 broken    NaN or a direction of no length   mean max  errors of the depth
-supports  support points a query            ns        a query, best of turns
+supports  support points a query: one call of both support functions each
+hit ns    nanoseconds a query of the pairs that overlap, and of all; best of turns
 
 END
 
-# Prints the wrong answers, the support points and the time of the two calls that answer a depth,
-# which a program that exists is most likely to make.
+# The figures of all tables, by file and method; a method's name may have blanks.
+figures='
+    / of them overlap/ { pairs = $5; overlaps = $7 }
+    NF >= 11 && $(NF - 9) ~ /^[0-9]+$/ {
+        name = $1
+        for (i = 2; i <= NF - 10; i++) name = name " " $i
+        n = FILENAME SUBSEP name
+        deep[n] = $(NF - 6)
+        wrong[n] = $(NF - 9) + $(NF - 8) + $(NF - 7) + deep[n] + $(NF - 5)
+        supports[n] = $(NF - 2); hit[n] = $(NF - 1); ns[n] = $NF
+    }
+    /^a support point alone/ { price[FILENAME] = $5 }
+    # The price of a support point, one call of both support functions, above which a method is
+    # faster than another that needs more of them: what its own arithmetic takes longer over the
+    # support points that it saves.
+    function breakeven(n, base) {
+        if (ns[n] <= ns[base]) return "always"
+        if (supports[base] <= supports[n]) return "never"
+        return sprintf("%.2f us", (price[ARGV[1]] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
+    }'
+
+# The last lines: what the same program gets from either library.
 verdict() {
-    awk '
-        function call(name, before, ratio, word) {
-            n = ours SUBSEP name
-            m = theirs SUBSEP name
-            printf "%s%s: %d of %d answers wrong", before, name, wrong[n], pairs
-            if (!(m in ns)) {
-                printf ", %.1f supports, %d ns", supports[n], ns[n]
-                return
-            }
-            ratio = ns[n] / ns[m]
-            word = "slower"
-            if (ratio < 1) { ratio = 1 / ratio; word = "faster" }
-            printf " (libccd %d), %.1f supports (%.1f), %.1f x %s", wrong[m], supports[n], supports[m], ratio, word
-        }
-        $1 == "MPR" || /^GJK [+] EPA / {
-            n = FILENAME SUBSEP ($1 == "MPR" ? "MPR" : "GJK + EPA")
-            wrong[n] = $(NF - 8) + $(NF - 7) + $(NF - 6) + $(NF - 5) + $(NF - 4)
-            supports[n] = $(NF - 1)
-            ns[n] = $NF
-        }
-        / pairs, / { pairs = $5 }
+    awk "$figures"'
+        function ratio(a, b) { return sprintf("%.2f", a / b) }
         END {
-            ours = ARGV[1]; theirs = ARGV[2]
-            call("MPR", "")
-            call("GJK + EPA", "; ")
-            print ""
+            theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
+            mpr = ours SUBSEP "MPR"; gjk = ours SUBSEP "GJK + EPA"
+            lean = warm SUBSEP "no pos, cold"
+            base = theirs SUBSEP "MPR"; epa = theirs SUBSEP "GJK + EPA"
+            printf "%d recorded pairs, %d of them overlap; libccd, this library, this library without pos:\n", pairs, overlaps
+            row = "  %-38s %9s %9s %9s\n"
+            printf row, "wrong answers, ccdMPRPenetration", wrong[base], wrong[mpr], wrong[lean]
+            printf row, "wrong answers, ccdGJKPenetration", wrong[epa], wrong[gjk], ""
+            printf row, "support points, ccdMPRPenetration", supports[base], supports[mpr], supports[lean]
+            printf row, "time, all pairs", "1.00", ratio(ns[mpr], ns[base]), ratio(ns[lean], ns[base])
+            printf row, "time, pairs that overlap", "1.00", ratio(hit[mpr], hit[base]), ratio(hit[lean], hit[base])
+            printf row, "faster if a support point costs above", "", breakeven(mpr, base), breakeven(lean, base)
+            printf "Wrong answers of ccdMPRPenetration: %d on libccd, %d here. Here it is the faster one if a support point", wrong[base], wrong[mpr]
+            printf " (a call of both support functions) costs above %s, without pos above %s; in this program it costs %.3f us.\n", \
+                   breakeven(mpr, base), breakeven(lean, base), price[theirs] / 1000
         }' "$@"
 }
 
-# The table of README.md. A call is faster than libccd's MPR where two support calls
-# cost more than the break-even: its longer arithmetic over the support points it saves.
+# The table of README.md.
 readme_table() {
-    awk '
+    awk "$figures"'
         function row(call, file, name, proven) {
             n = file SUBSEP name
-            ratio = ns[n] / ns[base]
-            even = "-"
-            if (n == base) even = ""
-            else if (ratio <= 1) even = "always"
-            else if (supports[base] > supports[n])
-                even = sprintf("%.2f µs", (price[theirs] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
-            printf "| %s | %.1f | %.2f | %.2f %% | %s | %s |\n", call, supports[n], ratio, 100 * deep[n] / overlaps, proven, even
+            even = n == base ? "" : breakeven(n, base)
+            sub("us", "µs", even)
+            printf "| %s | %.2f %% | %s | %.1f | %.2f | %.2f | %s |\n", call, 100 * wrong[n] / pairs, proven, supports[n],
+                   ns[n] / ns[base], hit[n] / hit[base], even
         }
-        / of them overlap/ { overlaps = $7 }
-        NF >= 10 && $(NF - 8) ~ /^[0-9]+$/ {
-            name = $1
-            for (i = 2; i <= NF - 9; i++) name = name " " $i
-            n = FILENAME SUBSEP name
-            deep[n] = $(NF - 5); supports[n] = $(NF - 1); ns[n] = $NF
-        }
-        /^a support point alone/ { price[FILENAME] = $5 }
         END {
             theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
             base = theirs SUBSEP "MPR"
-            print "| call | supports | time over libccd\47s MPR | > 1 % too deep | proven | break-even |"
-            print "|---|---|---|---|---|---|"
-            row("libccd `ccdMPRPenetration`", theirs, "MPR", "no")
-            row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "no")
+            print "| call | wrong | minimum within | support points | time | time of a hit | faster above |"
+            print "|---|---|---|---|---|---|---|"
+            row("libccd `ccdMPRPenetration`", theirs, "MPR", "no bound")
+            row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "no bound")
             row("`ccdMPRPenetration`", ours, "MPR", "0.1 %")
-            row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
-            row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
             row("`ccdMPRPenetration`, `pos` NULL", warm, "no pos, cold", "0.1 %")
+            row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
             row("`ccdMPRPenetrationWarm`, `pos` NULL", warm, "no pos, warm", "0.1 %")
-            row("`ccdPenetrationLocal`, warm", warm, "local, warm", "no")
-            row("`ccdPenetrationProven`, warm", warm, "minimum, warm", "tolerance")
+            row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
         }' theirs.txt ours.txt warm.txt
 }
 
@@ -171,4 +180,8 @@ if [ "${1:-}" = readme ] && [ -e theirs.txt ]; then
         !skip' "$OLDPWD/README.md" >README.new
     cat README.new >"$OLDPWD/README.md"
 fi
-if [ -e theirs.txt ]; then verdict ours.txt theirs.txt; else verdict ours.txt; fi
+if [ -e theirs.txt ]; then
+    verdict theirs.txt ours.txt warm.txt
+else
+    awk "$figures"'END { printf "Wrong answers of ccdMPRPenetration: %d of %d\n", wrong[ARGV[1] SUBSEP "MPR"], pairs }' ours.txt
+fi

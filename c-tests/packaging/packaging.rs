@@ -645,15 +645,15 @@ fn page(name: &str) -> String {
     fs::read_to_string(root().join(name)).expect("a page")
 }
 
-/// A page's program in a language, in a file of its own.
-fn program_of(name: &str, language: &str) -> PathBuf {
+/// A page's program in a language, in a file of its own below `place`.
+fn program_of(place: &str, name: &str, language: &str) -> PathBuf {
     let page = page(name);
     let program = page
         .split_once(&format!("```{language}\n"))
         .and_then(|(_, rest)| rest.split_once("```"))
         .expect("a program")
         .0;
-    let source = fresh(&format!("readme-{language}")).join(format!("program.{language}"));
+    let source = fresh(place).join(format!("program.{language}"));
     fs::write(&source, program).expect("a file can be written");
     source
 }
@@ -664,9 +664,9 @@ fn numbers(line: &str) -> Vec<f64> {
     words.filter_map(|word| word.parse().ok()).collect()
 }
 
-/// The README's box is 1 cm deep in its slab, face on face, and 1 mm deeper in each of two more
-/// frames.
-fn assert_depth_of_the_readme_s_box(said: &str) {
+/// The box of include/README.md is 1 cm deep in its slab, face on face, and 1 mm deeper in each of
+/// two more frames.
+fn assert_depth_of_the_box(said: &str) {
     assert_eq!(said.lines().count(), 3, "{said}");
     for line in said.lines() {
         let [frame, depth, up, contacts] = numbers(line)[..] else {
@@ -677,18 +677,43 @@ fn assert_depth_of_the_readme_s_box(said: &str) {
     }
 }
 
+/// The README's ball is 10 cm deep in its slab, and the page shows what the program prints.
+fn assert_depth_of_the_ball(said: &str) {
+    let page = page("README.md");
+    let shown = page.lines().find(|line| line.starts_with("depth 0.100"));
+    for line in [said.trim(), shown.expect("what it prints")] {
+        for (found, truth) in numbers(line).iter().zip([0.1, 0.0, 1.0, 1.9, 0.45]) {
+            assert!((found - truth).abs() < 2e-3, "{line}");
+        }
+        assert_eq!(numbers(line).len(), 5, "{line}");
+    }
+}
+
 /// A page's program compiles without a warning.
 fn strict(program: Program, page: &str, language: &str) -> Executable {
-    let program = program.source(program_of(page, language));
+    let program = program.source(program_of(&format!("{page}-{language}"), page, language));
     let program = program.flag("-pedantic").flag("-Werror");
     program.link_ours_shared().build()
 }
 
-/// The README's C program.
+/// The README's C program, here and, in libccd's precision, on libccd.
 #[test]
 fn readme_c_program() {
     let program = strict(Program::c("readme"), "README.md", "c");
-    assert_depth_of_the_readme_s_box(&program.run([""; 0]).stdout);
+    assert_depth_of_the_ball(&program.run([""; 0]).stdout);
+    if harness::Precision::CURRENT == Precision::Double {
+        let program =
+            Program::c("readme-libccd").source(program_of("readme-libccd", "README.md", "c"));
+        let said = program.link_system().build().run([""; 0]).stdout;
+        assert!(page("README.md").contains(said.trim()), "{said}");
+    }
+}
+
+/// The C program of the headers' page.
+#[test]
+fn header_page_c_program() {
+    let program = strict(Program::c("frames"), "include/README.md", "c");
+    assert_depth_of_the_box(&program.run([""; 0]).stdout);
 }
 
 /// The README's two lines that link it, as they stand there, in a folder with its files.
@@ -704,11 +729,16 @@ fn readme_links_its_program() {
     link(&root().join("include"), "include");
     link(&library.dir, "target/release");
     link(&library.dir.join("libccd.so"), "target/swap/libccd.so.2");
-    fs::copy(program_of("README.md", "c"), here.join("program.c")).expect("a copy");
+    fs::copy(
+        program_of("readme-linked", "README.md", "c"),
+        here.join("program.c"),
+    )
+    .expect("a copy");
     let page = page("README.md");
     let lines = page
-        .split('`')
-        .filter(|code| code.starts_with("cc program.c "));
+        .split(['`', '\n'])
+        .filter(|code| code.starts_with("cc program.c "))
+        .map(|code| code.trim_end_matches(" && ./a.out"));
     assert_eq!(lines.clone().count(), 2);
     for line in lines {
         let mut shell = Command::new("sh");
@@ -716,7 +746,7 @@ fn readme_links_its_program() {
             .current_dir(&here)
             .arg("-c")
             .arg(format!("{line} && ./a.out"));
-        assert_depth_of_the_readme_s_box(&must_succeed(&mut shell, line).stdout);
+        assert_depth_of_the_ball(&must_succeed(&mut shell, line).stdout);
         // Of the archive's 15 MB what is not needed is left out.
         assert_small(line, size(&here.join("a.out")), 550_000);
     }

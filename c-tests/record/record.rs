@@ -35,9 +35,9 @@ fn table(written: &str) -> (u64, Vec<Row>) {
     let overlaps = counted.and_then(|line| line.rsplit(' ').next()?.parse().ok());
     let lines = written.lines().skip_while(|l| !l.starts_with("method"));
     let row = |line: &str| {
-        // A name may have blanks, the nine figures after it have none.
+        // A name may have blanks, the ten figures after it have none.
         let words: Vec<&str> = line.split_whitespace().collect();
-        let (name, figures) = words.split_at(words.len() - 9);
+        let (name, figures) = words.split_at(words.len() - 10);
         let wrong = [0, 1, 2, 3, 4].map(|i| figures[i].parse().expect("a count"));
         (name.join(" "), wrong)
     };

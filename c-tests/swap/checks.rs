@@ -154,9 +154,23 @@ pub struct Screen {
     pub text: String,
 }
 
+/// A program of each consumer's: its title, and its arguments, of which one is the number of steps.
+fn consumers() -> [(&'static str, Program, &'static str, f64); 4] {
+    let scene = cpp("fcl_scene").library("fcl").flag("-DTIMED");
+    let dart = cpp("dart_pile").library("dart");
+    let mujoco = c("mujoco_pile").library("mujoco");
+    let ode = c("ode_pile").library("ode");
+    [
+        ("ODE, a pile", ode, "1 1500 32 pile", 1500.0),
+        ("MuJoCo 2, a pile", mujoco, "1 1500 30 pile", 1500.0),
+        ("DART over FCL, a pile", dart, "1 3000 15 fcl", 3000.0),
+        ("FCL, bodies that drift", scene, "300 200 0 0", 300.0),
+    ]
+}
+
 /// compare.sh's screens of a program of each consumer's, as they come.
 pub fn screens() -> [Screen; 4] {
-    let screen = |title: &'static str, program: Program, args: &str| {
+    consumers().map(|(title, program, args, _)| {
         let program = program.link_system().without_tools().build().quiet();
         let told = program.compared(&[]).with_screen().run(args.split(' '));
         let path = program.path.to_string_lossy();
@@ -169,31 +183,14 @@ pub fn screens() -> [Screen; 4] {
             program: title,
             text: text.to_owned(),
         }
-    };
-    let scene = cpp("fcl_scene").library("fcl").flag("-DTIMED");
-    let dart = cpp("dart_pile").library("dart");
-    let mujoco = c("mujoco_pile").library("mujoco");
-    [
-        screen(
-            "ODE, a pile",
-            c("ode_pile").library("ode"),
-            "1 1500 32 pile",
-        ),
-        screen("MuJoCo, a pile", mujoco, "1 1500 30 pile"),
-        screen("DART over FCL, a pile", dart, "1 3000 15 fcl"),
-        screen("FCL, bodies adrift", scene, "300 200 0 0"),
-    ]
+    })
 }
 
-/// For the front page: the last lines of the first screen, and a row for each.
-pub fn front_table(screens: &[Screen]) -> String {
-    let first = &screens[0].text;
-    let price = first.find("A support point of both").expect("a price");
-    let mut out = format!(
-        "```text\n{}\n```\n\n\
-         | program | wrong of judged, libccd | here | support points a query, libccd | here | time a query | the whole program |\n\
-         |---|---|---|---|---|---|---|\n",
-        &first[price..]
+/// A row for each screen.
+pub fn screen_table(screens: &[Screen]) -> String {
+    let mut out = String::from(
+        "| program | wrong of judged, libccd | here | support points a query, libccd | here | time a query |\n\
+         |---|---|---|---|---|---|\n",
     );
     for Screen { program, text } in screens {
         // The words behind a start of a line, and what stands between two texts.
@@ -210,14 +207,48 @@ pub fn front_table(screens: &[Screen]) -> String {
         let wrong = |side: &[f64]| -> f64 { side[..5].iter().sum() };
         let _ = writeln!(
             out,
-            "| {program} | {} of {} | {} | {:.1} | {:.1} | {} | {} |",
+            "| {program} | {} of {} | {} | {:.1} | {:.1} | {} |",
             wrong(&sides[0]),
             between("What the swap changes, of ", " judged"),
             wrong(&sides[1]),
             sides[0][7],
             sides[1][7],
             between("a query takes ", " times"),
-            between("the program would take ", ".\n"),
+        );
+    }
+    out
+}
+
+/// Processor time of this process' ended children, seconds, in the kernel's hundredths.
+fn children_seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    // Behind the name, which may hold anything: fields 16 and 17 of proc(5), from field 3 on.
+    let fields = stat.rsplit_once(')').map_or("", |(_, rest)| rest);
+    let ticks = fields.split_whitespace().skip(13).take(2);
+    ticks.filter_map(|t| t.parse::<f64>().ok()).sum::<f64>() / 100.0
+}
+
+/// Milliseconds of processor that a step of each consumer's program takes on either library: the
+/// least of some rounds in which the libraries take turns.
+pub fn step_table(rounds: usize) -> String {
+    let mut out =
+        String::from("| program | libccd, ms a step | here | ratio |\n|---|---|---|---|\n");
+    for (title, program, args, steps) in consumers() {
+        let system = program.link_system().without_tools().build().quiet();
+        let ways = [system.swapped(), system];
+        let mut least = [f64::INFINITY; 2];
+        for _ in 0..rounds {
+            for (way, least) in ways.iter().zip(&mut least) {
+                let before = children_seconds();
+                way.run(args.split(' '));
+                *least = least.min(children_seconds() - before);
+            }
+        }
+        let [ours, theirs] = least.map(|seconds| 1000.0 * seconds / steps);
+        let _ = writeln!(
+            out,
+            "| {title} | {theirs:.3} | {ours:.3} | {:.2} |",
+            ours / theirs
         );
     }
     out

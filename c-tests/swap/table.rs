@@ -9,6 +9,7 @@
 //! `cargo run --example swap -- scene` a scene through FCL's broad phase (half a minute)
 //! `cargo run --example swap -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
 //! `cargo run --example swap -- screens` compare.sh's screen of a program of each consumer's (a minute)
+//! `cargo run --release --example swap -- steps` a step of whole programs on both libraries (2 minutes)
 //! `cargo run --example swap -- long` whole simulations, longer and nastier (3 minutes)
 
 #[path = "../harness/mod.rs"]
@@ -73,25 +74,38 @@ fn long() {
     println!("{}", checks::pile_table(&rows));
 }
 
-/// Into the pages too: the first screen into this folder's, a row of each into the front page.
+/// Writes the screens, the first of them and a row of each into this folder's page.
 fn screens() {
     let screens = checks::screens();
     for screen in &screens {
         println!("{}\n", screen.text);
     }
     let first = format!("\n```text\n{}\n```\n\n", screens[0].text);
-    between_marks("c-tests/swap/README.md", &first);
-    between_marks("README.md", &checks::front_table(&screens));
+    let table = checks::screen_table(&screens);
+    between_marks(
+        "c-tests/swap/README.md",
+        "screens",
+        &format!("{first}{table}"),
+    );
 }
 
-/// What stands in a page between the marks of `screens`.
-fn between_marks(page: &str, text: &str) {
+/// Replaces what stands in a page between the marks of this name.
+fn between_marks(page: &str, name: &str, text: &str) {
     let path = harness::root().join(page);
     let page = std::fs::read_to_string(&path).expect("a page");
-    let (before, rest) = page.split_once("<!-- screens -->\n").expect("a mark");
+    let mark = format!("<!-- {name} -->\n");
+    let (before, rest) = page.split_once(&mark).expect("a mark");
     let (_, after) = rest.split_once("<!-- end -->").expect("a mark");
-    let page = format!("{before}<!-- screens -->\n{text}<!-- end -->{after}");
+    let page = format!("{before}{mark}{text}<!-- end -->{after}");
     std::fs::write(&path, page).expect("a page");
+}
+
+/// Prints the processor time of a step on both libraries, which take turns, and writes it into the
+/// front page.
+fn steps() {
+    let table = checks::step_table(5);
+    println!("{table}");
+    between_marks("README.md", "steps", &table);
 }
 
 fn world() {
@@ -122,10 +136,11 @@ fn main() {
         Some("distance") => println!("{}", fcl_distance::table(&fcl_distance::distances(10_000))),
         Some("scene") => scene(),
         Some("screens") => screens(),
+        Some("steps") => steps(),
         Some("world") => world(),
         Some(other) => {
             eprintln!(
-                "unknown: {other}; nothing, `distance`, `scene`, `screens`, `world` or `long`"
+                "unknown: {other}; nothing, `distance`, `scene`, `screens`, `steps`, `world` or `long`"
             );
             std::process::exit(2);
         }
