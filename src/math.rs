@@ -47,23 +47,14 @@ pub fn lower_to_real(x: f64) -> Real {
     }
 }
 
-/// `v / |v|`, or `None` when `v` is zero or not finite.
-///
-/// Scaled by the largest coordinate first, so that neither tiny nor huge
-/// vectors under- or overflow when squared.
+/// Returns `v / |v|`, or `None` when `v` is zero or not finite.
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
     // 0/0 and ∞/∞ are NaN, and so is then the norm.
-    let scaled = v / largest(v);
-    let norm = scaled.norm();
-    if norm > 0.0 {
-        Some(scaled / norm)
-    } else {
-        None
-    }
+    normalised(v).or_else(|| normalised(&(v / largest(v))))
 }
 
-/// `v / |v|` of a vector whose length can be squared, else `None`: in half the time of [`unit()`].
+/// Returns `v / |v|` of a vector whose length can be squared, else `None`.
 #[inline(always)]
 pub fn normalised(v: &Vec3) -> Option<Vec3> {
     let n2 = v.norm_squared();
