@@ -46,6 +46,13 @@ static double reach(const shape_t *shape, const double n[3], int sign)
     return along(n, &p);
 }
 
+/* The slop in force: the scene's, or the least one. */
+static double slop_in_force(const scene_t *s)
+{
+    const double depth = reach(&s->a, s->n, 1) - reach(&s->b, s->n, -1);
+    return fmax(s->slop, fmax(0.01 * depth, 8 * noise_of(s)));
+}
+
 static contacts_t contacts_at_most(scene_t *s, int max)
 {
     contacts_t out;
@@ -131,7 +138,7 @@ static double outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
  * of the support planes. */
 static void judge_heights(const scene_t *s, const contacts_t *c, const char *what)
 {
-    const double noise = 4 * noise_of(s), room = s->slop + 8 * noise;
+    const double noise = 4 * noise_of(s), room = slop_in_force(s) + 8 * noise;
     const double h1 = reach(&s->a, s->n, 1), h2 = reach(&s->b, s->n, -1);
     int i;
     for (i = 0; i < c->n; i++) {
@@ -150,14 +157,14 @@ static void judge_heights(const scene_t *s, const contacts_t *c, const char *wha
  * depth. */
 static void judge_contacts(scene_t *s, const contacts_t *c, const char *what)
 {
-    const double noise = 4 * noise_of(s), room = s->slop + 8 * noise;
+    const double noise = 4 * noise_of(s), slop = slop_in_force(s), room = slop + 8 * noise;
     int i;
     judge_heights(s, c, what);
     for (i = 0; i < c->n; i++) {
         const ccd_contact_t *p = &c->c[i];
         const uint64_t random = random_state;
         double out = across(s, p);
-        CHECK(out <= noise || (c->n == 1 && out > s->slop / 2), "%s: points %g across", what, out);
+        CHECK(out <= noise || (c->n == 1 && out > slop / 2), "%s: points %g across", what, out);
         out = fmax(outside(&s->a, &p->point1, 20), outside(&s->b, &p->point2, 20));
         if (c->n == 1)
             random_state = random;
@@ -172,8 +179,8 @@ static int region_of(const scene_t *s, const frame_t *f, flats_t *region, double
 {
     flats_t one, two;
     double top1, top2;
-    int clear = manifold_face(&s->a, f, 1, s->slop, noise_of(s), &one, &top1) &
-                manifold_face(&s->b, f, -1, s->slop, noise_of(s), &two, &top2);
+    int clear = manifold_face(&s->a, f, 1, slop_in_force(s), noise_of(s), &one, &top1) &
+                manifold_face(&s->b, f, -1, slop_in_force(s), noise_of(s), &two, &top2);
     thin = 1;
     region->n = 0;
     if (one.n < 3 && two.n < 3)
@@ -198,7 +205,7 @@ static void compare(scene_t *s, const char *what)
 {
     const frame_t f = manifold_frame(s->n);
     flats_t region, found;
-    double apart, room = 4 * s->slop + 64 * noise_of(s);
+    double apart, room = 4 * slop_in_force(s) + 64 * noise_of(s);
     contacts_t c = contacts_of(s);
     judge_contacts(s, &c, what);
     if (!region_of(s, &f, &region, &apart)) {
@@ -314,7 +321,7 @@ static void rest(void)
     static const double up[3] = {0, 0, 1};
     int i;
     for (i = 0; i < 4000; i++) {
-        const double depth = uniform(-0.01, 0.05), angle = uniform(0, 6.28);
+        const double depth = i % 3 ? uniform(-0.01, 0.05) : uniform(-1, 5) * pow(10, uniform(-7, -2)), angle = uniform(0, 6.28);
         double rot[9];
         scene_t s;
         s.slop = slop_of();
@@ -355,6 +362,10 @@ static void anywhere(void)
             continue;
         for (k = 0; k < 3; k++)
             s.n[k] = (double)hit.normal.v[k];
+        if (i % 4) { /* less deep: the minimum stays where it is */
+            const double less = (double)hit.depth - pow(10, uniform(single ? -4 : -7, -2));
+            shape_move(&s.b, (double)s.b.pos[0] + less * s.n[0], (double)s.b.pos[1] + less * s.n[1], (double)s.b.pos[2] + less * s.n[2]);
+        }
         compare(&s, "anywhere");
     }
 }
@@ -450,7 +461,7 @@ static void categories(void)
         judge_heights(&s, &c, category_text(category));
         for (k = 0; k < c.n && i % 3 == 1; k++) {
             const double out = fmax(outside(&s.a, &c.c[k].point1, 200), outside(&s.b, &c.c[k].point2, 200));
-            CHECK(out <= 1.01 * s.slop + 64 * noise_of(&s), "%s: %g outside, slop %g, %d contacts", category_text(category), out, s.slop, c.n);
+            CHECK(out <= 1.01 * slop_in_force(&s) + 64 * noise_of(&s), "%s: %g outside, slop %g, %d contacts", category_text(category), out, s.slop, c.n);
         }
     }
 }
@@ -465,23 +476,23 @@ static void shapes(void)
     const shape_t lying_capsule = turned(shape_capsule(0.3, 0.5), 0, 1, 0, pi / 2);
     const shape_t lying_cylinder = turned(shape_cylinder(0.3, 0.5), 0, 1, 0, pi / 2);
 
-    expect("ball on table", table, at(shape_sphere(0.5), 0, 0, 0.49), 1, middle);
-    expect("ball on ball", at(shape_sphere(0.5), 0, 0, -0.5), at(shape_sphere(0.3), 0, 0, 0.29), 1, middle);
+    expect("ball on table", table, at(shape_sphere(0.5), 0, 0, 0.4999), 1, middle);
+    expect("ball on ball", at(shape_sphere(0.5), 0, 0, -0.5), at(shape_sphere(0.3), 0, 0, 0.2999), 1, middle);
     expect("table on ball", at(shape_sphere(0.5), 0, 0, -0.5), at(shape_box(1, 1, 0.5), 0, 0, 0.5), 1, middle);
-    expect("ellipsoid", table, at(shape_ellipsoid(1, 0.6, 0.3), 0.3, -0.2, 0.29), 1, off);
+    expect("ellipsoid", table, at(shape_ellipsoid(1, 0.6, 0.3), 0.3, -0.2, 0.2999), 1, off);
     expect("flat ellipsoid", table, at(shape_ellipsoid(1, 1, 0.05), 0.3, -0.2, 0.05), 1, off);
-    expect("lying capsule", table, at(lying_capsule, 0, 0, 0.29), 2, ends);
+    expect("lying capsule", table, at(lying_capsule, 0, 0, 0.2999), 2, ends);
     expect("lying capsule over the edge", edge, at(lying_capsule, 0.7, 0, 0.3), 2, over);
     expect("capsule on its end", table, at(shape_capsule(0.3, 0.5), 0.3, -0.2, 0.8), 1, off);
-    expect("lying cylinder", table, at(lying_cylinder, 0, 0, 0.29), 2, ends);
+    expect("lying cylinder", table, at(lying_cylinder, 0, 0, 0.2999), 2, ends);
     expect("cone on its tip", table, at(turned(shape_cone(0.3, 0.5), 1, 0, 0, pi), 0.3, -0.2, 0.5), 1, off);
     /* half height 0.5, radius 0.5: the slant is sqrt(1.25) long, the apex over the origin */
     expect("lying cone", table, at(turned(shape_cone(0.5, 0.5), 0, 1, 0, pi / 2 + atan(0.5)),
                                    -0.5 * sin(pi / 2 + atan(0.5)), 0, -0.5 * cos(pi / 2 + atan(0.5))),
            2, slant);
     expect("crossed capsules", at(lying_capsule, 0, 0, -0.3),
-           at(turned(shape_capsule(0.2, 0.5), 1, 0, 0, pi / 2), 0, 0, 0.19), 1, middle);
-    expect("parallel capsules", at(lying_capsule, 0, 0, -0.3), at(lying_capsule, 0.3, 0, 0.29), 2, shared);
+           at(turned(shape_capsule(0.2, 0.5), 1, 0, 0, pi / 2), 0, 0, 0.1999), 1, middle);
+    expect("parallel capsules", at(lying_capsule, 0, 0, -0.3), at(lying_capsule, 0.3, 0, 0.2999), 2, shared);
     expect("plate on table", table, shape_polytope(square, 4), 4, plate);
     expect("rod on table", table, shape_polytope(rod, 2), 2, rods);
     expect("point on table", table, at(shape_polytope(dot, 1), 0.3, -0.2, 0), 1, off);
@@ -489,11 +500,11 @@ static void shapes(void)
     expect("point on rod", shape_polytope(rod, 2), shape_polytope(dot, 1), 1, middle);
     expect("point on point", shape_polytope(dot, 1), shape_polytope(dot, 1), 1, middle);
     expect("standing plate", table, at(turned(shape_polytope(square, 4), 1, 0, 0, pi / 2), 0, 0, 1), 2, rods);
-    expect("box on its edge", table, at(turned(shape_box(1, 0.5, 0.5), 1, 0, 0, pi / 4), 0, 0, sqrt(0.5) - 0.01), 2, rods);
+    expect("box on its edge", table, at(turned(shape_box(1, 0.5, 0.5), 1, 0, 0, pi / 4), 0, 0, sqrt(0.5) - 1e-4), 2, rods);
     expect("box on its corner", table,
            at(turned(shape_box(0.5, 0.5, 0.5), 1, -1, 0, atan(sqrt(2))), 0, 0, sqrt(0.75)), 1, middle);
     expect("edge across edge", at(turned(shape_box(1, 0.5, 0.5), 1, 0, 0, pi / 4), 0, 0, -sqrt(0.5)),
-           at(turned(shape_box(0.5, 1, 0.5), 0, 1, 0, pi / 4), 0, 0, sqrt(0.5) - 0.01), 1, middle);
+           at(turned(shape_box(0.5, 1, 0.5), 0, 1, 0, pi / 4), 0, 0, sqrt(0.5) - 1e-4), 1, middle);
 }
 
 /* A disc is inscribed: all points within it, most of its area. */
@@ -544,10 +555,70 @@ static void along_edges(void)
         s.a = at(shape_box(x, y, 0.5), 0, 0, -0.5);
         s.b = turned(i % 4 < 2 ? shape_cylinder(radius, half) : shape_capsule(radius, half), 1, 0, 0, pi / 2);
         rotation_about(0, 0, 1, -angle, rot);
-        shape_turn_by(&s.b, rot, x + beyond + half * sin(angle), end + half * cos(angle), radius - 0.01);
+        shape_turn_by(&s.b, rot, x + beyond + half * sin(angle), end + half * cos(angle), radius - 1e-5);
         place(&s, 1);
         c = contacts_of(&s);
         judge_contacts(&s, &c, "along an edge");
+    }
+}
+
+/* --- the normal's own error ------------------------------------------------------------------ */
+
+static double depth_along(const scene_t *s, const double n[3]) { return reach(&s->a, n, 1) - reach(&s->b, n, -1); }
+
+/* A normal as an answer may have it, and no slop of the caller's: turned until the depth along it is 0.1 % more than
+ * the least one. What touches stays what it is: an ellipsoid on a face touches in a point, a box in its edge or face. */
+static void imperfect_normals(void)
+{
+    static const double up[3] = {0, 0, 1};
+    int i, k, j;
+    for (i = 0; i < 3000; i++) {
+        const double depth = pow(10, uniform(single ? -2 : -3, -1.5)), angle = uniform(0, 6.28), x = uniform(0.8, 1.2), y = uniform(0.8, 1.2);
+        const double dir[3] = {cos(angle), sin(angle), 0};
+        double rot[9], low = 0, high = 1, most;
+        flats_t face, found;
+        contacts_t c;
+        frame_t f;
+        scene_t s;
+        s.slop = 0;
+        s.a = at(shape_box(x, y, 0.5), 0, 0, -0.5);
+        s.b = i % 3 ? shape_box(uniform(0.2, 0.4), uniform(0.2, 0.4), uniform(0.2, 0.4))
+                    : shape_ellipsoid(uniform(0.2, 0.4), uniform(0.2, 0.4), uniform(0.2, 0.4));
+        rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
+        if (i % 3 == 1) /* on its edge */
+            rotation_about(1, 0, 0, uniform(0.4, 1.1), rot);
+        if (i % 3 != 2)
+            shape_turn(&s.b, rot);
+        yaw(&s.b);
+        shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), 0);
+        shape_move(&s.b, (double)s.b.pos[0], (double)s.b.pos[1], -depth - reach(&s.b, up, -1));
+        /* the exact place: the corners of b's lowest face, or an ellipsoid's lowest point */
+        f = manifold_frame(up);
+        if (i % 3)
+            manifold_face(&s.b, &f, -1, 0.1 * depth, noise_of(&s), &face, &most);
+        else {
+            const ccd_vec3_t down = {{0, 0, -1}};
+            ccd_vec3_t v;
+            truth_real p[3];
+            shape_support(&s.b, &down, &v);
+            for (k = 0; k < 3; k++)
+                p[k] = v.v[k];
+            face.n = 1;
+            face.p[0] = manifold_flat(&f, p);
+        }
+        for (j = 0; j < 60; j++) {
+            const double t = (low + high) / 2, length = sqrt(1 + t * t);
+            for (k = 0; k < 3; k++)
+                s.n[k] = (up[k] + t * dir[k]) / length;
+            *(depth_along(&s, s.n) < 1.001 * depth ? &low : &high) = t;
+        }
+        c = contacts_of(&s);
+        found = flats_of(&c, &f);
+        CHECK((double)flat_apart(&face, &found) <= 2e-3, "imperfect: %d contacts, %g from the truth of %d, depth %g", c.n,
+              (double)flat_apart(&face, &found), face.n, depth);
+        CHECK(c.n == face.n, "imperfect: %d contacts for %d", c.n, face.n);
+        for (k = 0; k < c.n; k++)
+            CHECK(across(&s, &c.c[k]) <= 4 * noise_of(&s), "imperfect: points %g across", across(&s, &c.c[k]));
     }
 }
 
@@ -622,7 +693,7 @@ static void steady(int motion, scene_t start, double step)
             const frame_t now = manifold_frame(s.n); /* a face is one along its own normal alone */
             flats_t face;
             double top;
-            manifold_face(&s.a, &now, 1, s.slop, noise_of(&s), &face, &top);
+            manifold_face(&s.a, &now, 1, slop_in_force(&s), noise_of(&s), &face, &top);
             CHECK(far <= allowed || grazes(&before, &face) || grazes(&found, &face), "%s by %g: the region moves by %g, %d and %d points, slop %g", motion_name[motion], step, far,
                   before.n, found.n, s.slop);
         }
@@ -648,7 +719,7 @@ static void motions(void)
             half = 0.3;
             s.b = turned(i % 8 == 3 ? shape_capsule(half, 0.5) : shape_cylinder(half, 0.5), 1, 0, 0, pi / 2);
         }
-        shape_move(&s.b, uniform(-0.5, 0.5), uniform(-0.5, 0.5), half - 0.01);
+        shape_move(&s.b, uniform(-0.5, 0.5), uniform(-0.5, 0.5), half - 1e-5);
         if (motion == SLIDE)
             yaw(&s.b);
         somewhere(0);
@@ -856,6 +927,7 @@ int main(void)
     garbage();
     memory_in_use = NULL;
     along_edges();
+    imperfect_normals();
     printf("%lu regions, %lu segments, %lu points, %lu beside each other, %lu doubtful\n", regions, segments, points, beside, doubtful);
     CHECK(regions > 1000 && segments > 10 && points > 10 && beside > 300, "too few of a kind");
     return checks_end();

@@ -37,7 +37,7 @@
 //! the face, the search begins from nothing.
 
 use crate::contacts::list::List;
-use crate::contacts::memory::{Known, Motion, Ring, long, short};
+use crate::contacts::memory::{Known, Memory, Motion, Ring, long, short};
 use crate::contacts::plane::Plane;
 use crate::contacts::polygon::{
     Corner, Flat, Polygon, across, between, cross, dot, length, onto, side,
@@ -109,24 +109,45 @@ pub struct Face {
     pub ring: Ring,
 }
 
-impl Face {
-    /// A face of an object by what is kept of it, else from nothing, and how it moved. `sign`: 1 where
-    /// it looks along the normal; its first point is the origin of the plane. -1 where it looks against it.
-    pub fn of<S: SupportMap>(
-        object: &S,
-        plane: &mut Plane,
-        sign: f64,
-        slop: f64,
-        ring: Option<&Ring>,
-    ) -> Result<(Self, Option<Motion>), Fault> {
-        if let Some(ring) = ring {
-            if let Some((face, motion)) = Search::new(object, plane, sign).again(ring)? {
-                return Ok((face, Some(motion)));
-            }
-        }
-        Ok((Search::new(object, plane, sign).anew(slop)?, None))
-    }
+/// The least slop of a normal, as a share of the depth. A normal whose depth is within 0.1 % of the minimum
+/// leaves the corners of a face as unequal as that, times the extent of the face over the distance of the
+/// deepest point from the middle of what is shared. Measured on 17,351 pairs of boxes and of a box and an
+/// ellipsoid, 1 cm deep, without a slop of the caller's: a share of 0 takes a corner or an end of an edge for
+/// the face in 212, 0.001 in 21, 0.002 in 12, 0.01 in 1.
+const MIN_SLOP_REL: f64 = 0.01;
+/// The same in units of what rounding can do to a coordinate: the tilt that finds corners is to be well above
+/// what a callback rounds its direction by.
+const MIN_SLOP_ROUNDINGS: f64 = 4.0;
 
+/// Finds both faces, by what is kept of them, else from nothing, and how they moved; and the slop that they
+/// have, which is the caller's or the least one of the depth. The first point of the first object becomes
+/// the origin of the plane.
+///
+/// # Errors
+/// [`Fault::NonFinite`].
+pub fn faces<A: SupportMap, B: SupportMap>(
+    obj1: &A,
+    obj2: &B,
+    plane: &mut Plane,
+    slop: f64,
+    known: Option<&Memory>,
+) -> Result<([(Face, Option<Motion>); 2], f64), Fault> {
+    let [ring1, ring2] = [0, 1].map(|i| known.map(|known| &known.rings()[i]));
+    let mut one = Search::new(obj1, plane, 1.0, false);
+    let found1 = one.again_or_plane(ring1)?;
+    *plane = one.plane;
+    let mut two = Search::new(obj2, plane, -1.0, true);
+    let found2 = two.again_or_plane(ring2)?;
+    let slop = larger(slop, MIN_SLOP_REL * (one.top + two.top));
+    let has_slop = known.is_some_and(|known| known.has_slop(slop));
+    let faces = [
+        one.face_of(found1, has_slop, slop)?,
+        two.face_of(found2, has_slop, slop)?,
+    ];
+    Ok((faces, slop))
+}
+
+impl Face {
     /// How far below its support plane it is at a place.
     pub fn low(&self, at: &Flat) -> f64 {
         self.corners.low(at, self.rounding)
@@ -157,11 +178,13 @@ impl Face {
 /// The search for the corners of one face.
 struct Search<'a, S> {
     object: &'a S,
-    plane: &'a mut Plane,
+    plane: Plane,
+    /// Whether the plane has its origin, else the first point is it.
+    has_origin: bool,
     sign: f64,
     /// How high the support plane is, and where it is met.
     top: f64,
-    first: Flat,
+    first: Sample,
     slop: f64,
     size: f64,
     /// Tilt that finds corners.
@@ -174,13 +197,14 @@ struct Search<'a, S> {
 }
 
 impl<'a, S: SupportMap> Search<'a, S> {
-    fn new(object: &'a S, plane: &'a mut Plane, sign: f64) -> Self {
+    fn new(object: &'a S, plane: &Plane, sign: f64, has_origin: bool) -> Self {
         Search {
             object,
-            plane,
+            plane: *plane,
+            has_origin,
             sign,
             top: 0.0,
-            first: [0.0; 2],
+            first: Sample::default(),
             slop: 0.0,
             size: 0.0,
             tilt: 0.0,
@@ -195,8 +219,8 @@ impl<'a, S: SupportMap> Search<'a, S> {
         let p = self
             .object
             .support(&self.plane.direction(self.sign, &aside));
-        if self.asked == 0 && self.sign > 0.0 {
-            self.plane.origin = p;
+        if !self.has_origin {
+            (self.plane.origin, self.has_origin) = (p, true);
         }
         self.asked += 1;
         self.rounding = larger(self.rounding, 8.0 * EPSILON * largest(&p));
@@ -229,14 +253,49 @@ impl<'a, S: SupportMap> Search<'a, S> {
         Ok(None)
     }
 
-    /// The support plane, the size, and the first corners.
+    /// Finds the face that is known, or the support plane where it is another.
+    fn again_or_plane(&mut self, ring: Option<&Ring>) -> Result<Option<(Face, Motion)>, Fault> {
+        if let Some(ring) = ring {
+            let found = self.again(ring)?;
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        self.find_plane()?;
+        Ok(None)
+    }
+
+    /// Returns the face that is found, unless its slop was another, else finds it from nothing.
+    fn face_of(
+        mut self,
+        found: Option<(Face, Motion)>,
+        has_slop: bool,
+        slop: f64,
+    ) -> Result<(Face, Option<Motion>), Fault> {
+        if let Some((face, motion)) = found {
+            if has_slop {
+                return Ok((face, Some(motion)));
+            }
+            self.find_plane()?;
+        }
+        Ok((self.anew(slop)?, None))
+    }
+
+    /// Begins the search: queries the support plane.
+    fn find_plane(&mut self) -> Result<(), Fault> {
+        (self.top, self.asked) = (0.0, 0);
+        let mut first = self.ask([0.0; 2])?;
+        self.top = -first.found.low;
+        first.found.low = 0.0;
+        first.corner.low = 0.0;
+        first.settled = true;
+        self.first = first;
+        Ok(())
+    }
+
+    /// The size, and the first corners.
     fn start(&mut self, slop: f64) -> Result<(), Fault> {
-        let mut top = self.ask([0.0; 2])?;
-        self.top = -top.found.low;
-        self.first = top.found.at;
-        top.found.low = 0.0;
-        top.corner.low = 0.0;
-        top.settled = true;
+        let top = self.first;
         let mut wide = [top; 3];
         for i in 0..3 {
             let new = self.ask(CIRCLE[i].map(|x| WIDE * x))?;
@@ -247,7 +306,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
             wide[i] = new;
         }
         // No coarser than the face, no finer than what rounding does to it.
-        self.slop = slop.min(self.size).max(self.rounding);
+        self.slop = slop.min(self.size).max(MIN_SLOP_ROUNDINGS * self.rounding);
         if self.size > self.rounding {
             self.tilt = (2.0 * self.slop / self.size).min(WIDE);
             for (sample, way) in wide.into_iter().zip(CIRCLE) {
@@ -427,7 +486,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
     /// The corner, if it is within the slop of the way from a point of the object to the highest;
     /// else that point.
     fn inside(&self, corner: Corner, near: &Corner) -> Corner {
-        let at = onto(&corner.at, &near.at, &self.first);
+        let at = onto(&corner.at, &near.at, &self.first.found.at);
         if length(&side(&at, &corner.at)) <= self.slop {
             return corner;
         }
@@ -488,13 +547,14 @@ impl<'a, S: SupportMap> Search<'a, S> {
     }
 
     /// The face that is known, and how it moved; nothing where it is another.
-    fn again(mut self, ring: &Ring) -> Result<Option<(Face, Motion)>, Fault> {
+    fn again(&mut self, ring: &Ring) -> Result<Option<(Face, Motion)>, Fault> {
         let count = ring.corners().len();
         let tilt = long(ring.tilt);
         if !(tilt > 0.0) || count == 0 {
             return Ok(None);
         }
-        let inscribed = ring.inscribed != 0.0;
+        // The ends of a line are each the other's second corner.
+        let inscribed = ring.inscribed != 0.0 && count > 2;
         let mut next = [Corner::default(); CORNERS];
         for i in 0..larger(count, if count == 1 { 3 } else { 0 }) {
             // Across a side its second corner is found.

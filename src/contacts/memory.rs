@@ -154,7 +154,7 @@ pub struct Memory {
     normal: [f32; 3],
     /// The plane's first axis.
     axis: [f32; 3],
-    /// As the caller gave it.
+    /// As the faces were found with.
     slop: f32,
     rings: [Ring; 2],
     points: [[f32; 2]; NAMED],
@@ -183,7 +183,7 @@ impl Names {
 impl Memory {
     /// The plane as it was, turned as little as the normal turned, and both faces; nothing where
     /// the memory is of another plane. Of the swapped pair it is turned round first.
-    pub fn plane(&mut self, n: &Vec3, slop: f64) -> Option<Plane> {
+    pub fn plane(&mut self, n: &Vec3) -> Option<Plane> {
         if self.sum != self.sum() {
             *self = Self::default();
         }
@@ -197,8 +197,7 @@ impl Memory {
         let e1 = axis - n * n.dot(&axis);
         let length = e1.norm();
         // NaN is no plane.
-        let same = self.slop.to_bits() == short(slop).to_bits();
-        (along > 0.5 && along < 2.0 && length > 0.5 && length < 2.0 && same).then(|| {
+        (along > 0.5 && along < 2.0 && length > 0.5 && length < 2.0).then(|| {
             let e1 = e1 / length;
             Plane {
                 n: *n,
@@ -206,6 +205,13 @@ impl Memory {
                 origin: Vec3::zeros(),
             }
         })
+    }
+
+    /// Returns whether the faces were found with a slop, or with one that is a little less: of a deep
+    /// overlap it changes with the depth.
+    pub fn has_slop(&self, slop: f64) -> bool {
+        let (old, new) = (self.slop, short(slop));
+        0.8 * new <= old && old <= new
     }
 
     /// A number that changed bits change: any odd factor makes it one.
