@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What a query knows of its pair: the Minkowski difference D = obj1 − obj2 and its known vertices.
+//! The Minkowski difference D = obj1 − obj2 of a pair, and its known vertices.
 //!
 //! Every support call returns one vertex of each object. A [`VertexSet`](vertex_set::VertexSet) keeps
 //! them: a_1 … a_k of obj1, b_1 … b_k of obj2. D contains all k² differences a_i − b_j, so
@@ -10,7 +10,7 @@
 //! they take a known difference where one is far enough beyond, and query the callbacks
 //! ([`SupportQuery`](query::SupportQuery)) where none is.
 //!
-//! | file | what it owns |
+//! | file | content |
 //! |---|---|
 //! | [`support`] | support functions, D, support points |
 //! | [`vertex_set`] | the known vertices and the support function of their differences |

@@ -107,7 +107,7 @@ pub enum ExpandEnd {
     SupportLimit,
     /// [`EpaLimits::max_iterations`].
     IterationLimit,
-    /// No point lies above the closest face, which is not at the upper bound.
+    /// No point is above the closest face, which is not at the upper bound.
     Rounding,
     /// The vertices, the corners or the faces are full: go on in larger buffers.
     NoRoom,

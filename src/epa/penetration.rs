@@ -14,10 +14,10 @@
 //!    point, a line and a plane, else from the tetrahedron of GJK; in buffers that grow.
 //! 6. *Result*: depth and direction are the upper bound's, lower bound and witness points the polytope's.
 //!
-//! Departures. Steps 3 to 5 take known differences before callbacks. A known difference beyond the final
-//! plane shows that callbacks contradict themselves, and a plane that the centres' difference lies beyond
-//! that it is outside D: the query then starts again, once, with every direction evaluated twice or
-//! without the centres.
+//! Departures. Steps 3 to 5 take known differences before callbacks. A known difference beyond a queried
+//! plane shows that a callback contradicts itself; a plane that has the difference of the centres beyond it
+//! shows that this is outside D. The query then starts again, once, with every direction evaluated twice
+//! or without the centres.
 //!
 //! Validity. `depth`, `dir`: always; a sound depth. `depth_lower`: proven, of the global minimum (a trusted
 //! centre is part of the proof); 0 where nothing is proven. Witness points: always, each in its object.
@@ -57,7 +57,7 @@ const LARGE_FACES: usize = max_faces(LARGE_CORNERS);
 const LENT_VERTICES: usize = MAX_PROVEN_SAMPLES as usize + SPARE_VERTICES;
 const LENT_CORNERS: usize = 2 * LENT_VERTICES;
 const LENT_FACES: usize = max_faces(LENT_CORNERS);
-/// What may be evaluated beyond the limit: the limits hold only while the origin is inside.
+/// Room for support calls beyond the limit, which holds only while the origin is inside.
 const SPARE_VERTICES: usize = 8;
 /// The entries that the first tetrahedron may add, for which there must be room.
 const START_VERTICES: usize = 9;
@@ -81,10 +81,14 @@ const _: () = assert!(LENT_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
 /// epsilons. Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
 /// much by which the face found there is closer than the closest.
 const ROUNDING_GAP_EPS: f64 = 32.0;
+/// The extent of D, in height epsilons, below which it counts as flat. Derived: as [`ROUNDING_GAP_EPS`].
+const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
+/// The share of the size that a known corner of a first tetrahedron must be away from the others.
+const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The support calls of a polytope after which D counts as round there.
 const MAX_PLAIN_ITERATIONS: u64 = 3;
-/// A warm direction whose support value is more than twice the last depth, and this share of the centres'
-/// distance, is stale.
+/// A warm direction is stale if its support value exceeds twice the last depth by more than this share of
+/// the distance of the centres.
 const STALE_REL: f64 = 0.1;
 
 /// Memory for the largest polytopes. All bytes zero is a valid value.
@@ -103,7 +107,7 @@ pub trait Arena {
     fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault>;
 }
 
-/// What is known of a pair besides its support functions, and what is wanted.
+/// The input of a query besides the support functions.
 #[derive(Clone, Copy, Debug)]
 pub struct EpaRequest<'a> {
     /// The difference of the centres that is trusted to lie in D.
@@ -598,18 +602,18 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                         (best, found[i]) = (distance, v);
                     }
                 }
-                // A known difference need not be the farthest, but must be far.
-                let size = self.query.scale.size();
-                let least = if pass == 0 {
-                    1e-3 * size
+                // A known difference need not be the farthest one, but it must not make a sliver.
+                let scale = &self.query.scale;
+                let known = if pass == 0 {
+                    KNOWN_EXTENT_REL * scale.size()
                 } else {
-                    32.0 * self.query.scale.height_eps()
+                    0.0
                 };
-                if best > least {
+                if best > larger(known, MIN_EXTENT_EPS * scale.height_eps()) {
                     break;
                 }
             }
-            if !(best > 32.0 * self.query.scale.height_eps()) {
+            if !(best > MIN_EXTENT_EPS * self.query.scale.height_eps()) {
                 return Ok(None);
             }
         }

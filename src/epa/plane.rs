@@ -3,9 +3,9 @@
 
 //! Homogeneous planes: all x with N·x = d, where N is not normalised; and the four of a tetrahedron.
 //!
-//! What the polytope computes most is written in whole lanes of two numbers, and lanes are taken apart
-//! last: plain expressions make the compiler pair other lanes and write planes in small pieces (10 to
-//! 17 % more instructions for a whole query).
+//! Planes are computed in pairs of numbers, which the compiler turns into packed instructions: plain
+//! expressions make it pair other numbers and store planes in pieces (10 to 17 % more instructions for a
+//! whole query).
 
 use crate::math::{Vec3, larger, lesser};
 
@@ -188,7 +188,7 @@ impl Tetrahedron {
     }
 
     /// Returns the least signed distance of a plane from the origin, metres: a ball of that radius around
-    /// the origin, less the error, lies inside.
+    /// the origin, less the error, is inside.
     #[inline(always)]
     pub fn inner_radius(&self) -> f64 {
         let [a, b, c, d] = self.planes.each_ref().map(Plane::offset);

@@ -6,15 +6,15 @@
 //!
 //! # Insertion by interpolation
 //!
-//! A new point p replaces the *visible* faces, those that it lies above, by a fan over their *horizon*. A
-//! horizon edge lies between a visible face F, which p is f > 0 above, and a hidden face G, which it is
+//! A new point p replaces the *visible* faces, those that it is above, by a fan over their *horizon*. A
+//! horizon edge is between a visible face F, which p is f > 0 above, and a hidden face G, which it is
 //! g <= 0 above. Any plane through the edge is a combination of the two, and the one through p is
 //!
 //!   F′ = F + w (G − F),   w = f / (f − g):   f + w (g − f) = 0.
 //!
 //! (The double description of a polytope: Motzkin and others, 1953; Fukuda and Prodon, 1996.) It takes one
 //! division, no coordinates of corners, no cross product and no root. Since 0 < w <= 1 errors are averaged,
-//! not amplified, and a sliver's plane lies between two good ones. A point below both F and G is below F′:
+//! not amplified, and a sliver's plane is between two good ones. A point below both F and G is below F′:
 //!
 //! - the *interior point*, the middle of the first tetrahedron, stays below every plane, by the least
 //!   *margin* of the planes that were computed from corners, and
@@ -89,7 +89,7 @@ pub struct EpaPolytope<const F: usize> {
     keys: [f64; F],
     /// The half-edge on the other side of each of the three edges. The fourth is used while a fan is made:
     /// a new face keeps the half-edge there that its edge 0 takes the place of (for
-    /// [`EpaPolytope::revert`]), and a visible face what lies under its half-edge on the stack.
+    /// [`EpaPolytope::revert`]), and a visible face what is under its half-edge on the stack.
     twins: [[u16; 4]; F],
     /// Four corners of 16 bits: 0, 1, 2, and 0 again.
     corners: [u64; F],
@@ -343,7 +343,7 @@ impl<const F: usize> EpaPolytope<F> {
         has_closer
     }
 
-    /// Makes a point the corner with index `id`. `first` is a face that it lies above by more than
+    /// Makes a point the corner with index `id`. `first` is a face that it is above by more than
     /// `level`, metres; `corner` returns the points by their indices. `false`: there is no room for its
     /// faces, and nothing has changed.
     ///

@@ -14,7 +14,7 @@
 //! than a vertex that it returned before (cylinders that divide by the sine near their axis, hill
 //! climbing that stops early). One wrong vertex taints the k differences that it is part of. There is
 //! one policy. A contradiction is noticed where a plane separates, and of the final plane of a query: a
-//! known difference lies beyond it. From then on every direction is evaluated twice, along n and beside
+//! known difference is beyond it. From then on every direction is evaluated twice, along n and beside
 //! n ([`SupportQuery::evaluate_twice`]), and the query starts again without known vertices.
 //!
 //! # Interior point
@@ -183,13 +183,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
             point = self.confirm_separation(set, &dir, &point)?;
             h = dir.dot(&point.v);
         }
-        let index = set.push(&dir, &point);
-        self.store_upper(&dir, h, index);
-        Ok(SupportSample {
-            w: point.v,
-            h,
-            pair: VertexSet::<N>::sample(index),
-        })
+        Ok(self.store_sample(set, &dir, &point, h))
     }
 
     /// As [`SupportQuery::evaluate`], for a query that goes on beyond a separating axis: the upper bound then
@@ -206,13 +200,25 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         let dir = representable(dir);
         let point = self.evaluate_point(&dir)?;
         let h = dir.dot(&point.v);
-        let index = set.push(&dir, &point);
-        self.store_upper(&dir, h, index);
-        Ok(SupportSample {
+        Ok(self.store_sample(set, &dir, &point, h))
+    }
+
+    /// Adds a sample to the set, and keeps its support value if it is the least.
+    #[inline(always)]
+    fn store_sample<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        dir: &Vec3,
+        point: &SupportPoint,
+        h: f64,
+    ) -> SupportSample {
+        let index = set.push(dir, point);
+        self.store_upper(dir, h, index);
+        SupportSample {
             w: point.v,
             h,
             pair: VertexSet::<N>::sample(index),
-        })
+        }
     }
 
     /// Keeps a support value if it is the least, and tests the interior point against its plane.
@@ -232,7 +238,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
-    /// Gives the interior point up if it lies beyond a plane by more than rounding.
+    /// Gives the interior point up if it is beyond a plane by more than rounding.
     #[cold]
     #[inline(never)]
     fn test_interior(&mut self, height: f64) {
@@ -291,7 +297,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(SupportPoint { v: v1 - v2, v1, v2 })
     }
 
-    /// Returns whether a known difference lies beyond a queried plane.
+    /// Returns whether a known difference is beyond a queried plane.
     #[inline(always)]
     pub fn has_contradiction<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let tie = self.scale.tie_eps();

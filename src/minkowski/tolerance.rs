@@ -65,7 +65,7 @@ impl Scale {
         4.0 * EPSILON * self.size()
     }
 
-    /// Returns the height below which a point lies on a plane, metres: both are rounded.
+    /// Returns the height below which a point is on a plane, metres: both are rounded.
     #[inline(always)]
     pub fn height_eps(&self) -> f64 {
         self.product_eps() + 2.0 * self.support_eps()

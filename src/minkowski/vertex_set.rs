@@ -226,7 +226,7 @@ impl<const N: usize> VertexSet<N> {
         VertexPair { a, b }
     }
 
-    /// Returns how far the known difference farthest along the direction of entry `i` lies beyond the
+    /// Returns how far the known difference farthest along the direction of entry `i` is beyond the
     /// support point of that entry, metres.
     #[inline(always)]
     pub fn excess(&self, i: usize) -> f64 {
