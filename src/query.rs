@@ -379,7 +379,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         self.global(None, state, &limits, Some(arena), wants_pos, hit)
     }
 
-    /// The global search, from the state; `apex` is a point that is trusted to be in D.
+    /// Finds the global minimum of the depth from the state. `apex`: a point that is trusted to be in D.
     #[inline(never)]
     fn global(
         &self,
@@ -391,14 +391,43 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
         let aim = self.still_apart(state)?;
-        let was_apart = state.kind == WarmKind::Apart;
         let request = EpaRequest {
             center: apex,
             ray: self.cold_start(),
-            // Its axis has been queried.
-            warm: if was_apart { WarmStart::COLD } else { *state },
+            // The axis of a state that was apart has been queried.
+            warm: match state.kind {
+                WarmKind::Apart => WarmStart::COLD,
+                _ => *state,
+            },
             limits: *limits,
         };
+        let mut query = SupportQuery::new(&self.md, apex);
+        let found = query
+            .evaluate_first(&request.first_dir())
+            .and_then(|first| self.overlap(query, &first, &request, arena, state, wants_pos, hit));
+        if let (Err(Stop::Apart(axis)), true) = (&found, self.lasting) {
+            *state = WarmStart::apart(&SeparatingAxis { dir: *axis, aim }, request.warm.radius);
+        }
+        found
+    }
+
+    /// Finds the global minimum of a pair whose first direction does not separate it, and the contact
+    /// position.
+    #[inline(never)]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "a frame of its own, for the known vertices"
+    )]
+    fn overlap(
+        &self,
+        mut query: SupportQuery<'_, A, B>,
+        first: &SupportPoint,
+        request: &EpaRequest<'_>,
+        arena: Option<&mut dyn Arena>,
+        state: &mut WarmStart,
+        wants_pos: bool,
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
         let mut warm = WarmStart::COLD;
         let mut set = VertexSet::EMPTY;
         let mut answer = EpaAnswer {
@@ -406,27 +435,18 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             warm: &mut warm,
             set: &mut set,
         };
-        let query = SupportQuery::new(&self.md, apex);
-        let arena = arena.map(|arena| arena as &mut dyn Arena);
-        let found = epa::penetration::penetration(query, &request, arena, &mut answer);
-        if self.lasting && !matches!(found, Err(Stop::Fault(_))) {
-            *state = match &found {
-                Ok(_) => self.facing(warm),
-                Err(_) => {
-                    warm.depth = aim;
-                    warm
-                }
-            };
+        let status = epa::penetration::penetration(&mut query, first, request, arena, &mut answer)?;
+        if self.lasting {
+            *state = self.facing(warm);
         }
-        let status = found?;
         hit.limit = status != Status::Converged;
         if hit.limit {
             if status != Status::InconsistentSupport {
-                self.floor(hit, limits)?;
+                self.floor(hit, &request.limits)?;
             }
             hit.pos = hit.middle();
         } else if wants_pos {
-            hit.pos = self.position(&set, hit, limits.gap.tolerance)?;
+            hit.pos = self.position(&set, hit, request.limits.gap.tolerance)?;
         }
         Ok(())
     }

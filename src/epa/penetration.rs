@@ -29,7 +29,6 @@ use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::contains_origin;
-use crate::gjk::separating_axis::SeparatingAxis;
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
 use crate::minkowski::round_fit::SphereFit;
@@ -120,44 +119,25 @@ pub struct EpaRequest<'a> {
     pub limits: EpaLimits,
 }
 
-/// The answer of a query.
+impl EpaRequest<'_> {
+    /// Returns the direction to evaluate first, unit.
+    #[inline(always)]
+    pub fn first_dir(&self) -> Vec3 {
+        match self.warm.kind {
+            WarmKind::Apart | WarmKind::Plain => self.warm.dir,
+            WarmKind::Cold | WarmKind::Round => self.ray,
+        }
+    }
+}
+
+/// The answer of a query about objects that overlap.
 pub struct EpaAnswer<'a> {
     /// The overlap, without its contact position.
     pub hit: &'a mut Penetration,
-    /// The state for the next query; also written where the pair is apart.
+    /// The state for the next query.
     pub warm: &'a mut WarmStart,
     /// The vertices of the first support calls, for the contact position.
     pub set: &'a mut VertexSet<SMALL_VERTICES>,
-}
-
-/// Finds the global minimum of the penetration depth. Without an `arena` the buffers on the stack are all
-/// there is.
-///
-/// # Errors
-/// [`Stop::Apart`]: apart, or touching within rounding. [`Fault::NonFinite`]; [`Fault::NoMemory`].
-#[inline(always)]
-pub fn penetration<A: SupportMap, B: SupportMap>(
-    mut query: SupportQuery<'_, A, B>,
-    request: &EpaRequest<'_>,
-    arena: Option<&mut dyn Arena>,
-    answer: &mut EpaAnswer<'_>,
-) -> Result<Status, Stop> {
-    let dir = match request.warm.kind {
-        WarmKind::Apart | WarmKind::Plain => request.warm.dir,
-        WarmKind::Cold | WarmKind::Round => request.ray,
-    };
-    // Before all that a search needs: most misses end here.
-    let found = query
-        .evaluate_first(&dir)
-        .and_then(|first| solve(&mut query, &dir, &first, request, arena, answer));
-    if let Err(Stop::Apart(axis)) = found {
-        let axis = SeparatingAxis {
-            dir: axis,
-            aim: 0.0,
-        };
-        *answer.warm = WarmStart::apart(&axis, request.warm.radius);
-    }
-    found
 }
 
 /// A tetrahedron to start the polytope from.
@@ -201,16 +181,22 @@ struct Solver<'q, 'm, A, B> {
     hit: &'q mut Penetration,
 }
 
-/// Does all that comes after the first support point.
-#[inline(never)]
-fn solve<A: SupportMap, B: SupportMap>(
+/// Finds the global minimum of the penetration depth. `first`: the support point along
+/// [`EpaRequest::first_dir`], which does not separate ([`SupportQuery::evaluate_first`]: most misses end
+/// there, before this function's stack is in use). Without an `arena` the buffers on the stack are all
+/// there is.
+///
+/// # Errors
+/// [`Stop::Apart`]: apart, or touching within rounding. [`Fault::NonFinite`]; [`Fault::NoMemory`].
+#[inline(always)]
+pub fn penetration<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
-    dir: &Vec3,
     first: &SupportPoint,
     request: &EpaRequest<'_>,
     mut arena: Option<&mut dyn Arena>,
     answer: &mut EpaAnswer<'_>,
 ) -> Result<Status, Stop> {
+    let dir = &request.first_dir();
     let set = &mut *answer.set;
     set.push(dir, first);
     let warm = &request.warm;
