@@ -107,6 +107,8 @@ pub struct Face {
     pub rounding: f64,
     /// What is kept of it.
     pub ring: Ring,
+    /// How it moved, where it was known.
+    pub motion: Option<Motion>,
 }
 
 /// The least slop of a normal, as a share of the depth. A normal whose depth is within 0.1 % of the minimum
@@ -131,7 +133,7 @@ pub fn faces<A: SupportMap, B: SupportMap>(
     plane: &mut Plane,
     slop: f64,
     known: Option<&Memory>,
-) -> Result<([(Face, Option<Motion>); 2], f64), Fault> {
+) -> Result<([Face; 2], f64), Fault> {
     let [ring1, ring2] = [0, 1].map(|i| known.map(|known| &known.rings()[i]));
     let mut one = Search::new(obj1, plane, 1.0, false);
     let found1 = one.again_or_plane(ring1)?;
@@ -254,7 +256,7 @@ impl<'a, S: SupportMap> Search<'a, S> {
     }
 
     /// Finds the face that is known, or the support plane where it is another.
-    fn again_or_plane(&mut self, ring: Option<&Ring>) -> Result<Option<(Face, Motion)>, Fault> {
+    fn again_or_plane(&mut self, ring: Option<&Ring>) -> Result<Option<Face>, Fault> {
         if let Some(ring) = ring {
             let found = self.again(ring)?;
             if found.is_some() {
@@ -266,19 +268,14 @@ impl<'a, S: SupportMap> Search<'a, S> {
     }
 
     /// Returns the face that is found, unless its slop was another, else finds it from nothing.
-    fn face_of(
-        mut self,
-        found: Option<(Face, Motion)>,
-        has_slop: bool,
-        slop: f64,
-    ) -> Result<(Face, Option<Motion>), Fault> {
-        if let Some((face, motion)) = found {
+    fn face_of(mut self, found: Option<Face>, has_slop: bool, slop: f64) -> Result<Face, Fault> {
+        if let Some(face) = found {
             if has_slop {
-                return Ok((face, Some(motion)));
+                return Ok(face);
             }
             self.find_plane()?;
         }
-        Ok((self.anew(slop)?, None))
+        self.anew(slop)
     }
 
     /// Begins the search: queries the support plane.
@@ -543,11 +540,12 @@ impl<'a, S: SupportMap> Search<'a, S> {
             slop: self.slop,
             rounding: self.rounding,
             ring,
+            motion: None,
         }
     }
 
     /// The face that is known, and how it moved; nothing where it is another.
-    fn again(&mut self, ring: &Ring) -> Result<Option<(Face, Motion)>, Fault> {
+    fn again(&mut self, ring: &Ring) -> Result<Option<Face>, Fault> {
         let count = ring.corners().len();
         let tilt = long(ring.tilt);
         if !(tilt > 0.0) || count == 0 {
@@ -630,7 +628,10 @@ impl<'a, S: SupportMap> Search<'a, S> {
             known.low = short(low);
             known.aside = motion.turned(&known.aside.map(long)).map(short);
         }
-        Ok(Some((self.face(corners, ring), motion)))
+        Ok(Some(Face {
+            motion: Some(motion),
+            ..self.face(corners, ring)
+        }))
     }
 }
 

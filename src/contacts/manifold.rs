@@ -72,14 +72,14 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     let again = known.as_mut().and_then(|known| known.plane(normal));
     let cached = known.as_ref().filter(|_| again.is_some());
     let mut plane = again.unwrap_or_else(|| Plane::of(normal));
-    let ([(one, motion1), (two, motion2)], slop) = faces(obj1, obj2, &mut plane, slop, cached)?;
+    let ([one, two], slop) = faces(obj1, obj2, &mut plane, slop, cached)?;
     let (mut region, beside) = shared(&one, &two);
     for corner in region.iter_mut() {
         corner.low = one.low(&corner.at) + two.low(&corner.at);
     }
     let names = known.as_ref().map_or(Names::default(), |known| {
         let slop = larger(one.slop, two.slop);
-        known.names([motion1, motion2], &region, slop)
+        known.names([one.motion, two.motion], &region, slop)
     });
     let chosen = chosen(&region, &names, max, one.rounding + two.rounding);
     let mut manifold = Manifold::default();
