@@ -16,6 +16,13 @@ void bench_center(const void *obj, ccd_vec3_t *out) { shape_center(obj, out); }
 
 unsigned long bench_calls(const shape_t *s) { return s->calls; }
 
+/* Where a shape is: position and rotation, row by row. */
+void bench_pose(const shape_t *s, double pos[3], double rot[9])
+{
+    memcpy(pos, s->pos, sizeof s->pos);
+    memcpy(rot, s->rot, sizeof s->rot);
+}
+
 /* A pair set, with how many poses and steps of one motion (0: independent poses); NULL where there
  * is none. It stays: shapes refer to its vertices. */
 pair_set_t *bench_set(const char *path, int *n, int *trajectory)

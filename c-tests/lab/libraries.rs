@@ -18,6 +18,7 @@ use std::process::Command;
 
 use ccd::internals::ffi::{CCD_WARM_REALS, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::harness;
 
@@ -122,6 +123,7 @@ functions! {
         center: fn bench_center(Object, Point);
         shape_size: fn bench_shape_size() -> usize;
         calls: fn bench_calls(Object) -> c_ulong;
+        pose: fn bench_pose(Object, *mut f64, *mut f64);
         set: fn bench_set(*const c_char, *mut c_int, *mut c_int) -> Object;
         set_pose: fn bench_set_pose(Object, c_int, *mut c_void, *mut c_void, *mut Truth);
         recording: fn bench_recording(*const c_char, c_uint, *mut c_void, *mut Recorded) -> usize;
@@ -243,6 +245,14 @@ impl Libraries {
         let source: PathBuf = harness::root().join("c-tests/bench").join(source);
         compile(true, flags, &source, &object, libraries)?;
         open(&object).map_err(|e| e.to_string())
+    }
+
+    /// Rotation (local to world) and position of a shape of the callbacks'.
+    pub fn pose(&self, shape: *mut c_void) -> (Matrix3<f64>, Vector3<f64>) {
+        let (mut position, mut rotation) = ([0.0; 3], [0.0; 9]);
+        // SAFETY: a shape, and room for its numbers.
+        unsafe { (self.callbacks.pose)(shape, position.as_mut_ptr(), rotation.as_mut_ptr()) };
+        (Matrix3::from_row_slice(&rotation), position.into())
     }
 
     /// One line: libraries, processor, compiler and flags, date.

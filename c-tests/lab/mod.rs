@@ -3,7 +3,7 @@
 
 //! What measures: libraries side by side, scenes with truth, methods, measurement.
 //! Each module uses those before it alone: `csv`, `libraries`, `scene`,
-//! `methods`, `measure`, `recorded`. The benchmark (`c-tests/bench`) and the test of
+//! `methods`, `deep`, `measure`, `recorded`. The benchmark (`c-tests/bench`) and the test of
 //! the figures that a change may not lose (`support_counts.rs`) are made of them.
 
 // The benchmark and the test each use a part.
@@ -11,6 +11,7 @@
 
 pub mod callgrind;
 pub mod csv;
+pub mod deep;
 pub mod libraries;
 pub mod measure;
 pub mod methods;

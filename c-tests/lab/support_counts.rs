@@ -11,8 +11,12 @@ mod harness;
 mod lab;
 
 use lab::csv;
+use lab::deep::{self, Polytope};
 use lab::libraries::Libraries;
+use lab::measure;
+use lab::methods::Start;
 use lab::recorded::{self, Recorded};
+use lab::scene::Scene;
 
 /// No set needs more supports, or errs more, than `support_counts.csv` says.
 /// `cargo bench -p charts -- record` writes the file anew.
@@ -41,4 +45,20 @@ fn no_set_needs_more_supports_or_errs_more() {
         }
     }
     assert!(lost.is_empty(), "{}", lost.join("\n"));
+}
+
+/// DEEP's depths are those of planes that support D, never below the certified least, and from 5°
+/// nearly always the least.
+#[test]
+fn deep_walks_to_local_minima() {
+    let libraries = Libraries::open();
+    for name in ["p12_p12", "p42_p42", "p162_p162"] {
+        let scene = Scene::load(&libraries, name, 200);
+        let meshes = Polytope::of_set(name).expect("two polytopes");
+        for method in &mut deep::methods(&libraries, &meshes, Start::Five) {
+            let row = measure::judge(&libraries, &scene, method);
+            assert!(row.unsound < 1e-12 && row.missed == 0.0, "{row:?}");
+            assert!(row.shallow == 0.0 && row.nonminimal < 5.0, "{row:?}");
+        }
+    }
 }

@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
+//! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
 //! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | what `cmake/packages/cross.sh` compares between processors | |
@@ -47,6 +48,7 @@ fn main() {
         }
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         "wide" => show(&programs::wide(), &given, &["1000", "-1", "0", "1"]),
+        "worst" => show(&program("worst_case"), &given, &["1000000", "1"]),
         #[cfg(not(feature = "single"))]
         "truth" => {
             let mut args = vec!["100000".to_owned(), "1".to_owned()];
@@ -57,7 +59,7 @@ fn main() {
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
         "determinism" => show(&programs::determinism(), &[], &["150"]),
         _ => {
-            eprintln!("usage: campaigns rates|wide|truth|ledger|determinism [ARGUMENT...]");
+            eprintln!("usage: campaigns rates|wide|worst|truth|ledger|determinism [ARGUMENT...]");
             std::process::exit(2);
         }
     }

@@ -92,7 +92,7 @@ pub fn draw(page: &Page, rows: &[Row]) {
     let some = rows.iter().filter(|r| IN_FRONT.contains(&&*r.method));
     let (some, title) = (
         some.collect::<Vec<_>>(),
-        "Time of a query against its error",
+        "Time of a query over its error: left is more exact, down is faster",
     );
     picture(page, "front.svg", title, &some, &FRONT, 2);
     for (sets, file, what) in [

@@ -308,8 +308,10 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
     }
     let rows = panels.len().div_ceil(columns) as u32;
     let cell = if columns == 2 { 320 } else { 270 };
+    let longest = entries.iter().map(|(label, _)| label.chars().count()).max();
+    let across = if longest > Some(34) { 2 } else { 3 };
     let strip = match panels.len().is_multiple_of(columns) {
-        true => LINE * entries.len().div_ceil(3) as u32,
+        true => LINE * entries.len().div_ceil(across) as u32,
         false => 0,
     };
     let below = strip + LINE * notes.len() as u32;
@@ -323,7 +325,7 @@ pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &
         let (names, foot) = foot.split_vertically(strip + 4);
         match cells.get(panels.len()) {
             Some(cell) => legend(cell, &entries, 1)?,
-            None => legend(&names, &entries, 3)?,
+            None => legend(&names, &entries, across)?,
         }
         notes_below(&foot, notes)
     });

@@ -74,7 +74,7 @@ impl Page {
     pub fn footer(&self) -> String {
         let (place, rest) = self.machine.split_once("; ").unwrap_or((&self.machine, ""));
         let version = rest.split(" (").next().unwrap_or("");
-        format!("{place}; {version}; all in one process, rustc and gcc -O3")
+        format!("thick: this library; {place}; {version}; all in one process, rustc and gcc -O3")
     }
 
     /// None where the file is missing, as instructions.csv without valgrind; and the page with
@@ -104,6 +104,7 @@ impl Bench<'_> {
 /// local amber, minimum green; libccd's are red, the paper's purple, the rest grey.
 pub fn look(row: &Row) -> Look {
     let (colour, mark, bold) = match (row.method.as_str(), row.start.as_str()) {
+        ("local, climbing", _) => ((217, 119, 6), Mark::Triangle, true),
         ("local", "45") => ((244, 170, 40), Mark::Ring, true),
         ("local", _) => ((217, 119, 6), Mark::Dot, true),
         ("minimum", _) => ((22, 145, 70), Mark::Dot, true),
@@ -115,11 +116,16 @@ pub fn look(row: &Row) -> Look {
         ("Algorithm 3", _) => ((147, 51, 234), Mark::Cross, false),
         ("Bullet EPA", _) => (GREY, Mark::Dot, false),
         ("FCL EPA", _) => (GREY, Mark::Ring, false),
+        ("MuJoCo 3 ccd", _) => (TEAL, Mark::Dot, false),
+        ("Coal 3 EPA", _) => (TEAL, Mark::Ring, false),
+        ("Jolt 5 EPA", _) => (TEAL, Mark::Cross, false),
+        ("DEEP", _) => ((219, 39, 119), Mark::Triangle, false),
         _ => (GREY, Mark::Triangle, false),
     };
     Look::new(colour, mark, bold)
 }
 
+const TEAL: (u8, u8, u8) = (13, 148, 136);
 pub const GREY: (u8, u8, u8) = (107, 114, 128);
 
 pub const SUPPORTS: Axis = ("support points per query", Unit::Count);
@@ -148,7 +154,7 @@ pub fn sets(rows: &[Row]) -> Vec<&str> {
     sets
 }
 
-/// A method's name in pictures.
+/// A method's name in pictures: the call, or the paper's or the other library's.
 pub fn name(row: &Row) -> String {
     named(&row.method, &row.start)
 }
@@ -165,13 +171,23 @@ fn named(method: &str, start: &str) -> String {
         "centres" => ", cold".to_owned(),
         degrees => format!(", guess {degrees}° off"),
     };
-    match method {
-        "MPR" => "warmccd MPR (cold)".to_owned(),
-        "MPR warm" => format!("warmccd MPR{start}"),
-        "GJK" | "MPR intersect" => format!("warmccd {method}{start}"),
-        "local" | "minimum" | "distance" => format!("warmccd {method}{start}"),
-        method => format!("{method}{start}"),
-    }
+    let call = match method {
+        "MPR" => "ccdMPRPenetration, cold",
+        "MPR warm" => "ccdMPRPenetrationWarm",
+        "GJK" => "ccdGJKPenetration",
+        "MPR intersect" => "ccdMPRIntersect",
+        "local" => "ccdPenetrationLocal",
+        "local, climbing" => "ccdPenetrationLocal, climbing",
+        "minimum" => "ccdPenetrationProven",
+        "distance" => "ccdSignedDistance",
+        "libccd MPR" => "libccd ccdMPRPenetration",
+        "libccd EPA" => "libccd ccdGJKPenetration",
+        "libccd MPR intersect" => "libccd ccdMPRIntersect",
+        "Algorithm 4/5" => "Gao 2023, Algorithm 4/5",
+        "Algorithm 3" => "Gao 2023, Algorithm 3",
+        other => other,
+    };
+    format!("{call}{start}")
 }
 
 /// A pair set's name in words.

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The paper's Section IV measured again: what its tables are about, over pair sets; the figures
-//! over vertex counts, the ablation of the shortcut.
+//! over vertex counts, the comparison with DEEP, the ablation of the shortcut.
 
 use super::figure::{self, Panel, Unit};
 use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
+use crate::lab::deep::{self, Polytope};
 use crate::lab::measure::Row;
 use crate::lab::methods::{self, Ask, Start};
 use crate::lab::scene::Scene;
@@ -23,7 +24,7 @@ pub const PAPER: [(&str, f64); 3] = [("sph_sph", 44.8), ("cap_cap", 24.7), ("sph
 /// on the pairs of the tables, against 56, 48 and 55 (`c-tests/bench/published.csv`).
 pub const AS_PUBLISHED: f64 = 1e-5;
 
-/// Over vertex counts, a polytope against a capsule.
+/// Over vertex counts, a polytope against a capsule, and against another for DEEP.
 pub fn vertices(bench: &Bench) -> Vec<Row> {
     let libraries = bench.libraries;
     let mut all = Vec::new();
@@ -44,6 +45,10 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
             of(Ask::Minimum, Start::None),
         ];
         all.extend(super::rows(bench, &scene, methods, x));
+        let scene = Scene::load(libraries, &format!("p{n}_p{n}"), bench.poses());
+        let meshes = Polytope::of_set(&scene.name).expect("two polytopes");
+        let methods = deep::methods(libraries, &meshes, Start::Five);
+        all.extend(super::rows(bench, &scene, methods.into(), x));
     }
     all
 }
@@ -59,13 +64,19 @@ pub fn draw(page: &Page, all: &[Row]) {
         let curves = super::curves(rows, |r| r.x, cost);
         Panel::new(title, ("vertices", Unit::Count), y, curves)
     };
-    let all_on = |r: &Row| r.method != "Algorithm 3";
-    let ablation = |r: &Row| r.start == "45" && r.method.starts_with("Algorithm");
+    let capsule = |r: &Row| r.set.ends_with("_cap");
+    let all_on = |r: &Row| capsule(r) && r.method != "Algorithm 3";
+    let ablation = |r: &Row| capsule(r) && r.start == "45" && r.method.starts_with("Algorithm");
     let panels = [
         over_counts("polytope – capsule: time", &all_on, true),
         over_counts("polytope – capsule: supports", &all_on, false),
         over_counts("shortcut on and off, 45°: time", &ablation, true),
         over_counts("shortcut on and off, 45°: supports", &ablation, false),
+        over_counts(
+            "polytope – polytope, climbing: time",
+            &|r| !capsule(r),
+            true,
+        ),
     ];
     let title = "The paper's figures over vertex counts";
     figure::grid(
