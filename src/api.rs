@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The Rust interface: what `ccd/warm.h` and `ccd/paper.h` have, under the same names, for shapes
-//! that are closures or types of the caller's. Re-exported at the head of the crate.
+//! The Rust interface: the queries of `ccd/warm.h` and `ccd/paper.h`, under the same names, for
+//! shapes that are closures or types of the caller's. Re-exported at the head of the crate.
 //!
-//! Departures from C: an answer is an [`Option`] and a bad argument an [`Error`] in place of codes;
-//! a callback that panics leaves through the query, the state stays as it was, and the memory of a
-//! proof is freed.
+//! Departures from C: results are [`Option`]s and invalid arguments [`Error`]s in place of codes; a
+//! panic of a shape unwinds through the query, which leaves the state unchanged and frees memory.
 
 use core::fmt;
 
@@ -25,9 +24,9 @@ pub use crate::minkowski::validate::Check;
 use crate::query::Pair;
 use crate::query::warm_start::WarmStart;
 
-/// A convex shape, known by its support function alone.
+/// A convex shape, given by its support function.
 ///
-/// A closure is one, and so is a closure with a point inside, as a pair of the two:
+/// Closures implement it, and so do pairs of a closure and a center:
 ///
 /// ```
 /// use ccd::{Real, Settings};
@@ -40,11 +39,11 @@ use crate::query::warm_start::WarmStart;
 /// # Ok::<(), ccd::Error>(())
 /// ```
 pub trait Shape {
-    /// A point of the shape farthest along `dir`, which is unit and finite.
+    /// Returns a point of the shape farthest along `dir` (unit, finite), metres.
     fn support(&self, dir: [Real; 3]) -> [Real; 3];
 
-    /// A point inside the shape, the deeper the better: where both shapes of a pair have one, it
-    /// saves calls of [`Shape::support`]. It must lie in the shape.
+    /// Returns a center: a point inside the shape, the deeper the better, metres. Where both shapes
+    /// of a pair have one, it saves calls of [`Shape::support`]. It must lie in the shape.
     fn center(&self) -> Option<[Real; 3]> {
         None
     }
@@ -66,20 +65,20 @@ impl<F: Fn([Real; 3]) -> [Real; 3]> Shape for (F, [Real; 3]) {
     }
 }
 
-/// Why a query has no answer. What was handed in, the state included, is as it was.
+/// Cause of a query without a result. State and memory of the caller are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
-    /// An argument, or a shape's answer, that no query can work with: which one.
+    /// An argument or a point of a shape is invalid; the text names it.
     BadInput(&'static str),
-    /// Memory was needed and not to be had.
+    /// An allocation failed.
     NoMemory,
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Error::BadInput(what) => f.write_str(what),
+            Error::BadInput(cause) => f.write_str(cause),
             Error::NoMemory => f.write_str("out of memory"),
         }
     }
@@ -96,37 +95,38 @@ impl From<Fault> for Error {
     }
 }
 
-/// A length that is neither negative nor NaN.
-fn length(value: Real, what: &'static str) -> Result<f64, Error> {
+/// Converts a length that is neither negative nor NaN; else returns the error `cause`.
+fn length(value: Real, cause: &'static str) -> Result<f64, Error> {
     if value >= 0.0 {
         Ok(value.into())
     } else {
-        Err(Error::BadInput(what))
+        Err(Error::BadInput(cause))
     }
 }
 
+/// Normalises a direction.
 fn direction(dir: [Real; 3]) -> Result<Vec3, Error> {
     unit(&from_real(dir)).ok_or(Error::BadInput("a direction is zero or not finite"))
 }
 
-/// What is wanted of an answer besides depths, bounds and directions. What is not wanted is zero
-/// and costs no support point.
+/// The results requested besides depth, bounds and directions. A result that is not requested is
+/// zero and costs no support point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Want {
-    /// The contact position: 2 to 4 support points, 8 at most where a face has more than four corners,
-    /// none where a state shows that nothing has moved. For it the objects are asked one by one.
+    /// The contact position: costs 2 to 4 support points, at most 8 where a face has more than four
+    /// corners, none where a state shows that nothing has moved. Evaluates the shapes separately.
     pub pos: bool,
-    /// The witness points, which cost nothing.
+    /// The witness points, at no cost.
     pub points: bool,
 }
 
 impl Want {
-    /// Everything.
+    /// Requests both.
     pub const ALL: Want = Want {
         pos: true,
         points: true,
     };
-    /// Nothing besides.
+    /// Requests neither.
     pub const NOTHING: Want = Want {
         pos: false,
         points: false,
@@ -134,26 +134,26 @@ impl Want {
 }
 
 impl Default for Want {
-    /// [`Want::ALL`].
+    /// Returns [`Want::ALL`].
     fn default() -> Self {
         Want::ALL
     }
 }
 
-/// How exact, with how much work, and what.
+/// Tolerance, iteration limit and requested results of a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Largest error of the depth or distance, metres, not negative; floored at a few ulps of the
-    /// shapes' size, so that 0 asks for the best the precision can give.
+    /// shapes' size, so 0 requests the best result of the precision.
     pub tolerance: Real,
-    /// Cap on the iterations; the library has one of its own.
+    /// Limit on the iterations; the library has one of its own.
     pub max_iterations: u64,
-    /// What is wanted.
+    /// The requested results.
     pub want: Want,
 }
 
 impl Settings {
-    /// With this tolerance, and everything wanted.
+    /// Returns the default settings with this tolerance, metres.
     pub fn new(tolerance: Real) -> Self {
         Settings {
             tolerance,
@@ -161,6 +161,7 @@ impl Settings {
         }
     }
 
+    /// Converts the settings to those of the solvers.
     fn checked(&self) -> Result<contact::Settings, Error> {
         Ok(contact::Settings {
             tolerance: length(self.tolerance, "the tolerance is negative or NaN")?,
@@ -170,7 +171,7 @@ impl Settings {
 }
 
 impl Default for Settings {
-    /// A tenth of a millimetre, as much work as it takes, everything.
+    /// Returns a tolerance of 0.1 mm, the library's iteration limit and [`Want::ALL`].
     fn default() -> Self {
         Settings {
             tolerance: 1e-4,
@@ -180,78 +181,77 @@ impl Default for Settings {
     }
 }
 
-/// What one query of a pair leaves for the next: a plain value, cold at first.
+/// State of one pair between queries: a plain value; the default is cold.
 ///
-/// One is for one pair in one order. A stale, foreign or random state costs time and may lead
-/// [`penetration_local`] to another local minimum; every answer stays sound.
+/// A state belongs to one pair in one order. A stale, foreign or random state may cost time and may
+/// lead [`penetration_local`] to another local minimum; every result stays sound.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Warm(WarmStart);
 
 impl Warm {
-    /// A fresh state that starts from `dir`, a guess of the way the second shape leaves: of any
-    /// length; zero or not finite is cold.
+    /// Returns a new state that starts from `dir`, a guess of the penetration direction, of any
+    /// length; a cold one where `dir` is zero or not finite.
     pub fn guess(dir: [Real; 3]) -> Self {
         Warm(WarmStart::guess(&from_real(dir)))
     }
 
-    /// For the same two shapes in the other order.
+    /// Converts the state of (a, b) to one of (b, a).
     pub fn flip(&mut self) {
         self.0.flip();
     }
 }
 
-/// What [`contacts`] of a pair leaves for the next: a plain value, cold at first, that serves either
-/// order of the pair. A stale, foreign or random one costs time alone.
+/// Contact manifold of one pair between calls of [`contacts`], in either order: a plain value; the
+/// default is cold. A stale, foreign or random one costs time alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Manifold(Memory);
 
-/// An overlap.
+/// Result of a penetration query: an overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Penetration {
-    /// Metres, >= 0: moving the second shape by `depth * dir` separates the two.
+    /// Penetration depth, metres, >= 0: moving the second shape by `depth * dir` separates the two.
     pub depth: Real,
-    /// Proven lower bound on the least depth (of [`penetration_along`]: on the depth along its
-    /// direction), metres; 0 where none was proven.
+    /// Proven lower bound of the globally least depth (in [`penetration_along`]: of the depth along
+    /// its direction), metres; 0 where none was proven.
     pub depth_lower: Real,
-    /// Unit; the way the second shape moves.
+    /// Penetration direction, unit: the second shape moves along it.
     pub dir: [Real; 3],
-    /// Unit; normal of the separating plane. Equal to `dir` but in [`penetration_along`].
+    /// Contact normal, unit: normal of the separating plane. Equal to `dir` except in
+    /// [`penetration_along`].
     pub normal: [Real; 3],
-    /// Contact position, [`Want::pos`]: the centre of pressure, which is the centroid of the volume
-    /// that the shapes share, but for its height along `normal`. It moves as the shapes do. Where
-    /// `limit` is set, and of [`penetration_along`] and [`penetration_planar`], the middle of the
-    /// witness points.
+    /// Contact position, [`Want::pos`]: the center of pressure, which is the centroid of the common
+    /// volume except for its coordinate along `normal`. Continuous in the pose. Where `limit` is set,
+    /// in [`penetration_along`] and [`penetration_planar`], the middle of the witness points.
     pub pos: [Real; 3],
-    /// Witness point of the first shape, [`Want::points`]: a point of it, and of its supporting
-    /// plane, each to within what the depth may be off, or 1e-12 of the size (in single precision
-    /// 1e-5).
+    /// Witness point of the first shape, [`Want::points`]: in the shape and on its support plane,
+    /// within the error of the depth or 1e-12 of the size (1e-5 in single precision).
     pub point1: [Real; 3],
-    /// Witness point of the second shape, [`Want::points`]; the same.
+    /// Witness point of the second shape, [`Want::points`]: as `point1`.
     pub point2: [Real; 3],
-    /// Half of the calls of both shapes' [`Shape::support`] together, rounded up: a support point of the
-    /// Minkowski difference is one call of each. Positions need further calls of one alone.
+    /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
+    /// rounded up.
     pub support_calls: u64,
-    /// Iterations of the solver.
+    /// Number of iterations of the solver.
     pub iterations: u64,
-    /// The answer is sound, but less exact than asked for: `max_iterations` or the library's own
-    /// cap came first, or rounding.
+    /// The result is sound, but less exact than requested: `max_iterations`, the library's limit of
+    /// support points or rounding ended the search.
     pub limit: bool,
 }
 
-/// What [`signed_distance`] takes besides the shapes.
+/// Margins and range of [`signed_distance`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DistanceOptions {
-    /// Radius of a ball that is added all around the first shape, metres, not negative.
+    /// Radius of a ball added all around the first shape, metres, not negative.
     pub margin1: Real,
-    /// The same around the second shape.
+    /// Radius of a ball added all around the second shape, metres, not negative.
     pub margin2: Real,
-    /// What is farther apart than this, metres, is not refined.
+    /// Distance, metres, not negative, beyond which the search ends.
     pub max_distance: Real,
 }
 
 impl Default for DistanceOptions {
-    /// No margins, any distance.
+    /// Returns no margins and an unlimited distance.
     fn default() -> Self {
         DistanceOptions {
             margin1: 0.0,
@@ -261,28 +261,29 @@ impl Default for DistanceOptions {
     }
 }
 
-/// How far apart two shapes are, or how deep they overlap.
+/// Result of [`signed_distance`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Distance {
-    /// Metres: the gap along `normal`, or minus the depth; negative is an overlap. Never more than
-    /// the true signed distance.
+    /// Proven lower bound of the signed distance, metres: the gap along `normal`, or minus the depth
+    /// where the shapes overlap.
     pub distance: Real,
-    /// Metres, never less than the true signed distance; no more than the tolerance above
-    /// `distance`, unless `limit` is set or `distance` is above `max_distance`.
+    /// Proven upper bound of the signed distance, metres; at most the tolerance above `distance`
+    /// unless `limit` is set or `distance` is above `max_distance`.
     pub distance_upper: Real,
-    /// Unit, from the first shape to the second.
+    /// Unit, from the first shape to the second: moving the second along it increases the distance.
     pub normal: [Real; 3],
     /// Witness point on the surface of the first shape with its margin, [`Want::points`].
     pub point1: [Real; 3],
-    /// Witness point of the second shape, [`Want::points`].
+    /// Witness point on the surface of the second shape with its margin, [`Want::points`].
     pub point2: [Real; 3],
-    /// Half of the calls of both shapes' [`Shape::support`] together, rounded up: a support point of the
-    /// Minkowski difference is one call of each. Positions need further calls of one alone.
+    /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
+    /// rounded up.
     pub support_calls: u64,
-    /// Iterations of the solver.
+    /// Number of iterations of the solver.
     pub iterations: u64,
-    /// The bounds are still open.
+    /// The bounds have not met: `max_iterations`, the library's limit of support points or rounding
+    /// ended the search.
     pub limit: bool,
 }
 
@@ -295,67 +296,68 @@ pub struct Contact {
     pub point2: [Real; 3],
     /// Metres; negative where the shapes are apart.
     pub depth: Real,
-    /// Its name, not 0, while it moves with either shape; 0 without a memory.
+    /// Contact id, not 0, constant while the contact moves with either shape; 0 without a memory.
     pub id: u32,
 }
 
-/// A caller's shape as the solvers ask it.
-struct Asked<'a, S: ?Sized>(&'a S);
+/// Adapts a caller's shape to the solvers.
+struct SupportOf<'a, S: ?Sized>(&'a S);
 
-impl<S: Shape + ?Sized> SupportMap for Asked<'_, S> {
+impl<S: Shape + ?Sized> SupportMap for SupportOf<'_, S> {
     #[inline]
     fn support(&self, dir: &Vec3) -> Vec3 {
         from_real(self.0.support(to_real(dir)))
     }
 }
 
-type Asking<'a, A, B> = Pair<Asked<'a, A>, Asked<'a, B>>;
+type ShapePair<'a, A, B> = Pair<SupportOf<'a, A>, SupportOf<'a, B>>;
 
-fn pair<'a, A, B>(a: &'a A, b: &'a B, lasting: bool) -> Result<Asking<'a, A, B>, Error>
+/// Makes the pair of two shapes. `has_state`: the caller keeps a state.
+fn pair<'a, A, B>(a: &'a A, b: &'a B, has_state: bool) -> Result<ShapePair<'a, A, B>, Error>
 where
     A: Shape + ?Sized,
     B: Shape + ?Sized,
 {
-    let centre = match (a.center(), b.center()) {
+    let center = match (a.center(), b.center()) {
         (Some(v1), Some(v2)) => {
             let [v1, v2] = [from_real(v1), from_real(v2)];
             Some(SupportPoint { v: v1 - v2, v1, v2 })
         }
         _ => None,
     };
-    if centre.is_some_and(|c| !c.v.sum().is_finite()) {
-        return Err(Error::BadInput("a shape's centre is not finite"));
+    if center.is_some_and(|c| !c.v.sum().is_finite()) {
+        return Err(Error::BadInput("a shape's center is not finite"));
     }
     Ok(Pair {
-        md: MinkowskiDifference::new(Asked(a), Asked(b)),
-        centre,
+        md: MinkowskiDifference::new(SupportOf(a), SupportOf(b)),
+        centre: center,
         first_dir: None,
-        lasting,
+        lasting: has_state,
     })
 }
 
-/// The state that `warm` holds, cold where there is none; what `ask` leaves in it stays unless
-/// there is no answer.
+/// Runs `solve` with the state of `warm`, or a cold one, and stores the new state. A fault leaves
+/// the state unchanged.
 fn with_state<R>(
     warm: Option<&mut Warm>,
-    ask: impl FnOnce(&mut WarmStart) -> Result<R, Fault>,
+    solve: impl FnOnce(&mut WarmStart) -> Result<R, Fault>,
 ) -> Result<R, Error> {
     let mut state = warm.as_ref().map_or(WarmStart::COLD, |warm| warm.0);
-    let answer = ask(&mut state)?;
+    let result = solve(&mut state)?;
     if let Some(warm) = warm {
         warm.0 = state;
     }
-    Ok(answer)
+    Ok(result)
 }
 
-/// Runs a solver, which is told whether the position is wanted.
-fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
+/// Runs a penetration solver. Its flag requests the contact position.
+fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
     settings: &Settings,
     warm: Option<&mut Warm>,
     solve: impl FnOnce(
-        &Asking<'_, A, B>,
+        &ShapePair<'_, A, B>,
         &mut WarmStart,
         &contact::Settings,
         bool,
@@ -369,25 +371,25 @@ fn answer<A: Shape + ?Sized, B: Shape + ?Sized>(
     let found = with_state(warm, |state| {
         if_overlapping(solve(&pair, state, &checked, want.pos, &mut hit))
     })?;
-    let given = |wanted: bool, point: Vec3| if wanted { to_real(&point) } else { [0.0; 3] };
+    let point_if = |wanted: bool, point: Vec3| if wanted { to_real(&point) } else { [0.0; 3] };
     Ok(found.map(|()| Penetration {
         depth: hit.depth as Real,
         depth_lower: lower_to_real(hit.depth_lower),
         dir: to_real(&hit.dir),
         normal: to_real(&hit.normal),
-        pos: given(want.pos, hit.pos),
-        point1: given(want.points, hit.point1),
-        point2: given(want.points, hit.point2),
+        pos: point_if(want.pos, hit.pos),
+        point1: point_if(want.points, hit.point1),
+        point2: point_if(want.points, hit.point2),
         support_calls: pair.md.supports(),
         iterations: hit.iterations,
         limit: hit.limit,
     }))
 }
 
-/// A penetration query: its name, the direction that it takes, if any, and its solver.
+/// Defines a penetration query by its name, its direction argument, if any, and its solver.
 macro_rules! query {
-    ($(#[$about:meta])* $name:ident $(($dir:ident))?, $solve:expr) => {
-        $(#[$about])*
+    ($(#[$docs:meta])* $name:ident $(($dir:ident))?, $solve:expr) => {
+        $(#[$docs])*
         pub fn $name<A: Shape + ?Sized, B: Shape + ?Sized>(
             a: &A,
             b: &B,
@@ -396,19 +398,20 @@ macro_rules! query {
             warm: Option<&mut Warm>,
         ) -> Result<Option<Penetration>, Error> {
             $(let $dir = direction($dir)?;)?
-            answer(a, b, settings, warm, $solve)
+            penetration_query(a, b, settings, warm, $solve)
         }
     };
 }
 
 query!(
-    /// The penetration depth: the least distance by which the second shape must move to separate the
-    /// two, within the larger of the tolerance and 0.1 % of it. The call to take unless one of the
-    /// others says what is wanted better. `None`: apart, or a touch within rounding.
+    /// Computes the penetration depth: the least distance by which the second shape must move to
+    /// separate the two, within the larger of the tolerance and 0.1 % of the depth; a sound upper bound
+    /// where [`Penetration::limit`] is set. The default call.
     ///
-    /// With a state, a pair that stays apart costs one call of each shape's support function, and one
-    /// that overlaps fewer than without. Centres are trusted; `depth_lower` leans on them too.
-    /// Allocates nothing.
+    /// With a state, a pair that stays apart costs one support point, and an overlap fewer than a cold
+    /// start. The depth and `depth_lower` rely on the centers. Allocates nothing.
+    ///
+    /// Returns `None` for shapes that are apart or touch within rounding.
     ///
     /// ```
     /// use ccd::{Real, Settings, Warm};
@@ -430,13 +433,15 @@ query!(
     /// ```
     ///
     /// # Errors
-    /// A tolerance that is negative or NaN; a shape's point that is not finite.
+    /// A tolerance that is negative or NaN; a point of a shape that is not finite.
     penetration,
     |pair, state, settings, wants, hit| pair.mpr(state, settings, wants, hit)
 );
 
-/// Do the shapes overlap? (A touch within rounding is no overlap.) A pair that stays apart costs
-/// one call of each shape's support function while its last separating direction still separates.
+/// Reports whether the shapes overlap; a touch within rounding is no overlap.
+///
+/// With a state, a pair costs one support point while its last separating axis still separates.
+/// Relies on the centers. Allocates nothing.
 ///
 /// ```
 /// use ccd::Real;
@@ -448,7 +453,7 @@ query!(
 /// ```
 ///
 /// # Errors
-/// A shape's point that is not finite.
+/// A point of a shape that is not finite.
 pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
@@ -462,12 +467,12 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     Ok(overlap.is_some())
 }
 
-/// How far apart, or how deep: one continuous function through the touch, with bounds proven on
-/// both sides.
+/// Computes the signed distance: the gap of shapes that are apart, minus the penetration depth of
+/// shapes that overlap; continuous through the touch, with both bounds proven.
 ///
-/// With margins the shapes are meant with a ball of that radius added all around, exactly, on both
-/// sides of the touch: a ball is a point with a margin, a capsule a segment. Takes no memory while
-/// the shapes without their margins are apart.
+/// Margins are balls added all around the shapes, exactly: a ball is a point with a margin, a
+/// capsule a segment. Does not rely on the centers. Allocates only where the shapes without their
+/// margins overlap and the minima (nearly) form a curve or a surface.
 ///
 /// ```
 /// use ccd::{DistanceOptions, Real, Settings};
@@ -481,7 +486,7 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
 ///
 /// # Errors
 /// A tolerance, a margin or a `max_distance` that is negative or NaN, margins that are not finite;
-/// a shape's point that is not finite; no memory.
+/// a point of a shape that is not finite; a failed allocation.
 pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
@@ -501,26 +506,26 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     }
     let points = settings.want.points;
     let pair = pair(a, b, warm.is_some())?;
-    let minimum = |pair: &Asking<'_, A, B>, state: &mut WarmStart, settings: &_, hit: &mut _| {
+    let minimum = |pair: &ShapePair<'_, A, B>, state: &mut WarmStart, settings: &_, hit: &mut _| {
         pair.minimum(state, settings, &mut Heap::default(), points, hit)
     };
     let d = with_state(warm, |state| pair.signed_distance(state, &wanted, minimum))?;
-    let given = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };
+    let point_if_wanted = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };
     Ok(Distance {
         distance: lower_to_real(d.lower),
         distance_upper: -lower_to_real(-d.upper),
         normal: to_real(&d.normal),
-        point1: given(d.point1),
-        point2: given(d.point2),
+        point1: point_if_wanted(d.point1),
+        point2: point_if_wanted(d.point2),
         support_calls: pair.md.supports(),
         iterations: d.iterations,
         limit: d.is_limited,
     })
 }
 
-/// Where two shapes touch, not only how deep: the region in which the faces that look along
-/// `normal` lie over each other, as the points of `room` that are returned: the deepest first, the
-/// others in order around the normal, spread to the largest area. At least one.
+/// Computes the contact manifold of two shapes: the region in which their faces along `normal` lie
+/// over each other, reduced to the contacts that are returned, which are stored in `room`: the
+/// deepest first, the others in order around the normal, spread to the largest area. At least one.
 ///
 /// `normal`: of an answer for this pose (`dir` where there is no other), of any length. `slop`,
 /// metres: how far below its support plane a corner may lie and still belong to the face; a
@@ -544,8 +549,8 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
 /// ```
 ///
 /// # Errors
-/// A normal that is zero or not finite, a slop that is negative or NaN, no room; a shape's point
-/// that is not finite.
+/// A normal that is zero or not finite, a slop that is negative or NaN, an empty `room`; a point of
+/// a shape that is not finite.
 pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
@@ -559,12 +564,12 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     if room.is_empty() {
         return Err(Error::BadInput("no room for a contact"));
     }
-    let most = room.len().min(manifold::ROOM);
+    let max = room.len().min(manifold::ROOM);
     let memory = memory.map(|memory| &mut memory.0);
-    let manifold = manifold::contacts(&Asked(a), &Asked(b), &normal, slop, memory, most)?;
+    let manifold = manifold::contacts(&SupportOf(a), &SupportOf(b), &normal, slop, memory, max)?;
     let mut count = 0;
-    for (place, contact) in room.iter_mut().zip(manifold.contacts()) {
-        *place = Contact {
+    for (out, contact) in room.iter_mut().zip(manifold.contacts()) {
+        *out = Contact {
             point1: to_real(&contact.point1),
             point2: to_real(&contact.point2),
             depth: contact.depth as Real,
@@ -576,9 +581,9 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
 }
 
 query!(
-    /// Returns a local minimum of the depth, by a walk on known vertices. Asks few support points with a
-    /// direction that is roughly right ([`Warm::guess`]); from far off it may end in another minimum.
-    /// Allocates nothing.
+    /// Computes a local minimum of the depth by a walk on known vertices. Faster than [`penetration`]
+    /// from a state or a guess that is roughly right ([`Warm::guess`]); from a distant one it may find
+    /// another minimum. Where the walk finds none, the global search follows. Allocates nothing.
     ///
     /// # Errors
     /// As [`penetration`].
@@ -587,10 +592,10 @@ query!(
 );
 
 query!(
-    /// The least depth with its proof: `depth - depth_lower` is within the tolerance unless
-    /// [`Penetration::limit`] is set. Trusts no centre.
+    /// Computes the globally least depth with a certificate: `depth - depth_lower` is within the
+    /// tolerance unless [`Penetration::limit`] is set. Does not rely on the centers.
     ///
-    /// Takes memory, from C's allocator, only where the minima (nearly) form a curve or a surface.
+    /// Allocates, by C's calloc, only where the minima (nearly) form a curve or a surface.
     ///
     /// ```
     /// use ccd::{Real, Settings};
@@ -603,14 +608,15 @@ query!(
     /// ```
     ///
     /// # Errors
-    /// As [`penetration`]; no memory.
+    /// As [`penetration`]; a failed allocation.
     penetration_proven,
     |pair, state, settings, wants, hit| pair.minimum(state, settings, &mut Heap::default(), wants, hit)
 );
 
 query!(
-    /// How far the second shape must move along `dir`, of any length, to separate the two
-    /// (directional penetration depth). The tolerance is measured along `dir`. Allocates nothing.
+    /// Computes the directional penetration depth: the least distance by which the second shape must
+    /// move along `dir`, of any length, to separate the two. The tolerance is measured along `dir`.
+    /// Allocates nothing.
     ///
     /// # Errors
     /// A `dir` that is zero or not finite, and as [`penetration`].
@@ -619,8 +625,8 @@ query!(
 );
 
 query!(
-    /// A local minimum of the depth among the directions of a plane, for shapes that lie in a common
-    /// plane with this normal, of any length. Allocates nothing.
+    /// Computes a local minimum of the depth over the directions perpendicular to `plane_normal`, of
+    /// any length, for shapes that lie in a common plane. Allocates nothing.
     ///
     /// # Errors
     /// A `plane_normal` that is zero or not finite, and as [`penetration`].
@@ -629,9 +635,9 @@ query!(
 );
 
 query!(
-    /// A local minimum of the depth by the paper's method as published, for comparisons: W. Gao,
-    /// *Efficient Incremental Penetration Depth Estimation between Convex Geometries*, Algorithms 4
-    /// and 5, with a sound answer. Allocates nothing.
+    /// Computes a local minimum of the depth by a paper's method as published, for comparisons: W. Gao,
+    /// *Efficient Incremental Penetration Depth Estimation between Convex Geometries* (2023),
+    /// Algorithms 4 and 5. The result is sound. Allocates nothing.
     ///
     /// # Errors
     /// As [`penetration`].
@@ -639,9 +645,9 @@ query!(
     |pair, state, settings, wants, hit| pair.incremental(state, settings, wants, hit)
 );
 
-/// What is wrong with a shape, as far as 192 directions tell, each asked twice: for when an answer
-/// is odd, and for tests. What is found is wrong for certain; a fault that shows in few directions
-/// may be missed.
+/// Tests a shape's support function and center along 192 directions, each evaluated twice; for
+/// debugging and tests. A reported fault is certain; a fault in few directions may be missed.
+/// Allocates nothing.
 ///
 /// ```
 /// use ccd::Real;
@@ -653,10 +659,10 @@ query!(
 /// assert!(ccd::check(&|d: [Real; 3]| d.map(|x| x * -0.5)).opposite);
 /// ```
 pub fn check<S: Shape + ?Sized>(shape: &S) -> Check {
-    check::check(&Asked(shape), shape.center().map(from_real).as_ref())
+    check::check(&SupportOf(shape), shape.center().map(from_real).as_ref())
 }
 
-/// Which library this is, and in which precision: "warmccd 0.2.0 double".
+/// Returns name, version and precision of the library: "warmccd 0.2.0 double".
 pub fn implementation() -> &'static str {
     NAME.trim_end_matches('\0')
 }

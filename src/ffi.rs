@@ -1,32 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The C interface: the only module that knows raw pointers, `unsafe` and
-//! return codes.
+//! The C interface: the only module with raw pointers, `unsafe` and return codes.
 //!
 //! # Safety contract
 //!
-//! What C callers promise, and what this module promises in return. Each `unsafe` names
-//! the clause it stands on.
+//! States what C callers and this module guarantee. Each `unsafe` names the clauses that it uses.
 //!
 //! - \[inputs\] An argument that is read points to a live, aligned, initialised object of
-//!   its C type, which nobody changes during the call but the callbacks. Object pointers
-//!   are never looked at, only handed on.
-//! - \[ccd\] Of a [`ccd_t`](types::ccd_t) only the fields that the call needs are
+//!   its C type, which only the callbacks change during the call. Object pointers are passed
+//!   to the callbacks and never dereferenced.
+//! - \[ccd\] Only the fields of a [`ccd_t`](types::ccd_t) that the call needs are
 //!   initialised, so fields are read one by one.
 //! - \[callbacks\] A callback has its C signature. It may write through its object, call
-//!   this library again, throw a C++ exception or longjmp away. So entry points and callback
+//!   this library again, throw a C++ exception or longjmp out. So entry points and callback
 //!   types are `extern "C-unwind"`, callbacks run on the calling thread, and while one runs
 //!   no value with a destructor is alive, no lock is held and no Rust reference into the
 //!   caller's memory exists.
-//! - \[outputs\] An output pointer is NULL (where its function says so) or points to
-//!   writable memory of its type, or of as many as its function says. It may be an input too:
-//!   inputs are copied first, outputs are written last.
-//! - \[heap\] malloc, calloc and free are C's. A block is used for what it is large enough
-//!   and aligned for, and freed once, by the one who took it.
-//! - \[polytope\] A [`ccd_pt_t`](types::ccd_pt_t) went through `ccdPtInit`, its lists are
-//!   circular, its links lead to live elements, each element is a block of C's malloc, and
-//!   during a call only that call touches it. It is reached through raw pointers alone.
+//! - \[outputs\] An output pointer is NULL (where its function allows it) or points to
+//!   writable memory of its type, or of an array as long as its function requires. It may
+//!   alias an input: inputs are copied first, outputs are written last.
+//! - \[heap\] malloc, calloc and free are C's. A block is used as a type whose size and
+//!   alignment it has, and freed once, by its owner.
+//! - \[polytope\] A [`ccd_pt_t`](types::ccd_pt_t) was initialised by `ccdPtInit`, its lists
+//!   are circular, its links point to live elements, each element is a block of C's malloc, and
+//!   during a call only that call accesses it, through raw pointers alone.
 
 #![allow(unsafe_code)]
 // The safety section of every function here is the contract above.

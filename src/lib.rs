@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Penetration and distance queries for convex shapes that are given by support functions:
-//! do they overlap, how deep, which way out, where; started warm from the last answer.
+//! Penetration and distance queries for convex shapes that are given by support functions: overlap,
+//! depth, direction, contact position; with warm starts from the last result.
 //!
-//! (The package is called `warmccd`, the crate `ccd`, since it is also a `libccd.so`.)
+//! The package is called `warmccd`, the crate `ccd`, since it is also a `libccd.so`.
 //!
-//! A [`Shape`] is a closure that answers a direction with the shape's point farthest along it, or
-//! a type of the caller's. [`penetration`] is the call to begin with. A [`Warm`] state for each
-//! pair, kept between frames, makes the next query cheap:
+//! A [`Shape`] is a support function: a closure that returns the shape's point farthest along a
+//! direction, or a type of the caller's. [`penetration`] is the default call. A [`Warm`] state for
+//! each pair, kept between frames, makes the next query cheap:
 //!
 //! ```
 //! use ccd::{Real, Settings, Warm};
@@ -25,34 +25,34 @@
 //! # Ok::<(), ccd::Error>(())
 //! ```
 //!
-//! | you | call |
+//! | result | call |
 //! |---|---|
-//! | want the depth | [`penetration`]: the least, within the larger of the tolerance and 0.1 % |
-//! | need yes or no | [`intersect`] |
-//! | need the distance, overlapping or not | [`signed_distance`] |
-//! | need more than one contact point | [`contacts`] |
-//! | follow one valley | [`penetration_local`] |
-//! | need the minimum with its proof | [`penetration_proven`] |
-//! | know the direction | [`penetration_along`] |
-//! | live in a plane | [`penetration_planar`] |
-//! | compare with the paper | [`penetration_incremental`] |
-//! | wonder what is wrong with a shape | [`check`] |
+//! | least depth, within the larger of the tolerance and 0.1 % | [`penetration`] |
+//! | overlap: yes or no | [`intersect`] |
+//! | signed distance | [`signed_distance`] |
+//! | several contact points | [`contacts`] |
+//! | a local minimum of the depth, from a guess | [`penetration_local`] |
+//! | least depth with a certificate | [`penetration_proven`] |
+//! | depth along a given direction | [`penetration_along`] |
+//! | depth of shapes in a common plane | [`penetration_planar`] |
+//! | depth by W. Gao's method as published | [`penetration_incremental`] |
+//! | faults of a shape's support function | [`check`] |
 //!
 //! Lengths are metres. The names are those of the C header `ccd/warm.h`, in Rust's case, and the
-//! answers the same bits; `include/README.md` says what each call guarantees. Nothing is global: a
-//! query may run on any thread, and a shape may ask queries of its own.
+//! results the same bits; `include/README.md` lists the guarantees of each call. There is no global
+//! state: queries may run on any threads, and a shape may run queries itself.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
-    reason = "a negated comparison is how NaN ends a loop"
+    reason = "a negated comparison ends a loop at NaN"
 )]
 #![allow(clippy::large_enum_variant, reason = "no heap")]
 #![allow(
     clippy::unnecessary_cast,
     clippy::useless_conversion,
-    reason = "conversions between Real and f64 are none in double precision"
+    reason = "Real is f64 in double precision"
 )]
 
 mod api;
@@ -76,7 +76,7 @@ pub use api::{
     signed_distance,
 };
 
-/// What this package's own tests and benchmarks ask besides; may change in any version.
+/// Exports internals to this package's own tests and benchmarks; may change in any version.
 #[doc(hidden)]
 pub mod internals {
     pub use crate::contact::Settings;
@@ -85,7 +85,7 @@ pub mod internals {
     pub use crate::mpr::gao::Until;
     pub use crate::mpr::gao::penetration as incremental;
 
-    /// The exported functions, called as C calls them.
+    /// The exported C functions.
     pub mod ffi {
         pub use crate::ffi::{
             collide::*, paper::*, polytope::*, support::*, types::*, vec3::*, warm::*,
@@ -93,7 +93,7 @@ pub mod internals {
     }
 }
 
-/// The program of a page is tested with the examples here.
+/// Tests the Rust program of that page.
 #[cfg(doctest)]
 #[doc = include_str!("../include/README.md")]
 mod readme {}

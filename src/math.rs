@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Scalars and vectors, and the policies that every solver shares: how small a
-//! tolerance may be, how many iterations are allowed, what counts as a unit vector.
+//! Scalars, vectors, normalisation and the iteration limit that all solvers share.
 
 use nalgebra::{RealField, Vector3};
 
@@ -15,16 +14,16 @@ pub type Real = f64;
 #[cfg(feature = "single")]
 pub type Real = f32;
 
-/// A point or direction in three dimensions, metres.
+/// A point (metres) or a direction.
 pub type Vec3 = nalgebra::Vector3<f64>;
 
-/// No vector, where a constant is wanted.
+/// The zero vector.
 pub const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
-/// Distance from 1 to the next larger [`Real`]: support functions round to it.
+/// Distance from 1 to the next larger [`Real`], the precision of support functions.
 pub const EPSILON: f64 = Real::EPSILON as f64;
 
-/// Converts a vector of the caller's.
+/// Converts a vector from the caller's scalars.
 #[inline(always)]
 pub fn from_real(v: [Real; 3]) -> Vec3 {
     v.map(f64::from).into()
@@ -36,53 +35,52 @@ pub fn to_real(v: &Vec3) -> [Real; 3] {
     [v.x as Real, v.y as Real, v.z as Real]
 }
 
-/// Converts a lower bound to the caller's scalar, and never upwards.
+/// Converts a lower bound to the caller's scalar, rounding down.
 #[inline(always)]
 pub fn lower_to_real(x: f64) -> Real {
-    let near = x as Real;
-    if f64::from(near) > x {
-        near - Real::EPSILON * near.abs()
+    let rounded = x as Real;
+    if f64::from(rounded) > x {
+        rounded - Real::EPSILON * rounded.abs()
     } else {
-        near
+        rounded
     }
 }
 
 /// Returns `v / |v|`, or `None` when `v` is zero or not finite.
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
-    // 0/0 and ∞/∞ are NaN, and so is then the norm.
+    // Squares of tiny and huge vectors under- or overflow; 0/0 and ∞/∞ are NaN.
     normalised(v).or_else(|| normalised(&(v / largest(v))))
 }
 
-/// Returns `v / |v|` of a vector whose length can be squared, else `None`.
+/// Returns `v / |v|`, or `None` when |v|² under- or overflows.
 #[inline(always)]
 pub fn normalised(v: &Vec3) -> Option<Vec3> {
     let n2 = v.norm_squared();
     (n2 > f64::MIN_POSITIVE && n2 < f64::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
-/// The larger of two numbers, the second where one is NaN: one instruction, where `max`
-/// takes several to pass over a NaN on either side.
+/// Returns the larger of two numbers, the second where one is NaN. Compiles to one instruction;
+/// `max` takes several, because it skips a NaN on either side.
 #[inline(always)]
 pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
-/// The smaller of two numbers, the second where one is NaN, as in [`larger`].
+/// Returns the smaller of two numbers, the second where one is NaN, like [`larger`].
 #[inline(always)]
 pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
-/// The largest absolute coordinate.
+/// Returns the largest absolute coordinate.
 #[inline(always)]
 pub fn largest(v: &Vec3) -> f64 {
     larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
-/// The normal of the triangle abc, as long as twice its area. Near the end of a search
-/// triangles are slivers, and the cross product of two long edges that are almost parallel
-/// is mostly rounding error: there the short edge is one of the two.
+/// Returns the normal of the triangle abc, twice its area long. Of a sliver the cross product of
+/// the two long, almost parallel edges is mostly rounding error: there one factor is the short edge.
 #[inline]
 pub fn normal<T: RealField + Copy>(a: &Vector3<T>, b: &Vector3<T>, c: &Vector3<T>) -> Vector3<T> {
     let [ab, ac, bc] = [b - a, c - a, c - b];
@@ -95,11 +93,11 @@ pub fn normal<T: RealField + Copy>(a: &Vector3<T>, b: &Vector3<T>, c: &Vector3<T
     }
 }
 
-/// A unit vector perpendicular to `n`, which need not be unit, but is not zero.
+/// Returns a unit vector perpendicular to `n`, a nonzero vector of any length.
 #[inline]
 pub fn perpendicular(n: &Vec3) -> Vec3 {
     let a = n.abs();
-    // The axis least aligned with n keeps the cross product at least sqrt(2/3) as long.
+    // With the axis least aligned with n the cross product is at least sqrt(2/3) |n|.
     let axis = if a.x <= a.y && a.x <= a.z {
         Vec3::x()
     } else if a.y <= a.z {
@@ -111,16 +109,16 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
     p / p.norm()
 }
 
-/// A unit vector that nothing stands along.
+/// The unit vector from which contact frames are rotated; rarely antiparallel to a normal.
 pub const POLE: Vec3 = Vec3::new(0.36, 0.48, 0.8);
 
-/// Two unit vectors across the unit vector `n`, and each other, that turn as little as it does: those
-/// of a fixed frame, turned the shortest way from [`POLE`].
+/// Returns a tangent frame: two unit vectors perpendicular to unit `n` and to each other. The frame
+/// is a fixed one, rotated by the least angle from [`POLE`] to `n`, and so continuous in `n`.
 pub fn axes(n: &Vec3) -> [Vec3; 2] {
     let axis = Vec3::new(0.8, -0.6, 0.0);
-    let cosine = 1.0 + POLE.dot(n);
-    let e1 = if cosine > 1e-3 {
-        axis - (POLE + n) * (axis.dot(n) / cosine)
+    let one_plus_cos = 1.0 + POLE.dot(n);
+    let e1 = if one_plus_cos > 1e-3 {
+        axis - (POLE + n) * (axis.dot(n) / one_plus_cos)
     } else {
         perpendicular(n)
     };
@@ -128,8 +126,7 @@ pub fn axes(n: &Vec3) -> [Vec3; 2] {
     [e1, n.cross(&e1)]
 }
 
-/// The library's own cap on the iterations of a query, whatever the caller allows. A search
-/// that comes this far makes no progress: with what is asked before and after, 400 support
-/// points are the most that a query takes. Measured (`campaigns -- wide`): of the minima that 360
-/// support points do not prove, most are not proven by 1,400.
+/// The library's limit on the iterations of a query, an upper limit of the caller's. With the
+/// support points before and after the iterations, no query takes more than 400. Measured
+/// (`campaigns -- wide`): most minima that 360 support points do not prove, 1,400 do not prove.
 pub const ITERATION_CAP: u64 = 380;

@@ -10,14 +10,14 @@
 //! they take a known difference where one is far enough beyond, and query the callbacks
 //! ([`SupportQuery`](query::SupportQuery)) where none is.
 //!
-//! | file | content |
+//! | file | contents |
 //! |---|---|
 //! | [`support`] | support functions, D, support points |
 //! | [`vertex_set`] | the known vertices and the support function of their differences |
 //! | [`query`] | evaluation, upper bound, separating-axis test, inconsistent support functions |
 //! | [`tolerance`] | tolerance in force, contact epsilon, rounding |
-//! | [`round_fit`] | sphere fits, which choose where to query |
-//! | [`validate`] | what is wrong with a support function and a centre |
+//! | [`round_fit`] | sphere fits, which choose the queried directions |
+//! | [`validate`] | tests of a support function and a center |
 
 pub mod query;
 pub mod round_fit;

@@ -1,12 +1,14 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Overlap and penetration of two convex objects that are known by their support
- * functions alone. All calls are re-entrant and keep no state.
+/* Overlap and penetration of two convex objects that are given by support functions. All calls
+ * are re-entrant and keep no state. Object pointers are passed to the callbacks and never
+ * dereferenced. Lengths and tolerances are metres; CCD_INIT's value replaces a tolerance that is
+ * negative or NaN.
  *
- * The order of a pair: support1 and center1 are asked about obj1, support2 and center2
- * about obj2. dir is the way obj2 moves, by depth, to leave obj1; with the objects swapped
- * the depth is the same and dir the opposite. */
+ * support1 and center1 are called with obj1, support2 and center2 with obj2. Moving obj2 by
+ * depth * dir separates the objects; with the objects swapped depth is the same and dir the
+ * opposite. */
 
 #ifndef __CCD_H__
 #define __CCD_H__
@@ -17,34 +19,34 @@
 extern "C" {
 #endif
 
-/** Stores in vec a point of the object that lies farthest along dir, which is unit and
- * finite in every call of this library's solvers. */
+/** Stores in vec a point of obj farthest along dir. The library's queries pass unit, finite
+ * directions. */
 typedef void (*ccd_support_fn)(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *vec);
 
-/** Stores in dir the direction a GJK query begins with. */
+/** Stores in dir the first direction of a GJK query. */
 typedef void (*ccd_first_dir_fn)(const void *obj1, const void *obj2, ccd_vec3_t *dir);
 
 /** Stores in center a point inside the object, the deeper the better. */
 typedef void (*ccd_center_fn)(const void *obj1, ccd_vec3_t *center);
 
-/** The two objects' functions and how exact the answer must be. */
+/** Callbacks and settings of a query. A query reads only the fields that it names. */
 typedef struct _ccd_t {
-    ccd_first_dir_fn first_dir;   /**< GJK starts from it */
-    ccd_support_fn support1;      /**< of the first object */
-    ccd_support_fn support2;      /**< of the second object */
-    ccd_center_fn center1;        /**< of the first object; MPR starts from the centers */
-    ccd_center_fn center2;        /**< of the second object */
-    unsigned long max_iterations; /**< cap on every loop */
+    ccd_first_dir_fn first_dir;   /**< first direction of the GJK queries */
+    ccd_support_fn support1;      /**< support function of obj1 */
+    ccd_support_fn support2;      /**< support function of obj2 */
+    ccd_center_fn center1;        /**< center of obj1, for the MPR queries */
+    ccd_center_fn center2;        /**< center of obj2, for the MPR queries */
+    unsigned long max_iterations; /**< limit on the iterations of every loop */
     ccd_real_t epa_tolerance;     /**< largest error of a GJK query's depth, metres */
     ccd_real_t mpr_tolerance;     /**< largest error of an MPR query's depth, metres */
-    ccd_real_t dist_tolerance;    /**< ccdSignedDistance alone */
+    ccd_real_t dist_tolerance;    /**< largest error of ccdSignedDistance, metres */
 } ccd_t;
 
-/** Stores (1, 0, 0) in dir. */
+/** Stores (1, 0, 0) in dir; the default of first_dir. */
 CCD_EXPORT void ccdFirstDirDefault(const void *o1, const void *o2, ccd_vec3_t *dir);
 
-/** Sets *ccd to the defaults; support1 and support2 (for MPR center1 and center2 too)
- * remain to be set. */
+/** Sets *ccd to the defaults. The caller must set support1 and support2, and for the MPR queries
+ * center1 and center2. */
 #define CCD_INIT(ccd)                                     \
     do {                                                  \
         (ccd)->first_dir = ccdFirstDirDefault;            \
@@ -58,34 +60,42 @@ CCD_EXPORT void ccdFirstDirDefault(const void *o1, const void *o2, ccd_vec3_t *d
         (ccd)->dist_tolerance = CCD_REAL(1E-6);           \
     } while (0)
 
-/** 1 when the objects overlap, 0 when they are apart. By GJK: uses first_dir, no centers. */
+/** Reports whether the objects overlap, by GJK. Calls first_dir, no center. Reads no tolerance.
+ * Allocates nothing. Returns 1 when they overlap; 0 when they are apart or touch within rounding,
+ * when a required callback is NULL or a point is not finite. */
 CCD_EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
-/** As ccdGJKPenetration; sep = depth * dir, the shortest way for obj2 to leave obj1. */
+/** Computes the shortest translation of obj2 that separates the objects, as ccdGJKPenetration
+ * does: sep = depth * dir, metres; may be NULL. */
 CCD_EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *ccd,
                               ccd_vec3_t *sep);
 
-/** Penetration by GJK, and the global minimum of depth over all directions.
+/** Computes the globally least penetration depth. Calls first_dir, no center.
  *
- * Returns  0 when the objects overlap; then moving obj2 by depth * dir (dir unit)
- *            separates them, and pos is the contact position;
- *         -1 when they are apart, -2 when memory cannot be had; then nothing is stored.
- * depth, dir and pos may each be NULL. Uses first_dir, no centers. */
+ * depth: metres. dir: unit. pos: the contact position, the center of pressure. Each may be NULL.
+ * Reads epa_tolerance; after 320 support points or max_iterations iterations depth is a sound
+ * upper bound. Allocates, and frees before it returns, only where the minima (nearly) form a curve
+ * or a surface.
+ * Returns  0 when the objects overlap;
+ *         -1 when they are apart or touch within rounding, when a required callback is NULL or a
+ *            point is not finite; -2 when malloc fails. The outputs are unchanged then. */
 CCD_EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd,
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 
-/** 1 when the objects overlap, 0 when they are apart or touch within rounding. By MPR: uses
- * the centers, which are to lie in their objects, not first_dir. */
+/** Reports whether the objects overlap. Calls the centers, which must lie in their objects, not
+ * first_dir. Reads no tolerance. Allocates nothing. Returns the values of ccdGJKIntersect. */
 CCD_EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
-/** Penetration by MPR: the least depth, within mpr_tolerance or 0.1 % of the depth, the
- * larger of the two. Where 160 support points or max_iterations iterations (one a support
- * point after the first four) were used up first, as for nearly concentric round objects,
- * the answer is the lowest that was met. Who must know asks ccdPenetrationProven.
- * Relies on the centers lying in their objects: a center outside makes the answer wrong.
- * Returns 0 or -1 and stores as ccdGJKPenetration does. A touch within rounding is -1.
- * Uses the centers, not first_dir, and no heap: 12 KB of stack for up to 22 support points,
- * 44 KB beyond. */
+/** Computes the penetration depth. Calls the centers, which must lie in their objects, not
+ * first_dir; a center outside makes the result wrong.
+ *
+ * depth, dir, pos: as of ccdGJKPenetration.
+ * Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
+ * depth, the larger of the two. After 160 support points or max_iterations iterations (one for
+ * each support point after the first tetrahedron), as of nearly concentric round objects, depth is
+ * a sound upper bound; ccdPenetration reports this case. Allocates nothing; uses at most 44 KB of
+ * stack on x86-64.
+ * Returns 0 or -1, as ccdGJKPenetration does. */
 CCD_EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd,
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* CCD_EXPORT marks what the library exports. A program may define it beforehand; one that
- * links the static library on Windows defines CCD_STATIC_DEFINE. */
+/* CCD_EXPORT marks the exported symbols. A program may define it beforehand; a program that links
+ * the static library on Windows must define CCD_STATIC_DEFINE. */
 
 #ifndef CCD_EXPORT_H
 #define CCD_EXPORT_H

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What differs from compiler to compiler. */
+/* Macros that depend on the compiler. */
 
 #ifndef __CCD_COMPILER_H__
 #define __CCD_COMPILER_H__
@@ -10,11 +10,11 @@
 
 #define ccd_offsetof(type, member) offsetof(type, member)
 
-/** From a pointer to a member, the object of that type it is a member of. */
+/** Converts a pointer to a member to a pointer to its object of the given type. */
 #define ccd_container_of(ptr, type, member) ((type *)((char *)(ptr) - ccd_offsetof(type, member)))
 
-/* _ccd_inline: a function that is inlined and may go unused.
- * _ccd_prefetch, _ccd_prefetchw: hints that an address will be read, or written. */
+/* _ccd_inline: marks a function that is inlined and may be unused.
+ * _ccd_prefetch, _ccd_prefetchw: hint that an address will be read, or written. */
 #ifdef __GNUC__
 #define _ccd_inline static __inline__ __attribute__((always_inline))
 #define _ccd_prefetch(x) __builtin_prefetch(x)
@@ -26,7 +26,7 @@
 #endif
 
 #ifdef __ICC
-/** Unused parameters; operands in unspecified order. */
+/** Disables warnings of unused parameters and of operands in unspecified order. */
 #pragma warning(disable : 869)
 #pragma warning(disable : 981)
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The method of a paper as published, for comparisons: W. Gao, Efficient Incremental
- * Penetration Depth Estimation between Convex Geometries. warm.h's ccdPenetrationLocal answers
- * the same in fewer support points, and ccdPenetration answers the least depth of all. Made by
- * cbindgen from src/ffi/paper.rs; edit there. */
+/* Provides the method of W. Gao, Efficient Incremental Penetration Depth Estimation between Convex
+ * Geometries (2023), as published, for comparisons. ccdPenetrationLocal of warm.h computes the same
+ * in fewer support points, and ccdPenetration computes the global minimum. Made by cbindgen from
+ * src/ffi/paper.rs; edit there. */
 
 #ifndef __CCD_PAPER_H__
 #define __CCD_PAPER_H__
@@ -16,14 +16,15 @@ extern "C" {
 #endif
 
 /**
- * A local minimum of the penetration depth by the paper's Algorithms 4 and 5, the shortcut on,
- * with a sound answer: the depth is that of the least support plane met, and an overlap is
- * proven. From the state's direction, else from the centres, else from first_dir.
+ * Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
+ * shortcut. The result is sound: depth is the least support value evaluated, and an overlap is
+ * proven.
  *
- * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
- * flags. Allocates nothing.
+ * `warm`: may be NULL. `want`: CCD_WANT_ flags.
  *
- * Returns warm.h's codes: CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
+ * Reads mpr_tolerance. Allocates nothing.
+ *
+ * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
  */
 CCD_EXPORT
 int ccdPenetrationIncremental(const void *obj1,

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Quaternions, x y z w. The library takes none: these are for support functions. An
- * output may be one of the inputs in every function here. */
+/* Quaternions (x, y, z, w), for the caller's support functions; no query takes one. An output may
+ * alias an input in every function here. */
 
 #ifndef __CCD_QUAT_H__
 #define __CCD_QUAT_H__
@@ -19,10 +19,10 @@ typedef struct _ccd_quat_t {
     ccd_real_t q[4]; /**< x, y, z, w */
 } ccd_quat_t;
 
-/** The definition of an initialised variable. */
+/** Defines an initialised variable. */
 #define CCD_QUAT(name, x, y, z, w) ccd_quat_t name = {{x, y, z, w}}
 
-/** q = (x, y, z, w) */
+/** Sets q = (x, y, z, w). */
 _ccd_inline void ccdQuatSet(ccd_quat_t *q, ccd_real_t x, ccd_real_t y, ccd_real_t z,
                             ccd_real_t w) {
     q->q[0] = x;
@@ -31,26 +31,27 @@ _ccd_inline void ccdQuatSet(ccd_quat_t *q, ccd_real_t x, ccd_real_t y, ccd_real_
     q->q[3] = w;
 }
 
-/** dest = src */
+/** Sets dest = src. */
 _ccd_inline void ccdQuatCopy(ccd_quat_t *dest, const ccd_quat_t *src) {
     *dest = *src;
 }
 
-/** Squared length. */
+/** Returns the squared length. */
 _ccd_inline ccd_real_t ccdQuatLen2(const ccd_quat_t *q) {
     return q->q[0] * q->q[0] + q->q[1] * q->q[1] + q->q[2] * q->q[2] + q->q[3] * q->q[3];
 }
 
+/** Returns the length. */
 _ccd_inline ccd_real_t ccdQuatLen(const ccd_quat_t *q) {
     return CCD_SQRT(ccdQuatLen2(q));
 }
 
-/** q *= k, a number */
+/** Multiplies q by the number k. */
 _ccd_inline void ccdQuatScale(ccd_quat_t *q, ccd_real_t k) {
     ccdQuatSet(q, q->q[0] * k, q->q[1] * k, q->q[2] * k, q->q[3] * k);
 }
 
-/** Makes q a unit quaternion and returns 1, or returns 0 when its length is below CCD_EPS. */
+/** Normalises q and returns 1; returns 0 and leaves q when its length is below CCD_EPS. */
 _ccd_inline int ccdQuatNormalize(ccd_quat_t *q) {
     const ccd_real_t len = ccdQuatLen(q);
     if (len < CCD_EPS) {
@@ -60,8 +61,8 @@ _ccd_inline int ccdQuatNormalize(ccd_quat_t *q) {
     return 1;
 }
 
-/** q = the rotation by angle (radians) about axis, unit or not; no rotation when the axis
- * is shorter than CCD_EPS. */
+/** Sets q to the rotation by angle (radians) about axis, of any length; to no rotation when the
+ * axis is shorter than CCD_EPS. */
 _ccd_inline void ccdQuatSetAngleAxis(ccd_quat_t *q, ccd_real_t angle, const ccd_vec3_t *axis) {
     const ccd_real_t half = angle / 2;
     const ccd_real_t len = CCD_SQRT(ccdVec3Len2(axis));
@@ -74,7 +75,7 @@ _ccd_inline void ccdQuatSetAngleAxis(ccd_quat_t *q, ccd_real_t angle, const ccd_
     }
 }
 
-/** q = a b, the rotation by b and then by a */
+/** Sets q = a b, the rotation by b and then by a. */
 _ccd_inline void ccdQuatMul2(ccd_quat_t *q, const ccd_quat_t *a, const ccd_quat_t *b) {
     const ccd_real_t ax = a->q[0], ay = a->q[1], az = a->q[2], aw = a->q[3];
     const ccd_real_t bx = b->q[0], by = b->q[1], bz = b->q[2], bw = b->q[3];
@@ -82,12 +83,12 @@ _ccd_inline void ccdQuatMul2(ccd_quat_t *q, const ccd_quat_t *a, const ccd_quat_
                aw * bz + az * bw + ax * by - ay * bx, aw * bw - ax * bx - ay * by - az * bz);
 }
 
-/** q = q q2 */
+/** Sets q = q q2. */
 _ccd_inline void ccdQuatMul(ccd_quat_t *q, const ccd_quat_t *q2) {
     ccdQuatMul2(q, q, q2);
 }
 
-/** q = q^-1; returns 0, or -1 when q's squared length is below CCD_EPS and q stays. */
+/** Sets q = q^-1 and returns 0; returns -1 and leaves q when its squared length is below CCD_EPS. */
 _ccd_inline int ccdQuatInvert(ccd_quat_t *q) {
     const ccd_real_t len2 = ccdQuatLen2(q);
     ccd_real_t k;
@@ -99,14 +100,14 @@ _ccd_inline int ccdQuatInvert(ccd_quat_t *q) {
     return 0;
 }
 
-/** dest = src^-1; returns 0, or -1 when src's squared length is below CCD_EPS and dest is
- * src. */
+/** Sets dest = src^-1 and returns 0; sets dest = src and returns -1 when the squared length of src
+ * is below CCD_EPS. */
 _ccd_inline int ccdQuatInvert2(ccd_quat_t *dest, const ccd_quat_t *src) {
     ccdQuatCopy(dest, src);
     return ccdQuatInvert(dest);
 }
 
-/** v = q v q^-1 for a unit quaternion q: v + 2 u x (u x v + w v), u its vector part */
+/** Rotates v by the unit quaternion q: v + 2 u x (u x v + w v), u the vector part of q. */
 _ccd_inline void ccdQuatRotVec(ccd_vec3_t *v, const ccd_quat_t *q) {
     const ccd_real_t ux = q->q[0], uy = q->q[1], uz = q->q[2], w = q->q[3];
     const ccd_real_t vx = v->v[0], vy = v->v[1], vz = v->v[2];

@@ -1,26 +1,33 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What this library adds to libccd's ccd.h: queries that start from a pair's last answer.
+/* Extends libccd's ccd.h by queries that start warm: from the result of the pair's last query.
  * Made by cbindgen from src/ffi/warm/; edit there.
  *
- * To begin with: one ccd_warm_t a pair, kept between frames, all bytes zero at first, and
- * ccdPenetration. Then, from here to the end:
+ * Start with ccdPenetration and one ccd_warm_t for each pair, zeroed at first and kept between
+ * frames. The sections:
  *
- *   codes      what every call that fills a struct returns
- *   states     ccd_warm_t, ccdWarmGuess, ccdWarmFlip
- *   the one    ccdPenetration: do they overlap, how deep, which way out, where
- *   yes or no  ccdIntersect
- *   distance   ccdSignedDistance
- *   contacts   ccdContacts
- *   special    ccdPenetrationLocal, ...Proven, ...Along, ...Planar
- *   libccd's   ccdMPRPenetrationWarm, ccdMPRIntersectWarm
- *   is it odd? ccdCheck: what is wrong with a support function
+ *   codes        returned by every call that fills a struct
+ *   states       ccd_warm_t, ccdWarmGuess, ccdWarmFlip
+ *   penetration  ccdPenetration: overlap, depth, direction, contact position
+ *   overlap      ccdIntersect
+ *   distance     ccdSignedDistance
+ *   contacts     ccdContacts
+ *   special      ccdPenetrationLocal, ...Proven, ...Along, ...Planar
+ *   libccd       ccdMPRPenetrationWarm, ccdMPRIntersectWarm
+ *   check        ccdCheck: tests a support function
+ *   identity     ccdImplementation
  *
- * Lengths and tolerances are metres; the library floors tolerances at a few ulps of the objects'
- * size, so 0 asks for the best the precision can give. A call reads the one tolerance that it
- * names. Object pointers are handed to the callbacks and never looked at. A query is re-entrant
- * and keeps nothing but the state that the caller hands it. */
+ * A support point is a boundary point of the Minkowski difference obj1 - obj2: one call of support1
+ * along a direction and one of support2 along its opposite. A cold start begins along the line of
+ * the centers where both are given, else along first_dir, else along (1, 0, 0): in this header
+ * center1, center2 and first_dir may be NULL except where stated. A center that is given must lie
+ * in its object.
+ *
+ * Lengths and tolerances are metres. Tolerances are floored at a few ulps of the objects' size, so
+ * 0 requests the best result of the precision. A call reads only the tolerance that it names.
+ * Object pointers are passed to the callbacks and never dereferenced. Queries are re-entrant and
+ * keep no data but the caller's state. */
 
 #ifndef __CCD_WARM_H__
 #define __CCD_WARM_H__
@@ -32,24 +39,24 @@ extern "C" {
 #endif
 
 
-/* Codes: what every call that fills a struct returns.
+/* Codes: returned by every call that fills a struct.
  *
- * 0 and above: *out is filled. Below 0: nothing is written, but that ccdSignedDistance fills
- * *out on a CCD_MISS too, for it has an answer then. With CCD_BAD_INPUT and CCD_NO_MEMORY the
- * state stays as it was; with every other code it is one for the next query.
+ * Code >= 0: *out is filled. Code < 0: nothing is written, except that ccdSignedDistance fills
+ * *out on CCD_MISS too. CCD_BAD_INPUT and CCD_NO_MEMORY leave the state unchanged; every other
+ * code updates it for the next query.
  *
- * (ccdIntersect returns 1 or 0, ccdContacts how many contacts, or CCD_BAD_INPUT; what has MPR
- * in its name returns what libccd returns.) */
+ * ccdIntersect returns 1 or 0, ccdContacts the number of contacts or CCD_BAD_INPUT, and calls
+ * with MPR in their name libccd's codes. */
 
 /**
- * The objects overlap, by more than rounding.
+ * The objects overlap by more than rounding.
  */
 #define CCD_HIT 0
 
 /**
- * An answer, but a less exact one than was asked for: max_iterations or the library's own cap
- * came first, or rounding. The depth or distance is sound, its bounds are honest; a penetration
- * is an overlap, of a distance the sign tells.
+ * The result is sound, but less exact than requested: max_iterations, the library's limit of
+ * support points or rounding ended the search. All bounds hold. A penetration query has found an
+ * overlap; the bounds of ccdSignedDistance may include 0.
  */
 #define CCD_LIMIT 1
 
@@ -59,35 +66,34 @@ extern "C" {
 #define CCD_MISS (-1)
 
 /**
- * Memory was needed and not to be had.
+ * malloc failed.
  */
 #define CCD_NO_MEMORY (-2)
 
 /**
- * An argument, a field of ccd, or a callback's answer that no query can work with: NULL where
- * something is needed, NaN, a length below 0, a direction of zero, an unknown flag.
+ * An argument, a field of ccd or a point of a callback is invalid: NULL where a pointer is
+ * required, NaN, a negative length, a zero direction, an unknown flag, a point that is not finite.
  */
 #define CCD_BAD_INPUT (-3)
 
 
-/* States: what one query of a pair leaves for the next. */
+/* States: carried from one query of a pair to the next. */
 
 /**
- * How many numbers a ccd_warm_t holds.
+ * Number of reals in a ccd_warm_t.
  */
 #define CCD_WARM_REALS 6
 
 /**
- * State of one pair between queries. Plain data, no pointers, nothing to free: all
- * bytes zero is cold, and it may be copied and stored freely.
+ * State of one pair between queries. Plain data without pointers, nothing to free: all bytes
+ * zero is cold, and copies are valid.
  *
- * One state is for one pair in one order: the state of (a, b) is a foreign one to a query of
- * (b, a), until ccdWarmFlip turns it round. Every call takes what any other call has left in
- * it. Two threads must not use one state at once. Wherever a call takes a state, NULL is cold,
- * and saves what it costs to leave one.
+ * A state belongs to one pair in one order: ccdWarmFlip converts the state of (a, b) to one of
+ * (b, a). Every call accepts the state that any other call has written. Two threads must not use
+ * one state at once. NULL in place of a state is a cold start and saves the cost of writing one.
  *
- * A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to
- * another local minimum; every answer stays sound. The fields are the library's own.
+ * A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to another
+ * local minimum; every result stays sound. The fields are private.
  */
 typedef struct ccd_warm_t {
   /**
@@ -101,106 +107,102 @@ typedef struct ccd_warm_t {
 } ccd_warm_t;
 
 /**
- * Makes `warm` a fresh state that starts from `dir`, the caller's guess of the way obj2
- * leaves.
+ * Makes `warm` a new state that starts from `dir`, a guess of the penetration direction, along
+ * which obj2 moves to separate.
  *
- * `dir` need not be unit; zero, not finite or NULL makes a cold state. `warm` NULL: nothing
- * happens.
+ * `dir`: of any length; NULL, zero or not finite makes a cold state. `warm`: NULL has no effect.
  */
 CCD_EXPORT void ccdWarmGuess(ccd_warm_t *warm, const ccd_vec3_t *dir);
 
 /**
- * Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
- * state a pair and meets its objects in either order.
+ * Converts a state of the pair (obj1, obj2) to one of (obj2, obj1), for a caller who keeps one
+ * state for each pair and queries it in either order.
  *
- * Cold stays cold. `warm` NULL: nothing happens.
+ * `warm`: cold stays cold; NULL has no effect.
  */
 CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 
 
-/* The one call to begin with: do two objects overlap, how deep, which way out, where? */
+/* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
- * Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
- * where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). For it the objects
- * are asked one by one.
+ * Requests pos. Costs 2 to 4 support points, at most 8 where a face has more than four corners,
+ * none where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). Evaluates
+ * the two support functions separately.
  */
 #define CCD_WANT_POS 1
 
 /**
- * Wanted: point1 and point2. They cost nothing.
+ * Requests point1 and point2, at no cost.
  */
 #define CCD_WANT_POINTS 2
 
 /**
- * Everything.
+ * Requests all of these.
  */
 #define CCD_WANT_ALL 3
 
 /**
- * What a penetration query answers. What was not wanted is zero.
+ * Result of a penetration query. A field that was not requested is zero.
  */
 typedef struct ccd_penetration_t {
   /**
-   * Metres, >= 0: moving obj2 by depth * dir separates the objects. It is the support
-   * value of normal, divided by dir . normal.
+   * Penetration depth, metres, >= 0: moving obj2 by depth * dir separates the objects. The
+   * support value of normal, divided by dir . normal.
    */
   ccd_real_t depth;
   /**
-   * Proven lower bound on the global minimum depth (in ccdPenetrationAlong: on the
-   * depth along dir), metres; 0 where none was proven.
+   * Proven lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along
+   * dir), metres; 0 where none was proven.
    */
   ccd_real_t depth_lower;
   /**
-   * Unit; the way obj2 moves.
+   * Penetration direction, unit: obj2 moves along it.
    */
   ccd_vec3_t dir;
   /**
-   * Unit; normal of the separating plane. Equal to dir except in ccdPenetrationAlong.
+   * Contact normal, unit: normal of the separating plane. Equal to dir except in
+   * ccdPenetrationAlong.
    */
   ccd_vec3_t normal;
   /**
-   * Contact position, CCD_WANT_POS: the centre of pressure, which is the centroid of the volume
-   * that the objects share, but for its height along normal. It moves as the objects do, where
-   * a deepest point jumps from corner to corner. For objects of a quarter metre that are no deeper
-   * than a millimetre it is off by 3 mm (boxes) to 7 mm (round ones) at most, a cone on its side by
-   * 15 mm, root mean square; deeper, by 3 % of the smaller object's size where the depth is 3 % of
-   * that, 6 % at 10 %, 20 % at 30 %. Of CCD_LIMIT, and of ccdPenetrationAlong and
-   * ccdPenetrationPlanar, the middle of the witness points.
+   * Contact position, CCD_WANT_POS: the center of pressure, which is the centroid of the common
+   * volume except for its coordinate along normal. Continuous in the pose. Error, root mean
+   * square, for objects of a quarter metre and depths up to a millimetre: at most 3 mm (boxes) to
+   * 7 mm (round objects), 15 mm for a cone on its side; for greater depths 3 % of the smaller
+   * object's size where the depth is 3 % of it, 6 % at 10 %, 20 % at 30 %. With CCD_LIMIT, in
+   * ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
    */
   ccd_vec3_t pos;
   /**
-   * Witness point of obj1, CCD_WANT_POINTS, at the deepest place: a point of obj1, and of its
-   * supporting plane, each to within what the depth may be off, or 1e-12 of the size (in single
-   * precision 1e-5).
+   * Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the error
+   * of depth or 1e-12 of the size (1e-5 in single precision).
    */
   ccd_vec3_t point1;
   /**
-   * Witness point of obj2, the same.
+   * Witness point of obj2, CCD_WANT_POINTS: as point1.
    */
   ccd_vec3_t point2;
   /**
-   * Half of the calls of support1 and support2 together, rounded up: a support point of the
-   * Minkowski difference is one call of each. Positions need further calls of one alone.
+   * Number of support points: half of the calls of support1 and support2 together, rounded up.
    */
   unsigned long support_calls;
   /**
-   * Iterations of the solver.
+   * Number of iterations of the solver.
    */
   unsigned long iterations;
 } ccd_penetration_t;
 
 /**
- * The penetration depth: the least distance by which obj2 must move to separate the objects,
- * within the larger of mpr_tolerance and 0.1 % of it, in CCD_LIMIT's case a sound one.
- * The call to take unless one of those below says what is wanted better. From the state, else
- * from the centres, else from first_dir.
+ * Computes the penetration depth: the least distance by which obj2 must move to separate the
+ * objects. The default call.
  *
- * `warm`: NULL, or the pair's state: a pair that stays apart costs one call of each support
- * function, and one that overlaps fewer than without. `want`: CCD_WANT_ flags; 0 for depth,
- * bounds and directions alone. Reads mpr_tolerance. center1 and center2 may be NULL; where they
- * are given they must lie in their objects, and save calls; depth_lower leans on them too.
- * Allocates nothing.
+ * `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
+ * point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for depth, bound and
+ * directions alone. Centers save support points; depth_lower relies on them too.
+ *
+ * Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
+ * depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.
  *
  * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
  */
@@ -213,78 +215,76 @@ int ccdPenetration(const void *obj1,
                    ccd_penetration_t *out);
 
 
-/* Yes or no. */
+/* Overlap: yes or no. */
 
 /**
- * Do the objects overlap? A pair that stays apart costs one call of each support function while
- * its last separating direction still separates. From the state, else from the centres, else
- * from first_dir.
+ * Reports whether the objects overlap.
  *
- * Reads no tolerance and no max_iterations. center1 and center2 may be NULL; where they are
- * given they must lie in their objects. `warm` may be NULL. Allocates nothing.
+ * `warm`: the pair's state, may be NULL; with a state a pair costs one support point while its
+ * last separating axis still separates.
  *
- * Returns 1 when they overlap, 0 when they do not; a touch within rounding is no overlap, nor
- * is what CCD_BAD_INPUT stands for.
+ * Reads no tolerance and no max_iterations. Allocates nothing.
+ *
+ * Returns 1 when they overlap; 0 when they are apart or touch within rounding, when support1 or
+ * support2 is NULL, or when a center or a point is not finite.
  */
 CCD_EXPORT int ccdIntersect(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
 
 
-/* Distance: how far apart, or how deep. */
+/* Distance: gap or depth. */
 
 /**
- * What ccdSignedDistance answers. What was not wanted is zero.
+ * Result of ccdSignedDistance. A field that was not requested is zero.
  */
 typedef struct ccd_distance_t {
   /**
-   * Metres: the gap along normal where the objects are apart, minus the depth where they
-   * overlap. Never more than the true signed distance: obj2 may come nearer by it.
+   * Proven lower bound of the signed distance, metres: the gap along normal where the objects
+   * are apart, minus the depth where they overlap.
    */
   ccd_real_t distance;
   /**
-   * Metres, never less than the true signed distance: apart |point1 - point2|, overlapping
-   * minus the least depth proven. distance_upper - distance <= dist_tolerance unless
-   * CCD_LIMIT was returned or distance > max_distance.
+   * Proven upper bound of the signed distance, metres: |point1 - point2| where the objects are
+   * apart, minus the lower bound of the depth where they overlap. distance_upper - distance <=
+   * dist_tolerance unless CCD_LIMIT was returned or distance > max_distance.
    */
   ccd_real_t distance_upper;
   /**
-   * Unit, from obj1 to obj2: the way obj2 moves to be farther.
+   * Unit, from obj1 to obj2: moving obj2 along it increases the distance.
    */
   ccd_vec3_t normal;
   /**
-   * Witness point on the surface of obj1 with its margin; CCD_WANT_POINTS.
+   * Witness point on the surface of obj1 with its margin, CCD_WANT_POINTS.
    */
   ccd_vec3_t point1;
   /**
-   * Witness point on the surface of obj2 with its margin; CCD_WANT_POINTS.
+   * Witness point on the surface of obj2 with its margin, CCD_WANT_POINTS.
    */
   ccd_vec3_t point2;
   /**
-   * Half of the calls of support1 and support2 together, rounded up: a support point of the
-   * Minkowski difference is one call of each. Positions need further calls of one alone.
+   * Number of support points: half of the calls of support1 and support2 together, rounded up.
    */
   unsigned long support_calls;
   /**
-   * Iterations of the solver.
+   * Number of iterations of the solver.
    */
   unsigned long iterations;
 } ccd_distance_t;
 
 /**
- * How far apart, or how deep: one continuous function through the touch.
+ * Computes the signed distance: the gap of objects that are apart, minus the penetration depth of
+ * objects that overlap; continuous through the touch.
  *
- * margin1, margin2, metres, >= 0: the objects are meant with a ball of that radius added all
- * around, and the support functions give the cores. (A sphere is a point with a margin, a
- * capsule a segment, a rounded box a box.) The signed distance is the cores' minus both
- * margins, overlapping cores included.
+ * `margin1`, `margin2`: metres, >= 0; radii of balls added all around the objects, whose support
+ * functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
+ * a box). The signed distance is that of the cores minus both margins, exactly. `max_distance`:
+ * metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
+ * `warm`: may be NULL. `want`: CCD_WANT_POINTS; 0 saves support points where the objects overlap.
  *
- * `max_distance`, metres, >= 0: the search ends as soon as the distance is known to be greater.
- * INFINITY: it is always refined. Reads dist_tolerance. center1, center2 and first_dir may
- * be NULL. `warm` may be NULL. `want`: CCD_WANT_POINTS; 0 saves support points where objects
- * overlap. Takes no memory from malloc while the cores are apart.
+ * Reads dist_tolerance. Allocates only where the cores overlap and their minima (nearly) form a
+ * curve or a surface.
  *
- * Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding, whose distance is
- * 0; *out is filled) or CCD_LIMIT (the bounds are still open); CCD_BAD_INPUT, or CCD_NO_MEMORY
- * (cores that overlap only).
+ * Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding with distance 0; *out is
+ * filled), CCD_LIMIT (the bounds have not met), CCD_BAD_INPUT or CCD_NO_MEMORY.
  */
 CCD_EXPORT
 int ccdSignedDistance(const void *obj1,
@@ -386,15 +386,16 @@ int ccdContacts(const void *obj1,
                 int max);
 
 
-/* For special wishes: one valley, a proof, a direction, a plane. */
+/* Special penetration queries: local minimum, proven minimum, along a direction, in a plane. */
 
 /**
- * Returns a local minimum of the penetration depth, by a walk on known vertices. Faster than
- * ccdPenetration with a state or a guess that is roughly right; from far off it may end in
- * another minimum. Where the walk ends without one, the global search follows. From the state, else from the centres, else from first_dir.
+ * Computes a local minimum of the penetration depth by a walk on known vertices. Faster than
+ * ccdPenetration from a state or a guess that is roughly right; from a distant one it may find
+ * another minimum. Where the walk finds none, the global search follows.
  *
- * Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
- * flags. Allocates nothing.
+ * `warm`: may be NULL. `want`: CCD_WANT_ flags.
+ *
+ * Reads mpr_tolerance. Allocates nothing.
  *
  * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
  */
@@ -407,12 +408,13 @@ int ccdPenetrationLocal(const void *obj1,
                         ccd_penetration_t *out);
 
 /**
- * The least penetration depth with its proof: depth - depth_lower <= epa_tolerance on CCD_HIT.
- * From the state, else from the centres, else from first_dir.
+ * Computes the globally least penetration depth with a certificate: depth - depth_lower <=
+ * epa_tolerance on CCD_HIT. Does not rely on the centers.
  *
- * Reads epa_tolerance. center1 and center2 may be NULL, and are not trusted. `warm` may be NULL.
- * `want`: CCD_WANT_ flags. Takes memory from malloc only where the minima (nearly) form a curve
- * or a surface; there the bounds may stay open: CCD_LIMIT.
+ * `warm`: may be NULL. `want`: CCD_WANT_ flags.
+ *
+ * Reads epa_tolerance. Allocates only where the minima (nearly) form a curve or a surface; there
+ * the bounds may not meet: CCD_LIMIT.
  *
  * Returns CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY.
  */
@@ -425,11 +427,13 @@ int ccdPenetrationProven(const void *obj1,
                          ccd_penetration_t *out);
 
 /**
- * How far obj2 must move along `dir` to separate (directional penetration depth).
+ * Computes the directional penetration depth: the least distance by which obj2 must move along
+ * `dir` to separate the objects.
  *
- * `dir` need not be unit; zero, not finite or NULL is CCD_BAD_INPUT. Reads mpr_tolerance,
- * measured along `dir`. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
- * flags. Allocates nothing.
+ * `dir`: of any length; NULL, zero or not finite is CCD_BAD_INPUT. `warm`: may be NULL. `want`:
+ * CCD_WANT_ flags.
+ *
+ * Reads mpr_tolerance, measured along `dir`. Allocates nothing.
  *
  * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
  */
@@ -443,12 +447,13 @@ int ccdPenetrationAlong(const void *obj1,
                         ccd_penetration_t *out);
 
 /**
- * A local minimum of the penetration depth among the directions of a plane, for shapes that lie
- * in a common plane with this normal. From the state, else from the centres, else from first_dir.
+ * Computes a local minimum of the penetration depth over the directions in a plane, for objects
+ * that lie in a common plane.
  *
- * `plane_normal` need not be unit; zero, not finite or NULL is CCD_BAD_INPUT. Reads
- * mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_ flags.
- * Allocates nothing.
+ * `plane_normal`: of any length; NULL, zero or not finite is CCD_BAD_INPUT. `warm`: may be NULL.
+ * `want`: CCD_WANT_ flags.
+ *
+ * Reads mpr_tolerance. Allocates nothing.
  *
  * Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
  */
@@ -462,15 +467,19 @@ int ccdPenetrationPlanar(const void *obj1,
                          ccd_penetration_t *out);
 
 
-/* For programs that call libccd's MPR: the same calls with one argument more. What they return
- * and what they need is what libccd says, so center1 and center2 must be given. */
+/* libccd's MPR calls with a state, for programs that use libccd: outputs and codes are libccd's,
+ * and center1 and center2 are required. */
 
 /**
- * ccdMPRPenetration with memory: ccdPenetration with libccd's outputs and codes.
+ * Computes the penetration depth as ccdMPRPenetration does, with a state.
  *
- * `warm` may be NULL. Returns 0 and writes the outputs that are not NULL (a `pos` of NULL saves
- * what CCD_WANT_POS costs), or -1: apart, or an argument or a callback's answer that no query can
- * work with.
+ * `warm`: may be NULL. `depth`, `dir`, `pos`: each may be NULL; NULL for `pos` saves the cost of
+ * CCD_WANT_POS.
+ *
+ * Reads mpr_tolerance; CCD_INIT's value replaces a negative or NaN one. Allocates nothing.
+ *
+ * Returns 0 where ccdPenetration returns CCD_HIT or CCD_LIMIT; -1, with the outputs unchanged,
+ * where it returns CCD_MISS or CCD_BAD_INPUT, or when a center callback is NULL.
  */
 CCD_EXPORT
 int ccdMPRPenetrationWarm(const void *obj1,
@@ -482,9 +491,13 @@ int ccdMPRPenetrationWarm(const void *obj1,
                           ccd_vec3_t *pos);
 
 /**
- * ccdMPRIntersect with memory: ccdIntersect where centres are given.
+ * Reports whether the objects overlap as ccdMPRIntersect does, with a state.
  *
- * `warm` may be NULL. Returns 1 or 0.
+ * `warm`: may be NULL.
+ *
+ * Reads no tolerance and no max_iterations. Allocates nothing.
+ *
+ * Returns the value of ccdIntersect; 0 when a center callback is NULL.
  */
 CCD_EXPORT
 int ccdMPRIntersectWarm(const void *obj1,
@@ -493,10 +506,10 @@ int ccdMPRIntersectWarm(const void *obj1,
                         ccd_warm_t *warm);
 
 
-/* Something is odd? What is wrong with an object's support function and centre. */
+/* Check: tests an object's support function and center. */
 
 /**
- * A point, or the centre, is NaN or infinite. Nothing else is told.
+ * A point or the center is NaN or infinite. Nothing else is tested then.
  */
 #define CCD_CHECK_NOT_FINITE 1
 
@@ -506,69 +519,70 @@ int ccdMPRIntersectWarm(const void *obj1,
 #define CCD_CHECK_OPPOSITE 2
 
 /**
- * Points contradict each other by `noise`, more than rounding: one answered along one direction
- * is farther along another than that one's own. By as little as single precision: ask for no
- * tolerance finer than some times the noise. By more: a wrong frame (the direction is to be
- * turned into the body's, the point back), points of another object, or a search over the
- * vertices that stops too early.
+ * A point lies beyond the support plane of another direction by `noise`, more than rounding. Of
+ * the order of single precision: choose tolerances of several times the noise or more. Greater: a
+ * wrong frame (the direction must be rotated to the body's frame, the point back), points of
+ * another object, or a search over the vertices that stops too early.
  */
 #define CCD_CHECK_CONTRADICTS 4
 
 /**
- * The same direction asked again is answered otherwise: the answer depends on earlier calls.
+ * The same direction returns another point later: the point depends on earlier calls.
  */
 #define CCD_CHECK_CHANGES 8
 
 /**
- * The centre lies outside of the object. The MPR calls and ccdPenetration then miss overlaps, and
- * answer what is apart as deep.
+ * The center lies outside the object. The MPR calls and ccdPenetration then miss overlaps, and
+ * report overlaps of objects that are apart.
  */
 #define CCD_CHECK_CENTER_OUTSIDE 16
 
 /**
- * There is no centre: `center` is NULL. libccd's MPR calls need one; the extension's others do
- * not.
+ * `center` is NULL. Calls with MPR in their name require it, others do not.
  */
 #define CCD_CHECK_CENTER_MISSING 32
 
 /**
- * What ccdCheck found. Lengths are metres.
+ * Result of ccdCheck. Lengths are metres.
  */
 typedef struct ccd_check_t {
   /**
-   * The greatest width of the object, about: is it what you think it is?
+   * Greatest width of the object, approximately.
    */
   ccd_real_t size;
   /**
-   * How far a point lies beyond the support plane of another at most.
+   * Greatest distance of a point beyond the support plane of another direction.
    */
   ccd_real_t noise;
   /**
-   * How far the answer along one direction moved along it when asked again at most.
+   * Greatest change of a support value in the repeated calls.
    */
   ccd_real_t change;
   /**
-   * How far the centre lies outside; negative: how deep inside, the deeper the better. 0 without
-   * one.
+   * Distance of the center from the object; negative inside, the less the better. 0 without a
+   * center.
    */
   ccd_real_t center_outside;
   /**
-   * Unit: the direction in which the worst was found; of no meaning where nothing is wrong.
+   * Direction of the worst fault, unit; meaningless where there is none.
    */
   ccd_vec3_t dir;
 } ccd_check_t;
 
 /**
- * What is wrong with an object's support function and centre, as far as 192 directions tell,
- * each asked twice. For when an answer is odd, and for tests; not for every frame.
+ * Tests an object's support function and center along 192 directions, each evaluated twice. For
+ * debugging and tests, too slow for every frame.
  *
- * It finds what the queries cannot tell from another object: a forgotten centre, a wrong sign, a
- * frame mixed up. What is found is wrong for certain; a fault that shows in few directions may
- * be missed. `obj` is handed to the callbacks. `center` may be NULL. `out` may be NULL; else it is
- * filled unless CCD_BAD_INPUT is returned.
+ * Detects faults that a query cannot distinguish from another object: a missing center, a wrong
+ * sign, a wrong frame. A reported fault is certain; a fault in few directions may be missed.
  *
- * Returns 0 where nothing is wrong, CCD_CHECK_ flags where something is, or CCD_BAD_INPUT: `support`
- * is NULL.
+ * `obj`: passed to the callbacks. `center`: may be NULL. `out`: may be NULL; else filled unless
+ * CCD_BAD_INPUT is returned.
+ *
+ * Reads no tolerance. Allocates nothing.
+ *
+ * Returns 0 where no fault is found, CCD_CHECK_ flags where one is, or CCD_BAD_INPUT where
+ * `support` is NULL.
  */
 CCD_EXPORT
 int ccdCheck(const void *obj,
@@ -577,11 +591,11 @@ int ccdCheck(const void *obj,
              ccd_check_t *out);
 
 
-/* Which library this is. */
+/* Identity of the library. */
 
 /**
- * Which library a process really runs, and in which precision: "warmccd 0.2.0 double", a
- * string that lives as long as the library.
+ * Returns name, version and precision of the library that the process runs:
+ * "warmccd 0.2.0 double", a static string.
  */
 CCD_EXPORT const char *ccdImplementation(void);
 

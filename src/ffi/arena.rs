@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The memory of the largest polytopes: one block of C's heap, taken only when needed.
+//! Allocates the memory of the largest polytopes: one block of C's heap, when a query needs it.
 //!
 //! A C callback may throw or longjmp over this frame, so nothing in [`with`] has a destructor: it
 //! frees the block when the query returns, and a callback that unwinds leaks it. [`Heap`] is for
@@ -19,7 +19,7 @@ struct Block(Option<NonNull<EpaBuffers>>);
 impl Block {
     fn free(&mut self) {
         if let Some(block) = self.0.take() {
-            // SAFETY: [heap]; nobody uses the block any more.
+            // SAFETY: [heap]; the block is no longer used.
             unsafe { free(block.as_ptr().cast()) };
         }
     }
@@ -36,12 +36,12 @@ impl Arena for Block {
             }
         };
         self.0 = Some(block);
-        // SAFETY: [heap]; and zero bytes are a EpaBuffers, which holds numbers alone.
+        // SAFETY: [heap]; zero bytes are a valid EpaBuffers, which holds numbers alone.
         Ok(unsafe { &mut *block.as_ptr() })
     }
 }
 
-/// Runs `query` with an arena.
+/// Runs `query` with an arena and frees the arena's block.
 pub fn with<R>(query: impl FnOnce(&mut dyn Arena) -> R) -> R {
     let mut block = Block::default();
     let result = query(&mut block);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! A C caller's objects and settings, as the solvers want them.
+//! Converts a C caller's objects and settings to the types of the solvers.
 
 use core::ffi::{c_ulong, c_void};
 
@@ -11,7 +11,7 @@ use crate::math::{ITERATION_CAP, Real, Vec3, from_real};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::query::Pair;
 
-/// One object behind libccd's support callback.
+/// An object whose support function is a C callback.
 #[derive(Clone, Copy)]
 pub struct Object {
     obj: *const c_void,
@@ -19,7 +19,7 @@ pub struct Object {
 }
 
 impl Object {
-    /// An object and its support function.
+    /// Pairs an object with its support function.
     pub fn new(obj: *const c_void, support: ccd_support_fn) -> Self {
         Self { obj, support }
     }
@@ -28,8 +28,8 @@ impl Object {
 impl SupportMap for Object {
     #[inline]
     fn support(&self, dir: &Vec3) -> Vec3 {
-        // A whole-struct copy is stored in two packed moves, which a callee's
-        // vector loads can be forwarded from; three scalar stores would stall it.
+        // A copy of the whole struct is stored by two packed moves, which forward to the
+        // vector loads of a callee; three scalar stores would stall them.
         let dir = ccd_vec3_t::from(*dir);
         let mut point = ccd_vec3_t::default();
         // SAFETY: [callbacks]; nothing with a destructor is alive here.
@@ -38,8 +38,8 @@ impl SupportMap for Object {
     }
 }
 
-/// Reads a vector that a callback has just written, in three scalar loads: most callbacks store three
-/// scalars, and a packed load would wait for two stores.
+/// Reads a vector that a callback has just written, by three scalar loads: most callbacks store
+/// three scalars, and a packed load would wait for two stores.
 #[inline(always)]
 fn load(written: &ccd_vec3_t) -> Vec3 {
     // SAFETY: a reference.
@@ -51,38 +51,37 @@ fn load(written: &ccd_vec3_t) -> Vec3 {
     )
 }
 
-/// What a call needs and reads of a [`ccd_t`].
+/// The callbacks that a query needs and the tolerance that it reads from a [`ccd_t`].
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Call {
-    /// libccd's MPR: the centres, mpr_tolerance.
+pub enum Kind {
+    /// libccd's MPR: needs both centers; reads mpr_tolerance.
     Mpr,
-    /// libccd's GJK: first_dir, epa_tolerance; the centres are not asked for.
+    /// libccd's GJK: needs first_dir, calls no center; reads epa_tolerance.
     Gjk,
-    /// The extension's, from the centres, or where these are not given from first_dir, or from
-    /// anywhere; mpr_tolerance.
-    Refined,
-    /// The same with epa_tolerance.
+    /// The extension's: centers and first_dir are optional; reads mpr_tolerance.
+    Penetration,
+    /// The same; reads epa_tolerance.
     Proven,
-    /// The same with dist_tolerance.
+    /// The same; reads dist_tolerance.
     Distance,
 }
 
-impl Call {
-    /// Is it one of libccd's?
+impl Kind {
+    /// Returns whether the query is one of libccd's.
     fn is_libccd(self) -> bool {
-        matches!(self, Call::Mpr | Call::Gjk)
+        matches!(self, Kind::Mpr | Kind::Gjk)
     }
 }
 
-/// Tolerance of a compatible call whose own is NaN or negative: what CCD_INIT sets.
+/// The tolerance of CCD_INIT, metres: used by libccd's calls where the caller's is negative or NaN.
 const DEFAULT_TOLERANCE: Real = 1e-4;
 
-/// A query as a C caller states it.
+/// The arguments that every query takes from a C caller.
 #[derive(Clone, Copy)]
 pub struct Query {
-    /// The caller's first object, passed through.
+    /// The first object, passed to the callbacks.
     pub obj1: *const c_void,
-    /// The caller's second object, passed through.
+    /// The second object, passed to the callbacks.
     pub obj2: *const c_void,
     /// Callbacks and settings; read field by field, because callers leave the
     /// fields that a query does not use uninitialised.
@@ -90,7 +89,7 @@ pub struct Query {
 }
 
 impl Query {
-    /// The two objects; `None` when `ccd` or a support callback is NULL.
+    /// Returns the two objects; `None` when `ccd` or a support callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
@@ -112,19 +111,19 @@ impl Query {
         ))
     }
 
-    /// The difference of the objects' centres, finite or not; `None` when a callback is NULL.
+    /// Returns the difference of the centers, finite or not; `None` when a callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
-    unsafe fn centre(&self) -> Option<SupportPoint> {
+    unsafe fn center(&self) -> Option<SupportPoint> {
         // SAFETY: [inputs]; only the two fields are read.
         let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
         // SAFETY: [callbacks].
-        let (v1, v2) = unsafe { (centre_of(center1, self.obj1), centre_of(center2, self.obj2)) };
+        let (v1, v2) = unsafe { (center_of(center1, self.obj1), center_of(center2, self.obj2)) };
         Some(SupportPoint { v: v1 - v2, v1, v2 })
     }
 
-    /// The direction of the caller's first_dir callback, as it is; `None` when the
+    /// Returns the direction of the first_dir callback, not normalised; `None` when the
     /// callback is NULL.
     ///
     /// # Safety
@@ -138,70 +137,70 @@ impl Query {
         Some(dir.into())
     }
 
-    /// The pair, and where to look first; `None` when `ccd` or a callback that the call needs is
-    /// NULL, or a centre is not finite. `lasting`: whether the caller keeps a state.
+    /// Returns the pair with its centers or first direction; `None` when `ccd` or a callback that
+    /// the query needs is NULL, or a center is not finite. `has_state`: the caller keeps a state.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn pair(&self, call: Call, lasting: bool) -> Option<Pair<Object, Object>> {
+    pub unsafe fn pair(&self, kind: Kind, has_state: bool) -> Option<Pair<Object, Object>> {
         // SAFETY: passed on.
         unsafe {
             let (obj1, obj2) = self.objects()?;
-            let centre = match call {
-                Call::Gjk => None,
-                _ => self.centre(),
+            let center = match kind {
+                Kind::Gjk => None,
+                _ => self.center(),
             };
-            if centre.is_some_and(|c| !c.v.sum().is_finite())
-                || call == Call::Mpr && centre.is_none()
+            if center.is_some_and(|c| !c.v.sum().is_finite())
+                || kind == Kind::Mpr && center.is_none()
             {
                 return None;
             }
-            let first_dir = match centre {
+            let first_dir = match center {
                 Some(_) => None,
                 None => self.first_dir(),
             };
-            if call == Call::Gjk && first_dir.is_none() {
+            if kind == Kind::Gjk && first_dir.is_none() {
                 return None;
             }
             Some(Pair {
                 md: MinkowskiDifference::new(obj1, obj2),
-                centre,
+                centre: center,
                 first_dir,
-                lasting,
+                lasting: has_state,
             })
         }
     }
 
-    /// The pair and the settings; `None` where there is no
-    /// [`Query::pair`], or the tolerance is negative or NaN: libccd's calls then take their default.
+    /// Returns the pair and the settings; `None` where [`Query::pair`] does, or where the tolerance
+    /// is negative or NaN. libccd's calls then take [`DEFAULT_TOLERANCE`].
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn ready(
+    pub unsafe fn prepare(
         &self,
-        call: Call,
-        lasting: bool,
+        kind: Kind,
+        has_state: bool,
     ) -> Option<(Pair<Object, Object>, Settings)> {
         if self.ccd.is_null() {
             return None;
         }
         // SAFETY: [inputs]; only the fields named are read.
         unsafe {
-            let mut tolerance = match call {
-                Call::Mpr | Call::Refined => (*self.ccd).mpr_tolerance,
-                Call::Gjk | Call::Proven => (*self.ccd).epa_tolerance,
-                Call::Distance => (*self.ccd).dist_tolerance,
+            let mut tolerance = match kind {
+                Kind::Mpr | Kind::Penetration => (*self.ccd).mpr_tolerance,
+                Kind::Gjk | Kind::Proven => (*self.ccd).epa_tolerance,
+                Kind::Distance => (*self.ccd).dist_tolerance,
             };
-            // Negated for NaN.
+            // Negated, so that NaN counts as negative.
             if !(tolerance >= 0.0) {
-                if !call.is_libccd() {
+                if !kind.is_libccd() {
                     return None;
                 }
                 tolerance = DEFAULT_TOLERANCE;
             }
-            let pair = self.pair(call, lasting)?;
+            let pair = self.pair(kind, has_state)?;
             let max: c_ulong = (*self.ccd).max_iterations;
             #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
             let max_iterations = ITERATION_CAP.min(max as u64);
@@ -214,11 +213,11 @@ impl Query {
     }
 }
 
-/// An object's centre, finite or not.
+/// Returns an object's center, finite or not.
 ///
 /// # Safety
 /// \[callbacks\] of the module contract.
-pub unsafe fn centre_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
+pub unsafe fn center_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
     let mut c = ccd_vec3_t::default();
     // SAFETY: [callbacks].
     unsafe { center(obj, &mut c) };

@@ -1,23 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! libccd's own queries.
+//! Exports libccd's own queries. CCD_INIT's value replaces a tolerance that is negative or NaN.
 
 use core::ffi::{c_int, c_void};
 
 use super::arena;
-use super::callbacks::{Call, Query};
+use super::callbacks::{Kind, Query};
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::intersect::intersect;
-use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_s, write};
-use super::warm::penetration::run;
+use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_code, write_outputs};
+use super::warm::penetration::run_query;
 use crate::contact::Penetration;
 use crate::math::Real;
 
-/// Do the objects overlap? Starts from the centres, and relies on their lying in the objects.
+/// Reports whether the objects overlap. Starts from the centers, which must lie in their objects.
 ///
-/// Returns 1 when they overlap, 0 when they do not (a touch within rounding is no overlap),
-/// when a callback is NULL or a point not finite. max_iterations is not read.
+/// Reads no tolerance and no max_iterations. Allocates nothing.
+///
+/// Returns 1 when they overlap; 0 when they are apart or touch within rounding, when a support or
+/// center callback is NULL, or when a point is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     obj1: *const c_void,
@@ -28,9 +30,11 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, core::ptr::null_mut()) }
 }
 
-/// Do the objects overlap? Starts from first_dir; the centres are not asked for.
+/// Reports whether the objects overlap. Starts from first_dir and calls no center.
 ///
-/// Returns as [`ccdMPRIntersect`].
+/// Reads no tolerance and no max_iterations. Allocates nothing.
+///
+/// Returns the codes of [`ccdMPRIntersect`].
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     obj1: *const c_void,
@@ -39,21 +43,24 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
 ) -> c_int {
     // SAFETY: passed on.
     unsafe {
-        let pair = Query { obj1, obj2, ccd }.pair(Call::Gjk, false);
+        let pair = Query { obj1, obj2, ccd }.pair(Kind::Gjk, false);
         intersect(pair, core::ptr::null_mut())
     }
 }
 
-/// How deep do the objects overlap, which way out, where? Starts from the centres.
+/// Computes penetration depth, direction and contact position. Starts from the centers, which must
+/// lie in their objects.
 ///
-/// Returns 0 and writes the outputs that are not NULL when they overlap:
-/// `depth` in metres, `dir` unit, the way obj2 moves, `pos` the centre of pressure, which is the
-/// centroid of the volume that the objects share, but for its height along dir. Returns -1 and leaves the outputs alone when they do not, when a
-/// callback is NULL or a point not finite.
+/// `depth`: metres; moving obj2 by depth * dir separates the objects. `dir`: unit. `pos`: the
+/// center of pressure, the centroid of the common volume except for its coordinate along dir. Each
+/// may be NULL.
 ///
-/// Of a support function, depth exceeds the least depth by no more than mpr_tolerance or 0.1 %
-/// of it; but where 160 support points or max_iterations came first, which is not told, it is
-/// only sound: moving obj2 by depth along dir separates.
+/// Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
+/// depth, the larger of the two; after 160 support points or max_iterations it is a sound upper
+/// bound. Allocates nothing.
+///
+/// Returns 0 when the objects overlap; -1, with the outputs unchanged, when they are apart or touch
+/// within rounding, when a support or center callback is NULL, or when a point is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     obj1: *const c_void,
@@ -67,8 +74,8 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
 }
 
-/// The global minimum, from first_dir; the centres are not asked for. A hit is told to `put`. Returns
-/// as [`ccdGJKPenetration`].
+/// Computes the global minimum from first_dir and passes a hit to `write_hit`. Returns the codes of
+/// [`ccdGJKPenetration`].
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
@@ -76,29 +83,34 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
 unsafe fn gjk_penetration(
     query: Query,
     wants_pos: bool,
-    put: &mut dyn FnMut(&Penetration),
+    write_hit: &mut dyn FnMut(&Penetration),
 ) -> c_int {
     // SAFETY: passed on.
-    libccd_s(unsafe {
-        run(
+    libccd_code(unsafe {
+        run_query(
             query,
-            Call::Gjk,
+            Kind::Gjk,
             core::ptr::null_mut(),
             |pair, state, settings, hit| {
                 arena::with(|arena| pair.minimum(state, settings, arena, wants_pos, hit))
             },
-            |hit, _| put(hit),
+            |hit, _| write_hit(hit),
         )
     })
 }
 
-/// How deep do the objects overlap, which way out, where? The global minimum, within
-/// epa_tolerance. Starts from first_dir; the centres are not asked for.
+/// Computes the globally least penetration depth, its direction and the contact position. Starts
+/// from first_dir and calls no center.
 ///
-/// Returns 0 and writes the outputs that are not NULL when they overlap, as
-/// [`ccdMPRPenetration`] does; -2 when memory cannot be had and -1 otherwise, and leaves
-/// the outputs alone. Where max_iterations or 360 support points came first, which is not
-/// told, the depth is only sound.
+/// `depth`, `dir`, `pos`: as of [`ccdMPRPenetration`]; each may be NULL.
+///
+/// Reads epa_tolerance, the largest error of depth, metres; after 320 support points or
+/// max_iterations depth is a sound upper bound. Allocates, and frees before it returns, only where
+/// the minima (nearly) form a curve or a surface.
+///
+/// Returns 0 when the objects overlap; with the outputs unchanged -2 when malloc fails, and -1 when
+/// they are apart or touch within rounding, when support or first_dir is NULL, or when a point is not
+/// finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     obj1: *const c_void,
@@ -111,13 +123,13 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     // SAFETY: passed on; [outputs].
     unsafe {
         gjk_penetration(Query { obj1, obj2, ccd }, !pos.is_null(), &mut |hit| {
-            write(hit, depth, dir, pos);
+            write_outputs(hit, depth, dir, pos);
         })
     }
 }
 
-/// The shortest translation of obj2 that separates the objects, written to `sep` unless
-/// that is NULL. Otherwise as [`ccdGJKPenetration`].
+/// Computes the shortest translation of obj2 that separates the objects, as
+/// [`ccdGJKPenetration`] does: `sep` = depth * dir, metres; may be NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdGJKSeparate(
     obj1: *const c_void,

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! libccd's polytope: vertices, edges and faces in intrusive lists, and the element
-//! nearest to the origin. No solver here uses it; FCL's EPA runs on it, with inline
-//! functions of its own that unlink and free() what is allocated here.
+//! Exports libccd's polytope: vertices, edges and faces in intrusive lists, and the element
+//! closest to the origin (libccd's field `nearest`). No solver here uses it. FCL's EPA does, with
+//! inline functions of its own that unlink and free() the nodes allocated here.
 //!
-//! So a node is one block of C's malloc, every link stands where libccd puts it, and
-//! `nearest` is kept by libccd's rule. The distances are [`crate::gjk::barycentric`]'s.
+//! So a node is one block of C's malloc, the links are ordered as libccd orders them, and
+//! `nearest` is updated by libccd's rule. [`crate::gjk::barycentric`] computes the distances.
 
 use core::ffi::{c_char, c_int};
 use core::mem::offset_of;
@@ -20,7 +20,7 @@ use super::{free, malloc};
 use crate::gjk::barycentric;
 use crate::math::{Real, Vec3};
 
-/// An empty polytope.
+/// Makes `pt` an empty polytope.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
     // SAFETY: [outputs].
@@ -28,15 +28,15 @@ pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
         for list in lists(pt) {
             list_init(list);
         }
-        forget_nearest(pt);
+        reset_nearest(pt);
     }
 }
 
-/// Frees every element and leaves the lists empty. Elements that something outside of
-/// the polytope's lists still hangs on stay allocated and linked.
+/// Frees every element and empties the lists. An edge or vertex that an element outside of the
+/// lists still refers to stays allocated and linked.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDestroy(pt: *mut ccd_pt_t) {
-    // SAFETY: [polytope]; an element is not looked at after it was deleted.
+    // SAFETY: [polytope]; an element is not read after it was deleted.
     unsafe {
         for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
             for edge in (*face).edge {
@@ -62,7 +62,7 @@ pub unsafe extern "C-unwind" fn ccdPtDestroy(pt: *mut ccd_pt_t) {
     }
 }
 
-/// Adds a vertex; NULL when memory cannot be had.
+/// Adds a vertex and returns it; NULL when malloc fails.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtAddVertex(
     pt: *mut ccd_pt_t,
@@ -82,7 +82,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddVertex(
     vertex
 }
 
-/// Adds the edge between two vertices; NULL when either is NULL or memory cannot be had.
+/// Adds the edge between two vertices and returns it; NULL when either is NULL or malloc fails.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtAddEdge(
     pt: *mut ccd_pt_t,
@@ -107,7 +107,7 @@ pub unsafe extern "C-unwind" fn ccdPtAddEdge(
     edge
 }
 
-/// Adds the face between three edges; NULL when any is NULL or memory cannot be had.
+/// Adds the face between three edges and returns it; NULL when any is NULL or malloc fails.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtAddFace(
     pt: *mut ccd_pt_t,
@@ -134,27 +134,27 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
     face
 }
 
-/// Computes distance and witness of every element anew; `nearest` stays as it is.
+/// Recomputes distance and witness of every element; leaves `nearest` unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
     // SAFETY: [polytope].
     unsafe {
         for list in lists(pt) {
             for element in elements(list) {
-                measure(element);
+                compute_distance(element);
             }
         }
     }
 }
 
-/// The element nearest to the origin: `pt->nearest` as it stands, searched only when that
-/// is NULL. NULL when there is none.
+/// Returns the element closest to the origin: `pt->nearest`, recomputed only where that is NULL.
+/// NULL when the polytope is empty.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_el_t {
     // SAFETY: [polytope].
     unsafe {
         if (*pt).nearest.is_null() {
-            forget_nearest(pt);
+            reset_nearest(pt);
             for list in lists(pt) {
                 for element in elements(list) {
                     update_nearest(pt, element);
@@ -165,7 +165,7 @@ pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_e
     }
 }
 
-/// Appends the dump of [`ccdPtDumpSVT2`] to the named file; nothing when it cannot be opened.
+/// Appends the dump of [`ccdPtDumpSVT2`] to the named file; no effect when it cannot be opened.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const c_char) {
     // SAFETY: [inputs] (a zero-terminated name), then [polytope].
@@ -178,8 +178,8 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const
     }
 }
 
-/// Writes the polytope to an open C stream as text, and numbers the vertices' `id`s by it:
-/// points, edges as two and faces as three numbers of points.
+/// Writes the polytope to an open C stream as text: points, edges as two and faces as three indices
+/// of points. Stores the index of each vertex in its `id`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut FILE) {
     // SAFETY: [inputs] (an open stream), [polytope]; the formats match what is passed.
@@ -203,7 +203,7 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut FILE
     }
 }
 
-/// A stream of C's, only handed on.
+/// A C stream, passed on to C's functions.
 #[repr(C)]
 pub struct FILE {
     _opaque: [u8; 0],
@@ -216,7 +216,7 @@ unsafe extern "C" {
     fn fprintf(file: *mut FILE, format: *const c_char, ...) -> c_int;
 }
 
-/// One node, not initialised; NULL when memory cannot be had.
+/// Allocates an uninitialised node; NULL when malloc fails.
 #[inline(always)]
 fn allocate<T>() -> *mut T {
     // SAFETY: malloc may be called with any size; its blocks are aligned for any node.
@@ -235,7 +235,7 @@ unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     }
 }
 
-/// The polytope's lists, by [`ccd_pt_el_t::kind`].
+/// Returns the lists of vertices, edges and faces.
 #[inline(always)]
 unsafe fn lists(pt: *mut ccd_pt_t) -> [*mut ccd_list_t; 3] {
     // SAFETY: [polytope].
@@ -248,13 +248,13 @@ unsafe fn lists(pt: *mut ccd_pt_t) -> [*mut ccd_list_t; 3] {
     }
 }
 
-/// Ends the addition of a new element: its common part, its list, `nearest`.
+/// Initialises the common part of a new element, links it and updates `nearest`.
 #[inline(always)]
 unsafe fn insert(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t, kind: c_int) {
     // SAFETY: [polytope].
     unsafe {
         (*element).kind = kind;
-        measure(element);
+        compute_distance(element);
         let [vertices, edges, faces] = lists(pt);
         let list = match kind {
             CCD_PT_VERTEX => vertices,
@@ -266,9 +266,9 @@ unsafe fn insert(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t, kind: c_int) {
     }
 }
 
-/// An element's point nearest to the origin, and its squared distance.
+/// Computes the point of an element closest to the origin and its squared distance.
 #[inline(always)]
-unsafe fn measure(element: *mut ccd_pt_el_t) {
+unsafe fn compute_distance(element: *mut ccd_pt_el_t) {
     let origin = Vec3::zeros();
     // SAFETY: [polytope]; an element's kind is that of its block.
     unsafe {
@@ -289,8 +289,8 @@ unsafe fn measure(element: *mut ccd_pt_el_t) {
     }
 }
 
-/// No element is nearest: as after [`ccdPtInit`].
-unsafe fn forget_nearest(pt: *mut ccd_pt_t) {
+/// Sets `nearest` to none, as [`ccdPtInit`] does.
+unsafe fn reset_nearest(pt: *mut ccd_pt_t) {
     // SAFETY: [polytope].
     unsafe {
         (*pt).nearest = null_mut();
@@ -299,21 +299,21 @@ unsafe fn forget_nearest(pt: *mut ccd_pt_t) {
     }
 }
 
-/// Takes `element` for the nearest if it is: nearer wins, and at equal distance the lower
-/// type. An element at a NaN distance is never nearest.
+/// Stores `element` as `nearest` if it is closer, or as close and of a lower type. An element at a
+/// NaN distance is never stored.
 #[inline(always)]
 unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     // SAFETY: [polytope].
     unsafe {
         let (dist, kind) = ((*element).dist, (*element).kind);
         let lower = kind < (*pt).nearest_type;
-        // Whether they are equal is asked last: in a scan the first two settle most.
-        let nearer = if dist < (*pt).nearest_dist {
+        // Equality is tested last: the first two comparisons decide most cases.
+        let is_closer = if dist < (*pt).nearest_dist {
             lower || !equal((*pt).nearest_dist, dist)
         } else {
             lower && equal((*pt).nearest_dist, dist)
         };
-        if nearer {
+        if is_closer {
             (*pt).nearest = element;
             (*pt).nearest_dist = dist;
             (*pt).nearest_type = kind;
@@ -321,7 +321,7 @@ unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     }
 }
 
-/// ccdEq of `ccd/vec3.h`. Its absolute term is a part of the interface: it decides ties
+/// Returns ccdEq of `ccd/vec3.h`. Its absolute term is part of the interface: it decides ties
 /// between elements, which FCL's EPA depends on.
 #[inline(always)]
 fn equal(a: Real, b: Real) -> bool {
@@ -330,7 +330,7 @@ fn equal(a: Real, b: Real) -> bool {
     difference < Real::EPSILON || difference < Real::EPSILON * if b > a { b } else { a }
 }
 
-/// The two vertices of the first edge, and the one of the second that is neither.
+/// Returns the vertices of the first edge, and the vertex of the second that is not among them.
 #[inline(always)]
 unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
     // SAFETY: [polytope].
@@ -369,8 +369,8 @@ unsafe fn list_remove(node: *mut ccd_list_t) {
     }
 }
 
-/// The elements of one of the polytope's lists, in order. The caller may delete the
-/// element it was given last.
+/// Iterates over the elements of one of the polytope's lists, in order. The caller may delete the
+/// current element.
 unsafe fn elements<T>(head: *mut ccd_list_t) -> impl Iterator<Item = *mut T> {
     // SAFETY: [polytope].
     let mut next = unsafe { (*head).next };

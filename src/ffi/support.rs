@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The two support functions that libccd exports for others to build solvers on.
+//! Exports libccd's first direction and its support function of the Minkowski difference.
 
 use core::ffi::c_void;
 
 use super::types::{ccd_support_t, ccd_t, ccd_vec3_t};
 use crate::math::Vec3;
 
-/// Writes (1, 0, 0) to `dir`: the first direction that `CCD_INIT` sets.
+/// Writes (1, 0, 0) to `dir`. `CCD_INIT` sets this callback.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdFirstDirDefault(
     _obj1: *const c_void,
@@ -19,8 +19,8 @@ pub unsafe extern "C-unwind" fn ccdFirstDirDefault(
     unsafe { *dir = Vec3::x().into() };
 }
 
-/// Writes the support point of the Minkowski difference along `dir` to `supp`. `dir`
-/// reaches the callbacks as it is, unit or not, and may be part of `supp`.
+/// Writes the support point of the Minkowski difference along `dir` to `supp`. `dir` is passed to
+/// the callbacks without normalisation and may be part of `supp`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn __ccdSupport(
     obj1: *const c_void,

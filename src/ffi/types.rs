@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The C side's types, field for field as libccd.so.2 lays them out. Names are
-//! libccd's, so that a C programmer finds them here; sizes and offsets are asserted below.
+//! Defines libccd's C types with the names and the layout of libccd.so.2; sizes and offsets are
+//! asserted below.
 
 #![allow(non_camel_case_types, missing_docs)]
 
@@ -10,7 +10,7 @@ use core::ffi::{c_int, c_ulong, c_void};
 
 use crate::math::{Real, Vec3, from_real, to_real};
 
-/// A point or direction, metres.
+/// A point (metres) or a direction.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ccd_vec3_t {
@@ -38,17 +38,17 @@ pub struct ccd_quat_t {
     pub q: [Real; 4],
 }
 
-/// Writes the point of `obj` farthest along `dir` to `vec`.
+/// Writes a point of `obj` farthest along `dir` to `vec`.
 pub type ccd_support_fn =
     unsafe extern "C-unwind" fn(obj: *const c_void, dir: *const ccd_vec3_t, vec: *mut ccd_vec3_t);
-/// Writes the direction a GJK query starts from to `dir`.
+/// Writes the first direction of a GJK query to `dir`.
 pub type ccd_first_dir_fn =
     unsafe extern "C-unwind" fn(obj1: *const c_void, obj2: *const c_void, dir: *mut ccd_vec3_t);
 /// Writes an interior point of `obj` to `center`.
 pub type ccd_center_fn = unsafe extern "C-unwind" fn(obj: *const c_void, center: *mut ccd_vec3_t);
 
-/// Callbacks and settings of a query. Any callback that a query does not use may be NULL,
-/// and any tolerance that it does not read may be uninitialised: never read the whole struct.
+/// Callbacks and settings of a query. A callback that a query does not use may be NULL, and a
+/// tolerance that it does not read may be uninitialised: never read the whole struct.
 #[repr(C)]
 pub struct ccd_t {
     pub first_dir: Option<ccd_first_dir_fn>,
@@ -62,7 +62,7 @@ pub struct ccd_t {
     pub dist_tolerance: Real,
 }
 
-/// A support point `v = v1 - v2` of the Minkowski difference and its two witnesses.
+/// A support point `v = v1 - v2` of the Minkowski difference and its two witness points.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ccd_support_t {
@@ -94,7 +94,7 @@ pub const CCD_PT_EDGE: c_int = 2;
 /// [`ccd_pt_el_t::kind`] of a face.
 pub const CCD_PT_FACE: c_int = 3;
 
-/// What vertices, edges and faces begin with.
+/// The common first part of vertices, edges and faces.
 #[repr(C)]
 #[derive(Debug)]
 pub struct ccd_pt_el_t {
@@ -102,7 +102,7 @@ pub struct ccd_pt_el_t {
     pub kind: c_int,
     /// Squared distance from the origin, m².
     pub dist: Real,
-    /// The point of the element nearest to the origin.
+    /// The point of the element closest to the origin.
     pub witness: ccd_vec3_t,
     /// Link in the polytope's list of this kind.
     pub list: ccd_list_t,
@@ -136,7 +136,7 @@ pub struct ccd_pt_face_t {
     pub edge: [*mut ccd_pt_edge_t; 3],
 }
 
-/// A polytope: three lists and the element nearest to the origin.
+/// A polytope: three lists and the element closest to the origin.
 #[repr(C)]
 #[derive(Debug)]
 pub struct ccd_pt_t {

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Point to segment and point to triangle distances, and the library's three data objects.
+//! Exports libccd's distances of points from segments and triangles, and its three data objects.
 
 use super::types::ccd_vec3_t;
 use crate::gjk::barycentric::{self, Nearest};
 use crate::math::{Real, Vec3};
 
-/// Squared distance, m², of point `p` from segment `ab`; the nearest point goes to
-/// `witness` unless that is NULL. The distance is that of the witness, asked for or not.
+/// Returns the squared distance, m², of point `p` from segment `ab`, and writes the closest point
+/// to `witness` unless that is NULL. Both cases return the same bits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
     p: *const ccd_vec3_t,
@@ -19,11 +19,11 @@ pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
     // SAFETY: [inputs].
     let (p, a, b) = unsafe { (read(p), read(a), read(b)) };
     // SAFETY: [outputs].
-    unsafe { answer(&p, barycentric::segment(&p, &a, &b), witness) }
+    unsafe { finish(&p, barycentric::segment(&p, &a, &b), witness) }
 }
 
-/// Squared distance, m², of point `p` from triangle `abc`; the nearest point goes to
-/// `witness` unless that is NULL. The distance is that of the witness, asked for or not.
+/// Returns the squared distance, m², of point `p` from triangle `abc`, and writes the closest point
+/// to `witness` unless that is NULL. Both cases return the same bits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     p: *const ccd_vec3_t,
@@ -35,7 +35,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     // SAFETY: [inputs].
     let (p, a, b, c) = unsafe { (read(p), read(a), read(b), read(c)) };
     // SAFETY: [outputs].
-    unsafe { answer(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
+    unsafe { finish(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
 }
 
 #[inline(always)]
@@ -44,9 +44,10 @@ unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
     unsafe { *v }.into()
 }
 
+/// Writes the closest point to `witness` unless that is NULL, and returns its squared distance.
 #[inline(always)]
-unsafe fn answer<const N: usize>(p: &Vec3, nearest: Nearest<N>, witness: *mut ccd_vec3_t) -> Real {
-    let point = ccd_vec3_t::from(nearest.point);
+unsafe fn finish<const N: usize>(p: &Vec3, closest: Nearest<N>, witness: *mut ccd_vec3_t) -> Real {
+    let point = ccd_vec3_t::from(closest.point);
     if !witness.is_null() {
         // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
         unsafe { *witness = point };
@@ -61,7 +62,7 @@ pub(super) fn distance2(a: &ccd_vec3_t, b: &ccd_vec3_t) -> Real {
     x * x + y * y + z * z
 }
 
-/// Points to the origin. An object of 8 bytes, not a function: programs copy it.
+/// Points to the origin. Programs copy this object by relocation: its size is part of the ABI.
 #[unsafe(no_mangle)]
 pub static mut ccd_vec3_origin: *mut ccd_vec3_t = &raw mut ORIGIN;
 
@@ -70,7 +71,7 @@ pub static mut ccd_vec3_origin: *mut ccd_vec3_t = &raw mut ORIGIN;
 #[unsafe(no_mangle)]
 pub static mut ccd_points_on_sphere: *mut ccd_vec3_t = (&raw mut POINTS_ON_SPHERE).cast();
 
-/// How many vectors [`ccd_points_on_sphere`] points to.
+/// The number of vectors that [`ccd_points_on_sphere`] points to.
 #[unsafe(no_mangle)]
 pub static mut ccd_points_on_sphere_len: usize = 42;
 

@@ -1,26 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What this library adds to libccd's ccd.h: queries that start from a pair's last answer.
+//! Extends libccd's ccd.h by queries that start warm: from the result of the pair's last query.
 //! Made by cbindgen from src/ffi/warm/; edit there.
 //!
-//! To begin with: one ccd_warm_t a pair, kept between frames, all bytes zero at first, and
-//! ccdPenetration. Then, from here to the end:
+//! Start with ccdPenetration and one ccd_warm_t for each pair, zeroed at first and kept between
+//! frames. The sections:
 //!
-//!   codes      what every call that fills a struct returns
-//!   states     ccd_warm_t, ccdWarmGuess, ccdWarmFlip
-//!   the one    ccdPenetration: do they overlap, how deep, which way out, where
-//!   yes or no  ccdIntersect
-//!   distance   ccdSignedDistance
-//!   contacts   ccdContacts
-//!   special    ccdPenetrationLocal, ...Proven, ...Along, ...Planar
-//!   libccd's   ccdMPRPenetrationWarm, ccdMPRIntersectWarm
-//!   is it odd? ccdCheck: what is wrong with a support function
+//!   codes        returned by every call that fills a struct
+//!   states       ccd_warm_t, ccdWarmGuess, ccdWarmFlip
+//!   penetration  ccdPenetration: overlap, depth, direction, contact position
+//!   overlap      ccdIntersect
+//!   distance     ccdSignedDistance
+//!   contacts     ccdContacts
+//!   special      ccdPenetrationLocal, ...Proven, ...Along, ...Planar
+//!   libccd       ccdMPRPenetrationWarm, ccdMPRIntersectWarm
+//!   check        ccdCheck: tests a support function
+//!   identity     ccdImplementation
 //!
-//! Lengths and tolerances are metres; the library floors tolerances at a few ulps of the objects'
-//! size, so 0 asks for the best the precision can give. A call reads the one tolerance that it
-//! names. Object pointers are handed to the callbacks and never looked at. A query is re-entrant
-//! and keeps nothing but the state that the caller hands it.
+//! A support point is a boundary point of the Minkowski difference obj1 - obj2: one call of support1
+//! along a direction and one of support2 along its opposite. A cold start begins along the line of
+//! the centers where both are given, else along first_dir, else along (1, 0, 0): in this header
+//! center1, center2 and first_dir may be NULL except where stated. A center that is given must lie
+//! in its object.
+//!
+//! Lengths and tolerances are metres. Tolerances are floored at a few ulps of the objects' size, so
+//! 0 requests the best result of the precision. A call reads only the tolerance that it names.
+//! Object pointers are passed to the callbacks and never dereferenced. Queries are re-entrant and
+//! keep no data but the caller's state.
 
 use super::types::ccd_vec3_t;
 use crate::math::{Vec3, unit};
@@ -41,6 +48,8 @@ pub use {
     penetration::*, special::*, state::*,
 };
 
+/// Returns the unit vector along `dir`; `None` when that is NULL, zero or not finite.
+///
 /// # Safety
 /// \[inputs\] of the module contract.
 unsafe fn unit_of(dir: *const ccd_vec3_t) -> Option<Vec3> {

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Support mappings, and the Minkowski difference D = obj1 − obj2 that every
-//! solver works on (paper, Sec. II-A and II-B).
+//! Support functions, and the Minkowski difference D = obj1 − obj2 that every solver works on
+//! (W. Gao, Sec. II-A and II-B).
 
 use core::cell::Cell;
 
 use crate::math::{Vec3, larger, largest};
 
-/// A convex object, known only by its support mapping.
+/// A convex object, given by its support function.
 pub trait SupportMap {
-    /// A point of the object farthest along `dir` (unit, finite).
+    /// Returns a point of the object farthest along `dir` (unit, finite).
     fn support(&self, dir: &Vec3) -> Vec3;
 }
 
@@ -21,27 +21,27 @@ impl<F: Fn(&Vec3) -> Vec3> SupportMap for F {
     }
 }
 
-/// A support point of D together with the two points it is the difference of.
+/// A support point of D and its two witness points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct SupportPoint {
     /// `v1 - v2`, a boundary point of D.
     pub v: Vec3,
-    /// The support point of obj1 in the queried direction.
+    /// The support point of obj1 along the queried direction.
     pub v1: Vec3,
-    /// The support point of obj2 in the opposite direction.
+    /// The support point of obj2 along the opposite direction.
     pub v2: Vec3,
 }
 
 impl SupportPoint {
-    /// Largest absolute coordinate of the two witnesses: the size against which
-    /// the rounding error of `v` is measured.
+    /// Returns the largest absolute coordinate of the two witness points: the rounding error of `v`
+    /// is proportional to it.
     #[inline]
     pub fn magnitude(&self) -> f64 {
         larger(largest(&self.v1), largest(&self.v2))
     }
 
-    /// The point that share of the way to another.
+    /// Returns the point at `share` (0 to 1) of the segment to `other`.
     #[inline]
     pub fn towards(&self, other: &Self, share: f64) -> Self {
         Self {
@@ -52,26 +52,26 @@ impl SupportPoint {
     }
 }
 
-/// Why a query has no answer.
+/// Cause of a query without a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A support mapping returned a point that is not finite, or so large that the fourth
-    /// power of its distance from the other object overflows.
+    /// A support function returned a point that is not finite, or so large that the fourth power
+    /// of its distance from the other object's overflows.
     NonFinite,
-    /// Memory was needed and not to be had.
+    /// An allocation failed.
     NoMemory,
 }
 
-/// D = obj1 − obj2, seen through its support mapping. Counts its evaluations.
+/// D = obj1 − obj2, evaluated by its support function. Counts the evaluations.
 pub struct MinkowskiDifference<A, B> {
     obj1: A,
     obj2: B,
-    /// Calls of either object's mapping.
+    /// Calls of both objects' support functions.
     calls: Cell<u64>,
 }
 
 impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
-    /// The difference of two objects, nothing evaluated yet.
+    /// Makes the difference of two objects, without evaluations.
     pub fn new(obj1: A, obj2: B) -> Self {
         Self {
             obj1,
@@ -80,16 +80,19 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         }
     }
 
-    /// The support point of D along `dir` (unit, finite): obj1 is asked first,
-    /// then obj2 along `-dir`.
+    /// Returns the support point of D along `dir` (unit, finite). Evaluates obj1 along `dir`, then
+    /// obj2 along `-dir`.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
     #[inline]
     pub fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault> {
         self.calls.set(self.calls.get() + 2);
         let v1 = self.obj1.support(dir);
         let v2 = self.obj2.support(&-dir);
         let v = v1 - v2;
-        // Solvers multiply four lengths; a point beyond that is as good as infinite.
-        // NaN and infinity, in v1 or in v2, end here too.
+        // Solvers multiply four lengths, so a point whose product overflows counts as infinite.
+        // NaN and infinity in v1 or v2 fail this test too.
         let q = v.norm_squared();
         if !(q * q).is_finite() {
             return Err(Fault::NonFinite);
@@ -97,8 +100,8 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         Ok(SupportPoint { v, v1, v2 })
     }
 
-    /// The point of one object (0 or 1) in that direction of D: obj2 is asked along `-dir`. It may be
-    /// not finite.
+    /// Returns the support point of object 0 or 1 along direction `dir` of D (of obj2 along `-dir`); it
+    /// may be not finite.
     #[inline]
     pub fn point_of(&self, object: usize, dir: &Vec3) -> Vec3 {
         self.calls.set(self.calls.get() + 1);
@@ -108,7 +111,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         }
     }
 
-    /// Support points evaluated so far (one = one call of each object's mapping, or two of one's).
+    /// Returns the number of support points evaluated: half the number of calls, rounded up.
     #[inline]
     pub fn supports(&self) -> u64 {
         self.calls.get().div_ceil(2)

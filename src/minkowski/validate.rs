@@ -1,59 +1,57 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What is wrong with a support mapping, as far as its answers along some hundred directions
-//! tell.
+//! Tests a support function and a center.
 //!
-//! A support mapping s(n) of any set satisfies n·s(n) >= n·s(m) for all directions n and m: no
-//! point that it ever answers lies beyond one of its own supporting planes. So each pair of
-//! answers is held against each other. What a point is beyond by is *noise*: of rounding it is
-//! some ulps, of a callback in single precision some 1e-7 of the coordinates; what is more comes of
-//! another object, another frame, or a search that has not arrived. A centre is held against
-//! the same planes. Asked again in the opposite order, a mapping that remembers what it should not
-//! answers otherwise.
+//! 1. Support planes: the support function s(n) of any set satisfies n·s(n) >= n·s(m) for all
+//!    directions n and m, so no point lies beyond the support plane of another direction. The
+//!    greatest violation is the *noise*: some ulps from rounding, some 1e-7 of the coordinates from
+//!    single precision; more from another object, a wrong frame or an incomplete search.
+//! 2. Repetition: the same directions in the opposite order must return the same support values.
+//! 3. Center: it must not lie beyond any support plane.
 
 use crate::math::{EPSILON, Vec3, larger, largest, perpendicular};
 use crate::minkowski::support::SupportMap;
 
-/// Directions: each of [`HALF`], its opposite, and one hardly beside it.
-const COUNT: usize = 3 * HALF;
-/// Of one half of the sphere: the three axes, and a spiral between them.
-const HALF: usize = 64;
-/// How far beside, in radians: a ball's points fall back from each other's planes by half its square
-/// of the radius, and a noise that is greater shows. Derived: where that is some ulps.
-const BESIDE: f64 = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
-/// Ulps of the largest coordinate that are rounding: a callback turns a point and moves it, and
-/// its product with a direction is rounded too. Derived; twice what that comes to.
-const ROUNDING: f64 = 32.0;
+/// The directions: those of a hemisphere, their opposites, and the former tilted.
+const NUM_DIRECTIONS: usize = 3 * NUM_HEMISPHERE;
+/// The directions of a hemisphere: the three axes and a spiral.
+const NUM_HEMISPHERE: usize = 64;
+/// The tilt, radians. The point of a tilted direction lies half the square of the tilt, in radii,
+/// below the support plane of a ball; greater noise is detected. Derived: half the square is some ulps.
+const TILT_RAD: f64 = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
+/// Ulps of the largest coordinate that count as rounding: of the rotation and the translation of a
+/// point by a callback, and of its product with a direction. Derived, times two.
+const ROUNDING_ULPS: f64 = 32.0;
 
-/// What [`check`](crate::check) found wrong with a shape. Lengths are metres.
+/// Result of [`check`](crate::check). Lengths are metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Check {
-    /// A point or the center is not finite: nothing else is told.
+    /// A point or the center is not finite; nothing else is tested then.
     pub not_finite: bool,
-    /// The answers are the points farthest against the direction: a sign is wrong.
+    /// The points are the farthest against the direction: a sign is wrong.
     pub opposite: bool,
-    /// Points lie beyond the support planes of others by more than rounding: a wrong frame, another
-    /// object's points, a search that stops too early, or single precision.
+    /// A point lies beyond the support plane of another direction by more than rounding: a wrong
+    /// frame, points of another object, a search that stops too early, or single precision.
     pub contradicts: bool,
-    /// The same direction asked again is answered otherwise: it depends on earlier calls.
+    /// The same direction returns another point later: the point depends on earlier calls.
     pub changes: bool,
-    /// The center is outside: overlaps are missed then, and what is apart answered as deep.
+    /// The center is outside: queries then miss overlaps and report overlaps of shapes that are apart.
     pub center_outside: bool,
-    /// The greatest width of the object, about.
+    /// Greatest width of the shape, approximately.
     pub size: f64,
-    /// What a point is beyond another's plane by, at most.
+    /// Greatest distance of a point beyond the support plane of another direction.
     pub noise: f64,
-    /// How far an answer moved along its direction when it was asked for again, at most.
+    /// Greatest change of a support value in the repeated calls.
     pub change: f64,
-    /// How far the center is outside; negative: how deep inside. 0 without one.
+    /// Distance of the center from the shape; negative inside. 0 without a center.
     pub outside: f64,
-    /// Unit: the direction in which the worst was found; of no meaning where nothing is wrong.
+    /// Direction of the worst fault, unit; meaningless where there is none.
     pub dir: [f64; 3],
 }
 
 impl Check {
-    /// Was nothing found wrong?
+    /// Returns whether no fault was found.
     pub fn is_fine(&self) -> bool {
         !(self.not_finite
             || self.opposite
@@ -63,29 +61,29 @@ impl Check {
     }
 }
 
-/// Direction number `i` of [`COUNT`]: unit.
+/// Returns direction `i` of [`NUM_DIRECTIONS`], unit.
 fn direction(i: usize) -> Vec3 {
-    let n = towards(i % HALF);
-    match i / HALF {
+    let n = hemisphere_direction(i % NUM_HEMISPHERE);
+    match i / NUM_HEMISPHERE {
         0 => n,
         1 => -n,
         _ => {
-            let beside = n + perpendicular(&n) * BESIDE;
-            beside / beside.norm()
+            let tilted = n + perpendicular(&n) * TILT_RAD;
+            tilted / tilted.norm()
         }
     }
 }
 
-/// One of the first [`HALF`].
-fn towards(i: usize) -> Vec3 {
+/// Returns direction `i` of [`NUM_HEMISPHERE`], unit.
+fn hemisphere_direction(i: usize) -> Vec3 {
     match i {
         0 => Vec3::x(),
         1 => Vec3::y(),
         2 => Vec3::z(),
         _ => {
-            // Equal steps down a hemisphere, the golden angle from one to the next.
-            let z = (i as f64 - 2.5) / (HALF as f64 - 3.0);
-            let (cos, sin) = turned(i);
+            // Equal steps in height; the golden angle from each to the next.
+            let z = (i as f64 - 2.5) / (NUM_HEMISPHERE as f64 - 3.0);
+            let (cos, sin) = golden_rotation(i);
             let r = (1.0 - z * z).sqrt();
             let n = Vec3::new(r * cos, r * sin, z);
             n / n.norm()
@@ -93,8 +91,8 @@ fn towards(i: usize) -> Vec3 {
     }
 }
 
-/// Cosine and sine of `i` golden angles, by complex powers: the same bits in every build.
-fn turned(i: usize) -> (f64, f64) {
+/// Returns cosine and sine of `i` golden angles, by complex powers: the same bits in every build.
+fn golden_rotation(i: usize) -> (f64, f64) {
     #[allow(clippy::excessive_precision)] // In single precision.
     const GOLDEN: (f64, f64) = (-0.7373688780783197, 0.6754902942615238);
     let (mut cos, mut sin) = (1.0, 0.0);
@@ -107,14 +105,14 @@ fn turned(i: usize) -> (f64, f64) {
     (cos, sin)
 }
 
-/// Looks at a support mapping and, where there is one, its centre.
-pub fn check(object: &impl SupportMap, centre: Option<&Vec3>) -> Check {
-    let mut points = [Vec3::zeros(); COUNT];
+/// Tests a support function and, where there is one, its center.
+pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
+    let mut points = [Vec3::zeros(); NUM_DIRECTIONS];
     let mut report = Check::default();
-    let mut reach = centre.map_or(0.0, largest);
+    let mut reach = center.map_or(0.0, largest);
     for (i, point) in points.iter_mut().enumerate() {
         *point = object.support(&direction(i));
-        // A sum that is finite has finite terms, or they are near the largest number.
+        // A finite sum has finite terms.
         if !point.sum().is_finite() {
             report.not_finite = true;
             report.dir = direction(i).into();
@@ -122,19 +120,19 @@ pub fn check(object: &impl SupportMap, centre: Option<&Vec3>) -> Check {
         }
         reach = larger(largest(point), reach);
     }
-    if !centre.is_none_or(|c| c.sum().is_finite()) {
+    if !center.is_none_or(|c| c.sum().is_finite()) {
         report.not_finite = true;
         return report;
     }
-    let rounding = ROUNDING * EPSILON * reach;
-    against_each_other(&points, &mut report, rounding);
-    again(object, &points, &mut report, rounding);
-    if let Some(centre) = centre.filter(|_| !report.opposite) {
+    let rounding = ROUNDING_ULPS * EPSILON * reach;
+    check_planes(&points, &mut report, rounding);
+    check_repetition(object, &points, &mut report, rounding);
+    if let Some(center) = center.filter(|_| !report.opposite) {
         report.outside = f64::NEG_INFINITY;
         let mut worst = Vec3::zeros();
         for (i, point) in points.iter().enumerate() {
             let n = direction(i);
-            let outside = n.dot(&(centre - point));
+            let outside = n.dot(&(center - point));
             if outside > report.outside {
                 (report.outside, worst) = (outside, n);
             }
@@ -147,36 +145,36 @@ pub fn check(object: &impl SupportMap, centre: Option<&Vec3>) -> Check {
     report
 }
 
-/// Each answer against the planes of all others.
-fn against_each_other(points: &[Vec3; COUNT], report: &mut Check, rounding: f64) {
-    // Planes that no answer is in front of: of the opposite of a support mapping all.
-    let mut behind = 0;
+/// Compares each point with the support planes of all directions.
+fn check_planes(points: &[Vec3; NUM_DIRECTIONS], report: &mut Check, rounding: f64) {
+    // Planes that no point lies in front of: all planes, where a sign is wrong.
+    let mut num_opposite = 0;
     for (i, point) in points.iter().enumerate() {
         let n = direction(i);
-        let (mut most, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
+        let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
         for other in points {
-            let beyond = n.dot(&(other - point));
-            most = larger(beyond, most);
-            least = if beyond < least { beyond } else { least };
+            let height = n.dot(&(other - point));
+            highest = larger(height, highest);
+            lowest = if height < lowest { height } else { lowest };
         }
-        behind += usize::from(least >= -rounding && most > rounding);
-        report.size = larger(most - least, report.size);
-        if most > report.noise {
-            report.noise = most;
+        num_opposite += usize::from(lowest >= -rounding && highest > rounding);
+        report.size = larger(highest - lowest, report.size);
+        if highest > report.noise {
+            report.noise = highest;
             report.dir = n.into();
         }
     }
-    report.opposite = 4 * behind > 3 * COUNT;
+    report.opposite = 4 * num_opposite > 3 * NUM_DIRECTIONS;
     report.contradicts = !report.opposite && report.noise > rounding;
 }
 
-/// The same directions from the last to the first.
-fn again(object: &impl SupportMap, points: &[Vec3; COUNT], report: &mut Check, rounding: f64) {
+/// Evaluates the same directions again, from the last to the first.
+fn check_repetition(object: &impl SupportMap, points: &[Vec3], report: &mut Check, rounding: f64) {
     let mut worst = Vec3::zeros();
     for (i, point) in points.iter().enumerate().rev() {
         let n = direction(i);
         let change = n.dot(&(object.support(&n) - point)).abs();
-        // NaN is a change too.
+        // Negated, so that NaN counts as a change.
         if !(change <= report.change) {
             (report.change, worst) = (change, n);
         }
@@ -195,24 +193,24 @@ mod tests {
 
     #[test]
     fn directions_are_unit_and_all_around() {
-        for i in 0..COUNT {
+        for i in 0..NUM_DIRECTIONS {
             assert!((direction(i).norm() - 1.0).abs() < 4.0 * EPSILON);
         }
-        let sum: Vec3 = (0..2 * HALF).map(direction).sum();
+        let sum: Vec3 = (0..2 * NUM_HEMISPHERE).map(direction).sum();
         assert!(sum.norm() < 1e-5);
-        let all = |n: Vec3| (0..COUNT).any(|i| direction(i).dot(&n) > 0.9);
+        let has_close_direction = |n: Vec3| (0..NUM_DIRECTIONS).any(|i| direction(i).dot(&n) > 0.9);
         for n in [
             Vec3::x(),
             -Vec3::y(),
             Vec3::repeat(0.577),
             Vec3::new(-0.8, 0.6, 0.0),
         ] {
-            assert!(all(n));
+            assert!(has_close_direction(n));
         }
     }
 
     #[test]
-    fn what_is_right_is_found_right() {
+    fn valid_support_functions_have_no_fault() {
         let at = Vec3::new(3.0, -2.0, 70.0);
         let report = check(&ball(at, 0.5), Some(&at));
         assert!(report.is_fine(), "{report:?}");
@@ -220,18 +218,18 @@ mod tests {
         assert!(check(&capsule(Vec3::x(), -Vec3::x(), 0.1), None).is_fine());
         let points = corners(Vec3::new(0.5, 1e-6, 2.0));
         assert!(check(&hull(&points), Some(&Vec3::zeros())).is_fine());
-        // A point, and a flat one.
+        // A point, and a flat box.
         assert!(check(&|_: &Vec3| at, Some(&at)).is_fine());
         let points = corners(Vec3::new(0.5, 0.0, 2.0));
         assert!(check(&hull(&points), Some(&Vec3::zeros())).is_fine());
     }
 
     #[test]
-    fn what_is_wrong_is_named() {
+    fn each_fault_is_reported() {
         let at = Vec3::new(1.0, 0.0, 0.0);
         let opposite = check(&|n: &Vec3| at - n * 0.5, Some(&at));
         assert!(opposite.opposite && !opposite.contradicts);
-        // The frame of another pose: turned the wrong way round.
+        // The frame of another pose: the inverse rotation.
         let points = corners(Vec3::new(0.5, 0.2, 1.0));
         let turned = check(
             &|n: &Vec3| {
@@ -241,22 +239,22 @@ mod tests {
             None,
         );
         assert!(turned.contradicts && turned.noise > 0.1, "{turned:?}");
-        let centre = check(&ball(at, 0.5), Some(&Vec3::zeros()));
-        assert!(centre.center_outside && (centre.outside - 0.5).abs() < 0.01);
-        assert!(centre.dir[0] < -0.9);
+        let outside = check(&ball(at, 0.5), Some(&Vec3::zeros()));
+        assert!(outside.center_outside && (outside.outside - 0.5).abs() < 0.01);
+        assert!(outside.dir[0] < -0.9);
         let nan = check(&|n: &Vec3| n * if n.x > 0.5 { f64::NAN } else { 1.0 }, None);
         assert!(nan.not_finite && nan.dir[0] > 0.5);
         assert!(check(&ball(at, 0.5), Some(&Vec3::repeat(f64::NAN))).not_finite);
-        let asked = Cell::new(0);
+        let num_calls = Cell::new(0);
         let grows = check(
             &|n: &Vec3| {
-                asked.set(asked.get() + 1);
-                n * (1.0 + asked.get() as f64 * 1e-3)
+                num_calls.set(num_calls.get() + 1);
+                n * (1.0 + num_calls.get() as f64 * 1e-3)
             },
             None,
         );
         assert!(grows.changes && grows.change > 0.05);
-        // As exact as a float.
+        // Rounded to single precision.
         #[cfg(not(feature = "single"))]
         {
             let rounded = check(

@@ -1,62 +1,63 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Something is odd? What is wrong with an object's support function and centre.
+//! Check: tests an object's support function and center.
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{Object, centre_of};
+use super::super::callbacks::{Object, center_of};
 use super::super::types::{ccd_center_fn, ccd_support_fn, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use crate::math::{Real, Vec3};
 use crate::minkowski::validate::check;
 
-/// A point, or the centre, is NaN or infinite. Nothing else is told.
+/// A point or the center is NaN or infinite. Nothing else is tested then.
 pub const CCD_CHECK_NOT_FINITE: c_int = 1;
 /// The points are the farthest *against* the direction: a sign is wrong.
 pub const CCD_CHECK_OPPOSITE: c_int = 2;
-/// Points contradict each other by `noise`, more than rounding: one answered along one direction
-/// is farther along another than that one's own. By as little as single precision: ask for no
-/// tolerance finer than some times the noise. By more: a wrong frame (the direction is to be
-/// turned into the body's, the point back), points of another object, or a search over the
-/// vertices that stops too early.
+/// A point lies beyond the support plane of another direction by `noise`, more than rounding. Of
+/// the order of single precision: choose tolerances of several times the noise or more. Greater: a
+/// wrong frame (the direction must be rotated to the body's frame, the point back), points of
+/// another object, or a search over the vertices that stops too early.
 pub const CCD_CHECK_CONTRADICTS: c_int = 4;
-/// The same direction asked again is answered otherwise: the answer depends on earlier calls.
+/// The same direction returns another point later: the point depends on earlier calls.
 pub const CCD_CHECK_CHANGES: c_int = 8;
-/// The centre lies outside of the object. The MPR calls and ccdPenetration then miss overlaps, and
-/// answer what is apart as deep.
+/// The center lies outside the object. The MPR calls and ccdPenetration then miss overlaps, and
+/// report overlaps of objects that are apart.
 pub const CCD_CHECK_CENTER_OUTSIDE: c_int = 16;
-/// There is no centre: `center` is NULL. libccd's MPR calls need one; the extension's others do
-/// not.
+/// `center` is NULL. Calls with MPR in their name require it, others do not.
 pub const CCD_CHECK_CENTER_MISSING: c_int = 32;
 
-/// What ccdCheck found. Lengths are metres.
+/// Result of ccdCheck. Lengths are metres.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ccd_check_t {
-    /// The greatest width of the object, about: is it what you think it is?
+    /// Greatest width of the object, approximately.
     pub size: Real,
-    /// How far a point lies beyond the support plane of another at most.
+    /// Greatest distance of a point beyond the support plane of another direction.
     pub noise: Real,
-    /// How far the answer along one direction moved along it when asked again at most.
+    /// Greatest change of a support value in the repeated calls.
     pub change: Real,
-    /// How far the centre lies outside; negative: how deep inside, the deeper the better. 0 without
-    /// one.
+    /// Distance of the center from the object; negative inside, the less the better. 0 without a
+    /// center.
     pub center_outside: Real,
-    /// Unit: the direction in which the worst was found; of no meaning where nothing is wrong.
+    /// Direction of the worst fault, unit; meaningless where there is none.
     pub dir: ccd_vec3_t,
 }
 
-/// What is wrong with an object's support function and centre, as far as 192 directions tell,
-/// each asked twice. For when an answer is odd, and for tests; not for every frame.
+/// Tests an object's support function and center along 192 directions, each evaluated twice. For
+/// debugging and tests, too slow for every frame.
 ///
-/// It finds what the queries cannot tell from another object: a forgotten centre, a wrong sign, a
-/// frame mixed up. What is found is wrong for certain; a fault that shows in few directions may
-/// be missed. `obj` is handed to the callbacks. `center` may be NULL. `out` may be NULL; else it is
-/// filled unless CCD_BAD_INPUT is returned.
+/// Detects faults that a query cannot distinguish from another object: a missing center, a wrong
+/// sign, a wrong frame. A reported fault is certain; a fault in few directions may be missed.
 ///
-/// Returns 0 where nothing is wrong, CCD_CHECK_ flags where something is, or CCD_BAD_INPUT: `support`
-/// is NULL.
+/// `obj`: passed to the callbacks. `center`: may be NULL. `out`: may be NULL; else filled unless
+/// CCD_BAD_INPUT is returned.
+///
+/// Reads no tolerance. Allocates nothing.
+///
+/// Returns 0 where no fault is found, CCD_CHECK_ flags where one is, or CCD_BAD_INPUT where
+/// `support` is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdCheck(
     obj: *const c_void,
@@ -68,17 +69,17 @@ pub unsafe extern "C-unwind" fn ccdCheck(
         return CCD_BAD_INPUT;
     };
     // SAFETY: [callbacks].
-    let centre = center.map(|center| unsafe { centre_of(center, obj) });
-    let report = check(&Object::new(obj, support), centre.as_ref());
+    let center = center.map(|center| unsafe { center_of(center, obj) });
+    let report = check(&Object::new(obj, support), center.as_ref());
     let flags = [
         (report.not_finite, CCD_CHECK_NOT_FINITE),
         (report.opposite, CCD_CHECK_OPPOSITE),
         (report.contradicts, CCD_CHECK_CONTRADICTS),
         (report.changes, CCD_CHECK_CHANGES),
         (report.center_outside, CCD_CHECK_CENTER_OUTSIDE),
-        (centre.is_none(), CCD_CHECK_CENTER_MISSING),
+        (center.is_none(), CCD_CHECK_CENTER_MISSING),
     ];
-    let found = ccd_check_t {
+    let result = ccd_check_t {
         size: report.size as Real,
         noise: report.noise as Real,
         change: report.change as Real,
@@ -87,7 +88,7 @@ pub unsafe extern "C-unwind" fn ccdCheck(
     };
     if !out.is_null() {
         // SAFETY: [outputs].
-        unsafe { out.write(found) };
+        unsafe { out.write(result) };
     }
     flags.iter().map(|(is, flag)| c_int::from(*is) * flag).sum()
 }

@@ -1,27 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Codes: what every call that fills a struct returns.
+//! Codes: returned by every call that fills a struct.
 //!
-//! 0 and above: *out is filled. Below 0: nothing is written, but that ccdSignedDistance fills
-//! *out on a CCD_MISS too, for it has an answer then. With CCD_BAD_INPUT and CCD_NO_MEMORY the
-//! state stays as it was; with every other code it is one for the next query.
+//! Code >= 0: *out is filled. Code < 0: nothing is written, except that ccdSignedDistance fills
+//! *out on CCD_MISS too. CCD_BAD_INPUT and CCD_NO_MEMORY leave the state unchanged; every other
+//! code updates it for the next query.
 //!
-//! (ccdIntersect returns 1 or 0, ccdContacts how many contacts, or CCD_BAD_INPUT; what has MPR
-//! in its name returns what libccd returns.)
+//! ccdIntersect returns 1 or 0, ccdContacts the number of contacts or CCD_BAD_INPUT, and calls
+//! with MPR in their name libccd's codes.
 
 use core::ffi::c_int;
 
-/// The objects overlap, by more than rounding.
+/// The objects overlap by more than rounding.
 pub const CCD_HIT: c_int = 0;
-/// An answer, but a less exact one than was asked for: max_iterations or the library's own cap
-/// came first, or rounding. The depth or distance is sound, its bounds are honest; a penetration
-/// is an overlap, of a distance the sign tells.
+/// The result is sound, but less exact than requested: max_iterations, the library's limit of
+/// support points or rounding ended the search. All bounds hold. A penetration query has found an
+/// overlap; the bounds of ccdSignedDistance may include 0.
 pub const CCD_LIMIT: c_int = 1;
 /// The objects are apart, or touch within rounding.
 pub const CCD_MISS: c_int = -1;
-/// Memory was needed and not to be had.
+/// malloc failed.
 pub const CCD_NO_MEMORY: c_int = -2;
-/// An argument, a field of ccd, or a callback's answer that no query can work with: NULL where
-/// something is needed, NaN, a length below 0, a direction of zero, an unknown flag.
+/// An argument, a field of ccd or a point of a callback is invalid: NULL where a pointer is
+/// required, NaN, a negative length, a zero direction, an unknown flag, a point that is not finite.
 pub const CCD_BAD_INPUT: c_int = -3;

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Yes or no.
+//! Overlap: yes or no.
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{Call, Object, Query};
+use super::super::callbacks::{Kind, Object, Query};
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, with_state};
 use crate::minkowski::query::if_overlapping;
 use crate::query::{Pair, warm_start::WarmStart};
 
-/// Yes or no of a pair, with the caller's state.
+/// Tests a pair for overlap with the caller's state. Returns 1 or 0.
 ///
 /// # Safety
 /// \[inputs\] and \[outputs\] of the module contract.
@@ -25,23 +25,23 @@ pub(in crate::ffi) unsafe fn intersect(
     if warm.is_null() {
         return c_int::from(pair.intersect(None).is_ok());
     }
-    let ask = |state: &mut WarmStart| {
+    let solve = |state: &mut WarmStart| {
         let overlap = if_overlapping(pair.intersect(Some(state)))?;
         Ok(c_int::from(overlap.is_some()))
     };
-    // SAFETY: passed on. Without an answer the code is below 0.
-    unsafe { with_state(warm, ask) }.max(0)
+    // SAFETY: passed on. A fault has a code below 0.
+    unsafe { with_state(warm, solve) }.max(0)
 }
 
-/// Do the objects overlap? A pair that stays apart costs one call of each support function while
-/// its last separating direction still separates. From the state, else from the centres, else
-/// from first_dir.
+/// Reports whether the objects overlap.
 ///
-/// Reads no tolerance and no max_iterations. center1 and center2 may be NULL; where they are
-/// given they must lie in their objects. `warm` may be NULL. Allocates nothing.
+/// `warm`: the pair's state, may be NULL; with a state a pair costs one support point while its
+/// last separating axis still separates.
 ///
-/// Returns 1 when they overlap, 0 when they do not; a touch within rounding is no overlap, nor
-/// is what CCD_BAD_INPUT stands for.
+/// Reads no tolerance and no max_iterations. Allocates nothing.
+///
+/// Returns 1 when they overlap; 0 when they are apart or touch within rounding, when support1 or
+/// support2 is NULL, or when a center or a point is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdIntersect(
     obj1: *const c_void,
@@ -51,5 +51,5 @@ pub unsafe extern "C-unwind" fn ccdIntersect(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { intersect(query.pair(Call::Refined, !warm.is_null()), warm) }
+    unsafe { intersect(query.pair(Kind::Penetration, !warm.is_null()), warm) }
 }

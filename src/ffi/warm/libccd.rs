@@ -1,22 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! For programs that call libccd's MPR: the same calls with one argument more. What they return
-//! and what they need is what libccd says, so center1 and center2 must be given.
+//! libccd's MPR calls with a state, for programs that use libccd: outputs and codes are libccd's,
+//! and center1 and center2 are required.
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{Call, Query};
+use super::super::callbacks::{Kind, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::intersect::intersect;
-use super::penetration::run;
+use super::penetration::run_query;
 use super::state::ccd_warm_t;
 use crate::contact::Penetration;
 use crate::math::Real;
 
-/// What libccd returns where the extension has this code.
-pub(in crate::ffi) fn libccd_s(code: c_int) -> c_int {
+/// Converts a code of the extension to libccd's.
+pub(in crate::ffi) fn libccd_code(code: c_int) -> c_int {
     match code {
         CCD_HIT | CCD_LIMIT => 0,
         CCD_NO_MEMORY => -2,
@@ -24,11 +24,11 @@ pub(in crate::ffi) fn libccd_s(code: c_int) -> c_int {
     }
 }
 
-/// Writes the outputs that are not NULL.
+/// Writes those outputs of libccd's calls that are not NULL.
 ///
 /// # Safety
 /// \[outputs\] of the module contract.
-pub(in crate::ffi) unsafe fn write(
+pub(in crate::ffi) unsafe fn write_outputs(
     hit: &Penetration,
     depth: *mut Real,
     dir: *mut ccd_vec3_t,
@@ -48,11 +48,15 @@ pub(in crate::ffi) unsafe fn write(
     }
 }
 
-/// ccdMPRPenetration with memory: ccdPenetration with libccd's outputs and codes.
+/// Computes the penetration depth as ccdMPRPenetration does, with a state.
 ///
-/// `warm` may be NULL. Returns 0 and writes the outputs that are not NULL (a `pos` of NULL saves
-/// what CCD_WANT_POS costs), or -1: apart, or an argument or a callback's answer that no query can
-/// work with.
+/// `warm`: may be NULL. `depth`, `dir`, `pos`: each may be NULL; NULL for `pos` saves the cost of
+/// CCD_WANT_POS.
+///
+/// Reads mpr_tolerance; CCD_INIT's value replaces a negative or NaN one. Allocates nothing.
+///
+/// Returns 0 where ccdPenetration returns CCD_HIT or CCD_LIMIT; -1, with the outputs unchanged,
+/// where it returns CCD_MISS or CCD_BAD_INPUT, or when a center callback is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     obj1: *const c_void,
@@ -64,20 +68,24 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     pos: *mut ccd_vec3_t,
 ) -> c_int {
     // SAFETY: passed on; [outputs].
-    libccd_s(unsafe {
-        run(
+    libccd_code(unsafe {
+        run_query(
             Query { obj1, obj2, ccd },
-            Call::Mpr,
+            Kind::Mpr,
             warm,
             |pair, state, settings, hit| pair.mpr(state, settings, !pos.is_null(), hit),
-            |hit, _| write(hit, depth, dir, pos),
+            |hit, _| write_outputs(hit, depth, dir, pos),
         )
     })
 }
 
-/// ccdMPRIntersect with memory: ccdIntersect where centres are given.
+/// Reports whether the objects overlap as ccdMPRIntersect does, with a state.
 ///
-/// `warm` may be NULL. Returns 1 or 0.
+/// `warm`: may be NULL.
+///
+/// Reads no tolerance and no max_iterations. Allocates nothing.
+///
+/// Returns the value of ccdIntersect; 0 when a center callback is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     obj1: *const c_void,
@@ -87,5 +95,5 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { intersect(query.pair(Call::Mpr, !warm.is_null()), warm) }
+    unsafe { intersect(query.pair(Kind::Mpr, !warm.is_null()), warm) }
 }

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The one call to begin with: do two objects overlap, how deep, which way out, where?
+//! Penetration: overlap, depth, direction, contact position. The default call.
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{Call, Object, Query};
+use super::super::callbacks::{Kind, Object, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::state::{ccd_warm_t, with_state};
@@ -14,52 +14,50 @@ use crate::math::{Real, Vec3, lower_to_real};
 use crate::minkowski::query::{Stop, if_overlapping};
 use crate::query::{Pair, warm_start::WarmStart};
 
-/// Wanted: pos. It costs 2 to 4 support points, 8 at most where a face has more than four corners, none
-/// where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). For it the objects
-/// are asked one by one.
+/// Requests pos. Costs 2 to 4 support points, at most 8 where a face has more than four corners,
+/// none where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). Evaluates
+/// the two support functions separately.
 pub const CCD_WANT_POS: c_uint = 1;
-/// Wanted: point1 and point2. They cost nothing.
+/// Requests point1 and point2, at no cost.
 pub const CCD_WANT_POINTS: c_uint = 2;
-/// Everything.
+/// Requests all of these.
 pub const CCD_WANT_ALL: c_uint = 3;
 
-/// What a penetration query answers. What was not wanted is zero.
+/// Result of a penetration query. A field that was not requested is zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ccd_penetration_t {
-    /// Metres, >= 0: moving obj2 by depth * dir separates the objects. It is the support
-    /// value of normal, divided by dir . normal.
+    /// Penetration depth, metres, >= 0: moving obj2 by depth * dir separates the objects. The
+    /// support value of normal, divided by dir . normal.
     pub depth: Real,
-    /// Proven lower bound on the global minimum depth (in ccdPenetrationAlong: on the
-    /// depth along dir), metres; 0 where none was proven.
+    /// Proven lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along
+    /// dir), metres; 0 where none was proven.
     pub depth_lower: Real,
-    /// Unit; the way obj2 moves.
+    /// Penetration direction, unit: obj2 moves along it.
     pub dir: ccd_vec3_t,
-    /// Unit; normal of the separating plane. Equal to dir except in ccdPenetrationAlong.
+    /// Contact normal, unit: normal of the separating plane. Equal to dir except in
+    /// ccdPenetrationAlong.
     pub normal: ccd_vec3_t,
-    /// Contact position, CCD_WANT_POS: the centre of pressure, which is the centroid of the volume
-    /// that the objects share, but for its height along normal. It moves as the objects do, where
-    /// a deepest point jumps from corner to corner. For objects of a quarter metre that are no deeper
-    /// than a millimetre it is off by 3 mm (boxes) to 7 mm (round ones) at most, a cone on its side by
-    /// 15 mm, root mean square; deeper, by 3 % of the smaller object's size where the depth is 3 % of
-    /// that, 6 % at 10 %, 20 % at 30 %. Of CCD_LIMIT, and of ccdPenetrationAlong and
-    /// ccdPenetrationPlanar, the middle of the witness points.
+    /// Contact position, CCD_WANT_POS: the center of pressure, which is the centroid of the common
+    /// volume except for its coordinate along normal. Continuous in the pose. Error, root mean
+    /// square, for objects of a quarter metre and depths up to a millimetre: at most 3 mm (boxes) to
+    /// 7 mm (round objects), 15 mm for a cone on its side; for greater depths 3 % of the smaller
+    /// object's size where the depth is 3 % of it, 6 % at 10 %, 20 % at 30 %. With CCD_LIMIT, in
+    /// ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
     pub pos: ccd_vec3_t,
-    /// Witness point of obj1, CCD_WANT_POINTS, at the deepest place: a point of obj1, and of its
-    /// supporting plane, each to within what the depth may be off, or 1e-12 of the size (in single
-    /// precision 1e-5).
+    /// Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the error
+    /// of depth or 1e-12 of the size (1e-5 in single precision).
     pub point1: ccd_vec3_t,
-    /// Witness point of obj2, the same.
+    /// Witness point of obj2, CCD_WANT_POINTS: as point1.
     pub point2: ccd_vec3_t,
-    /// Half of the calls of support1 and support2 together, rounded up: a support point of the
-    /// Minkowski difference is one call of each. Positions need further calls of one alone.
+    /// Number of support points: half of the calls of support1 and support2 together, rounded up.
     pub support_calls: c_ulong,
-    /// Iterations of the solver.
+    /// Number of iterations of the solver.
     pub iterations: c_ulong,
 }
 
-/// A point where its flag is set, else zero.
-pub(in crate::ffi) fn given(flag: c_uint, point: &Vec3) -> ccd_vec3_t {
+/// Returns the point where its flag is set, else zero.
+pub(in crate::ffi) fn point_if(flag: c_uint, point: &Vec3) -> ccd_vec3_t {
     match flag {
         0 => ccd_vec3_t::default(),
         _ => (*point).into(),
@@ -73,24 +71,24 @@ impl ccd_penetration_t {
             depth_lower: lower_to_real(hit.depth_lower),
             dir: hit.dir.into(),
             normal: hit.normal.into(),
-            pos: given(want & CCD_WANT_POS, &hit.pos),
-            point1: given(want & CCD_WANT_POINTS, &hit.point1),
-            point2: given(want & CCD_WANT_POINTS, &hit.point2),
+            pos: point_if(want & CCD_WANT_POS, &hit.pos),
+            point1: point_if(want & CCD_WANT_POINTS, &hit.point1),
+            point2: point_if(want & CCD_WANT_POINTS, &hit.point2),
             support_calls: supports as c_ulong,
             iterations: hit.iterations as c_ulong,
         }
     }
 }
 
-/// A penetration query: runs `solve` with the caller's state, or with a cold one where there is none,
-/// and tells `put` of an overlap, with the support points that it took. Returns the extension's code.
+/// Runs `solve` with the caller's state, or a cold one where `warm` is NULL, and passes an overlap
+/// and the number of support points to `write_hit`. Returns the extension's code.
 ///
 /// # Safety
 /// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
 /// with a destructor is alive here.
-pub(in crate::ffi) unsafe fn run(
+pub(in crate::ffi) unsafe fn run_query(
     query: Query,
-    call: Call,
+    kind: Kind,
     warm: *mut ccd_warm_t,
     solve: impl FnOnce(
         &Pair<Object, Object>,
@@ -98,11 +96,11 @@ pub(in crate::ffi) unsafe fn run(
         &Settings,
         &mut Penetration,
     ) -> Result<(), Stop>,
-    put: impl FnOnce(&Penetration, u64),
+    write_hit: impl FnOnce(&Penetration, u64),
 ) -> c_int {
     // SAFETY: [inputs]; `solve` runs callbacks, [callbacks].
     unsafe {
-        let Some((pair, settings)) = query.ready(call, !warm.is_null()) else {
+        let Some((pair, settings)) = query.prepare(kind, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
         with_state(warm, |state| {
@@ -110,20 +108,20 @@ pub(in crate::ffi) unsafe fn run(
             if if_overlapping(solve(&pair, state, &settings, &mut hit))?.is_none() {
                 return Ok(CCD_MISS);
             }
-            put(&hit, pair.md.supports());
+            write_hit(&hit, pair.md.supports());
             Ok(if hit.limit { CCD_LIMIT } else { CCD_HIT })
         })
     }
 }
 
-/// A penetration query of the extension: writes what comes of `solve`, which is told whether the
-/// position is wanted.
+/// Runs a penetration query of the extension and fills `out`. The flag of `solve` requests the
+/// contact position.
 ///
 /// # Safety
-/// As [`run`].
-pub(in crate::ffi) unsafe fn answer(
+/// As [`run_query`].
+pub(in crate::ffi) unsafe fn fill(
     query: Query,
-    call: Call,
+    kind: Kind,
     warm: *mut ccd_warm_t,
     want: c_uint,
     out: *mut ccd_penetration_t,
@@ -141,9 +139,9 @@ pub(in crate::ffi) unsafe fn answer(
     let wants_pos = want & CCD_WANT_POS != 0;
     // SAFETY: [outputs]; passed on.
     unsafe {
-        run(
+        run_query(
             query,
-            call,
+            kind,
             warm,
             |pair, state, settings, hit| solve(pair, state, settings, wants_pos, hit),
             |hit, supports| *out = ccd_penetration_t::new(hit, want, supports),
@@ -151,16 +149,15 @@ pub(in crate::ffi) unsafe fn answer(
     }
 }
 
-/// The penetration depth: the least distance by which obj2 must move to separate the objects,
-/// within the larger of mpr_tolerance and 0.1 % of it, in CCD_LIMIT's case a sound one.
-/// The call to take unless one of those below says what is wanted better. From the state, else
-/// from the centres, else from first_dir.
+/// Computes the penetration depth: the least distance by which obj2 must move to separate the
+/// objects. The default call.
 ///
-/// `warm`: NULL, or the pair's state: a pair that stays apart costs one call of each support
-/// function, and one that overlaps fewer than without. `want`: CCD_WANT_ flags; 0 for depth,
-/// bounds and directions alone. Reads mpr_tolerance. center1 and center2 may be NULL; where they
-/// are given they must lie in their objects, and save calls; depth_lower leans on them too.
-/// Allocates nothing.
+/// `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
+/// point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for depth, bound and
+/// directions alone. Centers save support points; depth_lower relies on them too.
+///
+/// Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
+/// depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
 #[unsafe(no_mangle)]
@@ -174,5 +171,5 @@ pub unsafe extern "C-unwind" fn ccdPenetration(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { answer(query, Call::Refined, warm, want, out, Pair::mpr) }
+    unsafe { fill(query, Kind::Penetration, warm, want, out, Pair::mpr) }
 }

@@ -1,26 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! For special wishes: one valley, a proof, a direction, a plane.
+//! Special penetration queries: local minimum, proven minimum, along a direction, in a plane.
 
 use core::ffi::{c_int, c_uint, c_void};
 
 use super::super::arena;
-use super::super::callbacks::{Call, Query};
+use super::super::callbacks::{Kind, Query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
-use super::penetration::{answer, ccd_penetration_t};
+use super::penetration::{ccd_penetration_t, fill};
 use super::state::ccd_warm_t;
 use super::unit_of;
 use crate::contact::Settings;
 use crate::query::{Pair, warm_start::WarmStart};
 
-/// Returns a local minimum of the penetration depth, by a walk on known vertices. Faster than
-/// ccdPenetration with a state or a guess that is roughly right; from far off it may end in
-/// another minimum. Where the walk ends without one, the global search follows. From the state, else from the centres, else from first_dir.
+/// Computes a local minimum of the penetration depth by a walk on known vertices. Faster than
+/// ccdPenetration from a state or a guess that is roughly right; from a distant one it may find
+/// another minimum. Where the walk finds none, the global search follows.
 ///
-/// Reads mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
-/// flags. Allocates nothing.
+/// `warm`: may be NULL. `want`: CCD_WANT_ flags.
+///
+/// Reads mpr_tolerance. Allocates nothing.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
 #[unsafe(no_mangle)]
@@ -34,15 +35,16 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { answer(query, Call::Refined, warm, want, out, Pair::local) }
+    unsafe { fill(query, Kind::Penetration, warm, want, out, Pair::local) }
 }
 
-/// The least penetration depth with its proof: depth - depth_lower <= epa_tolerance on CCD_HIT.
-/// From the state, else from the centres, else from first_dir.
+/// Computes the globally least penetration depth with a certificate: depth - depth_lower <=
+/// epa_tolerance on CCD_HIT. Does not rely on the centers.
 ///
-/// Reads epa_tolerance. center1 and center2 may be NULL, and are not trusted. `warm` may be NULL.
-/// `want`: CCD_WANT_ flags. Takes memory from malloc only where the minima (nearly) form a curve
-/// or a surface; there the bounds may stay open: CCD_LIMIT.
+/// `warm`: may be NULL. `want`: CCD_WANT_ flags.
+///
+/// Reads epa_tolerance. Allocates only where the minima (nearly) form a curve or a surface; there
+/// the bounds may not meet: CCD_LIMIT.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY.
 #[unsafe(no_mangle)]
@@ -60,14 +62,16 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
             arena::with(|arena| pair.minimum(state, settings, arena, wants, hit))
         };
     // SAFETY: passed on.
-    unsafe { answer(query, Call::Proven, warm, want, out, solve) }
+    unsafe { fill(query, Kind::Proven, warm, want, out, solve) }
 }
 
-/// How far obj2 must move along `dir` to separate (directional penetration depth).
+/// Computes the directional penetration depth: the least distance by which obj2 must move along
+/// `dir` to separate the objects.
 ///
-/// `dir` need not be unit; zero, not finite or NULL is CCD_BAD_INPUT. Reads mpr_tolerance,
-/// measured along `dir`. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_
-/// flags. Allocates nothing.
+/// `dir`: of any length; NULL, zero or not finite is CCD_BAD_INPUT. `warm`: may be NULL. `want`:
+/// CCD_WANT_ flags.
+///
+/// Reads mpr_tolerance, measured along `dir`. Allocates nothing.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
 #[unsafe(no_mangle)]
@@ -90,16 +94,17 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
                 pair.along(dir, state, settings, hit)
             };
-        answer(query, Call::Refined, warm, want, out, solve)
+        fill(query, Kind::Penetration, warm, want, out, solve)
     }
 }
 
-/// A local minimum of the penetration depth among the directions of a plane, for shapes that lie
-/// in a common plane with this normal. From the state, else from the centres, else from first_dir.
+/// Computes a local minimum of the penetration depth over the directions in a plane, for objects
+/// that lie in a common plane.
 ///
-/// `plane_normal` need not be unit; zero, not finite or NULL is CCD_BAD_INPUT. Reads
-/// mpr_tolerance. center1 and center2 may be NULL. `warm` may be NULL. `want`: CCD_WANT_ flags.
-/// Allocates nothing.
+/// `plane_normal`: of any length; NULL, zero or not finite is CCD_BAD_INPUT. `warm`: may be NULL.
+/// `want`: CCD_WANT_ flags.
+///
+/// Reads mpr_tolerance. Allocates nothing.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS or CCD_BAD_INPUT.
 #[unsafe(no_mangle)]
@@ -114,14 +119,14 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
 ) -> c_int {
     // SAFETY: passed on.
     unsafe {
-        let Some(m) = unit_of(plane_normal) else {
+        let Some(plane_normal) = unit_of(plane_normal) else {
             return CCD_BAD_INPUT;
         };
         let query = Query { obj1, obj2, ccd };
         let solve =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
-                pair.planar(m, state, settings, hit)
+                pair.planar(plane_normal, state, settings, hit)
             };
-        answer(query, Call::Refined, warm, want, out, solve)
+        fill(query, Kind::Penetration, warm, want, out, solve)
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! States: what one query of a pair leaves for the next.
+//! States: carried from one query of a pair to the next.
 
 use core::ffi::{c_int, c_uint};
 
@@ -10,19 +10,18 @@ use super::codes::{CCD_BAD_INPUT, CCD_NO_MEMORY};
 use crate::minkowski::support::Fault;
 use crate::query::warm_start::WarmStart;
 
-/// How many numbers a ccd_warm_t holds.
+/// Number of reals in a ccd_warm_t.
 pub const CCD_WARM_REALS: usize = 6;
 
-/// State of one pair between queries. Plain data, no pointers, nothing to free: all
-/// bytes zero is cold, and it may be copied and stored freely.
+/// State of one pair between queries. Plain data without pointers, nothing to free: all bytes
+/// zero is cold, and copies are valid.
 ///
-/// One state is for one pair in one order: the state of (a, b) is a foreign one to a query of
-/// (b, a), until ccdWarmFlip turns it round. Every call takes what any other call has left in
-/// it. Two threads must not use one state at once. Wherever a call takes a state, NULL is cold,
-/// and saves what it costs to leave one.
+/// A state belongs to one pair in one order: ccdWarmFlip converts the state of (a, b) to one of
+/// (b, a). Every call accepts the state that any other call has written. Two threads must not use
+/// one state at once. NULL in place of a state is a cold start and saves the cost of writing one.
 ///
-/// A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to
-/// another local minimum; every answer stays sound. The fields are the library's own.
+/// A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to another
+/// local minimum; every result stays sound. The fields are private.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ccd_warm_t {
@@ -37,7 +36,7 @@ const _: () = {
     assert!(size_of::<ccd_warm_t>() == 56);
 };
 
-/// The caller's state; cold where there is none.
+/// Returns the caller's state; cold where `warm` is NULL.
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
@@ -49,21 +48,21 @@ unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
     }
 }
 
-/// What `ask` returns: with the caller's state, or with a cold one where there is none. The state stays
-/// as it was where there is no answer.
+/// Runs `solve` with the caller's state, or a cold one where `warm` is NULL, and returns its code. A
+/// fault leaves the caller's state unchanged.
 ///
 /// # Safety
-/// \[inputs\] and \[outputs\] of the module contract; `ask` runs callbacks, so that nothing
+/// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
 /// with a destructor is alive here.
 #[inline(always)]
 pub(in crate::ffi) unsafe fn with_state(
     warm: *mut ccd_warm_t,
-    ask: impl FnOnce(&mut WarmStart) -> Result<c_int, Fault>,
+    solve: impl FnOnce(&mut WarmStart) -> Result<c_int, Fault>,
 ) -> c_int {
     // SAFETY: passed on.
     unsafe {
         let mut state = read(warm);
-        match ask(&mut state) {
+        match solve(&mut state) {
             Ok(code) => {
                 store(warm, &state);
                 code
@@ -74,6 +73,8 @@ pub(in crate::ffi) unsafe fn with_state(
     }
 }
 
+/// Writes the caller's state unless `warm` is NULL.
+///
 /// # Safety
 /// \[outputs\] of the module contract.
 unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
@@ -84,11 +85,10 @@ unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
     }
 }
 
-/// Makes `warm` a fresh state that starts from `dir`, the caller's guess of the way obj2
-/// leaves.
+/// Makes `warm` a new state that starts from `dir`, a guess of the penetration direction, along
+/// which obj2 moves to separate.
 ///
-/// `dir` need not be unit; zero, not finite or NULL makes a cold state. `warm` NULL: nothing
-/// happens.
+/// `dir`: of any length; NULL, zero or not finite makes a cold state. `warm`: NULL has no effect.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const ccd_vec3_t) {
     // SAFETY: [inputs], [outputs].
@@ -101,10 +101,10 @@ pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const 
     }
 }
 
-/// Makes a state of the pair (obj1, obj2) one of (obj2, obj1): for a caller who keeps one
-/// state a pair and meets its objects in either order.
+/// Converts a state of the pair (obj1, obj2) to one of (obj2, obj1), for a caller who keeps one
+/// state for each pair and queries it in either order.
 ///
-/// Cold stays cold. `warm` NULL: nothing happens.
+/// `warm`: cold stays cold; NULL has no effect.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdWarmFlip(warm: *mut ccd_warm_t) {
     // SAFETY: [inputs], [outputs].
