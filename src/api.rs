@@ -65,7 +65,7 @@ impl<F: Fn([Real; 3]) -> [Real; 3]> Shape for (F, [Real; 3]) {
     }
 }
 
-/// Cause of a query without a result. State and memory of the caller are unchanged.
+/// Cause of a query without a result. The caller's state is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {

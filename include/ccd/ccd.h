@@ -65,8 +65,8 @@ CCD_EXPORT void ccdFirstDirDefault(const void *o1, const void *o2, ccd_vec3_t *d
  * when a required callback is NULL or a point is not finite. */
 CCD_EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
-/** Computes the shortest translation of obj2 that separates the objects, as ccdGJKPenetration
- * does: sep = depth * dir, metres; may be NULL. */
+/** Computes the shortest translation of obj2 that separates the objects: sep = depth * dir, metres;
+ * may be NULL. Callbacks, tolerance, memory and codes are those of ccdGJKPenetration. */
 CCD_EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *ccd,
                               ccd_vec3_t *sep);
 

@@ -519,7 +519,7 @@ int ccdMPRIntersectWarm(const void *obj1,
 #define CCD_CHECK_OPPOSITE 2
 
 /**
- * A point lies beyond the support plane of another direction by `noise`, more than rounding. Of
+ * A point is beyond the support plane of another direction by `noise`, more than rounding. Of
  * the order of single precision: choose tolerances of several times the noise or more. Greater: a
  * wrong frame (the direction must be rotated to the body's frame, the point back), points of
  * another object, or a search over the vertices that stops too early.
@@ -532,7 +532,7 @@ int ccdMPRIntersectWarm(const void *obj1,
 #define CCD_CHECK_CHANGES 8
 
 /**
- * The center lies outside the object. The MPR calls and ccdPenetration then miss overlaps, and
+ * The center is outside the object. The MPR calls and ccdPenetration then miss overlaps, and
  * report overlaps of objects that are apart.
  */
 #define CCD_CHECK_CENTER_OUTSIDE 16

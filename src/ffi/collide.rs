@@ -128,8 +128,8 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     }
 }
 
-/// Computes the shortest translation of obj2 that separates the objects, as
-/// [`ccdGJKPenetration`] does: `sep` = depth * dir, metres; may be NULL.
+/// Computes the shortest translation of obj2 that separates the objects: `sep` = depth * dir, metres;
+/// may be NULL. Callbacks, tolerance, memory and codes are those of [`ccdGJKPenetration`].
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdGJKSeparate(
     obj1: *const c_void,

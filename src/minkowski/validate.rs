@@ -4,7 +4,7 @@
 //! Tests a support function and a center.
 //!
 //! 1. Support planes: the support function s(n) of any set satisfies n·s(n) >= n·s(m) for all
-//!    directions n and m, so no point lies beyond the support plane of another direction. The
+//!    directions n and m, so no point is beyond the support plane of another direction. The
 //!    greatest violation is the *noise*: some ulps from rounding, some 1e-7 of the coordinates from
 //!    single precision; more from another object, a wrong frame or an incomplete search.
 //! 2. Repetition: the same directions in the opposite order must return the same support values.
@@ -17,7 +17,7 @@ use crate::minkowski::support::SupportMap;
 const NUM_DIRECTIONS: usize = 3 * NUM_HEMISPHERE;
 /// The directions of a hemisphere: the three axes and a spiral.
 const NUM_HEMISPHERE: usize = 64;
-/// The tilt, radians. The point of a tilted direction lies half the square of the tilt, in radii,
+/// The tilt, radians. The point of a tilted direction is half the square of the tilt, in radii,
 /// below the support plane of a ball; greater noise is detected. Derived: half the square is some ulps.
 const TILT_RAD: f64 = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
 /// Ulps of the largest coordinate that count as rounding: of the rotation and the translation of a
@@ -31,7 +31,7 @@ pub struct Check {
     pub not_finite: bool,
     /// The points are the farthest against the direction: a sign is wrong.
     pub opposite: bool,
-    /// A point lies beyond the support plane of another direction by more than rounding: a wrong
+    /// A point is beyond the support plane of another direction by more than rounding: a wrong
     /// frame, points of another object, a search that stops too early, or single precision.
     pub contradicts: bool,
     /// The same direction returns another point later: the point depends on earlier calls.
@@ -147,7 +147,7 @@ pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
 
 /// Compares each point with the support planes of all directions.
 fn check_planes(points: &[Vec3; NUM_DIRECTIONS], report: &mut Check, rounding: f64) {
-    // Planes that no point lies in front of: all planes, where a sign is wrong.
+    // Planes that no point is in front of: all planes, where a sign is wrong.
     let mut num_opposite = 0;
     for (i, point) in points.iter().enumerate() {
         let n = direction(i);

@@ -15,14 +15,14 @@ use crate::minkowski::validate::check;
 pub const CCD_CHECK_NOT_FINITE: c_int = 1;
 /// The points are the farthest *against* the direction: a sign is wrong.
 pub const CCD_CHECK_OPPOSITE: c_int = 2;
-/// A point lies beyond the support plane of another direction by `noise`, more than rounding. Of
+/// A point is beyond the support plane of another direction by `noise`, more than rounding. Of
 /// the order of single precision: choose tolerances of several times the noise or more. Greater: a
 /// wrong frame (the direction must be rotated to the body's frame, the point back), points of
 /// another object, or a search over the vertices that stops too early.
 pub const CCD_CHECK_CONTRADICTS: c_int = 4;
 /// The same direction returns another point later: the point depends on earlier calls.
 pub const CCD_CHECK_CHANGES: c_int = 8;
-/// The center lies outside the object. The MPR calls and ccdPenetration then miss overlaps, and
+/// The center is outside the object. The MPR calls and ccdPenetration then miss overlaps, and
 /// report overlaps of objects that are apart.
 pub const CCD_CHECK_CENTER_OUTSIDE: c_int = 16;
 /// `center` is NULL. Calls with MPR in their name require it, others do not.
