@@ -507,7 +507,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     let points = settings.want.points;
     let pair = pair(a, b, warm.is_some())?;
     let minimum = |pair: &ShapePair<'_, A, B>, state: &mut WarmStart, settings: &_, hit: &mut _| {
-        pair.minimum(state, settings, &mut Heap::default(), points, hit)
+        pair.minimum(state, settings, &mut Heap::default(), false, hit)
     };
     let d = with_state(warm, |state| pair.signed_distance(state, &wanted, minimum))?;
     let point_if_wanted = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };

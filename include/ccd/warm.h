@@ -278,7 +278,7 @@ typedef struct ccd_distance_t {
  * functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
  * a box). The signed distance is that of the cores minus both margins, exactly. `max_distance`:
  * metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
- * `warm`: may be NULL. `want`: CCD_WANT_POINTS; 0 saves support points where the objects overlap.
+ * `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0.
  *
  * Reads dist_tolerance. Allocates only where the cores overlap and their minima (nearly) form a
  * curve or a surface.

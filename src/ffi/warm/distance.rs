@@ -60,7 +60,7 @@ impl ccd_distance_t {
 /// functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
 /// a box). The signed distance is that of the cores minus both margins, exactly. `max_distance`:
 /// metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
-/// `warm`: may be NULL. `want`: CCD_WANT_POINTS; 0 saves support points where the objects overlap.
+/// `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0.
 ///
 /// Reads dist_tolerance. Allocates only where the cores overlap and their minima (nearly) form a
 /// curve or a surface.
@@ -96,10 +96,9 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
             max_distance: max_distance.into(),
             settings,
         };
-        let points = want & CCD_WANT_POINTS != 0;
         let minimum =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, hit: &mut _| {
-                arena::with(|arena| pair.minimum(state, settings, arena, points, hit))
+                arena::with(|arena| pair.minimum(state, settings, arena, false, hit))
             };
         with_state(warm, |state| {
             let distance = pair.signed_distance(state, &wanted, minimum)?;
