@@ -115,8 +115,8 @@ build() {
 
 (
     cd "$here/compare"
-    build compare.so -std=gnu99 -shared -fPIC -fexceptions -fvisibility=hidden guard.c ask.c sample.c keep.c watch.c
-    build screen -std=c99 screen.c
+    build compare.so -std=gnu99 -shared -fPIC -fexceptions -fvisibility=hidden catch.c query.c judge_query.c write_case.c preload.c
+    build screen -std=c99 summary.c
 )
 
 # --- the two libraries -----------------------------------------------------------------

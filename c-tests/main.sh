@@ -68,9 +68,9 @@ show() {
 export LD_BIND_NOW=1
 unset LD_LIBRARY_PATH
 compile replay
-compile warm
+compile replay_extension
 rm -f "$work"/*.txt
-for program in replay warm; do
+for program in replay replay_extension; do
     if [ "$(LD_LIBRARY_PATH=$work libccd_of "$work/$program")" != "$work/libccd.so.2" ]; then
         echo "main.sh: $program does not run on this library" >&2
         exit 1
@@ -87,7 +87,7 @@ fi
 for _ in $(seq "$turns"); do
     [ -z "$system" ] || turn replay theirs.txt
     turn replay ours.txt "$work"
-    turn warm warm.txt "$work"
+    turn replay_extension warm.txt "$work"
 done
 [ -z "$system" ] || show "libccd: $system" theirs.txt
 show "This library under the same program" ours.txt

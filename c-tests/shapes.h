@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The shapes of every C test, and of the benchmark in Rust through lab/callbacks.c.
+/* The shapes of every C test, and of the benchmark in Rust through bench/measuring/callbacks.c.
  * A new one has a row here and no `default:` anywhere to hide behind: what is missing does
  * not compile, its support point (shape_local_support) and in truth.h the same in full
  * precision (truth_point), its size (shape_reach) and, where there is one, its exact depth

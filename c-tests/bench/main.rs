@@ -8,8 +8,8 @@
 mod charts;
 #[path = "../harness/mod.rs"]
 mod harness;
-#[path = "../lab/mod.rs"]
-mod lab;
+#[path = "measuring/mod.rs"]
+mod measuring;
 mod peers;
 mod progress;
 
@@ -42,7 +42,7 @@ enum Command {
 
 fn main() {
     match Arguments::parse().command {
-        Command::Record => lab::recorded::record(),
+        Command::Record => measuring::recorded::record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),
         Command::Engines(options) => charts::engines::run(&options),

@@ -13,8 +13,8 @@ use parry3d_f64::query::details::contact_support_map_support_map_with_params;
 use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
 use parry3d_f64::shape::SupportMap;
 
-use crate::lab::libraries::{Classic, Libraries, function};
-use crate::lab::methods::{Answer, Method, classic};
+use crate::measuring::libraries::{Classic, Libraries, function};
+use crate::measuring::methods::{Answer, Method, classic};
 
 /// A shape of the callbacks as parry's trait wants it, in world coordinates.
 struct Convex {

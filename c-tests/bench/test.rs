@@ -8,14 +8,14 @@
 mod charts;
 #[path = "../harness/mod.rs"]
 mod harness;
-#[path = "../lab/mod.rs"]
-mod lab;
+#[path = "measuring/mod.rs"]
+mod measuring;
 #[allow(dead_code)]
 mod peers;
 mod progress;
 
-use lab::csv;
-use lab::measure::Row;
+use measuring::csv;
+use measuring::measure::Row;
 
 #[test]
 fn quick_charts_are_whole_and_ours_sound() {

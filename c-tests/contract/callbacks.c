@@ -8,7 +8,7 @@
  * the centers are not well given. */
 
 #define _POSIX_C_SOURCE 200809L
-#include "entries.h"
+#include "every_call.h"
 #include <math.h>
 #include <pthread.h>
 

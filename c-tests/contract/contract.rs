@@ -329,8 +329,8 @@ fn headers_compile_without_warnings() {
 #[test]
 fn nearest_points_of_segments_and_triangles() {
     let nearest = match compared() {
-        true => program("nearest").link_ours_renamed_and_system(),
-        false => alone("nearest"),
+        true => program("point_distance").link_ours_renamed_and_system(),
+        false => alone("point_distance"),
     };
     nearest.build().run([harness::rounds(20_000)]);
 }
@@ -415,7 +415,7 @@ fn callbacks() {
 
 #[test]
 fn answers_to_any_input() {
-    let questions = alone("questions").build();
+    let questions = alone("arguments").build();
     questions.run([harness::rounds(100)]);
 }
 
@@ -431,14 +431,14 @@ fn threads() {
 
 #[test]
 fn longjmp_out_of_callbacks() {
-    alone("leave").build().run(NO_ARGS);
-    alone("leave").link_ours_static().build().run(NO_ARGS);
+    alone("exceptions").build().run(NO_ARGS);
+    alone("exceptions").link_ours_static().build().run(NO_ARGS);
 }
 
 #[test]
 fn exceptions_out_of_callbacks() {
-    let exceptions = Program::cpp("leave")
-        .source("contract/leave.c")
+    let exceptions = Program::cpp("exceptions")
+        .source("contract/exceptions.c")
         .flag("-pedantic")
         .flag("-Werror")
         .flag("-DOURS_ALONE");

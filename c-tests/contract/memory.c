@@ -8,7 +8,7 @@
  * free each other's. Queries: no block at all in MPR and in yes-or-no queries; elsewhere
  * none is left behind, and without memory the answer is -2 with outputs untouched. */
 
-#include "entries.h"
+#include "every_call.h"
 #include <stddef.h>
 
 void *__libc_malloc(size_t size);

@@ -5,7 +5,7 @@
  * deletions by the user's inline functions, nearest elements set by the user, searches and
  * recomputations. After every step the polytope is held against a model: what
  * was added, in which order, and which element libccd's rule makes nearest given the
- * distances that stand in the elements. The distances are nearest.c's matter. */
+ * distances that stand in the elements. The distances are point_distance.c's matter. */
 
 #include "check.h"
 #include "harness/identity.h"

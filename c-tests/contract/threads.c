@@ -4,7 +4,7 @@
 /* The same queries from many threads at once give the bits that one thread gives. */
 
 #define _POSIX_C_SOURCE 200809L
-#include "entries.h"
+#include "every_call.h"
 #include <pthread.h>
 
 enum { PAIRS = 60, THREADS = 8, ROUNDS = 5 };

@@ -21,6 +21,16 @@ fn cpp(name: &str) -> Program {
     Program::cpp(name).source(format!("extension/{name}.cpp"))
 }
 
+/// A program of c-tests/examples on this library.
+fn example(file: &str) -> Program {
+    let (name, language) = file.split_once('.').expect("a file's ending");
+    let program = match language {
+        "cpp" => Program::cpp(name),
+        _ => Program::c(name),
+    };
+    strict(program.source(format!("examples/{file}")))
+}
+
 fn strict(program: Program) -> Program {
     let program = program.flag("-pedantic").flag("-Werror");
     program.flag("-DOURS_ALONE").link_ours_shared()
@@ -37,18 +47,18 @@ fn cpp_wrapper() {
 /// Every call with every argument that none can work with; and what is wanted.
 #[test]
 fn bad_input_and_what_may_be_null() {
-    program("input").build().run(NO_ARGS);
+    program("bad_input").build().run(NO_ARGS);
 }
 
 /// What ccdCheck finds wrong with a support function, and that it finds nothing wrong with others.
 #[test]
 fn odd_support_functions_are_told() {
-    program("odd").build().run(NO_ARGS);
+    program("support_check").build().run(NO_ARGS);
 }
 
 #[test]
 fn answers_from_every_kind_of_state() {
-    program("answers").build().run(NO_ARGS);
+    program("warm_states").build().run(NO_ARGS);
 }
 
 /// pos against an integral, along bodies that tilt, tip, slide and roll.
@@ -60,7 +70,7 @@ fn pos_is_the_centre_of_pressure() {
 /// What `pos` costs the boxes of the README, as include/README.md says it.
 #[test]
 fn callbacks_of_sliding_boxes_are_as_the_page_says() {
-    let said = program("sliding").build().run(NO_ARGS).stdout;
+    let said = program("position_cost").build().run(NO_ARGS).stdout;
     let page = include_str!("../../include/README.md");
     assert!(page.contains(said.trim()), "{said}");
 }
@@ -119,7 +129,7 @@ fn fcl_example() {
 /// the callbacks saved for these pairs, fast as they turn.
 #[test]
 fn states_in_a_hash_table() {
-    let lines = program("states").build().run(NO_ARGS).stdout;
+    let lines = example("pair_table.c").build().run(NO_ARGS).stdout;
     let lines: Vec<&str> = lines.lines().collect();
     assert_eq!(lines.len(), 6);
     for line in lines {
@@ -139,8 +149,8 @@ fn states_in_a_hash_table() {
 /// fall side by side, the nearest of what is apart, and the box comes no nearer to either.
 #[test]
 fn small_worlds() {
-    let c = program("world").build().run(NO_ARGS).stdout;
-    let cpp = strict(cpp("world")).build().run(NO_ARGS).stdout;
+    let c = example("world.c").build().run(NO_ARGS).stdout;
+    let cpp = example("world.cpp").build().run(NO_ARGS).stdout;
     assert_eq!(c, cpp);
     let lines: Vec<&str> = c.lines().collect();
     assert_eq!(

@@ -16,7 +16,7 @@
 #include "extension/pressure.h"
 
 #include "contract/check.h"
-#include "ours.h"
+#include "this_library.h"
 #include "truth.h"
 
 #include <float.h>

@@ -6,7 +6,7 @@
 
 #include <ccd/ccd.hpp>
 
-#include "contract/entries.h"
+#include "contract/every_call.h"
 
 #include <array>
 #include <stdexcept>

@@ -78,7 +78,7 @@ fn replay_on_both_libraries() {
 
 #[test]
 fn the_extension_cold_and_warm() {
-    let warm = program("warm")
+    let warm = program("replay_extension")
         .flag("-DOURS_ALONE")
         .link_ours_shared()
         .build();

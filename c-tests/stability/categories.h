@@ -9,7 +9,7 @@
 
 #include "judge.h"
 
-#include "dice.h"
+#include "splitmix.h"
 
 /* --- pairs ---------------------------------------------------------------------- */
 

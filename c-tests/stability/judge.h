@@ -12,7 +12,7 @@
 #define _POSIX_C_SOURCE 200809L
 #endif
 
-#include "ours.h"
+#include "this_library.h"
 #include "tolerances.h"
 
 #include <setjmp.h>
@@ -36,7 +36,7 @@ enum { /* what the warm state holds, or how else a distance is asked */
 typedef struct {
     const char *name;
     int system; /* libccd's, else ours */
-    int ask, state; /* which call, of ours.h */
+    int ask, state; /* which call, of this_library.h */
 } entry_t;
 
 /* codes beside those of the libraries */

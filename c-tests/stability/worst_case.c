@@ -11,7 +11,7 @@
  * process' turn is no cost of a query. */
 
 #define _POSIX_C_SOURCE 199309L
-#include "ours.h"
+#include "this_library.h"
 #include "shapes.h"
 #include "uniform.h"
 

@@ -22,7 +22,7 @@
 #include "swap/fcl_shapes.h"
 #include "harness/identity.h"
 #ifndef TIMED
-#include "ours.h"
+#include "this_library.h"
 #ifndef BY_HEADER
 #include "compare/hooks.h"
 #endif

@@ -5,10 +5,10 @@
 
 use super::figure::{self, Panel, Unit};
 use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
-use crate::lab::measure::Row;
-use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::recorded::{MOTIONS, RANDOM};
-use crate::lab::scene::Scene;
+use crate::measuring::measure::Row;
+use crate::measuring::methods::{self, Ask, Method, Start};
+use crate::measuring::recorded::{MOTIONS, RANDOM};
+use crate::measuring::scene::Scene;
 use crate::{peers, progress};
 
 /// Tolerances asked for, metres (libccd's EPA takes them as squares).

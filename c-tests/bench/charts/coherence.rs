@@ -5,10 +5,10 @@
 //! the recorded contact sequence of a simulation.
 
 use super::Bench;
-use crate::lab::measure::{self, Row};
-use crate::lab::methods::{self, Ask, Start};
-use crate::lab::recorded::MOTIONS;
-use crate::lab::scene::Scene;
+use crate::measuring::measure::{self, Row};
+use crate::measuring::methods::{self, Ask, Start};
+use crate::measuring::recorded::MOTIONS;
+use crate::measuring::scene::Scene;
 use crate::progress;
 
 /// The motions' names, and how many degrees they turn a frame.

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 use super::figure::{self, Bar};
 use super::{Options as Charts, Page, results};
 use crate::harness;
-use crate::lab::libraries::Libraries;
-use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::scene::{Pair, Scene};
-use crate::lab::{callgrind, csv, measure};
+use crate::measuring::libraries::Libraries;
+use crate::measuring::methods::{self, Ask, Method, Start};
+use crate::measuring::scene::{Pair, Scene};
+use crate::measuring::{callgrind, csv, measure};
 use crate::peers::{self, Compiled};
 
 /// Asked of every engine whose tolerance is not built in, metres.

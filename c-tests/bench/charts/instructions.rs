@@ -8,10 +8,10 @@ use clap::Args;
 use serde::{Deserialize, Serialize};
 
 use super::{Bench, results};
-use crate::lab::callgrind;
-use crate::lab::libraries::Libraries;
-use crate::lab::methods::{self, Ask, Method, Start};
-use crate::lab::scene::Scene;
+use crate::measuring::callgrind;
+use crate::measuring::libraries::Libraries;
+use crate::measuring::methods::{self, Ask, Method, Start};
+use crate::measuring::scene::Scene;
 
 /// The page's: a cheap support function and a dear one, and their motions.
 const ON_THE_PAGE: [&str; 4] = ["box_box", "p642_p642", "box_box_trajS", "p642_cap_trajS"];

@@ -20,11 +20,11 @@ use clap::Args;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::lab::csv;
-use crate::lab::libraries::Libraries;
-use crate::lab::measure::{self, Row};
-use crate::lab::methods::Method;
-use crate::lab::scene::Scene;
+use crate::measuring::csv;
+use crate::measuring::libraries::Libraries;
+use crate::measuring::measure::{self, Row};
+use crate::measuring::methods::Method;
+use crate::measuring::scene::Scene;
 use crate::peers::Compiled;
 use figure::{Axis, Curve, Look, Mark, Unit};
 

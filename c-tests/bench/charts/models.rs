@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Bench;
 use super::paper::VERTICES;
-use crate::lab::measure;
-use crate::lab::scene::{Pair, Scene};
+use crate::measuring::measure;
+use crate::measuring::scene::{Pair, Scene};
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Model {

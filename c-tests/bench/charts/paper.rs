@@ -6,10 +6,10 @@
 
 use super::figure::{self, Panel, Unit};
 use super::{Bench, COUNTED, Page, SUPPORTS, TIME, TIMED};
-use crate::lab::deep::{self, Polytope};
-use crate::lab::measure::Row;
-use crate::lab::methods::{self, Ask, Start};
-use crate::lab::scene::Scene;
+use crate::measuring::deep::{self, Polytope};
+use crate::measuring::measure::Row;
+use crate::measuring::methods::{self, Ask, Start};
+use crate::measuring::scene::Scene;
 use crate::progress;
 
 /// Icospheres of the pair sets, by their number of vertices.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::figure::{self, Look, Mark, Panel, Unit};
 use super::{Bench, GREY, Page};
 use crate::harness::Program;
-use crate::lab::csv;
+use crate::measuring::csv;
 
 /// How far off a body's middle its contact position is, metres.
 #[derive(Clone, Debug, Serialize, Deserialize)]

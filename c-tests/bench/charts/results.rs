@@ -10,7 +10,7 @@ use super::Page;
 use super::instructions::Split;
 use super::models::Model;
 use super::paper::{AS_PUBLISHED, PAPER};
-use crate::lab::measure::Row;
+use crate::measuring::measure::Row;
 
 /// The head's cells are between bars.
 pub fn markdown<const N: usize>(

@@ -8,7 +8,7 @@
 
 #define _POSIX_C_SOURCE 199309L
 #include "record/replay.h"
-#include "ours.h"
+#include "this_library.h"
 
 static ccd_warm_t *state;
 static size_t states;

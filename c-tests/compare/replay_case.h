@@ -4,8 +4,8 @@
 /* One query, asked again: two objects as points, and what is known of the pair. It knows
  * libccd's interface alone, and runs on whichever library it is linked to. */
 
-#ifndef COMPARE_CASE_H
-#define COMPARE_CASE_H
+#ifndef COMPARE_REPLAY_CASE_H
+#define COMPARE_REPLAY_CASE_H
 
 #include "verdict.h"
 

@@ -6,8 +6,8 @@
  * never look at them, so what stands between lies behind those pointers, on the stack of the
  * one who asks: no thread-local state, and nothing to clear up when a callback does not return. */
 
-#ifndef COMPARE_ASK_H
-#define COMPARE_ASK_H
+#ifndef COMPARE_QUERY_H
+#define COMPARE_QUERY_H
 
 #include "compare/counts.h"
 

@@ -5,7 +5,7 @@
  * exception, which reaches the caller's catch as it was thrown and runs the destructors on its way.
  * The program goes on, and the next query answers as ever. */
 
-#include "entries.h"
+#include "every_call.h"
 
 static int calls_left, destroyed;
 

@@ -4,7 +4,7 @@
 /* Loaded before a program (LD_PRELOAD), this object stands between it and libccd: the dynamic
  * linker binds the program's queries, and those of FCL, ODE, MuJoCo and DART, to the functions
  * here. Each is answered by the library that the program is to go on with, on the program's own
- * objects and callbacks; then a share of them is put to both libraries and judged (sample.c).
+ * objects and callbacks; then a share of them is put to both libraries and judged (judge_query.c).
  *
  * Nothing is kept over a callback but what lies on the stack, so that exceptions and longjmp
  * pass through. compare.sh says in the environment what is wanted:
@@ -17,9 +17,9 @@
  *   CCD_COMPARE_KEEP, CCD_COMPARE_CASE   where wrong answers go, and what their files end with */
 
 #define _GNU_SOURCE
-#include "compare/guard.h"
+#include "compare/catch.h"
 #include "compare/hooks.h"
-#include "compare/sample.h"
+#include "compare/judge_query.h"
 
 #include <dlfcn.h>
 #include <errno.h>

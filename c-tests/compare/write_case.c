@@ -8,8 +8,8 @@
  * would do along another direction: it is counted alone. */
 
 #define CASE_KEEPS
-#include "compare/sample.h"
-#include "compare/case.h"
+#include "compare/judge_query.h"
+#include "compare/replay_case.h"
 
 #include <string.h>
 
@@ -172,7 +172,7 @@ static int write_case(const compare_t *compare, const case_t *c, const char *pat
             " *\n"
             " * The objects are what their support functions answered, direction by direction, at the end. */\n\n",
             c->title);
-    bad = put_source(f, compare->case_source, "verdict.h") | put_source(f, compare->case_source, "compare/case.h");
+    bad = put_source(f, compare->case_source, "verdict.h") | put_source(f, compare->case_source, "compare/replay_case.h");
     put_case(f, c);
     return fclose(f) | bad;
 }

@@ -5,18 +5,18 @@
 
 #![cfg(not(feature = "single"))]
 
-#[path = "../harness/mod.rs"]
+#[path = "../../harness/mod.rs"]
 mod harness;
 #[path = "mod.rs"]
-mod lab;
+mod measuring;
 
-use lab::csv;
-use lab::deep::{self, Polytope};
-use lab::libraries::Libraries;
-use lab::measure;
-use lab::methods::Start;
-use lab::recorded::{self, Recorded};
-use lab::scene::Scene;
+use measuring::csv;
+use measuring::deep::{self, Polytope};
+use measuring::libraries::Libraries;
+use measuring::measure;
+use measuring::methods::Start;
+use measuring::recorded::{self, Recorded};
+use measuring::scene::Scene;
 
 /// No set needs more supports, or errs more, than `support_counts.csv` says.
 /// `cargo bench -p charts -- record` writes the file anew.

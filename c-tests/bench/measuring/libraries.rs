@@ -189,7 +189,7 @@ impl Libraries {
         let work = tempfile::tempdir().expect("a temporary directory");
         let tests = harness::root().join("c-tests");
         let object = work.path().join("callbacks.so");
-        let source = tests.join("lab/callbacks.c");
+        let source = tests.join("bench/measuring/callbacks.c");
         let compiler = compile(false, &[], &source, &object, &[])
             .unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
 

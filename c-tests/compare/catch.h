@@ -4,8 +4,8 @@
 /* Runs what may throw or jump out of itself, and comes back. The questions that the tool asks
  * beside the program's own must not leave into the program. */
 
-#ifndef COMPARE_GUARD_H
-#define COMPARE_GUARD_H
+#ifndef COMPARE_CATCH_H
+#define COMPARE_CATCH_H
 
 typedef enum {
     GUARD_RETURNED,

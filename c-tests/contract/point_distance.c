@@ -9,7 +9,7 @@
  * libccd beside it, libccd's worst error is printed, not judged. */
 
 #include "check.h"
-#include "ours.h"
+#include "this_library.h"
 #include <float.h>
 #include <math.h>
 

@@ -10,7 +10,7 @@
  * (Lua's, in a callback) are told by where their buffer is: on the stack, below the guard. */
 
 #define _GNU_SOURCE
-#include "compare/guard.h"
+#include "compare/catch.h"
 
 #include <dlfcn.h>
 #include <setjmp.h>

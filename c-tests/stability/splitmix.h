@@ -3,8 +3,8 @@
 
 /* Random numbers that are the same everywhere: splitmix64 (Steele, Lea, Flood 2014). */
 
-#ifndef STABILITY_DICE_H
-#define STABILITY_DICE_H
+#ifndef STABILITY_SPLITMIX_H
+#define STABILITY_SPLITMIX_H
 
 #include "shapes.h"
 

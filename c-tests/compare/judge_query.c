@@ -8,7 +8,7 @@
  * library; that one is missed or unsound, by the proof. */
 
 #define _GNU_SOURCE
-#include "compare/sample.h"
+#include "compare/judge_query.h"
 
 #include <float.h>
 #include <stdlib.h>

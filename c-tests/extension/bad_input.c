@@ -3,10 +3,10 @@
 
 /* Every call with every argument that no query can work with: the code is the documented one, and
  * nothing is written then. What may be NULL; what is wanted.
- * (max_iterations: contract/questions.c.) */
+ * (max_iterations: contract/arguments.c.) */
 
 #include "contract/check.h"
-#include "ours.h"
+#include "this_library.h"
 #include "shapes.h"
 
 /* The first of `calls`. */
@@ -416,7 +416,7 @@ static void wanted(void)
     setup();
 }
 
-/* A distance is an answer; what is not wanted of it is zero. (Other misses write nothing: contract/questions.c.) */
+/* A distance is an answer; what is not wanted of it is zero. (Other misses write nothing: contract/arguments.c.) */
 static void a_distance(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2;

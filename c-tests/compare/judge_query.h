@@ -4,11 +4,11 @@
 /* One query of the program's, put to libccd, to this library and to the proven minimum, and
  * judged; what is found is added to the counts. */
 
-#ifndef COMPARE_SAMPLE_H
-#define COMPARE_SAMPLE_H
+#ifndef COMPARE_JUDGE_QUERY_H
+#define COMPARE_JUDGE_QUERY_H
 
-#include "compare/ask.h"
-#include "compare/guard.h"
+#include "compare/query.h"
+#include "compare/catch.h"
 
 #include <time.h>
 
@@ -53,7 +53,7 @@ verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict
 /* A hit by a call that answers how deep. */
 int sample_has_depth(const query_t *q, const answer_t *a);
 
-/* keep.c: keeps the answer of one library as a C file, where it is among its worst and its file
+/* write_case.c: keeps the answer of one library as a C file, where it is among its worst and its file
  * shows it again. */
 void keep_case(const compare_t *compare, const sample_t *s, int side);
 

@@ -5,8 +5,8 @@
  * by name, and without RTLD_DEEPBIND would get those of whichever library is first. */
 
 #define _GNU_SOURCE
-#include "compare/ask.h"
-#include "compare/guard.h"
+#include "compare/query.h"
+#include "compare/catch.h"
 
 #include <dlfcn.h>
 #include <stdio.h>

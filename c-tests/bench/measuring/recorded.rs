@@ -61,7 +61,7 @@ pub struct Recorded {
 }
 
 pub fn file() -> PathBuf {
-    harness::root().join("c-tests/lab/support_counts.csv")
+    harness::root().join("c-tests/bench/measuring/support_counts.csv")
 }
 
 /// Every method of ours over the random and the shallow sets and the small motions.

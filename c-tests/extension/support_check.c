@@ -5,7 +5,7 @@
  * is, and finer faults: src/minkowski/validate.rs.) */
 
 #include "contract/check.h"
-#include "ours.h"
+#include "this_library.h"
 #include "shapes.h"
 
 #include <math.h>

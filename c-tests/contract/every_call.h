@@ -4,11 +4,11 @@
 /* Every entry point that runs callbacks, asked in one way, so that a test can go through all
  * of them. Compiled with -DOURS_ALONE. */
 
-#ifndef TESTS_ENTRIES_H
-#define TESTS_ENTRIES_H
+#ifndef CONTRACT_EVERY_CALL_H
+#define CONTRACT_EVERY_CALL_H
 
 #include "check.h"
-#include "ours.h"
+#include "this_library.h"
 #include "polytope.h"
 #include "shapes.h"
 

@@ -9,8 +9,8 @@
  * library alone (also every single-precision one: Debian's libccd is double) is
  * compiled with -DOURS_ALONE, and OURS(name) is the plain name. */
 
-#ifndef TESTS_OURS_H
-#define TESTS_OURS_H
+#ifndef TESTS_THIS_LIBRARY_H
+#define TESTS_THIS_LIBRARY_H
 
 #include "calls.h"
 
