@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The shared library answers to libccd's own SONAME, and GNU ld links it where there is
-//! one; nothing else is built here. The tests, and the benchmark, whose package has this
+//! Names the shared library as libccd's own, and links it by GNU ld on ELF systems that have it;
+//! nothing else is built here. The tests, and the benchmark, whose package has this
 //! script too, learn what they are compiled for, to compile C for the same.
 
 use std::env::var;
@@ -11,15 +11,32 @@ use std::process::Command;
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     if var("CARGO_PKG_NAME").is_ok_and(|name| name == "warmccd") {
-        println!("cargo::rustc-cdylib-link-arg=-Wl,-soname,libccd.so.2");
-        if has_gnu_ld() {
-            println!("cargo::rustc-cdylib-link-arg={GNU_LD}");
+        for argument in link_arguments() {
+            println!("cargo::rustc-cdylib-link-arg={argument}");
         }
     }
     for name in ["HOST", "TARGET"] {
         let triple = var(name).expect("cargo names both");
         println!("cargo::rustc-env={name}={triple}");
     }
+}
+
+/// Returns how the shared library is linked for the platform that it is built for.
+fn link_arguments() -> Vec<&'static str> {
+    let vendor = var("CARGO_CFG_TARGET_VENDOR").unwrap_or_default();
+    let family = var("CARGO_CFG_TARGET_FAMILY").unwrap_or_default();
+    if vendor == "apple" {
+        return vec!["-Wl,-install_name,@rpath/libccd.2.dylib"];
+    }
+    if family != "unix" {
+        // A DLL has no other name than that of its file.
+        return Vec::new();
+    }
+    let mut arguments = vec!["-Wl,-soname,libccd.so.2"];
+    if has_gnu_ld() {
+        arguments.push(GNU_LD);
+    }
+    arguments
 }
 
 /// GNU ld leaves out what nothing calls of Rust's standard library. LLVM's, which newer Rusts

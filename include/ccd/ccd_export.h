@@ -10,9 +10,9 @@
 #if defined(CCD_STATIC_DEFINE)
 #undef CCD_EXPORT
 #define CCD_EXPORT
-#elif defined(_MSC_VER) && defined(ccd_EXPORTS)
+#elif defined(_WIN32) && defined(ccd_EXPORTS)
 #define CCD_EXPORT __declspec(dllexport)
-#elif defined(_MSC_VER)
+#elif defined(_WIN32)
 #define CCD_EXPORT __declspec(dllimport)
 #elif !defined(CCD_EXPORT)
 #define CCD_EXPORT __attribute__((visibility("default")))

@@ -1,0 +1,133 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: 2026 The warmccd developers
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# What windows.sh does in its chroot: the repository is /tree.
+
+set -eu
+target=x86_64-pc-windows-gnu
+cc=x86_64-w64-mingw32-gcc
+export WINEDEBUG=-all WINEPREFIX=/wine XDG_RUNTIME_DIR=/tmp
+
+# Rust's standard library: nothing else here needs RUSTC_BOOTSTRAP.
+std=$(rustc --print sysroot)/lib/rustlib/$target/lib
+if [ ! -e "$std/made" ]; then
+    mkdir -p "$std" /std/src
+    cd /std
+    printf '[package]\nname = "std-for-windows"\nversion = "0.0.0"\nedition = "2021"\n' >Cargo.toml
+    : >src/lib.rs
+    RUSTC_BOOTSTRAP=1 cargo build --release -Zbuild-std=std,panic_unwind --target $target
+    cp target/$target/release/deps/*.rlib "$std"
+    for object in rsbegin rsend; do
+        RUSTC_BOOTSTRAP=1 rustc --target $target --emit=obj -o "$std/$object.o" \
+            /usr/lib/rustlib/src/rust/library/rtstartup/$object.rs
+    done
+    touch "$std/made"
+fi
+
+echo "== the library, by CMake"
+cat >/toolchain.cmake <<END
+set(CMAKE_SYSTEM_NAME Windows)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+set(CMAKE_C_COMPILER $cc)
+set(CMAKE_STRIP x86_64-w64-mingw32-strip)
+END
+rm -rf /build /prefix /consumer
+cmake -S /tree/cmake -B /build -DCMAKE_INSTALL_PREFIX=/prefix -DCMAKE_TOOLCHAIN_FILE=/toolchain.cmake \
+    -DCCD_RUST_TARGET=$target -DCCD_CARGO_TARGET_DIR=/cargo
+cmake --build /build
+cmake --install /build
+cargo build --release --lib --manifest-path /tree/Cargo.toml --target-dir /cargo
+
+echo "== a project that finds the package"
+cmake -S /tree/c-tests/packaging/consumer -B /consumer -DWAY=find_package -DCMAKE_PREFIX_PATH=/prefix \
+    -DCMAKE_TOOLCHAIN_FILE=/toolchain.cmake
+cmake --build /consumer
+cp /prefix/bin/ccd.dll /consumer
+for program in plain namespaced static; do
+    wine /consumer/$program.exe
+done
+
+# What the tests take from POSIX to go on after a crash or an endless loop: here these end the program.
+cat >/posix.h <<'END'
+#include <setjmp.h>
+#include <signal.h>
+#define sigjmp_buf jmp_buf
+#define sigsetjmp(buffer, mask) setjmp(buffer)
+#define siglongjmp longjmp
+#define SIGALRM 14
+#define SIGBUS 10
+struct sigaction { void (*sa_handler)(int); int sa_flags, sa_mask; };
+static inline int sigaction(int n, const struct sigaction *a, void *old) { return (void)n, (void)a, (void)old, 0; }
+#define sigemptyset(mask) (*(mask) = 0)
+#define SA_NODEFER 0
+#define alarm(seconds) ((void)(seconds))
+END
+
+run=/run-windows
+rm -rf $run
+mkdir $run
+cp /prefix/bin/ccd.dll $run
+cp /cargo/release/libccd.so $run/libccd.so.2
+cp /tree/c-tests/record/contacts.bin $run
+cd $run
+system=$(sed -n 's/^Libs.private: //p' /prefix/lib/pkgconfig/ccd.pc)
+threads="-Wl,-Bstatic -lwinpthread -Wl,-Bdynamic"
+flags="-std=gnu99 -O2 -ffp-contract=off -DOURS_ALONE -I/tree/c-tests"
+failed=0
+ways="shared static"
+# What a program wrote, without times, which end a line.
+lines() {
+    tr -d '\r' | sed -E 's/ +[0-9.]+( ns)?$//'
+}
+# try SOURCE ARGUMENT...: a program of c-tests/ on this machine, on the DLL and on the archive. All are
+# run, so that one failure does not hide another.
+try() {
+    name=$(basename "$1" .c)
+    source=/tree/c-tests/$1
+    shift
+    # shellcheck disable=SC2086  # one word each
+    {
+        gcc $flags -I/tree/include "$source" ./libccd.so.2 -lm -o "$name"
+        $cc $flags -D__USE_MINGW_ANSI_STDIO=1 -include /posix.h -I/prefix/include "$source" \
+            -L/prefix/lib -lccd $threads -o "$name-shared.exe"
+        $cc $flags -D__USE_MINGW_ANSI_STDIO=1 -include /posix.h -I/prefix/include -DCCD_STATIC_DEFINE "$source" \
+            /prefix/lib/libccd.a $system $threads -o "$name-static.exe"
+    }
+    LD_LIBRARY_PATH=. "./$name" "$@" >here.txt
+    for way in $ways; do
+        said="exit code 0"
+        wine "./$name-$way.exe" "$@" >there.txt 2>&1 || {
+            said="exit code $?"
+            failed=1
+        }
+        lines <here.txt >here-lines.txt
+        lines <there.txt >there-lines.txt
+        differ=$(diff here-lines.txt there-lines.txt | grep -c '^>' || true)
+        [ "$differ" -eq 0 ] && [ "$(wc -l <here.txt)" -eq "$(wc -l <there.txt)" ] || failed=1
+        echo "$name $*, $way: $said; $differ of $(wc -l <here.txt) lines other than on Linux"
+    done
+}
+
+echo "== programs under $(wine --version)"
+try contract/objects.c
+# Its _Float128 is GCC's on the DLL; the archive has Rust's functions of these names, whose calls differ.
+ways=shared
+try contract/nearest.c 2000
+ways="shared static"
+try contract/questions.c 20
+try contract/callbacks.c
+try contract/threads.c
+try contract/leave.c
+try extension/input.c
+try extension/odd.c
+try extension/states.c
+try extension/world.c
+try extension/answers.c
+try extension/pressure.c
+try stability/configurations.c compatible
+try stability/configurations.c proven
+try stability/configurations.c local
+try record/replay.c contacts.bin
+try record/warm.c contacts.bin
+exit $failed
