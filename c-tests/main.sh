@@ -89,6 +89,11 @@ for _ in $(seq "$turns"); do
     turn replay ours.txt "$work"
     turn replay_extension warm.txt "$work"
 done
+# The release and the processor, for whoever quotes a time.
+# shellcheck source=/dev/null
+machine=$(. /etc/os-release 2>/dev/null && echo "${NAME%% *} ${VERSION_ID:-}")
+machine="$machine, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
+printf '\n== On %s\n' "$machine"
 [ -z "$system" ] || show "libccd: $system" theirs.txt
 show "This library under the same program" ours.txt
 show "Its extension, without and with the state of the pair from the frame before" warm.txt
@@ -174,6 +179,7 @@ readme_table() {
 cd "$work"
 if [ "${1:-}" = readme ] && [ -e theirs.txt ]; then
     readme_table >table.md
+    printf '\n%s.\n' "$machine" >>table.md
     # Between the two marks stands what this command says.
     awk '/^<!-- main.sh readme -->/ { print; while ((getline line < "table.md") > 0) print line; skip = 1 }
         /^<!-- end -->/ { skip = 0 }

@@ -204,6 +204,23 @@ pub fn installed(command: &str) -> bool {
     said.is_ok_and(|said| said.status.success())
 }
 
+/// Names what figures are measured on: the system's release and the processor.
+pub fn machine() -> String {
+    let after = |file: &str, key: &str| {
+        let text = fs::read_to_string(file).unwrap_or_default();
+        let line = text.lines().find(|line| line.starts_with(key));
+        let value = line.and_then(|line| line.split_once(['=', ':']));
+        value.map_or("unknown".to_owned(), |(_, value)| {
+            value.replace('"', "").trim().to_owned()
+        })
+    };
+    let release = |key| after("/etc/os-release", key);
+    let name = release("NAME=");
+    let name = name.split(' ').next().unwrap_or_default();
+    let processor = after("/proc/cpuinfo", "model name");
+    format!("{name} {}, {processor}", release("VERSION_ID="))
+}
+
 /// Whether the programs are for another processor than this machine's.
 pub fn emulated() -> bool {
     TARGET != env!("HOST")

@@ -104,6 +104,7 @@ fn between_marks(page: &str, name: &str, text: &str) {
 /// front page.
 fn steps() {
     let table = checks::step_table(5);
+    let table = format!("{table}\n{}.\n", harness::machine());
     println!("{table}");
     between_marks("README.md", "steps", &table);
 }
@@ -130,6 +131,7 @@ fn scene() {
 }
 
 fn main() {
+    eprintln!("On {}", harness::machine());
     match std::env::args().nth(1).as_deref() {
         None => table(),
         Some("long") => long(),

@@ -255,19 +255,17 @@ impl Libraries {
         (Matrix3::from_row_slice(&rotation), position.into())
     }
 
-    /// One line: libraries, processor, compiler and flags, date.
+    /// One line: date, system, processor, libraries, compiler and flags.
     pub fn machine(&self) -> String {
-        let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let line = info.lines().find(|l| l.starts_with("model name"));
-        let processor = line
-            .and_then(|l| l.split_once(": "))
-            .map_or("unknown processor", |l| l.1);
         let cores = std::thread::available_parallelism().map_or(0, usize::from);
         let date = said(Command::new("date").args(["-u", "+%F"]));
         let version = said(Command::new("rustc").arg("--version"));
         format!(
-            "{date}, {processor}, {cores} cores; {} ({version}, release), beside {}; callbacks: {}",
-            self.implementation, self.system_file, self.compiler
+            "{date}, {}, {cores} cores; {} ({version}, release), beside {}; callbacks: {}",
+            harness::machine(),
+            self.implementation,
+            self.system_file,
+            self.compiler
         )
     }
 
