@@ -2,28 +2,34 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# What windows.sh does in its chroot: the repository is /tree.
+# What platforms.sh does in its chroot: the repository is /tree.
 
 set -eu
 target=x86_64-pc-windows-gnu
 cc=x86_64-w64-mingw32-gcc
 export WINEDEBUG=-all WINEPREFIX=/wine XDG_RUNTIME_DIR=/tmp
 
-# Rust's standard library: nothing else here needs RUSTC_BOOTSTRAP.
-std=$(rustc --print sysroot)/lib/rustlib/$target/lib
-if [ ! -e "$std/made" ]; then
+# make_std TARGET: Rust's standard library. Nothing else here needs RUSTC_BOOTSTRAP.
+make_std() {
+    std=$(rustc --print sysroot)/lib/rustlib/$1/lib
+    [ ! -e "$std/made" ] || return 0
     mkdir -p "$std" /std/src
-    cd /std
-    printf '[package]\nname = "std-for-windows"\nversion = "0.0.0"\nedition = "2021"\n' >Cargo.toml
-    : >src/lib.rs
-    RUSTC_BOOTSTRAP=1 cargo build --release -Zbuild-std=std,panic_unwind --target $target
-    cp target/$target/release/deps/*.rlib "$std"
-    for object in rsbegin rsend; do
-        RUSTC_BOOTSTRAP=1 rustc --target $target --emit=obj -o "$std/$object.o" \
-            /usr/lib/rustlib/src/rust/library/rtstartup/$object.rs
-    done
+    printf '[package]\nname = "std-alone"\nversion = "0.0.0"\nedition = "2021"\n' >/std/Cargo.toml
+    : >/std/src/lib.rs
+    (cd /std && RUSTC_BOOTSTRAP=1 cargo build --release -Zbuild-std=std,panic_unwind --target "$1")
+    cp "/std/target/$1/release/deps/"*.rlib "$std"
+    rm "$std/libstd_alone"*
+    case $1 in
+    *-windows-gnu)
+        for object in rsbegin rsend; do
+            RUSTC_BOOTSTRAP=1 rustc --target "$1" --emit=obj -o "$std/$object.o" \
+                "/usr/lib/rustlib/src/rust/library/rtstartup/$object.rs"
+        done
+        ;;
+    esac
     touch "$std/made"
-fi
+}
+make_std $target
 
 echo "== the library, by CMake"
 cat >/toolchain.cmake <<END
@@ -76,9 +82,10 @@ threads="-Wl,-Bstatic -lwinpthread -Wl,-Bdynamic"
 flags="-std=gnu99 -O2 -ffp-contract=off -DOURS_ALONE -I/tree/c-tests"
 failed=0
 ways="shared static"
-# What a program wrote, without times, which end a line.
+# What a program wrote, without times, which end a line, one or two, and without how many checks there were: some go
+# by addresses.
 lines() {
-    tr -d '\r' | sed -E 's/ +[0-9.]+( ns)?$//'
+    tr -d '\r' | sed -E 's/( +[0-9]+){1,2}( ns)?$//; s/ [0-9.]+ ns$//; s/^[0-9]+ checks/checks/'
 }
 # try SOURCE ARGUMENT...: a program of c-tests/ on this machine, on the DLL and on the archive. All are
 # run, so that one failure does not hide another.
@@ -130,4 +137,42 @@ try stability/configurations.c proven
 try stability/configurations.c local
 try record/replay.c contacts.bin
 try record/warm.c contacts.bin
+
+echo "== other targets"
+for target in x86_64-pc-windows-msvc aarch64-apple-darwin x86_64-apple-darwin; do
+    make_std $target
+    for features in "" single; do
+        cargo check -q --lib --locked --manifest-path /tree/Cargo.toml --target-dir /cargo --target $target \
+            --features "$features" && echo "$target $features: cargo check passes" || failed=1
+    done
+done
+
+echo "== macOS, linked by zig"
+if [ -x /zig/bin/python ] || { python3 -m venv /zig && /zig/bin/pip install -q ziglang; }; then
+    for architecture in aarch64 x86_64; do
+        # Rust names the architecture in Apple's way too, which zig does not know.
+        cat >/zig/link <<END
+#!/bin/sh
+n=\$#
+while [ \$n -gt 0 ]; do
+    case \$1 in
+    -arch) shift && n=\$((n - 1)) ;;
+    -mmacosx-version-min=* | -Wl,-exported_symbols_list | *.exp | *list) ;;
+    *) set -- "\$@" "\$1" ;;
+    esac
+    shift
+    n=\$((n - 1))
+done
+exec /zig/bin/python -m ziglang cc -target $architecture-macos "\$@"
+END
+        chmod +x /zig/link
+        upper=$(echo "$architecture" | tr a-z A-Z)
+        env "CARGO_TARGET_${upper}_APPLE_DARWIN_LINKER=/zig/link" \
+            cargo build -q --release --lib --locked --manifest-path /tree/Cargo.toml --target-dir /cargo \
+            --target $architecture-apple-darwin || failed=1
+        llvm-objdump --macho --dylib-id "/cargo/$architecture-apple-darwin/release/libccd.dylib" || failed=1
+    done
+else
+    echo "zig cannot be installed here: not linked for macOS"
+fi
 exit $failed
