@@ -147,31 +147,28 @@ for target in x86_64-pc-windows-msvc aarch64-apple-darwin x86_64-apple-darwin; d
     done
 done
 
-echo "== macOS, linked by zig"
+echo "== macOS on arm64, linked by zig"
 if [ -x /zig/bin/python ] || { python3 -m venv /zig && /zig/bin/pip install -q ziglang; }; then
-    for architecture in aarch64 x86_64; do
-        # Rust names the architecture in Apple's way too, which zig does not know.
-        cat >/zig/link <<END
+    # Without what rustc passes and zig does not know: the linked library exports more.
+    cat >/zig/cc <<'END'
 #!/bin/sh
-n=\$#
-while [ \$n -gt 0 ]; do
-    case \$1 in
-    -arch) shift && n=\$((n - 1)) ;;
-    -mmacosx-version-min=* | -Wl,-exported_symbols_list | *.exp | *list) ;;
-    *) set -- "\$@" "\$1" ;;
+n=$#
+while [ $n -gt 0 ]; do
+    case $1 in
+    -arch | -isysroot) shift && n=$((n - 1)) ;;
+    -mmacosx-version-min=* | -Wl,-exported_symbols_list* | -Wl,*/list) ;;
+    *) set -- "$@" "$1" ;;
     esac
     shift
-    n=\$((n - 1))
+    n=$((n - 1))
 done
-exec /zig/bin/python -m ziglang cc -target $architecture-macos "\$@"
+exec /zig/bin/python -m ziglang cc -target aarch64-macos "$@"
 END
-        chmod +x /zig/link
-        upper=$(echo "$architecture" | tr a-z A-Z)
-        env "CARGO_TARGET_${upper}_APPLE_DARWIN_LINKER=/zig/link" \
-            cargo build -q --release --lib --locked --manifest-path /tree/Cargo.toml --target-dir /cargo \
-            --target $architecture-apple-darwin || failed=1
-        llvm-objdump --macho --dylib-id "/cargo/$architecture-apple-darwin/release/libccd.dylib" || failed=1
-    done
+    chmod +x /zig/cc
+    # Any folder in the place of Apple's SDK, which zig does not read.
+    SDKROOT=/zig CARGO_TARGET_AARCH64_APPLE_DARWIN_LINKER=/zig/cc cargo build -q --release --lib --locked \
+        --manifest-path /tree/Cargo.toml --target-dir /cargo --target aarch64-apple-darwin || failed=1
+    llvm-objdump --macho --dylib-id /cargo/aarch64-apple-darwin/release/libccd.dylib || failed=1
 else
     echo "zig cannot be installed here: not linked for macOS"
 fi

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 #   platforms.sh   builds the library for Windows and runs C programs on it under wine; checks it
-#                  for MSVC and macOS, and links it for macOS
+#                  for MSVC and macOS, and links it for macOS on arm64
 #
 # In a chroot of Debian 13, with MinGW, wine and Debian's Rust. The standard libraries for these
 # targets, which `rustup target add` would bring, are compiled from rust-src. The files are those of
