@@ -42,7 +42,7 @@ enum { FROM_FIRST_DIR = 1, FROM_CENTERS = 2, STORES_DEPTH = 4, STORES_DIR_POS = 
     X(ccdPenetrationPlanar, PLANAR, FULL_ALONG, STORES | EXTENSION) \
     X(ccdSignedDistance, DISTANCE, DISTANCE, STORES | MAY_ALLOCATE | EXTENSION)
 
-/* What asks no pair of objects: name, traits. */
+/* Functions that query no pair of objects: name, traits. */
 #define OTHER_CALLS(X) \
     X(ccdFirstDirDefault, 0) \
     X(ccdVec3PointSegmentDist2, 0) \

@@ -45,7 +45,7 @@ enum {
         ASKS
 };
 
-/* What a call takes and fills besides the objects and their ccd_t; each uses its part. */
+/* Arguments and outputs of a call besides the objects and their ccd_t; each uses its part. */
 typedef struct {
     ccd_warm_t *warm;
     const ccd_vec3_t *along; /* or the plane's, the contacts' normal */

@@ -56,7 +56,7 @@ static inline double tolerance(int name)
 /* Distance from 1 to the next ccd_real_t. */
 static inline double real_ulp(void) { return sizeof(ccd_real_t) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON; }
 
-/* What rounding alone may do to a depth between these shapes, metres. */
+/* Effect of rounding alone on a depth between these shapes, metres. */
 static inline double pair_noise(const shape_t *a, const shape_t *b)
 {
     return tolerance(TOL_ULPS) * real_ulp() * pair_largest(a, b);

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What is wrong with one answer about a pair, given bounds on its signed depth. The recorded
+/* Judges one answer about a pair, given bounds on its signed depth. The recorded
  * contacts (record/replay.h), the tool (compare/) and the cases that it keeps judge by this. */
 
 #ifndef TESTS_VERDICT_H

@@ -157,7 +157,7 @@ pub fn engines() -> PathBuf {
 pub struct Compiled {
     /// With their names and the tolerance that they are asked for.
     found: Vec<(&'static str, Option<f64>, Classic)>,
-    /// What is not here, and why.
+    /// Engines that are missing, and why.
     pub missing: Vec<(&'static str, String)>,
 }
 

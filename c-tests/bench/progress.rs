@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What a run shows while it lasts.
+//! Shows the progress of a run.
 
 use indicatif::{ProgressIterator, ProgressStyle};
 

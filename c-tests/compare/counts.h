@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What the watched processes of a run count. It lies in a file that each maps, so that it is
+/* Counters of the watched processes of a run. They lie in a file that each maps, so that they are
  * there whichever way they end; every field is counted by atomic additions, so that threads,
  * children and other programs may count at once. Lengths are in picometres, times in
  * nanoseconds: whole numbers, which add up in any order. */

@@ -89,7 +89,7 @@ void ask_plainly(const library_t *library, const query_t *q, answer_t *out) { as
 
 /* --- through callbacks that write down ---------------------------------------------- */
 
-/* What stands behind an object pointer. */
+/* The object behind a pointer. */
 typedef struct {
     const query_t *q;
     asked_t *asked;

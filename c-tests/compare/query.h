@@ -42,7 +42,7 @@ typedef struct {
     minimum_fn minimum; /* NULL in libccd */
 } library_t;
 
-/* What the callbacks of one query answered, whoever asked: of each object apart, and the
+/* Records the answers of the callbacks of one query: of each object apart, and the
  * least support value of the difference, which no right depth exceeds. */
 enum { SEEN = 1024 };
 typedef struct {

@@ -116,7 +116,7 @@ static void print_wrong(const compare_call_t *c, const char *call)
     printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged), part(c->minimum_nanoseconds, c->timed));
 }
 
-/* What kept queries from being judged, and what the program should know. */
+/* Prints what kept queries from being judged, and what the program should know. */
 static void print_notes(const compare_call_t *sum)
 {
     if (sum->no_shape)

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What callbacks see: support1 first, support2 next with exactly the opposite direction, but where a
+/* Tests what callbacks see: support1 first, support2 next with exactly the opposite direction, but where a
  * position is read, for which the objects are asked on their own once depth and direction are known;
  * directions unit and finite, the object pointers as given, the thread that called; the
  * centers in MPR alone, first_dir in GJK alone. Directions are unit even when first_dir or

@@ -30,7 +30,7 @@ static unsigned long checks_made, checks_failed;
         }                                                              \
     } while (0)
 
-/* What main returns. */
+/* Exit code of main. */
 static inline int checks_end(void)
 {
     printf("%lu checks, %lu failed\n", checks_made, checks_failed);

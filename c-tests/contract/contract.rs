@@ -47,7 +47,7 @@ fn compared() -> bool {
     Precision::CURRENT == Precision::Double && cfg!(target_arch = "x86_64")
 }
 
-/// What a tool says of a file.
+/// Output of a tool about a file.
 fn output(command: &str, args: &[&str], file: &Path) -> String {
     let mut tool = harness::binutils(command);
     harness::must_succeed(tool.args(args).arg(file), command).stdout

@@ -25,7 +25,7 @@ typedef struct {
     int traits;
 } call_t;
 
-/* What the kinds return. */
+/* Return values of the kinds. */
 enum {
     HIT_YES = 1, HIT_YES_WARM = 1, HIT_SEPARATION = 0, HIT_DEPTH = 0, HIT_DEPTH_WARM = 0, HIT_FULL = CCD_HIT,
     HIT_FULL_ALONG = CCD_HIT, HIT_MANIFOLD = CCD_HIT, HIT_DISTANCE = CCD_HIT,

@@ -23,7 +23,7 @@ static void leave(void)
     throw std::runtime_error("out of here");
 }
 
-/* Did the query leave? */
+/* Whether the query left. */
 static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, outputs_t *out)
 {
     destroyed = 0;

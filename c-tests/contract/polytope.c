@@ -16,7 +16,7 @@
 
 enum { MOST = 512, END = -1 };
 
-/* What the polytopes must hold. Elements are numbered as they were added; a deleted one
+/* Expected contents of the polytopes. Elements are numbered as they were added; a deleted one
  * has type 0. parts: vertices of an edge, edges of a face. sides: faces of an edge. */
 typedef struct {
     int type;

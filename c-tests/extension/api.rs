@@ -131,7 +131,7 @@ fn object(of: &Rounded) -> Object {
     (&raw const *of).cast()
 }
 
-/// What the call says in C.
+/// Answer of the call in C.
 fn in_c_of(
     call: &Call,
     a: &Rounded,
@@ -429,7 +429,7 @@ fn shapes_behind_a_pointer() {
 
 // --- every exported function, as C calls it ---------------------------------------------------
 
-/// What a call is asked; what it returns.
+/// Arguments of a call, and its answer.
 type InC = fn(Object, Object, *const ccd_t, *mut ccd_warm_t) -> c_int;
 
 /// A call that writes depth, direction and position.

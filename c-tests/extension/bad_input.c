@@ -39,7 +39,7 @@ static void setup(void)
 
 /* --- the walk --------------------------------------------------------------------- */
 
-/* What a call may write. */
+/* Outputs that a call may write. */
 typedef struct {
     ccd_penetration_t penetration;
     ccd_distance_t distance;

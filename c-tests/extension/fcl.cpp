@@ -48,7 +48,7 @@ struct context {
 #define CONTEXT(c) (c).a, (c).b, (c).pose, (c).depth
 #define SAID "%s %s %ld at %g: "
 
-/* Is the point farther outside of the shape than this? */
+/* Whether the point is farther outside of the shape than this. */
 static bool outside(const shape_t &shape, const vec &p, double bound, double width)
 {
     shape_t point = shape_sphere(0);

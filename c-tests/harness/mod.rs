@@ -499,7 +499,7 @@ pub struct Executable {
     quiet: bool,
 }
 
-/// What a program that succeeded wrote.
+/// Output of a program that succeeded.
 #[derive(Clone, Debug)]
 pub struct Written {
     pub stdout: String,
@@ -606,7 +606,7 @@ impl Executable {
         (status, written)
     }
 
-    /// What goes before the program.
+    /// Words before the program.
     fn runner(&self) -> Vec<String> {
         let mut runner = emulator();
         if self.tools {

@@ -182,7 +182,7 @@ static inline int recording_pass(const recording_t *r, tally_t *tally)
 
 enum { REPLAY_SUPPORTS = 8 };
 
-/* What a query costs that only asks support points, one direction after another. */
+/* Calls both support functions in one direction after another, for their price alone. */
 static inline int replay_supports(const recording_query_t *q, const void *how, recording_answer_t *out)
 {
     int i;

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What a query may cost, as promises: support points, bytes of stack. (How many
+/* Tests promises about the cost of a query: support points, bytes of stack. (How many
  * support points the slowest may ask for is most_calls in judge.h.) A promise that is broken and
  * not marked so fails the test; one that is marked and holds fails it too, so that the mark goes
  * when the fault does.

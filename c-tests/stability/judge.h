@@ -99,13 +99,13 @@ static inline int entry_in(const entry_t *e, const char *group)
     return !group || strcmp(group, local ? "local" : proven ? "proven" : "compatible") == 0;
 }
 
-/* Does the answer claim to be the global minimum within the tolerance? */
+/* Whether the answer claims to be the global minimum within the tolerance. */
 static inline int entry_is_minimum(const entry_t *e)
 {
     return !e->system && (e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_PROVEN);
 }
 
-/* Does it promise the global minimum within the larger of the tolerance and 0.1 % of the depth? */
+/* Whether it promises the global minimum within the larger of the tolerance and 0.1 % of the depth. */
 static inline int entry_is_mpr(const entry_t *e)
 {
     return e->ask == ASK_MPR || e->ask == ASK_MPR_WARM || e->ask == ASK_PENETRATION;
@@ -338,7 +338,7 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
 
 /* --- judging ------------------------------------------------------------------ */
 
-/* What can be wrong with an answer. The first group is the rate table's, the same
+/* Faults of an answer. The first group is the rate table's, the same
  * for both libraries; the second is what this library promises. */
 #define FAULTS(X) \
     X(LOOP, "loop") \

@@ -66,7 +66,7 @@ impl Way {
     }
 }
 
-/// What every way writes, side by side.
+/// Output of every way, side by side.
 fn run_all(ways: &[Way], args: &str) -> Vec<Vec<String>> {
     std::thread::scope(|scope| {
         let runs: Vec<_> = ways.iter().map(|w| scope.spawn(|| w.lines(args))).collect();

@@ -196,7 +196,7 @@ static unsigned long put_so_far() { return asked.queries; }
 static unsigned long put_so_far() { return compare_queries(); }
 #endif
 
-/* What was wrong with a part of the pairs. */
+/* Counts of wrong answers for a part of the pairs. */
 struct part_t {
     long missed, spurious, off;
     double error;

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::process::Command;
 
-/// What one way to collide the scene answered.
+/// Answers of one way to collide the scene.
 #[derive(Clone)]
 pub struct Scene {
     name: &'static str,
@@ -146,7 +146,7 @@ pub fn table(scenes: &[Scene]) -> String {
     out
 }
 
-/// What the header itself costs in a scene.
+/// Cost of the header itself in a scene.
 pub struct HeaderCost {
     scene: &'static str,
     /// Of `fcl::collide` on libccd, with one contact a pair.

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* What the second half of a simulation looked like, told in one line; whichever the engine. */
+/* Summarises the second half of a simulation in one line, for every engine. */
 
 #ifndef SWAP_PILE_H
 #define SWAP_PILE_H

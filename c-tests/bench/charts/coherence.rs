@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What memory is worth: the motions of the pair sets, by growing steps a frame, and
+//! Measures what a state saves: the motions of the pair sets, by growing steps a frame, and
 //! the recorded contact sequence of a simulation.
 
 use super::Bench;

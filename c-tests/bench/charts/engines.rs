@@ -27,7 +27,7 @@ pub struct Options {
     /// Instructions are counted for every n-th contact; the rest is measured for all.
     #[arg(long, default_value_t = 5)]
     every: usize,
-    /// What callgrind watches.
+    /// Set in the process that callgrind watches.
     #[arg(long, hide = true)]
     watched: bool,
 }

@@ -105,7 +105,7 @@ fn short(v: f64) -> String {
     }
 }
 
-/// What an axis says, and the unit of its labels.
+/// Title of an axis and the unit of its labels.
 pub type Axis = (&'static str, Unit);
 
 #[derive(Clone, Debug)]

@@ -24,7 +24,7 @@ pub struct Options {
     /// Every call over a pair set of c-tests/pairs, in place of the page's.
     #[arg(long)]
     set: Option<String>,
-    /// What callgrind watches.
+    /// Set in the process that callgrind watches.
     #[arg(long, hide = true)]
     watched: bool,
 }

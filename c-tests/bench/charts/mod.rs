@@ -52,7 +52,7 @@ impl Options {
     }
 }
 
-/// What every measurement needs.
+/// Inputs of every measurement.
 pub struct Bench<'a> {
     pub libraries: &'a Libraries,
     pub compiled: &'a Compiled,
@@ -131,7 +131,7 @@ pub const GREY: (u8, u8, u8) = (107, 114, 128);
 pub const SUPPORTS: Axis = ("support points per query", Unit::Count);
 pub const TIME: Axis = ("time per query", Unit::Seconds);
 
-/// What a query costs, on either axis.
+/// Cost of a query, on either axis.
 pub type Cost = fn(&Row) -> Option<f64>;
 
 pub const COUNTED: Cost = |r| Some(r.supports);

@@ -172,7 +172,7 @@ pub fn write_root_page(name: &str, table: &str) {
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
 }
 
-/// What stands between `<!-- table NAME -->` and the next `<!-- end -->`.
+/// Finds the text between `<!-- table NAME -->` and the next `<!-- end -->`.
 fn between_marks(text: &str, name: &str) -> Option<std::ops::Range<usize>> {
     let mark = format!("<!-- table {name} -->\n");
     let start = text.find(&mark)? + mark.len();

@@ -16,7 +16,7 @@ use super::scene::Scene;
 pub struct Count {
     pub solver: u64,
     pub callbacks: u64,
-    /// What the watched program itself spends.
+    /// Instructions of the watched program itself.
     pub program: u64,
 }
 
@@ -44,7 +44,7 @@ fn parse(text: &str, program: &str) -> Count {
     count
 }
 
-/// What callgrind counts: the method over the scene, once.
+/// Runs the method over the scene once, for callgrind to count.
 pub fn watched(libraries: &Libraries, scene: &Scene, method: &mut Method) {
     // SAFETY: does nothing.
     unsafe { (libraries.callbacks.begin)() };

@@ -71,7 +71,7 @@ pub type Query =
     unsafe extern "C-unwind" fn(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
 
 functions! {
-    /// What libccd's API offers, of either library.
+    /// libccd's calls, of either library.
     Classic {
         mpr: fn ccdMPRPenetration(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
         gjk: fn ccdGJKPenetration(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
@@ -321,7 +321,7 @@ fn compile(
     Ok(format!("{version}, {shown}"))
 }
 
-/// What a command writes, if anything.
+/// Output of a command, empty where it fails.
 fn said(command: &mut Command) -> String {
     let output = command.output().map(|o| o.stdout).unwrap_or_default();
     String::from_utf8_lossy(&output).trim().to_owned()

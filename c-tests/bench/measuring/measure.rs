@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What a method answers on a scene, judged by the truth, and what it costs.
+//! Judges a method's answers on a scene by the truth, and measures its cost.
 //!
 //! Supports and errors are exact and repeatable. Times are medians over
 //! repetitions in which all methods take turns.
@@ -28,7 +28,7 @@ pub struct Row {
     pub start: String,
     pub tolerance: Option<f64>,
     pub ours: bool,
-    /// What a chart varies: vertices, degrees a frame.
+    /// The variable of a chart: vertices, degrees a frame.
     pub x: Option<f64>,
     pub queries: usize,
     /// Of these, overlaps deeper than 1 nm: the ones that are judged.

@@ -12,7 +12,7 @@ use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
 use super::scene::{Pair, Scene};
 
-/// What a query answered.
+/// Answer of a query.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Answer {
     pub depth: f64,
@@ -31,7 +31,7 @@ pub enum Start {
     FortyFive,
     /// The centre difference.
     Centres,
-    /// What the last frame left.
+    /// The last frame's state.
     Warm,
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What measures: libraries side by side, scenes with truth, methods, measurement.
+//! Measuring: libraries side by side, scenes with truth, methods, measurement.
 //! Each module uses those before it alone: `csv`, `libraries`, `scene`,
 //! `methods`, `deep`, `measure`, `recorded`. The benchmark (`c-tests/bench`) and the test of
 //! the figures that a change may not lose (`support_counts.rs`) are made of them.

@@ -48,7 +48,7 @@ pub const MOTIONS: [&str; 6] = [
     "ell_ell_trajS",
 ];
 
-/// What a later change may not lose: one of ours on one set.
+/// Cost and error of one method on one set, which no later change may exceed.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Recorded {
     pub set: String,

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What is measured exactly: support counts and errors that no later change may lose.
+//! Tests what is measured exactly: support counts and errors that no later change may lose.
 
 #![cfg(not(feature = "single"))]
 

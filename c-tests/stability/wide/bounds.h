@@ -192,7 +192,7 @@ static int hull_begin(wide_hull_t *w)
     return 1;
 }
 
-/* Is point p above the face? */
+/* Whether point p is above the face. */
 static int hull_sees(const wide_hull_t *w, int f, int p)
 {
     const wide_face_t *x = &w->face[f];

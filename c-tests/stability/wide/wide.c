@@ -95,7 +95,7 @@ enum { TOLERANCES = 5, DEFAULT_TOLERANCE = 1 };
  * coordinate, in the callbacks and in the difference of two points. */
 static double wide_noise(const wide_pair_t *p) { return tolerance(TOL_ULPS) * real_ulp() * p->largest; }
 
-/* Is the point outside the body by more than the bound, metres? */
+/* Whether the point is outside the body by more than the bound, metres. */
 static int is_outside(const body_t *s, const double at[3], double bound)
 {
     body_t point;
@@ -153,7 +153,7 @@ static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
     return first - least;
 }
 
-/* What the judge knows of a pair in one pose. */
+/* Bounds and points that the judge has of a pair in one pose. */
 typedef struct {
     bounds_t truth;
     double noise, least; /* least: truth.upper, or lower where an answer knows better */
