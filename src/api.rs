@@ -10,8 +10,8 @@
 use core::fmt;
 
 use crate::contact;
-use crate::contacts::manifold;
-use crate::contacts::memory::Memory;
+use crate::contact::manifold;
+use crate::contact::manifold_cache::ManifoldCache;
 use crate::ffi::arena::Heap;
 use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::Wanted;
@@ -204,7 +204,7 @@ impl Warm {
 /// Contact manifold of one pair between calls of [`contacts`], in either order: a plain value; the
 /// default is cold. A stale, foreign or random one costs time alone.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Manifold(Memory);
+pub struct Manifold(ManifoldCache);
 
 /// Result of a penetration query: an overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -564,7 +564,7 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     if room.is_empty() {
         return Err(Error::BadInput("no room for a contact"));
     }
-    let max = room.len().min(manifold::ROOM);
+    let max = room.len().min(manifold::MAX_CONTACTS);
     let memory = memory.map(|memory| &mut memory.0);
     let manifold = manifold::contacts(&SupportOf(a), &SupportOf(b), &normal, slop, memory, max)?;
     let mut count = 0;
@@ -573,7 +573,7 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
             point1: to_real(&contact.point1),
             point2: to_real(&contact.point2),
             depth: contact.depth as Real,
-            id: contact.name,
+            id: contact.id,
         };
         count += 1;
     }

@@ -4,8 +4,12 @@
 //! Settings and results of the solvers, and the contact position.
 
 pub mod center_of_pressure;
+pub mod face;
 pub mod feature;
 pub mod frame;
+pub mod manifold;
+pub mod manifold_cache;
+pub mod polygon;
 
 use crate::math::Vec3;
 

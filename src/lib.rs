@@ -57,7 +57,6 @@
 
 mod api;
 mod contact;
-mod contacts;
 mod epa;
 mod ffi;
 mod gjk;

@@ -112,20 +112,6 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
 /// The unit vector from which contact frames are rotated; rarely antiparallel to a normal.
 pub const POLE: Vec3 = Vec3::new(0.36, 0.48, 0.8);
 
-/// Returns a tangent frame: two unit vectors perpendicular to unit `n` and to each other. The frame
-/// is a fixed one, rotated by the least angle from [`POLE`] to `n`, and so continuous in `n`.
-pub fn axes(n: &Vec3) -> [Vec3; 2] {
-    let axis = Vec3::new(0.8, -0.6, 0.0);
-    let one_plus_cos = 1.0 + POLE.dot(n);
-    let e1 = if one_plus_cos > 1e-3 {
-        axis - (POLE + n) * (axis.dot(n) / one_plus_cos)
-    } else {
-        perpendicular(n)
-    };
-    let e1 = e1 / e1.norm();
-    [e1, n.cross(&e1)]
-}
-
 /// The library's limit on the iterations of a query, an upper limit of the caller's. With the
 /// support points before and after the iterations, no query takes more than 400. Measured
 /// (`campaigns -- wide`): most minima that 360 support points do not prove, 1,400 do not prove.

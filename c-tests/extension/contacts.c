@@ -181,6 +181,12 @@ static int region_of(const scene_t *s, const frame_t *f, flats_t *region, double
     double top1, top2;
     int clear = manifold_face(&s->a, f, 1, slop_in_force(s), noise_of(s), &one, &top1) &
                 manifold_face(&s->b, f, -1, slop_in_force(s), noise_of(s), &two, &top2);
+    /* The library floors the slop by the rounding of the vertices that it has met, which may be less than that of all. */
+    const double least = fmax(s->slop, 0.01 * (top1 - top2));
+    flats_t few;
+    double top;
+    clear &= manifold_face(&s->a, f, 1, least, noise_of(s), &few, &top) && few.n == one.n;
+    clear &= manifold_face(&s->b, f, -1, least, noise_of(s), &few, &top) && few.n == two.n;
     thin = 1;
     region->n = 0;
     if (one.n < 3 && two.n < 3)

@@ -64,6 +64,8 @@ const LEVEL: f64 = 0.75;
 /// How far vertices are moved outwards, in depths, so that an edge has an area and the deepest point is
 /// inside. Small beside the flank of an edge.
 const MARGIN: f64 = 1.0 / 512.0;
+/// Twice the area of a triangle that has none, as a share of the square of the margin.
+const MIN_AREA_REL: f64 = f64::EPSILON;
 
 /// The four tilts: the way of each, along the axes.
 const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
@@ -706,9 +708,10 @@ impl Fan {
             low: 0.0,
         });
         fan.close();
+        let min_area = MIN_AREA_REL * margin * margin;
         for area in fan.areas.iter_mut().take(fan.len) {
             // What rounding leaves of a triangle without area divides nothing by zero.
-            *area = larger(*area, MIN_AREA);
+            *area = larger(*area, min_area);
         }
         *self = fan;
     }
@@ -720,9 +723,6 @@ impl Fan {
         }
     }
 }
-
-/// Twice the area of a triangle that has none, m²: its inverse is finite, and so are products with it.
-const MIN_AREA: f64 = 1e-250;
 
 #[cfg(test)]
 mod tests {
@@ -750,7 +750,9 @@ mod tests {
             assert!(!fan.close());
             fan.enclose(1e-3);
             assert!(
-                fan.areas[..fan.len].iter().all(|a| *a > MIN_AREA),
+                fan.areas[..fan.len]
+                    .iter()
+                    .all(|a| *a > MIN_AREA_REL * 1e-6),
                 "{round} {fan:?}"
             );
         }

@@ -34,6 +34,38 @@ impl ContactFrame {
         }
     }
 
+    /// Returns the frame at the world's origin across unit `normal`, whose axes and normal are right-handed.
+    pub fn right_handed(normal: &Vec3) -> Self {
+        let mut frame = Self::new(normal, &Vec3::zeros());
+        if POLE.dot(normal) < 0.0 {
+            frame.axes.swap(0, 1);
+        }
+        frame
+    }
+
+    /// Returns the same whose first axis is the part of `axis` across the normal. None where there is none.
+    pub fn along_axis(normal: &Vec3, axis: &Vec3) -> Option<Self> {
+        let across = axis - normal * normal.dot(axis);
+        let norm = across.norm();
+        // NaN is no axis.
+        (norm > 0.5 && norm < 2.0).then(|| {
+            let e1 = across / norm;
+            Self {
+                origin: Vec3::zeros(),
+                normal: *normal,
+                axes: [e1, normal.cross(&e1)],
+            }
+        })
+    }
+
+    /// Returns the unit direction along the normal (`sign` 1) or against it (-1), tilted by the tangents `x`
+    /// and `y`.
+    #[inline(always)]
+    pub fn tilted_direction(&self, sign: f64, [x, y]: [f64; 2]) -> Vec3 {
+        let share = 1.0 / (1.0 + x * x + y * y).sqrt();
+        (self.normal * sign + (self.axes[0] * x + self.axes[1] * y)) * share
+    }
+
     /// Returns the normal tilted towards the axes by the tangents `x` and `y`, not unit.
     #[inline(always)]
     pub fn tilted_normal(&self, x: f64, y: f64) -> Vec3 {
@@ -63,6 +95,8 @@ mod tests {
             let products = [e1.dot(&n), e2.dot(&n), e1.dot(&e2), e1.norm() - 1.0];
             assert!(products.iter().all(|x| x.abs() < 1e-14), "{products:?}");
             assert_eq!(f.axes, h.axes);
+            let g1 = ContactFrame::right_handed(&n);
+            assert!((g1.axes[0].cross(&g1.axes[1]) - n).norm() < 1e-14);
             if POLE.dot(&n) * POLE.dot(&m) > 0.0 {
                 assert!((e1 - g.axes[0]).norm() < 3.0 * (n - m).norm() + 1e-14);
             }

@@ -9,8 +9,8 @@ use super::super::callbacks::Query;
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use super::unit_of;
-use crate::contacts::manifold;
-use crate::contacts::memory::Memory;
+use crate::contact::manifold;
+use crate::contact::manifold_cache::ManifoldCache;
 use crate::math::Real;
 
 /// One point of a contact manifold.
@@ -45,8 +45,8 @@ pub struct ccd_manifold_t {
 }
 
 const _: () = {
-    assert!(size_of::<ccd_manifold_t>() == size_of::<Memory>());
-    assert!(align_of::<ccd_manifold_t>() == align_of::<Memory>());
+    assert!(size_of::<ccd_manifold_t>() == size_of::<ManifoldCache>());
+    assert!(align_of::<ccd_manifold_t>() == align_of::<ManifoldCache>());
 };
 
 /// Where two objects touch, not only how deep: the region in which the faces that look along
@@ -96,16 +96,16 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     let (Some(normal), Some((one, two))) = (normal, objects) else {
         return CCD_BAD_INPUT;
     };
-    let max = (max as usize).min(manifold::ROOM);
-    // SAFETY: [inputs]; every bit pattern is a Memory of the same layout.
-    let mut known = unsafe { memory.cast::<Memory>().as_ref() }.copied();
+    let max = (max as usize).min(manifold::MAX_CONTACTS);
+    // SAFETY: [inputs]; every bit pattern is a ManifoldCache of the same layout.
+    let mut known = unsafe { memory.cast::<ManifoldCache>().as_ref() }.copied();
     let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop.into(), known.as_mut(), max)
     else {
         return CCD_BAD_INPUT;
     };
     if let Some(known) = known {
         // SAFETY: [outputs].
-        unsafe { *memory.cast::<Memory>() = known };
+        unsafe { *memory.cast::<ManifoldCache>() = known };
     }
     for (i, contact) in manifold.contacts().iter().enumerate() {
         // SAFETY: [outputs]; `contacts` has room for `max`. What is between the fields stays.
@@ -114,7 +114,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
             (&raw mut (*out).point1).write(contact.point1.into());
             (&raw mut (*out).point2).write(contact.point2.into());
             (&raw mut (*out).depth).write(contact.depth as Real);
-            (&raw mut (*out).id).write(contact.name);
+            (&raw mut (*out).id).write(contact.id);
         }
     }
     manifold.contacts().len() as c_int

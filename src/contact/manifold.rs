@@ -1,27 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Where two objects touch: the region in which their faces lie over each other, as a few
-//! points.
+//! Makes the contact manifold: the region in which the faces of two objects lie over each other, as a few points.
 //!
-//! # Derivation
-//!
-//! *Faces.* Each object shows one, [`crate::contacts::face`].
-//!
-//! *Region.* Both faces are convex polygons in the plane across n, and so is what they
-//! share. Each of its corners has a point on either face, whose heights along n differ by
-//! the depth there. Segments that cross share a point. Nearly parallel ones share a strip
-//! as wide as the slop makes of the roundness: sqrt(2 R slop) aside of the middle a surface
-//! of radius R is as much as the slop low. Faces that share nothing have a nearest point
-//! each; where these are no farther apart than the slop the middle of them is the contact, else the two are, though they do not lie over each other.
-//!
-//! *Reduction.* The deepest point stays; with it, those that span the largest area.
+//! Steps:
+//! 1. *Faces.* Find the reference and the incident face ([`crate::contact::face`]), convex polygons in the
+//!    contact frame.
+//! 2. *Clipping.* Clip the smaller by the larger one (Sutherland and Hodgman). Each corner of the region has a
+//!    point on either face, whose distance along the normal is the depth there. Segments that cross share a
+//!    point. Nearly parallel ones share a strip as wide as the slop allows of their roundness: sqrt(2 R slop)
+//!    beside its middle a surface of radius R is the slop low.
+//! 3. *Beside each other.* Faces that share nothing have a closest point each. Their middle is the contact where
+//!    they are no farther apart than the slop; else the two are, though one is not over the other.
+//! 4. *Reduction.* The deepest point stays, and those that span the largest area with it; points that had ids
+//!    stay while they span nine tenths of that.
 
-use crate::contacts::face::{CORNERS, Face, faces};
-use crate::contacts::list::List;
-use crate::contacts::memory::{Memory, Names};
-use crate::contacts::plane::Plane;
-use crate::contacts::polygon::{Corner, Flat, Polygon, between, cross, dot, length, side};
+use crate::contact::face::{Face, MAX_CORNERS, faces};
+use crate::contact::frame::ContactFrame;
+use crate::contact::manifold_cache::{ContactIds, ManifoldCache};
+use crate::contact::polygon::{Corner, FixedVec, Point2, Polygon, cross, dot, lerp, norm, vector};
 use crate::math::{Vec3, larger};
 use crate::minkowski::support::{Fault, SupportMap};
 
@@ -34,86 +31,91 @@ pub struct Contact {
     pub point2: Vec3,
     /// How deep the objects overlap there, metres; negative where they are apart.
     pub depth: f64,
-    /// Its name, as long as it moves with either body; 0 without a memory.
-    pub name: u32,
+    /// The contact id, not 0, while it moves with either object; 0 without a cache.
+    pub id: u32,
 }
 
-/// Corners of what two faces share: each side of the one adds at most one to the other's.
-pub const ROOM: usize = 2 * CORNERS;
-/// Sine of the angle up to which segments may share a strip: 10°.
-const PARALLEL: f64 = 0.17;
+/// Corners of a region at most: each side of one face adds at most one to those of the other.
+pub const MAX_CONTACTS: usize = 2 * MAX_CORNERS;
+/// The sine of the angle up to which segments share a strip: 10°.
+const MAX_PARALLEL_SINE: f64 = 0.17;
 
-/// The points of a contact.
+/// A contact manifold.
 #[derive(Clone, Copy, Default)]
-pub struct Manifold(List<Contact, ROOM>);
+pub struct Manifold(FixedVec<Contact, MAX_CONTACTS>);
 
 impl Manifold {
-    /// The points, the deepest first.
+    /// Returns the contacts, the deepest first.
     pub fn contacts(&self) -> &[Contact] {
         &self.0
     }
 }
 
-/// The points in which the objects touch, as their faces that look along the unit vector
-/// `normal` and against it show, at most `max` of them. At most 24 support points of each, and
-/// those that ask in vain for what the memory holds.
+/// Returns the contacts of the faces along unit `normal` and against it, at most `max` of them. Takes at most 24
+/// queries of each object, and those of a cache that no longer fits.
 ///
 /// # Errors
-/// [`Fault::NonFinite`] from a support mapping.
+/// [`Fault::NonFinite`] from a support function.
 pub fn contacts<A: SupportMap, B: SupportMap>(
     obj1: &A,
     obj2: &B,
     normal: &Vec3,
     slop: f64,
-    memory: Option<&mut Memory>,
+    out_cache: Option<&mut ManifoldCache>,
     max: usize,
 ) -> Result<Manifold, Fault> {
-    let mut known = memory.as_deref().copied();
-    let again = known.as_mut().and_then(|known| known.plane(normal));
-    let cached = known.as_ref().filter(|_| again.is_some());
-    let mut plane = again.unwrap_or_else(|| Plane::of(normal));
-    let ([one, two], slop) = faces(obj1, obj2, &mut plane, slop, cached)?;
-    let (mut region, beside) = shared(&one, &two);
+    let mut cache = out_cache.as_deref().copied();
+    let again = cache.as_mut().and_then(|cache| cache.frame(normal));
+    let cached = cache.as_ref().filter(|_| again.is_some());
+    let mut frame = again.unwrap_or_else(|| ContactFrame::right_handed(normal));
+    let ([one, two], slop) = faces(obj1, obj2, &mut frame, slop, cached)?;
+    let (mut region, beside) = overlap(&one, &two);
     for corner in region.iter_mut() {
         corner.low = one.low(&corner.at) + two.low(&corner.at);
     }
-    let names = known.as_ref().map_or(Names::default(), |known| {
+    let ids = cache.as_ref().map_or(ContactIds::default(), |cache| {
         let slop = larger(one.slop, two.slop);
-        known.names([one.motion, two.motion], &region, slop)
+        cache.ids([one.motion, two.motion], &region, slop)
     });
-    let chosen = chosen(&region, &names, max, one.rounding + two.rounding);
+    let reduced = reduced(&region, &ids, max, one.rounding + two.rounding);
     let mut manifold = Manifold::default();
-    let mut named: List<(Flat, u32), ROOM> = List::default();
-    for corner in chosen.iter() {
+    let mut stored_ids: FixedVec<(Point2, u32), MAX_CONTACTS> = FixedVec::default();
+    for corner in reduced.iter() {
         let [at1, at2] = beside.unwrap_or([corner.at; 2]);
         let lows = [one.low(&at1), two.low(&at2)];
-        let point1 = plane.point(&at1, one.top - lows[0]);
+        let point1 = frame.point(at1[0], at1[1]) + frame.normal * (one.top - lows[0]);
         let depth = one.top + two.top - lows[0] - lows[1];
-        let across = plane.point(&side(&at1, &at2), 0.0) - plane.origin;
+        let [x, y] = vector(&at1, &at2);
+        let across = frame.axes[0] * x + frame.axes[1] * y;
         let mut all = region.iter();
-        let name = names.of(all.position(|c| c.at == corner.at).unwrap_or(ROOM));
-        let name = match &mut known {
-            Some(known) if name == 0 => known.name(),
-            _ => name,
+        let id = ids.of(all.position(|c| c.at == corner.at).unwrap_or(MAX_CONTACTS));
+        let id = match &mut cache {
+            Some(cache) if id == 0 => cache.new_id(),
+            _ => id,
         };
-        named.push((corner.at, name));
+        stored_ids.push((corner.at, id));
         manifold.0.push(Contact {
             point1,
-            point2: point1 - plane.n * depth + across,
+            point2: point1 - frame.normal * depth + across,
             depth,
-            name,
+            id,
         });
     }
-    if let (Some(memory), Some(mut known)) = (memory, known) {
-        known.keep(&plane, slop, [one.ring, two.ring], &named);
-        *memory = known;
+    if let (Some(out_cache), Some(mut cache)) = (out_cache, cache) {
+        cache.store(&frame, slop, [one.ring, two.ring], &stored_ids);
+        *out_cache = cache;
     }
     Ok(manifold)
 }
 
-/// At most `max` corners of the region, the deepest first. Those that have names stay while
-/// they span nine tenths of the largest area; differences by `tie` are rounding.
-fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: f64) -> Polygon<ROOM> {
+/// Returns at most `max` corners of the region, the deepest first. Those that have ids stay while they span nine
+/// tenths of the largest area; differences of depth by `tie` are rounding.
+fn reduced(
+    region: &Polygon<MAX_CONTACTS>,
+    ids: &ContactIds,
+    max: usize,
+    tie: f64,
+) -> Polygon<MAX_CONTACTS> {
     let corners: &[Corner] = region;
     // Rounding alone makes no corner the deepest.
     let (mut deepest, mut least) = (0, corners.first().map_or(0.0, |corner| corner.low));
@@ -122,22 +124,22 @@ fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: f64) -> Polygo
             (deepest, least) = (i, corner.low);
         }
     }
-    if let Some(i) = names.first {
+    if let Some(i) = ids.first {
         let still = corners.get(i).is_some_and(|c| c.low <= least + tie);
         deepest = if still { i } else { deepest };
     }
     let best = region.reduced(deepest, max);
-    if corners.len() <= max || names.of(deepest) == 0 {
+    if corners.len() <= max || ids.of(deepest) == 0 {
         return best;
     }
     let mut kept = Polygon::default();
     for i in (deepest..corners.len()).chain(0..deepest) {
-        if names.of(i) != 0 {
+        if ids.of(i) != 0 {
             kept.push(*region.at(i));
         }
     }
-    let size = |p: &Polygon<ROOM>| match &**p {
-        [a, b] => length(&side(&a.at, &b.at)),
+    let size = |p: &Polygon<MAX_CONTACTS>| match &**p {
+        [a, b] => norm(&vector(&a.at, &b.at)),
         _ => p.area(),
     };
     if kept.len() == best.len() && size(&kept) >= 0.9 * size(&best) {
@@ -146,9 +148,9 @@ fn chosen(region: &Polygon<ROOM>, names: &Names, max: usize, tie: f64) -> Polygo
     best
 }
 
-/// What the two faces share; where that is nothing within the slop, the point between them, and
-/// the nearest point of each.
-fn shared(one: &Face, two: &Face) -> (Polygon<ROOM>, Option<[Flat; 2]>) {
+/// Returns the region that two faces share. Where they share nothing within the slop: the point between them, and
+/// the closest point of each.
+fn overlap(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Point2; 2]>) {
     let rounding = larger(one.rounding, two.rounding);
     let reach = [one.reach(), two.reach()];
     let (mut small, mut large, mut own) = (&one.corners, &two.corners, reach[0]);
@@ -159,7 +161,7 @@ fn shared(one: &Face, two: &Face) -> (Polygon<ROOM>, Option<[Flat; 2]>) {
     let slack = reach[0] + reach[1];
     // A point between the two is to be on both: the rounder one reaches farther.
     let share = own / slack;
-    let mut region: Polygon<ROOM> = Polygon::default();
+    let mut region: Polygon<MAX_CONTACTS> = Polygon::default();
     let lines = match (&**small, &**large) {
         ([a, b], [c, d]) => Some([[a.at, b.at], [c.at, d.at]]),
         _ => None,
@@ -168,67 +170,67 @@ fn shared(one: &Face, two: &Face) -> (Polygon<ROOM>, Option<[Flat; 2]>) {
         region = crossing(sides).map_or(region, Polygon::point);
     } else if large.len() > 2 {
         small.iter().for_each(|corner| region.push(*corner));
-        region = region.inside(large, rounding);
+        region = region.clipped_by(large, rounding);
     }
     if !region.is_empty() {
-        return (region.tidy(rounding, rounding), None);
+        return (region.tidied(rounding, rounding), None);
     }
-    let Some((sides, [a, b])) = small.nearest(large) else {
+    let Some((sides, [a, b])) = small.closest_sides(large) else {
         return (region, None);
     };
     if lines.is_some() || one.round() + two.round() > 0.0 {
-        region = strip(&sides, slack, share, rounding);
+        region = parallel_overlap(&sides, slack, share, rounding);
     }
     if !region.is_empty() {
         return (region, None);
     }
-    region = Polygon::point(between(&a, &b, 0.5));
-    let far = length(&side(&a, &b)) > one.slop.min(two.slop);
+    region = Polygon::point(lerp(&a, &b, 0.5));
+    let far = norm(&vector(&a, &b)) > one.slop.min(two.slop);
     let points = if swapped { [b, a] } else { [a, b] };
     (region, far.then_some(points))
 }
 
-/// Where two segments cross, at more than an angle that makes them parallel.
-fn crossing([[p, q], [r, s]]: &[[Flat; 2]; 2]) -> Option<Flat> {
-    let (u, v, w) = (side(p, q), side(r, s), side(p, r));
+/// Returns where two segments cross that are not nearly parallel.
+fn crossing([[p, q], [r, s]]: &[[Point2; 2]; 2]) -> Option<Point2> {
+    let (u, v, w) = (vector(p, q), vector(r, s), vector(p, r));
     let whole = cross(&u, &v);
-    if !(whole.abs() > PARALLEL * length(&u) * length(&v)) {
+    if !(whole.abs() > MAX_PARALLEL_SINE * norm(&u) * norm(&v)) {
         return None;
     }
     let [t, k] = [cross(&w, &v), cross(&w, &u)].map(|x| x / whole);
     let on = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&k);
-    on.then(|| between(p, q, t))
+    on.then(|| lerp(p, q, t))
 }
 
 /// Returns the ends of what two nearly parallel segments share, where they are no farther apart than `slack`,
 /// moved by a `share` of the way to the second. These lie between the ends of both segments: across the
 /// second one they may be moved beyond an end of the first. None where nothing is shared.
-fn strip(
-    [[p, q], [r, s]]: &[[Flat; 2]; 2],
+fn parallel_overlap(
+    [[p, q], [r, s]]: &[[Point2; 2]; 2],
     slack: f64,
     share: f64,
     rounding: f64,
-) -> Polygon<ROOM> {
+) -> Polygon<MAX_CONTACTS> {
     let mut ends = Polygon::default();
-    let (u, v) = (side(p, q), side(r, s));
-    let whole = length(&u) * length(&v);
-    if !(cross(&u, &v).abs() <= PARALLEL * whole && whole > 0.0) {
+    let (u, v) = (vector(p, q), vector(r, s));
+    let whole = norm(&u) * norm(&v);
+    if !(cross(&u, &v).abs() <= MAX_PARALLEL_SINE * whole && whole > 0.0) {
         return ends;
     }
-    let longer = slack / length(&u);
-    for at in [between(p, q, -longer), between(p, q, 1.0 + longer)] {
+    let longer = slack / norm(&u);
+    for at in [lerp(p, q, -longer), lerp(p, q, 1.0 + longer)] {
         ends.push(Corner { at, low: 0.0 });
     }
     let (left, right) = ([-v[1], v[0]], [v[1], -v[0]]);
-    let mut ends = ends.cut(r, &left, slack).cut(r, &right, slack);
+    let mut ends = ends.clipped(r, &left, slack).clipped(r, &right, slack);
     for end in ends.iter_mut() {
-        let t = dot(&v, &side(r, &end.at)) / dot(&v, &v);
-        end.at = between(&end.at, &between(r, s, t), share);
+        let t = dot(&v, &vector(r, &end.at)) / dot(&v, &v);
+        end.at = lerp(&end.at, &lerp(r, s, t), share);
     }
     let [back_u, back_v] = [u, v].map(|way| way.map(|x| -x));
-    let ends = ends.cut(p, &u, rounding).cut(q, &back_u, rounding);
-    let ends = ends.cut(r, &v, rounding).cut(s, &back_v, rounding);
-    ends.tidy(rounding, 0.0)
+    let ends = ends.clipped(p, &u, rounding).clipped(q, &back_u, rounding);
+    let ends = ends.clipped(r, &v, rounding).clipped(s, &back_v, rounding);
+    ends.tidied(rounding, 0.0)
 }
 
 #[cfg(test)]
@@ -252,7 +254,7 @@ mod tests {
     #[test]
     fn an_octagon_and_what_is_left_of_it() {
         let angle = core::f64::consts::FRAC_PI_8 as f64;
-        let whole = stacked(angle, ROOM);
+        let whole = stacked(angle, MAX_CONTACTS);
         assert_eq!(whole.contacts().len(), 8);
         for c in whole.contacts() {
             assert!((c.depth - 0.01).abs() < 64.0 * EPSILON);
@@ -330,7 +332,7 @@ mod tests {
         }
     }
 
-    /// Two rods side by side, without a slop: where they touch is on both.
+    /// Two rods side by side, without a slop: a contact is on both.
     #[test]
     fn without_a_slop_what_touches_lies_on_both() {
         let mut r = Random::new(6);
