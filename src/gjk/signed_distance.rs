@@ -186,9 +186,12 @@ fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Dis
         cores.normal
     };
     let (mut lower, mut upper) = (cores.lower - margin, cores.upper - margin);
+    let mut is_limited = cores.end != End::Met;
     if lower.abs() <= touch + 4.0 * EPSILON * margin {
         lower = 0.0;
         upper = larger(upper, 0.0);
+        // The bounds of a touch are those that are told.
+        is_limited &= !(upper <= larger(touch, wanted.settings.tolerance));
     }
     *out = Distance {
         lower,
@@ -198,6 +201,6 @@ fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Dis
         point2: cores.point2 - along * wanted.margin2,
         iterations: cores.iterations,
         is_hit: lower < 0.0,
-        is_limited: cores.end != End::Met,
+        is_limited,
     };
 }

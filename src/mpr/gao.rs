@@ -444,14 +444,17 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
             };
             let mut gap = plane.depth - inner;
             let mut least = floor;
+            let mut most = self.tolerance;
             if self.until == Until::Ray {
                 gap /= along;
                 least /= along;
+                // The lower bound is told less the rounding.
+                most -= least;
             }
             // Within the tolerance and the origin on the inner side of the portal beyond
             // doubt: a support plane that may still exclude the origin is no answer yet.
             // NaN (a plane that holds the ray) ends the loop.
-            if !(gap > least) || (gap <= self.tolerance && inner > floor) {
+            if !(gap > least) || (gap <= most && inner > floor) {
                 return Ok(RayEnd::Converged(portal, plane));
             }
             if self.until == Until::Shortcut && plane.depth * along <= inner {
