@@ -253,10 +253,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Some(c) if state.is_swapped(&c.v) => WarmStart::COLD,
             _ => *state,
         };
-        let start = mpr::local::WalkStart {
-            dir: warm.direction().unwrap_or_else(|| self.cold_start()),
-            depth: if warm.is_overlap() { warm.depth } else { 0.0 },
-        };
+        let start = warm.direction().unwrap_or_else(|| self.cold_start());
         let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
         let mut set = VertexSet::<{ mpr::local::MAX_SAMPLES }>::EMPTY;
         let mut fit = SphereFit::default();
@@ -278,7 +275,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         let (walked, mut status) = found?;
         *hit = walked;
-        if !hit.has_sound_witnesses(query.scale.tolerance(settings.tolerance)) {
+        // A face is as far from its support plane as both are rounded.
+        let tolerance = query.scale.tolerance(settings.tolerance) + query.scale.height_eps();
+        if !hit.has_sound_witnesses(tolerance) {
             status = Status::Rounding;
         }
         if status == Status::Converged && wants_pos {

@@ -213,9 +213,9 @@ static void from_states(int ask)
         CHECK(n.apart <= PAIRS / 20, "%s: %d differ", ask_name[ask], n.apart);
     /* A state is one direction: a depth along another gains nothing by it. */
     if (ask == ASK_LOCAL)
-        CHECK(100 * n.again <= (sizeof(ccd_real_t) == 8 ? 70 : 75) * n.first, "%s: asked again", ask_name[ask]);
+        CHECK(10 * n.again <= 7 * n.first, "%s: asked again", ask_name[ask]);
     /* The paper's method halves its way to round minima: it says so where others are long done. */
-    CHECK(n.limited <= (ask == ASK_INCREMENTAL ? PAIRS / 16 : PAIRS / (sizeof(ccd_real_t) == 8 ? 200 : 100)), "%s: %d pairs at the cap", ask_name[ask], n.limited);
+    CHECK(n.limited <= (ask == ASK_INCREMENTAL ? PAIRS / 16 : PAIRS / 200), "%s: %d pairs at the cap", ask_name[ask], n.limited);
     CHECK(n.hits > PAIRS / 4, "%s: %d hits", ask_name[ask], n.hits);
 }
 

@@ -335,7 +335,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let tolerance = query.scale.tolerance(self.limits.gap.tolerance);
         let gap = self.limits.gap.allowed(query.upper.depth, tolerance);
         let length = query.upper.depth - self.interior.v.dot(ray);
-        let Some(mut portal) = discover(query, set, ray, length, gap)? else {
+        let Some(mut portal) = discover(query, set, ray, length, gap, (2.0 * gap / length).sqrt())?
+        else {
             return Ok(None);
         };
         refine(

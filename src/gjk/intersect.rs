@@ -183,7 +183,8 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     let ray = -c / distance;
     let length = distance + query.upper.depth;
     let gap = query.scale.contact_eps();
-    let Some(mut portal) = discover(query, set, &ray, length, gap)? else {
+    let Some(mut portal) = discover(query, set, &ray, length, gap, (2.0 * gap / length).sqrt())?
+    else {
         return Ok(None);
     };
     // Each step replaces a corner by a point beyond the origin, or finds nothing above the portal.

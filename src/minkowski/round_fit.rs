@@ -20,14 +20,33 @@ use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// The relative difference of e and f up to which two samples fit one sphere. Insensitive: 0.02 to 0.1.
-const SPHERE_FIT_REL_TOL: f64 = 0.03;
-/// The least square of the cosine between the moves of direction and vertex on one sphere.
-const SPHERE_FIT_COS2: f64 = 0.999;
-/// The same of an exact fit, far above rounding; the centres are then equal to this share of the radius.
-const EXACT_FIT_REL_TOL: f64 = 1e-6;
-const EXACT_FIT_COS2: f64 = 1.0 - 1e-9;
-const EXACT_CENTER_REL: f64 = 1e-9;
+/// What two samples of one sphere may differ by.
+struct FitTolerance {
+    /// Of e and f, relative.
+    relative: f64,
+    /// The least square of the cosine between the moves of direction and vertex.
+    cos2: f64,
+}
+
+/// Insensitive: 0.02 to 0.1.
+const LOOSE: FitTolerance = FitTolerance {
+    relative: 0.03,
+    cos2: 0.999,
+};
+/// Far above the rounding of the callbacks.
+const EXACT: FitTolerance = if cfg!(feature = "single") {
+    FitTolerance {
+        relative: 3e-4,
+        cos2: 1.0 - 1e-5,
+    }
+} else {
+    FitTolerance {
+        relative: 1e-6,
+        cos2: 1.0 - 1e-9,
+    }
+};
+/// The share of the radius by which centres of exact fits may differ.
+const EXACT_CENTER_REL: f64 = 1.0 - EXACT.cos2;
 /// The least square of the angle between two samples that tell a radius.
 const MIN_ANGLE2: f64 = 1e-10;
 /// The number of support calls before fits are used.
@@ -78,6 +97,8 @@ pub struct SphereFit {
     pub is_confirmed: bool,
     /// Whether the radii are those of a warm state, which are used from the first query on.
     pub is_warm: bool,
+    /// Whether two samples must fit one sphere but for rounding: a prediction may then be an answer.
+    pub is_exact: bool,
     /// The number of entries that were compared.
     compared: usize,
     misses: u32,
@@ -91,28 +112,20 @@ impl SphereFit {
         self.radius[0] + self.radius[1]
     }
 
-    /// Compares the new entries of the set with entry `lowest`.
+    /// Compares the new entries of the set with entry `lowest`, those of an exact fit with the one before too: of
+    /// several spheres of an object it is the one at the least support value.
     pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, lowest: usize) {
-        let m = set.dir(lowest);
-        let [p1, p2] = [set.vertex1(lowest), -set.vertex2(lowest)];
+        let tolerance = if self.is_exact { &EXACT } else { &LOOSE };
         while self.compared < set.len() {
             let i = self.compared;
             self.compared += 1;
-            let n = set.dir(i);
-            let turn = n - m;
-            let turn2 = turn.norm_squared();
-            if !(turn2 > MIN_ANGLE2) {
-                continue;
-            }
-            let moves = [set.vertex1(i) - p1, -set.vertex2(i) - p2];
-            for (radius, d) in self.radius.iter_mut().zip(&moves) {
-                let (e, f) = (n.dot(d), -m.dot(d));
-                let sum = e + f;
-                if sum > 1e-9 * turn2
-                    && (e - f).abs() <= SPHERE_FIT_REL_TOL * sum
-                    && sum * sum > SPHERE_FIT_COS2 * turn2 * d.norm_squared()
-                {
-                    *radius = sum / turn2;
+            let others = [i.saturating_sub(1), lowest];
+            for k in others.into_iter().skip(usize::from(!self.is_exact)) {
+                let found = fit_radii(set, k, i, tolerance);
+                for (radius, found) in self.radius.iter_mut().zip(found) {
+                    if found > 0.0 && (k == lowest || !(*radius > 0.0)) {
+                        *radius = found;
+                    }
                 }
             }
         }
@@ -248,45 +261,13 @@ impl SphereFit {
 /// The exact fits of the local query, whose minimum a prediction may be: e = f and the moves parallel but for
 /// rounding.
 impl SphereFit {
-    /// Compares the new entries of the set with all before them, entry `lowest` the last: of several spheres
-    /// of an object it is the one at the least support value.
-    pub fn update_exact<const N: usize>(&mut self, set: &VertexSet<N>, lowest: usize) {
-        while self.compared < set.len() {
-            let i = self.compared;
-            self.compared += 1;
-            for k in (0..i).chain([lowest]) {
-                if k == i {
-                    continue;
-                }
-                let found = exact_radii(set, k, i);
-                for (radius, found) in self.radius.iter_mut().zip(found) {
-                    if found > 0.0 && (k == lowest || !(*radius > 0.0)) {
-                        *radius = found;
-                    }
-                }
-            }
-        }
-    }
-
     /// Forgets radii that no entry of the set confirms, and compares all entries again.
     pub fn reset_exact(&mut self) {
         (self.radius, self.compared) = ([0.0; 2], 0);
         (self.is_warm, self.is_confirmed) = (false, false);
     }
 
-    /// Returns whether the vertex of entry `i`, its spheres taken off, is one at which the direction of the upper
-    /// bound finds the upper bound.
-    pub fn is_active<const N: usize>(
-        &self,
-        set: &VertexSet<N>,
-        i: usize,
-        upper: &UpperBound,
-        tolerance: f64,
-    ) -> bool {
-        let vertex = set.vertex(VertexSet::<N>::sample(i));
-        self.is_core_active(set, &vertex, upper, tolerance)
-    }
-
+    /// Returns whether a vertex, its spheres taken off, is one at which the direction of the upper bound finds it.
     fn is_core_active<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -354,21 +335,39 @@ impl SphereFit {
 }
 
 /// Returns the radii of the spheres of obj1 and obj2 that two entries lie on, 0 where they do on none.
-fn exact_radii<const N: usize>(set: &VertexSet<N>, k: usize, i: usize) -> [f64; 2] {
+#[inline(always)]
+fn fit_radii<const N: usize>(
+    set: &VertexSet<N>,
+    k: usize,
+    i: usize,
+    tolerance: &FitTolerance,
+) -> [f64; 2] {
     let (m, n) = (set.dir(k), set.dir(i));
-    let turn2 = (n - m).norm_squared();
-    let moves = [
-        set.vertex1(i) - set.vertex1(k),
-        set.vertex2(k) - set.vertex2(i),
-    ];
-    moves.map(|d| {
-        let (e, f) = (n.dot(&d), -m.dot(&d));
-        let sum = e + f;
-        let is_exact = turn2 > MIN_ANGLE2
-            && sum > 1e-9 * turn2
-            && (e - f).abs() <= EXACT_FIT_REL_TOL * sum
-            && sum * sum > EXACT_FIT_COS2 * turn2 * d.norm_squared();
-        if is_exact { sum / turn2 } else { 0.0 }
+    // e + f and e − f are products of the move with these two.
+    let (turn, sum) = (n - m, n + m);
+    let turn2 = turn.norm_squared();
+    let (from, to) = (set.coords(k), set.coords(i));
+    let (mut along, mut length2) = ([0.0; 2], [0.0; 2]);
+    for axis in 0..3 {
+        for lane in 0..2 {
+            let d = to[axis][lane] - from[axis][lane];
+            along[lane] += turn[axis] * d;
+            length2[lane] += d * d;
+        }
+    }
+    [0, 1].map(|lane| {
+        let is_parallel = along[lane] * along[lane] > tolerance.cos2 * turn2 * length2[lane];
+        if !(is_parallel && along[lane] > 1e-9 * turn2 && turn2 > MIN_ANGLE2) {
+            return 0.0;
+        }
+        let off = (0..3).fold(0.0, |off, axis| {
+            off + sum[axis] * (to[axis][lane] - from[axis][lane])
+        });
+        if off.abs() <= tolerance.relative * along[lane] {
+            along[lane] / turn2
+        } else {
+            0.0
+        }
     })
 }
 

@@ -168,15 +168,6 @@ impl<const N: usize> VertexSet<N> {
         }
     }
 
-    /// Returns a known difference as a corner.
-    #[inline(always)]
-    pub fn vertex(&self, pair: VertexPair) -> Vertex {
-        Vertex {
-            w: self.difference(pair),
-            pair,
-        }
-    }
-
     /// Returns a known difference with its two vertices.
     #[inline(always)]
     pub fn point(&self, pair: VertexPair) -> SupportPoint {

@@ -10,18 +10,19 @@
 //!    alone, as far as they go: the face of the inner model that the ray leaves through.
 //! 2. *Minimum*: the foot of the perpendicular from the origin lies in the face, and the least support value
 //!    met is at its distance, in a direction that the face contains: done, after step 6.
-//! 3. *Next ray*: the foot lies outside: along the face's normal, without a callback. The face is farther
-//!    than the least support value: along its direction.
-//! 4. *Query*: along Newton's direction of a smooth D ([`newton_step`]), the sphere fit's prediction, or the
-//!    face's normal. Nothing above the face: its normal is a minimum where the foot lies inside.
-//! 5. *Fit*: a prediction that came true to the tolerance is a minimum as well.
+//! 3. *Valley*: the face is farther than the least support value: the next ray is along its direction.
+//! 4. *Prediction* of the sphere fits, else of Newton's direction of a smooth D ([`newton_step`]): queried where
+//!    it gains, and the next ray is along it where it comes true. One that is the least support value already, or
+//!    comes true to half of the tolerance, is a minimum as well.
+//! 5. *Normal*: the foot lies outside: the next ray is along the face's normal, without a callback. The foot
+//!    lies inside: the normal is queried, and is a minimum where nothing is above the face.
 //! 6. *Confirmation*: a foot on an edge is stationary and need not be a minimum, nor is a tip that looks like
 //!    a sphere. Directions tilted by [`TILT_RAD`] are queried where no known one is near.
 //! 7. *Overlap*: the tetrahedron of the interior point and the face holds the origin; otherwise GJK shows it on
 //!    the known vertices, or a queried direction separates.
 //!
 //! Departures. The outer steps of the paper's Algorithm 4, a support call each, are steps of the inner model
-//! here. A fixed ray is never refined until the callbacks confirm it. Steps 5 and 6 are new.
+//! here. A fixed ray is never refined until the callbacks confirm it. Steps 4 and 6 are new.
 //!
 //! Validity. [`Status::Converged`]: the overlap is proven, `dir` is a local minimum of the support function,
 //! the witness points meet and lie in their bodies. Any other status: `depth` and `dir` are sound if the
@@ -44,11 +45,9 @@ use crate::mpr::portal::{KNOWN_LEVEL, discover, replace_corner};
 /// The support calls of a walk, at most. Measured: 12 of 12,000 walks on the pair sets end without a minimum.
 pub const MAX_SAMPLES: usize = 60;
 /// The rays of a walk, at most.
-const MAX_RAYS: u32 = 40;
+const MAX_RAYS: u32 = 60;
 /// The steps of one portal on known vertices, at most.
 const MAX_STEPS: u32 = 100;
-/// The share of the tolerance that a queried point must lie above a face to be above it.
-const QUERIED_LEVEL: f64 = 0.04;
 /// The tilt of the queries that confirm a minimum, radians: as far beside a stationary direction it must not
 /// be lower. Also the width below which a face is narrow.
 const TILT_RAD: f64 = 0.015;
@@ -58,20 +57,16 @@ const TILT_RAD: f64 = 0.015;
 const SAME_VALLEY_COS: f64 = 0.98;
 /// The share of the tolerance that a prediction must gain to be queried.
 const MIN_GAIN: f64 = 0.3;
-/// The share of a sphere fit's prediction that may be missed, and of Newton's.
-const MAX_SPHERE_MISS: f64 = 0.2;
-const MAX_NEWTON_MISS: f64 = 0.3;
+/// The share of a prediction's gain that may be missed. Insensitive: 0.2 to 0.3.
+const MAX_MISS: f64 = 0.3;
 /// The tangent of the tilt of the query against the start. Insensitive: 0.01 to 0.15.
 const ASLANT_TAN: f64 = 0.05;
 /// The rounding of a triple product, as a share of the three lengths. Derived: twice three products and two sums.
 const SIDE_EPS: f64 = 8.0 * f64::EPSILON;
-/// A start is stale whose support value differs from its depth by this share of the depth and the centres'
-/// distance. One that is stale and leads to the far side is that of the swapped pair.
-const STALE_REL: f64 = 0.1;
 /// The largest trusted radius, as a share of the distance of the centres and the depth.
 const MAX_RADIUS: f64 = 1.5;
 /// The predictions that miss before a fit is not used any more.
-const MAX_MISSES: u32 = 3;
+const MAX_MISSES: u32 = 5;
 
 /// The largest tangent of the angle between the entry of the least support value and those that tell its
 /// curvature, and of Newton's step.
@@ -138,18 +133,26 @@ enum Step {
     Ray(Vec3),
     /// The foot lies in the face, and this support plane is at its distance.
     Face { dir: Vec3, depth: f64 },
-    /// The sphere fit's prediction came true.
+    /// A prediction came true.
+    Fit(Model),
+}
+
+/// What a prediction takes D for near the least support value.
+#[derive(Clone, Copy)]
+enum Model {
+    /// The sphere fit.
     Sphere,
-    /// Newton's prediction came true; D is the flattest along this unit vector across the direction.
+    /// Smooth, and the flattest along this unit vector across the direction.
     Smooth(Vec3),
 }
 
-/// What a direction was chosen by, with the support value that it predicts.
-#[derive(Clone, Copy)]
-enum Choice {
-    Normal,
-    Sphere(f64),
-    Newton(f64, Vec3),
+/// The minimum that a model predicts.
+struct Prediction {
+    model: Model,
+    /// Unit.
+    dir: Vec3,
+    /// The support value, metres.
+    value: f64,
 }
 
 /// Why a walk ends without a minimum.
@@ -185,22 +188,10 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     apex: Vec3,
     iterations: u64,
     sphere_misses: u32,
-    /// Minima of the sphere fit that the tilted queries refuted.
-    refuted_spheres: u32,
     newton_misses: u32,
-    is_newton_confirmed: bool,
 }
 
-/// Where a walk starts.
-#[derive(Clone, Copy, Debug)]
-pub struct WalkStart {
-    /// Unit.
-    pub dir: Vec3,
-    /// The depth of the last answer, which had this direction, metres; 0 where it is a guess.
-    pub depth: f64,
-}
-
-/// Finds a local minimum of the penetration depth from `start`. The set may hold entries. `fit` brings
+/// Finds a local minimum of the penetration depth from unit `start`. The set may hold entries. `fit` brings
 /// radii that are trusted, or none, and takes those that a prediction confirmed. See the head of this file.
 ///
 /// # Errors
@@ -209,7 +200,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
-    start: &WalkStart,
+    start: &Vec3,
     settings: &Settings,
 ) -> Result<(Penetration, Status), Stop> {
     const { assert!(N >= MAX_SAMPLES) };
@@ -223,10 +214,9 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         settings,
         iterations: 0,
         sphere_misses: 0,
-        refuted_spheres: 0,
         newton_misses: 0,
-        is_newton_confirmed: false,
     };
+    walk.fit.is_exact = true;
     let found = walk.run(start);
     let iterations = walk.iterations;
     let (minimum, status) = match found {
@@ -249,15 +239,14 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
-    fn run(&mut self, start: &WalkStart) -> Result<Minimum, Halt> {
-        let ahead = self.query.evaluate(self.set, &start.dir)?;
+    fn run(&mut self, start: &Vec3) -> Result<Minimum, Halt> {
+        let ahead = self.query.evaluate(self.set, start)?;
         // The least cosine to the way from the interior point through the origin for which that is not queried as
-        // well: a start that leads to the far side, as the state of the swapped pair does; one that is stale; any
-        // start without a centre.
+        // well: a start that leads to the far side; any without a centre.
         let mut least = 0.0;
         if self.query.interior.is_none() {
             // Aslant: the point opposite to a minimum mostly is on one line with it and the origin.
-            let aslant = perpendicular(&start.dir) * ASLANT_TAN - start.dir;
+            let aslant = perpendicular(start) * ASLANT_TAN - start;
             let upper = self.query.upper;
             let behind = self.query.evaluate(self.set, &(aslant / aslant.norm()))?;
             self.apex = behind.w;
@@ -267,19 +256,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.interior = (ahead.w + behind.w) * 0.5;
             least = 0.85;
         }
-        let to_origin = normalised(&-self.interior).unwrap_or(start.dir);
-        let cosine = to_origin.dot(&start.dir);
-        let change = (ahead.h - start.depth).abs();
-        let is_stale =
-            start.depth > 0.0 && change > STALE_REL * (start.depth + self.interior.norm());
-        if cosine < least || is_stale {
+        let to_origin = normalised(&-self.interior).unwrap_or(*start);
+        if to_origin.dot(start) < least {
             self.query.evaluate(self.set, &to_origin)?;
         }
-        let mut ray = if cosine < 0.0 && is_stale {
-            to_origin
-        } else {
-            self.query.upper.dir
-        };
+        let mut ray = self.query.upper.dir;
         let most = MAX_RADIUS * (self.interior.norm() + self.query.upper.depth);
         // Negated for NaN.
         if !(self.fit.radius.iter().all(|r| *r >= 0.0) && self.fit.sum() < most) {
@@ -290,7 +271,15 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.check_limits()?;
             let first = self.set.farthest_vertex(&ray);
             let length = self.length_along(&ray, &first);
-            let portal = discover(self.query, self.set, &ray, length, tolerance)?;
+            // A ring around the ray is as wide as the directions that confirm a minimum.
+            let portal = discover(
+                self.query,
+                self.set,
+                &ray,
+                length,
+                tolerance,
+                0.5 * TILT_RAD,
+            )?;
             let mut portal = portal.ok_or(Halt::Status(Status::Rounding))?;
             let (step, face) = self.refine(&ray, &mut portal, tolerance)?;
             ray = match step {
@@ -355,21 +344,38 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     -1.0
                 };
                 let is_inside = inset >= -4.0 * height_eps;
-                if let Some(step) = self.step_on_known(ray, &face, inset, is_inside, tolerance) {
+                if let Some(step) = self.step_on_known(&face, inset, is_inside, tolerance) {
                     return Ok((step, face));
                 }
+                self.fit.update(self.set, self.query.upper.index);
+                let mut prediction = if is_plain { None } else { self.predict(&face) };
+                if let Some(p) = prediction.take_if(|p| !self.has_gain(p, tolerance)) {
+                    if self.is_met(&p, tolerance) {
+                        return Ok((Step::Fit(p.model), face));
+                    }
+                    // The least support value is not in the predicted direction, but as far.
+                    prediction = Some(p).filter(|p| self.is_level(p.value, tolerance));
+                }
+                // The next ray, in the same valley.
+                let is_beside = !is_inside
+                    && face.offset > 0.0
+                    && face.normal.dot(&self.query.upper.dir) > SAME_VALLEY_COS
+                    && face.normal.dot(ray) < 1.0 - 1e-14;
+                if is_beside && prediction.is_none() && !is_plain {
+                    return Ok((Step::Ray(face.normal), face));
+                }
+                let dir = prediction.as_ref().map_or(face.normal, |p| p.dir);
                 let before = self.query.upper.depth;
-                let (dir, choice) = match self.choose(&face, is_plain, tolerance) {
-                    Ok(chosen) => chosen,
-                    Err(step) => return Ok((step, face)),
-                };
                 let sample = self.evaluate(&dir)?;
-                if let Some(step) = self.judge(&dir, choice, sample.h, before, tolerance) {
+                if let Some(step) = prediction
+                    .as_ref()
+                    .and_then(|p| self.judge(p, sample.h, before, tolerance))
+                {
                     return Ok((step, face));
                 }
                 let height = face.normal.dot(&sample.w) - face.offset;
-                if !(height > QUERIED_LEVEL * tolerance + height_eps) {
-                    is_plain = !matches!(choice, Choice::Normal);
+                if !(height > KNOWN_LEVEL * tolerance + height_eps) {
+                    is_plain = prediction.is_some();
                     if is_plain {
                         continue;
                     }
@@ -394,7 +400,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Returns the next step from a face above which no known difference lies, if none needs a query.
     fn step_on_known(
         &self,
-        ray: &Vec3,
         face: &Face,
         inset: f64,
         is_inside: bool,
@@ -415,10 +420,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if is_inside && is_level && angle2 <= allowed2 {
             return Some(Step::Face { dir, depth });
         }
-        let is_new = face.normal.dot(ray) < 1.0 - 1e-14;
-        if !is_inside && face.offset > 0.0 && cosine > SAME_VALLEY_COS && is_new {
-            return Some(Step::Ray(face.normal));
-        }
         // This valley is higher.
         if face.offset > depth + tolerance && angle2 > 1e-12 {
             return Some(Step::Ray(dir));
@@ -426,67 +427,53 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         None
     }
 
-    /// Returns the direction to query for a face; the inner error: a minimum that the fits tell.
-    fn choose(
-        &mut self,
-        face: &Face,
-        is_plain: bool,
-        tolerance: f64,
-    ) -> Result<(Vec3, Choice), Step> {
-        let upper = self.query.upper;
-        let normal = Ok((face.normal, Choice::Normal));
-        self.fit.update_exact(self.set, upper.index);
-        if is_plain {
-            return normal;
-        }
-        let (dir, choice, value) = if self.fit.sum() > 0.0 {
-            if self.sphere_misses >= MAX_MISSES {
-                return normal;
-            }
-            let Some((dir, value)) = self.fit.predict(self.set, &face.corners, &face.normal) else {
-                return normal;
-            };
-            (dir, Choice::Sphere(value), value)
-        } else {
-            if self.newton_misses >= MAX_MISSES {
-                return normal;
-            }
-            let Some((dir, value, flattest)) = newton_step(self.set, &upper) else {
-                return normal;
-            };
-            (dir, Choice::Newton(value, flattest), value)
+    /// Returns the minimum that the sphere fits of both objects predict, else Newton's, else that of one sphere fit;
+    /// of a model whose predictions have missed too often none.
+    fn predict(&self, face: &Face) -> Option<Prediction> {
+        let sphere = || {
+            let found = self.fit.predict(self.set, &face.corners, &face.normal);
+            let (dir, value) = found.filter(|_| self.sphere_misses < MAX_MISSES)?;
+            Some(Prediction {
+                model: Model::Sphere,
+                dir,
+                value,
+            })
         };
-        let turn2 = (dir - upper.dir).norm_squared();
-        if value < upper.depth - MIN_GAIN * tolerance {
-            // A direction that was queried tells nothing new.
-            return if turn2 < 1e-14 {
-                normal
-            } else {
-                Ok((dir, choice))
-            };
+        let newton = || {
+            let is_used = self.newton_misses < MAX_MISSES;
+            is_used.then(|| newton_step(self.set, &self.query.upper))?
+        };
+        if self.fit.radius.iter().all(|r| *r > 0.0) {
+            sphere().or_else(newton)
+        } else {
+            newton().or_else(sphere)
         }
-        match choice {
-            Choice::Newton(_, flattest) if self.is_newton_confirmed => {
-                if self.has_meeting_vertices(tolerance) || turn2 < 1e-14 {
-                    Err(Step::Smooth(flattest))
-                } else {
-                    Ok((dir, choice))
-                }
+    }
+
+    /// Returns whether a prediction is lower than the least support value by enough for a query.
+    fn has_gain(&self, prediction: &Prediction, tolerance: f64) -> bool {
+        prediction.value < self.query.upper.depth - MIN_GAIN * tolerance
+    }
+
+    /// Returns whether the least support value is `value`, metres, within half of the tolerance.
+    fn is_level(&self, value: f64, tolerance: f64) -> bool {
+        (value - self.query.upper.depth).abs() <= 0.5 * tolerance
+    }
+
+    /// Returns whether the least support value is the predicted one, and the witness points of the model meet along
+    /// its direction.
+    fn is_met(&self, prediction: &Prediction, tolerance: f64) -> bool {
+        let UpperBound { depth, dir, .. } = self.query.upper;
+        let turn2 = (prediction.dir - dir).norm_squared();
+        match prediction.model {
+            Model::Sphere => {
+                let off = (self.fit.sum() - depth).powi(2);
+                self.is_level(prediction.value, tolerance)
+                    && turn2 * self.fit.sum() <= 0.5 * tolerance
+                    && turn2 * off <= depth * tolerance
             }
-            Choice::Sphere(_)
-                if self.refuted_spheres < 2 && (value - upper.depth).abs() <= 0.5 * tolerance =>
-            {
-                // The support value is the prediction's within the tolerance; the witness points meet.
-                let off = (self.fit.sum() - upper.depth).powi(2);
-                if turn2 * self.fit.sum() <= 0.5 * tolerance
-                    && turn2 * off <= upper.depth * tolerance
-                {
-                    Err(Step::Sphere)
-                } else {
-                    Ok((dir, choice))
-                }
-            }
-            _ => normal,
+            // A direction that was queried tells nothing new.
+            Model::Smooth(_) => turn2 < 1e-14 || self.has_meeting_vertices(tolerance),
         }
     }
 
@@ -500,51 +487,34 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Judges a prediction by the support value `h` that it met. The next step where it came true.
     fn judge(
         &mut self,
-        dir: &Vec3,
-        choice: Choice,
+        prediction: &Prediction,
         h: f64,
         before: f64,
         tolerance: f64,
     ) -> Option<Step> {
-        match choice {
-            Choice::Normal => None,
-            Choice::Newton(value, flattest) => {
-                let gain = before - value;
-                self.is_newton_confirmed = h < value + larger(tolerance, 0.1 * gain);
-                let slack = larger(MAX_NEWTON_MISS * gain, QUERIED_LEVEL * tolerance);
-                if !(h < value + slack) {
-                    self.newton_misses += 1;
-                    return None;
-                }
-                let is_met = (h - value).abs() <= tolerance;
-                Some(if is_met && self.has_meeting_vertices(tolerance) {
-                    Step::Smooth(flattest)
-                } else {
-                    Step::Ray(*dir)
-                })
+        let value = prediction.value;
+        let slack = larger(MAX_MISS * (before - value), KNOWN_LEVEL * tolerance);
+        let is_true = h < value + slack;
+        let (misses, has_meeting) = match prediction.model {
+            Model::Sphere => {
+                self.fit.is_confirmed = is_true;
+                (&mut self.sphere_misses, true)
             }
-            Choice::Sphere(value) => {
-                let slack = larger(
-                    MAX_SPHERE_MISS * (before - value),
-                    QUERIED_LEVEL * tolerance,
-                );
-                self.fit.is_confirmed = h < value + slack;
-                if !self.fit.is_confirmed {
-                    self.sphere_misses += 1;
-                    if self.fit.is_warm {
-                        self.fit.reset_exact();
-                    }
-                    return None;
-                }
-                self.sphere_misses = 0;
-                let is_met = (h - value).abs() <= 0.5 * tolerance && self.refuted_spheres < 2;
-                Some(if is_met {
-                    Step::Sphere
-                } else {
-                    Step::Ray(*dir)
-                })
+            Model::Smooth(_) => {
+                let has_meeting = self.has_meeting_vertices(tolerance);
+                (&mut self.newton_misses, has_meeting)
             }
+        };
+        if !is_true {
+            *misses += 1;
+            return None;
         }
+        let is_minimum = (h - value).abs() <= 0.5 * tolerance && has_meeting;
+        Some(if is_minimum {
+            Step::Fit(prediction.model)
+        } else {
+            Step::Ray(prediction.dir)
+        })
     }
 
     /// Returns whether a stationary direction is a minimum: no direction beside it is lower.
@@ -557,10 +527,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let across = face.across();
                 Ok(!is_narrow || self.is_least_beside(step, dir, &[across, -across], tolerance)?)
             }
-            Step::Smooth(flattest) => {
+            Step::Fit(Model::Smooth(flattest)) => {
                 self.is_least_beside(step, &upper, &[*flattest, -flattest], tolerance)
             }
-            Step::Sphere => {
+            Step::Fit(Model::Sphere) => {
                 let e1 = perpendicular(&upper);
                 let e2 = upper.cross(&e1) * 0.75_f64.sqrt();
                 let ring = [e1, e2 - e1 * 0.5, -e2 - e1 * 0.5];
@@ -570,7 +540,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let is_real =
                     self.fit
                         .is_real(self.set, &face.corners, &self.query.upper, tolerance);
-                self.refuted_spheres += u32::from(!is_real);
+                if !is_real {
+                    self.sphere_misses = MAX_MISSES;
+                }
                 Ok(is_real)
             }
         }
@@ -586,30 +558,26 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         tolerance: f64,
     ) -> Result<bool, Halt> {
         let (before, before_len) = (self.query.upper.depth, self.set.len());
-        let upper = self.query.upper;
-        let far = match step {
-            Step::Sphere => 0.6,
-            Step::Smooth(_) => 0.05,
-            _ => 2.5 * TILT_RAD,
-        };
+        let narrow = 2.5 * TILT_RAD;
+        let is_sphere = matches!(step, Step::Fit(Model::Sphere));
+        let far = if is_sphere { 0.6 } else { narrow };
         for way in ways {
             let is_near = |walk: &Self, k: usize| {
                 let dir = walk.set.dir(k);
                 let across = dir - n * dir.dot(n);
-                let (sine, is_before) = (across.norm(), k < before_len);
-                let (far, cosine) = if is_before {
+                let sine = across.norm();
+                let (far, cosine) = if k < before_len {
                     (far, 0.6)
                 } else {
-                    (2.5 * TILT_RAD, 0.9)
+                    (narrow, 0.9)
                 };
                 sine > 0.4 * TILT_RAD
                     && sine < far
                     && dir.dot(n) > 0.0
                     && across.dot(way) > cosine * sine
-                    && (!matches!(step, Step::Sphere)
-                        || !is_before
-                        || walk.fit.is_active(walk.set, k, &upper, tolerance)
-                            && walk.fit.is_seen_twice(walk.set, VertexSet::<N>::sample(k)))
+                    && (!is_sphere
+                        || k >= before_len
+                        || walk.fit.is_seen_twice(walk.set, VertexSet::<N>::sample(k)))
             };
             if (0..self.set.len()).any(|k| is_near(self, k)) {
                 continue;
@@ -618,18 +586,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             let sample = self.evaluate(&(tilted / tilted.norm()))?;
             if sample.h < before - KNOWN_LEVEL * tolerance {
                 return Ok(false);
-            }
-            let k = usize::from(sample.pair.a);
-            match step {
-                Step::Sphere if !self.fit.is_active(self.set, k, &upper, tolerance) => {
-                    self.refuted_spheres += 1;
-                    return Ok(false);
-                }
-                Step::Smooth(_) if !is_alike(self.set, upper.index, k, 0.3) => {
-                    self.newton_misses = MAX_MISSES;
-                    return Ok(false);
-                }
-                _ => {}
             }
         }
         Ok(true)
@@ -647,12 +603,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let (point1, point2) = barycentric::witnesses(&weights, corners.each_ref());
                 minimum.points = [point1, point2];
             }
-            Step::Sphere => {
+            Step::Fit(Model::Sphere) => {
                 minimum.points = self
                     .fit
                     .witnesses(self.set, &face.corners, &self.query.upper.dir);
             }
-            Step::Smooth(_) | Step::Ray(_) => {}
+            Step::Fit(Model::Smooth(_)) | Step::Ray(_) => {}
         }
         if self.query.has_contradiction(self.set) {
             return Err(Halt::Status(Status::InconsistentSupport));
@@ -716,19 +672,15 @@ fn is_crossed(portal: &[Vertex; 3], from: &Vec3, slack: f64) -> bool {
 fn is_alike<const N: usize>(set: &VertexSet<N>, i: usize, k: usize, share: f64) -> bool {
     let d = set.difference(VertexSet::<N>::sample(k)) - set.difference(VertexSet::<N>::sample(i));
     let (e, f) = (set.dir(k).dot(&d), -set.dir(i).dot(&d));
-    (e - f).abs() <= share * (e + f)
+    e + f > 0.0 && (e - f).abs() <= share * (e + f)
 }
 
-/// Returns Newton's direction, unit, from the entry of the least support value, the support value predicted
-/// there, and the unit vector across along which D is the flattest; `None` where no two entries near there tell
-/// the curvature, or the support function has no minimum near there.
+/// Returns the minimum that Newton's direction from the entry of the least support value predicts; `None` where no
+/// two entries near there tell the curvature, or the support function has no minimum near there.
 ///
 /// In the plane of directions n + x the support function is h + g x + x R x / 2, g the part of the support point
 /// across n and R its derivative; divided by the length of n + x it has the gradient g + (R − h) x.
-fn newton_step<const N: usize>(
-    set: &VertexSet<N>,
-    upper: &UpperBound,
-) -> Option<(Vec3, f64, Vec3)> {
+fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<Prediction> {
     let n = upper.dir;
     let at = set.difference(VertexSet::<N>::sample(upper.index));
     let e1 = perpendicular(&n);
@@ -739,19 +691,13 @@ fn newton_step<const N: usize>(
         let mut least = MAX_NEWTON_TAN * MAX_NEWTON_TAN;
         for k in (0..set.len()).filter(|k| *k != upper.index) {
             let cosine = set.dir(k).dot(&n);
-            if !(cosine > 0.7) {
-                continue;
-            }
-            let x = tangent(&set.dir(k)) / cosine;
-            let x2 = x.norm_squared();
-            let is_near = x2 < least && x2 > 1e-10;
+            let x2 = 1.0 / (cosine * cosine) - 1.0;
+            let is_near = cosine > 0.0 && x2 < least && x2 > 1e-10;
             if !is_near || !is_alike(set, upper.index, k, SMOOTH_REL_TOL) {
                 continue;
             }
+            let x = tangent(&set.dir(k)) / cosine;
             let d = set.difference(VertexSet::<N>::sample(k)) - at;
-            if !(d.norm_squared() > 0.0) {
-                continue;
-            }
             if pass > 0 {
                 // Not on a line with the first.
                 let first = best[0]?.0;
@@ -784,7 +730,11 @@ fn newton_step<const N: usize>(
     let value = (h + g.dot(&x) + 0.5 * x.dot(&(curvature * x))) / (1.0 + x2).sqrt();
     let dir = normalised(&(n + e1 * x.x + e2 * x.y))?;
     let v = flattest_axis(&curvature);
-    Some((dir, value, e1 * v.x + e2 * v.y))
+    Some(Prediction {
+        model: Model::Smooth(e1 * v.x + e2 * v.y),
+        dir,
+        value,
+    })
 }
 
 /// Returns the unit eigenvector of the least eigenvalue of a symmetric matrix. In closed form: nalgebra's
@@ -850,11 +800,7 @@ mod tests {
         let mut query = SupportQuery::new(md, center.as_ref());
         let mut set = VertexSet::<MAX_SAMPLES>::EMPTY;
         let mut fit = SphereFit::default();
-        let start = WalkStart {
-            dir: *start,
-            depth: 0.0,
-        };
-        let found = penetration(&mut query, &mut set, &mut fit, &start, settings);
+        let found = penetration(&mut query, &mut set, &mut fit, start, settings);
         (found, md.supports() - before)
     }
 

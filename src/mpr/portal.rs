@@ -79,6 +79,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     ray: &Vec3,
     length: f64,
     gap: f64,
+    ring_tilt: f64,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
     let mut a = set.farthest_vertex(ray);
     let mut b: Option<Vertex> = None;
@@ -86,7 +87,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     let mut across = ray * a.w.dot(ray) - a.w;
     let mut height = across.dot(&a.w);
     if !(-height > 0.5 * gap * length) {
-        match ring(query, set, ray, gap / length)? {
+        match ring(query, set, ray, ring_tilt)? {
             Ok(portal) => return Ok(Some(portal)),
             Err(axis) => (across, height) = (axis, 0.0),
         }
@@ -170,12 +171,12 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     ray: &Vec3,
-    gap_over_length: f64,
+    tilt: f64,
 ) -> Result<Result<[Vertex; 3], Vec3>, Stop> {
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
-    let mut tilt = lesser((2.0 * gap_over_length).sqrt(), MAX_RING_TILT);
+    let mut tilt = lesser(tilt, MAX_RING_TILT);
     for _ in 0..MAX_RINGS {
         let mut corners = [Vertex::default(); 3];
         for (corner, turn) in corners
@@ -310,7 +311,15 @@ mod tests {
         query.evaluate(&mut set, &ray).ok()?;
         let length = query.upper.depth + c.v.norm();
         let gap = LIMIT.allowed(query.upper.depth, query.scale.tolerance(LIMIT.tolerance));
-        let found = discover(&mut query, &mut set, &ray, length, gap).ok()??;
+        let found = discover(
+            &mut query,
+            &mut set,
+            &ray,
+            length,
+            gap,
+            (2.0 * gap / length).sqrt(),
+        )
+        .ok()??;
         let mut portal = found;
         let mut fit = SphereFit::default();
         refine(&mut query, &mut set, &mut fit, &ray, &mut portal, &LIMIT).ok()?;

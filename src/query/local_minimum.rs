@@ -35,17 +35,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
         let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
         let mut fit = SphereFit::default();
-        let start = local::WalkStart {
-            dir: hit.normal,
-            depth: hit.depth,
-        };
-        match local::penetration(&mut query, &mut set, &mut fit, &start, &settings) {
+        match local::penetration(&mut query, &mut set, &mut fit, &hit.normal, &settings) {
             Ok((floor, Status::Converged)) => {
-                let tolerance = query.scale.tolerance(limits.gap.tolerance);
+                // A face is as far from its support plane as both are rounded.
+                let tolerance =
+                    query.scale.tolerance(limits.gap.tolerance) + query.scale.height_eps();
                 if !floor.has_sound_witnesses(tolerance) {
                     return Ok(false);
                 }
-                let is_minimum = floor.depth <= hit.depth + settings.tolerance;
+                let is_minimum =
+                    floor.depth <= hit.depth + query.scale.tolerance(settings.tolerance);
                 if is_minimum {
                     *hit = Penetration {
                         depth_lower: hit.depth_lower.min(floor.depth),
