@@ -25,7 +25,7 @@ use crate::math::{Vec3, larger, lesser, normal, unit};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::{discover, replace_corner};
+use crate::mpr::portal::{discover, is_crossed, replace_corner};
 
 /// Steps of GJK before the portal decides. Of a hundred thousand pairs none needs forty.
 const MAX_STEPS: u32 = 64;
@@ -218,18 +218,6 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
         replace_corner(&mut portal, &ray, w);
     }
     Ok(None)
-}
-
-/// Returns whether the ray passes through a portal, within `eps`, metres. The first portal may be a ring
-/// that it does not pass through.
-fn is_crossed(portal: &[Vertex; 3], ray: &Vec3, eps: f64) -> bool {
-    let [a, b, c] = portal.each_ref().map(|corner| &corner.w);
-    [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| {
-        // A product with the edge keeps the digits of small portals.
-        let edge = q - p;
-        let side = ray.dot(&p.cross(&edge));
-        side >= 0.0 || side * side <= eps * eps * edge.norm_squared()
-    })
 }
 
 /// Moves a simplex towards the origin until it contains it. Again without the interior point where that turns
