@@ -27,7 +27,7 @@ use crate::minkowski::round_fit::{Choice, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::{GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::mpr::portal::{KNOWN_LEVEL, is_shallow};
+use crate::mpr::portal::KNOWN_LEVEL;
 
 /// The share of the gap that a queried point must lie above a face to become a corner.
 const QUERIED_LEVEL: f64 = 0.04;
@@ -224,9 +224,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         // Of the largest buffers the queries that are left have theirs.
         let has_room = has_larger || C - corners.len > N - set.len();
         if !(height > level && is_gain && has_room) {
-            // Sphere fits pay for shallow contacts alone.
-            let is_plain =
-                !is_inside || !is_shallow(query) || closest.key == progress.last_failed_key;
+            let is_plain = !is_inside || closest.key == progress.last_failed_key;
             let vertices = polytope
                 .corners(face)
                 .map(|id| corners.vertex(set, interior, id));

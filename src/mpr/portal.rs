@@ -61,7 +61,7 @@ pub const SHALLOW_REL: f64 = 0.3;
 
 /// Returns whether the least support value is that of a shallow contact.
 #[inline(always)]
-pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
+fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
     let upper = query.upper.depth;
     upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
