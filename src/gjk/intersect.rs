@@ -21,9 +21,10 @@
 
 use crate::gjk::barycentric;
 use crate::gjk::simplex::{Simplex, compact, direction};
-use crate::math::{Vec3, larger, lesser, normal, unit};
+use crate::math::{EPSILON, Vec3, larger, lesser, normal, unit};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{discover, is_crossed, replace_corner};
 
@@ -37,9 +38,6 @@ const CAPACITY: usize = 16;
 /// Steps of a portal. Each brings a corner nearer to the surface of D, and what is open after so many is
 /// rounding.
 const MAX_PORTAL_STEPS: u32 = 100;
-/// The error of the triple product of a point and two edges, in ulps of their lengths. Derived: six products
-/// of three factors and their sums.
-const PRODUCT_ERROR_ULPS: f64 = 16.0;
 /// The share of a chord that is left at either end of it, so that a point in between is in the interior.
 /// Measured on the recorded contacts: 0.05 takes 7 % more support points of pairs apart, 0.5 takes 10 %.
 const CHORD: f64 = 0.25;
@@ -196,7 +194,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
         let offset = n.dot(a);
         // The normal of a sliver is rounding.
         let edge2 = larger((b - a).norm_squared(), (d - a).norm_squared());
-        let error = PRODUCT_ERROR_ULPS * f64::EPSILON * query.scale.size() * edge2;
+        let error = TRIPLE_PRODUCT_ULPS * EPSILON * query.scale.size() * edge2;
         if offset > larger(touch, error) {
             let is_enclosing =
                 n.dot(c) < 0.0 && is_crossed(&portal, &ray, query.scale.height_eps());
@@ -277,6 +275,9 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
                     compact(query, set, simplex.slots());
                 }
                 query.evaluate(set, &-dir)?;
+            }
+            if !simplex.is_certain() {
+                break;
             }
             return Ok(Found::Known(simplex.tetrahedron()));
         };

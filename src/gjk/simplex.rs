@@ -19,6 +19,7 @@
 use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::support::SupportMap;
+use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// A simplex of points of D: at most three corners, and a slot for the next point.
@@ -88,6 +89,20 @@ impl Simplex {
     pub fn tetrahedron(&self) -> [Vertex; 4] {
         let [a, b, c] = self.corners();
         [a, b, c, self.slots[self.newest & 3]]
+    }
+
+    /// Returns whether the origin is on the inner side of the old face by more than rounding, where
+    /// [`Simplex::add`] returned `None`. (The normal of a sliver may look to either side.)
+    pub fn is_certain(&self) -> bool {
+        let [a, b, c, w] = self.tetrahedron().map(|corner| corner.w);
+        let error = TRIPLE_PRODUCT_ULPS * EPSILON * a.norm() * b.norm() * c.norm();
+        let volume = (a - w).cross(&(b - w)).dot(&(c - w));
+        let height = a.cross(&b).dot(&c);
+        if volume < 0.0 {
+            height < -error
+        } else {
+            height > error
+        }
     }
 
     /// Returns the corners and the points that were corners.
@@ -270,7 +285,7 @@ fn is_off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     // The product is off by ulps of the corners' lengths, however small the face is.
     let lengths = p.norm() * q.norm() * w.norm();
     let error = if slack > 0.0 {
-        8.0 * EPSILON * lengths
+        TRIPLE_PRODUCT_ULPS * EPSILON * lengths
     } else {
         0.0
     };
