@@ -179,7 +179,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
             }
             if self.has_met(goal) {
-                return Ok(End::Met);
+                if self.is_closest(self.gap(goal)) {
+                    return Ok(End::Met);
+                }
+                continue;
             }
             if is_step {
                 if !(self.upper < closest) {
@@ -213,6 +216,23 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         } else {
             End::Limit
         })
+    }
+
+    /// Returns whether a triangle is as close to the origin as its plane, within a gap. Where rounding of thin
+    /// objects has kept a triangle beside the origin, its closest feature takes its place.
+    fn is_closest(&mut self, gap: f64) -> bool {
+        let [a, b, c] = self.simplex.corners().map(|corner| corner.w);
+        if self.simplex.len() < 3 {
+            return true;
+        }
+        let closest = barycentric::triangle(&Vec3::zeros(), &a, &b, &c);
+        let distance = closest.distance2.sqrt();
+        if distance <= self.upper + gap {
+            return true;
+        }
+        (self.to_origin, self.upper) = (-closest.point, distance);
+        self.simplex.keep(&closest.weights);
+        false
     }
 
     /// Returns how far apart the bounds may be, metres; NaN is infinite.

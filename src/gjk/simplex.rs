@@ -105,6 +105,21 @@ impl Simplex {
         }
     }
 
+    /// Keeps the corners that have a weight.
+    pub fn keep(&mut self, weights: &[f64; 3]) {
+        let order = self.order;
+        let mut kept = 0;
+        for (slot, weight) in order.iter().zip(weights) {
+            if *weight > 0.0 && kept < 3 {
+                for place in &mut self.order[kept..] {
+                    *place = *slot;
+                }
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
     /// Returns the corners and the points that were corners.
     #[inline(always)]
     pub fn slots(&mut self) -> &mut [Vertex] {
