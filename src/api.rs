@@ -330,9 +330,9 @@ where
     }
     Ok(Pair {
         md: MinkowskiDifference::new(SupportOf(a), SupportOf(b)),
-        centre: center,
+        center,
         first_dir: None,
-        lasting: has_state,
+        keeps_state: has_state,
     })
 }
 

@@ -1,24 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The queries of a pair, and the order of steps that those for the depth share. (Yes or no
-//! is [`crate::gjk::intersect`]'s, the distance [`crate::gjk::signed_distance`].)
+//! The queries of a pair, and the steps that the queries of the depth share. (The intersection test is
+//! [`crate::gjk::intersect`], the distance [`crate::gjk::signed_distance`].)
 //!
-//! 1. A pair that was apart is asked about the direction that separated it: while
-//!    that still separates, one support point is the whole answer.
-//! 2. The solver starts from what the state holds, else from the centres, else from
-//!    the caller's first direction. (`along` starts from the last portal, `planar` from
-//!    the part of that direction in its plane.)
-//! 3. An overlap is proven. A local minimum of the support function can be positive
-//!    though the objects are apart (a plate that an object has passed through, seen
-//!    from the old side), so the origin must be shown to lie among points of D: in a
-//!    tetrahedron of the centres' difference and three others ([`contains_origin`]). It puts
-//!    the points the solver saw together anew, and asks for more only where these leave a side open. The global search (`mpr`, `minimum`) proves its
-//!    overlaps itself.
-//! 4. Where the contact position is wanted, it is the [`center_of_pressure`]; the middle
-//!    of the witness points in `along` and `planar`, and where a cap came first.
-//! 5. What was learned stays behind in the [`WarmStart`]; where the caller keeps none, nothing
-//!    is spent on it.
+//! 1. *Separating axis*: the axis of the last query is evaluated first. While it separates, one support
+//!    point is the whole query.
+//! 2. *Solver*: starts from the warm state, else from the difference of the centers, else from the caller's
+//!    first direction.
+//! 3. *Overlap*: a local minimum of the support function can be positive though the objects are apart (a
+//!    plate that an object has passed through, seen from the old side). So the origin is shown to be in
+//!    a tetrahedron of points of D ([`contains_origin`]): of known vertices, and of queries where these
+//!    leave a side open. The global search proves its overlaps itself.
+//! 4. *Contact position*: the [`center_of_pressure`]; the middle of the witness points in `along` and
+//!    `planar`, and of queries that did not converge.
+//! 5. *Warm state*: stored in the [`WarmStart`], if the caller keeps one.
 
 mod local_minimum;
 pub mod warm_start;
@@ -49,25 +45,23 @@ const PROOF_VERTICES: usize = 16;
 pub struct Pair<A, B> {
     /// The Minkowski difference.
     pub md: MinkowskiDifference<A, B>,
-    /// The difference of the centres, where the caller gives them.
-    pub centre: Option<SupportPoint>,
+    /// The difference of the centers, where the caller gives them.
+    pub center: Option<SupportPoint>,
     /// The caller's first direction, where it gives one.
     pub first_dir: Option<Vec3>,
-    /// Whether the caller keeps the state: then what is left in it may cost a few support
-    /// points.
-    pub lasting: bool,
+    /// Whether the caller keeps the state.
+    pub keeps_state: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// Steps 1 and 5 around what comes between: `solve` is asked where the direction that separated
-    /// the pair last time does not; a miss leaves behind what the next query asks first.
+    /// Runs `solve` if the axis of the last query does not separate, and stores the axis that does.
     #[inline(always)]
-    fn asked(
+    fn with_separating_axis(
         &self,
         state: &mut WarmStart,
         solve: impl FnOnce(&mut WarmStart) -> Result<(), Stop>,
     ) -> Result<(), Stop> {
-        let aim = self.still_apart(state)?;
+        let aim = self.test_separating_axis(state)?;
         let found = solve(state);
         if let Err(Stop::Apart(n)) = &found {
             *state = WarmStart::apart(&SeparatingAxis { dir: *n, aim }, state.radius);
@@ -75,10 +69,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         found
     }
 
-    /// Step 1: [`Stop::Apart`] where the axis of the state still separates. Else the margin to aim at with
-    /// another one, metres.
+    /// Evaluates the axis of the state. Returns the margin to aim at with another one, metres.
+    ///
+    /// # Errors
+    /// [`Stop::Apart`]: it separates. [`Fault::NonFinite`].
     #[inline(always)]
-    fn still_apart(&self, state: &mut WarmStart) -> Result<f64, Stop> {
+    fn test_separating_axis(&self, state: &mut WarmStart) -> Result<f64, Stop> {
         let Some(mut axis) = state.separating_axis() else {
             return Ok(0.0);
         };
@@ -90,18 +86,18 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(axis.aim)
     }
 
-    /// The way from the centre of D through the origin, or the caller's first
+    /// The way from the center of D through the origin, or the caller's first
     /// direction, or any.
     pub fn cold_start(&self) -> Vec3 {
-        let from_centre = self.centre.and_then(|c| unit(&-c.v));
-        from_centre
+        let from_center = self.center.and_then(|c| unit(&-c.v));
+        from_center
             .or_else(|| self.first_dir.and_then(|d| unit(&d)))
             .unwrap_or(Vec3::x())
     }
 
     /// Proves the overlap of a solver's `hit` from known vertices, and queries where they leave a side open.
     /// Where a touch, within the tolerance, has witness points that do not meet, the points that meet at the
-    /// origin take their place. `is_planar`: D lies in a plane.
+    /// origin take their place. `is_planar`: D is in a plane.
     ///
     /// # Errors
     /// [`Stop::Apart`]: a queried direction separates. [`Fault::NonFinite`].
@@ -113,7 +109,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         is_planar: bool,
     ) -> Result<(), Stop> {
-        let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
+        let mut query = SupportQuery::new(&self.md, self.center.as_ref());
         let met = SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
@@ -130,23 +126,23 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         // A depth of a few contact epsilons has no place.
         let tolerance = larger(settings.tolerance, 4.0 * query.scale.contact_eps());
-        let centre = self.centre.as_ref();
-        let dir = centre.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
-        let found = contains_origin(&mut query, set, centre, &dir, is_planar)?;
+        let center = self.center.as_ref();
+        let dir = center.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
+        let found = contains_origin(&mut query, set, center, &dir, is_planar)?;
         let apart = hit.point1 - hit.point2 - hit.dir * hit.depth;
         if hit.depth <= tolerance && apart.norm() > tolerance {
             let (p1, p2) = found.witnesses();
-            // What the rounding of the weights leaves between them.
+            // The weights are rounded.
             let rest = (p1 - p2) * 0.5;
             (hit.point1, hit.point2) = (p1 - rest, p2 + rest);
         }
         Ok(())
     }
 
-    /// Returns the state with the direction of the difference of the centres, where they are given.
+    /// Returns the state with the direction of the difference of the centers, where they are given.
     fn facing(&self, mut state: WarmStart) -> WarmStart {
-        if let Some(centre) = &self.centre {
-            state.set_facing(&centre.v);
+        if let Some(center) = &self.center {
+            state.set_facing(&center.v);
         }
         state
     }
@@ -156,15 +152,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
         let Some(state) = state else {
             let first = self.cold_start();
-            return intersect(&self.md, self.centre.as_ref(), &first).map(|_| ());
+            return intersect(&self.md, self.center.as_ref(), &first).map(|_| ());
         };
-        self.asked(state, |state| {
+        self.with_separating_axis(state, |state| {
             let first = match state.kind == WarmKind::Apart {
                 true => self.cold_start(),
                 false => state.direction().unwrap_or_else(|| self.cold_start()),
             };
-            let dir = intersect(&self.md, self.centre.as_ref(), &first)?;
-            // What a depth query left is worth more than this.
+            let dir = intersect(&self.md, self.center.as_ref(), &first)?;
+            // The state of a depth query is worth more.
             if !state.is_overlap() {
                 *state = self.facing(WarmStart::towards(dir));
             }
@@ -225,14 +221,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_samples: MAX_SAMPLES,
             max_iterations: settings.max_iterations.saturating_sub(walked),
         };
-        self.global(self.centre.as_ref(), state, &limits, None, wants_pos, hit)?;
+        self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
         if hit.limit {
             // No proof is wanted: a walk that ends at its direction is the answer.
             hit.limit = !self.floor(hit, &limits)?;
             hit.pos = hit.middle();
         }
-        if self.centre.is_some() {
-            // The lower bound would rest on the caller's centre.
+        if self.center.is_some() {
+            // The lower bound would rest on the caller's center.
             hit.depth_lower = 0.0;
         }
         hit.iterations += walked;
@@ -248,13 +244,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<Status, Stop> {
-        let aim = self.still_apart(state)?;
-        let warm = match &self.centre {
+        let aim = self.test_separating_axis(state)?;
+        let warm = match &self.center {
             Some(c) if state.is_swapped(&c.v) => WarmStart::COLD,
             _ => *state,
         };
         let start = warm.direction().unwrap_or_else(|| self.cold_start());
-        let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
+        let mut query = SupportQuery::new(&self.md, self.center.as_ref());
         let mut set = VertexSet::<{ mpr::local::MAX_SAMPLES }>::EMPTY;
         let mut fit = SphereFit::default();
         (fit.radius, fit.is_warm) = (warm.radius, warm.radius != [0.0; 2]);
@@ -287,7 +283,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
-    /// the last direction, else from the centres.
+    /// the last direction, else from the centers.
     pub fn incremental(
         &self,
         state: &mut WarmStart,
@@ -318,7 +314,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        self.asked(state, |state| {
+        self.with_separating_axis(state, |state| {
             let start = state.direction().unwrap_or_else(|| self.cold_start());
             *hit = match flat {
                 Some(m) => mpr::directional::planar(&self.md, &m, &start, settings)?,
@@ -338,7 +334,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// The minimum depth at MPR's price: within the tolerance or a thousandth of the depth,
     /// in at most [`MPR_SUPPORTS`] support points; where these do not do, a local search lowers
-    /// the depth. Trusts the centre.
+    /// the depth. Trusts the center.
     pub fn mpr(
         &self,
         state: &mut WarmStart,
@@ -354,11 +350,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_samples: MAX_SAMPLES,
             max_iterations: settings.max_iterations,
         };
-        self.global(self.centre.as_ref(), state, &limits, None, wants_pos, hit)
+        self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)
     }
 
     /// The global minimum of the depth, proven by support points alone: from the state,
-    /// else from the centres, else from the first direction.
+    /// else from the centers, else from the first direction.
     pub fn minimum(
         &self,
         state: &mut WarmStart,
@@ -389,7 +385,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let aim = self.still_apart(state)?;
+        let aim = self.test_separating_axis(state)?;
         let request = EpaRequest {
             center: apex,
             ray: self.cold_start(),
@@ -404,7 +400,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let found = query
             .evaluate_first(&request.first_dir())
             .and_then(|first| self.overlap(query, &first, &request, arena, state, wants_pos, hit));
-        if let (Err(Stop::Apart(axis)), true) = (&found, self.lasting) {
+        if let (Err(Stop::Apart(axis)), true) = (&found, self.keeps_state) {
             *state = WarmStart::apart(&SeparatingAxis { dir: *axis, aim }, request.warm.radius);
         }
         found
@@ -435,7 +431,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             set: &mut set,
         };
         let status = epa::penetration::penetration(&mut query, first, request, arena, &mut answer)?;
-        if self.lasting {
+        if self.keeps_state {
             *state = self.facing(warm);
         }
         hit.limit = status != Status::Converged;
@@ -458,7 +454,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &Penetration,
         tolerance: f64,
     ) -> Result<Vec3, Fault> {
-        center_of_pressure(&self.md, set, hit, self.centre.as_ref(), tolerance)
+        center_of_pressure(&self.md, set, hit, self.center.as_ref(), tolerance)
     }
 
     /// How far obj2 must move along the unit direction `dir`.
@@ -469,7 +465,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        self.asked(state, |state| {
+        self.with_separating_axis(state, |state| {
             let capped = Settings {
                 max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),
                 ..*settings
@@ -499,7 +495,7 @@ mod tests {
         max_iterations: 1000,
     };
 
-    /// What a query from this state costs and answers.
+    /// Returns the support points, the depth and the state of a query from this state.
     fn ask<A: SupportMap, B: SupportMap>(
         a: A,
         b: B,
@@ -507,9 +503,9 @@ mod tests {
     ) -> (u64, f64, WarmStart) {
         let pair = Pair {
             md: MinkowskiDifference::new(a, b),
-            centre: None,
+            center: None,
             first_dir: None,
-            lasting: true,
+            keeps_state: true,
         };
         let mut hit = Penetration::default();
         pair.local(&mut state, &SETTINGS, true, &mut hit).unwrap();
@@ -542,7 +538,7 @@ mod tests {
         }
     }
 
-    /// Where the proof of an overlap may lean on a centre, it proves no bound.
+    /// Where the proof of an overlap may lean on a center, it proves no bound.
     #[test]
     fn no_bound_leans_on_a_centre() {
         let mut r = Random::new(8);
@@ -552,13 +548,13 @@ mod tests {
             let v1 = r.vector(3.0);
             let pair = Pair {
                 md: MinkowskiDifference::new(hull(&a), hull(&b)),
-                centre: Some(SupportPoint {
+                center: Some(SupportPoint {
                     v: v1,
                     v1,
                     v2: Vec3::zeros(),
                 }),
                 first_dir: None,
-                lasting: true,
+                keeps_state: true,
             };
             let mut state = WarmStart::guess(&r.direction());
             let mut hit = Penetration::default();

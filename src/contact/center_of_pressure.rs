@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The center of pressure: the one point that stands for all of a contact.
+//! The center of pressure: the one point that represents all of a contact.
 //!
 //! *Definition.* Let n be the contact normal, r a point of the plane across n, and δ(r) the local depth: the
 //! length of the chord that the overlap of the objects has along n at r. The center of pressure
@@ -194,7 +194,7 @@ struct Ray {
     bounds: [f64; 3],
     /// The index of the largest bound.
     top: usize,
-    /// Where that is 1.
+    /// The point of the ray at which the largest bound is 1.
     end: OutlineVertex,
 }
 

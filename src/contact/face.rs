@@ -10,14 +10,14 @@
 //!    a larger value than all that lies a quarter of the size closer. A vertex more than the slop low is not of
 //!    the face; half the tilt is queried then. The size is how far apart [`WIDE_TILT`] finds vertices.
 //! 2. *All corners.* The direction across the side of two corners, in which both have the same value, finds
-//!    what lies beyond that side. A face of k corners is complete after 3 + k + (k − 3) queries; a curved one
+//!    what is beyond that side. A face of k corners is complete after 3 + k + (k − 3) queries; a curved one
 //!    becomes an inscribed polygon, whose gaps are halved in a fixed order, so that it moves with the object.
 //! 3. *Roundness.* A corner that two directions found is sharp. Others are queried with half the tilt: on a
 //!    round surface p = c + R t, and c = 2 p(t/2) − p(t) is the corner. A smooth piece is known by equal gains
 //!    of both points in their directions (trapezoidal rule). A point that moves by more than
 //!    sqrt(slop · size / 2) stays: it would leave a circle as large as the object by the slop.
 //! 4. *Cached face.* Each side is queried once, across it, with a [`CACHED_LEAN`] to its second corner: so each
-//!    corner is confirmed, and nothing lies beyond a side. A point is queried in three directions, and is their
+//!    corner is confirmed, and nothing is beyond a side. A point is queried in three directions, and is their
 //!    mean. Each end of a line is queried beyond it too, which gives its radius along the line. An inscribed
 //!    polygon is queried along the directions that found it. Where the corners moved otherwise than as one
 //!    body, or are no longer of the face, the face is found from nothing.
@@ -71,7 +71,7 @@ struct Sample {
     radius: f64,
     /// Whether roundness is removed, or there is none.
     is_settled: bool,
-    /// Whether no corner lies beyond the side to the next sample, or no query is left to find one.
+    /// Whether no corner is beyond the side to the next sample, or no query is left to find one.
     is_closed: bool,
 }
 
@@ -89,9 +89,9 @@ pub struct Face {
     pub top: f64,
     /// The slop in force.
     pub slop: f64,
-    /// What rounding can do to a coordinate.
+    /// The rounding of a coordinate, metres.
     pub rounding: f64,
-    /// What the cache stores of it.
+    /// The part that the cache stores.
     pub ring: CachedFace,
     /// How it moved, where it was cached.
     pub motion: Option<Motion>,
@@ -396,7 +396,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         Ok((beyond > self.flat() * whole).then_some(new))
     }
 
-    /// Returns how far a corner lies beyond a side at least: rounding, and what is left of roundness, is less.
+    /// Returns how far a corner is beyond a side at least: rounding, and what is left of roundness, is less.
     fn flat(&self) -> f64 {
         self.rounding + self.tilt_size * self.slop
     }

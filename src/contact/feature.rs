@@ -112,7 +112,7 @@ impl FeatureVertex {
     }
 }
 
-/// What a feature is.
+/// The kind of a feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FeatureKind {
     /// Vertices of a polytope.
@@ -133,7 +133,7 @@ pub struct Feature {
     ways: [[f64; 2]; 4],
 }
 
-/// What is known of the four tilts.
+/// The known vertices that are farthest along the four tilted normals.
 struct Prediction {
     vertices: [FeatureVertex; 4],
     /// How far each is along its tilted normal, over T.
@@ -186,7 +186,7 @@ pub struct FeatureQuery<'q, A, B, const N: usize> {
     known: &'q [[[f64; 2]; 3]],
     /// The index in the set of the first of them.
     first: usize,
-    /// x and y of the centre of each object; that of the witness points where none is known.
+    /// x and y of the center of each object; that of the witness points where none is known.
     centers: [[f64; 2]; 2],
     /// The object that is known to reach less far from the contact, 0 or 1.
     pub smaller: usize,
@@ -444,7 +444,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         Ok(())
     }
 
-    /// Returns the way from the deepest point to the centre of an object.
+    /// Returns the way from the deepest point to the center of an object.
     #[inline(always)]
     pub fn towards_center(&self, object: usize) -> [f64; 2] {
         self.centers.map(|xy| xy[object % 2])
@@ -710,7 +710,7 @@ impl Fan {
         fan.close();
         let min_area = MIN_AREA_REL * margin * margin;
         for area in fan.areas.iter_mut().take(fan.len) {
-            // What rounding leaves of a triangle without area divides nothing by zero.
+            // Never 0: areas are divisors.
             *area = larger(*area, min_area);
         }
         *self = fan;

@@ -101,7 +101,7 @@ impl CachedFace {
             }
         }
         let slack = slack + F32_REL_TOL * reach;
-        // What is no longer than a round corner is wide does not tell how it turned.
+        // A face no longer than its rounding has no measurable turn.
         if reach > 64.0 * slack {
             let whole = norm(&turn);
             motion.turn = turn.map(|x| x / whole);

@@ -5,7 +5,7 @@
 //!
 //! 1. *Separating axis*: the first direction, the warm state's or the way from the interior point through
 //!    the origin. Most misses end here.
-//! 2. *Interior point*: the difference of the centres where they are trusted; else the middle of the
+//! 2. *Interior point*: the difference of the centers where they are trusted; else the middle of the
 //!    support points along the ray and against it, which is in D for certain.
 //! 3. *Portal*: discovery and refinement ([`crate::mpr::portal`]).
 //! 4. *Certificate*: where the tetrahedron of interior point and portal holds the ball whose radius is the
@@ -15,12 +15,12 @@
 //! 6. *Result*: depth and direction are the upper bound's, lower bound and witness points the polytope's.
 //!
 //! Departures. Steps 3 to 5 take known differences before callbacks. A known difference beyond a queried
-//! plane shows that a callback contradicts itself; a plane that has the difference of the centres beyond it
+//! plane shows that a callback contradicts itself; a plane that has the difference of the centers beyond it
 //! shows that this is outside D. The query then starts again, once, with every direction evaluated twice
-//! or without the centres.
+//! or without the centers.
 //!
 //! Validity. `depth`, `dir`: always; a sound depth. `depth_lower`: proven, of the global minimum (a trusted
-//! centre is part of the proof); 0 where nothing is proven. Witness points: always, each in its object.
+//! center is part of the proof); 0 where nothing is proven. Witness points: always, each in its object.
 //! [`Status::Converged`]: depth − depth_lower is within the gap.
 
 use crate::contact::{Penetration, Status};
@@ -87,7 +87,7 @@ const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The support calls of a polytope after which D counts as round there.
 const MAX_PLAIN_ITERATIONS: u64 = 3;
 /// A warm direction is stale if its support value exceeds twice the last depth by more than this share of
-/// the distance of the centres.
+/// the distance of the centers.
 const STALE_REL: f64 = 0.1;
 
 /// Memory for the largest polytopes. All bytes zero is a valid value.
@@ -109,7 +109,7 @@ pub trait Arena {
 /// The input of a query besides the support functions.
 #[derive(Clone, Copy, Debug)]
 pub struct EpaRequest<'a> {
-    /// The difference of the centres that is trusted to lie in D.
+    /// The difference of the centers that is trusted to lie in D.
     pub center: Option<&'a SupportPoint>,
     /// The unit direction of a cold start: from an interior point through the origin.
     pub ray: Vec3,
@@ -221,7 +221,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     };
     let mut center = request.center;
     let mut status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
-    // A plane shows that the centre is outside D, or callbacks contradict themselves: once more.
+    // A plane shows that the center is outside D, or callbacks contradict themselves: once more.
     let is_outside = center.is_some() && solver.query.interior.is_none();
     let is_inconsistent = solver.query.is_inconsistent;
     if is_outside || is_inconsistent {

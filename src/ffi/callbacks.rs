@@ -165,9 +165,9 @@ impl Query {
             }
             Some(Pair {
                 md: MinkowskiDifference::new(obj1, obj2),
-                centre: center,
+                center,
                 first_dir,
-                lasting: has_state,
+                keeps_state: has_state,
             })
         }
     }

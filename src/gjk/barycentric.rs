@@ -58,8 +58,8 @@ pub fn mix<const N: usize>(weights: &[f64; N], points: [&Vec3; N]) -> Vec3 {
     mixed
 }
 
-/// What the points of obj1, and those of obj2, mix to with these weights: points of the
-/// objects, whose difference is what the points of D mix to.
+/// Returns the weighted means of the points of obj1 and of those of obj2: points of the objects, whose
+/// difference is the weighted mean of the points of D.
 #[inline]
 pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N]) -> (Vec3, Vec3) {
     (
@@ -97,7 +97,7 @@ pub fn segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Nearest<2> {
 ///
 /// The projection of p is a + s·ab + t·ac where s and t solve a least squares problem of
 /// two columns. s, t and 1 − s − t are the weights of b, c and a: the projection is
-/// inside when none is negative, otherwise the nearest point lies on the edge opposite
+/// inside when none is negative, otherwise the nearest point is on the edge opposite
 /// to a corner of negative weight.
 ///
 /// *Normal equations*, v s + r t = −pb and r s + w t = −pc, unless ab and ac are almost
@@ -180,7 +180,7 @@ pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> Nearest<3> {
 pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
     // Each face, and the corner opposite.
     const FACES: [[usize; 4]; 4] = [[1, 2, 3, 0], [0, 2, 3, 1], [0, 1, 3, 2], [0, 1, 2, 3]];
-    // What a share grows by on the way from the face to the corner opposite.
+    // The growth of a weight from the face to the corner opposite.
     let rise = FACES.map(|[i, j, k, opposite]| {
         let [a, b, c, d] = [i, j, k, opposite].map(|i| corners[i % 4]);
         let n = normal(a, b, c);

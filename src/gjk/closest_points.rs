@@ -5,7 +5,7 @@
 //! ([`Simplex`]) on known vertices.
 //!
 //! 1. The closest point of the simplex is an upper bound of the distance; −h(n) is a lower one for every
-//!    unit n, because D lies behind the support plane of n.
+//!    unit n, because D is behind the support plane of n.
 //! 2. Take the known difference farthest towards the origin, as long as one is closer than the simplex.
 //! 3. Query towards the origin, or where the sphere fits predict the closest support plane
 //!    ([`SphereFit`]): of balls rolled over a polytope that is the right direction at once.

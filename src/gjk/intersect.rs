@@ -5,11 +5,11 @@
 //! (G. Snethen, "XenoCollide", Game Programming Gems 7), else by GJK ([`Simplex`]).
 //!
 //! 1. Query the first direction: most pairs that are apart end here.
-//! 2. The interior point is the difference of the centres; where there are none, a point of a chord of D.
+//! 2. The interior point is the difference of the centers; where there are none, a point of a chord of D.
 //!    Find a portal of its origin ray, and move it outwards until the origin is on its inner side
 //!    ([`crate::mpr::portal`]).
 //! 3. Where vertices tie: move a simplex towards the origin until it contains it.
-//! 4. Where the origin stays within rounding of the simplex (it lies on an edge of known vertices, as in
+//! 4. Where the origin stays within rounding of the simplex (it is on an edge of known vertices, as in
 //!    stacks of aligned boxes), a portal from a point well inside D decides.
 //!
 //! Departures. A known difference beyond the origin replaces a query: the direction does not separate. The
@@ -31,7 +31,7 @@ use crate::mpr::portal::{discover, is_crossed, replace_corner};
 /// Steps of GJK before the portal decides. Of a hundred thousand pairs none needs forty.
 const MAX_STEPS: u32 = 64;
 /// Steps within rounding of the surface of the simplex before the portal decides. One finds the other side
-/// of a face that the origin lies on.
+/// of a face that the origin is on.
 const MAX_STALLS: u32 = 3;
 /// The number of support calls of an intersection test before its vertex set is compacted.
 const CAPACITY: usize = 16;
@@ -68,7 +68,7 @@ enum Found {
     Points([SupportPoint; 4]),
 }
 
-/// Tests whether the objects intersect, from unit `first`. `interior`: the difference of trusted centres.
+/// Tests whether the objects intersect, from unit `first`. `interior`: the difference of trusted centers.
 /// Returns the direction of the least support value met, from which the next query of the pair starts.
 ///
 /// # Errors
@@ -112,7 +112,7 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
 
 /// Shows that D contains the origin by more than the contact epsilon: from the known vertices of the set,
 /// and from queries where these leave a side open. `interior`, a point in the interior of D, is used while
-/// the query trusts it. `dir`, unit, is where the first vertex is looked for. `is_planar`: D lies in a plane,
+/// the query trusts it. `dir`, unit, is where the first vertex is looked for. `is_planar`: D is in a plane,
 /// and a triangle or a segment that contains the origin is enough. A full set is compacted: indices change.
 ///
 /// # Errors
@@ -524,7 +524,7 @@ mod tests {
         assert!(without > 1000, "{without}");
     }
 
-    /// From the centres, which are trusted: the same answers, also a few ulps from the touch.
+    /// From the centers, which are trusted: the same answers, also a few ulps from the touch.
     #[test]
     fn from_centres() {
         let mut r = Random::new(7);
@@ -536,34 +536,34 @@ mod tests {
                 let mut gap = (ulps * EPSILON).min(0.2) * r.within(0.5, 1.0);
                 gap *= if r.within(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
                 let up = turn * Vec3::z();
-                let centre = |at: Vec3| SupportPoint {
+                let center = |at: Vec3| SupportPoint {
                     v: -at,
                     v1: Vec3::zeros(),
                     v2: at,
                 };
-                // On the line of the centres, beside it, and round.
+                // On the line of the centers, beside it, and round.
                 let aside = turn * Vec3::x() * (0.3 * size.x);
                 for by in [Vec3::zeros(), aside] {
                     let at = up * (2.0 * size.z + gap) + by;
                     let other: Vec<_> = cube.iter().map(|p| p + at).collect();
                     let md = MinkowskiDifference::new(hull(&cube), hull(&other));
-                    let found = intersect(&md, Some(&centre(at)), &at.normalize());
+                    let found = intersect(&md, Some(&center(at)), &at.normalize());
                     assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
                     assert!(md.supports() < 100, "{}", md.supports());
                 }
                 let at = up * (1.5 + gap);
                 let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
-                let found = intersect(&md, Some(&centre(at)), &up);
+                let found = intersect(&md, Some(&center(at)), &up);
                 assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
             }
         }
-        // The same centre.
+        // The same center.
         let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
         let found = intersect(&md, Some(&SupportPoint::default()), &Vec3::x());
         assert!(found.is_ok());
     }
 
-    /// A centre outside its object costs queries, and changes no answer that a queried plane can correct.
+    /// A center outside its object costs queries, and changes no answer that a queried plane can correct.
     #[test]
     fn a_centre_outside_is_not_used() {
         let mut r = Random::new(8);
@@ -571,16 +571,16 @@ mod tests {
             let gap = r.within(0.02, 0.3);
             let [a, b] = cubes(gap, &mut r);
             let v1 = r.vector(0.3);
-            let centre = SupportPoint {
+            let center = SupportPoint {
                 v: v1,
                 v1,
                 v2: Vec3::zeros(),
             };
             let md = MinkowskiDifference::new(hull(&a), hull(&b));
-            let mut query = SupportQuery::new(&md, Some(&centre));
+            let mut query = SupportQuery::new(&md, Some(&center));
             query.interior = None;
             let mut set = VertexSet::<16>::EMPTY;
-            let found = contains_origin(&mut query, &mut set, Some(&centre), &r.direction(), false);
+            let found = contains_origin(&mut query, &mut set, Some(&center), &r.direction(), false);
             assert!(matches!(found, Err(Stop::Apart(_))));
         }
     }

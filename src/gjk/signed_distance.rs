@@ -10,7 +10,7 @@
 //! 3. *Margins* are balls added all around: h grows by their radii for every n, so the signed distance is
 //!    that of the cores less both margins, exactly, on both sides of the touch.
 //!
-//! What a query leaves ([`Start`]) chooses where the next one starts, and proves nothing.
+//! [`Start`], the state of the last query, chooses where the next one starts, and proves nothing.
 //!
 //! Outputs: both bounds are proven, whatever `is_limited` says; the points are on the surfaces with their
 //! margins.
@@ -22,7 +22,7 @@ use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 
-/// What is wanted of the objects.
+/// The input of a query besides the objects.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
     /// Radius of the ball around obj1, metres, not negative.
@@ -190,7 +190,7 @@ fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Dis
     if lower.abs() <= touch + 4.0 * EPSILON * margin {
         lower = 0.0;
         upper = larger(upper, 0.0);
-        // The bounds of a touch are those that are told.
+        // The bounds that are returned decide.
         is_limited &= !(upper <= larger(touch, wanted.settings.tolerance));
     }
     *out = Distance {

@@ -133,7 +133,7 @@ impl Simplex {
     }
 
     /// Adds a point and keeps the feature closest to the origin. `touch`: the distance below which the
-    /// origin lies on a feature, metres. `size2`: the square of a length that no corner exceeds.
+    /// origin is on a feature, metres. `size2`: the square of a length that no corner exceeds.
     ///
     /// Returns the direction to the origin, of any length, and the square of the distance, m². `None`: the
     /// origin is inside the tetrahedron, and off its three new faces by more than `touch`; the distance

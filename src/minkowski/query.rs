@@ -19,7 +19,7 @@
 //!
 //! # Interior point
 //!
-//! The callers' centres are trusted to lie in their objects. A plane that the interior point lies
+//! The callers' centers are trusted to lie in their objects. A plane that the interior point lies
 //! beyond shows that it does not: [`SupportQuery::interior`] is then `None`, and what was derived
 //! from it is void. Only what is queried can show it.
 
@@ -98,14 +98,14 @@ pub struct SupportQuery<'q, A, B> {
     pub scale: Scale,
     /// The least support value met; infinite before the first.
     pub upper: UpperBound,
-    /// The difference of the callers' centres, while no plane contradicts it.
+    /// The difference of the callers' centers, while no plane contradicts it.
     pub interior: Option<Vec3>,
     /// Whether a callback contradicted itself: directions are evaluated twice.
     pub is_inconsistent: bool,
 }
 
 impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
-    /// Begins a query that has evaluated nothing. `interior`: the difference of trusted centres.
+    /// Begins a query that has evaluated nothing. `interior`: the difference of trusted centers.
     #[inline(always)]
     pub fn new(md: &'q MinkowskiDifference<A, B>, interior: Option<&SupportPoint>) -> Self {
         let mut scale = Scale::default();

@@ -20,7 +20,7 @@ use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// What two samples of one sphere may differ by.
+/// The differences allowed between two samples of one sphere.
 struct FitTolerance {
     /// Of e and f, relative.
     relative: f64,
@@ -45,7 +45,7 @@ const EXACT: FitTolerance = if cfg!(feature = "single") {
         cos2: 1.0 - 1e-9,
     }
 };
-/// The share of the radius by which centres of exact fits may differ.
+/// The share of the radius by which centers of exact fits may differ.
 const EXACT_CENTER_REL: f64 = 1.0 - EXACT.cos2;
 /// The least square of the angle between two samples that tell a radius.
 const MIN_ANGLE2: f64 = 1e-10;
@@ -59,7 +59,7 @@ const MAX_MISS: f64 = 0.2;
 const MAX_MISSES: u32 = 3;
 /// The tilt beside the least direction, in units of √(2 gap / ρ). Insensitive: 1.2 to 1.7.
 const BESIDE_TILT: f64 = 1.4;
-/// The share of the ratio of two rings around the least direction that is used: what lies between two
+/// The share of the ratio of two rings around the least direction that is used: what is between two
 /// points of one ring is farther out. Insensitive: 0.7 to 1.
 const BESIDE_MARGIN: f64 = 0.8;
 /// The largest ratio of two rings.
@@ -67,7 +67,7 @@ const BESIDE_MAX_RATIO: f64 = 100.0;
 /// The k below which a second ring is no wider than EPA's own. Insensitive: 0.33 to 0.6.
 const BESIDE_MIN_K: f64 = 0.5;
 
-/// What a direction was chosen by.
+/// The source of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// The normal of the face.
@@ -180,7 +180,7 @@ impl SphereFit {
     /// Returns a direction beside the least one, `lowest`, towards the unit normal of a face; `None` where
     /// the face is as near.
     ///
-    /// On a sphere of radius ρ, with the origin at e = ρ − upper from its centre, a chord between the
+    /// On a sphere of radius ρ, with the origin at e = ρ − upper from its center, a chord between the
     /// angles α and γ from the least direction is as far from the origin as the upper bound where
     /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ.
     pub fn beside<const N: usize>(
@@ -279,8 +279,8 @@ impl SphereFit {
         (upper.dir.dot(&core) + self.sum() - upper.depth).abs() <= tolerance
     }
 
-    /// Returns whether the centres of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
-    /// directions each. The tip of a drop looks like the centre of a sphere from one direction.
+    /// Returns whether the centers of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
+    /// directions each. The tip of a drop looks like the center of a sphere from one direction.
     pub fn is_seen_twice<const N: usize>(&self, set: &VertexSet<N>, pair: VertexPair) -> bool {
         let [r1, r2] = self.radius;
         let center1 = |i: usize| set.vertex1(i) - set.dir(i) * r1;
@@ -314,7 +314,7 @@ impl SphereFit {
     }
 
     /// Returns the witness points of unit `dir` on the spheres of the corners: where the line along it through the
-    /// origin meets the triangle of the centres.
+    /// origin meets the triangle of the centers.
     pub fn witnesses<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -371,7 +371,7 @@ fn fit_radii<const N: usize>(
     })
 }
 
-/// Returns the point of the triangle closest to the origin, and whether it lies inside. Sliver triangles
+/// Returns the point of the triangle closest to the origin, and whether it is inside. Sliver triangles
 /// are taken as their edges.
 fn foot_of_origin(v: &[Vec3; 3]) -> (Vec3, bool) {
     let m = (v[1] - v[0]).cross(&(v[2] - v[0]));

@@ -162,7 +162,7 @@ mod tests {
             let md = MinkowskiDifference::new(turned, other);
             let d = turn * (Vec3::x() + r.vector(1e-3)).normalize();
             let Ok((hit, _)) = along(&md, &d, &settings) else {
-                panic!("the centres coincide");
+                panic!("the centers coincide");
             };
             closed += u32::from(!hit.limit);
             assert!(hit.limit || hit.depth - hit.depth_lower <= 256.0 * EPSILON);

@@ -96,7 +96,7 @@ fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
                     continue;
                 }
                 // Stationary again: as good as it gets, unless a plane seen on the
-                // way lies in a lower valley.
+                // way is in a lower valley.
                 Some(_) if search.best.depth < ray.depth - search.tolerance => search.best,
                 Some(first) => {
                     let lower = if first.depth < ray.depth { first } else { ray };
@@ -300,7 +300,7 @@ pub struct RaySearch<'q, A, B> {
     pub tolerance: f64,
     /// Where the bounds are to meet.
     pub until: Until,
-    /// The normal of the plane that D lies in, if it is in one.
+    /// The normal of the plane that D is in, if it is in one.
     pub flat: Option<Vec3>,
     /// The iterations left.
     pub budget: u64,
@@ -448,11 +448,11 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
             if self.until == Until::Ray {
                 gap /= along;
                 least /= along;
-                // The lower bound is told less the rounding.
+                // The rounding is taken off the lower bound.
                 most -= least;
             }
-            // Within the tolerance and the origin on the inner side of the portal beyond
-            // doubt: a support plane that may still exclude the origin is no answer yet.
+            // Within the tolerance, and the origin on the inner side of the portal by more than
+            // rounding: a support plane that may still exclude the origin is no answer yet.
             // NaN (a plane that holds the ray) ends the loop.
             if !(gap > least) || (gap <= most && inner > floor) {
                 return Ok(RayEnd::Converged(portal, plane));
@@ -498,24 +498,24 @@ mod tests {
         hit
     }
 
-    /// An ellipsoid with semi-axes `radii` about `centre`, as a level set
-    /// g(v) = Σ ((v − centre)ᵢ / radiiᵢ)² − 1, so that planes and rays are at hand.
+    /// An ellipsoid with semi-axes `radii` about `center`, as a level set
+    /// g(v) = Σ ((v − center)ᵢ / radiiᵢ)² − 1, so that planes and rays are at hand.
     struct Explicit {
         radii: Vec3,
-        centre: Vec3,
+        center: Vec3,
     }
 
     impl Explicit {
         /// Unit normal ∇g / |∇g| at a boundary point.
         fn normal(&self, v: &Vec3) -> Vec3 {
             let r2 = self.radii.component_mul(&self.radii);
-            unit(&(v - self.centre).component_div(&r2)).unwrap()
+            unit(&(v - self.center).component_div(&r2)).unwrap()
         }
 
         /// Where the ray from the origin along `d` leaves: the root t > 0 of g(t d).
         fn exit(&self, d: &Vec3) -> Vec3 {
             let d_ = d.component_div(&self.radii);
-            let c = self.centre.component_div(&self.radii);
+            let c = self.center.component_div(&self.radii);
             let (a, b) = (d_.dot(&d_), d_.dot(&c));
             d * ((b + (b * b - a * (c.dot(&c) - 1.0)).sqrt()) / a)
         }
@@ -541,7 +541,7 @@ mod tests {
         for _ in 0..100 {
             let e = Explicit {
                 radii: Vec3::new(r.within(0.5, 0.7), r.within(0.8, 1.0), r.within(1.1, 1.5)),
-                centre: Vec3::zeros(),
+                center: Vec3::zeros(),
             };
             let mut last = f64::INFINITY;
             let v = e.sqp(e.exit(&r.direction()), |z| {
@@ -553,7 +553,7 @@ mod tests {
         }
     }
 
-    /// Algorithm 2 off the centre: at the fixed point v is parallel to its own normal, and
+    /// Algorithm 2 off the center: at the fixed point v is parallel to its own normal, and
     /// Algorithm 3, which knows the support mapping alone, takes the same steps to it.
     #[test]
     fn algorithm_3_takes_the_steps_of_algorithm_2() {
@@ -562,12 +562,12 @@ mod tests {
         for _ in 0..50 {
             let e = Explicit {
                 radii: Vec3::new(r.within(0.5, 0.7), r.within(0.8, 1.0), r.within(1.1, 1.5)),
-                centre: r.vector(0.2),
+                center: r.vector(0.2),
             };
             let v = e.sqp(e.exit(&r.direction()), |_| ());
             assert!(e.normal(&v).cross(&v).norm() < 1e4 * EPSILON);
 
-            let support = ellipsoid(e.radii, crate::shapes::Rotation::identity(), e.centre);
+            let support = ellipsoid(e.radii, crate::shapes::Rotation::identity(), e.center);
             let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
             let mut ray = SupportPlane::of(&md, r.direction()).unwrap();
             for _ in 0..20 {
@@ -594,7 +594,7 @@ mod tests {
         }
     }
 
-    /// Is no direction within 3 degrees lower by more than the tolerance?
+    /// Returns whether no direction within 3 degrees is lower by more than the tolerance.
     fn is_local_minimum<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         hit: &Penetration,
@@ -702,8 +702,8 @@ mod tests {
     fn the_cap_is_told() {
         let mut r = Random::new(6);
         for max_iterations in 0..30 {
-            let centre = r.vector(0.3);
-            let md = MinkowskiDifference::new(ball(centre, 0.5), ball(Vec3::zeros(), 0.4));
+            let center = r.vector(0.3);
+            let md = MinkowskiDifference::new(ball(center, 0.5), ball(Vec3::zeros(), 0.4));
             let settings = Settings {
                 max_iterations,
                 tolerance: 1e-9,
@@ -830,7 +830,7 @@ mod portal_tests {
             let half = Vec3::from_fn(|_, _| r.within(0.3, 2.0));
             let turn = r.rotation();
             let at = half.map(|h| r.within(-0.9, 0.9) * h);
-            // Off the centre; every tenth ray along an axis, through the middle of a face.
+            // Off the center; every tenth ray along an axis, through the middle of a face.
             let (at, d) = match round % 10 {
                 0 => (Vec3::zeros(), Vec3::ith(round / 10 % 3, 1.0)),
                 _ => (at, r.direction()),
@@ -854,7 +854,7 @@ mod portal_tests {
             let way = r.direction();
             let points = placed(&corners(half), &r.rotation(), way * 3.0);
             let md = alone(hull(&points));
-            // From the centre through the origin, as from the centres of two objects.
+            // From the center through the origin, as from the centers of two objects.
             let first = SupportPlane::of(&md, -way).unwrap();
             match search(&md, first, 1e-6, Until::Normal, 1000).follow(&first) {
                 Err(Stop::Apart(n)) => {
@@ -932,7 +932,7 @@ mod planar_tests {
         hit
     }
 
-    /// Discs: the depth is r1 + r2 − distance, along the centres.
+    /// Discs: the depth is r1 + r2 − distance, along the centers.
     #[test]
     fn discs() {
         let mut r = Random::new(1);
@@ -941,10 +941,10 @@ mod planar_tests {
             let angle = r.within(0.0, TAU);
             let way = x * angle.cos() + y * angle.sin();
             let distance = r.within(0.1, 1.4);
-            let disc = |centre: Vec3, radius: f64| {
+            let disc = |center: Vec3, radius: f64| {
                 move |d: &Vec3| {
                     let flat = d - m * m.dot(d);
-                    centre + unit(&flat).map_or(Vec3::zeros(), |f| f * radius)
+                    center + unit(&flat).map_or(Vec3::zeros(), |f| f * radius)
                 }
             };
             let md = MinkowskiDifference::new(disc(at, 1.0), disc(at + way * distance, 0.5));
@@ -975,12 +975,12 @@ mod planar_tests {
         let mut r = Random::new(2);
         for _ in 0..300 {
             let (_, x, y, m, at) = frame(&mut r);
-            let mut polygon = |centre: Vec3| {
+            let mut polygon = |center: Vec3| {
                 let n = 3 + (r.within(0.0, 5.0) as usize);
                 (0..n)
                     .map(|i| {
                         let angle = (i as f64 + r.within(0.1, 0.9)) * TAU / n as f64;
-                        centre + x * angle.cos() + y * (0.6 * angle.sin())
+                        center + x * angle.cos() + y * (0.6 * angle.sin())
                     })
                     .collect::<Vec<_>>()
             };

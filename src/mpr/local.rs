@@ -8,14 +8,14 @@
 //!
 //! 1. *Portal* of the ray along the start direction ([`discover`]), moved outwards by known differences
 //!    alone, as far as they go: the face of the inner model that the ray leaves through.
-//! 2. *Minimum*: the foot of the perpendicular from the origin lies in the face, and the least support value
+//! 2. *Minimum*: the foot of the perpendicular from the origin is in the face, and the least support value
 //!    met is at its distance, in a direction that the face contains: done, after step 6.
 //! 3. *Valley*: the face is farther than the least support value: the next ray is along its direction.
 //! 4. *Prediction* of the sphere fits, else of Newton's direction of a smooth D ([`newton_step`]): queried where
 //!    it gains, and the next ray is along it where it comes true. One that is the least support value already, or
 //!    comes true to half of the tolerance, is a minimum as well.
-//! 5. *Normal*: the foot lies outside: the next ray is along the face's normal, without a callback. The foot
-//!    lies inside: the normal is queried, and is a minimum where nothing is above the face.
+//! 5. *Normal*: the foot is outside: the next ray is along the face's normal, without a callback. The foot
+//!    is inside: the normal is queried, and is a minimum where nothing is above the face.
 //! 6. *Confirmation*: a foot on an edge is stationary and need not be a minimum, nor is a tip that looks like
 //!    a sphere. Directions tilted by [`TILT_RAD`] are queried where no known one is near.
 //! 7. *Overlap*: the tetrahedron of the interior point and the face holds the origin; otherwise GJK shows it on
@@ -63,7 +63,7 @@ const MAX_MISS: f64 = 0.3;
 const ASLANT_TAN: f64 = 0.05;
 /// The rounding of a triple product, as a share of the three lengths. Derived: twice three products and two sums.
 const SIDE_EPS: f64 = 8.0 * f64::EPSILON;
-/// The largest trusted radius, as a share of the distance of the centres and the depth.
+/// The largest trusted radius, as a share of the distance of the centers and the depth.
 const MAX_RADIUS: f64 = 1.5;
 /// The predictions that miss before a fit is not used any more.
 const MAX_MISSES: u32 = 5;
@@ -97,7 +97,7 @@ impl Face {
     }
 
     /// Returns the distance of the foot of the origin from the closest edge, metres; negative where the foot
-    /// lies outside.
+    /// is outside.
     fn inset(&self) -> f64 {
         let foot = self.normal * self.offset;
         let mut least = f64::INFINITY;
@@ -127,17 +127,17 @@ impl Face {
     }
 }
 
-/// What a portal ended with.
+/// The result of a portal.
 enum Step {
     /// The walk goes on with the ray along this unit vector.
     Ray(Vec3),
-    /// The foot lies in the face, and this support plane is at its distance.
+    /// The foot is in the face, and this support plane is at its distance.
     Face { dir: Vec3, depth: f64 },
     /// A prediction came true.
     Fit(Model),
 }
 
-/// What a prediction takes D for near the least support value.
+/// The shape of D near the least support value, as a prediction takes it.
 #[derive(Clone, Copy)]
 enum Model {
     /// The sphere fit.
@@ -180,11 +180,11 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     set: &'w mut VertexSet<N>,
     fit: &'w mut SphereFit,
     settings: &'w Settings,
-    /// The centres' difference, else the middle of the support points along the start and against it.
+    /// The centers' difference, else the middle of the support points along the start and against it.
     interior: Vec3,
-    /// Whether the interior point is the centres' difference.
+    /// Whether the interior point is the centers' difference.
     is_centered: bool,
-    /// The centres' difference, else the support point against the start: in D for certain.
+    /// The centers' difference, else the support point against the start: in D for certain.
     apex: Vec3,
     iterations: u64,
     sphere_misses: u32,
@@ -242,7 +242,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     fn run(&mut self, start: &Vec3) -> Result<Minimum, Halt> {
         let ahead = self.query.evaluate(self.set, start)?;
         // The least cosine to the way from the interior point through the origin for which that is not queried as
-        // well: a start that leads to the far side; any without a centre.
+        // well: a start that leads to the far side; any without a center.
         let mut least = 0.0;
         if self.query.interior.is_none() {
             // Aslant: the point opposite to a minimum mostly is on one line with it and the origin.
@@ -634,7 +634,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if self.is_centered && !is_trusted {
             return Err(Halt::Status(Status::InconsistentSupport));
         }
-        // A trusted centre is well inside D: an edge or a side of the tetrahedron may hold the origin.
+        // A trusted center is well inside D: an edge or a side of the tetrahedron may hold the origin.
         let slack = if is_trusted { -SIDE_EPS } else { SIDE_EPS };
         let eps = self.query.scale.height_eps();
         if is_beyond_origin(face, eps) && is_crossed(&face.corners, &self.apex, slack) {
@@ -836,7 +836,7 @@ mod tests {
         }
     }
 
-    /// Walks from many starts, with and without centres, and checks each answer.
+    /// Walks from many starts, with and without centers, and checks each answer.
     fn check_walks<A: SupportMap, B: SupportMap>(
         r: &mut Random,
         mut pair: impl FnMut(&mut Random, Vec3) -> (A, B),
@@ -907,7 +907,7 @@ mod tests {
         });
     }
 
-    /// The exact depth, whatever the tolerance, with and without centres.
+    /// The exact depth, whatever the tolerance, with and without centers.
     #[test]
     fn nearly_touching_spheres_take_few_support_points() {
         let mut r = Random::new(24);
@@ -932,7 +932,7 @@ mod tests {
         }
     }
 
-    /// The faces y = 1 and one tilted by 30 degrees meet at x = 0: along y the foot lies on their edge, and the
+    /// The faces y = 1 and one tilted by 30 degrees meet at x = 0: along y the foot is on their edge, and the
     /// support value falls to 0.87 on the way to the other normal.
     #[test]
     fn a_stationary_edge_is_no_minimum() {
@@ -956,7 +956,7 @@ mod tests {
         }
     }
 
-    /// The tip of a drop, less the radius of its ball, looks like the centre of another ball.
+    /// The tip of a drop, less the radius of its ball, looks like the center of another ball.
     #[test]
     fn the_tip_of_a_drop_is_no_minimum() {
         let mut r = Random::new(25);

@@ -11,7 +11,7 @@
 //!    the ray. Then the point farthest across the line AB towards the ray replaces A or B, or closes the
 //!    portal.
 //! 2. *Refinement*: the point farthest along the portal's normal replaces one corner, so that the ray
-//!    still passes through. It ends where the bounds meet, or where nothing lies above the portal.
+//!    still passes through. It ends where the bounds meet, or where nothing is above the portal.
 //!
 //! Departures. Both steps take a known difference where one does, and query the callbacks where none is
 //! far enough. XenoCollide's first portal is a quarter turn wide; here the direction of the least support
@@ -39,7 +39,7 @@ const TILT: f64 = 1.15;
 const TILT_WIDTH_OFF: f64 = 2.75;
 /// … or this times the length of AB.
 const TILT_WIDTH_EDGE: f64 = 0.75;
-/// What the tilt grows by where it found nothing on the other side of the ray.
+/// The growth of the tilt where it found nothing on the other side of the ray.
 const TILT_GROWTH: f64 = 1.5;
 /// The number of tilts that find nothing before the query is a quarter turn aside.
 const MAX_TILTS: u32 = 3;
@@ -296,7 +296,7 @@ mod tests {
         share: GAP_REL,
     };
 
-    /// Returns the portals after discovery and refinement from the centres, `None` for a pair apart.
+    /// Returns the portals after discovery and refinement from the centers, `None` for a pair apart.
     fn solve<A: SupportMap, B: SupportMap>(
         a: A,
         b: B,

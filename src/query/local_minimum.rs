@@ -32,7 +32,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             tolerance: limits.gap.tolerance * 0.01,
             max_iterations: left.min(MAX_ITERATIONS),
         };
-        let mut query = SupportQuery::new(&self.md, self.centre.as_ref());
+        let mut query = SupportQuery::new(&self.md, self.center.as_ref());
         let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
         let mut fit = SphereFit::default();
         match local::penetration(&mut query, &mut set, &mut fit, &hit.normal, &settings) {

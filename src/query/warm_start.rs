@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What one query of a pair leaves for the next (W. Gao, Sec. III-D): one direction, its depth, the radii
-//! of sphere fits, and a kind; and, rounded, the direction between the centres, which shows a state of the
+//! The warm state of a pair, from one query to the next (W. Gao, Sec. III-D): one direction, its depth, the
+//! radii of sphere fits, and a kind; and, rounded, the direction between the centers, which shows a state of the
 //! swapped pair. A random, stale or foreign state costs time; it proves nothing.
 
 use crate::gjk::separating_axis::SeparatingAxis;
@@ -33,7 +33,7 @@ pub struct WarmStart {
     pub radius: [f64; 2],
     /// How the last query ended.
     pub kind: WarmKind,
-    /// The direction of the difference of the centres, packed; 0 where they are not given.
+    /// The direction of the difference of the centers, packed; 0 where they are not given.
     facing: u32,
 }
 
@@ -121,12 +121,12 @@ impl WarmStart {
         }
     }
 
-    /// Stores the direction of the difference of the centres.
+    /// Stores the direction of the difference of the centers.
     pub fn set_facing(&mut self, center: &Vec3) {
         self.facing = pack_direction(center);
     }
 
-    /// Returns whether the centres looked the other way when the state was left: it is that of the swapped
+    /// Returns whether the centers looked the other way when the state was left: it is that of the swapped
     /// pair.
     pub fn is_swapped(&self, center: &Vec3) -> bool {
         self.facing != 0 && unpack_direction(self.facing).dot(center) < 0.0

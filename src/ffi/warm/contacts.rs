@@ -71,7 +71,7 @@ const _: () = {
 /// half as often, and points keep their ids, so that a solver can begin with the impulses of
 /// the last frame. Which points are left where there are more than `max` then changes less.
 ///
-/// Reads no tolerance, centre or max_iterations; at most 24 support points of each object, 12
+/// Reads no tolerance, center or max_iterations; at most 24 support points of each object, 12
 /// of a box; up to 10 more where a memory no longer fits. Allocates nothing.
 ///
 /// Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
