@@ -339,7 +339,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                     if is_facing {
                         found.cover[k] = tilt;
                     }
-                } else if gain >= -same && is_facing {
+                } else if gain >= -same && is_facing && v.is_within(&found.vertices[k], self.same())
+                {
                     found.is_polytope |= is_found[k];
                     is_found[k] = true;
                     found.cover[k] = larger(tilt, found.cover[k]);

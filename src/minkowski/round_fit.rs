@@ -167,7 +167,8 @@ impl SphereFit {
         let (foot, is_inside) = foot_of_origin(&self.core(set, corners));
         let distance = foot.norm();
         if !(distance > 1e-9 * rho) {
-            return None;
+            // The centers coincide: any direction.
+            return Some((*normal, rho));
         }
         let dir = foot / distance;
         if normal.dot(&foot) < 0.0 {
