@@ -167,7 +167,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         let first = self.query.evaluate_signed(&mut self.set, start)?.vertex();
         self.add(first);
         let mut closest = f64::INFINITY;
-        let mut stalls = 0;
+        let (mut stalls, mut is_repaired) = (0, false);
         // Of the last query: whether it was to bring the simplex closer; whether its tilt found nothing closer.
         let (mut is_step, mut has_failed) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
@@ -179,9 +179,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
             }
             if self.has_met(goal) {
-                if self.is_closest(self.gap(goal)) {
+                if is_repaired || self.is_closest(self.gap(goal)) {
                     return Ok(End::Met);
                 }
+                is_repaired = true;
                 continue;
             }
             if is_step {

@@ -276,10 +276,11 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
                 }
                 query.evaluate(set, &-dir)?;
             }
-            if !simplex.is_certain() {
-                break;
+            let mut corners = simplex.tetrahedron();
+            if simplex.is_certain() {
+                return Ok(Found::Known(corners));
             }
-            return Ok(Found::Known(simplex.tetrahedron()));
+            return decide(query, set, &mut corners, interior, &dir);
         };
         // Between a point in the interior and another one, the origin is in the interior.
         let is_between = simplex.has_interior() && simplex.len() == 2;

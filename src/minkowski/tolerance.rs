@@ -16,10 +16,11 @@ pub const GAP_REL: f64 = 1e-3;
 /// The share of the size above which no tolerance is in force: a coarser depth tells nothing.
 const MAX_TOLERANCE_REL: f64 = 2.5e-4;
 
-/// The error of a triple product of points or edges of D, in ulps of the product of their lengths. Derived:
-/// 16 for the products and their sums; measured: callbacks that rotate a rim round its points by 25 ulps, and
-/// each of the three is off by that.
-pub const TRIPLE_PRODUCT_ULPS: f64 = 256.0;
+/// The error of a triple product of points or edges of D, in ulps of the product of their lengths. Derived: 8
+/// for the products and their sums. Measured in double precision: callbacks that rotate a rim round its points
+/// by 25 ulps, and each of the three points is off by that. In single precision such a margin would be a
+/// depth of 3e-5 of the size.
+pub const TRIPLE_PRODUCT_ULPS: f64 = if EPSILON < 1e-10 { 256.0 } else { 8.0 };
 
 /// The largest sizes seen of a pair, and the tolerances that follow from them.
 #[derive(Clone, Copy, Debug, Default)]
