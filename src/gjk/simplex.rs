@@ -92,8 +92,12 @@ impl Simplex {
     }
 
     /// Returns whether the origin is on the inner side of the old face by more than rounding, where
-    /// [`Simplex::add`] returned `None`. (The normal of a sliver may look to either side.)
+    /// [`Simplex::add`] returned `None`. (The normal of a sliver may look to either side.) A face with the
+    /// interior point is inside D, and rounding there decides nothing.
     pub fn is_certain(&self) -> bool {
+        if self.has_interior() && self.newest != self.interior {
+            return true;
+        }
         let [a, b, c, w] = self.tetrahedron().map(|corner| corner.w);
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * a.norm() * b.norm() * c.norm();
         let volume = (a - w).cross(&(b - w)).dot(&(c - w));

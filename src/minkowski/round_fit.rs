@@ -49,6 +49,8 @@ const EXACT: FitTolerance = if cfg!(feature = "single") {
 const EXACT_CENTER_REL: f64 = 1.0 - EXACT.cos2;
 /// The least square of the angle between two samples that tell a radius.
 const MIN_ANGLE2: f64 = 1e-10;
+/// The share of the radius below which a distance of the core from the origin is rounding.
+pub const MIN_CORE_DISTANCE_REL: f64 = 1e-9;
 /// The number of support calls before fits are used.
 const MIN_SAMPLES: usize = 4;
 /// The share of the gap that a prediction must gain.
@@ -166,9 +168,8 @@ impl SphereFit {
         }
         let (foot, is_inside) = foot_of_origin(&self.core(set, corners));
         let distance = foot.norm();
-        if !(distance > 1e-9 * rho) {
-            // The centers coincide: any direction.
-            return Some((*normal, rho));
+        if !(distance > MIN_CORE_DISTANCE_REL * rho) {
+            return None;
         }
         let dir = foot / distance;
         if normal.dot(&foot) < 0.0 {

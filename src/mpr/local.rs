@@ -37,7 +37,7 @@ use crate::gjk::barycentric;
 use crate::gjk::intersect::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
-use crate::minkowski::round_fit::SphereFit;
+use crate::minkowski::round_fit::{MIN_CORE_DISTANCE_REL, SphereFit};
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{KNOWN_LEVEL, discover, replace_corner};
@@ -431,7 +431,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// of a model whose predictions have missed too often none.
     fn predict(&self, face: &Face) -> Option<Prediction> {
         let sphere = || {
+            let sum = self.fit.sum();
             let found = self.fit.predict(self.set, &face.corners, &face.normal);
+            // Balls about one center: any direction.
+            let is_concentric =
+                self.is_centered && self.interior.norm() <= MIN_CORE_DISTANCE_REL * sum;
+            let found = found.or_else(|| is_concentric.then_some((face.normal, sum)));
             let (dir, value) = found.filter(|_| self.sphere_misses < MAX_MISSES)?;
             Some(Prediction {
                 model: Model::Sphere,
