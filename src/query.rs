@@ -538,7 +538,7 @@ mod tests {
         }
     }
 
-    /// Where the proof of an overlap may lean on a center, it proves no bound.
+    /// The overlap may rest on a center, and no bound is proven then.
     #[test]
     fn no_bound_leans_on_a_centre() {
         let mut r = Random::new(8);

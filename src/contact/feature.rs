@@ -523,9 +523,9 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// Returns the corner that a polytope has beyond a side of the four, moved outwards, and its place
     /// among them.
     ///
-    /// Where two tilts found one corner, there is another beyond the longest side of the triangle; where
-    /// the deepest point is beyond a side, there is one that way. The normal of the plane of three corners,
-    /// tilted across that side, finds it.
+    /// Queries a fifth vertex: beyond the longest side of a triangle, where two tilts found one corner; or beyond
+    /// the side that has the deepest point outside. The direction is the normal of the plane of three corners,
+    /// tilted across that side.
     #[inline(always)]
     fn fifth(
         &self,

@@ -14,8 +14,13 @@
 //! 5. Stop where the bounds meet, where the origin is inside, or where the distance is known to be larger
 //!    than wanted.
 //!
+//! Departure: rounding of thin objects can keep a triangle beside the origin as the closest feature. Where
+//! the bounds of such a triangle meet, its closest edge or corner takes its place, once a query: a second
+//! time may be the same triangle.
+//!
 //! Outputs: `lower` along `normal` and the points, `upper` apart, are valid for every [`End`];
-//! [`End::Inside`]: the origin is in the simplex, and the points meet.
+//! [`End::Inside`]: the origin is in the simplex, and the points meet. [`End::Met`]: the bounds of the simplex
+//! meet; of a triangle kept beside the origin `upper` may be larger.
 
 use crate::gjk::barycentric;
 use crate::gjk::intersect::Enclosing;
@@ -179,7 +184,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
             }
             if self.has_met(goal) {
-                if is_repaired || self.is_closest(self.gap(goal)) {
+                if is_repaired || self.confirm_closest(self.gap(goal)) {
                     return Ok(End::Met);
                 }
                 is_repaired = true;
@@ -219,9 +224,9 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         })
     }
 
-    /// Returns whether a triangle is as close to the origin as its plane, within a gap. Where rounding of thin
-    /// objects has kept a triangle beside the origin, its closest feature takes its place.
-    fn is_closest(&mut self, gap: f64) -> bool {
+    /// Returns whether the simplex is as close to the origin as it is kept, within a gap; a triangle that is not
+    /// is replaced by its closest feature.
+    fn confirm_closest(&mut self, gap: f64) -> bool {
         let [a, b, c] = self.simplex.corners().map(|corner| corner.w);
         if self.simplex.len() < 3 {
             return true;

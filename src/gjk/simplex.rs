@@ -109,7 +109,7 @@ impl Simplex {
         }
     }
 
-    /// Keeps the corners that have a weight.
+    /// Keeps the corners that have a weight, of a simplex without the interior point.
     pub fn keep(&mut self, weights: &[f64; 3]) {
         let order = self.order;
         let mut kept = 0;
