@@ -106,7 +106,7 @@ newest() {
 
 # build OUT FLAG...: by a name of its own first, for others may be running the old one
 build() {
-    newest "$work/$1" "$here/compare" "$here/verdict.h" "$here/../include" && return
+    newest "$work/$1" "$here/tools/compare" "$here/harness/verdict.h" "$here/../include" && return
     out=$1
     shift
     cc -O2 -Wall -Wextra -I"$here" -I"$here/../include" "$@" -o "$work/$out.$$" -lm -ldl -lpthread
@@ -114,7 +114,7 @@ build() {
 }
 
 (
-    cd "$here/compare"
+    cd "$here/tools/compare"
     build compare.so -std=gnu99 -shared -fPIC -fexceptions -fvisibility=hidden catch.c query.c judge_query.c write_case.c preload.c
     build screen -std=c99 summary.c
 )

@@ -17,7 +17,7 @@ cargo build --release --lib
 
 release=$(cd "${CARGO_TARGET_DIR:-target}/release" && pwd)
 work=$release/main-job
-recording=c-tests/record/contacts.bin
+recording=c-tests/tools/record/contacts.bin
 turns=${TURNS:-8}
 passes=4
 mkdir -p "$work"
@@ -25,7 +25,7 @@ mkdir -p "$work"
 ln -sf "$release/libccd.so" "$work/libccd.so.2"
 
 compile() {
-    cc -std=c99 -O2 -Iinclude -Ic-tests -DOURS_ALONE "c-tests/record/$1.c" -o "$work/$1" \
+    cc -std=c99 -O2 -Iinclude -Ic-tests -DOURS_ALONE "c-tests/tools/record/$1.c" -o "$work/$1" \
         "$work/libccd.so.2" -lm
 }
 

@@ -5,6 +5,7 @@
 //! system libccd's and other libraries'; `-- instructions` prints those of each query,
 //! beside libccd's; `-- record` writes the support counts of every pair set.
 
+#[path = "figures/mod.rs"]
 mod charts;
 #[path = "../harness/mod.rs"]
 mod harness;

@@ -5,6 +5,7 @@
 
 // The benchmark's own parts; this test uses some.
 #[allow(dead_code)]
+#[path = "figures/mod.rs"]
 mod charts;
 #[path = "../harness/mod.rs"]
 mod harness;

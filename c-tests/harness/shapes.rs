@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Support mappings for the unit tests, and where to put them. The shapes of the C tests,
-//! with their exact truth, are those of `c-tests/shapes.h`; these are closures, so that
+//! with their exact truth, are those of `c-tests/harness/shapes.h`; these are closures, so that
 //! `cargo test --lib` needs no C compiler and Miri can run it.
 
 use rand::{RngExt, SeedableRng};

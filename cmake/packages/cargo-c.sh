@@ -29,7 +29,7 @@ in_chroot cargo-c sh -euc '
     export PKG_CONFIG_PATH=/installed/lib/pkgconfig
     pkg-config --modversion ccd
     readelf -d lib/libccd.so.2 | grep "SONAME.*libccd.so.2"
-    main=/tree/c-tests/packaging/consumer/main.c
+    main=/tree/c-tests/tests/packaging/consumer/main.c
     gcc $main $(pkg-config --cflags --libs ccd) -lm -o shared
     gcc $main $(pkg-config --cflags ccd) lib/libccd.a $(sed -n "s/^Libs.private://p" lib/pkgconfig/ccd.pc) -o static
     LD_LIBRARY_PATH=lib ./shared

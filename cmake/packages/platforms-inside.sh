@@ -46,7 +46,7 @@ cmake --install /build
 cargo build --release --lib --manifest-path /tree/Cargo.toml --target-dir /cargo
 
 echo "== a project that finds the package"
-cmake -S /tree/c-tests/packaging/consumer -B /consumer -DWAY=find_package -DCMAKE_PREFIX_PATH=/prefix \
+cmake -S /tree/c-tests/tests/packaging/consumer -B /consumer -DWAY=find_package -DCMAKE_PREFIX_PATH=/prefix \
     -DCMAKE_TOOLCHAIN_FILE=/toolchain.cmake
 cmake --build /consumer
 cp /prefix/bin/ccd.dll /consumer
@@ -75,7 +75,7 @@ rm -rf $run
 mkdir $run
 cp /prefix/bin/ccd.dll $run
 cp /cargo/release/libccd.so $run/libccd.so.2
-cp /tree/c-tests/record/contacts.bin $run
+cp /tree/c-tests/tools/record/contacts.bin $run
 cd $run
 system=$(sed -n 's/^Libs.private: //p' /prefix/lib/pkgconfig/ccd.pc)
 threads="-Wl,-Bstatic -lwinpthread -Wl,-Bdynamic"
@@ -117,26 +117,25 @@ try() {
 }
 
 echo "== programs under $(wine --version)"
-try contract/objects.c
+try tests/contract/objects.c
 # Its _Float128 is GCC's on the DLL; the archive has Rust's functions of these names, whose calls differ.
 ways=shared
-try contract/nearest.c 2000
+try tests/contract/point_distance.c 2000
 ways="shared static"
-try contract/questions.c 20
-try contract/callbacks.c
-try contract/threads.c
-try contract/leave.c
-try extension/input.c
-try extension/odd.c
-try extension/states.c
-try extension/world.c
-try extension/answers.c
-try extension/pressure.c
-try stability/configurations.c compatible
-try stability/configurations.c proven
-try stability/configurations.c local
-try record/replay.c contacts.bin
-try record/warm.c contacts.bin
+try tests/contract/arguments.c 20
+try tests/contract/callbacks.c
+try tests/contract/threads.c
+try tests/contract/exceptions.c
+try tests/extension/bad_input.c
+try tests/extension/support_check.c
+try tests/extension/warm_states.c
+try tests/extension/pressure.c
+try examples/world.c
+try tests/stability/configurations.c compatible
+try tests/stability/configurations.c proven
+try tests/stability/configurations.c local
+try tools/record/replay.c contacts.bin
+try tools/record/replay_extension.c contacts.bin
 
 echo "== other targets"
 for target in x86_64-pc-windows-msvc aarch64-apple-darwin x86_64-apple-darwin; do

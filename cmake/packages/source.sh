@@ -23,7 +23,7 @@ tree=$work/$name
 mkdir "$tree"
 {
     git ls-files -z -- . ':!c-tests' ':!.ci'
-    git ls-files -z -- c-tests/packaging/consumer
+    git ls-files -z -- c-tests/tests/packaging/consumer
 } | tar -c --null -T - | tar -x -C "$tree"
 
 # Cargo wants every crate of the manifest at hand, those of the tests too.

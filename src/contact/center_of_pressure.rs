@@ -42,7 +42,7 @@
 //!
 //! *Range.* The linear model errs by 1 to 2 % of the smaller object's reach (rms) where the depth is 1 % of
 //! that, 2 to 3 % at 3 %, 6 % at 10 %, 14 to 18 % at 30 %; the middle of the witness points, which moves from
-//! corner to corner, by 4 to 10, 7 to 17, 15 to 28 and 25 to 41 % (`c-tests/extension/pressure.c`, `range`).
+//! corner to corner, by 4 to 10, 7 to 17, 15 to 28 and 25 to 41 % (`c-tests/tests/extension/pressure.c`, `range`).
 //! So no answer is blended to that middle, however deep.
 
 use crate::contact::Penetration;

@@ -20,7 +20,7 @@
 //!    points between them of a disc.
 //!
 //! One file, because each step reads the same projection; projection, prediction, queries and fan are its parts.
-//! No reference is known to us; the figures are from `c-tests/extension/pressure.c` and recorded contacts.
+//! No reference is known to us; the figures are from `c-tests/tests/extension/pressure.c` and recorded contacts.
 
 use crate::contact::frame::ContactFrame;
 use crate::math::{EPSILON, Vec3, larger, lesser};

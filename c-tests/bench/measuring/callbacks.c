@@ -5,8 +5,8 @@
  * benchmark: every method measured calls these same callbacks. Shapes are opaque
  * to the benchmark; it owns their memory and asks here for their size. */
 
-#include "pairs.h"
-#include "record/recording.h"
+#include "harness/pairs.h"
+#include "tools/record/recording.h"
 
 size_t bench_shape_size(void) { return sizeof(shape_t); }
 

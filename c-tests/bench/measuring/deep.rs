@@ -75,9 +75,9 @@ impl Polytope {
         }
     }
 
-    /// The two polytopes of a pair set (c-tests/pairs/README.md); none where one is no polytope.
+    /// The two polytopes of a pair set (c-tests/bench/pairs/README.md); none where one is no polytope.
     pub fn of_set(name: &str) -> Option<[Self; 2]> {
-        let path = harness::root().join(format!("c-tests/pairs/{name}.bin"));
+        let path = harness::root().join(format!("c-tests/bench/pairs/{name}.bin"));
         let bytes = std::fs::read(path).ok()?;
         let words = |at: usize, n: usize| -> Option<Vec<usize>> {
             let of = |c: &[u8]| c.iter().rev().fold(0, |w, b| w << 8 | usize::from(*b));

@@ -92,7 +92,7 @@ functions! {
     }
 }
 
-/// `pair_truth_t` of `c-tests/pairs.h`.
+/// `pair_truth_t` of `c-tests/harness/pairs.h`.
 #[repr(C)]
 #[derive(Clone, Copy, Default, Debug)]
 pub struct Truth {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Pairs of shapes in many poses, each with the global minimum of its
-//! penetration depth: read from `c-tests/pairs` or `c-tests/record`.
+//! penetration depth: read from `c-tests/bench/pairs` or `c-tests/tools/record`.
 
 use std::ffi::{c_int, c_uint, c_void};
 
@@ -40,10 +40,10 @@ pub fn room(callbacks: &Callbacks, n: usize) -> (Vec<u64>, usize) {
 }
 
 impl Scene {
-    /// A pair set of `c-tests/pairs`. At most `limit` poses.
+    /// A pair set of `c-tests/bench/pairs`. At most `limit` poses.
     pub fn load(libraries: &Libraries, name: &str, limit: usize) -> Self {
         let callbacks = libraries.callbacks;
-        let path = harness::root().join(format!("c-tests/pairs/{name}.bin"));
+        let path = harness::root().join(format!("c-tests/bench/pairs/{name}.bin"));
         // SAFETY: the functions of callbacks.c, called as it says; what they point to stays.
         unsafe {
             let (mut n, mut motion) = (0, 0);
@@ -73,12 +73,12 @@ impl Scene {
         }
     }
 
-    /// The recorded contact sequence of `c-tests/record`, its first `frames` frames,
+    /// The recorded contact sequence of `c-tests/tools/record`, its first `frames` frames,
     /// queries sorted by pair: each contact is a motion of its own. Pairs that are
     /// apart have a negative depth; normals and guesses are not known.
     pub fn recorded(libraries: &Libraries, frames: usize) -> Self {
         let callbacks = libraries.callbacks;
-        let path = harness::root().join("c-tests/record/contacts.bin");
+        let path = harness::root().join("c-tests/tools/record/contacts.bin");
         let name = Libraries::c_path(&path);
         let frames = c_uint::try_from(frames).unwrap_or(c_uint::MAX);
         let read = |shapes: *mut u64, out: *mut Recorded| {

@@ -1,0 +1,148 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* A pile in DART falls on a plate with walls. Prints what the second half of the
+ * run looked like. Scenes:
+ *
+ *   fcl        FCL's detector: boxes, spheres, ellipsoids
+ *   triangles  the same with cylinders and cones, of which DART makes triangles
+ *              that FCL puts to libccd one by one against the other shape
+ *   cones      as triangles, cones alone
+ *   ode        ODE's detector: cylinders, capsules, boxes
+ *
+ * usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode */
+
+#include "engines/pile.h"
+#include "harness/uniform.h"
+#include "harness/identity.h"
+
+#include <dart/collision/fcl/FCLCollisionDetector.hpp>
+#include <dart/config.hpp>
+#include <dart/constraint/ConstraintSolver.hpp>
+#include <dart/dynamics/BodyNode.hpp>
+#include <dart/dynamics/BoxShape.hpp>
+#include <dart/dynamics/CapsuleShape.hpp>
+#include <dart/dynamics/ConeShape.hpp>
+#include <dart/dynamics/CylinderShape.hpp>
+#include <dart/dynamics/EllipsoidShape.hpp>
+#include <dart/dynamics/FreeJoint.hpp>
+#include <dart/dynamics/Skeleton.hpp>
+#include <dart/dynamics/SphereShape.hpp>
+#include <dart/dynamics/WeldJoint.hpp>
+#include <dart/simulation/World.hpp>
+
+using namespace dart;
+
+static dynamics::ShapePtr shape_of(int i, const std::string &scene)
+{
+    enum { BOX, SPHERE, ELLIPSOID, CAPSULE, CYLINDER, CONE };
+    static const int ode[] = { CYLINDER, CAPSULE, BOX }, fcl[] = { ELLIPSOID, BOX, SPHERE };
+    static const int triangles[] = { CYLINDER, SPHERE, BOX, ELLIPSOID, CONE };
+    const double r = uniform(0.05, 0.12), h = uniform(0.1, 0.24), z = uniform(0.05, 0.12);
+    switch (scene == "cones" ? CONE : scene == "ode" ? ode[i % 3] : scene == "fcl" ? fcl[i % 3] : triangles[i % 5]) {
+    case BOX: return std::make_shared<dynamics::BoxShape>(Eigen::Vector3d(2 * r, h, 2 * z));
+    case SPHERE: return std::make_shared<dynamics::SphereShape>(r);
+    case ELLIPSOID: return std::make_shared<dynamics::EllipsoidShape>(Eigen::Vector3d(2 * r, h, 2 * z));
+    case CAPSULE: return std::make_shared<dynamics::CapsuleShape>(0.75 * r, h);
+    case CYLINDER: return std::make_shared<dynamics::CylinderShape>(r, h);
+    default: return std::make_shared<dynamics::ConeShape>(r, h);
+    }
+}
+
+static void add_wall(dynamics::BodyNode *pen, const Eigen::Vector3d &size, const Eigen::Vector3d &at)
+{
+    auto node = pen->createShapeNodeWith<dynamics::CollisionAspect, dynamics::DynamicsAspect>(std::make_shared<dynamics::BoxShape>(size));
+    node->setRelativeTranslation(at);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 5) {
+        fprintf(stderr, "usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode\n");
+        return 2;
+    }
+    const long steps = atol(argv[2]);
+    const int bodies = atoi(argv[3]);
+    const std::string scene = argv[4];
+    const double half_width = 0.55;
+    tell_library();
+    auto world = simulation::World::create();
+    world->setTimeStep(0.002);
+    if (scene == "ode") {
+        /* the library makes its detector known when it is loaded; its header would need one more package */
+        auto *factory = collision::CollisionDetector::getFactory();
+        const std::string detector = "libdart-collision-ode.so." + std::to_string(DART_MAJOR_VERSION) + "." + std::to_string(DART_MINOR_VERSION);
+        if (!dlopen(detector.c_str(), RTLD_NOW | RTLD_GLOBAL) || !factory->canCreate("ode")) {
+            fprintf(stderr, "no ODE detector\n");
+            return 2;
+        }
+        world->getConstraintSolver()->setCollisionDetector(factory->create("ode"));
+    }
+    else {
+        auto fcl = collision::FCLCollisionDetector::create();
+        fcl->setPrimitiveShapeType(collision::FCLCollisionDetector::PRIMITIVE);
+        fcl->setContactPointComputationMethod(collision::FCLCollisionDetector::FCL);
+        world->getConstraintSolver()->setCollisionDetector(fcl);
+    }
+    auto pen = dynamics::Skeleton::create("pen");
+    auto *ground = pen->createJointAndBodyNodePair<dynamics::WeldJoint>().second;
+    pen->setMobile(false);
+    add_wall(ground, Eigen::Vector3d(4, 4, 1), Eigen::Vector3d(0, 0, -0.5));
+    for (int i = 0; i < 4; i++) {
+        Eigen::Vector3d at(0, 0, 1), size(4, 4, 4);
+        at[i & 1] = (i & 2 ? 1 : -1) * (half_width + 0.5);
+        size[i & 1] = 1;
+        add_wall(ground, size, at);
+    }
+    world->addSkeleton(pen);
+    std::vector<dynamics::BodyNode *> falling;
+    uniform_seed(3);
+    for (int i = 0; i < bodies; i++) {
+        auto skeleton = dynamics::Skeleton::create("body" + std::to_string(i));
+        auto pair = skeleton->createJointAndBodyNodePair<dynamics::FreeJoint>();
+        auto shape = shape_of(i, scene);
+        double q[4];
+        pair.second->createShapeNodeWith<dynamics::CollisionAspect, dynamics::DynamicsAspect>(shape);
+        const double mass = 1000 * shape->getVolume();
+        pair.second->setInertia(dynamics::Inertia(mass, Eigen::Vector3d::Zero(), shape->computeInertia(mass)));
+        uniform_rotation(q);
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        pose.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+        pose.translation() = Eigen::Vector3d(0.34 * (i % 3 - 1) + uniform(-.02, .02), 0.34 * (i / 3 % 3 - 1) + uniform(-.02, .02), 0.25 + 0.33 * (i / 9));
+        pair.first->setPositions(dynamics::FreeJoint::convertToPositions(pose));
+        world->addSkeleton(skeleton);
+        falling.push_back(pair.second);
+    }
+    uniform_seed(strtoull(argv[1], NULL, 10));
+    for (auto *body : falling) {
+        auto *joint = body->getParentJoint();
+        for (int j = 3; j < 6; j++)
+            joint->setPosition(j, joint->getPosition(j) + uniform(-1e-3, 1e-3));
+    }
+
+    pile_t pile = pile_of(steps);
+    for (; pile.step < steps; pile.step++) {
+        try {
+            world->step();
+        } catch (const std::exception &e) {
+            fprintf(stderr, "step %ld: %s\n", pile.step, e.what());
+            pile.bad++;
+            break;
+        }
+        double moving = 0, height = 0;
+        for (auto *body : falling) {
+            const Eigen::Vector3d p = body->getTransform().translation();
+            pile.escaped |= !(fabs(p[0]) < half_width && fabs(p[1]) < half_width && p[2] > 0 && p[2] < 20);
+            moving += body->computeKineticEnergy();
+            height += 9.81 * body->getMass() * p[2];
+        }
+        pile_energy(&pile, moving, height);
+        for (const auto &contact : world->getLastCollisionResult().getContacts()) {
+            const bool somewhere = contact.point.norm() < 1e6;
+            pile_contact(&pile, somewhere ? contact.normal.squaredNorm() : NAN, contact.penetrationDepth);
+        }
+    }
+    pile_report(&pile);
+    printf("\n");
+    return 0;
+}

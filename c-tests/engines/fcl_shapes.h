@@ -1,0 +1,59 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The bodies of poses.h as FCL's geometries, in the precision of ccd_real_t. */
+
+#ifndef SWAP_FCL_SHAPES_H
+#define SWAP_FCL_SHAPES_H
+
+#include "engines/poses.h"
+
+#include <fcl/fcl.h>
+
+typedef fcl::Vector3<ccd_real_t> vec;
+typedef std::shared_ptr<fcl::CollisionGeometry<ccd_real_t>> geometry;
+
+/* What FCL can do with a single triangle: a mesh of one, or TriangleP. */
+enum triangle_t { TRIANGLE_MESH, TRIANGLE_SHAPE };
+
+static inline geometry fcl_geometry(const body_t &b, triangle_t triangle = TRIANGLE_MESH)
+{
+    typedef ccd_real_t S;
+    const S *p = b.shape.p;
+    switch (b.kind) {
+    case SHAPE_SPHERE: return std::make_shared<fcl::Sphere<S>>(p[0]);
+    case SHAPE_CAPSULE: return std::make_shared<fcl::Capsule<S>>(p[0], 2 * p[1]);
+    case KIND_PLATE:
+    case SHAPE_BOX: return std::make_shared<fcl::Box<S>>(2 * p[0], 2 * p[1], 2 * p[2]);
+    case SHAPE_CYLINDER: return std::make_shared<fcl::Cylinder<S>>(p[0], 2 * p[1]);
+    case SHAPE_CONE: return std::make_shared<fcl::Cone<S>>(p[0], 2 * p[1]);
+    case SHAPE_ELLIPSOID: return std::make_shared<fcl::Ellipsoid<S>>(p[0], p[1], p[2]);
+    default: break;
+    }
+    auto vertices = std::make_shared<std::vector<vec>>();
+    for (int i = 0; i < b.hull.vertices; i++)
+        vertices->emplace_back(b.hull.vertex[3 * i], b.hull.vertex[3 * i + 1], b.hull.vertex[3 * i + 2]);
+    if (b.kind == KIND_TRIANGLE && triangle == TRIANGLE_SHAPE)
+        return std::make_shared<fcl::TriangleP<S>>((*vertices)[0], (*vertices)[1], (*vertices)[2]);
+    if (b.kind == KIND_TRIANGLE) {
+        auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSS<S>>>();
+        mesh->beginModel();
+        mesh->addTriangle((*vertices)[0], (*vertices)[1], (*vertices)[2]);
+        mesh->endModel();
+        return mesh;
+    }
+    auto faces = std::make_shared<std::vector<int>>();
+    for (int i = 0; i < 4 * b.hull.faces; i++)
+        faces->push_back((int)b.hull.polygon[i]);
+    return std::make_shared<fcl::Convex<S>>(vertices, b.hull.faces, faces, true);
+}
+
+static inline fcl::Transform3<ccd_real_t> fcl_pose(const shape_t &s)
+{
+    fcl::Transform3<ccd_real_t> t = fcl::Transform3<ccd_real_t>::Identity();
+    t.linear() = Eigen::Map<const Eigen::Matrix<ccd_real_t, 3, 3, Eigen::RowMajor>>(s.rot);
+    t.translation() = vec(s.pos[0], s.pos[1], s.pos[2]);
+    return t;
+}
+
+#endif

@@ -1,0 +1,84 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* How a test names this library's functions.
+ *
+ * A program that holds system libccd beside this library links this one's archive
+ * with every symbol renamed to rs_...: OURS(ccdMPRPenetration) is then
+ * rs_ccdMPRPenetration, and the plain name is libccd's. A program that holds this
+ * library alone (also every single-precision one: Debian's libccd is double) is
+ * compiled with -DOURS_ALONE, and OURS(name) is the plain name. */
+
+#ifndef TESTS_THIS_LIBRARY_H
+#define TESTS_THIS_LIBRARY_H
+
+#include "harness/calls.h"
+
+#include <ccd/paper.h>
+#include <ccd/warm.h>
+
+#ifdef OURS_ALONE
+#define OURS(name) name
+#else
+#define OURS(name) rs_##name
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+/* Each of its plain name's type. */
+#define DECLARE(name, traits) extern __typeof__(name) rs_##name;
+#define DECLARE_PAIR_CALL(name, word, kind, traits) DECLARE(name, traits)
+PAIR_CALLS(DECLARE_PAIR_CALL)
+OTHER_CALLS(DECLARE)
+#undef DECLARE_PAIR_CALL
+#undef DECLARE
+#ifdef __cplusplus
+}
+#endif
+#endif
+
+/* The calls by number. */
+enum {
+#define CALL_NUMBER(name, word, kind, traits) ASK_##word,
+    PAIR_CALLS(CALL_NUMBER)
+#undef CALL_NUMBER
+        ASKS
+};
+
+/* Arguments and outputs of a call besides the objects and their ccd_t; each uses its part. */
+typedef struct {
+    ccd_warm_t *warm;
+    const ccd_vec3_t *along; /* or the plane's, the contacts' normal */
+    ccd_real_t margin1, margin2, max_distance, slop;
+    unsigned want;
+    int max;
+    ccd_real_t *depth;
+    ccd_vec3_t *dir, *pos; /* dir: of ccdGJKSeparate too */
+    ccd_penetration_t *full;
+    ccd_distance_t *distance;
+    ccd_manifold_t *memory; /* ccdContacts' */
+    ccd_contact_t *contacts;
+} call_rest_t;
+
+#define KIND_YES(f) f(a, b, ccd)
+#define KIND_YES_WARM(f) f(a, b, ccd, x->warm)
+#define KIND_SEPARATION(f) f(a, b, ccd, x->dir)
+#define KIND_DEPTH(f) f(a, b, ccd, x->depth, x->dir, x->pos)
+#define KIND_DEPTH_WARM(f) f(a, b, ccd, x->warm, x->depth, x->dir, x->pos)
+#define KIND_FULL(f) f(a, b, ccd, x->warm, x->want, x->full)
+#define KIND_FULL_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->full)
+#define KIND_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->memory, x->contacts, x->max)
+#define KIND_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
+
+static inline int call_by_number(int number, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
+{
+    switch (number) {
+#define CALL_CASE(name, word, kind, traits) \
+    case ASK_##word: return KIND_##kind(OURS(name));
+        PAIR_CALLS(CALL_CASE)
+#undef CALL_CASE
+    default: return CCD_BAD_INPUT;
+    }
+}
+
+#endif

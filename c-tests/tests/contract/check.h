@@ -1,0 +1,56 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Checks that tell what failed and where, and the random numbers of these tests. */
+
+#ifndef TESTS_CHECK_H
+#define TESTS_CHECK_H
+
+#include "harness/uniform.h"
+
+#include <ccd/vec3.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#ifndef CHECKS_SHOWN
+#define CHECKS_SHOWN 20
+#endif
+
+static unsigned long checks_made, checks_failed;
+
+/* CHECK(condition, format, ...): goes on after a failure, shows the first CHECKS_SHOWN. */
+#define CHECK(condition, ...)                                          \
+    do {                                                               \
+        checks_made++;                                                 \
+        if (!(condition) && checks_failed++ < CHECKS_SHOWN) {                    \
+            printf("%s:%d: not %s: ", __FILE__, __LINE__, #condition); \
+            printf(__VA_ARGS__);                                       \
+            printf("\n");                                              \
+        }                                                              \
+    } while (0)
+
+/* Exit code of main. */
+static inline int checks_end(void)
+{
+    printf("%lu checks, %lu failed\n", checks_made, checks_failed);
+    return checks_made == 0 || checks_failed != 0;
+}
+
+static inline int random_below(int n) { return (int)uniform(0, n); }
+
+static inline ccd_vec3_t random_vec3(double size)
+{
+    ccd_vec3_t v;
+    int i;
+    for (i = 0; i < 3; i++)
+        v.v[i] = (ccd_real_t)uniform(-size, size);
+    return v;
+}
+
+static inline int same_bits(const void *a, const void *b, size_t size)
+{
+    return memcmp(a, b, size) == 0;
+}
+
+#endif

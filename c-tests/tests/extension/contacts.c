@@ -1,0 +1,940 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* ccdContacts against exact regions: boxes and hulls at rest and tilted, edges, corners;
+ * round objects by formula; flat ones; how many support points it takes; that the region
+ * moves as the objects do. */
+
+#include "tests/stability/categories.h"
+
+#include "tests/contract/check.h"
+#include "manifold.h"
+
+enum { ROOM = 32 };
+
+static const int single = sizeof(ccd_real_t) == sizeof(float);
+static const double pi = 3.14159265358979323846;
+
+static ccd_manifold_t *memory_in_use; /* NULL: none */
+
+typedef struct {
+    shape_t a, b;
+    double n[3], slop;
+} scene_t;
+
+typedef struct {
+    int n;
+    ccd_contact_t c[ROOM];
+} contacts_t;
+
+static double along(const double a[3], const ccd_vec3_t *b)
+{
+    return a[0] * (double)b->v[0] + a[1] * (double)b->v[1] + a[2] * (double)b->v[2];
+}
+
+/* What rounding does to a coordinate. */
+static double noise_of(const scene_t *s) { return 4 * real_ulp() * pair_largest(&s->a, &s->b); }
+
+/* The height along n of a shape's support plane in the direction sign * n. */
+static double reach(const shape_t *shape, const double n[3], int sign)
+{
+    ccd_vec3_t d, p;
+    int k;
+    for (k = 0; k < 3; k++)
+        d.v[k] = (ccd_real_t)(sign * n[k]);
+    shape_support(shape, &d, &p);
+    return along(n, &p);
+}
+
+/* The slop in force: the scene's, or the least one. */
+static double slop_in_force(const scene_t *s)
+{
+    const double depth = reach(&s->a, s->n, 1) - reach(&s->b, s->n, -1);
+    return fmax(s->slop, fmax(0.01 * depth, 8 * noise_of(s)));
+}
+
+static contacts_t contacts_at_most(scene_t *s, int max)
+{
+    contacts_t out;
+    ccd_vec3_t normal;
+    ccd_t ccd;
+    int k;
+    shape_query(&ccd);
+    ccd.center1 = ccd.center2 = NULL;
+    ccd.first_dir = NULL;
+    for (k = 0; k < 3; k++)
+        normal.v[k] = (ccd_real_t)(3 * s->n[k]);
+    s->a.calls = s->b.calls = 0;
+    memset(&out, 0, sizeof out);
+    out.n = OURS(ccdContacts)(&s->a, &s->b, &ccd, &normal, (ccd_real_t)s->slop, memory_in_use, out.c, max);
+    CHECK(out.n >= 1 && out.n <= max, "%d contacts", out.n);
+    for (k = 0; k < 2; k++) {
+        const shape_t *shape = k ? &s->b : &s->a;
+        CHECK(shape->calls <= (shape->type == SHAPE_BOX ? 12UL : 24UL) + (memory_in_use ? 10 : 0), "%lu calls of type %d", shape->calls, shape->type);
+    }
+    return out;
+}
+
+static int asked_twice;
+
+/* With a memory: what is asked again is judged. */
+static contacts_t contacts_of(scene_t *s)
+{
+    const contacts_t c = contacts_at_most(s, ROOM);
+    return asked_twice ? contacts_at_most(s, ROOM) : c;
+}
+
+static flats_t flats_of(const contacts_t *c, const frame_t *f)
+{
+    flats_t flats;
+    int i, k;
+    flats.n = 0;
+    for (i = 0; i < c->n; i++) {
+        truth_real p[3];
+        for (k = 0; k < 3; k++)
+            p[k] = c->c[i].point1.v[k];
+        flats.p[flats.n++] = manifold_flat(f, p);
+    }
+    return flats;
+}
+
+/* How far the point is from the other one's place across n. */
+static double across(const scene_t *s, const ccd_contact_t *p)
+{
+    double most = 0;
+    int k;
+    for (k = 0; k < 3; k++)
+        most = fmax(most, fabs((double)p->point1.v[k] - (double)p->depth * s->n[k] - (double)p->point2.v[k]));
+    return most;
+}
+
+/* How far a point is outside of a shape: the largest of many directions, the last ones about the best. */
+static double outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
+{
+    double best = -HUGE_VAL, way[3] = {0, 0, 0}, step = 1;
+    int trial, k;
+    for (trial = 0; trial < trials; trial++) {
+        ccd_vec3_t m, q;
+        double v[3], l = 0, out = 0;
+        for (k = 0; k < 3; k++) {
+            v[k] = uniform(-step, step) + (4 * trial < trials ? 0 : way[k]);
+            l += v[k] * v[k];
+        }
+        for (k = 0, l = sqrt(l); k < 3; k++)
+            m.v[k] = (ccd_real_t)(v[k] /= l);
+        shape_support(shape, &m, &q);
+        for (k = 0; k < 3; k++)
+            out += v[k] * ((double)p->v[k] - (double)q.v[k]);
+        if (out > best) {
+            best = out;
+            memcpy(way, v, sizeof way);
+        } else if (4 * trial >= trials)
+            step = step < 1e-6 ? 0.1 : 0.97 * step;
+    }
+    return best;
+}
+
+/* What holds of every point, whatever the normal: the depth, and that its two points are within the slop
+ * of the support planes. */
+static void judge_heights(const scene_t *s, const contacts_t *c, const char *what)
+{
+    const double noise = 4 * noise_of(s), room = slop_in_force(s) + 8 * noise;
+    const double h1 = reach(&s->a, s->n, 1), h2 = reach(&s->b, s->n, -1);
+    int i;
+    for (i = 0; i < c->n; i++) {
+        const ccd_contact_t *p = &c->c[i];
+        const double one = along(s->n, &p->point1), two = along(s->n, &p->point2), depth = (double)p->depth;
+        CHECK(fabs(one - two - depth) <= noise, "%s: points along n", what);
+        CHECK(depth <= h1 - h2 + noise && depth >= h1 - h2 - 2 * room, "%s: depth %g of %g", what, depth, h1 - h2);
+        CHECK(i == 0 || p->depth <= c->c[0].depth + (ccd_real_t)noise, "%s: point %d is the deepest", what, i);
+        CHECK(fabs(one - h1) <= room && fabs(two - h2) <= room, "%s: %g and %g from the support planes, slop %g", what,
+              one - h1, two - h2, s->slop);
+    }
+}
+
+/* And with the normal of an answer: the two witnesses lie in their objects, one behind the other. A
+ * single contact of faces that share nothing is a point of each, and only along n as far apart as the
+ * depth. */
+static void judge_contacts(scene_t *s, const contacts_t *c, const char *what)
+{
+    const double noise = 4 * noise_of(s), slop = slop_in_force(s), room = slop + 8 * noise;
+    int i;
+    judge_heights(s, c, what);
+    for (i = 0; i < c->n; i++) {
+        const ccd_contact_t *p = &c->c[i];
+        const uint64_t random = random_state;
+        double out = across(s, p);
+        CHECK(out <= noise || (c->n == 1 && out > slop / 2), "%s: points %g across", what, out);
+        out = fmax(outside(&s->a, &p->point1, 20), outside(&s->b, &p->point2, 20));
+        if (c->n == 1)
+            random_state = random;
+        CHECK(out <= room, "%s: a point %g outside, slop %g", what, out, s->slop);
+    }
+}
+
+/* The region of two polytopes; 0 where the truth is not one. */
+static int thin; /* neither face is more than a segment */
+
+static int region_of(const scene_t *s, const frame_t *f, flats_t *region, double *apart)
+{
+    flats_t one, two;
+    double top1, top2;
+    int clear = manifold_face(&s->a, f, 1, slop_in_force(s), noise_of(s), &one, &top1) &
+                manifold_face(&s->b, f, -1, slop_in_force(s), noise_of(s), &two, &top2);
+    /* The library floors the slop by the rounding of the vertices that it has met, which may be less than that of all. */
+    const double least = fmax(s->slop, 0.01 * (top1 - top2));
+    flats_t few;
+    double top;
+    clear &= manifold_face(&s->a, f, 1, least, noise_of(s), &few, &top) && few.n == one.n;
+    clear &= manifold_face(&s->b, f, -1, least, noise_of(s), &few, &top) && few.n == two.n;
+    thin = 1;
+    region->n = 0;
+    if (one.n < 3 && two.n < 3)
+        return 0;
+    thin = 0;
+    *region = two.n < 3 ? flat_clip(&two, &one) : flat_clip(&one, &two);
+    *apart = 0;
+    if (region->n == 0) {
+        int i;
+        for (i = 0, *apart = HUGE_VAL; i < one.n; i++)
+            *apart = fmin(*apart, (double)flat_distance(&two, one.p[i]));
+        for (i = 0; i < two.n; i++)
+            *apart = fmin(*apart, (double)flat_distance(&one, two.p[i]));
+    }
+    return clear;
+}
+
+static unsigned long regions, segments, points, beside, doubtful;
+
+/* The contacts of two polytopes against the truth. */
+static void compare(scene_t *s, const char *what)
+{
+    const frame_t f = manifold_frame(s->n);
+    flats_t region, found;
+    double apart, room = 4 * slop_in_force(s) + 64 * noise_of(s);
+    contacts_t c = contacts_of(s);
+    judge_contacts(s, &c, what);
+    if (!region_of(s, &f, &region, &apart)) {
+        doubtful += !thin;
+        return;
+    }
+    found = flats_of(&c, &f);
+    if (region.n == 0) {
+        if (apart > room) {
+            beside++;
+            CHECK(c.n == 1, "%s: %d contacts of faces %g apart", what, c.n, apart);
+            CHECK(fabs(across(s, &c.c[0]) / apart - 0.8) <= 0.25, "%s: %g across, faces %g apart", what,
+                  across(s, &c.c[0]), apart);
+        }
+        return;
+    }
+    if (region.n > 2)
+        regions++;
+    else if (region.n == 2)
+        segments++;
+    else
+        points++;
+    CHECK((double)flat_apart(&region, &found) <= room, "%s: %g from the truth of %d corners, %d found, slop %g, calls %lu %lu", what,
+          (double)flat_apart(&region, &found), region.n, found.n, s->slop, s->a.calls, s->b.calls);
+    if (region.n > 2) {
+        const double area = (double)flat_area(&region), here = (double)flat_area(&found);
+        CHECK(here >= 0 && fabs(area - here) <= 0.01 * area + room * room, "%s: area %g of %g", what, here, area);
+    }
+}
+
+/* --- scenes: a stands below the plane z = 0, b on it, depth deep; then all is turned ------- */
+
+static ccd_real_t prism_verts[4][16 * 3];
+
+/* A frustum with a face of k corners at either end of z; its local z from -half to half. */
+static shape_t prism(int which, int k, double half)
+{
+    ccd_real_t *v = prism_verts[which];
+    const double top = uniform(0.7, 1.3), turn = uniform(0, 6);
+    int i;
+    for (i = 0; i < k; i++) {
+        const double angle = turn + 2 * 3.14159265358979 * (i + uniform(0, 0.8)) / k;
+        v[3 * i] = (ccd_real_t)cos(angle);
+        v[3 * i + 1] = (ccd_real_t)sin(angle);
+        v[3 * i + 2] = (ccd_real_t)-half;
+        v[3 * (k + i)] = (ccd_real_t)(top * cos(angle));
+        v[3 * (k + i) + 1] = (ccd_real_t)(top * sin(angle));
+        v[3 * (k + i) + 2] = (ccd_real_t)half;
+    }
+    return shape_polytope(v, 2 * k);
+}
+
+static shape_t block(int which, double *half)
+{
+    *half = uniform(0.2, 0.8);
+    if (random_below(3) == 0)
+        return shape_box(uniform(0.3, 1.2), uniform(0.3, 1.2), *half);
+    return prism(which, 3 + random_below(6), *half);
+}
+
+/* A block under the plane and one above it; returns half of that one's height. */
+static double blocks(scene_t *s)
+{
+    double half;
+    s->a = block(0, &half);
+    shape_move(&s->a, 0, 0, -half);
+    s->b = block(1, &half);
+    return half;
+}
+
+/* Where the scene is in the world. */
+static double scene_rot[9], scene_at[3];
+
+/* A scene that stays where it is: n is the way b leaves. */
+static void put(scene_t *s)
+{
+    int k;
+    shape_turn_by(&s->a, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
+    shape_turn_by(&s->b, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
+    for (k = 0; k < 3; k++)
+        s->n[k] = (double)(ccd_real_t)scene_rot[3 * k + 2];
+}
+
+/* The whole scene somewhere into the world. */
+static void somewhere(double far_off)
+{
+    int k;
+    for (k = 0; k < 3; k++)
+        scene_at[k] = uniform(-far_off, far_off);
+    rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), scene_rot);
+}
+
+static void place(scene_t *s, double far_off)
+{
+    somewhere(far_off);
+    put(s);
+}
+
+static void yaw(shape_t *s)
+{
+    double rot[9];
+    rotation_about(0, 0, 1, uniform(0, 6.28), rot);
+    shape_turn_by(s, rot, 0, 0, 0);
+}
+
+static double slop_of(void)
+{
+    return random_below(8) == 0 ? 0 : pow(10, uniform(single ? -5 : -9, -2.5));
+}
+
+static void rest(void)
+{
+    static const double up[3] = {0, 0, 1};
+    int i;
+    for (i = 0; i < 4000; i++) {
+        const double depth = i % 3 ? uniform(-0.01, 0.05) : uniform(-1, 5) * pow(10, uniform(-7, -2)), angle = uniform(0, 6.28);
+        double rot[9];
+        scene_t s;
+        s.slop = slop_of();
+        blocks(&s);
+        yaw(&s.a);
+        yaw(&s.b);
+        if (i % 2) { /* tilted, by what the slop forgives or not */
+            rotation_about(cos(angle), sin(angle), 0, i % 4 == 1 ? s.slop * uniform(0, 3) : pow(10, uniform(-4, -0.3)), rot);
+            shape_turn_by(&s.b, rot, 0, 0, 0);
+        }
+        shape_move(&s.b, uniform(-1, 1), uniform(-1, 1), -depth - reach(&s.b, up, -1));
+        place(&s, i % 3 ? 1 : 30);
+        compare(&s, i % 2 ? "tilted" : "rest");
+    }
+}
+
+/* Hulls of random points, or boxes, anywhere in touch, with the normal of an answer. */
+static void anywhere(void)
+{
+    int i, k;
+    for (i = 0; i < 3000; i++) {
+        static ccd_real_t points_of[2][36];
+        ccd_penetration_t hit;
+        scene_t s;
+        ccd_t ccd;
+        s.slop = slop_of();
+        for (k = 0; k < 36; k++) {
+            points_of[0][k] = (ccd_real_t)uniform(-1, 1);
+            points_of[1][k] = (ccd_real_t)uniform(-1, 1);
+        }
+        s.a = i % 3 ? shape_polytope(points_of[0], 12) : shape_box(0.5, 0.7, 0.9);
+        s.b = i % 2 ? shape_polytope(points_of[1], 12) : shape_box(0.3, 0.8, 0.6);
+        shape_move(&s.b, uniform(0, 1.5), 0, 0);
+        place(&s, 1);
+        shape_query(&ccd);
+        ccd.epa_tolerance = CCD_REAL(0.0);
+        if (OURS(ccdPenetrationProven)(&s.a, &s.b, &ccd, NULL, CCD_WANT_ALL, &hit) != CCD_HIT)
+            continue;
+        for (k = 0; k < 3; k++)
+            s.n[k] = (double)hit.normal.v[k];
+        if (i % 4) { /* less deep: the minimum stays where it is */
+            const double less = (double)hit.depth - pow(10, uniform(single ? -4 : -7, -2));
+            shape_move(&s.b, (double)s.b.pos[0] + less * s.n[0], (double)s.b.pos[1] + less * s.n[1], (double)s.b.pos[2] + less * s.n[2]);
+        }
+        compare(&s, "anywhere");
+    }
+}
+
+/* --- round, flat and thin objects, by formula ----------------------------------------------- */
+
+static shape_t at(shape_t s, double x, double y, double z)
+{
+    shape_move(&s, x, y, z);
+    return s;
+}
+
+static shape_t turned(shape_t s, double x, double y, double z, double angle)
+{
+    double rot[9];
+    rotation_about(x, y, z, angle, rot);
+    shape_turn(&s, rot);
+    return s;
+}
+
+/* The contacts of a scene in its own frame: as many as said, at these places, in any order. */
+static void expect(const char *what, shape_t a, shape_t b, int n, const double (*xy)[2])
+{
+    int round;
+    for (round = 0; round < 40; round++) {
+        const double error = single ? 1e-4 : 1e-6;
+        scene_t s;
+        contacts_t c;
+        double room;
+        int i, k, j;
+        s.a = a;
+        s.b = b;
+        s.slop = pow(10, uniform(single ? -4 : -6, -3));
+        place(&s, 1);
+        /* an answer's normal is not exact either: turned by less than the slop forgives */
+        for (k = 0, room = 0; k < 3; k++) {
+            s.n[k] += 0.1 * fmin(s.slop, error) * uniform(-1, 1);
+            room += s.n[k] * s.n[k];
+        }
+        for (k = 0; k < 3; k++)
+            s.n[k] = (double)(ccd_real_t)(s.n[k] / sqrt(room));
+        room = 4 * s.slop + 64 * noise_of(&s);
+        c = contacts_of(&s);
+        CHECK(c.n == n, "%s: %d contacts, slop %g", what, c.n, s.slop);
+        for (i = 0; i < n; i++) {
+            double least = HUGE_VAL;
+            for (j = 0; j < c.n; j++) {
+                double local[2] = {0, 0};
+                for (k = 0; k < 3; k++) {
+                    const double d = (double)c.c[j].point1.v[k] - scene_at[k];
+                    local[0] += scene_rot[3 * k] * d;
+                    local[1] += scene_rot[3 * k + 1] * d;
+                }
+                least = fmin(least, hypot(local[0] - xy[i][0], local[1] - xy[i][1]));
+            }
+            CHECK(least <= room, "%s: nothing at %g %g, nearest %g, slop %g", what, xy[i][0], xy[i][1], least, s.slop);
+        }
+        judge_contacts(&s, &c, what);
+    }
+}
+
+/* Pairs of every category, along any direction, or with the normal of an answer: then every point is
+ * within the slop of its object, as 200 directions tell. */
+static void categories(void)
+{
+    int i, k;
+    for (i = 0; i < 6000; i++) {
+        static pair_t p;
+        const int category = i % CATEGORY_COUNT;
+        ccd_penetration_t hit;
+        ccd_vec3_t n;
+        contacts_t c;
+        scene_t s;
+        ccd_t ccd;
+        if (category == CATEGORY_FAR_8 || (single && category == CATEGORY_FAR_6))
+            continue;
+        category_pair(category, (uint64_t)(i / CATEGORY_COUNT), SHAPE_TIE_SIGN, &p);
+        s.a = p.a;
+        s.b = p.b;
+        s.slop = pow(10, uniform(-4, -2)) * pair_size(&p.a, &p.b);
+        if (i % 4 == 0)
+            s.slop = 0;
+        shape_query(&ccd);
+        ccd.mpr_tolerance = (ccd_real_t)(1e-6 * pair_size(&p.a, &p.b));
+        n = random_vec3(1);
+        ccdVec3Normalize(&n);
+        if (i % 3 == 0)
+            ccdVec3Set(&n, i / 3 % 3 == 0, i / 3 % 3 == 1, i / 3 % 3 == 2);
+        if (i % 3 == 1 && OURS(ccdPenetration)(&s.a, &s.b, &ccd, NULL, 0, &hit) == CCD_HIT)
+            n = hit.normal;
+        judge_vec(&n, s.n);
+        c = contacts_at_most(&s, 8);
+        judge_heights(&s, &c, category_text(category));
+        for (k = 0; k < c.n && i % 3 == 1; k++) {
+            const double out = fmax(outside(&s.a, &c.c[k].point1, 200), outside(&s.b, &c.c[k].point2, 200));
+            CHECK(out <= 1.01 * slop_in_force(&s) + 64 * noise_of(&s), "%s: %g outside, slop %g, %d contacts", category_text(category), out, s.slop, c.n);
+        }
+    }
+}
+
+static void shapes(void)
+{
+    static const ccd_real_t square[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, rod[] = {-1, 0, 0, 1, 0, 0}, dot[] = {0, 0, 0};
+    const double middle[][2] = {{0, 0}}, ends[][2] = {{-0.5, 0}, {0.5, 0}}, over[][2] = {{1, 0}, {0.2, 0}};
+    const double plate[][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, rods[][2] = {{-1, 0}, {1, 0}}, off[][2] = {{0.3, -0.2}};
+    const double slant[][2] = {{0, 0}, {-sqrt(1.25), 0}}, shared[][2] = {{-0.2, 0}, {0.5, 0}};
+    const shape_t table = at(shape_box(2, 2, 0.5), 0, 0, -0.5), edge = at(shape_box(1, 2, 0.5), 0, 0, -0.5);
+    const shape_t lying_capsule = turned(shape_capsule(0.3, 0.5), 0, 1, 0, pi / 2);
+    const shape_t lying_cylinder = turned(shape_cylinder(0.3, 0.5), 0, 1, 0, pi / 2);
+
+    expect("ball on table", table, at(shape_sphere(0.5), 0, 0, 0.4999), 1, middle);
+    expect("ball on ball", at(shape_sphere(0.5), 0, 0, -0.5), at(shape_sphere(0.3), 0, 0, 0.2999), 1, middle);
+    expect("table on ball", at(shape_sphere(0.5), 0, 0, -0.5), at(shape_box(1, 1, 0.5), 0, 0, 0.5), 1, middle);
+    expect("ellipsoid", table, at(shape_ellipsoid(1, 0.6, 0.3), 0.3, -0.2, 0.2999), 1, off);
+    expect("flat ellipsoid", table, at(shape_ellipsoid(1, 1, 0.05), 0.3, -0.2, 0.05), 1, off);
+    expect("lying capsule", table, at(lying_capsule, 0, 0, 0.2999), 2, ends);
+    expect("lying capsule over the edge", edge, at(lying_capsule, 0.7, 0, 0.3), 2, over);
+    expect("capsule on its end", table, at(shape_capsule(0.3, 0.5), 0.3, -0.2, 0.8), 1, off);
+    expect("lying cylinder", table, at(lying_cylinder, 0, 0, 0.2999), 2, ends);
+    expect("cone on its tip", table, at(turned(shape_cone(0.3, 0.5), 1, 0, 0, pi), 0.3, -0.2, 0.5), 1, off);
+    /* half height 0.5, radius 0.5: the slant is sqrt(1.25) long, the apex over the origin */
+    expect("lying cone", table, at(turned(shape_cone(0.5, 0.5), 0, 1, 0, pi / 2 + atan(0.5)),
+                                   -0.5 * sin(pi / 2 + atan(0.5)), 0, -0.5 * cos(pi / 2 + atan(0.5))),
+           2, slant);
+    expect("crossed capsules", at(lying_capsule, 0, 0, -0.3),
+           at(turned(shape_capsule(0.2, 0.5), 1, 0, 0, pi / 2), 0, 0, 0.1999), 1, middle);
+    expect("parallel capsules", at(lying_capsule, 0, 0, -0.3), at(lying_capsule, 0.3, 0, 0.2999), 2, shared);
+    expect("plate on table", table, shape_polytope(square, 4), 4, plate);
+    expect("rod on table", table, shape_polytope(rod, 2), 2, rods);
+    expect("point on table", table, at(shape_polytope(dot, 1), 0.3, -0.2, 0), 1, off);
+    expect("crossed rods", shape_polytope(rod, 2), turned(shape_polytope(rod, 2), 0, 0, 1, 1), 1, middle);
+    expect("point on rod", shape_polytope(rod, 2), shape_polytope(dot, 1), 1, middle);
+    expect("point on point", shape_polytope(dot, 1), shape_polytope(dot, 1), 1, middle);
+    expect("standing plate", table, at(turned(shape_polytope(square, 4), 1, 0, 0, pi / 2), 0, 0, 1), 2, rods);
+    expect("box on its edge", table, at(turned(shape_box(1, 0.5, 0.5), 1, 0, 0, pi / 4), 0, 0, sqrt(0.5) - 1e-4), 2, rods);
+    expect("box on its corner", table,
+           at(turned(shape_box(0.5, 0.5, 0.5), 1, -1, 0, atan(sqrt(2))), 0, 0, sqrt(0.75)), 1, middle);
+    expect("edge across edge", at(turned(shape_box(1, 0.5, 0.5), 1, 0, 0, pi / 4), 0, 0, -sqrt(0.5)),
+           at(turned(shape_box(0.5, 1, 0.5), 0, 1, 0, pi / 4), 0, 0, sqrt(0.5) - 1e-4), 1, middle);
+}
+
+/* A disc is inscribed: all points within it, most of its area. */
+static void discs(void)
+{
+    int i, j;
+    for (i = 0; i < 200; i++) {
+        const double radius = uniform(0.3, 1), tilt = i % 2 ? 0 : uniform(0, 0.1), angle = uniform(0, 6.28);
+        frame_t f;
+        flats_t found;
+        contacts_t c;
+        scene_t s;
+        truth_real axis[3];
+        s.slop = pow(10, uniform(single ? -4 : -6, -3));
+        s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+        s.b = i % 3 ? shape_cylinder(radius, 0.5) : shape_cone(radius, 0.5);
+        s.b = at(turned(s.b, cos(angle), sin(angle), 0, tilt * s.slop), 0, 0, 0.5);
+        place(&s, 1);
+        f = manifold_frame(s.n);
+        c = contacts_of(&s);
+        judge_contacts(&s, &c, "disc");
+        found = flats_of(&c, &f);
+        for (j = 0; j < 3; j++)
+            axis[j] = s.b.pos[j];
+        for (j = 0; j < found.n; j++) {
+            const flat_t o = manifold_flat(&f, axis);
+            const double from = (double)hypotl(found.p[j].x - o.x, found.p[j].y - o.y);
+            CHECK(fabs(from - radius) <= 4 * s.slop + 64 * noise_of(&s), "disc: %g from the axis, radius %g", from, radius);
+        }
+        CHECK((double)flat_area(&found) >= 0.85 * 3.14159 * radius * radius, "disc: area %g of %g, %d points",
+              (double)flat_area(&found), 3.14159 * radius * radius, c.n);
+    }
+}
+
+/* A round body lies along the edge of a block and turns away from it: its closer end is beyond the edge, by no more
+ * than its surface falls off within the slop. */
+static void along_edges(void)
+{
+    int i;
+    for (i = 0; i < 1000; i++) {
+        const double x = uniform(0.3, 1.2), y = uniform(0.3, 1.2), radius = uniform(0.1, 0.5), half = uniform(0.1, 0.8);
+        const double angle = uniform(0, 0.17), end = uniform(-1, 1) * y;
+        double beyond, rot[9];
+        contacts_t c;
+        scene_t s;
+        s.slop = pow(10, uniform(single || i % 2 ? -4 : -7, -3));
+        beyond = sqrt(2 * radius * s.slop) * uniform(0, 1);
+        s.a = at(shape_box(x, y, 0.5), 0, 0, -0.5);
+        s.b = turned(i % 4 < 2 ? shape_cylinder(radius, half) : shape_capsule(radius, half), 1, 0, 0, pi / 2);
+        rotation_about(0, 0, 1, -angle, rot);
+        shape_turn_by(&s.b, rot, x + beyond + half * sin(angle), end + half * cos(angle), radius - 1e-5);
+        place(&s, 1);
+        c = contacts_of(&s);
+        judge_contacts(&s, &c, "along an edge");
+    }
+}
+
+/* --- the normal's own error ------------------------------------------------------------------ */
+
+static double depth_along(const scene_t *s, const double n[3]) { return reach(&s->a, n, 1) - reach(&s->b, n, -1); }
+
+/* A normal as an answer may have it, and no slop of the caller's: turned until the depth along it is 0.1 % more than
+ * the least one. What touches stays what it is: an ellipsoid on a face touches in a point, a box in its edge or face. */
+static void imperfect_normals(void)
+{
+    static const double up[3] = {0, 0, 1};
+    int i, k, j;
+    for (i = 0; i < 3000; i++) {
+        const double depth = pow(10, uniform(single ? -2 : -3, -1.5)), angle = uniform(0, 6.28), x = uniform(0.8, 1.2), y = uniform(0.8, 1.2);
+        const double dir[3] = {cos(angle), sin(angle), 0};
+        double rot[9], low = 0, high = 1, most;
+        flats_t face, found;
+        contacts_t c;
+        frame_t f;
+        scene_t s;
+        s.slop = 0;
+        s.a = at(shape_box(x, y, 0.5), 0, 0, -0.5);
+        s.b = i % 3 ? shape_box(uniform(0.2, 0.4), uniform(0.2, 0.4), uniform(0.2, 0.4))
+                    : shape_ellipsoid(uniform(0.2, 0.4), uniform(0.2, 0.4), uniform(0.2, 0.4));
+        rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
+        if (i % 3 == 1) /* on its edge */
+            rotation_about(1, 0, 0, uniform(0.4, 1.1), rot);
+        if (i % 3 != 2)
+            shape_turn(&s.b, rot);
+        yaw(&s.b);
+        shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), 0);
+        shape_move(&s.b, (double)s.b.pos[0], (double)s.b.pos[1], -depth - reach(&s.b, up, -1));
+        /* the exact place: the corners of b's lowest face, or an ellipsoid's lowest point */
+        f = manifold_frame(up);
+        if (i % 3)
+            manifold_face(&s.b, &f, -1, 0.1 * depth, noise_of(&s), &face, &most);
+        else {
+            const ccd_vec3_t down = {{0, 0, -1}};
+            ccd_vec3_t v;
+            truth_real p[3];
+            shape_support(&s.b, &down, &v);
+            for (k = 0; k < 3; k++)
+                p[k] = v.v[k];
+            face.n = 1;
+            face.p[0] = manifold_flat(&f, p);
+        }
+        for (j = 0; j < 60; j++) {
+            const double t = (low + high) / 2, length = sqrt(1 + t * t);
+            for (k = 0; k < 3; k++)
+                s.n[k] = (up[k] + t * dir[k]) / length;
+            *(depth_along(&s, s.n) < 1.001 * depth ? &low : &high) = t;
+        }
+        c = contacts_of(&s);
+        found = flats_of(&c, &f);
+        CHECK((double)flat_apart(&face, &found) <= 2e-3, "imperfect: %d contacts, %g from the truth of %d, depth %g", c.n,
+              (double)flat_apart(&face, &found), face.n, depth);
+        CHECK(c.n == face.n, "imperfect: %d contacts for %d", c.n, face.n);
+        for (k = 0; k < c.n; k++)
+            CHECK(across(&s, &c.c[k]) <= 4 * noise_of(&s), "imperfect: points %g across", across(&s, &c.c[k]));
+    }
+}
+
+/* --- steadiness ------------------------------------------------------------------------------ */
+
+/* Is a segment's end on a side of its face that it meets at less than 10 degrees, so that it runs along it? */
+static int grazes(const flats_t *f, const flats_t *face)
+{
+    int i, grazing = 0;
+    for (i = 0; i < face->n && f->n == 2; i++) {
+        const flat_t p = face->p[i], q = face->p[(i + 1) % face->n], r = f->p[0], t = f->p[1];
+        const double across = (double)((q.x - p.x) * (t.y - r.y) - (q.y - p.y) * (t.x - r.x));
+        grazing |= fabs(across) < 0.1745 * (double)(hypotl(q.x - p.x, q.y - p.y) * hypotl(t.x - r.x, t.y - r.y));
+    }
+    return grazing;
+}
+
+/* b turns about its own middle and moves in every frame, and so does the world. */
+typedef struct {
+    double turn[9], by[3], world[9], drift;
+} motion_t;
+
+static void next_frame(scene_t *s, const motion_t *m)
+{
+    double old[9], to[3];
+    int k;
+    for (k = 0; k < 3; k++) {
+        to[k] = (double)s->b.pos[k] + m->by[k];
+        scene_at[k] += m->drift * (k + 1);
+    }
+    shape_move(&s->b, 0, 0, 0);
+    shape_turn_by(&s->b, m->turn, to[0], to[1], to[2]);
+    memcpy(old, scene_rot, sizeof old);
+    rotation_times(m->world, old, scene_rot);
+}
+
+enum { SLIDE, SPIN, ROCK, ROLL, MOTIONS };
+static const char *const motion_name[MOTIONS] = {"sliding", "spinning", "rocking", "rolling"};
+
+static void steady(int motion, scene_t start, double step)
+{
+    const double angle = uniform(0, 6.28), axis[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    /* rolling: along x, about y */
+    motion_t m = {.by = {motion == SLIDE ? step * cos(angle) : motion == ROLL ? step : 0, motion == SLIDE ? step * sin(angle) : 0, 0}};
+    flats_t before;
+    frame_t f;
+    int frame;
+    before.n = 0;
+    if (motion == ROCK)
+        rotation_about(cos(angle), sin(angle), 0, fmin(step, 0.005 * start.slop), m.turn);
+    else
+        rotation_about(0, motion == ROLL, motion != ROLL, motion == SPIN ? step : motion == ROLL ? step / 0.3 : 0, m.turn);
+    rotation_about(axis[0], axis[1], axis[2], 0.1 * step, m.world);
+    for (frame = 0; frame < 20; frame++) {
+        scene_t s = start;
+        contacts_t c;
+        flats_t found;
+        put(&s);
+        /* one frame for all: the normal hardly turns */
+        if (frame == 0)
+            f = manifold_frame(s.n);
+        c = contacts_of(&s);
+        judge_contacts(&s, &c, motion_name[motion]);
+        found = flats_of(&c, &f);
+        if (frame > 0) {
+            /* b's own step, and that of the world */
+            const double allowed = 10 * (2 * step + noise_of(&start) + 16 * noise_of(&s));
+            const double change = fabs((double)(flat_area(&found) - flat_area(&before))), far = (double)flat_apart(&before, &found);
+            CHECK(change <= allowed * ((double)flat_perimeter(&before) + (double)flat_perimeter(&found)) / 2,
+                  "%s by %g: the area changes by %g, %d and %d points, slop %g", motion_name[motion], step, change, before.n,
+                  found.n, s.slop);
+            const frame_t now = manifold_frame(s.n); /* a face is one along its own normal alone */
+            flats_t face;
+            double top;
+            manifold_face(&s.a, &now, 1, slop_in_force(&s), noise_of(&s), &face, &top);
+            CHECK(far <= allowed || grazes(&before, &face) || grazes(&found, &face), "%s by %g: the region moves by %g, %d and %d points, slop %g", motion_name[motion], step, far,
+                  before.n, found.n, s.slop);
+        }
+        before = found;
+        next_frame(&start, &m);
+    }
+}
+
+static void motions(void)
+{
+    int i;
+    for (i = 0; i < 600; i++) {
+        const int motion = i % MOTIONS;
+        scene_t s;
+        double half = blocks(&s);
+        s.slop = pow(10, uniform(single ? -4 : -7, -3));
+        yaw(&s.a);
+        if (motion == SPIN && i % 8 == 1) {
+            half = 0.4;
+            s.b = shape_cylinder(uniform(0.3, 0.8), half);
+        }
+        if (motion == ROLL) {
+            half = 0.3;
+            s.b = turned(i % 8 == 3 ? shape_capsule(half, 0.5) : shape_cylinder(half, 0.5), 1, 0, 0, pi / 2);
+        }
+        shape_move(&s.b, uniform(-0.5, 0.5), uniform(-0.5, 0.5), half - 1e-5);
+        if (motion == SLIDE)
+            yaw(&s.b);
+        somewhere(0);
+        steady(motion, s, pow(10, uniform(single ? -4 : -8, -3)));
+    }
+}
+
+/* --- a memory ------------------------------------------------------------------------------------- */
+
+enum { REST, DRIFT, SLIDING, TURNING, ROLLING, MOVES };
+static const char *const move_name[MOVES] = {"resting", "drifting", "sliding", "turning", "rolling"};
+
+/* A body on a table, twenty frames of each move, the whole scene drifting in all but the first: with its memory it
+ * costs half of what it costs without, and every point keeps its id; the same in the other order. */
+static void remembered(const char *what, shape_t table, shape_t body, int moves)
+{
+    int run, frame, i, k;
+    for (run = 0; run < 2 * moves; run++) {
+        const int move = run % moves, swaps = run >= moves;
+        static ccd_manifold_t memory;
+        motion_t m = {.by = {move == SLIDING ? 2e-3 : 0, move == SLIDING ? 1e-3 : move == ROLLING ? 2e-3 : 0, 0},
+                      .drift = move == REST ? 0 : 0.05};
+        scene_t start = {.a = table, .b = body, .slop = 1e-3};
+        unsigned long cold = 0, warm = 0;
+        contacts_t last;
+        memset(&memory, 0, sizeof memory);
+        last.n = 0;
+        somewhere(0);
+        /* rolling: along y, about x; 0.3 is the radius */
+        rotation_about(move == ROLLING, 0, move != ROLLING, move == TURNING ? 0.02 : move == ROLLING ? -2e-3 / 0.3 : 0, m.turn);
+        rotation_about(1, 2, -1, move == REST ? 0 : 0.01, m.world);
+        for (frame = 0; frame < 20; frame++) {
+            contacts_t c, none;
+            scene_t s;
+            int keep = 0;
+            next_frame(&start, &m);
+            s = start;
+            put(&s);
+            if (swaps && frame % 2) {
+                const shape_t a = s.a;
+                s.a = s.b;
+                s.b = a;
+                for (k = 0; k < 3; k++)
+                    s.n[k] = -s.n[k];
+            }
+            memory_in_use = NULL;
+            none = contacts_at_most(&s, 4);
+            cold += s.a.calls + s.b.calls;
+            memory_in_use = &memory;
+            c = contacts_at_most(&s, 4);
+            if (frame > 0)
+                warm += s.a.calls + s.b.calls;
+            judge_contacts(&s, &c, what);
+            CHECK(c.n == none.n, "%s, %s: %d points, %d without a memory", what, move_name[move], c.n, none.n);
+            for (i = 0; i < c.n; i++) {
+                CHECK(c.c[i].id != 0, "%s: no id", what);
+                for (k = 0; k < i; k++)
+                    CHECK(c.c[i].id != c.c[k].id, "%s: id twice", what);
+                for (k = 0; k < last.n; k++)
+                    keep += c.c[i].id == last.c[k].id;
+            }
+            CHECK(frame == 0 || keep == c.n, "%s, %s: %d of %d ids stay in frame %d", what, move_name[move], keep, c.n, frame);
+            last = c;
+        }
+        CHECK(2 * warm <= cold, "%s, %s: %lu calls with a memory, %lu without", what, move_name[move], warm, cold);
+        if (!swaps)
+            printf("%s, %s: %.2f support points with a memory, %.2f without\n", what, move_name[move], (double)warm / 19,
+                   (double)cold / 20);
+    }
+}
+
+static void memories(void)
+{
+    const shape_t table = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+    remembered("box", table, at(turned(shape_box(0.3, 0.2, 0.25), 0, 0, 1, 0.3), 0.1, 0.2, 0.249), ROLLING);
+    remembered("hull", table, at(prism(1, 6, 0.3), 0.1, 0.2, 0.299), ROLLING);
+    remembered("cylinder", table, at(shape_cylinder(0.3, 0.25), 0.1, 0.2, 0.249), ROLLING);
+    remembered("cone", table, at(shape_cone(0.3, 0.25), 0.1, 0.2, 0.249), ROLLING);
+    remembered("capsule", table, at(turned(shape_capsule(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), MOVES);
+    remembered("lying cylinder", table, at(turned(shape_cylinder(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), MOVES);
+    remembered("ball", table, at(shape_sphere(0.3), 0.1, 0.2, 0.299), MOVES);
+}
+
+/* A block comes down: from a corner or an edge onto its face, and up again. Its memory is always of
+ * another pose. */
+static void tipping(void)
+{
+    static const double tilts[] = {0.3, 0.1, 0.02, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 5e-5, 0, 0, 1e-5, 1e-4, 1e-3, 5e-3, 0.1};
+    static const double up[3] = {0, 0, 1};
+    int i, j;
+    for (i = 0; i < 400; i++) {
+        static ccd_manifold_t memory;
+        const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_ulp());
+        const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
+        memset(&memory, 0, sizeof memory);
+        memory_in_use = &memory;
+        somewhere(1);
+        for (j = 0; j < (int)(sizeof tilts / sizeof *tilts); j++) {
+            scene_t s = {.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5), .b = turned(block, cos(angle), sin(angle), 0, tilts[j]), .slop = slop};
+            shape_move(&s.b, 0, 0, -1e-4 - reach(&s.b, up, -1));
+            put(&s);
+            compare(&s, "tipping");
+        }
+    }
+}
+
+/* Whatever bits it holds. */
+static void garbage(void)
+{
+    int i;
+    for (i = 0; i < 20000; i++) {
+        static ccd_manifold_t memory, good;
+        unsigned char *bytes = (unsigned char *)&memory;
+        scene_t s;
+        contacts_t c;
+        size_t k;
+        int j;
+        memory = good;
+        s.slop = 1e-3;
+        s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
+        s.b = i % 3 == 0   ? at(shape_box(0.5, 0.6, 0.7), 0.1, 0.2, 0.69)
+              : i % 3 == 1 ? at(shape_cylinder(0.5, 0.6), 0, 0, 0.59)
+                           : at(turned(shape_capsule(0.3, 0.25), 0, 1, 0, 1.5707963267949), 0, 0, 0.29);
+        if (i % 64 == 0)
+            place(&s, 1);
+        else
+            put(&s);
+        memory_in_use = &memory;
+        switch (i % 4) {
+        case 0: /* noise */
+            for (k = 0; k < sizeof memory; k++)
+                bytes[k] = (unsigned char)random_below(256);
+            break;
+        case 1: /* a good one with noise in it */
+            for (j = 0; j < 1 + i % 7; j++)
+                bytes[random_below((int)sizeof memory)] ^= (unsigned char)(1 + random_below(255));
+            break;
+        case 2: /* no numbers */
+            for (j = 0; j < CCD_MANIFOLD_REALS; j++)
+                if (random_below(4) == 0)
+                    memory.reals[j] = j % 3 ? (float)NAN : j % 2 ? (float)INFINITY : -1e30f;
+            break;
+        default: break; /* of another pair */
+        }
+        c = contacts_at_most(&s, 8);
+        judge_contacts(&s, &c, "garbage");
+        CHECK(c.n == (i % 3 == 0 ? 4 : i % 3 == 1 ? 8 : 2), "garbage: %d points", c.n);
+        good = memory;
+    }
+}
+
+/* --- fewer points ------------------------------------------------------------------------------- */
+
+static void fewer(void)
+{
+    static const ccd_contact_t none;
+    int i, max, k;
+    for (i = 0; i < 300; i++) {
+        double last = 0;
+        contacts_t all;
+        frame_t f;
+        scene_t s;
+        const double half = blocks(&s);
+        s.slop = 1e-4;
+        shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), half - 0.01);
+        yaw(&s.b);
+        place(&s, 1);
+        f = manifold_frame(s.n);
+        all = contacts_of(&s);
+        for (max = 1; max <= all.n; max++) {
+            const contacts_t some = contacts_at_most(&s, max);
+            const flats_t flats = flats_of(&some, &f);
+            const double area = (double)flat_area(&flats);
+            CHECK(some.n == max, "%d of at most %d of %d", some.n, max, all.n);
+            CHECK(same_bits(&some.c[0], &all.c[0], sizeof all.c[0]), "the first of %d", max);
+            CHECK(area >= last - 1e-6, "area %g of %d points, %g before", area, max, last);
+            for (k = max; k < ROOM; k++)
+                CHECK(same_bits(&some.c[k], &none, sizeof none), "written beyond max");
+            last = area;
+        }
+    }
+}
+
+int main(void)
+{
+    static ccd_manifold_t memory;
+    int round;
+    for (round = 0; round < 3; round++) {
+        /* The same scenes without a memory, with that of the last pair, with the pair's own. */
+        random_state = 88172645463325252u;
+        memory_in_use = round ? &memory : NULL;
+        asked_twice = round == 2;
+        rest();
+        anywhere();
+        shapes();
+        discs();
+        if (!round)
+            fewer();
+        asked_twice = 0;
+        motions();
+    }
+    categories();
+    memories();
+    tipping();
+    garbage();
+    memory_in_use = NULL;
+    along_edges();
+    imperfect_normals();
+    printf("%lu regions, %lu segments, %lu points, %lu beside each other, %lu doubtful\n", regions, segments, points, beside, doubtful);
+    CHECK(regions > 1000 && segments > 10 && points > 10 && beside > 300, "too few of a kind");
+    return checks_end();
+}

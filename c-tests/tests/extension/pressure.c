@@ -1,0 +1,410 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* `pos` against the centre of pressure by integration: bodies of a quarter metre that tilt, slide,
+ * stand, tip, roll and turn on a floor, a millimetre and a hundredth of one deep, in steps so small
+ * that what jumps shows.
+ *
+ * Besides, pairs at random, pushed apart to depths of 1 to 30 % of the smaller body's reach.
+ *
+ *   pressure [range | tilt]
+ *                     range prints the errors of the random pairs, and of the middle of the witness
+ *                     points, in % of that reach. tilt, which needs libccd beside this library, asks no more than MPR, a
+ *                     millimetre deep: a line a pose, body, degrees, and how many metres off the
+ *                     body's middle the truth, this library's pos and libccd's are */
+
+#include "tests/extension/pressure.h"
+
+#include "tests/contract/check.h"
+#include "harness/this_library.h"
+#include "harness/truth.h"
+
+#include <float.h>
+
+static const int single = sizeof(ccd_real_t) == sizeof(float);
+enum { STEPS = 64, COARSE = 24 };
+static const double HALF = 0.125;
+
+/* How a body stands at an angle: turned about `axis` by `before` (a quarter, an eighth of a turn),
+ * then by the angle about `about`. */
+typedef struct {
+    const char *name;
+    shape_t body;
+    double axis[3], before;
+    double about[3];
+    double rolls; /* degrees a step: the angle is in its symmetry, or it turns around all ways to stand */
+    double slide; /* over the floor's edge by so much along x, in place of the angle */
+    double rms, step; /* at most: metres, and metres beyond twice the truth's step */
+    int ground;
+    double lean; /* besides, in depths over its width */
+} sweep_t;
+
+/* What it is on: a floor, a box as wide as itself, or a disc, neither of which it stands on the middle of. */
+enum { FLOOR, BOX, DISC };
+
+static double deg(double x) { return x * atan(1.0) / 45; }
+
+static void rotate(const double rot[9], const double v[3], double out[3])
+{
+    int i;
+    for (i = 0; i < 3; i++)
+        out[i] = rot[3 * i] * v[0] + rot[3 * i + 1] * v[1] + rot[3 * i + 2] * v[2];
+}
+
+/* Body and floor at an angle, `depth` deep. */
+static void pose(const sweep_t *s, double angle, double depth, shape_t *body, shape_t *floor)
+{
+    const ccd_vec3_t down = {{0, 0, -1}};
+    ccd_vec3_t low;
+    double first[9], then[9], all[9], lean[9];
+    *floor = s->ground == DISC ? shape_cylinder(0.15, 0.5) : s->ground == BOX ? shape_box(HALF, HALF, 0.5) : shape_box(1, 1, 0.5);
+    shape_move(floor, s->slide != 0 ? -0.9 : 0.05, 0.03, -0.5);
+    *body = s->body;
+    rotation_about(s->axis[0], s->axis[1], s->axis[2], s->before, first);
+    rotation_about(s->about[0], s->about[1], s->about[2], s->slide != 0 ? deg(-0.2) : angle, then);
+    rotation_times(then, first, all);
+    /* About no axis of anything. */
+    rotation_about(cos(0.35), sin(0.35), 0, s->lean * depth / (2 * HALF), lean);
+    memcpy(then, all, sizeof then);
+    rotation_times(lean, then, all);
+    shape_turn(body, all);
+    shape_support(body, &down, &low);
+    shape_move(body, s->slide != 0 ? angle : 0, 0, -depth - (double)low.v[2]);
+}
+
+static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    ccd_t ccd;
+    ccd_real_t depth;
+    ccd_penetration_t p;
+    const call_rest_t x = {.warm = warm, .want = CCD_WANT_POS, .depth = &depth, .dir = dir, .pos = pos, .full = &p};
+    int code;
+    shape_query(&ccd);
+    ccd.max_iterations = 500;
+    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-7);
+    code = call_by_number(call, a, b, &ccd, &x);
+    if (code >= 0 && call != ASK_MPR && call != ASK_GJK && call != ASK_MPR_WARM) {
+        *dir = p.dir;
+        *pos = p.pos;
+    }
+    return code;
+}
+
+/* A place that both share: the lowest corner may be beside the ground. */
+static void shared_place(const shape_t *body, const shape_t *floor, double place[3])
+{
+    ccd_penetration_t p;
+    ccd_t ccd;
+    int i;
+    shape_query(&ccd);
+    CHECK(OURS(ccdPenetration)(body, floor, &ccd, NULL, CCD_WANT_POINTS, &p) == CCD_HIT, "a hit");
+    for (i = 0; i < 3; i++)
+        place[i] = ((double)p.point1.v[i] + (double)p.point2.v[i]) / 2;
+}
+
+typedef struct { double square, worst, jump, truth; int poses; } errors_t;
+
+static double apart(const double p[3], const double q[3])
+{
+    return sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
+}
+
+static const int CALLS[] = {ASK_MPR, ASK_MPR_WARM, ASK_GJK, ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN};
+enum { CALL_COUNT = sizeof CALLS / sizeof *CALLS };
+
+/* The angles: fine ones around the special place, then coarse ones. */
+static double angle_at(const sweep_t *s, double depth, int k)
+{
+    const double width = 2 * HALF, step = depth / (8 * width);
+    if (s->slide != 0)
+        return k < STEPS ? s->slide * k / STEPS : -1;
+    if (s->rolls > 0)
+        return k < STEPS ? deg(s->rolls * k) : -1;
+    if (k < STEPS)
+        return (k - STEPS / 2 + 0.5) * step;
+    return deg(0.05 * (k - STEPS) * (k - STEPS) + 0.05);
+}
+
+/* The poses of a sweep at a depth, and where their centre of pressure is. */
+typedef struct {
+    shape_t body, floor;
+    double truth[3];
+    int overlap; /* at the place looked at */
+} pose_t;
+static pose_t poses[STEPS + COARSE];
+static int pose_count;
+
+static void set_poses(const sweep_t *s, double depth)
+{
+    const double up[3] = {0, 0, 1};
+    const ccd_vec3_t down = {{0, 0, -1}};
+    for (pose_count = 0; pose_count < STEPS + COARSE; pose_count++) {
+        const double angle = angle_at(s, depth, pose_count);
+        pose_t *p = &poses[pose_count];
+        double place[3];
+        ccd_vec3_t low;
+        int i;
+        if (angle < 0 && (s->slide != 0 || s->rolls > 0))
+            break;
+        pose(s, angle, depth, &p->body, &p->floor);
+        shape_support(&p->body, &down, &low);
+        for (i = 0; i < 3; i++)
+            place[i] = (double)low.v[i];
+        if (s->slide != 0) /* the deepest place may be beyond the edge */
+            place[0] = fmin(place[0], 0.1 - 1e-9);
+        if (s->ground != FLOOR)
+            shared_place(&p->body, &p->floor, place);
+        p->overlap = pressure_centre(&p->body, &p->floor, up, place, p->truth) > 0;
+    }
+}
+
+static errors_t sweep(const sweep_t *s, double depth, int call, const double world[9])
+{
+    double last[3] = {0, 0, 0}, last_truth[3] = {0, 0, 0};
+    errors_t e;
+    ccd_warm_t warm;
+    int k, i;
+    memset(&warm, 0, sizeof warm);
+    memset(&e, 0, sizeof e);
+    for (k = 0; k < pose_count; k++) {
+        shape_t a = k % 2 ? poses[k].body : poses[k].floor, b = k % 2 ? poses[k].floor : poses[k].body;
+        double p[3], t[3], along = 0, off;
+        ccd_vec3_t dir, pos;
+        int code;
+        if (!poses[k].overlap)
+            continue;
+        shape_turn_by(&a, world, 0, 0, 0);
+        shape_turn_by(&b, world, 0, 0, 0);
+        code = ask(call, &a, &b, call == ASK_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
+        if (code != 0 && code != CCD_LIMIT) {
+            CHECK(0, "%s, pose %d: code %d", s->name, k, code);
+            continue;
+        }
+        rotate(world, poses[k].truth, t);
+        for (i = 0; i < 3; i++)
+            along += (double)dir.v[i] * ((double)pos.v[i] - t[i]);
+        for (i = 0; i < 3; i++)
+            p[i] = (double)pos.v[i] - along * (double)dir.v[i]; /* across dir */
+        CHECK(fabs(along) <= 1.5 * depth, "%s, pose %d: %g along dir", s->name, k, along);
+        off = apart(p, t);
+        e.square += off * off;
+        e.worst = fmax(e.worst, off);
+        e.poses++;
+        if (k > 0 && k < STEPS) {
+            e.jump = fmax(e.jump, apart(p, last) - 2 * apart(t, last_truth));
+            e.truth = fmax(e.truth, apart(t, last_truth));
+        }
+        memcpy(last, p, sizeof last);
+        memcpy(last_truth, t, sizeof last_truth);
+    }
+    return e;
+}
+
+#ifndef OURS_ALONE
+/* A body that tips over: tilts of a thousandth of a degree to three. */
+static void tilt(const sweep_t *s)
+{
+    int k, i;
+    for (k = 0; k <= 28; k++) {
+        const double degrees = 1e-3 * pow(10, k / 8.0), up[3] = {0, 0, 1};
+        const ccd_vec3_t down = {{0, 0, -1}};
+        double place[3], off[3][3], far[3];
+        shape_t body, floor;
+        ccd_vec3_t low, dir, pos;
+        ccd_t ccd;
+        ccd_real_t depth;
+        pose(s, deg(degrees), 1e-3, &body, &floor);
+        shape_support(&body, &down, &low);
+        for (i = 0; i < 3; i++)
+            place[i] = (double)low.v[i];
+        pressure_centre(&body, &floor, up, place, off[0]);
+        ask(ASK_MPR, &floor, &body, NULL, &dir, &pos);
+        for (i = 0; i < 3; i++)
+            off[1][i] = (double)pos.v[i];
+        shape_query(&ccd);
+        ccd.mpr_tolerance = (ccd_real_t)1e-7;
+        ccdMPRPenetration(&floor, &body, &ccd, &depth, &dir, &pos);
+        for (i = 0; i < 3; i++)
+            off[2][i] = (double)pos.v[i];
+        for (i = 0; i < 3; i++)
+            far[i] = hypot(off[i][0] - (double)body.pos[0], off[i][1] - (double)body.pos[1]);
+        printf("%s,%.6g,%.6g,%.6g,%.6g\n", s->name, degrees, far[0], far[1], far[2]);
+    }
+}
+#endif
+
+static double next_random(unsigned long long *state)
+{
+    *state = *state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return (double)(*state >> 11) * (2.0 / 9007199254740992.0) - 1;
+}
+
+/* Kinds of pairs at random, and by how much pos may be off at most, in % of the reach (root mean square). */
+static const struct {
+    const char *name;
+    int first, last; /* shapes, -1: flat boxes */
+    double most[4];  /* by RANGE */
+} KINDS[] = {{"boxes", SHAPE_BOX, SHAPE_BOX, {2, 3, 8, 22}}, {"plates", -1, -1, {2, 3, 8, 25}}, {"round", SHAPE_CAPSULE, SHAPE_ELLIPSOID, {3, 5, 8, 18}}};
+static const double RANGE[] = {0.01, 0.03, 0.1, 0.3};
+
+static shape_t random_body(unsigned long long *state, int kind)
+{
+    double p[3], q[4], rot[9];
+    shape_t s;
+    int i;
+    for (i = 0; i < 3; i++)
+        p[i] = 0.3 + 0.2 * next_random(state);
+    for (i = 0; i < 4; i++)
+        q[i] = next_random(state);
+    s = kind < 0 ? shape_box(p[0], p[1], 0.1 * p[2]) : shape_make(kind, kind == SHAPE_CAPSULE ? 0.5 * p[0] : p[0], p[1], p[2]);
+    rotation_quaternion(q[0], q[1], q[2], q[3], rot);
+    shape_turn(&s, rot);
+    return s;
+}
+
+/* The errors of pos [0] and of the middle of the witness points [1] at a depth, root mean square. */
+static void range_errors(unsigned kind, double share, double error[2])
+{
+    unsigned long long state = 9;
+    double square[2] = {0, 0};
+    int n = 0, k;
+    for (k = 0; k < 400; k++) {
+        const int kinds = KINDS[kind].last - KINDS[kind].first + 1;
+        shape_t a = random_body(&state, KINDS[kind].first + k % kinds), b = random_body(&state, KINDS[kind].first + k / kinds % kinds);
+        ccd_penetration_t p;
+        ccd_t ccd;
+        double normal[3], middle[3], pos[3], truth[3], reach, move;
+        const double x = 0.3 * next_random(&state), y = 0.3 * next_random(&state), z = 0.3 * next_random(&state);
+        int i;
+        shape_move(&b, x, y, z);
+        shape_query(&ccd);
+        ccd.max_iterations = 500;
+        ccd.mpr_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-8);
+        if (OURS(ccdPenetration)(&a, &b, &ccd, NULL, 0, &p) != CCD_HIT)
+            continue;
+        reach = fmin(shape_reach(&a), shape_reach(&b));
+        move = (double)p.depth - share * reach;
+        if (move < 0)
+            continue;
+        shape_move(&b, x + move * (double)p.dir.v[0], y + move * (double)p.dir.v[1], z + move * (double)p.dir.v[2]);
+        if (OURS(ccdPenetration)(&a, &b, &ccd, NULL, CCD_WANT_POS | CCD_WANT_POINTS, &p) != CCD_HIT)
+            continue;
+        for (i = 0; i < 3; i++) {
+            normal[i] = (double)p.normal.v[i];
+            middle[i] = 0.5 * ((double)p.point1.v[i] + (double)p.point2.v[i]);
+            pos[i] = (double)p.pos.v[i];
+        }
+        if (!(pressure_centre(&a, &b, normal, middle, truth) > 0))
+            continue;
+        for (i = 0; i < 2; i++) {
+            double *at = i == 0 ? pos : middle, along = 0;
+            int j;
+            for (j = 0; j < 3; j++)
+                along += normal[j] * (at[j] - truth[j]);
+            for (j = 0; j < 3; j++)
+                at[j] -= along * normal[j];
+            square[i] += pow(apart(at, truth) / reach, 2);
+        }
+        n++;
+    }
+    error[0] = 100 * sqrt(square[0] / n);
+    error[1] = 100 * sqrt(square[1] / n);
+}
+
+static void range(int prints)
+{
+    unsigned k, i;
+    for (k = 0; k < sizeof KINDS / sizeof *KINDS; k++)
+        for (i = 0; i < sizeof RANGE / sizeof *RANGE; i++) {
+            double error[2];
+            range_errors(k, RANGE[i], error);
+            if (prints)
+                printf("%s, depth %g %% of the reach: pos %.2f %%, middle of the witness points %.2f %%\n", KINDS[k].name, 100 * RANGE[i],
+                       error[0], error[1]);
+            CHECK(error[0] <= KINDS[k].most[i] && error[0] < error[1], "%s, depth %g of the reach: pos %.2f %%, middle %.2f %%", KINDS[k].name,
+                  RANGE[i], error[0], error[1]);
+        }
+}
+
+int main(int argc, char **argv)
+{
+    const double q = deg(90);
+    const double corner[3] = {1, -1, 0};
+    static const double X[3] = {1, 0, 0}, Y[3] = {0, 1, 0}, Z[3] = {0, 0, 1}, XY[3] = {1, 0.6, 0};
+#define FLAT 3e-3, 1e-3
+#define ROUND 7e-3, 5e-3
+/* Its radius falls along the line that it lies on, and so does what is taken off for it: where the
+ * deepest place jumps along the line, pos follows by a part. */
+#define TAPERED 15e-3, 50e-3
+#define SWEEP(name, body, axis, before, about, rolls, slide, ...) \
+    {name, body, {axis[0], axis[1], axis[2]}, before, {about[0], about[1], about[2]}, rolls, slide, __VA_ARGS__, FLOOR, 0}
+/* Turned on the spot through all its ways to stand, leaning. */
+#define TURN(name, body, ground, lean, ...) {name, body, {0, 0, 1}, 0, {0, 0, 1}, 1.43, 0, __VA_ARGS__, ground, lean}
+    const shape_t box = shape_box(HALF, HALF, HALF), brick = shape_box(HALF, 0.08, 0.06);
+    const shape_t can = shape_cylinder(0.09, HALF), rod = shape_capsule(0.05, HALF), hat = shape_cone(HALF, HALF);
+    const shape_t egg = shape_ellipsoid(0.1, 0.07, HALF), ball = shape_sphere(HALF);
+    const sweep_t all[] = {
+        SWEEP("box", box, Z, 0, Y, 0, 0, FLAT),
+        SWEEP("box yawed", box, Z, 0.3, Y, 0, 0, FLAT),
+        SWEEP("brick, two axes", brick, Z, 0.1, XY, 0, 0, FLAT),
+        SWEEP("box over the edge", box, Z, 0, Y, 0, 0.2, FLAT),
+        SWEEP("yawed box over the edge", box, Z, 0.5, Y, 0, 0.2, FLAT),
+        SWEEP("brick on an edge", brick, X, deg(40), Y, 0, 0, FLAT),
+        SWEEP("box on a corner", box, corner, 0.9, Y, 1, 0, FLAT),
+        SWEEP("cylinder standing", can, Z, 0, Y, 0, 0, ROUND),
+        SWEEP("cylinder lying", can, X, q, X, 0, 0, ROUND),
+        SWEEP("cylinder rolling", can, X, q, Y, 1, 0, ROUND),
+        SWEEP("capsule lying", rod, X, q, X, 0, 0, ROUND),
+        SWEEP("cone on its base", hat, Z, 0, Y, 0, 0, ROUND),
+        SWEEP("cone on its side", hat, X, q + atan(0.5), X, 0, 0, TAPERED),
+        SWEEP("ellipsoid", egg, X, 0.7, Y, 1, 0, ROUND),
+        SWEEP("sphere", ball, X, 0.7, Y, 1, 0, ROUND),
+        TURN("box turning", box, FLOOR, 0.4, FLAT),
+        TURN("box turning, leaning more", box, FLOOR, 0.9, FLAT),
+        TURN("box turning on a box", box, BOX, 0.4, FLAT),
+        TURN("brick turning on a box", brick, BOX, 0.9, FLAT),
+        TURN("box turning on a disc", box, DISC, 0.4, ROUND),
+        TURN("box turning on a disc, leaning more", box, DISC, 0.9, ROUND),
+        TURN("can turning on a box", can, BOX, 0.4, ROUND),
+    };
+    double world[2][9];
+    unsigned i;
+    rotation_about(0, 0, 1, 0, world[0]);
+    rotation_quaternion(0.3, -0.5, 0.7, 0.2, world[1]);
+#ifndef OURS_ALONE
+    if (argc > 1 && strcmp(argv[1], "tilt") == 0) {
+        printf("body,degrees,truth,ours,libccd\n");
+        for (i = 0; i < sizeof all / sizeof *all; i++)
+            if ((strcmp(all[i].name, "box") == 0 || strstr(all[i].name, "standing") || strstr(all[i].name, "capsule") || strstr(all[i].name, "base")))
+                tilt(&all[i]);
+        return 0;
+    }
+#endif
+    if (argc > 1 && strcmp(argv[1], "range") == 0) {
+        range(1);
+        return checks_end();
+    }
+    if (argc > 1) {
+        fprintf(stderr, "usage: %s [range | tilt]\n", argv[0]);
+        return 2;
+    }
+    range(0);
+    for (i = 0; i < sizeof all / sizeof *all; i++) {
+        int d, c, w;
+        for (d = 0; d < (single ? 1 : 2); d++) {
+            const double depth = d ? 1e-5 : 1e-3;
+            set_poses(&all[i], depth);
+            for (w = 0; w < 2; w++)
+                for (c = 0; c < CALL_COUNT; c++) {
+                    const errors_t e = sweep(&all[i], depth, CALLS[c], world[w]);
+                    const double rms = sqrt(e.square / e.poses);
+                    if (c == 0)
+                        printf("%-35s %g m deep, world %d: rms %6.3f mm, worst %7.3f, step beyond twice the truth's %7.3f (%.3f)\n",
+                               all[i].name, depth, w, 1e3 * rms, 1e3 * e.worst, 1e3 * e.jump, 1e3 * e.truth);
+                    CHECK(rms <= all[i].rms, "%s, %g deep, world %d, call %d: rms %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * rms);
+                    CHECK(e.jump <= all[i].step, "%s, %g deep, world %d, call %d: a step of %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * e.jump);
+                }
+        }
+    }
+    return checks_end();
+}

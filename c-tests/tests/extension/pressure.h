@@ -1,0 +1,213 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The centre of pressure of two overlapping shapes, by integration: the centroid of the volume
+ * that they share. Truth for `pos`. Knows every shape but the polytope. */
+
+#ifndef TESTS_PRESSURE_H
+#define TESTS_PRESSURE_H
+
+#include "harness/shapes.h"
+
+/* From where to where along a line; empty where from > to. */
+typedef struct { double from, to; } span_t;
+
+static inline span_t span_both(span_t a, span_t b)
+{
+    const span_t s = {fmax(a.from, b.from), fmin(a.to, b.to)};
+    return s;
+}
+
+/* Where p + t d is no farther than half from the middle: one coordinate of a box. */
+static inline span_t span_slab(double p, double d, double half)
+{
+    span_t s = {-INFINITY, INFINITY};
+    if (fabs(d) > 1e-300) {
+        const double a = (-half - p) / d, b = (half - p) / d;
+        s.from = fmin(a, b);
+        s.to = fmax(a, b);
+    } else if (fabs(p) > half) {
+        s.from = 1;
+        s.to = 0;
+    }
+    return s;
+}
+
+/* Where w0 x^2 + w1 y^2 + w2 (z - at)^2 <= most: in a ball or an ellipsoid, around z where w2 is 0, below
+ * the apex of a cone where it is negative. */
+static inline span_t span_quadric(const double p[3], const double d[3], const double w[3], double at, double most)
+{
+    const double q[3] = {p[0], p[1], p[2] - at};
+    double a = 0, b = 0, c = -most, root;
+    span_t s = {-INFINITY, INFINITY};
+    int i;
+    for (i = 0; i < 3; i++) {
+        a += w[i] * d[i] * d[i];
+        b += w[i] * q[i] * d[i];
+        c += w[i] * q[i] * q[i];
+    }
+    root = b * b - a * c;
+    if (a > 1e-30 ? root < 0 : a > -1e-30 && c > 0) {
+        s.from = 1;
+        s.to = 0;
+    } else if (a > 1e-30) {
+        s.from = (-b - sqrt(root)) / a;
+        s.to = (-b + sqrt(root)) / a;
+    } else if (w[2] < 0 && root >= 0) {
+        /* Inside beyond both roots, of which the lower nappe has one. */
+        const double one = (-b - sqrt(root)) / a, two = (-b + sqrt(root)) / a;
+        if (d[2] > 0)
+            s.to = fmin(one, two);
+        else
+            s.from = fmax(one, two);
+    }
+    return s;
+}
+
+/* The part of the line p + t d that is in the shape. */
+static inline span_t pressure_span(const shape_t *s, const double p[3], const double d[3])
+{
+    static const double ball[3] = {1, 1, 1}, tube[3] = {1, 1, 0};
+    const double p0 = (double)s->p[0], p1 = (double)s->p[1], r2 = p0 * p0;
+    const double tapered[3] = {1, 1, -r2 / (4 * p1 * p1)};
+    double q[3], e[3], w[3];
+    const span_t none = {1, 0};
+    span_t slab;
+    int i;
+    for (i = 0; i < 3; i++) {
+        int j;
+        q[i] = e[i] = 0;
+        for (j = 0; j < 3; j++) {
+            q[i] += (double)s->rot[3 * j + i] * (p[j] - (double)s->pos[j]);
+            e[i] += (double)s->rot[3 * j + i] * d[j];
+        }
+        w[i] = 1 / ((double)s->p[i] * (double)s->p[i]);
+    }
+    slab = span_slab(q[2], e[2], p1);
+    switch (s->type) {
+    case SHAPE_SPHERE: return span_quadric(q, e, ball, 0, r2);
+    case SHAPE_BOX:
+        return span_both(span_both(span_slab(q[0], e[0], p0), span_slab(q[1], e[1], p1)), span_slab(q[2], e[2], (double)s->p[2]));
+    case SHAPE_CYLINDER: return span_both(span_quadric(q, e, tube, 0, r2), slab);
+    case SHAPE_CAPSULE: {
+        const span_t part[3] = {span_both(span_quadric(q, e, tube, 0, r2), slab), span_quadric(q, e, ball, p1, r2),
+                                span_quadric(q, e, ball, -p1, r2)};
+        span_t all = {INFINITY, -INFINITY};
+        for (i = 0; i < 3; i++)
+            if (part[i].from <= part[i].to) {
+                all.from = fmin(all.from, part[i].from);
+                all.to = fmax(all.to, part[i].to);
+            }
+        return all;
+    }
+    case SHAPE_CONE: return span_both(span_quadric(q, e, tapered, p1, 0), slab);
+    case SHAPE_ELLIPSOID: return span_quadric(q, e, w, 0, 1);
+    case SHAPE_POLYTOPE: break;
+    }
+    return none;
+}
+
+/* The shared chord above a place of the plane through `at` that u and v span. */
+typedef struct {
+    const shape_t *a, *b;
+    double at[3], u[3], v[3], n[3];
+    double volume, moment[3];
+    double reach; /* the largest distance from `at` met */
+} pressure_t;
+
+static inline span_t pressure_chord(const pressure_t *c, double x, double y)
+{
+    double p[3];
+    int i;
+    for (i = 0; i < 3; i++)
+        p[i] = c->at[i] + x * c->u[i] + y * c->v[i];
+    return span_both(pressure_span(c->a, p, c->n), pressure_span(c->b, p, c->n));
+}
+
+/* How far from `at` the shared region reaches that way. The local depth is concave. */
+static inline void pressure_edge(pressure_t *c, double angle, double out[2])
+{
+    const double x = cos(angle), y = sin(angle);
+    double in = 0, beyond = 4;
+    int k;
+    for (k = 0; k < 56; k++) {
+        const double r = 0.5 * (in + beyond);
+        const span_t s = pressure_chord(c, r * x, r * y);
+        if (s.to > s.from)
+            in = r;
+        else
+            beyond = r;
+    }
+    out[0] = in * x;
+    out[1] = in * y;
+    c->reach = fmax(c->reach, in);
+}
+
+static inline void pressure_triangle(pressure_t *c, const double p[2], const double q[2])
+{
+    static const double at[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
+                                    {0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692}};
+    const double area = p[0] * q[1] - p[1] * q[0];
+    int i, j, k;
+    for (i = 0; i < 4; i++)
+        for (j = 0; j < 4; j++) {
+            const double t = at[0][i], s = at[0][j];
+            const double x = t * (p[0] + s * (q[0] - p[0])), y = t * (p[1] + s * (q[1] - p[1]));
+            const span_t chord = pressure_chord(c, x, y);
+            const double w = area * t * at[1][i] * at[1][j] * fmax(chord.to - chord.from, 0);
+            if (!(w > 0))
+                continue;
+            c->volume += w;
+            for (k = 0; k < 3; k++)
+                c->moment[k] += w * (c->at[k] + x * c->u[k] + y * c->v[k] + 0.5 * (chord.from + chord.to) * c->n[k]);
+        }
+}
+
+static inline void pressure_sector(pressure_t *c, double from, const double p[2], double to, const double q[2])
+{
+    if (hypot(q[0] - p[0], q[1] - p[1]) > 0.03 * c->reach && to - from > 1e-8) {
+        double middle[2];
+        const double angle = 0.5 * (from + to);
+        pressure_edge(c, angle, middle);
+        pressure_sector(c, from, p, angle, middle);
+        pressure_sector(c, angle, middle, to, q);
+    } else {
+        pressure_triangle(c, p, q);
+    }
+}
+
+/* The centroid of the volume that a and b share, seen along the unit vector n from a place of it.
+ * Returns the volume, 0 where they share none there. */
+static inline double pressure_centre(const shape_t *a, const shape_t *b, const double n[3], const double place[3],
+                                     double centre[3])
+{
+    enum { SECTORS = 24 };
+    const double turn = 8 * atan(1.0) / SECTORS;
+    double edge[SECTORS][2];
+    pressure_t c;
+    int i;
+    const int least = fabs(n[0]) <= fabs(n[1]) && fabs(n[0]) <= fabs(n[2]) ? 0 : fabs(n[1]) <= fabs(n[2]) ? 1 : 2;
+    memset(&c, 0, sizeof c);
+    c.a = a;
+    c.b = b;
+    memcpy(c.n, n, sizeof c.n);
+    memcpy(c.at, place, sizeof c.at);
+    for (i = 0; i < 3; i++)
+        c.u[i] = (i == least) - n[least] * n[i];
+    {
+        const double l = sqrt(c.u[0] * c.u[0] + c.u[1] * c.u[1] + c.u[2] * c.u[2]);
+        for (i = 0; i < 3; i++)
+            c.u[i] /= l;
+    }
+    for (i = 0; i < 3; i++)
+        c.v[i] = n[(i + 1) % 3] * c.u[(i + 2) % 3] - n[(i + 2) % 3] * c.u[(i + 1) % 3];
+    for (i = 0; i < SECTORS; i++)
+        pressure_edge(&c, i * turn, edge[i]);
+    for (i = 0; i < SECTORS; i++)
+        pressure_sector(&c, i * turn, edge[i], (i + 1) * turn, edge[(i + 1) % SECTORS]);
+    for (i = 0; i < 3; i++)
+        centre[i] = c.moment[i] / c.volume;
+    return c.volume;
+}
+
+#endif

@@ -1,0 +1,266 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Whatever a state holds, every answer is judged (stability/judge.h): cold, swapped, from its own
+ * state, from that flipped, from another pair's, from bytes. Then what a state is worth, and that it
+ * keeps its side. */
+
+#include "tests/stability/categories.h"
+
+#include "tests/contract/check.h"
+
+enum { PAIRS = 400 };
+
+/* Every call that takes a state, but ccdIntersect, which is one of them. */
+static const int asks[] = {ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_PENETRATION, ASK_ALONG, ASK_PLANAR, ASK_MPR_WARM,
+                           ASK_MPR_INTERSECT_WARM, ASK_DISTANCE};
+static const char *const ask_name[] = {
+#define NAME(name, word, kind, traits) #name,
+    PAIR_CALLS(NAME)
+};
+
+typedef struct {
+    entry_t call;
+    pair_t pair;
+    double dir[3]; /* along, or normal of the plane */
+    question_t question;
+    int limited; /* stopped at the cap from some state */
+} case_t;
+
+/* One question, whatever comes of it. */
+static answer_t ask_pair(case_t *c, int swap, ccd_warm_t *warm)
+{
+    shape_t a = swap ? c->pair.b : c->pair.a, b = swap ? c->pair.a : c->pair.b;
+    const ccd_t ccd = judge_query(c->question.tol);
+    ccd_vec3_t dir;
+    int k;
+    for (k = 0; k < 3; k++)
+        dir.v[k] = (ccd_real_t)(swap ? -c->dir[k] : c->dir[k]);
+    return ask_guarded(&c->call, &a, &b, &ccd, warm, &dir, most_calls(&c->call));
+}
+
+/* The same, judged. */
+static answer_t answer(case_t *c, int swap, ccd_warm_t *warm, const char *state)
+{
+    const answer_t x = ask_pair(c, swap, warm);
+    const int faults = judge(&c->call, &x, swap ? &c->pair.b : &c->pair.a, swap ? &c->pair.a : &c->pair.b, &c->question)
+        & FAULTS_NEVER & ~FAULT_LIMIT;
+    double across = truth_dot3(x.dir, c->dir);
+    CHECK(!faults, "%s from %s", c->call.name, state);
+    if (faults)
+        print_wrong(&c->call, &x, faults, &c->question.truth);
+    CHECK(c->call.ask != ASK_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_ulp(), "planar: %g out of the plane", across);
+    c->limited |= x.code == CCD_LIMIT;
+    return x;
+}
+
+static int same(const answer_t *x, const answer_t *y)
+{
+    return x->code == y->code && x->depth == y->depth && x->lower == y->lower && x->supports == y->supports
+        && same_bits(x->dir, y->dir, sizeof x->dir) && same_bits(x->pos, y->pos, sizeof x->pos)
+        && same_bits(x->point1, y->point1, sizeof x->point1) && same_bits(x->point2, y->point2, sizeof x->point2);
+}
+
+/* Calls of a query that wants no pos: of a local search that is asked again pos costs as much as at first. */
+static unsigned long cost(case_t *c, int swap, const ccd_warm_t *warm)
+{
+    ccd_warm_t copy = *warm;
+    answer_t x;
+    judge_want = CCD_WANT_POINTS;
+    x = ask_pair(c, swap, &copy);
+    judge_want = CCD_WANT_ALL;
+    return x.calls;
+}
+
+/* --- pairs --------------------------------------------------------------------------- */
+
+/* Two polygons in any plane, which may overlap. Their depth is that of prisms on them, so high that the
+ * least is in the plane. */
+static void make_planar(case_t *c, dice_t *d)
+{
+    double rot[9], spin[9], all[9], at[3] = {dice_in(d, -1, 1), dice_in(d, -1, 1), dice_in(d, -1, 1)};
+    ccd_real_t high[2][3 * 16];
+    shape_t prism[2];
+    int k, i;
+    dice_rotation(d, rot);
+    for (k = 0; k < 2; k++) {
+        shape_t *s = k ? &c->pair.b : &c->pair.a;
+        *s = pair_polygon(d, c->pair.verts[k], 1);
+        rotation_about(0, 0, 1, dice_in(d, 0, 6), spin);
+        rotation_times(rot, spin, all);
+        shape_turn(s, all);
+        shape_move(s, rot[2] * at[2] + k * (rot[0] * at[0] + rot[1] * at[1]), rot[5] * at[2] + k * (rot[3] * at[0] + rot[4] * at[1]),
+                   rot[8] * at[2] + k * (rot[6] * at[0] + rot[7] * at[1]));
+        prism[k] = *s;
+        prism[k].verts = high[k];
+        prism[k].nverts = 2 * s->nverts;
+        for (i = 0; i < 3 * prism[k].nverts; i++)
+            high[k][i] = i % 3 < 2 ? s->verts[i % (3 * s->nverts)] : (ccd_real_t)(i < 3 * s->nverts ? 5 : -5);
+    }
+    for (k = 0; k < 3; k++)
+        c->dir[k] = rot[3 * k + 2];
+    c->pair.truth = truth_depth(&prism[0], &prism[1]);
+}
+
+static void make(case_t *c, int call, int i)
+{
+    static const int categories[] = {CATEGORY_GENERIC, CATEGORY_SHALLOW3, CATEGORY_GENERIC, CATEGORY_APART};
+    dice_t d = dice(5000, (uint64_t)i);
+    c->call.name = ask_name[call];
+    c->call.ask = call;
+    c->limited = 0;
+    dice_unit(&d, c->dir);
+    if (call == ASK_PLANAR)
+        make_planar(c, &d);
+    else
+        category_pair(categories[i % 4], (uint64_t)i, SHAPE_TIE_SIGN, &c->pair);
+    c->question = question(&c->pair.a, &c->pair.b, sizeof(ccd_real_t) == 8 ? 1e-6 : 1e-4, &c->pair.truth);
+    if (call == ASK_ALONG && c->pair.truth.lower > 0)
+        c->question.truth = truth_along(&c->pair.a, &c->pair.b, c->dir);
+}
+
+/* A state that no query of this pair left: bytes; numbers of every size, or of ordinary size, and
+ * the small integers that mean something at the end. */
+static void strange_state(int kind, ccd_warm_t *warm)
+{
+    static const double values[] = {0, 1, -1, 1e-300, 1e300, -1e300, 0.5, 1e-9, HUGE_VAL, NAN, 0.3, -0.7};
+    unsigned char *bytes = (unsigned char *)warm;
+    ccd_real_t x;
+    size_t i;
+    for (i = 0; i < sizeof *warm; i++)
+        bytes[i] = (unsigned char)random_below(256);
+    for (i = 0; kind > 0 && i + sizeof x <= sizeof *warm; i += sizeof x) {
+        x = (ccd_real_t)(kind == 1 ? values[random_below(12)] : uniform(-1, 1));
+        memcpy(bytes + i, &x, sizeof x);
+    }
+    for (i = sizeof *warm - 16; kind > 0 && i < sizeof *warm; i += sizeof(unsigned)) {
+        const unsigned word = (unsigned)random_below(5);
+        memcpy(bytes + i, &word, sizeof word);
+    }
+}
+
+/* --- what is asked ------------------------------------------------------------------- */
+
+typedef struct {
+    unsigned long first, again, own, flipped; /* calls: of hits cold and asked again; of all */
+    int hits, apart, limited;
+} count_t;
+
+/* One pair from every kind of state; other: that of the pair before. */
+static void every_state(case_t *c, ccd_warm_t *other, count_t *n)
+{
+    ccd_warm_t none, warm, copy;
+    answer_t cold, x, y;
+    unsigned long own, flipped;
+    int k;
+    memset(&none, 0, sizeof none);
+    memset(&warm, 0, sizeof warm);
+    cold = answer(c, 0, &warm, "a cold state");
+    x = ask_pair(c, 0, NULL);
+    CHECK(same(&x, &cold), "%s without a state", c->call.name);
+    x = answer(c, 1, NULL, "no state, swapped");
+    copy = warm;
+    y = ask_pair(c, 1, &copy);
+    if (c->call.ask == ASK_LOCAL && x.code == CCD_HIT)
+        CHECK(y.code == CCD_HIT && y.depth - x.depth <= c->question.tol, "unflipped: %g, cold %g", y.depth, x.depth);
+    if (cold.code == CCD_HIT && c->question.truth.lower > 0) {
+        n->hits++;
+        n->first += cost(c, 0, &none);
+        n->again += cost(c, 0, &warm);
+    }
+    copy = warm;
+    x = answer(c, 0, &copy, "its own state");
+    y = ask_pair(c, 0, &warm);
+    CHECK(same(&x, &y) && same_bits(&warm, &copy, sizeof warm), "%s: a copied state", c->call.name);
+    own = cost(c, 0, &warm);
+    x = ask_pair(c, 0, &copy);
+    copy = warm;
+    OURS(ccdWarmFlip)(&copy);
+    flipped = cost(c, 1, &copy);
+    y = answer(c, 1, &copy, "a flipped state");
+    n->own += own;
+    n->flipped += flipped;
+    n->apart += own != flipped || fabs(x.depth - y.depth) > 64 * real_ulp() * pair_largest(&c->pair.a, &c->pair.b);
+    answer(c, 0, other, "a foreign state");
+    *other = warm;
+    for (k = 0; k < 6; k++) {
+        strange_state(k % 3, &copy);
+        answer(c, 0, &copy, "a strange state");
+        answer(c, 0, &copy, "the state after a strange state");
+    }
+    n->limited += c->limited;
+}
+
+static void from_states(int ask)
+{
+    static case_t c;
+    ccd_warm_t other;
+    count_t n;
+    int i;
+    memset(&other, 0, sizeof other);
+    memset(&n, 0, sizeof n);
+    for (i = 0; i < PAIRS; i++) {
+        make(&c, ask, i);
+        every_state(&c, &other, &n);
+    }
+    printf("%s: %d hits, %.1f supports, %.1f when asked again; from a flipped state %.2f for %.2f, %d differ; %d pairs at the cap\n",
+           ask_name[ask], n.hits, n.first / 2. / n.hits, n.again / 2. / n.hits, n.flipped / 2. / PAIRS, n.own / 2. / PAIRS, n.apart,
+           n.limited);
+    /* Of a distance another of two ties is asked first: 5 % more. In single precision more are ties. */
+    CHECK(100 * n.flipped <= (ask == ASK_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103) * n.own, "%s: a flipped state is worth less", ask_name[ask]);
+    /* A portal's first directions are turned the same way round in the mirror: few walks differ. */
+    if (ask == ASK_LOCAL || ask == ASK_PLANAR)
+        CHECK(n.apart <= PAIRS / 20, "%s: %d differ", ask_name[ask], n.apart);
+    /* A state is one direction: a depth along another gains nothing by it. */
+    if (ask == ASK_LOCAL)
+        CHECK(10 * n.again <= 7 * n.first, "%s: asked again", ask_name[ask]);
+    /* The paper's method halves its way to round minima: it says so where others are long done. */
+    CHECK(n.limited <= (ask == ASK_INCREMENTAL ? PAIRS / 16 : PAIRS / 200), "%s: %d pairs at the cap", ask_name[ask], n.limited);
+    CHECK(n.hits > PAIRS / 4, "%s: %d hits", ask_name[ask], n.hits);
+}
+
+/* A tilted plate sinks through a slab, a millimetre a frame. The least depth changes sides half
+ * through; the local search keeps the side of its state, and a depth along a way that way,
+ * until the two are apart. */
+static void sides(void)
+{
+    shape_t slab = shape_box(2, 2, 0.05), plate = shape_box(0.25, 0.25, 0.01);
+    const ccd_vec3_t up = {{0, 0, 1}};
+    double rot[9];
+    int kept = 0, frame;
+    ccd_warm_t warm[5];
+    ccd_t ccd;
+    memset(warm, 0, sizeof warm);
+    shape_query(&ccd);
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = CCD_REAL(1e-5);
+    rotation_about(1, 2, 0.3, 0.02, rot);
+    shape_turn(&plate, rot);
+    for (frame = 0; frame < 120; frame++) {
+        const double depth = 0.001 * frame + 0.0061; /* the plate's corners are 5.6 mm lower than its middle */
+        ccd_penetration_t local, along, minimum;
+        ccd_distance_t distance;
+        ccd_real_t mpr;
+        ccd_vec3_t dir, pos;
+        shape_move(&plate, 0.013, 0.027, 0.0605 - 0.001 * frame);
+        CHECK(OURS(ccdPenetrationLocal)(&slab, &plate, &ccd, &warm[0], CCD_WANT_ALL, &local) == CCD_HIT, "frame %d", frame);
+        CHECK(OURS(ccdPenetrationAlong)(&slab, &plate, &ccd, &up, &warm[1], CCD_WANT_ALL, &along) == CCD_HIT, "frame %d", frame);
+        CHECK(OURS(ccdPenetrationProven)(&slab, &plate, &ccd, &warm[2], CCD_WANT_ALL, &minimum) == CCD_HIT, "frame %d", frame);
+        CHECK(OURS(ccdMPRPenetrationWarm)(&slab, &plate, &ccd, &warm[3], &mpr, &dir, &pos) == 0, "frame %d", frame);
+        CHECK(OURS(ccdSignedDistance)(&slab, &plate, &ccd, 0, 0, 0, &warm[4], CCD_WANT_ALL, &distance) == CCD_HIT, "frame %d", frame);
+        CHECK(local.dir.v[2] > CCD_REAL(0.99) && fabs((double)local.depth - depth) < 1e-3, "local: %g at %g", (double)local.depth, depth);
+        CHECK(along.dir.v[2] > CCD_REAL(0.99) && fabs((double)along.depth - depth) < 1e-3, "along: %g at %g", (double)along.depth, depth);
+        CHECK((dir.v[2] > 0) == (minimum.dir.v[2] > 0) && (distance.normal.v[2] > 0) == (minimum.dir.v[2] > 0), "frame %d: sides", frame);
+        kept += minimum.dir.v[2] > 0;
+    }
+    CHECK(kept == 60 || kept == 61, "%d frames up", kept);
+}
+
+int main(void)
+{
+    size_t i;
+    judge_begin();
+    sides();
+    for (i = 0; i < sizeof asks / sizeof *asks; i++)
+        from_states(asks[i]);
+    return checks_end();
+}

@@ -1,0 +1,304 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* ccd.hpp: the same bits as the C calls it wraps, shapes of any vector type with and
+ * without a centre, exceptions thrown by a shape, states copied as values. */
+
+#include <ccd/ccd.hpp>
+
+#include "tests/contract/every_call.h"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+/* A shape of the C tests behind the interface of the wrapper. */
+struct Wrapped {
+    shape_t shape;
+
+    ccd_vec3_t support(const ccd::Vec3 &dir) const
+    {
+        const ccd_vec3_t d = dir;
+        ccd_vec3_t out;
+        shape_support(&shape, &d, &out);
+        return out;
+    }
+    ccd_vec3_t centre() const
+    {
+        ccd_vec3_t out;
+        shape_center(&shape, &out);
+        return out;
+    }
+};
+
+/* The same without a centre, with a foreign vector type. */
+struct NoCentre {
+    Wrapped of;
+
+    std::array<ccd_real_t, 3> support(const ccd::Vec3 &dir) const
+    {
+        const ccd::Vec3 v = of.support(dir);
+        return {v.x, v.y, v.z};
+    }
+};
+
+/* The same with its centre in the other spelling. */
+struct American {
+    Wrapped of;
+
+    ccd_vec3_t support(const ccd::Vec3 &dir) const { return of.support(dir); }
+    ccd_vec3_t center() const { return of.centre(); }
+};
+
+struct TooFar : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/* A ball that refuses to answer more than so many questions. */
+struct Tired {
+    ccd_real_t x;
+    mutable int left;
+
+    ccd::Vec3 support(const ccd::Vec3 &d) const
+    {
+        if (left-- == 0)
+            throw TooFar("support");
+        return {x + d.x, d.y, d.z};
+    }
+    ccd::Vec3 centre() const
+    {
+        if (left-- == 0)
+            throw TooFar("centre");
+        return {x, 0, 0};
+    }
+};
+
+static bool same(const ccd::Vec3 &a, const ccd_vec3_t &b) { return a.x == b.v[0] && a.y == b.v[1] && a.z == b.v[2]; }
+
+static void check_same(const char *name, const ccd::Penetration &p, int code, const ccd_penetration_t &out)
+{
+    CHECK(int(p.status) == code, "%s", name);
+    if (!p)
+        return;
+    CHECK(p.depth == out.depth && p.depth_lower == out.depth_lower && same(p.dir, out.dir) &&
+              same(p.normal, out.normal) && same(p.pos, out.pos) && same(p.point1, out.point1) &&
+              same(p.point2, out.point2) && p.support_calls == out.support_calls && p.iterations == out.iterations,
+          "%s", name);
+}
+
+static Wrapped anywhere()
+{
+    Wrapped w{random_shape()};
+    shape_move(&w.shape, uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+    return w;
+}
+
+/* Every query, with and without a state, against the C call with the same callbacks. */
+static void same_as_c()
+{
+    int hits = 0, misses = 0;
+    for (int i = 0; i < 500; i++) {
+        const Wrapped a = anywhere(), b = anywhere();
+        const shape_t *o1 = &a.shape, *o2 = &b.shape;
+        const ccd::Settings settings{CCD_REAL(1e-5)};
+        const ccd::Vec3 dir{1, 2, -2};
+        const ccd_vec3_t c_dir = dir;
+        ccd_t c;
+        shape_query(&c);
+        c.mpr_tolerance = c.epa_tolerance = c.dist_tolerance = settings.tolerance;
+
+        ccd::Warm warm;
+        ccd_warm_t c_warm;
+        memset(&c_warm, 0, sizeof c_warm);
+        for (int frame = 0; frame < 2; frame++) {
+            ccd_penetration_t out;
+            ccd_real_t depth;
+            ccd_vec3_t d, pos;
+            check_same("penetration", ccd::penetration(a, b, settings, &warm),
+                       ccdPenetration(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+            const ccd::Penetration local = ccd::penetration_local(a, b, settings, &warm);
+            check_same("local", local, ccdPenetrationLocal(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+            CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after a local query");
+            (local ? hits : misses)++;
+            check_same("incremental", ccd::penetration_incremental(a, b, settings, &warm),
+                       ccdPenetrationIncremental(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+            check_same("proven", ccd::penetration_proven(a, b, settings, &warm),
+                       ccdPenetrationProven(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+            check_same("along", ccd::penetration_along(a, b, dir, settings, &warm),
+                       ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out), out);
+            check_same("planar", ccd::penetration_planar(a, b, dir, settings, &warm),
+                       ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out), out);
+
+            ccd_distance_t away;
+            int code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5), &c_warm, CCD_WANT_ALL, &away);
+            const ccd::Distance distance = ccd::signed_distance(a, b, settings, {CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5)}, &warm);
+            CHECK(int(distance.status) == code && distance, "distance");
+            CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&
+                      same(distance.normal, away.normal) && same(distance.point1, away.point1) &&
+                      same(distance.point2, away.point2) && distance.support_calls == away.support_calls &&
+                      distance.iterations == away.iterations,
+                  "distance");
+
+            code = ccdMPRPenetrationWarm(o1, o2, &c, &c_warm, &depth, &d, &pos);
+            const ccd::Penetration mpr = ccd::mpr_penetration(a, b, settings, &warm);
+            CHECK(int(mpr.status) == code, "mpr");
+            CHECK(!mpr || (mpr.depth == depth && same(mpr.dir, d) && same(mpr.pos, pos)), "mpr");
+            CHECK(ccd::intersect(a, b, &warm) == (ccdIntersect(o1, o2, &c, &c_warm) == 1), "intersect");
+            CHECK(ccd::mpr_intersect(a, b, &warm) == (ccdMPRIntersectWarm(o1, o2, &c, &c_warm) == 1), "mpr_intersect");
+            CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after all queries");
+        }
+
+        ccd_contact_t c_contacts[4];
+        std::array<ccd::Contact, 4> contacts;
+        ccd::Manifold memory{};
+        ccd_manifold_t c_memory{};
+        const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts, &memory);
+        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), &c_memory, c_contacts, 4) && count >= 1, "contacts");
+        for (int k = 0; k < count; k++) {
+            const ccd::Contact &p = contacts[static_cast<std::size_t>(k)];
+            CHECK(same(p.point1, c_contacts[k].point1) && same(p.point2, c_contacts[k].point2) &&
+                      p.depth == c_contacts[k].depth && p.id == c_contacts[k].id && p.id != 0,
+                  "contact %d", k);
+        }
+
+        ccd_real_t depth;
+        ccd_vec3_t d, pos;
+        int code = ccdGJKPenetration(o1, o2, &c, &depth, &d, &pos);
+        const ccd::Penetration gjk = ccd::gjk_penetration(a, b, settings);
+        CHECK(int(gjk.status) == code, "gjk");
+        CHECK(!gjk || (gjk.depth == depth && same(gjk.dir, d) && same(gjk.pos, pos)), "gjk");
+        code = ccdGJKSeparate(o1, o2, &c, &d);
+        const ccd::Separation separation = ccd::gjk_separate(a, b, settings);
+        CHECK(int(separation.status) == code && (!separation || same(separation.sep, d)), "gjk_separate");
+        CHECK(ccd::gjk_intersect(a, b) == (ccdGJKIntersect(o1, o2, &c) == 1), "gjk_intersect");
+
+        c.center1 = c.center2 = nullptr;
+        ccd_penetration_t out;
+        const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
+        check_same("without centres", ccd::penetration_local(NoCentre{a}, NoCentre{b}, settings), without, out);
+        c.center1 = c.center2 = shape_center;
+        const int spelt = ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
+        check_same("center", ccd::penetration_local(American{a}, American{b}, settings), spelt, out);
+        check_same("center and centre", ccd::penetration_local(a, American{b}, settings), spelt, out);
+        CHECK(ccd::mpr_intersect(American{a}, b) == ccd::mpr_intersect(a, b), "center");
+        c.center1 = c.center2 = nullptr;
+        ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
+        check_same("one centre", ccd::penetration_local(NoCentre{a}, b, settings), without, out);
+        CHECK(ccd::gjk_intersect(NoCentre{a}, NoCentre{b}) == ccd::gjk_intersect(a, b), "a foreign vector");
+        CHECK(ccd::intersect(NoCentre{a}, b) == (ccdIntersect(o1, o2, &c, nullptr) == 1), "intersect without a centre");
+    }
+    CHECK(hits > 100 && misses > 100, "%d hits, %d misses", hits, misses);
+}
+
+/* Whatever call it is that a shape refuses, the exception arrives as it was thrown. */
+template <class Query>
+static void throws_through(const char *name, Query query)
+{
+    int caught = 0;
+    for (int left = 0;; left++) {
+        const Tired a{0, left}, b{CCD_REAL(1.5), -1};
+        try {
+            query(a, b);
+            break;
+        } catch (const TooFar &e) {
+            CHECK(e.what() == std::string("support") || e.what() == std::string("centre"), "%s", name);
+            caught++;
+        }
+    }
+    CHECK(caught > 0, "%s asks the shape", name);
+}
+
+static void exceptions()
+{
+    throws_through("intersect", [](auto &a, auto &b) { ccd::intersect(a, b); });
+    throws_through("penetration", [](auto &a, auto &b) { ccd::penetration(a, b); });
+    throws_through("mpr_intersect", [](auto &a, auto &b) { ccd::mpr_intersect(a, b); });
+    throws_through("gjk_intersect", [](auto &a, auto &b) { ccd::gjk_intersect(a, b); });
+    throws_through("mpr", [](auto &a, auto &b) { ccd::mpr_penetration(a, b); });
+    throws_through("gjk", [](auto &a, auto &b) { ccd::gjk_penetration(a, b); });
+    throws_through("gjk_separate", [](auto &a, auto &b) { ccd::gjk_separate(a, b); });
+    throws_through("local", [](auto &a, auto &b) { ccd::penetration_local(a, b); });
+    throws_through("incremental", [](auto &a, auto &b) { ccd::penetration_incremental(a, b); });
+    throws_through("proven", [](auto &a, auto &b) { ccd::penetration_proven(a, b); });
+    throws_through("along", [](auto &a, auto &b) { ccd::penetration_along(a, b, {0, 1, 0}); });
+    throws_through("contacts", [](auto &a, auto &b) {
+        std::array<ccd::Contact, 2> out;
+        ccd::contacts(a, b, {0, 0, 1}, 0, out);
+    });
+    throws_through("distance", [](auto &a, auto &b) { ccd::signed_distance(a, b); });
+    throws_through("planar", [](auto &a, auto &b) { ccd::penetration_planar(a, b, {0, 0, 1}); });
+
+    /* A query that was left has not touched the state. */
+    const Tired ball{0, -1};
+    ccd::Warm warm = ccd::Warm::guess({1, 0, 0});
+    const ccd::Warm before = warm;
+    try {
+        ccd::penetration_local(ball, Tired{CCD_REAL(1.5), 2}, {}, &warm);
+        CHECK(false, "nothing thrown");
+    } catch (const TooFar &) {
+    }
+    ccd::Warm copy = before;
+    CHECK(same_bits(warm.get(), copy.get(), sizeof(ccd_warm_t)), "the state after an exception");
+}
+
+static void values()
+{
+    const Tired a{0, -1}, b{CCD_REAL(1.5), -1}, far_off{9, -1};
+    const ccd_real_t nan = CCD_REAL(0.0) / CCD_REAL(0.0);
+    CHECK(!ccd::penetration_local(a, far_off), "apart");
+    CHECK(ccd::penetration_local(a, far_off).status == ccd::Status::miss, "apart");
+    CHECK(ccd::penetration_local(a, b, {nan}).status == ccd::Status::bad_input, "NaN tolerance");
+    CHECK(ccd::penetration_along(a, b, {0, 0, 0}).status == ccd::Status::bad_input, "no direction");
+    std::array<ccd::Contact, 2> room;
+    std::array<ccd::Contact, 0> none;
+    CHECK(ccd::contacts(a, b, {1, 0, 0}, nan, room) == int(ccd::Status::bad_input), "NaN slop");
+    CHECK(ccd::contacts(a, b, {1, 0, 0}, 0, none) == int(ccd::Status::bad_input), "no room");
+    CHECK(ccd::mpr_penetration(a, b, {nan}) && ccd::gjk_penetration(a, b, {nan}), "libccd's calls take a default");
+    CHECK(ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, 4}).status == ccd::Status::bad_input, "an unknown flag");
+    CHECK(ccd::penetration_local(a, b, {CCD_REAL(1e-5), 0}).status == ccd::Status::limit, "no iterations");
+
+    /* What is not wanted is zero, and pos is the same alone. */
+    const auto all = ccd::penetration(a, b), nothing = ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, 0});
+    const auto pos = ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, ccd::want_pos});
+    const ccd_vec3_t zero3{{0, 0, 0}};
+    CHECK(nothing && nothing.depth == all.depth && same(nothing.pos, zero3) && same(nothing.point1, zero3), "nothing wanted");
+    CHECK(same(pos.pos, all.pos) && same(pos.point2, zero3) && !same(all.point2, zero3), "pos alone");
+    CHECK(std::string(ccd::implementation()).rfind("warmccd ", 0) == 0, "%s", ccd::implementation());
+
+    /* The guess leads: between two shapes on one spot any way out is as good. */
+    ccd::Warm warm = ccd::Warm::guess({0, -5, 0});
+    const auto hit = ccd::penetration_local(a, a, {CCD_REAL(1e-5)}, &warm);
+    CHECK(hit && hit.dir.y < CCD_REAL(-0.9), "dir %g %g %g", double(hit.dir.x), double(hit.dir.y), double(hit.dir.z));
+    warm.flip();
+    const auto flipped = ccd::penetration_local(a, a, {CCD_REAL(1e-5)}, &warm);
+    CHECK(flipped && flipped.dir.y > CCD_REAL(0.9), "dir %g after a flip", double(flipped.dir.y));
+    ccd::Warm zero = ccd::Warm::guess({0, 0, 0}), cold;
+    CHECK(same_bits(zero.get(), cold.get(), sizeof(ccd_warm_t)), "a guess of zero is cold");
+}
+
+/* A wrong sign, a centre in another frame; and nothing wrong. */
+struct Against {
+    ccd::Vec3 support(const ccd::Vec3 &d) const { return {-d.x, -d.y, -d.z}; }
+};
+struct Elsewhere : Against {
+    ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x + 5, d.y, d.z}; }
+    ccd::Vec3 center() const { return {}; }
+};
+
+static void checked()
+{
+    const auto against = ccd::check(Against{}), elsewhere = ccd::check(Elsewhere{}), fine = ccd::check(Tired{3, -1});
+    CHECK(against.faults == CCD_CHECK_OPPOSITE, "%u", against.faults);
+    CHECK(elsewhere && elsewhere.faults == CCD_CHECK_CENTER_OUTSIDE && elsewhere.center_outside > 3.9, "%u %g",
+          elsewhere.faults, double(elsewhere.center_outside));
+    CHECK(!fine && fine.size > 1.9 && fine.center_outside < 0, "%u %g", fine.faults, double(fine.size));
+}
+
+int main()
+{
+    same_as_c();
+    exceptions();
+    values();
+    checked();
+    return checks_end();
+}

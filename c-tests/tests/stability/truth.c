@@ -1,0 +1,104 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The truth that the other tests are judged by, held against itself: the two
+ * methods against each other over random pairs, and against the certified depths
+ * of the pair sets.
+ *
+ *   truth random-pairs step pair-set...     every step-th pose of each set */
+
+#include "categories.h"
+#include "harness/pairs.h"
+
+static int failed;
+
+static void fail(const char *what, const shape_t *a, const shape_t *b, double got, double low, double high)
+{
+    if (failed++ < 10) {
+        printf("FAILED %s: %.17g not in [%.17g, %.17g]\n", what, got, low, high);
+        print_shape(stdout, "a", a);
+        print_shape(stdout, "b", b);
+    }
+}
+
+/* Enumeration inside the bounds of the search, along its own direction, and zero
+ * after the move that it asks for. */
+static void methods_agree(int pairs)
+{
+    int i, k, compared = 0;
+    for (i = 0; i < pairs; i++) {
+        static const int kinds[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_TYPES};
+        static pair_t p;
+        dice_t d = dice(1000, (uint64_t)i);
+        double u[3], at, eps;
+        truth_t t, s;
+        for (k = 0; k < 2; k++) {
+            int kind = kinds[dice_below(&d, 5)];
+            *(k ? &p.b : &p.a) = kind == SHAPE_TYPES ? pair_polygon(&d, p.verts[k], 1) : pair_shape(&d, p.verts[k], kind, .1, 1);
+            pair_turn(&d, k ? &p.b : &p.a);
+        }
+        dice_unit(&d, u);
+        at = dice_in(&d, 0, 1) * pair_size(&p.a, &p.b);
+        shape_move(&p.b, at * u[0], at * u[1], at * u[2]);
+        t = truth_depth(&p.a, &p.b);
+        s = truth_branch(&p.a, &p.b, 1e-9, 40000);
+        eps = 64 * real_ulp() * pair_size(&p.a, &p.b);
+        compared += t.enumerated;
+        if (!t.enumerated)
+            fail("not enumerated", &p.a, &p.b, 0, 1, 1);
+        if (!(t.depth >= s.lower - eps && t.depth <= s.depth + eps))
+            fail("enumeration outside the search's bounds", &p.a, &p.b, t.depth, s.lower, s.depth);
+        if (!(fabs(truth_value(&p.a, &p.b, t.n) - t.depth) <= eps))
+            fail("depth is not the support value of its direction", &p.a, &p.b, truth_value(&p.a, &p.b, t.n), t.depth, t.depth);
+        if (t.depth > 0) {
+            shape_t moved = p.b;
+            shape_move(&moved, (double)p.b.pos[0] + t.depth * t.n[0], (double)p.b.pos[1] + t.depth * t.n[1],
+                       (double)p.b.pos[2] + t.depth * t.n[2]);
+            s = truth_depth(&p.a, &moved);
+            if (!(fabs(s.depth) <= eps))
+                fail("not touching after the move", &p.a, &moved, s.depth, 0, 0);
+            /* along a random direction: touching after that move too */
+            dice_unit(&d, u);
+            t = truth_along(&p.a, &p.b, u);
+            shape_move(&moved, (double)p.b.pos[0] + t.depth * u[0], (double)p.b.pos[1] + t.depth * u[1],
+                       (double)p.b.pos[2] + t.depth * u[2]);
+            s = truth_depth(&p.a, &moved);
+            if (!(fabs(s.depth) <= eps + (t.depth - t.lower)))
+                fail("along: not touching after the move", &p.a, &moved, s.depth, 0, 0);
+        }
+    }
+    printf("%d random pairs, both methods\n", compared);
+}
+
+int main(int argc, char **argv)
+{
+    int step = argc > 2 ? atoi(argv[2]) : 1, i, k;
+    methods_agree(argc > 1 ? atoi(argv[1]) : 1000);
+    for (k = 3; k < argc; k++) {
+        pair_set_t set;
+        double worst = 0, widest = 0;
+        if (pair_set_read(argv[k], &set) != 0) {
+            printf("FAILED cannot read %s\n", argv[k]);
+            return 1;
+        }
+        for (i = 0; i < set.n; i += step) {
+            shape_t a, b;
+            pair_truth_t known;
+            truth_t t;
+            double eps = 128 * DBL_EPSILON;
+            pair_set_pose(&set, i, &a, &b, &known);
+            t = truth_depth(&a, &b);
+            worst = fmax(worst, fabs(t.depth - known.depth));
+            widest = fmax(widest, t.depth - t.lower);
+            if (!(t.lower <= known.depth + eps && t.depth >= known.depth - known.gap - eps))
+                fail("outside the certified bounds", &a, &b, known.depth, t.lower, t.depth);
+            if (!(t.depth - t.lower <= 2e-12 * pair_size(&a, &b)))
+                fail("bounds do not close", &a, &b, t.depth, t.lower, t.depth);
+        }
+        printf("%s: largest difference %.2g, widest bounds %.2g\n", strrchr(argv[k], '/') ? strrchr(argv[k], '/') + 1 : argv[k],
+               worst, widest);
+        pair_set_free(&set);
+    }
+    printf("%d failures\n", failed);
+    return failed > 0;
+}

@@ -1,0 +1,267 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* Loaded before a program (LD_PRELOAD), this object stands between it and libccd: the dynamic
+ * linker binds the program's queries, and those of FCL, ODE, MuJoCo and DART, to the functions
+ * here. Each is answered by the library that the program is to go on with, on the program's own
+ * objects and callbacks; then a share of them is put to both libraries and judged (judge_query.c).
+ *
+ * Nothing is kept over a callback but what lies on the stack, so that exceptions and longjmp
+ * pass through. compare.sh says in the environment what is wanted:
+ *
+ *   CCD_COMPARE_DIR     where to count; without it nothing is watched
+ *   CCD_COMPARE_THEIRS, CCD_COMPARE_OURS   private copies of the two libraries
+ *   CCD_COMPARE_BASE    theirs or ours: whose answers the program goes on with
+ *   CCD_COMPARE_EVERY   one query in so many is judged; 0: none
+ *   CCD_COMPARE_TIMES   0: no times are taken
+ *   CCD_COMPARE_KEEP, CCD_COMPARE_CASE   where wrong answers go, and what their files end with */
+
+#define _GNU_SOURCE
+#include "tools/compare/catch.h"
+#include "tools/compare/hooks.h"
+#include "tools/compare/judge_query.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#define EXPORT __attribute__((visibility("default")))
+
+static compare_t compare;
+static uint64_t every;
+static const library_t *base;
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+static void (*answered)(int call, int hit, double depth, double length);
+
+static const char *wanted(const char *name, const char *otherwise)
+{
+    const char *value = getenv(name);
+    return value && *value ? value : otherwise;
+}
+
+static void give_up(const char *what)
+{
+    perror(what);
+    fputs("compare: nothing can be watched\n", stderr);
+    exit(125);
+}
+
+/* The file that all processes of the run share. */
+static compare_counts_t *counts_map(const char *dir)
+{
+    char path[4096];
+    void *mapped;
+    int file;
+    snprintf(path, sizeof path, "%s/counts", dir);
+    file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (file < 0 || ftruncate(file, sizeof(compare_counts_t)) != 0)
+        give_up(path);
+    mapped = mmap(NULL, sizeof(compare_counts_t), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    if (mapped == MAP_FAILED)
+        give_up(path);
+    close(file);
+    return (compare_counts_t *)mapped;
+}
+
+static void find_hook(const char *name, void *function)
+{
+    void *symbol = dlsym(RTLD_DEFAULT, name);
+    memcpy(function, &symbol, sizeof symbol);
+}
+
+/* Which file libccd.so.2 is in this process, told for the screen. */
+static void name_libraries(compare_counts_t *c)
+{
+    const char *(*implementation)(void) = NULL;
+    void *handle = dlopen(getenv("CCD_COMPARE_OURS"), RTLD_NOW | RTLD_NOLOAD);
+    void *symbol = handle ? dlsym(handle, "ccdImplementation") : NULL;
+    memcpy(&implementation, &symbol, sizeof symbol);
+    snprintf(c->ours, sizeof c->ours, "%s", implementation ? implementation() : "?");
+    snprintf(c->theirs, sizeof c->theirs, "%s", wanted("CCD_COMPARE_NAME", "?"));
+    snprintf(c->program, sizeof c->program, "%s", program_invocation_name);
+}
+
+static uint64_t time_told; /* of this process's */
+
+static void forked(void) { time_told = 0; }
+
+static void start(void)
+{
+    const char *const dir = getenv("CCD_COMPARE_DIR"), *const theirs = getenv("CCD_COMPARE_THEIRS"), *const ours = getenv("CCD_COMPARE_OURS");
+    const char *const who = wanted("CCD_COMPARE_BASE", "theirs");
+    if (!dir || !theirs || !ours) {
+        fputs("compare: to be started by compare.sh\n", stderr);
+        exit(125);
+    }
+    if (library_open(&compare.library[COMPARE_THEIRS], theirs, 0) || library_open(&compare.library[COMPARE_OURS], ours, 1))
+        exit(125);
+    compare.counts = counts_map(dir);
+    compare.base = strcmp(who, "theirs") != 0 ? COMPARE_OURS : COMPARE_THEIRS;
+    compare.timed = strcmp(wanted("CCD_COMPARE_TIMES", "1"), "0") != 0;
+    compare.keep = wanted("CCD_COMPARE_KEEP", NULL);
+    compare.case_source = wanted("CCD_COMPARE_CASE", NULL);
+    base = &compare.library[compare.base];
+    every = strtoull(wanted("CCD_COMPARE_EVERY", "1"), NULL, 10);
+    find_hook("compare_audit", &ask_audit);
+    find_hook("compare_answered", &answered);
+    pthread_atfork(NULL, NULL, forked);
+    if (__atomic_fetch_add(&compare.counts->processes, 1, __ATOMIC_RELAXED))
+        return;
+    name_libraries(compare.counts);
+    compare.counts->base = (uint64_t)compare.base;
+}
+
+static void count_process_time(void)
+{
+    const uint64_t now = clock_now(CLOCK_PROCESS_CPUTIME_ID), told = __atomic_exchange_n(&time_told, now, __ATOMIC_RELAXED);
+    count_add(&compare.counts->process_nanoseconds, now > told ? now - told : 0);
+}
+
+__attribute__((destructor)) static void end(void)
+{
+    if (compare.counts)
+        count_process_time();
+}
+
+EXPORT const compare_counts_t *compare_counts(void)
+{
+    pthread_once(&once, start);
+    return compare.counts;
+}
+
+/* --- queries ------------------------------------------------------------------------ */
+
+/* Chosen by the number of the query, scattered: every n-th one of a scene would always be
+ * about the same pairs. */
+static int is_sampled(uint64_t number)
+{
+    number = (number ^ (number >> 31)) * UINT64_C(0x9E3779B97F4A7C15);
+    number = (number ^ (number >> 29)) * UINT64_C(0xBF58476D1CE4E5B9);
+    return every == 1 || (every > 1 && (number ^ (number >> 32)) % every == 0);
+}
+
+/* The program's own outputs, NaN where it wants none. */
+static void read_outputs(const query_t *q, int code, const ccd_real_t *depth, const ccd_vec3_t *dir, answer_t *own)
+{
+    const ccd_real_t nan = (ccd_real_t)NAN;
+    memset(own, 0, sizeof *own);
+    own->code = code;
+    own->hit = is_hit(q->call, code);
+    own->depth = own->hit && depth ? *depth : nan;
+    ccdVec3Set(&own->dir, nan, nan, nan);
+    if (own->hit && dir)
+        own->dir = *dir;
+}
+
+static void count_broken(compare_call_t *c, const ccd_real_t *depth, const ccd_vec3_t *dir)
+{
+    const double length2 = dir ? (double)ccdVec3Len2(dir) : 1;
+    if (!isfinite(length2) || (depth && !isfinite((double)*depth)))
+        count_add(&c->not_finite, 1);
+    else if (length2 == 0)
+        count_add(&c->zero, 1);
+    else if (fabs(sqrt(length2) - 1) > 1e-9)
+        count_add(&c->not_unit, 1);
+}
+
+/* After the program's own answer. */
+static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t *depth, const ccd_vec3_t *dir)
+{
+    compare_call_t *c = &compare.counts->call[q->call];
+    const int hit = is_hit(q->call, code);
+    uint64_t start;
+    answer_t own;
+    count_add(&c->returned, 1);
+    count_add(&c->hits, (uint64_t)hit);
+    if (hit && q->call != COMPARE_SEPARATE)
+        count_broken(c, depth, dir);
+    if (answered)
+        answered(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
+    if (!is_sampled(number))
+        return;
+    start = clock_now(CLOCK_THREAD_CPUTIME_ID);
+    read_outputs(q, code, depth, dir, &own);
+    if (q->call == COMPARE_SEPARATE && own.hit && dir)
+        answer_by_length(&own);
+    sample_query(&compare, q, &own);
+    count_process_time();
+    count_add(&compare.counts->watch_nanoseconds, clock_now(CLOCK_THREAD_CPUTIME_ID) - start);
+}
+
+/* Through wrappers, for an audit of every point. */
+static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    asked_t asked;
+    answer_t answer;
+    memset(&asked, 0, sizeof asked);
+    ask_watched(base, q, &asked, &answer);
+    if (!is_hit(q->call, answer.code))
+        return answer.code;
+    if (q->call == COMPARE_SEPARATE)
+        ccdVec3Scale(&answer.dir, answer.depth);
+    if (depth)
+        *depth = answer.depth;
+    if (dir)
+        *dir = answer.dir;
+    if (pos)
+        *pos = answer.pos;
+    return answer.code;
+}
+
+static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    query_t q;
+    uint64_t number;
+    int code;
+    pthread_once(&once, start);
+    q.call = call;
+    q.obj[0] = obj1;
+    q.obj[1] = obj2;
+    q.ccd = ccd;
+    /* a callback that asks while the tool asks it is the tool's doing */
+    if (guard_active())
+        return ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
+    number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
+    code = ask_audit ? answer_audited(&q, depth, dir, pos) : ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
+    watch(&q, number, code, depth, dir);
+    return code;
+}
+
+EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    return query(COMPARE_PENETRATION_MPR, obj1, obj2, ccd, depth, dir, pos);
+}
+
+EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+{
+    return query(COMPARE_PENETRATION_GJK, obj1, obj2, ccd, depth, dir, pos);
+}
+
+EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_vec3_t *sep)
+{
+    return query(COMPARE_SEPARATE, obj1, obj2, ccd, NULL, sep, NULL);
+}
+
+EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
+{
+    return query(COMPARE_INTERSECT_MPR, obj1, obj2, ccd, NULL, NULL, NULL);
+}
+
+EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
+{
+    return query(COMPARE_INTERSECT_GJK, obj1, obj2, ccd, NULL, NULL, NULL);
+}
+
+EXPORT void __ccdSupport(const void *obj1, const void *obj2, const ccd_vec3_t *dir, const ccd_t *ccd, ccd_support_t *supp)
+{
+    pthread_once(&once, start);
+    base->raw_support(obj1, obj2, dir, ccd, supp);
+    if (!guard_active())
+        count_add(&compare.counts->raw_supports, 1);
+}

@@ -1,0 +1,265 @@
+/* SPDX-FileCopyrightText: 2026 The warmccd developers
+ * SPDX-License-Identifier: BSD-3-Clause */
+
+/* The screen at the end: what the watched processes counted.
+ *
+ * usage: screen DIR EVERY EXIT KEPT   for people; KEPT: where cases were kept, or empty
+ *        screen DIR fields            `watched key value key value ...`, for the tables of swap/ */
+
+#include "tools/compare/counts.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double PICO = 1e-12;
+
+static compare_counts_t all;
+
+/* Both are made of 64-bit numbers alone; the largest error alone is no sum. */
+static void add_call(compare_call_t *to, const compare_call_t *from)
+{
+    uint64_t most[COMPARE_SIDES];
+    size_t i;
+    for (i = 0; i < COMPARE_SIDES; i++)
+        most[i] = to->side[i].error_max > from->side[i].error_max ? to->side[i].error_max : from->side[i].error_max;
+    for (i = 0; i < sizeof *to / sizeof(uint64_t); i++)
+        ((uint64_t *)to)[i] += ((const uint64_t *)from)[i];
+    for (i = 0; i < COMPARE_SIDES; i++)
+        to->side[i].error_max = most[i];
+}
+
+static double part(uint64_t n, uint64_t of) { return of ? (double)n / (double)of : 0; }
+
+static const char *thousands(uint64_t n)
+{
+    static char buffer[8][32];
+    static int next;
+    char *out = buffer[next++ % 8] + 31;
+    int digits = 0;
+    *out = '\0';
+    do {
+        if (digits && digits % 3 == 0)
+            *--out = ',';
+        *--out = (char)('0' + n % 10);
+        digits++;
+    } while (n /= 10);
+    return out;
+}
+
+/* --- the parts of the screen ---------------------------------------------------------- */
+
+static void print_calls(compare_call_t *sum)
+{
+    int i;
+    printf("%-20s %12s %8s %12s %10s\n", "call", "queries", "hits", "judged", "overlaps");
+    for (i = 0; i < COMPARE_CALLS; i++) {
+        const compare_call_t *c = &all.call[i];
+        if (!c->queries)
+            continue;
+        printf("%-20s %12s %6.1f %% %12s %10s\n", COMPARE_CALL_NAME[i], thousands(c->queries), 100 * part(c->hits, c->returned),
+               thousands(c->judged), thousands(c->overlaps));
+        add_call(sum, c);
+    }
+    if (all.raw_supports)
+        printf("%-20s %12s   support points of another algorithm, not judged (FCL's own GJK and EPA)\n", "__ccdSupport",
+               thousands(all.raw_supports));
+    if (sum->queries > sum->returned)
+        printf("%s did not return: an exception or a jump out of a callback\n", thousands(sum->queries - sum->returned));
+}
+
+static void price(char *out, size_t size, double nanoseconds)
+{
+    if (nanoseconds < 1000)
+        snprintf(out, size, "%.0f ns", nanoseconds);
+    else
+        snprintf(out, size, "%.2f us", nanoseconds / 1000);
+}
+
+/* A query of s support points at p and arithmetic a takes a + s p. The libraries are even at
+ * the p where theirs are equal, which is as far from today's as their times are apart: above it
+ * the one that asks for fewer is the faster. */
+static void break_even(const compare_call_t *c, char *out, size_t size)
+{
+    const compare_side_t *theirs = &c->side[COMPARE_THEIRS], *ours = &c->side[COMPARE_OURS];
+    const double now = part(all.callback_nanoseconds, all.callback_pairs);
+    const double slower = part(ours->nanoseconds, c->timed) - part(theirs->nanoseconds, c->timed);
+    const double fewer = 0.5 * (part(theirs->calls, c->judged) - part(ours->calls, c->judged));
+    const double even = now + slower / fewer;
+    char text[32];
+    if (!c->timed)
+        *out = '\0';
+    else if (fewer != 0 && even > 0) {
+        price(text, sizeof text, even);
+        snprintf(out, size, "%s %s", fewer > 0 ? "above" : "below", text);
+    } else
+        snprintf(out, size, "%s", slower < 0 ? "always" : "never");
+}
+
+static void print_side(const char *name, const compare_side_t *s, const compare_call_t *c)
+{
+    printf("%-20s %7s %6s %7s %7s %8s %8.3g %8.3g %9.2f %7.0f", name, thousands(s->verdict[VERDICT_MISSED]),
+           thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_BROKEN]), thousands(s->verdict[VERDICT_DEEP]),
+           thousands(s->verdict[VERDICT_UNSOUND]), 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
+           0.5 * part(s->calls, c->judged), part(s->nanoseconds, c->timed));
+}
+
+static void print_wrong(const compare_call_t *c, const char *call)
+{
+    char even[48];
+    printf("\n%-20s %7s %6s %7s %7s %8s %8s %8s %9s %7s  %s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um", "max um",
+           "supports", "ns", "faster");
+    print_side("libccd", &c->side[COMPARE_THEIRS], c);
+    printf("\n");
+    print_side("this library", &c->side[COMPARE_OURS], c);
+    break_even(c, even, sizeof even);
+    printf("  %s\n", even);
+    printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged), part(c->minimum_nanoseconds, c->timed));
+}
+
+/* Prints what kept queries from being judged, and what the program should know. */
+static void print_notes(const compare_call_t *sum)
+{
+    if (sum->no_shape)
+        printf("%s queries were about no convex shape (a callback answers a direction with a point that is not the farthest, or the\n"
+               "  centre lies outside): no answer can be right there, none was judged\n",
+               thousands(sum->no_shape));
+    if (sum->memory)
+        printf("%s queries were answered otherwise when asked again: callbacks with memory. The questions asked for this screen may\n"
+               "  have changed the program; `--every 0` asks none\n",
+               thousands(sum->memory));
+    if (sum->threw)
+        printf("%s queries were not judged: asked again, a callback threw or jumped, or answered with what is no number\n",
+               thousands(sum->threw));
+    if (sum->endless)
+        printf("%s queries were not judged: a library did not end within 100,000 calls of the callbacks\n", thousands(sum->endless));
+    if (sum->contradicted)
+        printf("%s proofs of this library were wrong: a support value lies below their bound. Please report them.\n",
+               thousands(sum->contradicted));
+}
+
+/* Which side of the break-even the program is on, and what of its time that is about. */
+static void print_price(const compare_call_t *sum)
+{
+    const compare_side_t *theirs = &sum->side[COMPARE_THEIRS], *ours = &sum->side[COMPARE_OURS];
+    const double ratio = part(ours->nanoseconds, 1) / part(theirs->nanoseconds, 1);
+    char text[32];
+    if (!sum->timed || !all.callback_pairs)
+        return;
+    price(text, sizeof text, part(all.callback_nanoseconds, all.callback_pairs));
+    printf("A support point of both your objects costs %s: this library is the %s one, a query takes %.2f times libccd's time.\n", text,
+           ratio < 1 ? "faster" : "slower", ratio);
+    if (all.process_nanoseconds > all.watch_nanoseconds) {
+        const double own = (double)(all.process_nanoseconds - all.watch_nanoseconds), queries = (double)sum->queries;
+        const double share = queries * part(sum->side[all.base].nanoseconds, sum->timed) / own;
+        const double other = queries * part(sum->side[1 - all.base].nanoseconds, sum->timed) / own;
+        printf("  Queries are %.1f %% of this program's %.2f s; on %s the program would take %+.1f %%.\n", 100 * share, 1e-9 * own,
+               all.base == COMPARE_THEIRS ? "this library" : "libccd", 100 * (other - share));
+    }
+}
+
+static void print_change(const compare_call_t *sum)
+{
+    const compare_side_t *theirs = &sum->side[COMPARE_THEIRS];
+    if (!sum->judged)
+        return;
+    printf("What the swap changes, of %s judged: %s hits more, %s fewer", thousands(sum->judged), thousands(sum->found), thousands(sum->gone));
+    if (sum->both)
+        printf("; of %s common hits %.1f %% of libccd's depths\n  are more than 1 %% deeper, %.1f %% of the directions differ by more than 10 degrees",
+               thousands(sum->both), 100 * part(sum->deeper, sum->both), 100 * part(sum->turned, sum->both));
+    printf(".\n");
+    if (theirs->verdict[VERDICT_BROKEN])
+        printf("  %s hits of libccd have no direction (a touch); here they are misses, or hits with one.\n",
+               thousands(theirs->verdict[VERDICT_BROKEN]));
+}
+
+static void print_kept(const char *dir)
+{
+    int side, i, none = 1;
+    for (side = 0; side < COMPARE_SIDES; side++)
+        for (i = 0; i < COMPARE_KEPT; i++)
+            if (all.kept[side][i].used) {
+                printf("%s/%s-%d.c %s\n", dir, COMPARE_SIDE_NAME[side], i + 1, all.kept[side][i].title);
+                none = 0;
+            }
+    if (none)
+        printf("No wrong answer to keep.\n");
+}
+
+static void print_screen(const char *every, const char *code)
+{
+    static compare_call_t sum;
+    int i;
+    const char *who = all.base == COMPARE_THEIRS ? "libccd" : "this library";
+    printf("\n== %s, exit code %s, on the answers of %s; ", all.program, code, who);
+    if (strcmp(every, "0") != 0)
+        printf("one query in %s judged", every);
+    else
+        printf("none was judged");
+    if (all.processes > 1)
+        printf("; %d processes", (int)all.processes);
+    printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);
+    print_calls(&sum);
+    for (i = 0; i < COMPARE_CALLS; i++)
+        if (all.call[i].judged)
+            print_wrong(&all.call[i], COMPARE_CALL_NAME[i]);
+    printf("\n");
+    print_notes(&sum);
+    print_price(&sum);
+    print_change(&sum);
+}
+
+/* --- for programs --------------------------------------------------------------------- */
+
+/* What follows `before`: names in a struct's order, all of 64 bits. */
+static void print_numbers(const char *before, const char *names, const void *numbers)
+{
+    const uint64_t *n = (const uint64_t *)numbers;
+    while (*names) {
+        const size_t length = strcspn(names, " ");
+        printf(" %s%.*s %llu", before, (int)length, names, (unsigned long long)*n++);
+        names += length + (names[length] == ' ');
+    }
+}
+
+static void print_fields(void)
+{
+    static compare_call_t sum;
+    static const char *const name[COMPARE_SIDES] = { "theirs_", "ours_" };
+    int i;
+    for (i = 0; i < COMPARE_CALLS; i++)
+        add_call(&sum, &all.call[i]);
+    printf("watched");
+    print_numbers("", "queries returned hits zero not_finite not_unit sampled judged overlaps timed threw endless memory no_shape contradicted",
+                  &sum);
+    for (i = 0; i < COMPARE_SIDES; i++) {
+        const compare_side_t *s = &sum.side[i];
+        print_numbers(name[i], "right missed spurious broken deep unsound hits calls slanted aside", s);
+        printf(" %ssupports %llu %serror_max %.9g", name[i], (unsigned long long)(s->calls + 1) / 2, name[i], PICO * (double)s->error_max);
+    }
+    printf(" minimum_supports %llu\n", (unsigned long long)(sum.minimum_calls + 1) / 2);
+}
+
+/* Exit code 3: nothing was asked. */
+int main(int argc, char **argv)
+{
+    char path[4096];
+    FILE *file;
+    if (argc != 3 && argc != 5) {
+        fprintf(stderr, "usage: screen DIR EVERY EXIT KEPT | screen DIR fields\n");
+        return 2;
+    }
+    snprintf(path, sizeof path, "%s/counts", argv[1]);
+    file = fopen(path, "rb");
+    if (!file || fread(&all, sizeof all, 1, file) != 1)
+        all.processes = 0;
+    if (file)
+        fclose(file);
+    if (argc == 3)
+        print_fields();
+    else if (all.processes) {
+        print_screen(argv[2], argv[3]);
+        if (*argv[4])
+            print_kept(argv[4]);
+    }
+    return all.processes ? 0 : 3;
+}
