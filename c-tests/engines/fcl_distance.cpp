@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* FCL's signed distance of every configuration of stability/configurations.h, of pairs of equal
+/* FCL's signed distance of every configuration of tests/stability/configurations.h, of pairs of equal
  * boxes that touch face on face, and of random pairs, judged by exact truth. Prints the wrong
  * answers, the file that GJKSignedDistance is taken from, and a line for each set:
  *

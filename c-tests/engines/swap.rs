@@ -30,7 +30,7 @@ fn piles_must_pass(p: &Piles) {
     assert!(against.is_empty(), "{} {}:\n{against}", p.consumer, p.scene);
 }
 
-/// To 7 mm, as `pos` itself (`extension/pressure.c`); a point contact is where libccd has it.
+/// To 7 mm, as `pos` itself (`tests/extension/pressure.c`); a point contact is where libccd has it.
 #[test]
 fn fcl_positions_are_the_centre_of_pressure() {
     let all = checks::fcl_positions();

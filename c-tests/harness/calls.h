@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The one table of what this library exports, but for the polytope functions, which no header
- * declares. this_library.h, contract/every_call.h, extension/bad_input.c and stability/judge.h ask by it; the contract test
+ * declares. this_library.h, tests/contract/every_call.h, tests/extension/bad_input.c and tests/stability/judge.h ask by it; the contract test
  * holds it against the library's symbols, the extension's interfaces and the Rust tests.
  *
  * PAIR_CALLS: name, the word that the judges have for it, what its arguments behind (obj1, obj2,

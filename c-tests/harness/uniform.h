@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Repeatable random numbers and rotations: one stream a program. (Of many streams: stability/splitmix.h.) */
+/* Repeatable random numbers and rotations: one stream a program. (Of many streams: tests/stability/splitmix.h.) */
 
 #ifndef TESTS_UNIFORM_H
 #define TESTS_UNIFORM_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Where the contact position of a body that tips over is, by libccd, by this library and by
-//! integration: what `extension/pressure.c` says of tilts.
+//! integration: what `tests/extension/pressure.c` says of tilts.
 
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 
 /* Nothing is read but what a call needs; input that no query can like: few iterations, an object
  * against itself, objects without volume, sizes far from 1; outputs that are NULL. (Tolerances, points
- * that are no numbers, and callbacks that lie: extension/bad_input.c; ordinary input of every size:
+ * that are no numbers, and callbacks that lie: tests/extension/bad_input.c; ordinary input of every size:
  * stability/campaign.c; the same bits whenever they are asked for: threads.c.) Always a return code of
  * the call's, outputs untouched unless it is a hit, a hit sound, and an end: the number of support
  * points is bounded. */

@@ -3,7 +3,7 @@
 
 /* Every call with every argument that no query can work with: the code is the documented one, and
  * nothing is written then. What may be NULL; what is wanted.
- * (max_iterations: contract/arguments.c.) */
+ * (max_iterations: tests/contract/arguments.c.) */
 
 #include "tests/contract/check.h"
 #include "harness/this_library.h"
@@ -416,7 +416,7 @@ static void wanted(void)
     setup();
 }
 
-/* A distance is an answer; what is not wanted of it is zero. (Other misses write nothing: contract/arguments.c.) */
+/* A distance is an answer; what is not wanted of it is zero. (Other misses write nothing: tests/contract/arguments.c.) */
 static void a_distance(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2;

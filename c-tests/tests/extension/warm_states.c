@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Whatever a state holds, every answer is judged (stability/judge.h): cold, swapped, from its own
+/* Whatever a state holds, every answer is judged (tests/stability/judge.h): cold, swapped, from its own
  * state, from that flipped, from another pair's, from bytes. Then what a state is worth, and that it
  * keeps its side. */
 
