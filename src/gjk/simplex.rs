@@ -234,7 +234,9 @@ impl Simplex {
             dir: n,
             distance2,
         };
+        let (p, q) = (&self.slots[i & 3].w, &self.slots[j & 3].w);
         let edge = match (beyond_i, beyond_j) {
+            (false, false) if !(n.dot(&p.cross(q)) > 0.0) => self.segment(i, j),
             (false, false) => {
                 let height = n.dot(&self.slots[newest & 3].w);
                 return face(height / n.norm_squared() * height);
