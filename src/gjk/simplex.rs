@@ -6,14 +6,14 @@
 //! Three-Dimensional Space", IEEE J. Robotics and Automation 4(2), 1988).
 //!
 //! 1. n points from the closest point of the simplex to the origin. The new point w is farther along n
-//!    than the simplex, so that only features with w can be closest.
+//!    than the simplex, so that a feature with w is closest.
 //! 2. Of two or three points, the signs of the barycentric coordinates tell the feature.
 //! 3. Of four, the origin is on the inner side of face w, a, b when det(w, a, b) > 0 (base abc wound so
 //!    that its normal is n), and inside the tetrahedron when that holds for all three new faces.
 //!
-//! Departures. Near the origin the closest point is mostly rounding error, the normal of a face is not: a
-//! face is left along its normal, and an origin within the contact epsilon of an edge counts as one in the
-//! face. No length is compared with an absolute epsilon. The new point need not be a support point: step 1
+//! Departures. In a simplex as flat as rounding, the old edge of a new face may be the closest feature. Near
+//! the origin the closest point is mostly rounding error, the normal of a face is not: a face is left along
+//! its normal, and an origin within the contact epsilon of an edge counts as one in the face. No length is compared with an absolute epsilon. The new point need not be a support point: step 1
 //! holds for any known difference that is farther along n.
 
 use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
@@ -109,21 +109,6 @@ impl Simplex {
         }
     }
 
-    /// Keeps the corners that have a weight, of a simplex without the interior point.
-    pub fn keep(&mut self, weights: &[f64; 3]) {
-        let order = self.order;
-        let mut kept = 0;
-        for (slot, weight) in order.iter().zip(weights) {
-            if *weight > 0.0 && kept < 3 {
-                for place in &mut self.order[kept..] {
-                    *place = *slot;
-                }
-                kept += 1;
-            }
-        }
-        self.len = kept;
-    }
-
     /// Returns the corners and the points that were corners.
     #[inline(always)]
     pub fn slots(&mut self) -> &mut [Vertex] {
@@ -156,13 +141,13 @@ impl Simplex {
             0 => self.corner(free),
             1 => self.line(i, free, touch),
             2 => {
-                let [a, b] = [i, j].map(|slot| self.slots[slot & 3].w);
-                let n = normal(&a, &b, &w);
+                let [a, b] = [i, j].map(|slot| &self.slots[slot & 3].w);
+                let n = normal(a, b, &w);
                 // NaN, or a flat D: either side.
                 if n.dot(&w) > 0.0 {
-                    self.triangle([j, i, free], -n, a.cross(&w), w.cross(&b), touch)
+                    self.triangle([j, i, free], -n, touch)
                 } else {
-                    self.triangle([i, j, free], n, b.cross(&w), w.cross(&a), touch)
+                    self.triangle([i, j, free], n, touch)
                 }
             }
             _ => self.faces(free, touch, size2)?,
@@ -183,16 +168,16 @@ impl Simplex {
         }
     }
 
-    /// Returns the closest feature of the segment from `i` to the newest point.
+    /// Returns the closest feature of a segment.
     #[inline(always)]
-    fn segment(&self, i: usize, newest: usize) -> Feature {
-        let (a, b) = (&self.slots[i & 3].w, &self.slots[newest & 3].w);
+    fn segment(&self, i: usize, j: usize) -> Feature {
+        let (a, b) = (&self.slots[i & 3].w, &self.slots[j & 3].w);
         let ab = a - b;
         let t = -b.dot(&ab);
         let length2 = ab.norm_squared();
         // NaN and a segment without length end at a corner.
         if !(t > 0.0) {
-            self.corner(newest)
+            self.corner(j)
         } else if !(t < length2) {
             self.corner(i)
         } else {
@@ -201,7 +186,7 @@ impl Simplex {
             let v = b + ab * (t / length2);
             let v = v - ab * (v.dot(&ab) / length2);
             Feature {
-                order: [i, newest, newest],
+                order: [i, j, j],
                 len: 2,
                 dir: -v,
                 distance2: v.norm_squared(),
@@ -212,39 +197,38 @@ impl Simplex {
     /// As [`Simplex::segment`] for a simplex of two points; where they hold the origin, the direction is any
     /// across.
     #[inline(always)]
-    fn line(&self, i: usize, newest: usize, touch: f64) -> Feature {
-        let mut feature = self.segment(i, newest);
+    fn line(&self, i: usize, j: usize, touch: f64) -> Feature {
+        let mut feature = self.segment(i, j);
         if !(feature.distance2 > touch * touch) {
-            let along = self.slots[newest & 3].w - self.slots[i & 3].w;
+            let along = self.slots[j & 3].w - self.slots[i & 3].w;
             feature.dir = perpendicular(&unit(&along).unwrap_or(Vec3::x()));
         }
         feature
     }
 
-    /// Returns the closest feature of the triangle i, j, newest (`order`): the face, or an edge or corner
-    /// with the newest point. `n` is its normal, to the origin; `jw` and `wi` are cross products of corners.
+    /// Returns the closest feature of a triangle. `n`: its normal, to the origin.
     #[inline(always)]
-    fn triangle(&self, order: [usize; 3], n: Vec3, jw: Vec3, wi: Vec3, touch: f64) -> Feature {
-        let [i, j, newest] = order;
-        // The barycentric coordinates of i and j, times n².
-        let (beyond_i, beyond_j) = (!(n.dot(&jw) > 0.0), !(n.dot(&wi) > 0.0));
+    fn triangle(&self, order: [usize; 3], n: Vec3, touch: f64) -> Feature {
+        let [i, j, k] = order;
+        let [a, b, c] = order.map(|slot| &self.slots[slot & 3].w);
         let face = |distance2| Feature {
             order,
             len: 3,
             dir: n,
             distance2,
         };
-        let (p, q) = (&self.slots[i & 3].w, &self.slots[j & 3].w);
-        let edge = match (beyond_i, beyond_j) {
-            (false, false) if !(n.dot(&p.cross(q)) > 0.0) => self.segment(i, j),
-            (false, false) => {
-                let height = n.dot(&self.slots[newest & 3].w);
+        // Whether the origin is beyond the edge opposite to a, b and c: the sign of a barycentric coordinate.
+        let is_beyond = [(b, c), (c, a), (a, b)].map(|(p, q)| !(n.dot(&p.cross(q)) > 0.0));
+        let edge = match is_beyond {
+            [false, false, false] => {
+                let height = n.dot(c);
                 return face(height / n.norm_squared() * height);
             }
-            (true, false) => self.segment(j, newest),
-            (false, true) => self.segment(i, newest),
-            (true, true) => {
-                let (one, other) = (self.segment(i, newest), self.segment(j, newest));
+            [false, false, true] => self.segment(i, j),
+            [true, false, _] => self.segment(j, k),
+            [false, true, _] => self.segment(i, k),
+            [true, true, _] => {
+                let (one, other) = (self.segment(i, k), self.segment(j, k));
                 if other.distance2 < one.distance2 {
                     other
                 } else {
@@ -282,15 +266,13 @@ impl Simplex {
         };
         let mut best: Option<Feature> = None;
         let corners = [i, j, k, i];
-        let crosses = [wa, wb, wc, wa];
         for s in 0..3 {
             let [p, q] = [corners[s], corners[s + 1]].map(|slot| &self.slots[slot & 3].w);
             if is_clear(heights[s], p, q, interior[(s + 2) % 3]) {
                 continue;
             }
             let order = [corners[s], corners[s + 1], newest];
-            let n = normal(p, q, w);
-            let face = self.triangle(order, n, -crosses[s + 1], crosses[s], touch);
+            let face = self.triangle(order, normal(p, q, w), touch);
             if best.as_ref().is_none_or(|b| face.distance2 < b.distance2) {
                 best = Some(face);
             }
@@ -415,6 +397,39 @@ mod tests {
             }
         }
         assert!(met.iter().all(|n| *n > 100), "{met:?}");
+    }
+
+    /// Corners of a plate that is thinner than the contact epsilon: the closest feature lies within it, though
+    /// which side of a face the others are on is rounding.
+    #[test]
+    fn a_flat_simplex_keeps_no_face_beside_the_origin() {
+        let mut r = Random::new(45);
+        for _ in 0..5000 {
+            let (turn, touch) = (r.rotation(), 1e-6);
+            let at = r.vector(1.0);
+            let points: Vec<Vec3> = (0..8)
+                .map(|_| {
+                    turn * (at + r.vector(1.0)).component_mul(&Vec3::new(1.0, 1.0, 0.5 * touch))
+                })
+                .collect();
+            let mut simplex = Simplex::EMPTY;
+            let mut dir = r.direction();
+            for _ in 0..12 {
+                let farthest = points
+                    .iter()
+                    .max_by(|p, q| dir.dot(p).total_cmp(&dir.dot(q)));
+                let w = *farthest.unwrap();
+                let pair = VertexPair::INTERIOR;
+                let Some((to, distance2)) = simplex.add(Vertex { w, pair }, touch, 10.0) else {
+                    break;
+                };
+                dir = to;
+                let [a, b, c] = &simplex.corners().map(|v| v.w);
+                let closest = barycentric::triangle(&Vec3::zeros(), a, b, c);
+                let beside = closest.distance2.sqrt() - distance2.sqrt();
+                assert!(beside <= 2.0 * touch, "{beside}");
+            }
+        }
     }
 
     #[test]
