@@ -26,7 +26,11 @@ fn link_arguments() -> Vec<&'static str> {
     let vendor = var("CARGO_CFG_TARGET_VENDOR").unwrap_or_default();
     let family = var("CARGO_CFG_TARGET_FAMILY").unwrap_or_default();
     if vendor == "apple" {
-        return vec!["-Wl,-install_name,@rpath/libccd.2.dylib"];
+        // A program is told these versions of libccd's library too.
+        return vec![
+            "-Wl,-install_name,@rpath/libccd.2.dylib",
+            "-Wl,-compatibility_version,2.0.0,-current_version,2.0.0",
+        ];
     }
     if family != "unix" {
         // A DLL has no other name than that of its file.

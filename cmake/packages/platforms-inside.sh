@@ -29,29 +29,35 @@ make_std() {
     esac
     touch "$std/made"
 }
-make_std $target
 
-echo "== the library, by CMake"
-cat >/toolchain.cmake <<END
-set(CMAKE_SYSTEM_NAME Windows)
-set(CMAKE_SYSTEM_PROCESSOR x86_64)
-set(CMAKE_C_COMPILER $cc)
-set(CMAKE_STRIP x86_64-w64-mingw32-strip)
+# install TARGET SYSTEM COMPILER STRIP: the library, by CMake, in /prefix/TARGET, and a project that finds it there,
+# in /consumer/TARGET
+install() {
+    echo "== $1: the library, by CMake"
+    cat >"/$1.cmake" <<END
+set(CMAKE_SYSTEM_NAME $2)
+set(CMAKE_SYSTEM_PROCESSOR ${1%%-*})
+set(CMAKE_C_COMPILER $3)
+set(CMAKE_STRIP $4)
 END
-rm -rf /build /prefix /consumer
-cmake -S /tree/cmake -B /build -DCMAKE_INSTALL_PREFIX=/prefix -DCMAKE_TOOLCHAIN_FILE=/toolchain.cmake \
-    -DCCD_RUST_TARGET=$target -DCCD_CARGO_TARGET_DIR=/cargo
-cmake --build /build
-cmake --install /build
-cargo build --release --lib --manifest-path /tree/Cargo.toml --target-dir /cargo
+    rm -rf "/build/$1" "/prefix/$1" "/consumer/$1"
+    cmake -S /tree/cmake -B "/build/$1" -DCMAKE_INSTALL_PREFIX="/prefix/$1" -DCMAKE_TOOLCHAIN_FILE="/$1.cmake" \
+        -DCCD_RUST_TARGET="$1" -DCCD_CARGO_TARGET_DIR=/cargo
+    cmake --build "/build/$1"
+    cmake --install "/build/$1"
+    echo "== $1: a project that finds the package"
+    cmake -S /tree/c-tests/tests/packaging/consumer -B "/consumer/$1" -DWAY=find_package -DCMAKE_PREFIX_PATH="/prefix/$1" \
+        -DCMAKE_TOOLCHAIN_FILE="/$1.cmake"
+    cmake --build "/consumer/$1"
+}
+failed=0
 
-echo "== a project that finds the package"
-cmake -S /tree/c-tests/tests/packaging/consumer -B /consumer -DWAY=find_package -DCMAKE_PREFIX_PATH=/prefix \
-    -DCMAKE_TOOLCHAIN_FILE=/toolchain.cmake
-cmake --build /consumer
-cp /prefix/bin/ccd.dll /consumer
+make_std $target
+install $target Windows $cc x86_64-w64-mingw32-strip
+prefix=/prefix/$target
+cp $prefix/bin/ccd.dll /consumer/$target
 for program in plain namespaced static; do
-    wine /consumer/$program.exe
+    wine /consumer/$target/$program.exe
 done
 
 # What the tests take from POSIX to go on after a crash or an endless loop: here these end the program.
@@ -73,14 +79,14 @@ END
 run=/run-windows
 rm -rf $run
 mkdir $run
-cp /prefix/bin/ccd.dll $run
+cp $prefix/bin/ccd.dll $run
+cargo build --release --lib --locked --manifest-path /tree/Cargo.toml --target-dir /cargo
 cp /cargo/release/libccd.so $run/libccd.so.2
 cp /tree/c-tests/tools/record/contacts.bin $run
 cd $run
-system=$(sed -n 's/^Libs.private: //p' /prefix/lib/pkgconfig/ccd.pc)
+system=$(sed -n 's/^Libs.private: //p' $prefix/lib/pkgconfig/ccd.pc)
 threads="-Wl,-Bstatic -lwinpthread -Wl,-Bdynamic"
 flags="-std=gnu99 -O2 -ffp-contract=off -DOURS_ALONE -I/tree/c-tests"
-failed=0
 ways="shared static"
 # What a program wrote, without times, which end a line, one or two, and without how many checks there were: some go
 # by addresses.
@@ -96,10 +102,10 @@ try() {
     # shellcheck disable=SC2086  # one word each
     {
         gcc $flags -I/tree/include "$source" ./libccd.so.2 -lm -o "$name"
-        $cc $flags -D__USE_MINGW_ANSI_STDIO=1 -include /posix.h -I/prefix/include "$source" \
-            -L/prefix/lib -lccd $threads -o "$name-shared.exe"
-        $cc $flags -D__USE_MINGW_ANSI_STDIO=1 -include /posix.h -I/prefix/include -DCCD_STATIC_DEFINE "$source" \
-            /prefix/lib/libccd.a $system $threads -o "$name-static.exe"
+        $cc $flags -D__USE_MINGW_ANSI_STDIO=1 -include /posix.h -I$prefix/include "$source" \
+            -L$prefix/lib -lccd $threads -o "$name-shared.exe"
+        $cc $flags -D__USE_MINGW_ANSI_STDIO=1 -include /posix.h -I$prefix/include -DCCD_STATIC_DEFINE "$source" \
+            $prefix/lib/libccd.a $system $threads -o "$name-static.exe"
     }
     LD_LIBRARY_PATH=. "./$name" "$@" >here.txt
     for way in $ways; do
@@ -112,7 +118,7 @@ try() {
         lines <there.txt >there-lines.txt
         differ=$(diff here-lines.txt there-lines.txt | grep -c '^>' || true)
         [ "$differ" -eq 0 ] && [ "$(wc -l <here.txt)" -eq "$(wc -l <there.txt)" ] || failed=1
-        echo "$name $*, $way: $said; $differ of $(wc -l <here.txt) lines other than on Linux"
+        echo "$name${*:+ $*}, $way: $said; $differ of $(wc -l <here.txt) lines other than on Linux"
     done
 }
 
@@ -128,9 +134,10 @@ try tests/contract/threads.c
 try tests/contract/exceptions.c
 try tests/extension/bad_input.c
 try tests/extension/support_check.c
+try examples/pair_table.c
+try examples/world.c
 try tests/extension/warm_states.c
 try tests/extension/pressure.c
-try examples/world.c
 try tests/stability/configurations.c compatible
 try tests/stability/configurations.c proven
 try tests/stability/configurations.c local
@@ -142,33 +149,43 @@ for target in x86_64-pc-windows-msvc aarch64-apple-darwin x86_64-apple-darwin; d
     make_std $target
     for features in "" single; do
         cargo check -q --lib --locked --manifest-path /tree/Cargo.toml --target-dir /cargo --target $target \
-            --features "$features" && echo "$target $features: cargo check passes" || failed=1
+            --features "$features" && echo "$target${features:+, $features}: cargo check passes" || failed=1
     done
 done
 
-echo "== macOS on arm64, linked by zig"
-if [ -x /zig/bin/python ] || { python3 -m venv /zig && /zig/bin/pip install -q ziglang; }; then
-    # Without what rustc passes and zig does not know: the linked library exports more.
-    cat >/zig/cc <<'END'
-#!/bin/sh
-n=$#
-while [ $n -gt 0 ]; do
-    case $1 in
-    -arch | -isysroot) shift && n=$((n - 1)) ;;
-    -mmacosx-version-min=* | -Wl,-exported_symbols_list* | -Wl,*/list) ;;
-    *) set -- "$@" "$1" ;;
-    esac
-    shift
-    n=$((n - 1))
+# zig's package brings macOS's headers, and the names of libSystem's symbols, in the place of Apple's SDK.
+[ -x /zig/bin/python ] && /zig/bin/python -c "import ziglang" || {
+    python3 -m venv /zig && /zig/bin/pip install -q ziglang
+} || {
+    echo "ziglang cannot be installed here: nothing is linked for macOS" >&2
+    exit 1
+}
+zig=$(dirname "$(find /zig/lib -path '*/ziglang/__init__.py')")/lib/libc
+rm -rf /sdk
+mkdir -p /sdk/usr/lib /sdk/bin
+ln -s "$zig/include/any-darwin-any" /sdk/usr/include
+# arm64e's symbols are arm64's; LLVM's linker knows no newer name than these.
+sed -E 's/arm64e(\.x1)?-/arm64-/g' "$zig/darwin/libSystem.tbd" >/sdk/usr/lib/libSystem.tbd
+for library in c m; do
+    ln -s libSystem.tbd /sdk/usr/lib/lib$library.tbd
 done
-exec /zig/bin/python -m ziglang cc -target aarch64-macos "$@"
+# CMake asks it for macOS's version.
+printf '#!/bin/sh\necho 11.0\n' >/sdk/bin/sw_vers
+chmod +x /sdk/bin/sw_vers
+export SDKROOT=/sdk PATH=/sdk/bin:$PATH
+for target in aarch64-apple-darwin x86_64-apple-darwin; do
+    cat >/sdk/bin/$target <<END
+#!/bin/sh
+exec clang --target=$target -mmacosx-version-min=11.0 -fuse-ld=lld -Wno-unused-command-line-argument "\$@"
 END
-    chmod +x /zig/cc
-    # Any folder in the place of Apple's SDK, which zig does not read.
-    SDKROOT=/zig CARGO_TARGET_AARCH64_APPLE_DARWIN_LINKER=/zig/cc cargo build -q --release --lib --locked \
-        --manifest-path /tree/Cargo.toml --target-dir /cargo --target aarch64-apple-darwin || failed=1
-    llvm-objdump --macho --dylib-id /cargo/aarch64-apple-darwin/release/libccd.dylib || failed=1
-else
-    echo "zig cannot be installed here: not linked for macOS"
-fi
+    chmod +x /sdk/bin/$target
+    install $target Darwin /sdk/bin/$target /usr/bin/llvm-strip
+    library=/prefix/$target/lib/libccd.2.dylib
+    # What a program on it asks for at run time.
+    llvm-objdump --macho --dylibs-used /consumer/$target/plain | tee /mac.txt
+    grep -q '@rpath/libccd.2.dylib (compatibility version 2.0.0, current version 2.0.0)' /mac.txt || failed=1
+    # The names that it defines are those that it defines on Linux.
+    llvm-nm -gU --format=just-symbols $library | sed 's/^_//' | sort >/mac.txt
+    nm -D --defined-only --format=just-symbols /cargo/release/libccd.so | sed 's/@.*//' | sort | diff - /mac.txt || failed=1
+done
 exit $failed

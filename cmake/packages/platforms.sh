@@ -2,10 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-#   platforms.sh   builds the library for Windows and runs C programs on it under wine; checks it
-#                  for MSVC and macOS, and links it for macOS on arm64
+#   platforms.sh   builds the library for Windows and runs C programs on it under wine; builds it for
+#                  macOS, and C programs on it; checks it for MSVC
 #
-# In a chroot of Debian 13, with MinGW, wine and Debian's Rust. The standard libraries for these
+# In a chroot of Debian 13, with MinGW, wine, clang and Debian's Rust. The standard libraries for these
 # targets, which `rustup target add` would bring, are compiled from rust-src. The files are those of
 # this folder that git knows. Says what is missing where that cannot be installed. As root;
 # chroot.sh says more.
@@ -17,8 +17,8 @@ here=$(dirname "$(realpath "$0")")
 
 make_chroot platforms trixie
 apt_in_chroot platforms rustc cargo rust-src gcc-mingw-w64-x86-64-win32 wine wine64 cmake make gcc libc6-dev \
-    ca-certificates python3-venv llvm || {
-    echo "platforms.sh: MinGW, wine or rust-src cannot be installed here" >&2
+    ca-certificates python3-venv clang lld llvm || {
+    echo "platforms.sh: MinGW, wine, clang or rust-src cannot be installed here" >&2
     exit 1
 }
 root=$chroots/platforms
