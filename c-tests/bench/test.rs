@@ -27,7 +27,7 @@ fn quick_charts_are_whole_and_ours_sound() {
         no_instructions: true,
         out: out.path().to_owned(),
     });
-    let rows: Vec<Row> = ["accuracy", "vertices", "coherence", "recorded"]
+    let rows: Vec<Row> = ["accuracy", "vertices", "coherence"]
         .iter()
         .flat_map(|name| csv::read::<Row>(&out.path().join(name).with_extension("csv")))
         .collect();

@@ -115,19 +115,6 @@ pub fn cpp(source: &str) -> Program {
         .flag("-isystem/usr/include/eigen3")
 }
 
-/// Of each kind of body, on either library: how far FCL's contact positions are off, metres rms.
-pub fn fcl_positions() -> Vec<(String, [f64; 2])> {
-    let program = Swapped::new("FCL", cpp("fcl_position").library("fcl"), "0");
-    let rms = |line: &String| {
-        let words: Vec<&str> = line.strip_prefix("position ")?.split(' ').collect();
-        Some((words[0].to_owned(), words[4].parse().expect("metres")))
-    };
-    let lines = program.run("1 200");
-    let both = lines[0].iter().filter_map(rms);
-    let both = both.zip(lines[1].iter().filter_map(rms));
-    both.map(|((kind, a), (_, b))| (kind, [a, b])).collect()
-}
-
 pub fn fcl_static() -> Swapped {
     Swapped::new("FCL", cpp("fcl_static").library("fcl"), "0")
 }
@@ -148,12 +135,6 @@ pub fn dart_pile() -> Swapped {
     Swapped::new("DART", cpp("dart_pile").library("dart"), "1")
 }
 
-/// A program of a consumer's, and what compare.sh shows of it.
-pub struct Screen {
-    pub program: &'static str,
-    pub text: String,
-}
-
 /// A program of each consumer's: its title, and its arguments, of which one is the number of steps.
 fn consumers() -> [(&'static str, Program, &'static str, f64); 4] {
     let scene = cpp("fcl_scene").library("fcl").flag("-DTIMED");
@@ -169,8 +150,8 @@ fn consumers() -> [(&'static str, Program, &'static str, f64); 4] {
 }
 
 /// compare.sh's screens of a program of each consumer's, as they come.
-pub fn screens() -> [Screen; 4] {
-    consumers().map(|(title, program, args, _)| {
+pub fn screens() -> [String; 4] {
+    consumers().map(|(_, program, args, _)| {
         let program = program.link_system().without_tools().build().quiet();
         let told = program.compared(&[]).with_screen().run(args.split(' '));
         let path = program.path.to_string_lossy();
@@ -178,45 +159,9 @@ pub fn screens() -> [Screen; 4] {
         let name = name.split('-').next().unwrap_or_default();
         let told = told.stderr.replace(&*path, &format!("./{name} {args}"));
         // What the program says itself comes before.
-        let text = told.find("== ").map_or("", |at| &told[at..]).trim();
-        Screen {
-            program: title,
-            text: text.to_owned(),
-        }
+        let text = told.find("== ").map_or("", |at| &told[at..]);
+        text.trim().to_owned()
     })
-}
-
-/// A row for each screen.
-pub fn screen_table(screens: &[Screen]) -> String {
-    let mut out = String::from(
-        "| program | wrong of judged, libccd | here | support points a query, libccd | here | time a query |\n\
-         |---|---|---|---|---|---|\n",
-    );
-    for Screen { program, text } in screens {
-        // The words behind a start of a line, and what stands between two texts.
-        let row = |start: &str| -> Vec<f64> {
-            let line = text.lines().filter_map(|line| line.strip_prefix(start));
-            line.flat_map(|line| line.split_whitespace().map_while(|word| word.parse().ok()))
-                .collect()
-        };
-        let between = |before: &str, after: &str| {
-            let rest = text.split_once(before).map_or("", |(_, rest)| rest);
-            rest.split_once(after).map_or("?", |(word, _)| word)
-        };
-        let sides = ["libccd ", "this library "].map(row);
-        let wrong = |side: &[f64]| -> f64 { side[..5].iter().sum() };
-        let _ = writeln!(
-            out,
-            "| {program} | {} of {} | {} | {:.1} | {:.1} | {} |",
-            wrong(&sides[0]),
-            between("What the swap changes, of ", " judged"),
-            wrong(&sides[1]),
-            sides[0][7],
-            sides[1][7],
-            between("a query takes ", " times"),
-        );
-    }
-    out
 }
 
 /// Processor time of this process' ended children, seconds, in the kernel's hundredths.

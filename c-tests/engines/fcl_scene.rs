@@ -8,10 +8,9 @@
 #![allow(dead_code)]
 
 use crate::checks::{Way, cpp, head};
-use crate::harness::{Executable, fields, must_succeed, output_dir};
+use crate::harness::{self, Executable, fields};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::process::Command;
 
 /// Answers of one way to collide the scene.
 #[derive(Clone)]
@@ -187,20 +186,12 @@ pub fn header_costs(times: usize) -> Vec<HeaderCost> {
 /// Counts the calls of the header's callback for FCL's manager, their instructions, and those that the
 /// library's calls take among them, by callgrind.
 fn instructions_of(program: &Executable, arguments: &[&str]) -> (f64, f64, f64) {
-    let direct = program.command();
-    let out = output_dir().join("fcl_scene.callgrind");
-    let mut valgrind = Command::new("valgrind");
-    valgrind.args([
-        "--tool=callgrind",
-        "--toggle-collect=*ccd_fcl::CollisionFunction*",
-    ]);
-    valgrind.args(["--compress-strings=no", "--compress-pos=no"]);
-    valgrind.arg(format!("--callgrind-out-file={}", out.display()));
-    valgrind.arg(direct.get_program()).args(arguments);
-    valgrind.envs(direct.get_envs().filter_map(|(k, v)| Some((k, v?))));
-    let said = must_succeed(&mut valgrind, "valgrind").stdout;
-    let lines: Vec<String> = said.lines().map(String::from).collect();
-    let text = std::fs::read_to_string(&out).expect("callgrind's file");
+    let mut plain = program.command();
+    let toggle = "--toggle-collect=*ccd_fcl::CollisionFunction*";
+    let counted = harness::callgrind(plain.args(arguments), &[toggle]);
+    let (said, counts) = counted.unwrap_or_else(|why| panic!("{why}"));
+    let lines: Vec<String> = said.stdout.lines().map(String::from).collect();
+    let text = counts.concat();
     let (mut all, mut library) = (0.0, 0.0);
     let (mut object, mut callee, mut is_call) = ("", "", false);
     for line in text.lines() {

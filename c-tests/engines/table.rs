@@ -74,19 +74,12 @@ fn long() {
     println!("{}", checks::pile_table(&rows));
 }
 
-/// Writes the screens, the first of them and a row of each into this folder's page.
+/// Prints the screens, and writes the first into this folder's page.
 fn screens() {
     let screens = checks::screens();
-    for screen in &screens {
-        println!("{}\n", screen.text);
-    }
-    let first = format!("\n```text\n{}\n```\n\n", screens[0].text);
-    let table = checks::screen_table(&screens);
-    between_marks(
-        "c-tests/engines/README.md",
-        "screens",
-        &format!("{first}{table}"),
-    );
+    println!("{}", screens.join("\n\n"));
+    let first = format!("\n```text\n{}\n```\n", screens[0]);
+    between_marks("c-tests/engines/README.md", "screens", &first);
 }
 
 /// Replaces what stands in a page between the marks of this name.

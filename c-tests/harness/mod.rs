@@ -699,6 +699,31 @@ pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Wri
     (output.status, written)
 }
 
+/// Runs a command under callgrind, with these options and names in full: what it wrote, and the
+/// counts of each dump.
+pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<String>), String> {
+    let work = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let out = work.path().join("out");
+    let mut command = Command::new("valgrind");
+    command.args(["--tool=callgrind", "--compress-strings=no"]);
+    command.args(["--compress-pos=no"]).args(options);
+    command.arg(format!("--callgrind-out-file={}", out.display()));
+    command.arg(plain.get_program()).args(plain.get_args());
+    command.envs(plain.get_envs().filter_map(|(name, to)| Some((name, to?))));
+    // A lazy binding would be counted as the query's.
+    command.env("LD_BIND_NOW", "1");
+    let output = command.output().map_err(|e| format!("valgrind: {e}"))?;
+    let written = Written::of(&output);
+    if !output.status.success() {
+        return Err(written.stderr);
+    }
+    let last = std::iter::once(out.clone());
+    let dumps = (1..).map(|i: usize| out.with_extension(i.to_string()));
+    let texts = last.chain(dumps.take_while(|file| file.exists()));
+    let texts = texts.filter_map(|file| fs::read_to_string(file).ok());
+    Ok((written, texts.collect()))
+}
+
 /// The line `first key value key value …` of what a program wrote.
 pub fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
     let line = lines

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Measures what a state saves: the motions of the pair sets, by growing steps a frame, and
-//! the recorded contact sequence of a simulation.
+//! Measures what a state saves: the motions of the pair sets, by growing steps a frame.
 
 use super::Bench;
 use crate::measuring::measure::{self, Row};
@@ -48,8 +47,3 @@ fn roster<'a>(bench: &Bench<'a>) -> Vec<methods::Method<'a>> {
     asked.map(of).into()
 }
 
-/// The recorded contact sequence: queries in the order of their pair's frames.
-pub fn recorded(bench: &Bench) -> Vec<Row> {
-    let scene = Scene::recorded(bench.libraries, if bench.quick { 40 } else { usize::MAX });
-    super::rows(bench, &scene, roster(bench), None)
-}

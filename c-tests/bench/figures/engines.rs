@@ -15,7 +15,7 @@ use super::{Options as Charts, Page, results};
 use crate::harness;
 use crate::measuring::libraries::Libraries;
 use crate::measuring::methods::{self, Ask, Method, Start};
-use crate::measuring::scene::{Pair, Scene};
+use crate::measuring::scene::Scene;
 use crate::measuring::{callgrind, csv, measure};
 use crate::peers::{self, Compiled};
 
@@ -107,19 +107,6 @@ fn wrong(libraries: &Libraries, scene: &Scene, method: &mut Method) -> [f64; 5] 
     counts.map(|n| 100.0 * n as f64 / scene.pairs.len() as f64)
 }
 
-fn supports(libraries: &Libraries, scene: &Scene, method: &mut Method) -> f64 {
-    let calls = |pair: &Pair| {
-        // SAFETY: shapes of the scene.
-        unsafe { (libraries.callbacks.calls)(pair.a) + (libraries.callbacks.calls)(pair.b) }
-    };
-    let all = || scene.pairs.iter().map(calls).sum::<u64>();
-    let before = all();
-    for pair in &scene.pairs {
-        std::hint::black_box(method.query(scene, pair));
-    }
-    (all() - before) as f64 / 2.0 / scene.pairs.len() as f64
-}
-
 fn measure_all(libraries: &Libraries, compiled: &Compiled, options: &Options) -> Vec<Engine> {
     let scene = contacts(libraries);
     let mut methods = roster(libraries, compiled);
@@ -143,7 +130,7 @@ fn measure_all(libraries: &Libraries, compiled: &Compiled, options: &Options) ->
                 engine: name(&method.name),
                 ours: method.ours,
                 contacts: scene.pairs.len(),
-                supports: supports(libraries, &scene, method),
+                supports: measure::judge(libraries, &scene, method).supports,
                 callbacks: count.callbacks as f64 / counted,
                 solver: solver as f64 / counted,
                 ns,

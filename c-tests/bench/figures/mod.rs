@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The charts: speed against accuracy, the paper redone, coherence, models, and where the
+//! The charts: speed against accuracy, the paper redone, coherence, and where the
 //! time goes; each as CSV, and as a picture or a table.
 
 pub mod accuracy;
@@ -9,7 +9,6 @@ pub mod coherence;
 pub mod engines;
 pub mod figure;
 pub mod instructions;
-pub mod models;
 pub mod paper;
 pub mod position;
 pub mod results;
@@ -36,7 +35,7 @@ pub struct Options {
     /// Leave out the instruction counts (which run this program under valgrind).
     #[arg(long)]
     pub no_instructions: bool,
-    /// The figures of this name alone, as `models`; the others stay as they are.
+    /// The figures of this name alone, as `position`; the others stay as they are.
     #[arg(long)]
     pub only: Option<String>,
     /// Where CSV and pictures go.
@@ -229,13 +228,10 @@ pub fn redraw(options: &Options) {
     paper::draw(&page, &vertices);
     let (of, position) = page.read("position");
     position::draw(&of, &position);
-    let models = page.read("models").1;
     let tables = [
         ("MACHINE", page.machine.clone()),
         ("FASTER", results::times_faster(&sets)),
         ("COHERENCE", results::coherent(&page.read("coherence").1)),
-        ("RECORDED", results::recorded(&page.read("recorded").1)),
-        ("MODELS", results::modelled(&models, &vertices, &sets)),
         (
             "INSTRUCTIONS",
             results::instructions(&page.read("instructions").1),
@@ -279,8 +275,8 @@ pub fn run(options: &Options) {
     }
     measure!(
         "accuracy": accuracy::measure, "vertices": paper::vertices,
-        "coherence": coherence::measure, "recorded": coherence::recorded,
-        "models": models::measure, "position": position::measure,
+        "coherence": coherence::measure,
+        "position": position::measure,
         "instructions": instructions::measure
     );
     redraw(options);

@@ -8,7 +8,6 @@ use comfy_table::{Table, presets::ASCII_MARKDOWN};
 
 use super::Page;
 use super::instructions::Split;
-use super::models::Model;
 use super::paper::{AS_PUBLISHED, PAPER};
 use crate::measuring::measure::Row;
 
@@ -96,42 +95,6 @@ pub fn coherent(rows: &[Row]) -> String {
     });
     let head = "pair|local, warm, 0.1°|0.5°|2°|local, cold|\
                 minimum, warm, 0.1°|0.5°|2°|minimum, cold|libccd EPA";
-    markdown(head, lines)
-}
-
-/// Models of a ball against a capsule; the ball itself, as what it is, last.
-pub fn modelled(models: &[Model], polytopes: &[Row], sets: &[Row]) -> String {
-    let line = |what: String, off: String, rows: &[Row], set: &str| {
-        let local = find(rows, set, "local", "5", 1e-6);
-        let ns = local.and_then(|r| r.ns);
-        let ns = ns.map_or("-".to_owned(), |ns| format!("{ns:.0}"));
-        [what, off, supports(local), ns]
-    };
-    let model = |m: &Model| {
-        let (what, off) = (format!("{} vertices", m.vertices), 1e3 * m.off);
-        let set = format!("p{}_cap", m.vertices);
-        line(what, format!("{off:.2}"), polytopes, &set)
-    };
-    let ball = line("sphere".to_owned(), "0".to_owned(), sets, "sph_cap");
-    let head = "as|off by, mm|supports|ns";
-    markdown(head, models.iter().map(model).chain([ball]))
-}
-
-pub fn recorded(rows: &[Row]) -> String {
-    let lines = rows.iter().map(|r| {
-        [
-            super::name(r),
-            r.queries.to_string(),
-            r.overlaps.to_string(),
-            supports(Some(r)),
-            r.ns.map_or("-".to_owned(), |n| format!("{n:.0}")),
-            format!("{:.1e}", r.mean_error),
-            format!("{:.1e}", r.max_error),
-            format!("{:.2}", r.nonminimal + r.shallow + r.missed),
-        ]
-    });
-    let head = "method|queries|overlaps|supports|ns|mean error, m|largest, m|\
-                off by more than 1 mm, %";
     markdown(head, lines)
 }
 

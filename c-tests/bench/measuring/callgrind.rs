@@ -4,7 +4,6 @@
 //! Instructions of a query, counted by callgrind on this very program: in the solver, and in the
 //! callbacks.
 
-use std::path::Path;
 use std::process::Command;
 
 use super::libraries::Libraries;
@@ -57,28 +56,14 @@ pub fn watched(libraries: &Libraries, scene: &Scene, method: &mut Method) {
 
 /// Runs this program with these arguments under callgrind: the counts in the order in which they were made.
 pub fn counts(arguments: &[&str]) -> Result<Vec<Count>, String> {
-    let work = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let out = work.path().join("out");
     let program = std::env::current_exe().map_err(|e| e.to_string())?;
-    let run = Command::new("valgrind")
-        .args(["--tool=callgrind", "--compress-strings=no"])
-        .args(["--compress-pos=no"])
-        .args(["--zero-before=bench_begin", "--dump-after=bench_end"])
-        .arg(format!("--callgrind-out-file={}", out.display()))
-        .arg(&program)
-        .args(arguments)
-        // A lazy binding would be counted as the query's.
-        .env("LD_BIND_NOW", "1")
-        .output()
-        .map_err(|e| format!("valgrind: {e}"))?;
-    if !run.status.success() {
-        return Err(String::from_utf8_lossy(&run.stderr).into_owned());
-    }
-    let file = |i: usize| Path::new(&out).with_extension(i.to_string());
-    Ok((1..)
-        .map_while(|i| std::fs::read_to_string(file(i)).ok())
-        .map(|text| parse(&text, &program.display().to_string()))
-        .collect())
+    let mut plain = Command::new(&program);
+    let dumps = ["--zero-before=bench_begin", "--dump-after=bench_end"];
+    let (_, texts) = crate::harness::callgrind(plain.args(arguments), &dumps)?;
+    let program = program.display().to_string();
+    // What came after the last method is in the first.
+    let texts = texts.iter().skip(1);
+    Ok(texts.map(|text| parse(text, &program)).collect())
 }
 
 #[cfg(test)]

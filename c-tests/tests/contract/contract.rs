@@ -9,8 +9,6 @@ mod harness;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Duration;
 
 use harness::{Executable, Precision, Program};
 
@@ -365,16 +363,10 @@ fn polytope_functions_take_no_more_instructions_than_libccd_s() {
     }
     let counted = |library: fn(Program) -> Program| {
         let plain = library(program("polytope").standard("gnu99").without_tools());
-        let plain = plain.build().command();
-        let counts = harness::output_dir().join("polytope.callgrind");
-        let mut command = Command::new("valgrind");
-        command.envs(plain.get_envs().filter_map(|(name, to)| Some((name, to?))));
-        command.args(["--tool=callgrind", "--compress-strings=no"]);
-        command.arg(format!("--callgrind-out-file={}", counts.display()));
-        command.arg(plain.get_program()).arg("20");
-        let (status, written) = harness::run_command(&mut command, Duration::from_secs(120));
-        assert!(status.success(), "{}", written.stderr);
-        std::fs::read_to_string(counts).expect("callgrind counts")
+        let mut plain = plain.build().command();
+        let counted = harness::callgrind(plain.arg("20"), &[]);
+        let (_, counts) = counted.unwrap_or_else(|why| panic!("{why}"));
+        counts.concat()
     };
     // A call is three lines: `cfn=FUNCTION`, `calls=...`, and what it took at the end of one.
     let taken = |counts: &str, function: &str| -> u64 {
