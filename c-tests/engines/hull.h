@@ -25,17 +25,15 @@ typedef struct {
  * is a face: n^4 steps, for a dozen points. */
 static inline void hull_make_faces(hull_t *s)
 {
-    int i, j, k, l;
     const int n = s->vertices;
     s->faces = 0;
-    for (i = 0; i < n; i++)
-        for (j = i + 1; j < n; j++)
-            for (k = j + 1; k < n; k++) {
+    for (int i = 0; i < n; i++)
+        for (int j = i + 1; j < n; j++)
+            for (int k = j + 1; k < n; k++) {
                 const ccd_real_t *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
                 double u[3], v[3], m[3], d, length, sign, *plane;
-                unsigned *polygon;
                 int above = 0, below = 0;
-                for (l = 0; l < 3; l++) {
+                for (int l = 0; l < 3; l++) {
                     u[l] = b[l] - a[l];
                     v[l] = c[l] - a[l];
                 }
@@ -43,10 +41,10 @@ static inline void hull_make_faces(hull_t *s)
                 m[1] = u[2] * v[0] - u[0] * v[2];
                 m[2] = u[0] * v[1] - u[1] * v[0];
                 length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-                for (l = 0; l < 3; l++)
+                for (int l = 0; l < 3; l++)
                     m[l] /= length;
                 d = m[0] * a[0] + m[1] * a[1] + m[2] * a[2];
-                for (l = 0; l < n; l++) {
+                for (int l = 0; l < n; l++) {
                     const ccd_real_t *x = s->vertex + 3 * l;
                     if (l == i || l == j || l == k)
                         continue;
@@ -63,8 +61,8 @@ static inline void hull_make_faces(hull_t *s)
                 }
                 sign = above ? -1 : 1;
                 plane = s->plane + 4 * s->faces;
-                polygon = s->polygon + 4 * s->faces;
-                for (l = 0; l < 3; l++)
+                unsigned *polygon = s->polygon + 4 * s->faces;
+                for (int l = 0; l < 3; l++)
                     plane[l] = sign * m[l];
                 plane[3] = sign * d;
                 polygon[0] = 3;
@@ -79,8 +77,7 @@ static inline void hull_make_faces(hull_t *s)
 static inline double hull_inradius(const hull_t *s)
 {
     double least = HUGE_VAL;
-    int i;
-    for (i = 0; i < s->faces; i++)
+    for (int i = 0; i < s->faces; i++)
         least = fmin(least, s->plane[4 * i + 3]);
     return least;
 }
@@ -89,8 +86,8 @@ static inline double hull_inradius(const hull_t *s)
  * equal ones make needle faces. Rounded to float. */
 static inline void hull_make_vertices(hull_t *s, const double r[3])
 {
-    int i, j;
-    for (i = 0; i < s->vertices; i++) {
+    int j;
+    for (int i = 0; i < s->vertices; i++) {
         double v[3], length, nearest;
         do {
             for (j = 0; j < 3; j++)
@@ -125,18 +122,17 @@ static inline void hull_random(hull_t *s, int vertices, double rx, double ry, do
 static inline void hull_box(hull_t *s, double x, double y, double z)
 {
     const double half[3] = { x, y, z };
-    int i, j;
     s->vertices = 8;
     s->faces = 6;
-    for (i = 0; i < 8; i++)
-        for (j = 0; j < 3; j++)
+    for (int i = 0; i < 8; i++)
+        for (int j = 0; j < 3; j++)
             s->vertex[3 * i + j] = i >> j & 1 ? half[j] : -half[j];
-    for (i = 0; i < 6; i++) {
+    for (int i = 0; i < 6; i++) {
         /* the face across axis k, on its upper side for even i */
         const int k = i / 2, u = (k + 1) % 3, v = (k + 2) % 3, up = i % 2 == 0;
         const unsigned base = up ? 1u << k : 0, pu = 1u << u, pv = 1u << v;
         unsigned *polygon = s->polygon + 5 * i;
-        for (j = 0; j < 3; j++)
+        for (int j = 0; j < 3; j++)
             s->plane[4 * i + j] = j == k ? (up ? 1 : -1) : 0;
         s->plane[4 * i + 3] = half[k];
         polygon[0] = 4;

@@ -36,13 +36,12 @@ static void put(const char *format, ...)
 
 static void put_model(int bodies, int multi, int field)
 {
-    int i, j;
     double q[4];
     put("<mujoco><compiler angle=\"radian\"/><option timestep=\"0.004\"><flag energy=\"enable\"%s/></option>"
         "<size nconmax=\"600\" njmax=\"2400\"/><asset>", multi ? " multiccd=\"enable\"" : "");
-    for (i = 0; i < MESHES; i++) {
+    for (int i = 0; i < MESHES; i++) {
         put("<mesh name=\"m%d\" vertex=\"", i);
-        for (j = 0; j < MESH_VERTICES; j++) {
+        for (int j = 0; j < MESH_VERTICES; j++) {
             uniform_rotation(q);
             {
                 const double l = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) + 1e-3;
@@ -61,7 +60,7 @@ static void put_model(int bodies, int multi, int field)
     put("<geom type=\"plane\" size=\"2 2 .1\" pos=\"-%g 0 0\" zaxis=\"1 0 0\"/><geom type=\"plane\" size=\"2 2 .1\" pos=\"%g 0 0\" zaxis=\"-1 0 0\"/>"
         "<geom type=\"plane\" size=\"2 2 .1\" pos=\"0 -%g 0\" zaxis=\"0 1 0\"/><geom type=\"plane\" size=\"2 2 .1\" pos=\"0 %g 0\" zaxis=\"0 -1 0\"/>",
         HALF_WIDTH, HALF_WIDTH, HALF_WIDTH, HALF_WIDTH);
-    for (i = 0; i < bodies; i++) {
+    for (int i = 0; i < bodies; i++) {
         uniform_rotation(q);
         put("<body pos=\"%.5f %.5f %.5f\" quat=\"%.6f %.6f %.6f %.6f\"><freejoint/>", 0.34 * (i % 3 - 1) + uniform(-.02, .02),
             0.34 * (i / 3 % 3 - 1) + uniform(-.02, .02), 0.4 + 0.33 * (i / 9), q[0], q[1], q[2], q[3]);
@@ -80,8 +79,8 @@ static void put_model(int bodies, int multi, int field)
 /* Positions that left the pen or are not numbers. */
 static int escaped(const mjModel *m, const mjData *d)
 {
-    int i, out = 0;
-    for (i = 0; i < m->njnt; i++) {
+    int out = 0;
+    for (int i = 0; i < m->njnt; i++) {
         const mjtNum *p = d->qpos + m->jnt_qposadr[i];
         /* the origin of a mesh may lie on its surface */
         out += !(fabs(p[0]) < HALF_WIDTH + 0.1 && fabs(p[1]) < HALF_WIDTH + 0.1 && p[2] > -0.1 && p[2] < 20);
@@ -93,19 +92,14 @@ int main(int argc, char **argv)
 {
     static mjVFS vfs;
     char error[1000] = "";
-    mjModel *m;
-    mjData *d;
-    pile_t pile;
-    long step, steps;
-    int i, field, multi;
     if (argc != 5) {
         fprintf(stderr, "usage: mujoco_pile SEED STEPS BODIES pile|multi|field\n");
         return 2;
     }
-    steps = atol(argv[2]);
-    pile = pile_of(steps);
-    multi = !strcmp(argv[4], "multi");
-    field = !strcmp(argv[4], "field");
+    long steps = atol(argv[2]);
+    pile_t pile = pile_of(steps);
+    int multi = !strcmp(argv[4], "multi");
+    int field = !strcmp(argv[4], "field");
     tell_library();
     uniform_seed(5);
     put_model(atoi(argv[3]), multi, field);
@@ -113,29 +107,29 @@ int main(int argc, char **argv)
     if (mj_makeEmptyFileVFS(&vfs, "pile.xml", (int)xml_length) != 0)
         return 2;
     memcpy(vfs.filedata[0], xml, xml_length);
-    m = mj_loadXML("pile.xml", &vfs, error, sizeof error);
+    mjModel *m = mj_loadXML("pile.xml", &vfs, error, sizeof error);
     if (!m) {
         fprintf(stderr, "%s\n", error);
         return 2;
     }
-    for (i = 0; i < m->nhfielddata; i++)
+    for (int i = 0; i < m->nhfielddata; i++)
         m->hfield_data[i] = (float)(0.5 + 0.5 * sin(0.9 * (i % FIELD)) * cos(0.7 * (i / FIELD)));
-    d = mj_makeData(m);
+    mjData *d = mj_makeData(m);
     uniform_seed(strtoull(argv[1], NULL, 10));
-    for (i = 0; i < m->njnt; i++) {
+    for (int i = 0; i < m->njnt; i++) {
         mjtNum *p = d->qpos + m->jnt_qposadr[i];
         p[0] += uniform(-1e-3, 1e-3);
         p[1] += uniform(-1e-3, 1e-3);
         p[2] += uniform(-1e-3, 1e-3);
     }
-    for (step = 0; step < steps; step++) {
+    for (long step = 0; step < steps; step++) {
         pile.step = step;
         mj_step(m, d);
         pile.escaped |= escaped(m, d);
         /* not while bodies fall: what an impact stores in its contact counts as lost, and comes back */
         if (pile_is_late(&pile))
             pile_energy(&pile, d->energy[1], d->energy[0]);
-        for (i = 0; i < d->ncon; i++) {
+        for (int i = 0; i < d->ncon; i++) {
             const mjContact *c = &d->contact[i];
             const mjtNum *n = c->frame;
             /* planes never reach libccd, nor do gaps */
@@ -145,7 +139,7 @@ int main(int argc, char **argv)
                 pile_contact(&pile, length2, -c->dist);
         }
     }
-    for (i = 0; i < mjNWARNING; i++)
+    for (int i = 0; i < mjNWARNING; i++)
         pile.bad += d->warning[i].number;
     pile_report(&pile);
     printf("\n");

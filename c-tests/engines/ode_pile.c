@@ -33,11 +33,10 @@ static shape_t shape_of(int i) { return scene_shape_of(&scene.shape[scene.shape_
 void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *v)
 {
     ccd_vec3_t centre;
-    int i;
     if (scene.pile.step % 20)
         return;
     center(obj, &centre);
-    for (i = 0; i < scene.bodies; i++) {
+    for (int i = 0; i < scene.bodies; i++) {
         const dReal *p = dGeomGetPosition(scene.geom[i]);
         if (p[0] == centre.v[0] && p[1] == centre.v[1] && p[2] == centre.v[2]) {
             const shape_t s = shape_of(i);
@@ -51,21 +50,18 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
 static void judge(int a, int b, const dContact *contact, int contacts)
 {
     verdict_truth_t truth = { 0, 0, 1e-6, LOST };
-    shape_t sa, sb;
-    truth_t t;
     double deepest = 0;
-    int i;
     if (compare_queries() == queries)
         return;
     queries = compare_queries();
     if (scene.pile.step % 20)
         return;
-    sa = shape_of(a);
-    sb = shape_of(b);
-    t = truth_depth_within(&sa, &sb, 1e-7);
+    shape_t sa = shape_of(a);
+    shape_t sb = shape_of(b);
+    truth_t t = truth_depth_within(&sa, &sb, 1e-7);
     truth.lower = t.lower;
     truth.upper = t.depth;
-    for (i = 0; i < contacts; i++)
+    for (int i = 0; i < contacts; i++)
         deepest = fmax(deepest, contact[i].geom.depth);
     tally_add(&tally[astray], &truth, contacts > 0, deepest, 1);
     astray = 0;

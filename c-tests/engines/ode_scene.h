@@ -97,8 +97,7 @@ static inline void scene_make_dynamic(scene_t *scene, int i)
     case SHAPE_CYLINDER: dMassSetCylinder(&mass, density, 3, s->p[0], 2 * s->p[1]); break;
     default: {
         double r = 0;
-        int v;
-        for (v = 0; v < s->hull.vertices; v++)
+        for (int v = 0; v < s->hull.vertices; v++)
             r += dCalcVectorLength3(s->hull.vertex + 3 * v) / s->hull.vertices;
         dMassSetSphere(&mass, density, 0.8 * r);
     }
@@ -112,13 +111,12 @@ static inline void scene_make_dynamic(scene_t *scene, int i)
 static inline int scene_pile_shape(scene_t *scene, int i)
 {
     scene_shape_t *s = &scene->shape[scene->shapes];
-    int j;
     memset(s, 0, sizeof *s);
     s->kind = scene->kinds[i % 4];
     if (s->kind == SHAPE_POLYTOPE)
         hull_random(&s->hull, 8 + i % 9, uniform(0.07, 0.14), uniform(0.07, 0.14), uniform(0.07, 0.14));
     else
-        for (j = 0; j < 3; j++)
+        for (int j = 0; j < 3; j++)
             s->p[j] = (float)uniform(0.05, 0.13);
     if (s->kind == SHAPE_CAPSULE)
         s->p[0] *= 0.75;
@@ -151,10 +149,9 @@ static inline void scene_world(scene_t *scene, unsigned long seed)
 static inline void scene_pen(scene_t *scene, double half_width)
 {
     const int wall = scene_shape(scene, SHAPE_BOX, 2, 2, 2);
-    int i;
     scene->half_width = half_width;
     dGeomSetPosition(scene->geom[scene_add(scene, wall)], 0, 0, -2);
-    for (i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++) {
         const double at = (i & 1 ? 1 : -1) * (float)(half_width + 2);
         dGeomSetPosition(scene->geom[scene_add(scene, wall)], i & 2 ? at : 0, i & 2 ? 0 : at, 1.5);
     }
@@ -164,12 +161,11 @@ static inline void scene_pen(scene_t *scene, double half_width)
  * two nudged starts differ in nothing else. */
 static inline void scene_nudge(scene_t *scene, unsigned long nudge_seed, double nudge)
 {
-    int i, j;
     uniform_seed(nudge_seed);
-    for (i = 0; i < scene->bodies; i++)
+    for (int i = 0; i < scene->bodies; i++)
         if (scene->body[i]) {
             double at[3];
-            for (j = 0; j < 3; j++)
+            for (int j = 0; j < 3; j++)
                 at[j] = dBodyGetPosition(scene->body[i])[j] + uniform(-nudge, nudge);
             dBodySetPosition(scene->body[i], at[0], at[1], at[2]);
         }
@@ -182,11 +178,10 @@ static inline void scene_nudge(scene_t *scene, unsigned long nudge_seed, double 
  */
 static inline void scene_pile(scene_t *scene, int count, double half_width, double layer)
 {
-    int i;
     const double pitch = 0.32;
     const int side = (int)((2 * half_width - 0.1) / pitch);
     scene_pen(scene, half_width);
-    for (i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++) {
         const int b = scene_add(scene, scene_pile_shape(scene, i));
         const int level = i / (side * side), x = i % side, y = i / side % side;
         dQuaternion q;
@@ -217,9 +212,8 @@ static inline void scene_towers(scene_t *scene, int bodies, int one)
  * plate is a hull: for a cylinder on a box of its own ODE does not ask libccd. */
 static inline void scene_roll(scene_t *scene, int count, double half_width)
 {
-    int i;
     scene_pen(scene, half_width);
-    i = scene_add(scene, scene_shape(scene, SHAPE_POLYTOPE, half_width, half_width, 0.05));
+    int i = scene_add(scene, scene_shape(scene, SHAPE_POLYTOPE, half_width, half_width, 0.05));
     dGeomSetPosition(scene->geom[i], 0, 0, 0.05);
     for (i = 0; i < count; i++) {
         const double radius = 0.06 + 0.01 * (i % 5);
@@ -240,13 +234,12 @@ static inline void scene_near(void *data, dGeomID o1, dGeomID o2)
     enum { MOST = 8 };
     dContact contact[MOST];
     const dBodyID b1 = dGeomGetBody(o1), b2 = dGeomGetBody(o2);
-    int i, n;
     if (!b1 && !b2)
         return;
-    n = dCollide(o1, o2, MOST, &contact[0].geom, sizeof contact[0]);
+    int n = dCollide(o1, o2, MOST, &contact[0].geom, sizeof contact[0]);
     if (scene_on_pair)
         scene_on_pair((int)(intptr_t)dGeomGetData(o1), (int)(intptr_t)dGeomGetData(o2), contact, n);
-    for (i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         const dContactGeom *g = &contact[i].geom;
         const int somewhere = fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6;
         if (!pile_contact(&scene->pile, somewhere ? dCalcVectorLengthSquare3(g->normal) : NAN, g->depth))
@@ -268,19 +261,18 @@ static inline void scene_step(scene_t *scene, double h)
 static inline double scene_energy(const scene_t *scene, double *potential)
 {
     double kinetic = 0, height = 0;
-    int i, j, k;
-    for (i = 0; i < scene->bodies; i++)
+    for (int i = 0; i < scene->bodies; i++)
         if (scene->body[i]) {
             const dReal *v = dBodyGetLinearVel(scene->body[i]), *R = dBodyGetRotation(scene->body[i]);
             const dReal *w = dBodyGetAngularVel(scene->body[i]);
             double local[3];
             dMass m;
             dBodyGetMass(scene->body[i], &m);
-            for (j = 0; j < 3; j++)
+            for (int j = 0; j < 3; j++)
                 local[j] = R[j] * w[0] + R[4 + j] * w[1] + R[8 + j] * w[2];
             kinetic += 0.5 * m.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-            for (j = 0; j < 3; j++)
-                for (k = 0; k < 3; k++)
+            for (int j = 0; j < 3; j++)
+                for (int k = 0; k < 3; k++)
                     kinetic += 0.5 * local[j] * m.I[4 * j + k] * local[k];
             height += 9.81 * m.mass * dBodyGetPosition(scene->body[i])[2];
         }
@@ -291,8 +283,8 @@ static inline double scene_energy(const scene_t *scene, double *potential)
 /* Bodies whose centre is outside the pen, below the floor, or nowhere. */
 static inline int scene_escaped(const scene_t *scene)
 {
-    int i, out = 0;
-    for (i = 0; i < scene->bodies; i++)
+    int out = 0;
+    for (int i = 0; i < scene->bodies; i++)
         if (scene->body[i]) {
             const dReal *p = dBodyGetPosition(scene->body[i]);
             out += !(fabs(p[0]) < scene->half_width && fabs(p[1]) < scene->half_width && p[2] > 0 && p[2] < 20);
@@ -324,7 +316,6 @@ static inline void scene_free(scene_t *scene)
 static inline void run_scene(scene_t *scene, const char *name, int bodies, unsigned long seed, long steps)
 {
     const int stack = !strcmp(name, "stack"), roll = !strcmp(name, "roll");
-    int i;
     scene_world(scene, 11);
     scene->pile = pile_of(steps);
     if (!strcmp(name, "tower")) {
@@ -336,7 +327,7 @@ static inline void run_scene(scene_t *scene, const char *name, int bodies, unsig
     } else if (roll) {
         scene_roll(scene, bodies, 1.5);
     } else {
-        for (i = 0; i < 4 && !strcmp(name, "hulls"); i++)
+        for (int i = 0; i < 4 && !strcmp(name, "hulls"); i++)
             scene->kinds[i] = SHAPE_POLYTOPE;
         scene_pile(scene, bodies, 0.55, 0.33);
     }
@@ -347,10 +338,9 @@ static inline void run_scene(scene_t *scene, const char *name, int bodies, unsig
 static inline void run(scene_t *scene, char **argv)
 {
     const long steps = atol(argv[2]);
-    long step;
     tell_library();
     run_scene(scene, argv[4], atoi(argv[3]), strtoul(argv[1], NULL, 10), steps);
-    for (step = 0; step < steps; step++) {
+    for (long step = 0; step < steps; step++) {
         double height, moving;
         scene->pile.step = step;
         scene_step(scene, 0.005);

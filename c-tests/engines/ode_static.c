@@ -68,7 +68,6 @@ static void geom_make(placed_t *p)
 {
     const body_t *b = &p->body;
     const double *s = b->shape.p;
-    int i;
     p->mesh = NULL;
     switch (b->kind) {
     case SHAPE_SPHERE: p->geom = dCreateSphere(NULL, s[0]); break;
@@ -82,7 +81,7 @@ static void geom_make(placed_t *p)
     default:
         /* ODE cannot have a mesh of one triangle: the other is its back */
         memcpy(p->vertex, b->hull.vertex, 9 * sizeof(double));
-        for (i = 0; i < 6; i++)
+        for (int i = 0; i < 6; i++)
             p->index[i] = (dTriIndex)(i < 3 ? i : 5 - i);
         p->mesh = dGeomTriMeshDataCreate();
         dGeomTriMeshDataBuildDouble(p->mesh, p->vertex, 3 * sizeof(double), 3, p->index, 6, 3 * sizeof(dTriIndex));
@@ -96,9 +95,8 @@ static void geom_place(placed_t *p)
 {
     const double *r = p->body.shape.rot;
     dMatrix3 m;
-    int i, j;
-    for (i = 0; i < 3; i++) {
-        for (j = 0; j < 3; j++)
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
             m[4 * i + j] = r[3 * i + j];
         m[4 * i + 3] = 0;
     }
@@ -125,12 +123,11 @@ static void make(void)
 static void ask(const known_t *known)
 {
     dContactGeom contact;
-    int hit;
     geom_place(&a);
     geom_place(&b);
     callback_wrong = 0;
     first.answered = 0;
-    hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
+    int hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
     if (!first.answered)
         return; /* not libccd's */
     /* A triangle that touches is turned a little and asked about again, four times: the

@@ -25,9 +25,8 @@ static const double SLOP = 1e-3;
 static void aabb(dGeomID geom, dReal box[6])
 {
     const shape_t s = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(geom), geom);
-    int k, side;
-    for (k = 0; k < 3; k++)
-        for (side = 0; side < 2; side++) {
+    for (int k = 0; k < 3; k++)
+        for (int side = 0; side < 2; side++) {
             ccd_vec3_t dir = {{0, 0, 0}}, v;
             dir.v[k] = side ? 1 : -1;
             shape_support(&s, &dir, &v);
@@ -45,7 +44,7 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
     ccd_contact_t contact[8];
     ccd_penetration_t hit;
     ccd_t ccd;
-    int n, k, m, written = 0, code;
+    int n, written = 0, code;
     shape_query(&ccd);
     ccd.mpr_tolerance = 1e-6; /* as ODE's */
     /* The pair's state, whichever order the broad phase hands the two over in. */
@@ -63,11 +62,11 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
     contact[0].depth = hit.depth;
     n = max > 1 ? ccdContacts(&a, &b, &ccd, &hit.normal, SLOP, i < j ? &memory[i][j] : &memory[j][i], contact, max) : 1;
     supports += a.calls;
-    for (k = 0; k < n; k++) {
+    for (int k = 0; k < n; k++) {
         dContactGeom *g = (dContactGeom *)((char *)out + written * skip);
         if (!(contact[k].depth >= 0))
             continue;
-        for (m = 0; m < 3; m++) {
+        for (int m = 0; m < 3; m++) {
             g->pos[m] = 0.5 * (contact[k].point1.v[m] + contact[k].point2.v[m]);
             g->normal[m] = -hit.normal.v[m];
         }

@@ -43,10 +43,9 @@ static inline void body_random(body_t *b, int kind)
         b->shape = shape_polytope(b->hull.vertex, b->hull.vertices);
         break;
     case KIND_TRIANGLE: {
-        int i;
         double area;
         do {
-            for (i = 0; i < 9; i++)
+            for (int i = 0; i < 9; i++)
                 b->hull.vertex[i] = (float)uniform(-0.5, 0.5); /* ODE keeps floats */
             {
                 const ccd_real_t *v = b->hull.vertex;
@@ -84,11 +83,10 @@ static inline void pose_overlapping(body_t *a, body_t *b, known_t *known)
     do {
         const double reach = shape_reach(&a->shape) + shape_reach(&b->shape);
         double at[3];
-        int i;
         body_turn(a);
         body_turn(b);
         shape_move(&a->shape, 0, 0, 0);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             at[i] = uniform(-0.7, 0.7) * reach;
         shape_move(&b->shape, at[0], at[1], at[2]);
         /* the loose bounds tell overlap; what is overlapping is then measured */
@@ -143,10 +141,9 @@ static inline void pose_judge(const body_t *a, const body_t *b, const known_t *k
 static inline void pose_all(const int *kinds, int count, long poses, body_t *a, body_t *b, void (*make)(void),
                             void (*ask)(const known_t *known))
 {
-    int i, j, d;
     long k, asked = 0; /* pairs of kinds */
-    for (i = 0; i < count; i++)
-        for (j = i; j < count; j++) {
+    for (int i = 0; i < count; i++)
+        for (int j = i; j < count; j++) {
             const long before = tally[0].queries + tally[1].queries;
             for (k = 0; k < poses && (kinds[i] != KIND_TRIANGLE || kinds[j] != KIND_TRIANGLE); k++) {
                 known_t known;
@@ -155,7 +152,7 @@ static inline void pose_all(const int *kinds, int count, long poses, body_t *a, 
                 pose_overlapping(a, b, &known);
                 make();
                 ask(&known);
-                for (d = 0; d < DEPTH_COUNT; d++)
+                for (int d = 0; d < DEPTH_COUNT; d++)
                     if (DEPTHS[d] * known.size < known.upper) {
                         pose_at_depth(b, &known, DEPTHS[d] * known.size);
                         ask(&known);

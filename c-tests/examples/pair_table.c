@@ -35,16 +35,16 @@ static slot_t *place(slot_t *entry, size_t size, unsigned first, unsigned second
 /* Lets go of pairs that were asked for neither in this frame nor in the last, and makes room. */
 static int make_room(states_t *s)
 {
-    size_t i, kept = 0, size = 64;
+    size_t kept = 0, size = 64;
     slot_t *entry;
-    for (i = 0; i < s->size; i++)
+    for (size_t i = 0; i < s->size; i++)
         kept += s->entry[i].frame && s->entry[i].frame + 1 >= s->frame;
     while (size < 4 * (kept + 1))
         size *= 2;
     entry = calloc(size, sizeof *entry); /* zeros: empty places, cold states */
     if (!entry)
         return 0;
-    for (i = 0; i < s->size; i++)
+    for (size_t i = 0; i < s->size; i++)
         if (s->entry[i].frame && s->entry[i].frame + 1 >= s->frame)
             *place(entry, size, s->entry[i].first, s->entry[i].second) = s->entry[i];
     free(s->entry);
@@ -58,10 +58,9 @@ static int make_room(states_t *s)
  * there is no memory, which is cold too. */
 static ccd_warm_t *state_of(states_t *s, unsigned first, unsigned second)
 {
-    slot_t *e;
     if (2 * (s->used + 1) > s->size && !make_room(s))
         return NULL;
-    e = place(s->entry, s->size, first, second);
+    slot_t *e = place(s->entry, s->size, first, second);
     s->used += !e->frame;
     e->first = first;
     e->second = second;

@@ -17,11 +17,11 @@ typedef struct { /* points, swept along x, y, z by half: the core; and a ball al
 static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     const body_t *b = obj;
-    int i, best = 0;
-    for (i = 1; i < b->points; i++)
+    int best = 0;
+    for (int i = 1; i < b->points; i++)
         if (ccdVec3Dot(&b->point[i], dir) > ccdVec3Dot(&b->point[best], dir))
             best = i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out->v[i] = b->pos.v[i] + b->point[best].v[i] + (dir->v[i] < 0 ? -b->half[i] : b->half[i]);
 }
 

@@ -34,7 +34,6 @@ static inline int pair_read_shape(FILE *file, shape_t *s, ccd_real_t **verts)
 {
     int32_t head[4];
     double p[3], x;
-    int i;
     *verts = NULL;
     if (fread(head, sizeof head, 1, file) != 1 || fread(p, sizeof p, 1, file) != 1)
         return -1;
@@ -45,12 +44,12 @@ static inline int pair_read_shape(FILE *file, shape_t *s, ccd_real_t **verts)
     *verts = (ccd_real_t *)malloc(sizeof(ccd_real_t) * 3 * ((size_t)head[1] + 1));
     if (!*verts)
         return -1;
-    for (i = 0; i < 3 * head[1]; i++) {
+    for (int i = 0; i < 3 * head[1]; i++) {
         if (fread(&x, sizeof x, 1, file) != 1)
             return -1;
         (*verts)[i] = (ccd_real_t)x;
     }
-    for (i = 0; i < 3 * head[2]; i++) {
+    for (int i = 0; i < 3 * head[2]; i++) {
         int32_t t;
         if (fread(&t, sizeof t, 1, file) != 1 || t < 0 || t >= head[1])
             return -1;
@@ -62,8 +61,7 @@ static inline int pair_read_shape(FILE *file, shape_t *s, ccd_real_t **verts)
 
 static inline void pair_set_free(pair_set_t *set)
 {
-    int i;
-    for (i = 0; i < 2; i++)
+    for (int i = 0; i < 2; i++)
         free(set->verts[i]);
     free(set->records);
     memset(set, 0, sizeof *set);
@@ -75,11 +73,10 @@ static inline int pair_set_read(const char *path, pair_set_t *set)
     char magic[8];
     int32_t count[2];
     FILE *file = fopen(path, "rb");
-    int bad;
     memset(set, 0, sizeof *set);
     if (!file)
         return -1;
-    bad = fread(magic, 8, 1, file) != 1 || memcmp(magic, "PDBN0001", 8) != 0
+    int bad = fread(magic, 8, 1, file) != 1 || memcmp(magic, "PDBN0001", 8) != 0
         || fread(count, sizeof count, 1, file) != 1 || count[0] < 1 || count[0] > 10000000
         || pair_read_shape(file, &set->a, &set->verts[0]) != 0
         || pair_read_shape(file, &set->b, &set->verts[1]) != 0;

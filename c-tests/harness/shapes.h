@@ -79,12 +79,11 @@ static inline shape_t shape_ellipsoid(double x, double y, double z) { return sha
 static inline shape_t shape_polytope(const ccd_real_t *verts, int n)
 {
     shape_t s = shape_make(SHAPE_POLYTOPE, 0, 0, 0);
-    int i, k;
     s.verts = verts;
     s.nverts = n;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         double sum = 0;
-        for (i = 0; i < n; i++)
+        for (int i = 0; i < n; i++)
             sum += (double)verts[3 * i + k];
         s.centre[k] = (ccd_real_t)(sum / n);
     }
@@ -100,8 +99,7 @@ static inline void shape_move(shape_t *s, double x, double y, double z)
 
 static inline void shape_turn(shape_t *s, const double rot[9])
 {
-    int i;
-    for (i = 0; i < 9; i++)
+    for (int i = 0; i < 9; i++)
         s->rot[i] = (ccd_real_t)rot[i];
 }
 
@@ -139,9 +137,8 @@ static inline void rotation_quaternion(double w, double x, double y, double z, d
 /* a * b for row-major rotations; out may not alias either. */
 static inline void rotation_times(const double a[9], const double b[9], double out[9])
 {
-    int i, j;
-    for (i = 0; i < 3; i++)
-        for (j = 0; j < 3; j++)
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
             out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
@@ -149,12 +146,11 @@ static inline void rotation_times(const double a[9], const double b[9], double o
 static inline void shape_turn_by(shape_t *s, const double rot[9], double x, double y, double z)
 {
     double old[9], all[9], p[3];
-    int i;
-    for (i = 0; i < 9; i++)
+    for (int i = 0; i < 9; i++)
         old[i] = (double)s->rot[i];
     rotation_times(rot, old, all);
     shape_turn(s, all);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         p[i] = rot[3 * i] * (double)s->pos[0] + rot[3 * i + 1] * (double)s->pos[1] + rot[3 * i + 2] * (double)s->pos[2];
     shape_move(s, p[0] + x, p[1] + y, p[2] + z);
 }
@@ -245,10 +241,9 @@ static inline void shape_local_support(shape_t *s, const ccd_real_t d[3], ccd_re
         break;
     case SHAPE_CONE: {
         /* apex against rim: equal along a slant line, then its middle or the apex */
-        ccd_real_t gain;
         shape_rim(d, p[0], s->tie, v);
         v[2] = -p[1];
-        gain = 2 * p[1] * d[2] - (v[0] * d[0] + v[1] * d[1]);
+        ccd_real_t gain = 2 * p[1] * d[2] - (v[0] * d[0] + v[1] * d[1]);
         if (gain > 0 || (gain == 0 && s->tie != SHAPE_TIE_CENTRE)) {
             v[0] = v[1] = 0;
             v[2] = p[1];

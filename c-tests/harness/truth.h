@@ -49,8 +49,7 @@ static inline double truth_dot3(const double a[3], const double b[3]) { return a
 
 static inline void truth_cross3(const double a[3], const double b[3], double out[3])
 {
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
@@ -60,8 +59,7 @@ static inline void truth_cross3(const double a[3], const double b[3], double out
 static inline void truth_point(const shape_t *s, const double origin[3], const double w[3], double out[3])
 {
     double d[3], v[3] = {0, 0, 0}, p[3], l;
-    int i, k;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         p[i] = (double)s->p[i];
         d[i] = (double)s->rot[i] * w[0] + (double)s->rot[3 + i] * w[1] + (double)s->rot[6 + i] * w[2];
     }
@@ -69,13 +67,13 @@ static inline void truth_point(const shape_t *s, const double origin[3], const d
     case SHAPE_SPHERE:
     case SHAPE_CAPSULE:
         l = sqrt(truth_dot3(d, d));
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             v[i] = p[0] * d[i] / l;
         if (s->type == SHAPE_CAPSULE)
             v[2] += d[2] < 0 ? -p[1] : p[1];
         break;
     case SHAPE_BOX:
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             v[i] = d[i] < 0 ? -p[i] : p[i];
         break;
     case SHAPE_CYLINDER:
@@ -93,30 +91,30 @@ static inline void truth_point(const shape_t *s, const double origin[3], const d
         break;
     case SHAPE_ELLIPSOID:
         l = 0;
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             l += p[i] * d[i] * p[i] * d[i];
         l = sqrt(l);
-        for (i = 0; i < 3 && l > 0; i++)
+        for (int i = 0; i < 3 && l > 0; i++)
             v[i] = p[i] * p[i] * d[i] / l;
         break;
     case SHAPE_POLYTOPE: {
         int best = 0;
         double most = -HUGE_VAL;
-        for (k = 0; k < s->nverts; k++) {
+        for (int k = 0; k < s->nverts; k++) {
             double x = 0;
-            for (i = 0; i < 3; i++)
+            for (int i = 0; i < 3; i++)
                 x += (double)s->verts[3 * k + i] * d[i];
             if (x > most) {
                 most = x;
                 best = k;
             }
         }
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             v[i] = (double)s->verts[3 * best + i];
         break;
     }
     }
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out[i] = (double)s->rot[3 * i] * v[0] + (double)s->rot[3 * i + 1] * v[1]
             + (double)s->rot[3 * i + 2] * v[2] + ((double)s->pos[i] - origin[i]);
 }
@@ -125,14 +123,13 @@ static inline void truth_point(const shape_t *s, const double origin[3], const d
 static inline void truth_difference(const shape_t *a, const shape_t *b, const double n[3], double out[3])
 {
     double origin[3], m[3], x[3], y[3];
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
         m[i] = -n[i];
     }
     truth_point(a, origin, n, x);
     truth_point(b, origin, m, y);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out[i] = x[i] - y[i];
 }
 
@@ -140,8 +137,7 @@ static inline void truth_difference(const shape_t *a, const shape_t *b, const do
 static inline double truth_value(const shape_t *a, const shape_t *b, const double dir[3])
 {
     double n[3], s[3], l = sqrt(truth_dot3(dir, dir));
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         n[i] = dir[i] / l;
     truth_difference(a, b, n, s);
     return truth_dot3(n, s);
@@ -151,7 +147,6 @@ static inline double truth_value(const shape_t *a, const shape_t *b, const doubl
 static inline double shape_reach(const shape_t *s)
 {
     double p0 = (double)s->p[0], p1 = (double)s->p[1], p2 = (double)s->p[2], most = 0;
-    int i;
     switch (s->type) {
     case SHAPE_SPHERE:
         return p0;
@@ -165,7 +160,7 @@ static inline double shape_reach(const shape_t *s)
     case SHAPE_ELLIPSOID:
         return fmax(p0, fmax(p1, p2));
     case SHAPE_POLYTOPE:
-        for (i = 0; i < s->nverts; i++) {
+        for (int i = 0; i < s->nverts; i++) {
             double x = (double)s->verts[3 * i], y = (double)s->verts[3 * i + 1], z = (double)s->verts[3 * i + 2];
             most = fmax(most, sqrt(x * x + y * y + z * z));
         }
@@ -180,8 +175,7 @@ static inline double pair_size(const shape_t *a, const shape_t *b) { return shap
 static inline double pair_largest(const shape_t *a, const shape_t *b)
 {
     double most = 0;
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         most = fmax(most, fmax(fabs((double)a->pos[i]), fabs((double)b->pos[i])));
     return most + pair_size(a, b);
 }
@@ -228,8 +222,7 @@ static inline int truth_cross(const truth_real a[3], const truth_real b[3], trut
 
 static inline void truth_add_edge(truth_core_t *c, int i, int j)
 {
-    int k;
-    for (k = 0; k < c->ne; k++)
+    for (int k = 0; k < c->ne; k++)
         if (c->e[k][0] == i && c->e[k][1] == j)
             return;
     c->e[c->ne][0] = i;
@@ -242,24 +235,23 @@ static inline void truth_add_edge(truth_core_t *c, int i, int j)
  * is no such plane (segment, point) every pair of vertices is an edge. */
 static inline void truth_faces(truth_core_t *c)
 {
-    int i, j, k, m, q;
+    int q;
     truth_real size = 0, d[3], e[3], n[3];
-    for (i = 1; i < c->nv; i++) {
+    for (int i = 1; i < c->nv; i++) {
         truth_minus(c->v[i], c->v[0], d);
         size = fmaxl(size, sqrtl(truth_dot(d, d)));
     }
-    for (i = 0; i < c->nv; i++)
-        for (j = i + 1; j < c->nv; j++)
-            for (k = j + 1; k < c->nv; k++) {
+    for (int i = 0; i < c->nv; i++)
+        for (int j = i + 1; j < c->nv; j++)
+            for (int k = j + 1; k < c->nv; k++) {
                 int above = 0, below = 0;
                 truth_minus(c->v[j], c->v[i], d);
                 truth_minus(c->v[k], c->v[i], e);
                 if (!truth_cross(d, e, n))
                     continue;
-                for (m = 0; m < c->nv && !(above && below); m++) {
-                    truth_real x;
+                for (int m = 0; m < c->nv && !(above && below); m++) {
                     truth_minus(c->v[m], c->v[i], d);
-                    x = truth_dot(d, n);
+                    truth_real x = truth_dot(d, n);
                     above += x > 1e-9L * size;
                     below += x < -1e-9L * size;
                 }
@@ -280,8 +272,8 @@ static inline void truth_faces(truth_core_t *c)
                 memcpy(c->n[c->nn++], n, sizeof n);
             }
     if (c->nn == 0)
-        for (i = 0; i < c->nv; i++)
-            for (j = i + 1; j < c->nv; j++)
+        for (int i = 0; i < c->nv; i++)
+            for (int j = i + 1; j < c->nv; j++)
                 truth_add_edge(c, i, j);
 }
 
@@ -289,7 +281,6 @@ static inline void truth_faces(truth_core_t *c)
 static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
 {
     truth_real local[TRUTH_ENUMERATED][3];
-    int i, k, m;
     memset(local, 0, sizeof local);
     c->nv = c->nn = c->ne = c->full = 0;
     c->rho = 0;
@@ -306,16 +297,16 @@ static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], t
         break;
     case SHAPE_BOX:
         c->nv = 8;
-        for (i = 0; i < 8; i++)
-            for (k = 0; k < 3; k++)
+        for (int i = 0; i < 8; i++)
+            for (int k = 0; k < 3; k++)
                 local[i][k] = i >> k & 1 ? s->p[k] : -s->p[k];
         break;
     case SHAPE_POLYTOPE:
         if (s->nverts > TRUTH_ENUMERATED)
             return 0;
         c->nv = s->nverts;
-        for (i = 0; i < s->nverts; i++)
-            for (k = 0; k < 3; k++)
+        for (int i = 0; i < s->nverts; i++)
+            for (int k = 0; k < 3; k++)
                 local[i][k] = s->verts[3 * i + k];
         break;
     case SHAPE_CYLINDER:
@@ -323,10 +314,10 @@ static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], t
     case SHAPE_ELLIPSOID:
         return 0;
     }
-    for (i = 0; i < c->nv; i++)
-        for (k = 0; k < 3; k++) {
+    for (int i = 0; i < c->nv; i++)
+        for (int k = 0; k < 3; k++) {
             c->v[i][k] = (truth_real)s->pos[k] - origin[k];
-            for (m = 0; m < 3; m++)
+            for (int m = 0; m < 3; m++)
                 c->v[i][k] += s->rot[3 * k + m] * local[i][m];
         }
     return 1;
@@ -351,13 +342,12 @@ static inline void truth_try(truth_search_t *t, const truth_real n[3])
 {
     const truth_real limit = t->best - t->rho;
     truth_real most = -LDBL_MAX, least = LDBL_MAX, x;
-    int i;
-    for (i = 0; i < t->a->nv; i++) {
+    for (int i = 0; i < t->a->nv; i++) {
         x = truth_dot(n, t->a->v[i]);
         if (x > most)
             most = x;
     }
-    for (i = 0; i < t->b->nv; i++) {
+    for (int i = 0; i < t->b->nv; i++) {
         x = truth_dot(n, t->b->v[i]);
         if (x < least) {
             least = x;
@@ -383,12 +373,11 @@ static inline void truth_try_both(truth_search_t *t, const truth_real n[3])
 static inline void truth_nearest(const truth_real p[3], const truth_real q[3], truth_real *least, truth_real point[3])
 {
     truth_real d[3], c[3], t, l;
-    int i;
     truth_minus(q, p, d);
     l = truth_dot(d, d);
     t = l > 0 ? -truth_dot(p, d) / l : 0;
     t = t < 0 ? 0 : t > 1 ? 1 : t;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         c[i] = t <= 0.5L ? p[i] + t * d[i] : q[i] - (1 - t) * d[i];
     l = truth_dot(c, c);
     if (l < *least) {
@@ -402,24 +391,22 @@ static inline void truth_enumerate(truth_search_t *t)
     const truth_core_t *a = t->a, *b = t->b;
     truth_real d[3], e[3], n[3], p[3], q[3], least = LDBL_MAX, point[3] = {0, 0, 0};
     static const truth_real axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    int i, j, k;
     t->best = LDBL_MAX;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         truth_try_both(t, axes[i]);
-    for (i = 0; i < a->nn; i++)
+    for (int i = 0; i < a->nn; i++)
         truth_try_both(t, a->n[i]);
-    for (i = 0; i < b->nn; i++)
+    for (int i = 0; i < b->nn; i++)
         truth_try_both(t, b->n[i]);
-    for (i = 0; i < a->ne; i++) {
+    for (int i = 0; i < a->ne; i++) {
         truth_minus(a->v[a->e[i][1]], a->v[a->e[i][0]], d);
-        for (j = 0; j < b->ne; j++) {
+        for (int j = 0; j < b->ne; j++) {
             truth_minus(b->v[b->e[j][1]], b->v[b->e[j][0]], e);
             if (truth_cross(d, e, n)) {
                 /* h(n) is at least this edge pair's own value */
-                truth_real x;
                 truth_minus(a->v[a->e[i][0]], b->v[b->e[j][0]], p);
-                x = truth_dot(p, n);
-                for (k = 0; k < 3; k++)
+                truth_real x = truth_dot(p, n);
+                for (int k = 0; k < 3; k++)
                     q[k] = -n[k];
                 if (x < t->best - t->rho)
                     truth_try(t, n);
@@ -437,35 +424,35 @@ static inline void truth_enumerate(truth_search_t *t)
     }
     /* a core that is a segment or a point has directions across it that no pair of
      * edges names */
-    for (j = 0; j < 2 && (a->nn == 0 || b->nn == 0); j++) {
+    for (int j = 0; j < 2 && (a->nn == 0 || b->nn == 0); j++) {
         const truth_core_t *c = j ? b : a;
-        for (i = 0; i < 3 * c->ne; i++) {
+        for (int i = 0; i < 3 * c->ne; i++) {
             truth_minus(c->v[c->e[i / 3][1]], c->v[c->e[i / 3][0]], d);
             if (truth_cross(d, axes[i % 3], n))
                 truth_try_both(t, n);
         }
     }
     /* origin outside the core: along its nearest edge or vertex */
-    for (i = 0; i < a->nv; i++) {
-        for (j = 0; j < b->nv; j++) {
+    for (int i = 0; i < a->nv; i++) {
+        for (int j = 0; j < b->nv; j++) {
             truth_minus(a->v[i], b->v[j], p);
             truth_nearest(p, p, &least, point);
         }
-        for (j = 0; j < b->ne; j++) {
+        for (int j = 0; j < b->ne; j++) {
             truth_minus(a->v[i], b->v[b->e[j][0]], p);
             truth_minus(a->v[i], b->v[b->e[j][1]], q);
             truth_nearest(p, q, &least, point);
         }
     }
-    for (j = 0; j < b->nv; j++)
-        for (i = 0; i < a->ne; i++) {
+    for (int j = 0; j < b->nv; j++)
+        for (int i = 0; i < a->ne; i++) {
             truth_minus(a->v[a->e[i][0]], b->v[j], p);
             truth_minus(a->v[a->e[i][1]], b->v[j], q);
             truth_nearest(p, q, &least, point);
         }
     if (least > 0) {
         least = sqrtl(least);
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             n[k] = -point[k] / least;
         truth_try_both(t, n);
     }
@@ -485,17 +472,16 @@ typedef struct {
 static inline double truth_game(double m[3][3])
 {
     double best = -HUGE_VAL;
-    int k, i, j;
-    for (k = 0; k < 3; k++)
+    int j;
+    for (int k = 0; k < 3; k++)
         best = fmax(best, fmin(m[k][0], fmin(m[k][1], m[k][2])));
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         const double *p = m[k], *q = m[(k + 1) % 3];
-        for (i = 0; i < 3; i++) {
-            double u, v, t;
+        for (int i = 0; i < 3; i++) {
             j = (i + 1) % 3;
-            u = p[i] - p[j];
-            v = q[i] - q[j];
-            t = u / (u - v); /* weight of q; columns i and j meet */
+            double u = p[i] - p[j];
+            double v = q[i] - q[j];
+            double t = u / (u - v); /* weight of q; columns i and j meet */
             if (t > 0 && t < 1)
                 best = fmax(best, fmin((1 - t) * p[0] + t * q[0],
                                        fmin((1 - t) * p[1] + t * q[1], (1 - t) * p[2] + t * q[2])));
@@ -504,18 +490,18 @@ static inline double truth_game(double m[3][3])
     {
         /* weights w with equal columns: w across both column differences */
         double d[3], e[3], w[3], sum;
-        for (k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++) {
             d[k] = m[k][0] - m[k][1];
             e[k] = m[k][0] - m[k][2];
         }
         truth_cross3(d, e, w);
         sum = w[0] + w[1] + w[2];
         if (sum != 0) {
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 w[k] /= sum;
             if (w[0] >= 0 && w[1] >= 0 && w[2] >= 0) {
                 double c[3];
-                for (i = 0; i < 3; i++)
+                for (int i = 0; i < 3; i++)
                     c[i] = w[0] * m[0][i] + w[1] * m[1][i] + w[2] * m[2][i];
                 best = fmax(best, fmin(c[0], fmin(c[1], c[2])));
             }
@@ -528,10 +514,9 @@ static inline double truth_game(double m[3][3])
 static inline double truth_edge2(const truth_triangle_t *t)
 {
     double most = 0;
-    int k, i;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         double e[3];
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             e[i] = t->n[k][i] - t->n[(k + 1) % 3][i];
         most = fmax(most, truth_dot3(e, e));
     }
@@ -542,9 +527,8 @@ static inline double truth_edge2(const truth_triangle_t *t)
 static inline double truth_bound(const truth_triangle_t *t)
 {
     double m[3][3], value;
-    int i, k;
-    for (k = 0; k < 3; k++)
-        for (i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++)
             m[k][i] = truth_dot3(t->s[k], t->n[i]);
     value = truth_game(m);
     if (value < 0)
@@ -572,9 +556,9 @@ static inline void truth_push(truth_heap_t *h, const truth_triangle_t *t)
 static inline void truth_pop(truth_heap_t *h, truth_triangle_t *top)
 {
     truth_triangle_t *last = &h->heap[--h->n];
-    int i = 0, c;
+    int i = 0;
     *top = h->heap[0];
-    for (c = 1; c < h->n; c = 2 * i + 1) {
+    for (int c = 1; c < h->n; c = 2 * i + 1) {
         if (c + 1 < h->n && h->heap[c + 1].bound < h->heap[c].bound)
             c++;
         if (!(h->heap[c].bound < last->bound))
@@ -589,8 +573,7 @@ static inline void truth_pop(truth_heap_t *h, truth_triangle_t *top)
 static inline void truth_sample(const shape_t *a, const shape_t *b, truth_t *out, double n[3], double s[3])
 {
     double l = sqrt(truth_dot3(n, n)), h;
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         n[i] /= l;
     truth_difference(a, b, n, s);
     h = truth_dot3(n, s);
@@ -607,7 +590,6 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, double wi
     truth_t out;
     truth_heap_t heap;
     truth_triangle_t t, child;
-    int i, k, m;
     memset(&out, 0, sizeof out);
     out.depth = HUGE_VAL;
     out.lower = -HUGE_VAL;
@@ -616,8 +598,8 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, double wi
     heap.heap = (truth_triangle_t *)malloc(sizeof *heap.heap * (size_t)heap.room);
     if (!heap.heap)
         return out;
-    for (m = 0; m < 8; m++) {
-        for (i = 0; i < 3; i++) {
+    for (int m = 0; m < 8; m++) {
+        for (int i = 0; i < 3; i++) {
             memcpy(t.n[i], octahedron[i + (m >> i & 1 ? 3 : 0)], sizeof t.n[i]);
             truth_sample(a, b, &out, t.n[i], t.s[i]);
         }
@@ -635,24 +617,24 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, double wi
             break; /* as fine as double can split: the gap stays what it is */
         truth_pop(&heap, &t);
         /* the plane of the three support points, as a candidate */
-        for (i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; i++) {
             u[i] = t.s[1][i] - t.s[0][i];
             v[i] = t.s[2][i] - t.s[0][i];
         }
         truth_cross3(u, v, x);
         c = truth_dot3(x, t.n[0]) + truth_dot3(x, t.n[1]) + truth_dot3(x, t.n[2]);
         if (truth_dot3(x, x) > 0) {
-            for (i = 0; i < 3 && c < 0; i++)
+            for (int i = 0; i < 3 && c < 0; i++)
                 x[i] = -x[i];
             truth_sample(a, b, &out, x, s);
         }
-        for (k = 0; k < 3; k++) {
-            for (i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            for (int i = 0; i < 3; i++)
                 mid[k][i] = t.n[k][i] + t.n[(k + 1) % 3][i];
             truth_sample(a, b, &out, mid[k], point[k]);
         }
-        for (m = 0; m < 4; m++) {
-            for (k = 0; k < 3; k++) {
+        for (int m = 0; m < 4; m++) {
+            for (int k = 0; k < 3; k++) {
                 /* child m < 3 keeps corner m; the fourth is the middle one */
                 int corner = m < 3 && k == m;
                 int edge = m == 3 ? k : (k == (m + 1) % 3 ? m : (m + 2) % 3);
@@ -678,13 +660,12 @@ static inline truth_t truth_depth_within(const shape_t *a, const shape_t *b, dou
     truth_t out;
     if (core && truth_core(a, a->pos, &core[0]) && truth_core(b, a->pos, &core[1])) {
         truth_search_t t;
-        int i;
         t.a = &core[0];
         t.b = &core[1];
         t.rho = core[0].rho + core[1].rho;
         truth_enumerate(&t);
         out.depth = out.lower = (double)t.best;
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             out.n[i] = (double)t.n[i];
         out.enumerated = 1;
     } else {

@@ -20,9 +20,8 @@ static inline double uniform(double low, double high)
 }
 static inline void uniform_seed(uint64_t seed)
 {
-    int i;
     random_state = seed * 0x9E3779B97F4A7C15ull + 1;
-    for (i = 0; i < 8; i++)
+    for (int i = 0; i < 8; i++)
         uniform(0, 1);
 }
 

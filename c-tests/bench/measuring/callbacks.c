@@ -57,13 +57,12 @@ size_t bench_recording(const char *path, unsigned frames, shape_t *shape, bench_
     static recording_t r; /* it stays: shapes refer to its vertices */
     shape_t *body;
     size_t k = 0;
-    unsigned f, i;
     if (!r.bytes && recording_read(path, &r) != 0)
         return 0;
     body = (shape_t *)malloc(r.bodies * sizeof *body);
-    for (f = 0; body && f < frames && f < r.frames; f++) {
+    for (unsigned f = 0; body && f < frames && f < r.frames; f++) {
         recording_place(&r, f, body);
-        for (i = 0; i < r.frame_pairs[f]; i++, k++)
+        for (unsigned i = 0; i < r.frame_pairs[f]; i++, k++)
             if (shape) {
                 recording_pair(&r, f, i, &out[k].a, &out[k].b);
                 recording_truth(&r, k, &out[k].lower, &out[k].upper);

@@ -39,11 +39,10 @@ static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, do
     const unsigned long most = 20000;
     outputs_t out, before;
     clock_t start = clock();
-    int code, i;
     memset(&out, 0x5a, sizeof out);
     before = out;
     a->calls = b->calls = 0;
-    code = run(entry, a, b, ccd, &out);
+    int code = run(entry, a, b, ccd, &out);
     CHECK(may_return(entry, code), "%s, %s: returned %d", entry->name, what, code);
     CHECK(a->calls + b->calls <= most, "%s, %s: %lu supports, %.3f s", entry->name, what, a->calls + b->calls,
           (double)(clock() - start) / CLOCKS_PER_SEC);
@@ -52,7 +51,7 @@ static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, do
     } else if (entry->traits & STORES_DIR_POS) {
         CHECK(fabs((double)ccdVec3Len2(&out.dir) - 1) <= 8 * (double)CCD_EPS, "%s, %s: dir not unit", entry->name, what);
         CHECK(out.depth >= 0 && out.depth <= CCD_REAL_MAX, "%s, %s: depth %g", entry->name, what, (double)out.depth);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             CHECK(fabs((double)out.pos.v[i]) <= (double)CCD_REAL_MAX, "%s, %s: pos", entry->name, what);
         if (entry->number == ASK_ALONG)
             CHECK(value_along(a, b, &out.normal) <= (double)(out.depth * ccdVec3Dot(&out.dir, &out.normal)) + 64 * (double)CCD_EPS * size,
@@ -67,14 +66,12 @@ static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, do
 static void iterations(const call_t *entry)
 {
     static const unsigned long limits[] = {0, 1, 2, 3, 5, 7, 10, 14, 20, (unsigned long)-1};
-    int round;
-    for (round = 0; round < 1000 * share / 100; round++) {
+    for (int round = 0; round < 1000 * share / 100; round++) {
         shape_t a, b;
         ccd_t ccd;
-        int code;
         random_pair(entry, round % 2, &a, &b, &ccd);
         ccd.max_iterations = limits[round / 2 % 10];
-        code = ask(entry, &a, &b, &ccd, 10, "few iterations");
+        int code = ask(entry, &a, &b, &ccd, 10, "few iterations");
         CHECK(ccd.max_iterations <= 20 || code == (round % 2 ? entry->hit : entry->miss), "%s: returned %d", entry->name, code);
         /* The extension may say CCD_LIMIT, which these entries count as a hit. */
         if (round % 2 == 0 && (!(entry->traits & EXTENSION) || (entry->traits & FROM_CENTERS)))
@@ -96,21 +93,19 @@ static void degenerate(const call_t *entry)
     enum { PLAIN = sizeof plain / sizeof plain[0] };
     /* The fourth power of a size must be a number of the precision, with room for rounding. */
     static const double sizes[] = {1, 1e-3, 1e3, 1e6, sizeof(ccd_real_t) == 8 ? 1e-50 : 1e-6, sizeof(ccd_real_t) == 8 ? 1e60 : 1e6};
-    int i, k, at, size;
-    for (i = 0; i < PLAIN; i++)
-        for (k = 0; k < PLAIN; k++)
-            for (at = 0; at < 3; at++)
-                for (size = 0; size < 6; size += share < 100 ? 6 : 1) {
+    for (int i = 0; i < PLAIN; i++)
+        for (int k = 0; k < PLAIN; k++)
+            for (int at = 0; at < 3; at++)
+                for (int size = 0; size < 6; size += share < 100 ? 6 : 1) {
                     static ccd_real_t scaled[2][12];
                     shape_t s[2];
                     ccd_t ccd;
-                    int n, c, code;
                     s[0] = plain[i];
                     s[1] = plain[k];
-                    for (n = 0; n < 2; n++) {
-                        for (c = 0; c < 3; c++)
+                    for (int n = 0; n < 2; n++) {
+                        for (int c = 0; c < 3; c++)
                             s[n].p[c] *= (ccd_real_t)sizes[size];
-                        for (c = 0; c < 3 * s[n].nverts; c++)
+                        for (int c = 0; c < 3 * s[n].nverts; c++)
                             scaled[n][c] = s[n].verts[c] * (ccd_real_t)sizes[size];
                         if (s[n].nverts > 0)
                             s[n].verts = scaled[n];
@@ -119,14 +114,14 @@ static void degenerate(const call_t *entry)
                     shape_move(&s[1], at == 2 ? 10 * sizes[size] : 0, 0, at == 1 ? 2 * sizes[size] : 0);
                     shape_query(&ccd);
                     ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)(1e-4 * sizes[size]);
-                    code = ask(entry, &s[0], &s[1], &ccd, 10 * sizes[size], "a degenerate pair");
+                    int code = ask(entry, &s[0], &s[1], &ccd, 10 * sizes[size], "a degenerate pair");
                     if (at == 2 && entry->number != ASK_PLANAR)
                         CHECK(code == entry->miss, "%s: shapes %d and %d apart, size %g: %d", entry->name, i, k, sizes[size], code);
                     if (at == 0 && (i >= 7 || k >= 7) && entry->number != ASK_PLANAR)
                         CHECK(code == entry->hit, "%s: a solid in %d and %d in one place, size %g: %d", entry->name, i, k,
                               sizes[size], code);
                 }
-    for (i = 0; i < PLAIN; i++) {
+    for (int i = 0; i < PLAIN; i++) {
         shape_t s = plain[i];
         ccd_t ccd;
         shape_query(&ccd);
@@ -137,8 +132,7 @@ static void degenerate(const call_t *entry)
 /* Nothing is read of ccd_t but what the call needs: the rest may be anything. */
 static void other_fields(const call_t *entry)
 {
-    int round;
-    for (round = 0; round < 300 * share / 100; round++) {
+    for (int round = 0; round < 300 * share / 100; round++) {
         const int overlapping = round % 2, wanted = overlapping ? entry->hit : entry->miss;
         shape_t a, b;
         outputs_t out, other;
@@ -172,8 +166,7 @@ static void other_fields(const call_t *entry)
  * is depth times direction of ccdGJKPenetration. */
 static void null_outputs(void)
 {
-    int round, i, skip;
-    for (round = 0; round < 2 * share; round++) {
+    for (int round = 0; round < 2 * share; round++) {
         static const int numbers[] = {ASK_MPR, ASK_GJK};
         const int expected = round % 2 - 1;
         ccd_real_t depth[2];
@@ -183,8 +176,8 @@ static void null_outputs(void)
         ccd_t ccd;
         random_pair(&entries[2], round % 2, &a, &b, &ccd);
         ccd.center1 = ccd.center2 = shape_center;
-        for (i = 0; i < 2; i++)
-            for (skip = 0; skip < 8; skip++) {
+        for (int i = 0; i < 2; i++)
+            for (int skip = 0; skip < 8; skip++) {
                 const call_rest_t some = {.depth = skip & 1 ? NULL : &depth[1], .dir = skip & 2 ? NULL : &dir[1],
                                           .pos = skip & 4 ? NULL : &pos[1]};
                 memset(depth, 0x5a, sizeof depth);
@@ -197,16 +190,15 @@ static void null_outputs(void)
                 CHECK((skip & 4) || same_bits(&pos[0], &pos[1], sizeof pos[0]), "pos");
             }
         CHECK(ccdGJKSeparate(&a, &b, &ccd, NULL) == expected && ccdGJKSeparate(&a, &b, &ccd, &sep) == expected, "sep");
-        for (i = 0; i < 3 && expected == 0; i++)
+        for (int i = 0; i < 3 && expected == 0; i++)
             CHECK(fabs((double)(sep.v[i] - depth[0] * dir[0].v[i])) <= 4 * (double)CCD_EPS * (double)depth[0], "sep = depth dir");
     }
 }
 
 int main(int argc, char **argv)
 {
-    int i;
     share = argc > 1 ? atoi(argv[1]) : share;
-    for (i = 0; i < ENTRIES; i++) {
+    for (int i = 0; i < ENTRIES; i++) {
         other_fields(&entries[i]);
         iterations(&entries[i]);
         degenerate(&entries[i]);

@@ -44,11 +44,10 @@ static void support1(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 
 static void support2(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
-    int i;
     CHECK(obj == seen.obj2, "obj2 passed through");
     CHECK(seen.apart || seen.expect_second, "support2 after support1");
     check_direction(dir);
-    for (i = 0; i < 3 && !seen.apart; i++)
+    for (int i = 0; i < 3 && !seen.apart; i++)
         CHECK(dir->v[i] == -seen.dir.v[i], "the opposite direction");
     seen.expect_second = 0;
     seen.pairs++;
@@ -85,14 +84,13 @@ static void trusting_ball(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *ou
 
 int main(void)
 {
-    int i, round;
-    for (i = 0; i < ENTRIES; i++) {
-        for (round = 0; round < 400; round++) {
+    for (int i = 0; i < ENTRIES; i++) {
+        for (int round = 0; round < 400; round++) {
             const double length[] = {1, 1e-300, 1e300, 1e-30, 30};
             shape_t a, b;
             ccd_t ccd;
             outputs_t out;
-            int code, k, hit = round % 2;
+            int code, hit = round % 2;
             /* Each way as often hit or missed, and with every length. */
             const int want = round / 2 % 2 ? CCD_WANT_ALL : entries[i].number == ASK_DISTANCE ? 0 : CCD_WANT_POINTS;
             random_pair(&entries[i], hit, &a, &b, &ccd);
@@ -108,7 +106,7 @@ int main(void)
             seen.apart = (entries[i].traits & ONE_BY_ONE) != 0 || want == CCD_WANT_ALL;
             seen.obj2 = &b;
             seen.thread = pthread_self();
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 seen.first.v[k] = (ccd_real_t)(length[round % 5] * uniform(-1, 1));
             if (round % 7 == 0)
                 ccdVec3Set(&seen.first, 0, 0, round % 14 == 0 ? 0 : (ccd_real_t)NAN);
@@ -142,11 +140,11 @@ int main(void)
         ccd.support2 = trusting_ball;
         __ccdSupport(&a, NULL, &dir, &ccd, &s);
         CHECK(s.v1.v[0] == 1 && s.v1.v[1] == -2 && s.v1.v[2] == 3, "box");
-        for (i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; i++) {
             CHECK(s.v2.v[i] == -dir.v[i], "the direction as given");
             CHECK(s.v.v[i] == s.v1.v[i] - s.v2.v[i], "v = v1 - v2");
         }
-        for (round = 0; round < 3; round++) {
+        for (int round = 0; round < 3; round++) {
             ccd_vec3_t *place = round == 0 ? &aliased.v : round == 1 ? &aliased.v1 : &aliased.v2;
             *place = dir;
             __ccdSupport(&a, NULL, place, &ccd, &aliased);

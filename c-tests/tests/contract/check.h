@@ -42,8 +42,7 @@ static inline int random_below(int n) { return (int)uniform(0, n); }
 static inline ccd_vec3_t random_vec3(double size)
 {
     ccd_vec3_t v;
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         v.v[i] = (ccd_real_t)uniform(-size, size);
     return v;
 }

@@ -57,14 +57,13 @@ static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
 
 static inline int stored_distance(int code, const ccd_distance_t *d, outputs_t *out)
 {
-    int i;
     /* Open bounds have a sign too. */
     if (code == CCD_LIMIT)
         code = d->distance < 0 ? CCD_HIT : CCD_MISS;
     if (code == CCD_HIT) {
         out->depth = -d->distance;
         out->dir = d->normal;
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             out->pos.v[i] = (d->point1.v[i] + d->point2.v[i]) / 2;
     }
     return code;

@@ -84,8 +84,7 @@ static void leaving_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *di
 
 static void test(const call_t *entry)
 {
-    int round;
-    for (round = 0; round < 20; round++) {
+    for (int round = 0; round < 20; round++) {
         shape_t a, b;
         ccd_t ccd;
         outputs_t expected, out;
@@ -100,13 +99,12 @@ static void test(const call_t *entry)
         memset(&expected, 0, sizeof expected);
         expected_code = run(entry, &a, &b, &ccd, &expected);
         for (last = 1; last <= 50; last++) {
-            int code;
             calls_left = last;
             if (!leaves(entry, &a, &b, &ccd, &out))
                 break;
             calls_left = 0;
             memset(&out, 0, sizeof out);
-            code = run(entry, &a, &b, &ccd, &out);
+            int code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == expected_code && same_bits(&out, &expected, sizeof out), "%s after being left", entry->name);
         }
         CHECK(last > 1, "%s runs callbacks", entry->name);
@@ -115,8 +113,7 @@ static void test(const call_t *entry)
 
 int main(void)
 {
-    int i;
-    for (i = 0; i < ENTRIES; i++)
+    for (int i = 0; i < ENTRIES; i++)
         test(&entries[i]);
     test(&support_entry);
     return checks_end();

@@ -34,8 +34,7 @@ static void show_vec3(const char *what, const ccd_vec3_t *v)
 
 static void show_quat(const char *what, const ccd_quat_t *q)
 {
-    int i;
-    for (i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++)
         show(what, q->q[i]);
 }
 

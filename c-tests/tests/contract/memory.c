@@ -43,8 +43,7 @@ static int may_take(void)
 
 static void gave(void *block)
 {
-    int i;
-    for (i = 0; i < live_count && block != NULL; i++)
+    for (int i = 0; i < live_count && block != NULL; i++)
         if (live[i].block == block) {
             live[i] = live[--live_count];
             return;
@@ -56,11 +55,10 @@ void *calloc(size_t n, size_t size) { return may_take() ? took(__libc_calloc(n, 
 
 void *realloc(void *block, size_t size)
 {
-    void *moved;
     if (!may_take())
         return NULL;
     gave(block);
-    moved = __libc_realloc(block, size);
+    void *moved = __libc_realloc(block, size);
     return took(moved, size);
 }
 
@@ -97,22 +95,21 @@ static void check_nodes(void)
     pt_vertex_t *v[4];
     pt_edge_t *e[6];
     pt_face_t *f[4];
-    int i;
     memset(&s, 0, sizeof s);
     watch(0);
     ccdPtInit(&pt);
     CHECK(taken == 0, "ccdPtInit takes no memory");
-    for (i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++) {
         s.v = random_vec3(1);
         v[i] = ccdPtAddVertex(&pt, &s);
         CHECK(live_count == i + 1 && live[i].block == v[i] && live[i].size == sizeof *v[i], "a vertex is a block");
     }
-    for (i = 0; i < 6; i++) {
+    for (int i = 0; i < 6; i++) {
         static const int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 1}, {3, 2}};
         e[i] = ccdPtAddEdge(&pt, v[ends[i][0]], v[ends[i][1]]);
         CHECK(live_count == i + 5 && live[i + 4].block == e[i] && live[i + 4].size == sizeof *e[i], "an edge is a block");
     }
-    for (i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++) {
         static const int sides[4][3] = {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}};
         f[i] = ccdPtAddFace(&pt, e[sides[i][0]], e[sides[i][1]], e[sides[i][2]]);
         CHECK(live_count == i + 11 && live[i + 10].block == f[i] && live[i + 10].size == sizeof *f[i], "a face is a block");
@@ -130,7 +127,7 @@ static void check_nodes(void)
     e[4]->el.type = PT_EDGE;
     e[4]->vertex[0] = v[3];
     e[4]->vertex[1] = v[1];
-    for (i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         list_t *link = &e[4]->vertex_list[i], *head = &e[4]->vertex[i]->edges;
         link->prev = head->prev;
         link->next = head;
@@ -151,11 +148,11 @@ static void check_nodes(void)
 
     /* Refused: NULL, and nothing has changed. */
     ccdPtInit(&pt);
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         s.v = random_vec3(1);
         v[i] = ccdPtAddVertex(&pt, &s);
     }
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         e[i] = ccdPtAddEdge(&pt, v[i], v[(i + 1) % 3]);
     before = pt;
     watch(1);
@@ -172,26 +169,23 @@ static void check_nodes(void)
 
 static void check_queries(void)
 {
-    int i, round;
-    for (i = 0; i < ENTRIES; i++) {
+    for (int i = 0; i < ENTRIES; i++) {
         const call_t *entry = &entries[i];
-        for (round = 0; round < 100; round++) {
+        for (int round = 0; round < 100; round++) {
             const int overlapping = round % 4 != 0;
             shape_t a, b;
             outputs_t out, before;
             ccd_t ccd;
-            int code;
-            unsigned long fail;
             random_pair(entry, overlapping, &a, &b, &ccd);
             ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)1e-5;
             watch(0);
-            code = run(entry, &a, &b, &ccd, &out);
+            int code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s returned %d", entry->name, code);
             CHECK(live_count == 0, "%s left %d blocks behind", entry->name, live_count);
             /* A distance takes none while the objects are apart. */
             if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->number == ASK_DISTANCE))
                 CHECK(taken == 0, "%s took %lu blocks", entry->name, taken);
-            for (fail = 1; fail <= (taken < 40 ? taken : 40); fail++) {
+            for (unsigned long fail = 1; fail <= (taken < 40 ? taken : 40); fail++) {
                 const unsigned long needed = taken;
                 memset(&out, 0x5a, sizeof out);
                 before = out;

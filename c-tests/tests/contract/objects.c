@@ -9,10 +9,9 @@
 
 int main(void)
 {
-    size_t i;
     printf("%a %a %a\n", (double)ccd_vec3_origin->v[0], (double)ccd_vec3_origin->v[1], (double)ccd_vec3_origin->v[2]);
     printf("%lu\n", (unsigned long)ccd_points_on_sphere_len);
-    for (i = 0; i < ccd_points_on_sphere_len; i++) {
+    for (size_t i = 0; i < ccd_points_on_sphere_len; i++) {
         const ccd_real_t *v = ccd_points_on_sphere[i].v;
         printf("%a %a %a\n", (double)v[0], (double)v[1], (double)v[2]);
     }

@@ -19,8 +19,7 @@ typedef struct { exact_t v[3]; } exact_vec_t;
 static exact_vec_t exact(const ccd_vec3_t *a)
 {
     exact_vec_t e;
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         e.v[i] = a->v[i];
     return e;
 }
@@ -29,8 +28,7 @@ static exact_vec_t exact(const ccd_vec3_t *a)
 static exact_vec_t combine(const exact_vec_t *a, exact_t s, const exact_vec_t *b, exact_t t, const exact_vec_t *c)
 {
     exact_vec_t e;
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         e.v[i] = a->v[i] + s * (b->v[i] - a->v[i]) + t * (c->v[i] - a->v[i]);
     return e;
 }
@@ -45,11 +43,10 @@ static exact_t dot(const exact_vec_t *a, const exact_vec_t *b, const exact_vec_t
 static exact_t exact_segment(const exact_vec_t *p, const exact_vec_t *a, const exact_vec_t *b)
 {
     exact_t t = 0, length2 = dot(a, b, a, b);
-    exact_vec_t w;
     if (length2 > 0)
         t = dot(a, p, a, b) / length2;
     t = t < 0 ? 0 : t > 1 ? 1 : t;
-    w = combine(a, t, b, 0, a);
+    exact_vec_t w = combine(a, t, b, 0, a);
     return dot(&w, p, &w, p);
 }
 
@@ -63,9 +60,8 @@ static exact_t exact_triangle(const exact_vec_t *p, const exact_vec_t *a, const 
     if (det > 0) {
         exact_t s = 0, t = 0;
         exact_vec_t w = *a;
-        int i;
         /* Cramer's rule loses the square of the triangle's condition: solve for what is left, again. */
-        for (i = 0; i < 4; i++) {
+        for (int i = 0; i < 4; i++) {
             exact_t pb = dot(&w, p, a, b), pc = dot(&w, p, a, c);
             s += (cc * pb - bc * pc) / det;
             t += (bb * pc - bc * pb) / det;
@@ -106,10 +102,9 @@ static void draw(int shape, ccd_vec3_t v[4])
     const double digits = sizeof(ccd_real_t) == 8 ? 70 : 8;
     double size = pow(10, uniform(-digits, digits)), thin = pow(10, uniform(-18, 0)), s = uniform(0, 1), t = uniform(0, 1);
     ccd_vec3_t *p = &v[0], *a = &v[1], *b = &v[2], *c = &v[3];
-    int i;
-    for (i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++)
         v[i] = random_vec3(size);
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         ccd_real_t *pi = &p->v[i], *ai = &a->v[i], *bi = &b->v[i], *ci = &c->v[i];
         ccd_real_t noise = (ccd_real_t)(thin * uniform(-size, size));
         switch (shape) {
@@ -133,13 +128,13 @@ static void draw(int shape, ccd_vec3_t v[4])
         double off = random_below(2) ? 0 : pow(10, uniform(-16, -1));
         s = random_below(3) == 0 ? (double)random_below(2) : 2 * s - 0.5;
         t = random_below(3) == 0 ? 0 : t;
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             p->v[i] = (ccd_real_t)(a->v[i] + s * (b->v[i] - a->v[i]) + t * (c->v[i] - a->v[i]) + off * uniform(-size, size));
     }
     if (random_below(8) == 0)
         *p = v[1 + random_below(3)];
     /* Every order of the corners. */
-    for (i = 3; i > 1; i--) {
+    for (int i = 3; i > 1; i--) {
         int k = 1 + random_below(i);
         ccd_vec3_t swap = v[i];
         v[i] = v[k];

@@ -37,8 +37,7 @@ static struct { int element; ccd_real_t dist; int type; } nearest;
 
 static int number(const void *element)
 {
-    int i;
-    for (i = 0; i < count; i++)
+    for (int i = 0; i < count; i++)
         if (model[i].type != 0 && element == address[i])
             return i;
     return END;
@@ -67,9 +66,8 @@ static void forget(void)
 static void check_list(const list_t *head, int type)
 {
     const list_t *link = head->next;
-    int i;
     CHECK(link->prev == head && head->prev->next == head, "circular");
-    for (i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++) {
         if (model[i].type == type) {
             CHECK(link == &address[i]->list, "type %d, element %d in its place", type, i);
             if (link == head)
@@ -85,14 +83,12 @@ static void check_vertex(int i)
 {
     pt_vertex_t *vertex = (pt_vertex_t *)address[i];
     const list_t *link = vertex->edges.next;
-    int k;
     CHECK(same_bits(&vertex->v, &model[i].v, sizeof vertex->v), "vertex %d keeps its point", i);
     CHECK(same_bits(&vertex->el.witness, &model[i].v.v, sizeof vertex->el.witness), "a vertex's witness is v");
     CHECK(vertex->el.dist == ccdVec3Len2(&model[i].v.v), "a vertex's distance is squared");
     /* Its edges, oldest first; each by the link of the end that stands here. */
-    for (k = 0; k < count; k++) {
-        int end;
-        for (end = 0; end < 2; end++) {
+    for (int k = 0; k < count; k++) {
+        for (int end = 0; end < 2; end++) {
             if (model[k].type == PT_EDGE && model[k].parts[end] == i) {
                 pt_edge_t *edge = (pt_edge_t *)address[k];
                 CHECK(link == &edge->vertex_list[end], "edge %d hangs on vertex %d", k, i);
@@ -105,11 +101,10 @@ static void check_vertex(int i)
 
 static void check_polytope(void)
 {
-    int i, k;
     check_list(&pt.vertices, PT_VERTEX);
     check_list(&pt.edges, PT_EDGE);
     check_list(&pt.faces, PT_FACE);
-    for (i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++) {
         if (model[i].type == 0)
             continue;
         CHECK(address[i]->type == model[i].type, "type");
@@ -117,14 +112,14 @@ static void check_polytope(void)
             check_vertex(i);
         } else if (model[i].type == PT_EDGE) {
             const pt_edge_t *edge = (const pt_edge_t *)address[i];
-            for (k = 0; k < 2; k++) {
+            for (int k = 0; k < 2; k++) {
                 CHECK(number(edge->vertex[k]) == model[i].parts[k], "edge %d's vertices", i);
                 CHECK((edge->faces[k] == NULL ? END : number(edge->faces[k])) == model[i].sides[k],
                       "edge %d's faces", i);
             }
         } else {
             const pt_face_t *face = (const pt_face_t *)address[i];
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 CHECK(number(face->edge[k]) == model[i].parts[k], "face %d's edges", i);
         }
     }
@@ -155,12 +150,11 @@ static void added(int type)
 static void add_vertex(void)
 {
     support_t s;
-    int k;
     s.v1 = random_vec3(2);
     s.v2 = random_vec3(2);
     s.v = random_vec3(random_below(2) ? 1 : 1e-9);
     if (random_below(4) == 0)
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             s.v.v[k] = (ccd_real_t)(random_below(3) - 1);
     model[count].v = s;
     address[count] = (pt_el_t *)ccdPtAddVertex(&pt, &s);
@@ -180,8 +174,7 @@ static int add_edge(int a, int b)
 /* The edge between two vertices that has a side free; a new one if there is none. */
 static int edge_between(int a, int b)
 {
-    int i;
-    for (i = 0; i < count; i++)
+    for (int i = 0; i < count; i++)
         if (model[i].type == PT_EDGE && model[i].sides[1] == END
             && ((model[i].parts[0] == a && model[i].parts[1] == b) || (model[i].parts[0] == b && model[i].parts[1] == a)))
             return i;
@@ -215,9 +208,8 @@ static void deleted(int i)
 
 static void delete_face(int i)
 {
-    int k;
     pt_delete_face(&pt, (pt_face_t *)address[i]);
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         int *sides = model[model[i].parts[k]].sides;
         if (sides[0] == i)
             sides[0] = sides[1];
@@ -257,11 +249,10 @@ static void set_nearest(void)
 static void search(void)
 {
     const pt_el_t *found = ccdPtNearest(&pt);
-    int type, i;
     if (nearest.element == END) {
         forget();
-        for (type = PT_VERTEX; type <= PT_FACE; type++)
-            for (i = 0; i < count; i++)
+        for (int type = PT_VERTEX; type <= PT_FACE; type++)
+            for (int i = 0; i < count; i++)
                 if (model[i].type == type)
                     rule(i);
     }
@@ -322,29 +313,27 @@ static size_t read_file(const char *name, char *text, size_t most)
 static void dump(void)
 {
     static char text[1 << 17];
-    size_t length, half;
-    int i, id = 0, file;
+    int id = 0, file;
     char name[512];
     const char *directory = getenv("TMPDIR");
-    FILE *stream;
     snprintf(name, sizeof name, "%s/polytope-XXXXXX", directory ? directory : P_tmpdir);
     file = mkstemp(name);
     CHECK(file >= 0, "a temporary file");
     close(file);
     ccdPtDumpSVT(&pt, name);
-    half = read_file(name, text, sizeof text);
+    size_t half = read_file(name, text, sizeof text);
     fwrite(text, 1, half, stdout);
     ccdPtDumpSVT(&pt, name);
-    length = read_file(name, text, sizeof text);
+    size_t length = read_file(name, text, sizeof text);
     CHECK(length == 2 * half && memcmp(text, text + half, half) == 0, "appends");
-    stream = fopen(name, "w");
+    FILE *stream = fopen(name, "w");
     ccdPtDumpSVT2(&pt, stream);
     fclose(stream);
     length = read_file(name, text, sizeof text);
     CHECK(length == half, "writes to a stream");
     remove(name);
     ccdPtDumpSVT(&pt, "/no such directory/polytope");
-    for (i = 0; i < count; i++)
+    for (int i = 0; i < count; i++)
         if (model[i].type == PT_VERTEX) {
             CHECK(((pt_vertex_t *)address[i])->id == id, "vertex number %d", id);
             id++;
@@ -354,16 +343,15 @@ static void dump(void)
 int main(int argc, char **argv)
 {
     const int polytopes = atoi(argc > 1 ? argv[1] : "200");
-    int round, step;
     ours = running_ccd() != NULL;
-    for (round = 0; round < polytopes; round++) {
+    for (int round = 0; round < polytopes; round++) {
         count = 0;
         memset(&pt, 0xa5, sizeof pt);
         ccdPtInit(&pt);
         forget();
         check_polytope();
         CHECK(ccdPtNearest(&pt) == NULL, "nothing is nearest in an empty polytope");
-        for (step = 0; step < 150 && count < MOST - 8; step++) {
+        for (int step = 0; step < 150 && count < MOST - 8; step++) {
             int what = random_below(20), a, b;
             if (what < 5) {
                 add_vertex();

@@ -61,8 +61,7 @@ static inline void pt_delete(pt_t *pt, pt_el_t *element)
 
 static inline void pt_delete_face(pt_t *pt, pt_face_t *face)
 {
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         pt_edge_t *edge = face->edge[i];
         if (edge->faces[0] == face)
             edge->faces[0] = edge->faces[1];

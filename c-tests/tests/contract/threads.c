@@ -15,19 +15,17 @@ static unsigned long different[THREADS];
 static void *ask_all(void *arg)
 {
     const int me = (int)((unsigned long *)arg - different);
-    int i, k, round;
-    for (round = 0; round < ROUNDS; round++)
-        for (k = 0; k < ENTRIES * PAIRS; k++) {
+    int i;
+    for (int round = 0; round < ROUNDS; round++)
+        for (int k = 0; k < ENTRIES * PAIRS; k++) {
             /* Each thread in an order of its own. */
             const int place = (k * 7 + me * 131) % (ENTRIES * PAIRS);
-            shape_t a, b;
             outputs_t out;
-            int code;
             i = place / PAIRS;
-            a = queries[i][place % PAIRS].a;
-            b = queries[i][place % PAIRS].b;
+            shape_t a = queries[i][place % PAIRS].a;
+            shape_t b = queries[i][place % PAIRS].b;
             memset(&out, 0x5a, sizeof out);
-            code = run(&entries[i], &a, &b, &queries[i][place % PAIRS].ccd, &out);
+            int code = run(&entries[i], &a, &b, &queries[i][place % PAIRS].ccd, &out);
             different[me] += code != queries[i][place % PAIRS].code
                              || !same_bits(&out, &queries[i][place % PAIRS].out, sizeof out);
         }
@@ -37,19 +35,17 @@ static void *ask_all(void *arg)
 int main(void)
 {
     pthread_t thread[THREADS];
-    int i, k;
-    for (i = 0; i < ENTRIES; i++)
-        for (k = 0; k < PAIRS; k++) {
-            shape_t a, b;
+    for (int i = 0; i < ENTRIES; i++)
+        for (int k = 0; k < PAIRS; k++) {
             random_pair(&entries[i], k % 2, &queries[i][k].a, &queries[i][k].b, &queries[i][k].ccd);
-            a = queries[i][k].a;
-            b = queries[i][k].b;
+            shape_t a = queries[i][k].a;
+            shape_t b = queries[i][k].b;
             memset(&queries[i][k].out, 0x5a, sizeof queries[i][k].out);
             queries[i][k].code = run(&entries[i], &a, &b, &queries[i][k].ccd, &queries[i][k].out);
         }
-    for (i = 0; i < THREADS; i++)
+    for (int i = 0; i < THREADS; i++)
         CHECK(pthread_create(&thread[i], NULL, ask_all, &different[i]) == 0, "thread %d", i);
-    for (i = 0; i < THREADS; i++) {
+    for (int i = 0; i < THREADS; i++) {
         pthread_join(thread[i], NULL);
         CHECK(different[i] == 0, "thread %d: %lu answers differ", i, different[i]);
     }

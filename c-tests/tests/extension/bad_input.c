@@ -107,10 +107,10 @@ static void expect(int call, const ccd_t *ccd, const call_rest_t *rest, int code
 {
     static outputs_t out, before; /* static: no padding differs */
     ccd_warm_t warm, warm_before;
-    int answer, i;
+    int answer;
     memset(&before, 0x5a, sizeof before);
     OURS(ccdWarmGuess)(&warm_before, &way);
-    for (i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         memcpy(&out, &before, sizeof out);
         warm = warm_before;
         answer = ask_number(calls[call].ask, ccd, rest, i ? NULL : &warm, no_out ? NULL : &out);
@@ -168,14 +168,13 @@ static void bad_objects(int call, const call_rest_t *rest, const ccd_real_t stra
 {
     const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
     ccd_t ccd;
-    int i, k;
     expect(call, NULL, rest, bad, "no ccd");
-    for (i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         ccd = good;
         *(i ? &ccd.support2 : &ccd.support1) = NULL;
         expect(call, &ccd, rest, bad, "a support function is missing");
     }
-    for (i = 1; i < 4; i++) {
+    for (int i = 1; i < 4; i++) {
         ccd = good;
         if (i & 1)
             ccd.center1 = NULL;
@@ -185,8 +184,8 @@ static void bad_objects(int call, const call_rest_t *rest, const ccd_real_t stra
         ccd.first_dir = NULL;
         expect(call, &ccd, rest, traits & (NEEDS_CENTRES | NEEDS_FIRST_DIR) ? bad : good_code, "no centre, no first_dir");
     }
-    for (i = 0; i < 3; i++)
-        for (k = 0; k < 2; k++) {
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++) {
             bad_value = strange[i];
             ccd = good;
             *(k ? &ccd.center2 : &ccd.center1) = bad_center;
@@ -199,16 +198,15 @@ static void bad_tolerances(int call, const call_rest_t *rest, ccd_real_t inf)
 {
     const ccd_real_t none[3] = {inf - inf, CCD_REAL(-1e-9), -inf};
     const int traits = calls[call].traits;
-    int i, k;
-    for (i = 0; i < 3; i++)
-        for (k = 0; k < 3; k++) {
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
             ccd_t ccd = good;
             *(k == 0 ? &ccd.mpr_tolerance : k == 1 ? &ccd.epa_tolerance : &ccd.dist_tolerance) = none[i];
             /* libccd's calls take their default, and what a call does not read is not looked at */
             expect(call, &ccd, rest, traits & CHECKS_TOLERANCE && traits >> k & 1 ? calls[call].bad : calls[call].good,
                    "a tolerance that is none");
         }
-    for (i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         ccd_t ccd = good;
         ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = i ? inf : 0;
         expect(call, &ccd, rest, calls[call].good, i ? "an infinite tolerance" : "tolerance 0");
@@ -227,11 +225,10 @@ static void bad_arguments(int call, const call_rest_t *good_rest, const ccd_real
     const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
     call_rest_t rest = *good_rest;
     ccd_vec3_t dir = {{0, 0, 0}};
-    int i;
     no_out = 1;
     expect(call, &good, &rest, traits & NEEDS_OUT ? bad : good_code, "no out");
     no_out = 0;
-    for (i = 0; i < 32; i++) {
+    for (int i = 0; i < 32; i++) {
         rest.want = 1u << i;
         expect(call, &good, &rest, traits & TAKES_WANT && i > 1 ? bad : good_code, "a flag");
     }
@@ -240,12 +237,12 @@ static void bad_arguments(int call, const call_rest_t *good_rest, const ccd_real
     expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "no direction");
     rest.along = &dir;
     expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "zero direction");
-    for (i = 0; i < 9; i++) {
+    for (int i = 0; i < 9; i++) {
         dir = *good_rest->along;
         dir.v[i % 3] = strange[i / 3];
         expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "a direction that is no number");
     }
-    for (i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; i++) {
         rest = *good_rest;
         memcpy((char *)&rest + lengths[i % 4].at, &no_length[i / 4], sizeof(ccd_real_t));
         expect(call, &good, &rest, traits & lengths[i % 4].taken_by ? bad : good_code, lengths[i % 4].why);
@@ -253,12 +250,12 @@ static void bad_arguments(int call, const call_rest_t *good_rest, const ccd_real
     rest = *good_rest;
     rest.margin2 = strange[1];
     expect(call, &good, &rest, traits & TAKES_MARGINS ? bad : good_code, "an infinite margin");
-    for (i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         rest = *good_rest;
         rest.slop = i ? strange[1] : 0;
         expect(call, &good, &rest, i && traits & TAKES_SLOP ? 1 : good_code, i ? "any slop" : "no slop");
     }
-    for (i = -1; i < 2; i++) {
+    for (int i = -1; i < 2; i++) {
         rest = *good_rest;
         rest.max = i > 0 ? 2147483647 : i;
         expect(call, &good, &rest, i < 1 && traits & TAKES_SLOP ? bad : good_code, "room");
@@ -287,25 +284,23 @@ static double any_number(void)
 static void lying_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     ccd_vec3_t d = *dir;
-    int i;
     if (lie.kind == OPPOSITE)
         ccdVec3Scale(&d, -1);
     shape_support(obj, &d, out);
-    for (i = 0; i < 3 && lie.kind != OPPOSITE; i++) {
+    for (int i = 0; i < 3 && lie.kind != OPPOSITE; i++) {
         const double x = lie.said[asked % LIST][i];
         out->v[i] = (ccd_real_t)(lie.kind == INSTEAD ? x : lie.kind == ADDED ? (double)out->v[i] + x : (double)out->v[i] * x);
     }
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         nonsense |= !isfinite(out->v[i]);
     asked++;
 }
 
 static void draw_lie(void)
 {
-    int i, k;
     lie.kind = random_below(LIES);
-    for (i = 0; i < LIST; i++)
-        for (k = 0; k < 3; k++)
+    for (int i = 0; i < LIST; i++)
+        for (int k = 0; k < 3; k++)
             lie.said[i][k] = lie.kind == NEARLY_ONE                ? 1 + pow(10, uniform(-9, 0)) * uniform(-1, 1)
                 : lie.kind == ADDED && random_below(5) ? 0 : any_number();
 }
@@ -315,15 +310,13 @@ static void draw_lie(void)
 static void lies(int call, const call_rest_t *rest)
 {
     const int libccd = calls[call].bad != CCD_BAD_INPUT, number = calls[call].ask;
-    int round, i;
-    for (round = 0; round < 3000; round++) {
+    for (int round = 0; round < 3000; round++) {
         static outputs_t out, before;
         ccd_warm_t warm;
         ccd_t ccd = good;
-        int code, hit;
         memset(&out, 0x5a, sizeof out);
         before = out;
-        for (i = 0; i < (int)sizeof warm; i++)
+        for (int i = 0; i < (int)sizeof warm; i++)
             ((unsigned char *)&warm)[i] = (unsigned char)(round % 3 ? 0 : random_below(256));
         draw_lie();
         if (random_below(3))
@@ -332,18 +325,18 @@ static void lies(int call, const call_rest_t *rest)
             ccd.support2 = lying_support;
         ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = random_below(4) ? (ccd_real_t)pow(10, -2 * random_below(4)) : 0;
         asked = nonsense = 0;
-        code = ask_number(number, &ccd, rest, random_below(4) ? &warm : NULL, &out);
+        int code = ask_number(number, &ccd, rest, random_below(4) ? &warm : NULL, &out);
         CHECK(asked < 40000, "%s: %d calls", calls[call].name, asked);
         if (number == ASK_CONTACTS) {
             CHECK(code == CCD_BAD_INPUT || (code >= 1 && code <= 4), "%s: %d", calls[call].name, code);
-            for (i = 0; i < code; i++)
+            for (int i = 0; i < code; i++)
                 CHECK(isfinite(out.contact[i].depth), "%s: a contact of no depth", calls[call].name);
             continue;
         }
         CHECK(libccd ? code == calls[call].good || code == calls[call].bad || (code == -2 && calls[call].good == 0)
                      : code >= CCD_BAD_INPUT && code <= CCD_LIMIT, "%s of lies: %d", calls[call].name, code);
         CHECK(!nonsense || code == calls[call].bad, "%s: %d from no numbers", calls[call].name, code);
-        hit = code == calls[call].good || (!libccd && code == CCD_LIMIT);
+        int hit = code == calls[call].good || (!libccd && code == CCD_LIMIT);
         if (number == ASK_DISTANCE) {
             CHECK(!(hit || code == CCD_MISS)
                       || (isfinite(out.distance.distance) && isfinite(out.distance.distance_upper)
@@ -366,8 +359,7 @@ static void bad_input(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2, strange[3] = {inf - inf, inf, -inf};
     call_rest_t rest = {.max_distance = inf, .slop = CCD_REAL(1e-3), .want = CCD_WANT_ALL, .max = 4};
-    int call;
-    for (call = 0; call < CALLS; call++) {
+    for (int call = 0; call < CALLS; call++) {
         rest.along = calls[call].ask == ASK_ALONG ? &way : calls[call].ask == ASK_PLANAR ? &up : &across;
         expect(call, &good, &rest, calls[call].good, "the good question");
         bad_objects(call, &rest, strange);
@@ -382,25 +374,22 @@ static void bad_input(void)
 /* Face on face, sliding: where pos is wanted it is asked for; else it costs nothing. */
 static void wanted(void)
 {
-    int query, k;
-    for (query = 0; query < ALONG; query++) {
+    for (int query = 0; query < ALONG; query++) {
         unsigned long cost[CCD_WANT_ALL + 1] = {0};
         ccd_penetration_t all, out;
-        unsigned want;
-        for (want = 0; want <= CCD_WANT_ALL; want++) {
+        for (unsigned want = 0; want <= CCD_WANT_ALL; want++) {
             ccd_warm_t warm[2];
             ccd_t ccd = good;
-            int frame;
             memset(warm, 0, sizeof warm);
             setup();
-            for (frame = 0; frame < 20; frame++) {
+            for (int frame = 0; frame < 20; frame++) {
                 const ccd_vec3_t zero = {{0, 0, 0}};
                 shape_move(&other, 1.75, 0.25 + 0.002 * frame, 0.001 * frame);
                 CHECK(ask(query, &one, &other, &ccd, NULL, &warm[0], CCD_WANT_ALL, &all) == CCD_HIT, "%s", calls[query].name);
                 CHECK(ask(query, &one, &other, &ccd, NULL, &warm[1], want, &out) == CCD_HIT, "%s", calls[query].name);
                 cost[want] += frame ? out.support_calls : 0;
                 CHECK(fabs((double)(out.depth - all.depth)) <= 1e-6, "%s: depth %g", calls[query].name, (double)out.depth);
-                for (k = 0; k < 3; k++) {
+                for (int k = 0; k < 3; k++) {
                     const ccd_vec3_t *points[3] = {&out.pos, &out.point1, &out.point2};
                     const unsigned flag = k ? CCD_WANT_POINTS : CCD_WANT_POS;
                     CHECK((want & flag) != 0 || same_bits(points[k], &zero, sizeof zero), "%s: not wanted, and not zero",
@@ -441,17 +430,16 @@ static void freedoms(void)
 {
     ccd_penetration_t out;
     ccd_t ccd = good;
-    int query, i, k;
     ccd.support1 = ccd.support2 = fixed_support;
     ccd.center1 = ccd.center2 = NULL;
-    for (query = 0; query < QUERIES; query++)
+    for (int query = 0; query < QUERIES; query++)
         CHECK(ask(query, NULL, NULL, &ccd, dir_of(query), NULL, CCD_WANT_ALL, &out) >= CCD_HIT && out.depth > 1, "%s: NULL objects", calls[query].name);
-    for (query = ALONG; query < QUERIES; query++) {
+    for (int query = ALONG; query < QUERIES; query++) {
         ccd_penetration_t unit;
         ask(query, &one, &other, &good, dir_of(query), NULL, CCD_WANT_ALL, &unit);
-        for (i = -30; i <= 30; i += 10) {
+        for (int i = -30; i <= 30; i += 10) {
             ccd_vec3_t d = *dir_of(query);
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 d.v[k] = (ccd_real_t)ldexp((double)d.v[k], i);
             memset(&out, 0, sizeof out);
             CHECK(ask(query, &one, &other, &good, &d, NULL, CCD_WANT_ALL, &out) == CCD_HIT, "%s: length", calls[query].name);
@@ -466,12 +454,11 @@ static void guesses(void)
     const ccd_real_t inf = CCD_REAL_MAX * 2;
     const ccd_vec3_t back = {{-1, -2, 2}}, none[] = {{{0, 0, 0}}, {{inf, 0, 0}}, {{0, inf - inf, 1}}};
     ccd_warm_t warm, other_way, cold;
-    int i;
     memset(&cold, 0, sizeof cold);
     CHECK(sizeof cold <= 256, "a state of %lu bytes", (unsigned long)sizeof cold);
     OURS(ccdWarmGuess)(NULL, &way);
     OURS(ccdWarmFlip)(NULL);
-    for (i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++) {
         memset(&warm, 0x77, sizeof warm);
         OURS(ccdWarmGuess)(&warm, i < 3 ? &none[i] : NULL);
         CHECK(same_bits(&warm, &cold, sizeof warm), "a guess that is none");

@@ -39,8 +39,7 @@ static double noise_of(const scene_t *s) { return 4 * real_ulp() * pair_largest(
 static double reach(const shape_t *shape, const double n[3], int sign)
 {
     ccd_vec3_t d, p;
-    int k;
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         d.v[k] = (ccd_real_t)(sign * n[k]);
     shape_support(shape, &d, &p);
     return along(n, &p);
@@ -58,17 +57,16 @@ static contacts_t contacts_at_most(scene_t *s, int max)
     contacts_t out;
     ccd_vec3_t normal;
     ccd_t ccd;
-    int k;
     shape_query(&ccd);
     ccd.center1 = ccd.center2 = NULL;
     ccd.first_dir = NULL;
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         normal.v[k] = (ccd_real_t)(3 * s->n[k]);
     s->a.calls = s->b.calls = 0;
     memset(&out, 0, sizeof out);
     out.n = OURS(ccdContacts)(&s->a, &s->b, &ccd, &normal, (ccd_real_t)s->slop, memory_in_use, out.c, max);
     CHECK(out.n >= 1 && out.n <= max, "%d contacts", out.n);
-    for (k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         const shape_t *shape = k ? &s->b : &s->a;
         CHECK(shape->calls <= (shape->type == SHAPE_BOX ? 12UL : 24UL) + (memory_in_use ? 10 : 0), "%lu calls of type %d", shape->calls, shape->type);
     }
@@ -87,11 +85,10 @@ static contacts_t contacts_of(scene_t *s)
 static flats_t flats_of(const contacts_t *c, const frame_t *f)
 {
     flats_t flats;
-    int i, k;
     flats.n = 0;
-    for (i = 0; i < c->n; i++) {
+    for (int i = 0; i < c->n; i++) {
         truth_real p[3];
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             p[k] = c->c[i].point1.v[k];
         flats.p[flats.n++] = manifold_flat(f, p);
     }
@@ -102,8 +99,7 @@ static flats_t flats_of(const contacts_t *c, const frame_t *f)
 static double across(const scene_t *s, const ccd_contact_t *p)
 {
     double most = 0;
-    int k;
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         most = fmax(most, fabs((double)p->point1.v[k] - (double)p->depth * s->n[k] - (double)p->point2.v[k]));
     return most;
 }
@@ -112,8 +108,8 @@ static double across(const scene_t *s, const ccd_contact_t *p)
 static double outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
 {
     double best = -HUGE_VAL, way[3] = {0, 0, 0}, step = 1;
-    int trial, k;
-    for (trial = 0; trial < trials; trial++) {
+    int k;
+    for (int trial = 0; trial < trials; trial++) {
         ccd_vec3_t m, q;
         double v[3], l = 0, out = 0;
         for (k = 0; k < 3; k++) {
@@ -140,8 +136,7 @@ static void judge_heights(const scene_t *s, const contacts_t *c, const char *wha
 {
     const double noise = 4 * noise_of(s), room = slop_in_force(s) + 8 * noise;
     const double h1 = reach(&s->a, s->n, 1), h2 = reach(&s->b, s->n, -1);
-    int i;
-    for (i = 0; i < c->n; i++) {
+    for (int i = 0; i < c->n; i++) {
         const ccd_contact_t *p = &c->c[i];
         const double one = along(s->n, &p->point1), two = along(s->n, &p->point2), depth = (double)p->depth;
         CHECK(fabs(one - two - depth) <= noise, "%s: points along n", what);
@@ -158,9 +153,8 @@ static void judge_heights(const scene_t *s, const contacts_t *c, const char *wha
 static void judge_contacts(scene_t *s, const contacts_t *c, const char *what)
 {
     const double noise = 4 * noise_of(s), slop = slop_in_force(s), room = slop + 8 * noise;
-    int i;
     judge_heights(s, c, what);
-    for (i = 0; i < c->n; i++) {
+    for (int i = 0; i < c->n; i++) {
         const ccd_contact_t *p = &c->c[i];
         const uint64_t random = random_state;
         double out = across(s, p);
@@ -251,8 +245,7 @@ static shape_t prism(int which, int k, double half)
 {
     ccd_real_t *v = prism_verts[which];
     const double top = uniform(0.7, 1.3), turn = uniform(0, 6);
-    int i;
-    for (i = 0; i < k; i++) {
+    for (int i = 0; i < k; i++) {
         const double angle = turn + 2 * 3.14159265358979 * (i + uniform(0, 0.8)) / k;
         v[3 * i] = (ccd_real_t)cos(angle);
         v[3 * i + 1] = (ccd_real_t)sin(angle);
@@ -288,18 +281,16 @@ static double scene_rot[9], scene_at[3];
 /* A scene that stays where it is: n is the way b leaves. */
 static void put(scene_t *s)
 {
-    int k;
     shape_turn_by(&s->a, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
     shape_turn_by(&s->b, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         s->n[k] = (double)(ccd_real_t)scene_rot[3 * k + 2];
 }
 
 /* The whole scene somewhere into the world. */
 static void somewhere(double far_off)
 {
-    int k;
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         scene_at[k] = uniform(-far_off, far_off);
     rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), scene_rot);
 }
@@ -325,8 +316,7 @@ static double slop_of(void)
 static void rest(void)
 {
     static const double up[3] = {0, 0, 1};
-    int i;
-    for (i = 0; i < 4000; i++) {
+    for (int i = 0; i < 4000; i++) {
         const double depth = i % 3 ? uniform(-0.01, 0.05) : uniform(-1, 5) * pow(10, uniform(-7, -2)), angle = uniform(0, 6.28);
         double rot[9];
         scene_t s;
@@ -347,14 +337,13 @@ static void rest(void)
 /* Hulls of random points, or boxes, anywhere in touch, with the normal of an answer. */
 static void anywhere(void)
 {
-    int i, k;
-    for (i = 0; i < 3000; i++) {
+    for (int i = 0; i < 3000; i++) {
         static ccd_real_t points_of[2][36];
         ccd_penetration_t hit;
         scene_t s;
         ccd_t ccd;
         s.slop = slop_of();
-        for (k = 0; k < 36; k++) {
+        for (int k = 0; k < 36; k++) {
             points_of[0][k] = (ccd_real_t)uniform(-1, 1);
             points_of[1][k] = (ccd_real_t)uniform(-1, 1);
         }
@@ -366,7 +355,7 @@ static void anywhere(void)
         ccd.epa_tolerance = CCD_REAL(0.0);
         if (OURS(ccdPenetrationProven)(&s.a, &s.b, &ccd, NULL, CCD_WANT_ALL, &hit) != CCD_HIT)
             continue;
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             s.n[k] = (double)hit.normal.v[k];
         if (i % 4) { /* less deep: the minimum stays where it is */
             const double less = (double)hit.depth - pow(10, uniform(single ? -4 : -7, -2));
@@ -395,13 +384,11 @@ static shape_t turned(shape_t s, double x, double y, double z, double angle)
 /* The contacts of a scene in its own frame: as many as said, at these places, in any order. */
 static void expect(const char *what, shape_t a, shape_t b, int n, const double (*xy)[2])
 {
-    int round;
-    for (round = 0; round < 40; round++) {
+    for (int round = 0; round < 40; round++) {
         const double error = single ? 1e-4 : 1e-6;
         scene_t s;
-        contacts_t c;
         double room;
-        int i, k, j;
+        int k;
         s.a = a;
         s.b = b;
         s.slop = pow(10, uniform(single ? -4 : -6, -3));
@@ -414,11 +401,11 @@ static void expect(const char *what, shape_t a, shape_t b, int n, const double (
         for (k = 0; k < 3; k++)
             s.n[k] = (double)(ccd_real_t)(s.n[k] / sqrt(room));
         room = 4 * s.slop + 64 * noise_of(&s);
-        c = contacts_of(&s);
+        contacts_t c = contacts_of(&s);
         CHECK(c.n == n, "%s: %d contacts, slop %g", what, c.n, s.slop);
-        for (i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++) {
             double least = HUGE_VAL;
-            for (j = 0; j < c.n; j++) {
+            for (int j = 0; j < c.n; j++) {
                 double local[2] = {0, 0};
                 for (k = 0; k < 3; k++) {
                     const double d = (double)c.c[j].point1.v[k] - scene_at[k];
@@ -437,13 +424,10 @@ static void expect(const char *what, shape_t a, shape_t b, int n, const double (
  * within the slop of its object, as 200 directions tell. */
 static void categories(void)
 {
-    int i, k;
-    for (i = 0; i < 6000; i++) {
+    for (int i = 0; i < 6000; i++) {
         static pair_t p;
         const int category = i % CATEGORY_COUNT;
         ccd_penetration_t hit;
-        ccd_vec3_t n;
-        contacts_t c;
         scene_t s;
         ccd_t ccd;
         if (category == CATEGORY_FAR_8 || (single && category == CATEGORY_FAR_6))
@@ -456,16 +440,16 @@ static void categories(void)
             s.slop = 0;
         shape_query(&ccd);
         ccd.mpr_tolerance = (ccd_real_t)(1e-6 * pair_size(&p.a, &p.b));
-        n = random_vec3(1);
+        ccd_vec3_t n = random_vec3(1);
         ccdVec3Normalize(&n);
         if (i % 3 == 0)
             ccdVec3Set(&n, i / 3 % 3 == 0, i / 3 % 3 == 1, i / 3 % 3 == 2);
         if (i % 3 == 1 && OURS(ccdPenetration)(&s.a, &s.b, &ccd, NULL, 0, &hit) == CCD_HIT)
             n = hit.normal;
         judge_vec(&n, s.n);
-        c = contacts_at_most(&s, 8);
+        contacts_t c = contacts_at_most(&s, 8);
         judge_heights(&s, &c, category_text(category));
-        for (k = 0; k < c.n && i % 3 == 1; k++) {
+        for (int k = 0; k < c.n && i % 3 == 1; k++) {
             const double out = fmax(outside(&s.a, &c.c[k].point1, 200), outside(&s.b, &c.c[k].point2, 200));
             CHECK(out <= 1.01 * slop_in_force(&s) + 64 * noise_of(&s), "%s: %g outside, slop %g, %d contacts", category_text(category), out, s.slop, c.n);
         }
@@ -516,12 +500,8 @@ static void shapes(void)
 /* A disc is inscribed: all points within it, most of its area. */
 static void discs(void)
 {
-    int i, j;
-    for (i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; i++) {
         const double radius = uniform(0.3, 1), tilt = i % 2 ? 0 : uniform(0, 0.1), angle = uniform(0, 6.28);
-        frame_t f;
-        flats_t found;
-        contacts_t c;
         scene_t s;
         truth_real axis[3];
         s.slop = pow(10, uniform(single ? -4 : -6, -3));
@@ -529,13 +509,13 @@ static void discs(void)
         s.b = i % 3 ? shape_cylinder(radius, 0.5) : shape_cone(radius, 0.5);
         s.b = at(turned(s.b, cos(angle), sin(angle), 0, tilt * s.slop), 0, 0, 0.5);
         place(&s, 1);
-        f = manifold_frame(s.n);
-        c = contacts_of(&s);
+        frame_t f = manifold_frame(s.n);
+        contacts_t c = contacts_of(&s);
         judge_contacts(&s, &c, "disc");
-        found = flats_of(&c, &f);
-        for (j = 0; j < 3; j++)
+        flats_t found = flats_of(&c, &f);
+        for (int j = 0; j < 3; j++)
             axis[j] = s.b.pos[j];
-        for (j = 0; j < found.n; j++) {
+        for (int j = 0; j < found.n; j++) {
             const flat_t o = manifold_flat(&f, axis);
             const double from = (double)hypotl(found.p[j].x - o.x, found.p[j].y - o.y);
             CHECK(fabs(from - radius) <= 4 * s.slop + 64 * noise_of(&s), "disc: %g from the axis, radius %g", from, radius);
@@ -549,12 +529,10 @@ static void discs(void)
  * than its surface falls off within the slop. */
 static void along_edges(void)
 {
-    int i;
-    for (i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; i++) {
         const double x = uniform(0.3, 1.2), y = uniform(0.3, 1.2), radius = uniform(0.1, 0.5), half = uniform(0.1, 0.8);
         const double angle = uniform(0, 0.17), end = uniform(-1, 1) * y;
         double beyond, rot[9];
-        contacts_t c;
         scene_t s;
         s.slop = pow(10, uniform(single || i % 2 ? -4 : -7, -3));
         beyond = sqrt(2 * radius * s.slop) * uniform(0, 1);
@@ -563,7 +541,7 @@ static void along_edges(void)
         rotation_about(0, 0, 1, -angle, rot);
         shape_turn_by(&s.b, rot, x + beyond + half * sin(angle), end + half * cos(angle), radius - 1e-5);
         place(&s, 1);
-        c = contacts_of(&s);
+        contacts_t c = contacts_of(&s);
         judge_contacts(&s, &c, "along an edge");
     }
 }
@@ -577,14 +555,11 @@ static double depth_along(const scene_t *s, const double n[3]) { return reach(&s
 static void imperfect_normals(void)
 {
     static const double up[3] = {0, 0, 1};
-    int i, k, j;
-    for (i = 0; i < 3000; i++) {
+    for (int i = 0; i < 3000; i++) {
         const double depth = pow(10, uniform(single ? -2 : -3, -1.5)), angle = uniform(0, 6.28), x = uniform(0.8, 1.2), y = uniform(0.8, 1.2);
         const double dir[3] = {cos(angle), sin(angle), 0};
         double rot[9], low = 0, high = 1, most;
         flats_t face, found;
-        contacts_t c;
-        frame_t f;
         scene_t s;
         s.slop = 0;
         s.a = at(shape_box(x, y, 0.5), 0, 0, -0.5);
@@ -599,7 +574,7 @@ static void imperfect_normals(void)
         shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), 0);
         shape_move(&s.b, (double)s.b.pos[0], (double)s.b.pos[1], -depth - reach(&s.b, up, -1));
         /* the exact place: the corners of b's lowest face, or an ellipsoid's lowest point */
-        f = manifold_frame(up);
+        frame_t f = manifold_frame(up);
         if (i % 3)
             manifold_face(&s.b, &f, -1, 0.1 * depth, noise_of(&s), &face, &most);
         else {
@@ -607,23 +582,23 @@ static void imperfect_normals(void)
             ccd_vec3_t v;
             truth_real p[3];
             shape_support(&s.b, &down, &v);
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 p[k] = v.v[k];
             face.n = 1;
             face.p[0] = manifold_flat(&f, p);
         }
-        for (j = 0; j < 60; j++) {
+        for (int j = 0; j < 60; j++) {
             const double t = (low + high) / 2, length = sqrt(1 + t * t);
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 s.n[k] = (up[k] + t * dir[k]) / length;
             *(depth_along(&s, s.n) < 1.001 * depth ? &low : &high) = t;
         }
-        c = contacts_of(&s);
+        contacts_t c = contacts_of(&s);
         found = flats_of(&c, &f);
         CHECK((double)flat_apart(&face, &found) <= 2e-3, "imperfect: %d contacts, %g from the truth of %d, depth %g", c.n,
               (double)flat_apart(&face, &found), face.n, depth);
         CHECK(c.n == face.n, "imperfect: %d contacts for %d", c.n, face.n);
-        for (k = 0; k < c.n; k++)
+        for (int k = 0; k < c.n; k++)
             CHECK(across(&s, &c.c[k]) <= 4 * noise_of(&s), "imperfect: points %g across", across(&s, &c.c[k]));
     }
 }
@@ -633,8 +608,8 @@ static void imperfect_normals(void)
 /* Is a segment's end on a side of its face that it meets at less than 10 degrees, so that it runs along it? */
 static int grazes(const flats_t *f, const flats_t *face)
 {
-    int i, grazing = 0;
-    for (i = 0; i < face->n && f->n == 2; i++) {
+    int grazing = 0;
+    for (int i = 0; i < face->n && f->n == 2; i++) {
         const flat_t p = face->p[i], q = face->p[(i + 1) % face->n], r = f->p[0], t = f->p[1];
         const double across = (double)((q.x - p.x) * (t.y - r.y) - (q.y - p.y) * (t.x - r.x));
         grazing |= fabs(across) < 0.1745 * (double)(hypotl(q.x - p.x, q.y - p.y) * hypotl(t.x - r.x, t.y - r.y));
@@ -650,8 +625,7 @@ typedef struct {
 static void next_frame(scene_t *s, const motion_t *m)
 {
     double old[9], to[3];
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         to[k] = (double)s->b.pos[k] + m->by[k];
         scene_at[k] += m->drift * (k + 1);
     }
@@ -671,24 +645,21 @@ static void steady(int motion, scene_t start, double step)
     motion_t m = {.by = {motion == SLIDE ? step * cos(angle) : motion == ROLL ? step : 0, motion == SLIDE ? step * sin(angle) : 0, 0}};
     flats_t before;
     frame_t f;
-    int frame;
     before.n = 0;
     if (motion == ROCK)
         rotation_about(cos(angle), sin(angle), 0, fmin(step, 0.005 * start.slop), m.turn);
     else
         rotation_about(0, motion == ROLL, motion != ROLL, motion == SPIN ? step : motion == ROLL ? step / 0.3 : 0, m.turn);
     rotation_about(axis[0], axis[1], axis[2], 0.1 * step, m.world);
-    for (frame = 0; frame < 20; frame++) {
+    for (int frame = 0; frame < 20; frame++) {
         scene_t s = start;
-        contacts_t c;
-        flats_t found;
         put(&s);
         /* one frame for all: the normal hardly turns */
         if (frame == 0)
             f = manifold_frame(s.n);
-        c = contacts_of(&s);
+        contacts_t c = contacts_of(&s);
         judge_contacts(&s, &c, motion_name[motion]);
-        found = flats_of(&c, &f);
+        flats_t found = flats_of(&c, &f);
         if (frame > 0) {
             /* b's own step, and that of the world */
             const double allowed = 10 * (2 * step + noise_of(&start) + 16 * noise_of(&s));
@@ -710,8 +681,7 @@ static void steady(int motion, scene_t start, double step)
 
 static void motions(void)
 {
-    int i;
-    for (i = 0; i < 600; i++) {
+    for (int i = 0; i < 600; i++) {
         const int motion = i % MOTIONS;
         scene_t s;
         double half = blocks(&s);
@@ -742,8 +712,7 @@ static const char *const move_name[MOVES] = {"resting", "drifting", "sliding", "
  * costs half of what it costs without, and every point keeps its id; the same in the other order. */
 static void remembered(const char *what, shape_t table, shape_t body, int moves)
 {
-    int run, frame, i, k;
-    for (run = 0; run < 2 * moves; run++) {
+    for (int run = 0; run < 2 * moves; run++) {
         const int move = run % moves, swaps = run >= moves;
         static ccd_manifold_t memory;
         motion_t m = {.by = {move == SLIDING ? 2e-3 : 0, move == SLIDING ? 1e-3 : move == ROLLING ? 2e-3 : 0, 0},
@@ -757,34 +726,32 @@ static void remembered(const char *what, shape_t table, shape_t body, int moves)
         /* rolling: along y, about x; 0.3 is the radius */
         rotation_about(move == ROLLING, 0, move != ROLLING, move == TURNING ? 0.02 : move == ROLLING ? -2e-3 / 0.3 : 0, m.turn);
         rotation_about(1, 2, -1, move == REST ? 0 : 0.01, m.world);
-        for (frame = 0; frame < 20; frame++) {
-            contacts_t c, none;
-            scene_t s;
+        for (int frame = 0; frame < 20; frame++) {
             int keep = 0;
             next_frame(&start, &m);
-            s = start;
+            scene_t s = start;
             put(&s);
             if (swaps && frame % 2) {
                 const shape_t a = s.a;
                 s.a = s.b;
                 s.b = a;
-                for (k = 0; k < 3; k++)
+                for (int k = 0; k < 3; k++)
                     s.n[k] = -s.n[k];
             }
             memory_in_use = NULL;
-            none = contacts_at_most(&s, 4);
+            contacts_t none = contacts_at_most(&s, 4);
             cold += s.a.calls + s.b.calls;
             memory_in_use = &memory;
-            c = contacts_at_most(&s, 4);
+            contacts_t c = contacts_at_most(&s, 4);
             if (frame > 0)
                 warm += s.a.calls + s.b.calls;
             judge_contacts(&s, &c, what);
             CHECK(c.n == none.n, "%s, %s: %d points, %d without a memory", what, move_name[move], c.n, none.n);
-            for (i = 0; i < c.n; i++) {
+            for (int i = 0; i < c.n; i++) {
                 CHECK(c.c[i].id != 0, "%s: no id", what);
-                for (k = 0; k < i; k++)
+                for (int k = 0; k < i; k++)
                     CHECK(c.c[i].id != c.c[k].id, "%s: id twice", what);
-                for (k = 0; k < last.n; k++)
+                for (int k = 0; k < last.n; k++)
                     keep += c.c[i].id == last.c[k].id;
             }
             CHECK(frame == 0 || keep == c.n, "%s, %s: %d of %d ids stay in frame %d", what, move_name[move], keep, c.n, frame);
@@ -815,15 +782,14 @@ static void tipping(void)
 {
     static const double tilts[] = {0.3, 0.1, 0.02, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 5e-5, 0, 0, 1e-5, 1e-4, 1e-3, 5e-3, 0.1};
     static const double up[3] = {0, 0, 1};
-    int i, j;
-    for (i = 0; i < 400; i++) {
+    for (int i = 0; i < 400; i++) {
         static ccd_manifold_t memory;
         const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_ulp());
         const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
         memset(&memory, 0, sizeof memory);
         memory_in_use = &memory;
         somewhere(1);
-        for (j = 0; j < (int)(sizeof tilts / sizeof *tilts); j++) {
+        for (int j = 0; j < (int)(sizeof tilts / sizeof *tilts); j++) {
             scene_t s = {.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5), .b = turned(block, cos(angle), sin(angle), 0, tilts[j]), .slop = slop};
             shape_move(&s.b, 0, 0, -1e-4 - reach(&s.b, up, -1));
             put(&s);
@@ -835,14 +801,10 @@ static void tipping(void)
 /* Whatever bits it holds. */
 static void garbage(void)
 {
-    int i;
-    for (i = 0; i < 20000; i++) {
+    for (int i = 0; i < 20000; i++) {
         static ccd_manifold_t memory, good;
         unsigned char *bytes = (unsigned char *)&memory;
         scene_t s;
-        contacts_t c;
-        size_t k;
-        int j;
         memory = good;
         s.slop = 1e-3;
         s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
@@ -856,21 +818,21 @@ static void garbage(void)
         memory_in_use = &memory;
         switch (i % 4) {
         case 0: /* noise */
-            for (k = 0; k < sizeof memory; k++)
+            for (size_t k = 0; k < sizeof memory; k++)
                 bytes[k] = (unsigned char)random_below(256);
             break;
         case 1: /* a good one with noise in it */
-            for (j = 0; j < 1 + i % 7; j++)
+            for (int j = 0; j < 1 + i % 7; j++)
                 bytes[random_below((int)sizeof memory)] ^= (unsigned char)(1 + random_below(255));
             break;
         case 2: /* no numbers */
-            for (j = 0; j < CCD_MANIFOLD_REALS; j++)
+            for (int j = 0; j < CCD_MANIFOLD_REALS; j++)
                 if (random_below(4) == 0)
                     memory.reals[j] = j % 3 ? (float)NAN : j % 2 ? (float)INFINITY : -1e30f;
             break;
         default: break; /* of another pair */
         }
-        c = contacts_at_most(&s, 8);
+        contacts_t c = contacts_at_most(&s, 8);
         judge_contacts(&s, &c, "garbage");
         CHECK(c.n == (i % 3 == 0 ? 4 : i % 3 == 1 ? 8 : 2), "garbage: %d points", c.n);
         good = memory;
@@ -882,27 +844,24 @@ static void garbage(void)
 static void fewer(void)
 {
     static const ccd_contact_t none;
-    int i, max, k;
-    for (i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; i++) {
         double last = 0;
-        contacts_t all;
-        frame_t f;
         scene_t s;
         const double half = blocks(&s);
         s.slop = 1e-4;
         shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), half - 0.01);
         yaw(&s.b);
         place(&s, 1);
-        f = manifold_frame(s.n);
-        all = contacts_of(&s);
-        for (max = 1; max <= all.n; max++) {
+        frame_t f = manifold_frame(s.n);
+        contacts_t all = contacts_of(&s);
+        for (int max = 1; max <= all.n; max++) {
             const contacts_t some = contacts_at_most(&s, max);
             const flats_t flats = flats_of(&some, &f);
             const double area = (double)flat_area(&flats);
             CHECK(some.n == max, "%d of at most %d of %d", some.n, max, all.n);
             CHECK(same_bits(&some.c[0], &all.c[0], sizeof all.c[0]), "the first of %d", max);
             CHECK(area >= last - 1e-6, "area %g of %d points, %g before", area, max, last);
-            for (k = max; k < ROOM; k++)
+            for (int k = max; k < ROOM; k++)
                 CHECK(same_bits(&some.c[k], &none, sizeof none), "written beyond max");
             last = area;
         }
@@ -912,8 +871,7 @@ static void fewer(void)
 int main(void)
 {
     static ccd_manifold_t memory;
-    int round;
-    for (round = 0; round < 3; round++) {
+    for (int round = 0; round < 3; round++) {
         /* The same scenes without a memory, with that of the last pair, with the pair's own. */
         random_state = 88172645463325252u;
         memory_in_use = round ? &memory : NULL;

@@ -58,8 +58,8 @@ static inline truth_real flat_cross(flat_t a, flat_t b, flat_t c)
 static inline flats_t flat_hull(const flats_t *points)
 {
     flats_t sorted = *points, hull;
-    int i, j, half = 2, n = 0;
-    for (i = 1; i < sorted.n; i++) {
+    int j, half = 2, n = 0;
+    for (int i = 1; i < sorted.n; i++) {
         const flat_t p = sorted.p[i];
         for (j = i; j > 0 && (p.x < sorted.p[j - 1].x || (p.x == sorted.p[j - 1].x && p.y < sorted.p[j - 1].y)); j--)
             sorted.p[j] = sorted.p[j - 1];
@@ -68,7 +68,7 @@ static inline flats_t flat_hull(const flats_t *points)
     if (sorted.n < 2)
         return sorted;
     /* along the lower side, and back along the upper one */
-    for (i = 0; i < 2 * sorted.n - 1; i++) {
+    for (int i = 0; i < 2 * sorted.n - 1; i++) {
         const flat_t p = sorted.p[i < sorted.n ? i : 2 * sorted.n - 2 - i];
         half = i == sorted.n ? n + 1 : half;
         while (n >= half && !(flat_cross(hull.p[n - 2], hull.p[n - 1], p) > 0))
@@ -82,8 +82,7 @@ static inline flats_t flat_hull(const flats_t *points)
 static inline truth_real flat_area(const flats_t *f)
 {
     truth_real sum = 0;
-    int i;
-    for (i = 1; i + 1 < f->n; i++)
+    for (int i = 1; i + 1 < f->n; i++)
         sum += flat_cross(f->p[0], f->p[i], f->p[i + 1]) / 2;
     return sum;
 }
@@ -91,8 +90,7 @@ static inline truth_real flat_area(const flats_t *f)
 static inline truth_real flat_perimeter(const flats_t *f)
 {
     truth_real sum = 0;
-    int i;
-    for (i = 0; i < f->n; i++) {
+    for (int i = 0; i < f->n; i++) {
         const flat_t a = f->p[i], b = f->p[(i + 1) % f->n];
         sum += hypotl(b.x - a.x, b.y - a.y);
     }
@@ -103,8 +101,8 @@ static inline truth_real flat_perimeter(const flats_t *f)
 static inline truth_real flat_distance(const flats_t *f, flat_t q)
 {
     truth_real least = HUGE_VALL;
-    int i, in = f->n > 2;
-    for (i = 0; i < f->n; i++) {
+    int in = f->n > 2;
+    for (int i = 0; i < f->n; i++) {
         const flat_t a = f->p[i], b = f->p[(i + 1) % f->n];
         const truth_real l = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
         truth_real t = l > 0 ? ((q.x - a.x) * (b.x - a.x) + (q.y - a.y) * (b.y - a.y)) / l : 0;
@@ -120,10 +118,9 @@ static inline truth_real flat_distance(const flats_t *f, flat_t q)
 static inline truth_real flat_apart(const flats_t *a, const flats_t *b)
 {
     truth_real most = 0;
-    int i;
-    for (i = 0; i < a->n; i++)
+    for (int i = 0; i < a->n; i++)
         most = fmaxl(most, flat_distance(b, a->p[i]));
-    for (i = 0; i < b->n; i++)
+    for (int i = 0; i < b->n; i++)
         most = fmaxl(most, flat_distance(a, b->p[i]));
     return most;
 }
@@ -132,12 +129,11 @@ static inline truth_real flat_apart(const flats_t *a, const flats_t *b)
 static inline flats_t flat_clip(const flats_t *a, const flats_t *b)
 {
     flats_t rest = *a;
-    int i, k;
-    for (i = 0; i < b->n; i++) {
+    for (int i = 0; i < b->n; i++) {
         const flat_t p = b->p[i], q = b->p[(i + 1) % b->n];
         flats_t next;
         next.n = 0;
-        for (k = 0; k < rest.n; k++) {
+        for (int k = 0; k < rest.n; k++) {
             const flat_t u = rest.p[k], v = rest.p[(k + 1) % rest.n];
             const truth_real at_u = flat_cross(p, q, u), at_v = flat_cross(p, q, v);
             if (at_u >= 0)
@@ -165,7 +161,7 @@ static inline int manifold_face(const shape_t *s, const frame_t *f, int sign, do
     truth_real most = -HUGE_VALL, size = 0;
     double low[MANIFOLD_ROOM];
     flats_t all, in;
-    int i, k, clear = 1;
+    int i, clear = 1;
     slop = fmax(slop, 2 * noise);
     truth_vertices(s, origin, &c);
     for (i = 0; i < c.nv; i++)
@@ -176,12 +172,12 @@ static inline int manifold_face(const shape_t *s, const frame_t *f, int sign, do
         all.p[all.n++] = manifold_flat(f, c.v[i]);
         if (low[i] <= slop)
             in.p[in.n++] = all.p[i];
-        for (k = 0; k < i; k++)
+        for (int k = 0; k < i; k++)
             size = fmaxl(size, hypotl(all.p[i].x - all.p[k].x, all.p[i].y - all.p[k].y));
     }
     for (i = 0; i < all.n; i++) {
         truth_real aside = HUGE_VALL;
-        for (k = 0; k < all.n; k++)
+        for (int k = 0; k < all.n; k++)
             if (low[k] <= noise)
                 aside = fminl(aside, hypotl(all.p[i].x - all.p[k].x, all.p[i].y - all.p[k].y));
         if (low[i] > noise && low[i] < slop + 2 * noise && (truth_real)low[i] > (truth_real)(0.5 * slop) * aside / size)

@@ -15,10 +15,9 @@ static unsigned long third_frame(unsigned want)
     ccd_warm_t warm = {0};
     ccd_penetration_t hit;
     ccd_t ccd;
-    int frame;
     shape_query(&ccd);
     ccd.mpr_tolerance = (ccd_real_t)1e-6;
-    for (frame = 0; frame < 3; frame++) {
+    for (int frame = 0; frame < 3; frame++) {
         shape_move(&box, 0.3 + 0.01 * frame, 0.2, 0.99);
         slab.calls = box.calls = 0;
         if (ccdPenetration(&slab, &box, &ccd, &warm, want, &hit) != CCD_HIT)

@@ -46,8 +46,7 @@ static double deg(double x) { return x * atan(1.0) / 45; }
 
 static void rotate(const double rot[9], const double v[3], double out[3])
 {
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out[i] = rot[3 * i] * v[0] + rot[3 * i + 1] * v[1] + rot[3 * i + 2] * v[2];
 }
 
@@ -78,11 +77,10 @@ static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, c
     ccd_real_t depth;
     ccd_penetration_t p;
     const call_rest_t x = {.warm = warm, .want = CCD_WANT_POS, .depth = &depth, .dir = dir, .pos = pos, .full = &p};
-    int code;
     shape_query(&ccd);
     ccd.max_iterations = 500;
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-7);
-    code = call_by_number(call, a, b, &ccd, &x);
+    int code = call_by_number(call, a, b, &ccd, &x);
     if (code >= 0 && call != ASK_MPR && call != ASK_GJK && call != ASK_MPR_WARM) {
         *dir = p.dir;
         *pos = p.pos;
@@ -95,10 +93,9 @@ static void shared_place(const shape_t *body, const shape_t *floor, double place
 {
     ccd_penetration_t p;
     ccd_t ccd;
-    int i;
     shape_query(&ccd);
     CHECK(OURS(ccdPenetration)(body, floor, &ccd, NULL, CCD_WANT_POINTS, &p) == CCD_HIT, "a hit");
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         place[i] = ((double)p.point1.v[i] + (double)p.point2.v[i]) / 2;
 }
 
@@ -143,12 +140,11 @@ static void set_poses(const sweep_t *s, double depth)
         pose_t *p = &poses[pose_count];
         double place[3];
         ccd_vec3_t low;
-        int i;
         if (angle < 0 && (s->slide != 0 || s->rolls > 0))
             break;
         pose(s, angle, depth, &p->body, &p->floor);
         shape_support(&p->body, &down, &low);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             place[i] = (double)low.v[i];
         if (s->slide != 0) /* the deepest place may be beyond the edge */
             place[0] = fmin(place[0], 0.1 - 1e-9);
@@ -163,27 +159,25 @@ static errors_t sweep(const sweep_t *s, double depth, int call, const double wor
     double last[3] = {0, 0, 0}, last_truth[3] = {0, 0, 0};
     errors_t e;
     ccd_warm_t warm;
-    int k, i;
     memset(&warm, 0, sizeof warm);
     memset(&e, 0, sizeof e);
-    for (k = 0; k < pose_count; k++) {
+    for (int k = 0; k < pose_count; k++) {
         shape_t a = k % 2 ? poses[k].body : poses[k].floor, b = k % 2 ? poses[k].floor : poses[k].body;
         double p[3], t[3], along = 0, off;
         ccd_vec3_t dir, pos;
-        int code;
         if (!poses[k].overlap)
             continue;
         shape_turn_by(&a, world, 0, 0, 0);
         shape_turn_by(&b, world, 0, 0, 0);
-        code = ask(call, &a, &b, call == ASK_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
+        int code = ask(call, &a, &b, call == ASK_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
         if (code != 0 && code != CCD_LIMIT) {
             CHECK(0, "%s, pose %d: code %d", s->name, k, code);
             continue;
         }
         rotate(world, poses[k].truth, t);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             along += (double)dir.v[i] * ((double)pos.v[i] - t[i]);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             p[i] = (double)pos.v[i] - along * (double)dir.v[i]; /* across dir */
         CHECK(fabs(along) <= 1.5 * depth, "%s, pose %d: %g along dir", s->name, k, along);
         off = apart(p, t);
@@ -204,8 +198,7 @@ static errors_t sweep(const sweep_t *s, double depth, int call, const double wor
 /* A body that tips over: tilts of a thousandth of a degree to three. */
 static void tilt(const sweep_t *s)
 {
-    int k, i;
-    for (k = 0; k <= 28; k++) {
+    for (int k = 0; k <= 28; k++) {
         const double degrees = 1e-3 * pow(10, k / 8.0), up[3] = {0, 0, 1};
         const ccd_vec3_t down = {{0, 0, -1}};
         double place[3], off[3][3], far[3];
@@ -215,18 +208,18 @@ static void tilt(const sweep_t *s)
         ccd_real_t depth;
         pose(s, deg(degrees), 1e-3, &body, &floor);
         shape_support(&body, &down, &low);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             place[i] = (double)low.v[i];
         pressure_centre(&body, &floor, up, place, off[0]);
         ask(ASK_MPR, &floor, &body, NULL, &dir, &pos);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             off[1][i] = (double)pos.v[i];
         shape_query(&ccd);
         ccd.mpr_tolerance = (ccd_real_t)1e-7;
         ccdMPRPenetration(&floor, &body, &ccd, &depth, &dir, &pos);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             off[2][i] = (double)pos.v[i];
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             far[i] = hypot(off[i][0] - (double)body.pos[0], off[i][1] - (double)body.pos[1]);
         printf("%s,%.6g,%.6g,%.6g,%.6g\n", s->name, degrees, far[0], far[1], far[2]);
     }
@@ -250,13 +243,11 @@ static const double RANGE[] = {0.01, 0.03, 0.1, 0.3};
 static shape_t random_body(unsigned long long *state, int kind)
 {
     double p[3], q[4], rot[9];
-    shape_t s;
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         p[i] = 0.3 + 0.2 * next_random(state);
-    for (i = 0; i < 4; i++)
+    for (int i = 0; i < 4; i++)
         q[i] = next_random(state);
-    s = kind < 0 ? shape_box(p[0], p[1], 0.1 * p[2]) : shape_make(kind, kind == SHAPE_CAPSULE ? 0.5 * p[0] : p[0], p[1], p[2]);
+    shape_t s = kind < 0 ? shape_box(p[0], p[1], 0.1 * p[2]) : shape_make(kind, kind == SHAPE_CAPSULE ? 0.5 * p[0] : p[0], p[1], p[2]);
     rotation_quaternion(q[0], q[1], q[2], q[3], rot);
     shape_turn(&s, rot);
     return s;
@@ -267,15 +258,14 @@ static void range_errors(unsigned kind, double share, double error[2])
 {
     unsigned long long state = 9;
     double square[2] = {0, 0};
-    int n = 0, k;
-    for (k = 0; k < 400; k++) {
+    int n = 0;
+    for (int k = 0; k < 400; k++) {
         const int kinds = KINDS[kind].last - KINDS[kind].first + 1;
         shape_t a = random_body(&state, KINDS[kind].first + k % kinds), b = random_body(&state, KINDS[kind].first + k / kinds % kinds);
         ccd_penetration_t p;
         ccd_t ccd;
         double normal[3], middle[3], pos[3], truth[3], reach, move;
         const double x = 0.3 * next_random(&state), y = 0.3 * next_random(&state), z = 0.3 * next_random(&state);
-        int i;
         shape_move(&b, x, y, z);
         shape_query(&ccd);
         ccd.max_iterations = 500;
@@ -289,19 +279,18 @@ static void range_errors(unsigned kind, double share, double error[2])
         shape_move(&b, x + move * (double)p.dir.v[0], y + move * (double)p.dir.v[1], z + move * (double)p.dir.v[2]);
         if (OURS(ccdPenetration)(&a, &b, &ccd, NULL, CCD_WANT_POS | CCD_WANT_POINTS, &p) != CCD_HIT)
             continue;
-        for (i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; i++) {
             normal[i] = (double)p.normal.v[i];
             middle[i] = 0.5 * ((double)p.point1.v[i] + (double)p.point2.v[i]);
             pos[i] = (double)p.pos.v[i];
         }
         if (!(pressure_centre(&a, &b, normal, middle, truth) > 0))
             continue;
-        for (i = 0; i < 2; i++) {
+        for (int i = 0; i < 2; i++) {
             double *at = i == 0 ? pos : middle, along = 0;
-            int j;
-            for (j = 0; j < 3; j++)
+            for (int j = 0; j < 3; j++)
                 along += normal[j] * (at[j] - truth[j]);
-            for (j = 0; j < 3; j++)
+            for (int j = 0; j < 3; j++)
                 at[j] -= along * normal[j];
             square[i] += pow(apart(at, truth) / reach, 2);
         }
@@ -313,9 +302,8 @@ static void range_errors(unsigned kind, double share, double error[2])
 
 static void range(int prints)
 {
-    unsigned k, i;
-    for (k = 0; k < sizeof KINDS / sizeof *KINDS; k++)
-        for (i = 0; i < sizeof RANGE / sizeof *RANGE; i++) {
+    for (unsigned k = 0; k < sizeof KINDS / sizeof *KINDS; k++)
+        for (unsigned i = 0; i < sizeof RANGE / sizeof *RANGE; i++) {
             double error[2];
             range_errors(k, RANGE[i], error);
             if (prints)
@@ -390,12 +378,11 @@ int main(int argc, char **argv)
     }
     range(0);
     for (i = 0; i < sizeof all / sizeof *all; i++) {
-        int d, c, w;
-        for (d = 0; d < (single ? 1 : 2); d++) {
+        for (int d = 0; d < (single ? 1 : 2); d++) {
             const double depth = d ? 1e-5 : 1e-3;
             set_poses(&all[i], depth);
-            for (w = 0; w < 2; w++)
-                for (c = 0; c < CALL_COUNT; c++) {
+            for (int w = 0; w < 2; w++)
+                for (int c = 0; c < CALL_COUNT; c++) {
                     const errors_t e = sweep(&all[i], depth, CALLS[c], world[w]);
                     const double rms = sqrt(e.square / e.poses);
                     if (c == 0)

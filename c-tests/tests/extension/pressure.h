@@ -40,8 +40,7 @@ static inline span_t span_quadric(const double p[3], const double d[3], const do
     const double q[3] = {p[0], p[1], p[2] - at};
     double a = 0, b = 0, c = -most, root;
     span_t s = {-INFINITY, INFINITY};
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         a += w[i] * d[i] * d[i];
         b += w[i] * q[i] * d[i];
         c += w[i] * q[i] * q[i];
@@ -72,18 +71,15 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
     const double tapered[3] = {1, 1, -r2 / (4 * p1 * p1)};
     double q[3], e[3], w[3];
     const span_t none = {1, 0};
-    span_t slab;
-    int i;
-    for (i = 0; i < 3; i++) {
-        int j;
+    for (int i = 0; i < 3; i++) {
         q[i] = e[i] = 0;
-        for (j = 0; j < 3; j++) {
+        for (int j = 0; j < 3; j++) {
             q[i] += (double)s->rot[3 * j + i] * (p[j] - (double)s->pos[j]);
             e[i] += (double)s->rot[3 * j + i] * d[j];
         }
         w[i] = 1 / ((double)s->p[i] * (double)s->p[i]);
     }
-    slab = span_slab(q[2], e[2], p1);
+    span_t slab = span_slab(q[2], e[2], p1);
     switch (s->type) {
     case SHAPE_SPHERE: return span_quadric(q, e, ball, 0, r2);
     case SHAPE_BOX:
@@ -93,7 +89,7 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
         const span_t part[3] = {span_both(span_quadric(q, e, tube, 0, r2), slab), span_quadric(q, e, ball, p1, r2),
                                 span_quadric(q, e, ball, -p1, r2)};
         span_t all = {INFINITY, -INFINITY};
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             if (part[i].from <= part[i].to) {
                 all.from = fmin(all.from, part[i].from);
                 all.to = fmax(all.to, part[i].to);
@@ -118,8 +114,7 @@ typedef struct {
 static inline span_t pressure_chord(const pressure_t *c, double x, double y)
 {
     double p[3];
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         p[i] = c->at[i] + x * c->u[i] + y * c->v[i];
     return span_both(pressure_span(c->a, p, c->n), pressure_span(c->b, p, c->n));
 }
@@ -129,8 +124,7 @@ static inline void pressure_edge(pressure_t *c, double angle, double out[2])
 {
     const double x = cos(angle), y = sin(angle);
     double in = 0, beyond = 4;
-    int k;
-    for (k = 0; k < 56; k++) {
+    for (int k = 0; k < 56; k++) {
         const double r = 0.5 * (in + beyond);
         const span_t s = pressure_chord(c, r * x, r * y);
         if (s.to > s.from)
@@ -148,9 +142,8 @@ static inline void pressure_triangle(pressure_t *c, const double p[2], const dou
     static const double at[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
                                     {0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692}};
     const double area = p[0] * q[1] - p[1] * q[0];
-    int i, j, k;
-    for (i = 0; i < 4; i++)
-        for (j = 0; j < 4; j++) {
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++) {
             const double t = at[0][i], s = at[0][j];
             const double x = t * (p[0] + s * (q[0] - p[0])), y = t * (p[1] + s * (q[1] - p[1]));
             const span_t chord = pressure_chord(c, x, y);
@@ -158,7 +151,7 @@ static inline void pressure_triangle(pressure_t *c, const double p[2], const dou
             if (!(w > 0))
                 continue;
             c->volume += w;
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 c->moment[k] += w * (c->at[k] + x * c->u[k] + y * c->v[k] + 0.5 * (chord.from + chord.to) * c->n[k]);
         }
 }
@@ -185,27 +178,26 @@ static inline double pressure_centre(const shape_t *a, const shape_t *b, const d
     const double turn = 8 * atan(1.0) / SECTORS;
     double edge[SECTORS][2];
     pressure_t c;
-    int i;
     const int least = fabs(n[0]) <= fabs(n[1]) && fabs(n[0]) <= fabs(n[2]) ? 0 : fabs(n[1]) <= fabs(n[2]) ? 1 : 2;
     memset(&c, 0, sizeof c);
     c.a = a;
     c.b = b;
     memcpy(c.n, n, sizeof c.n);
     memcpy(c.at, place, sizeof c.at);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         c.u[i] = (i == least) - n[least] * n[i];
     {
         const double l = sqrt(c.u[0] * c.u[0] + c.u[1] * c.u[1] + c.u[2] * c.u[2]);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             c.u[i] /= l;
     }
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         c.v[i] = n[(i + 1) % 3] * c.u[(i + 2) % 3] - n[(i + 2) % 3] * c.u[(i + 1) % 3];
-    for (i = 0; i < SECTORS; i++)
+    for (int i = 0; i < SECTORS; i++)
         pressure_edge(&c, i * turn, edge[i]);
-    for (i = 0; i < SECTORS; i++)
+    for (int i = 0; i < SECTORS; i++)
         pressure_sector(&c, i * turn, edge[i], (i + 1) * turn, edge[(i + 1) % SECTORS]);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         centre[i] = c.moment[i] / c.volume;
     return c.volume;
 }

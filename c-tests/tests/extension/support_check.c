@@ -21,9 +21,8 @@ static void odd_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     odd_t *s = (odd_t *)obj;
     const ccd_real_t half[3] = {(ccd_real_t).5, 1, 2};
-    int i;
     s->asked++;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         const int other = (i + 1) % 3;
         switch (s->fault) {
         case AGAINST: out->v[i] = s->at.v[i] - dir->v[i] / 2; break;
@@ -50,16 +49,14 @@ static void faults_have_names(void)
         {FINE, 3, 0, CCD_CHECK_CENTER_OUTSIDE, "a centre in the body's own frame"},
         {TIRED, 3, 3, CCD_CHECK_CHANGES, "worse from call to call"},
     };
-    size_t i;
-    for (i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         odd_t s;
         ccd_check_t found;
-        int flags;
         memset(&s, 0, sizeof s);
         s.fault = rows[i].fault;
         s.at.v[0] = (ccd_real_t)rows[i].at;
         s.center.v[0] = (ccd_real_t)rows[i].centre;
-        flags = OURS(ccdCheck)(&s, odd_support, odd_center, &found);
+        int flags = OURS(ccdCheck)(&s, odd_support, odd_center, &found);
         CHECK(rows[i].fault == TIRED ? (flags & CCD_CHECK_CHANGES) != 0 : flags == rows[i].flags, "%s: %d", rows[i].what, flags);
         CHECK((flags == 0) == (OURS(ccdCheck)(&s, odd_support, odd_center, NULL) == 0) || rows[i].fault == TIRED, "%s, no out",
               rows[i].what);
@@ -83,21 +80,18 @@ static void without_what_is_needed(void)
 static void nothing_is_wrong(void)
 {
     static const ccd_real_t points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, (ccd_real_t).5, (ccd_real_t).5, (ccd_real_t).5};
-    int type, scale;
-    for (type = 0; type < SHAPE_TYPES; type++)
-        for (scale = -6; scale <= 6; scale += 3) {
+    for (int type = 0; type < SHAPE_TYPES; type++)
+        for (int scale = -6; scale <= 6; scale += 3) {
             const double x = pow(10, scale);
             double rot[9];
-            shape_t s;
             ccd_check_t found;
-            int flags;
             if (type == SHAPE_POLYTOPE && scale != 0)
                 continue;
-            s = type == SHAPE_POLYTOPE ? shape_polytope(points, 5) : shape_make((shape_type_t)type, x, .3 * x, 1e-3 * x);
+            shape_t s = type == SHAPE_POLYTOPE ? shape_polytope(points, 5) : shape_make((shape_type_t)type, x, .3 * x, 1e-3 * x);
             rotation_about(1, 2, -3, 1.1, rot);
             shape_turn(&s, rot);
             shape_move(&s, 4 * x, -70 * x, x);
-            flags = OURS(ccdCheck)(&s, shape_support, shape_center, &found);
+            int flags = OURS(ccdCheck)(&s, shape_support, shape_center, &found);
             CHECK(flags == 0, "type %d, size %g: %d, noise %g, outside %g", type, x, flags, (double)found.noise,
                   (double)found.center_outside);
         }

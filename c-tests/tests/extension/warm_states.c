@@ -33,8 +33,7 @@ static answer_t ask_pair(case_t *c, int swap, ccd_warm_t *warm)
     shape_t a = swap ? c->pair.b : c->pair.a, b = swap ? c->pair.a : c->pair.b;
     const ccd_t ccd = judge_query(c->question.tol);
     ccd_vec3_t dir;
-    int k;
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         dir.v[k] = (ccd_real_t)(swap ? -c->dir[k] : c->dir[k]);
     return ask_guarded(&c->call, &a, &b, &ccd, warm, &dir, most_calls(&c->call));
 }
@@ -65,9 +64,8 @@ static int same(const answer_t *x, const answer_t *y)
 static unsigned long cost(case_t *c, int swap, const ccd_warm_t *warm)
 {
     ccd_warm_t copy = *warm;
-    answer_t x;
     judge_want = CCD_WANT_POINTS;
-    x = ask_pair(c, swap, &copy);
+    answer_t x = ask_pair(c, swap, &copy);
     judge_want = CCD_WANT_ALL;
     return x.calls;
 }
@@ -81,9 +79,8 @@ static void make_planar(case_t *c, dice_t *d)
     double rot[9], spin[9], all[9], at[3] = {dice_in(d, -1, 1), dice_in(d, -1, 1), dice_in(d, -1, 1)};
     ccd_real_t high[2][3 * 16];
     shape_t prism[2];
-    int k, i;
     dice_rotation(d, rot);
-    for (k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         shape_t *s = k ? &c->pair.b : &c->pair.a;
         *s = pair_polygon(d, c->pair.verts[k], 1);
         rotation_about(0, 0, 1, dice_in(d, 0, 6), spin);
@@ -94,10 +91,10 @@ static void make_planar(case_t *c, dice_t *d)
         prism[k] = *s;
         prism[k].verts = high[k];
         prism[k].nverts = 2 * s->nverts;
-        for (i = 0; i < 3 * prism[k].nverts; i++)
+        for (int i = 0; i < 3 * prism[k].nverts; i++)
             high[k][i] = i % 3 < 2 ? s->verts[i % (3 * s->nverts)] : (ccd_real_t)(i < 3 * s->nverts ? 5 : -5);
     }
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         c->dir[k] = rot[3 * k + 2];
     c->pair.truth = truth_depth(&prism[0], &prism[1]);
 }
@@ -126,14 +123,13 @@ static void strange_state(int kind, ccd_warm_t *warm)
     static const double values[] = {0, 1, -1, 1e-300, 1e300, -1e300, 0.5, 1e-9, HUGE_VAL, NAN, 0.3, -0.7};
     unsigned char *bytes = (unsigned char *)warm;
     ccd_real_t x;
-    size_t i;
-    for (i = 0; i < sizeof *warm; i++)
+    for (size_t i = 0; i < sizeof *warm; i++)
         bytes[i] = (unsigned char)random_below(256);
-    for (i = 0; kind > 0 && i + sizeof x <= sizeof *warm; i += sizeof x) {
+    for (size_t i = 0; kind > 0 && i + sizeof x <= sizeof *warm; i += sizeof x) {
         x = (ccd_real_t)(kind == 1 ? values[random_below(12)] : uniform(-1, 1));
         memcpy(bytes + i, &x, sizeof x);
     }
-    for (i = sizeof *warm - 16; kind > 0 && i < sizeof *warm; i += sizeof(unsigned)) {
+    for (size_t i = sizeof *warm - 16; kind > 0 && i < sizeof *warm; i += sizeof(unsigned)) {
         const unsigned word = (unsigned)random_below(5);
         memcpy(bytes + i, &word, sizeof word);
     }
@@ -150,17 +146,14 @@ typedef struct {
 static void every_state(case_t *c, ccd_warm_t *other, count_t *n)
 {
     ccd_warm_t none, warm, copy;
-    answer_t cold, x, y;
-    unsigned long own, flipped;
-    int k;
     memset(&none, 0, sizeof none);
     memset(&warm, 0, sizeof warm);
-    cold = answer(c, 0, &warm, "a cold state");
-    x = ask_pair(c, 0, NULL);
+    answer_t cold = answer(c, 0, &warm, "a cold state");
+    answer_t x = ask_pair(c, 0, NULL);
     CHECK(same(&x, &cold), "%s without a state", c->call.name);
     x = answer(c, 1, NULL, "no state, swapped");
     copy = warm;
-    y = ask_pair(c, 1, &copy);
+    answer_t y = ask_pair(c, 1, &copy);
     if (c->call.ask == ASK_LOCAL && x.code == CCD_HIT)
         CHECK(y.code == CCD_HIT && y.depth - x.depth <= c->question.tol, "unflipped: %g, cold %g", y.depth, x.depth);
     if (cold.code == CCD_HIT && c->question.truth.lower > 0) {
@@ -172,18 +165,18 @@ static void every_state(case_t *c, ccd_warm_t *other, count_t *n)
     x = answer(c, 0, &copy, "its own state");
     y = ask_pair(c, 0, &warm);
     CHECK(same(&x, &y) && same_bits(&warm, &copy, sizeof warm), "%s: a copied state", c->call.name);
-    own = cost(c, 0, &warm);
+    unsigned long own = cost(c, 0, &warm);
     x = ask_pair(c, 0, &copy);
     copy = warm;
     OURS(ccdWarmFlip)(&copy);
-    flipped = cost(c, 1, &copy);
+    unsigned long flipped = cost(c, 1, &copy);
     y = answer(c, 1, &copy, "a flipped state");
     n->own += own;
     n->flipped += flipped;
     n->apart += own != flipped || fabs(x.depth - y.depth) > 64 * real_ulp() * pair_largest(&c->pair.a, &c->pair.b);
     answer(c, 0, other, "a foreign state");
     *other = warm;
-    for (k = 0; k < 6; k++) {
+    for (int k = 0; k < 6; k++) {
         strange_state(k % 3, &copy);
         answer(c, 0, &copy, "a strange state");
         answer(c, 0, &copy, "the state after a strange state");
@@ -196,10 +189,9 @@ static void from_states(int ask)
     static case_t c;
     ccd_warm_t other;
     count_t n;
-    int i;
     memset(&other, 0, sizeof other);
     memset(&n, 0, sizeof n);
-    for (i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < PAIRS; i++) {
         make(&c, ask, i);
         every_state(&c, &other, &n);
     }
@@ -227,7 +219,7 @@ static void sides(void)
     shape_t slab = shape_box(2, 2, 0.05), plate = shape_box(0.25, 0.25, 0.01);
     const ccd_vec3_t up = {{0, 0, 1}};
     double rot[9];
-    int kept = 0, frame;
+    int kept = 0;
     ccd_warm_t warm[5];
     ccd_t ccd;
     memset(warm, 0, sizeof warm);
@@ -235,7 +227,7 @@ static void sides(void)
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = CCD_REAL(1e-5);
     rotation_about(1, 2, 0.3, 0.02, rot);
     shape_turn(&plate, rot);
-    for (frame = 0; frame < 120; frame++) {
+    for (int frame = 0; frame < 120; frame++) {
         const double depth = 0.001 * frame + 0.0061; /* the plate's corners are 5.6 mm lower than its middle */
         ccd_penetration_t local, along, minimum;
         ccd_distance_t distance;
@@ -257,10 +249,9 @@ static void sides(void)
 
 int main(void)
 {
-    size_t i;
     judge_begin();
     sides();
-    for (i = 0; i < sizeof asks / sizeof *asks; i++)
+    for (size_t i = 0; i < sizeof asks / sizeof *asks; i++)
         from_states(asks[i]);
     return checks_end();
 }

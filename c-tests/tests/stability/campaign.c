@@ -25,10 +25,9 @@ static int shown[ENTRIES];
 
 static void tally(row_t *r, const answer_t *x, int faults)
 {
-    int bit;
     r->asked++;
     r->calls += (double)x->calls;
-    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
+    for (int bit = 0; bit < FAULT_BIT_COUNT; bit++)
         r->count[bit] += faults >> bit & 1;
     r->limit += x->code == CCD_LIMIT;
 }
@@ -38,10 +37,9 @@ static void report(const char *name, const char *category, row_t *r)
     static const int columns[] = {FAULT_BIT_LOOP,      FAULT_BIT_CRASH,        FAULT_BIT_NAN,       FAULT_BIT_DIR0,
                                   FAULT_BIT_MISS_DEEP, FAULT_BIT_MISS_SHALLOW, FAULT_BIT_FALSE_HIT, FAULT_BIT_OVER,
                                   FAULT_BIT_UNDER,     FAULT_BIT_ZERO,         FAULT_BIT_UNSOUND,   FAULT_BIT_DIR_BAD};
-    size_t i;
     double n = r->asked ? r->asked : 1;
     printf("| %s | %s |", category, name);
-    for (i = 0; i < sizeof columns / sizeof columns[0]; i++)
+    for (size_t i = 0; i < sizeof columns / sizeof columns[0]; i++)
         printf(" %.1f |", 100 * r->count[columns[i]] / n);
     printf(" %.0f |\n", r->calls / n);
 }
@@ -68,8 +66,7 @@ static int is_known(const char *category, const char *entry, const char *fault, 
         {"far from the origin 1e6", "distance", "stopped at the cap", 13, 13},
 #endif
     };
-    size_t i;
-    for (i = 0; i < sizeof known / sizeof *known; i++)
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(category, known[i].category) == 0 && strncmp(entry, known[i].entry, strlen(known[i].entry)) == 0
             && strcmp(fault, known[i].fault) == 0)
             return at_default <= known[i].at_default && at_fine <= known[i].at_fine;
@@ -98,17 +95,15 @@ int main(int argc, char **argv)
             for (k = 0; k < (int)ENTRIES; k++) {
                 const entry_t *e = &entries[k];
                 double tols[2];
-                int t;
                 if (!e->system && !entry_in(e, group))
                     continue;
                 tols[0] = 1e-4;
                 tols[1] = tolerance(TOL_TIGHT) * pair_size(&p.a, &p.b);
-                for (t = 0; t < (e->system ? 1 : 2); t++) {
+                for (int t = 0; t < (e->system ? 1 : 2); t++) {
                     question_t q = question(&p.a, &p.b, tols[t], &p.truth);
                     answer_t x = ask(e, &p.a, &p.b, tols[t], p.truth.n, most_calls(e));
-                    int faults;
                     q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_stop(&p, tols[t]);
-                    faults = judge(e, &x, &p.a, &p.b, &q);
+                    int faults = judge(e, &x, &p.a, &p.b, &q);
                     tally(t ? &fine[k][category] : &table[k][category], &x, faults);
                     if (!e->system && faults & FAULTS_NEVER & ~shown[k]) {
                         shown[k] |= faults;

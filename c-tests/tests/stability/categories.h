@@ -81,10 +81,9 @@ static inline void pair_one(dice_t *d, pair_t *p, int side, const int *kinds, in
 /* Two of these kinds, turned. */
 static inline void pair_of(dice_t *d, pair_t *p, const int *kinds, int n)
 {
-    int k;
-    for (k = 0; k < 2; k++)
+    for (int k = 0; k < 2; k++)
         pair_one(d, p, k, kinds, n, .1, 1);
-    for (k = 0; k < 2; k++)
+    for (int k = 0; k < 2; k++)
         pair_turn(d, pair_side(p, k));
 }
 
@@ -92,14 +91,12 @@ static inline void pair_of(dice_t *d, pair_t *p, const int *kinds, int n)
  * apart than that. */
 static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
 {
-    int tries;
-    for (tries = 0; tries < 60; tries++) {
+    for (int tries = 0; tries < 60; tries++) {
         double u[3];
         const double at = part * pair_size(&p->a, &p->b) * dice_in(d, 0, 1);
-        truth_t t;
         dice_unit(d, u);
         pair_place(p, at, u);
-        t = truth_depth(&p->a, &p->b);
+        truth_t t = truth_depth(&p->a, &p->b);
         if (depth < 0 ? t.depth < depth : t.lower > depth)
             return;
     }
@@ -125,8 +122,7 @@ static inline void pair_pull_out(pair_t *p, double depth)
 static inline double pair_around(const pair_t *p, const double u[3], const double v[3], double angle, double psi)
 {
     double m[3];
-    int k;
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         m[k] = p->truth.n[k] + angle * (cos(psi) * u[k] + sin(psi) * v[k]);
     return truth_value(&p->a, &p->b, m);
 }
@@ -136,11 +132,11 @@ static inline void pair_grow(pair_t *p)
 {
     const double *n = p->truth.n, angle = .05, step = .1;
     double u[3], v[3], axis[3] = {0, 0, 0}, l, psi, best = 0, least = HUGE_VAL;
-    int i, k;
+    int i;
     axis[fabs(n[0]) < .6 ? 0 : fabs(n[1]) < .6 ? 1 : 2] = 1;
     truth_cross3(n, axis, u);
     l = sqrt(truth_dot3(u, u));
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         u[k] /= l;
     truth_cross3(n, u, v);
     for (psi = 0; psi < 6.3; psi += step)
@@ -150,7 +146,7 @@ static inline void pair_grow(pair_t *p)
         }
     /* the way may be narrow: thirds of the last interval, until it is tiny */
     for (i = 0, l = step; i < 60; i++, l *= 2. / 3)
-        for (k = -1; k <= 1; k += 2)
+        for (int k = -1; k <= 1; k += 2)
             if (pair_around(p, u, v, angle, best + k * l / 3) < least) {
                 best += k * l / 3;
                 least = pair_around(p, u, v, angle, best);

@@ -38,11 +38,10 @@ static void check(const configuration_t *c)
     truth_t truth = truth_depth(&c->a, &c->b);
     double tol = tolerance(TOL_TIGHT) * pair_size(&c->a, &c->b);
     char text[ENTRIES][32];
-    int i, bad = 0, theirs = 0;
-    question_t q;
+    int bad = 0, theirs = 0;
     if (c->not_single && in_single())
         return;
-    q = question(&c->a, &c->b, tol, &truth);
+    question_t q = question(&c->a, &c->b, tol, &truth);
     q.surface = c->surface;
     q.touching = q.touching || c->touching;
     checked++;
@@ -50,15 +49,13 @@ static void check(const configuration_t *c)
         printf("%-28s truth %.17g, expected %.17g\n", c->id, truth.depth, c->expected);
         failed++;
     }
-    for (i = 0; i < (int)ENTRIES; i++) {
+    for (int i = 0; i < (int)ENTRIES; i++) {
         const entry_t *e = &entries[i];
-        answer_t x;
-        int faults;
         if (!e->system && !entry_in(e, group))
             continue;
         /* libccd is asked as its users do: with its default tolerance */
-        x = ask(e, &c->a, &c->b, e->system ? 1e-4 : tol, truth.n, most_calls(e));
-        faults = judge(e, &x, &c->a, &c->b, &q);
+        answer_t x = ask(e, &c->a, &c->b, e->system ? 1e-4 : tol, truth.n, most_calls(e));
+        int faults = judge(e, &x, &c->a, &c->b, &q);
         if (c->missed && x.code != CCD_MISS && e->state != STATE_MARGINS)
             faults |= FAULT_FALSE_HIT;
         describe(&x, text[i]);

@@ -319,15 +319,14 @@ static inline void visit_row(configuration_visit_t *visit, const configuration_r
     static const double offsets[] = {0, 60, 1e4};
     configuration_t c = configuration(row->id, row->what, body_shape(&row->a), body_shape(&row->b), row->expected,
                                       row->within + in_single() * row->single);
-    int i, k;
     c.surface = (row->flags & SURFACE) != 0;
     c.touching = row->flags & TOUCHING || (row->flags & TOUCHING_IN_SINGLE && in_single());
     c.missed = (row->flags & MISSED) != 0;
-    for (i = 0; i < (row->flags & EVERYWHERE ? 3 : 1); i++) {
+    for (int i = 0; i < (row->flags & EVERYWHERE ? 3 : 1); i++) {
         configuration_t moved = c;
         if (i > 0)
             snprintf(moved.id, sizeof moved.id, "%.24s +%g", c.id, offsets[i]);
-        for (k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++) {
             moved.a.pos[k] += (ccd_real_t)offsets[i];
             moved.b.pos[k] += (ccd_real_t)offsets[i];
         }
@@ -343,15 +342,13 @@ static inline void visit_row(configuration_visit_t *visit, const configuration_r
 /* Millimetre cubes at every scale. */
 static inline void visit_scaled(configuration_visit_t *visit)
 {
-    int i;
-    for (i = -6; i <= 6; i++) {
+    for (int i = -6; i <= 6; i++) {
         double s = pow(10, i);
         shape_t a = shape_box(5e-4 * s, 5e-4 * s, 5e-4 * s), b = a;
-        configuration_t c;
         char id[48];
         snprintf(id, sizeof id, "T07 x1e%d", i);
         shape_move(&b, 8e-4 * s, 1e-4 * s, 5e-5 * s);
-        c = configuration(id, "millimetre cubes", a, b, 2e-4 * s, (1e-15 + in_single() * 1e-9) * s);
+        configuration_t c = configuration(id, "millimetre cubes", a, b, 2e-4 * s, (1e-15 + in_single() * 1e-9) * s);
         visit(&c);
     }
 }
@@ -361,18 +358,16 @@ static inline void visit_scaled(configuration_visit_t *visit)
 static inline void visit_kissing(configuration_visit_t *visit, const double frame[9], const double *gaps, int n)
 {
     static const double dims[] = {.01, .25, .5, 10, 1000};
-    int i, k;
-    for (i = 0; i < 5; i++)
-        for (k = 0; k < n; k++) {
+    for (int i = 0; i < 5; i++)
+        for (int k = 0; k < n; k++) {
             double dim = dims[i], gap = gaps[k] * (fabs(gaps[k]) > 1e-9 ? dim : fmax(1, dim)), at = dim + gap;
             shape_t a = shape_box(dim / 2, dim / 2, dim / 2), b;
-            configuration_t c;
             char id[48];
             snprintf(id, sizeof id, "T15 dim %g gap %g", dim, gap);
             shape_turn(&a, frame);
             b = a;
             shape_move(&b, frame[1] * at, frame[4] * at, frame[7] * at);
-            c = configuration(id, "kissing cubes", a, b, -gap, (1e-15 + in_single() * 1e-6) * dim);
+            configuration_t c = configuration(id, "kissing cubes", a, b, -gap, (1e-15 + in_single() * 1e-6) * dim);
             c.touching = fabs(gap) < 10 * real_ulp() * dim;
             c.not_single = fabs(gaps[k]) > 1e-9;
             visit(&c);
@@ -383,8 +378,7 @@ static inline void configurations_all(configuration_visit_t *visit)
 {
     static const double gaps[] = {0, 1e-16, 2.5e-16, 1e-15, -1e-16, -2.5e-16, -1e-15, -1e-6};
     double frame[9];
-    size_t i;
-    for (i = 0; i < sizeof configuration_rows / sizeof configuration_rows[0]; i++)
+    for (size_t i = 0; i < sizeof configuration_rows / sizeof configuration_rows[0]; i++)
         visit_row(visit, &configuration_rows[i]);
     visit_scaled(visit);
     rotation_quaternion(.3, .5, -.2, .7, frame);

@@ -102,10 +102,10 @@ int main(void)
     };
     /* where the first method, a cold one, has the contact in each frame */
     static double place[FRAMES][3];
-    int m, k, f, i, failed = 0;
+    int failed = 0;
     judge_begin();
-    for (m = 0; m < MOTIONS; m++)
-        for (k = 0; k < (int)(sizeof methods / sizeof methods[0]); k++) {
+    for (int m = 0; m < MOTIONS; m++)
+        for (int k = 0; k < (int)(sizeof methods / sizeof methods[0]); k++) {
             const entry_t *e = &methods[k];
             ccd_warm_t warm;
             answer_t last;
@@ -115,21 +115,16 @@ int main(void)
             memset(&warm, 0, sizeof warm);
             memset(&last, 0, sizeof last);
             memset(&before, 0, sizeof before);
-            for (f = 0; f < FRAMES; f++) {
+            for (int f = 0; f < FRAMES; f++) {
                 shape_t a, b;
-                ccd_t ccd;
                 ccd_vec3_t unused;
-                answer_t x;
-                truth_t t;
-                question_t q;
-                double tol;
                 pose(&motions[m], f, &a, &b);
-                tol = e->system ? 1e-6 : tolerance(TOL_TIGHT) * pair_size(&a, &b);
-                t = truth_depth(&a, &b);
-                q = question(&a, &b, tol, &t);
+                double tol = e->system ? 1e-6 : tolerance(TOL_TIGHT) * pair_size(&a, &b);
+                truth_t t = truth_depth(&a, &b);
+                question_t q = question(&a, &b, tol, &t);
                 memset(&unused, 0, sizeof unused);
-                ccd = judge_query(tol);
-                x = ask_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
+                ccd_t ccd = judge_query(tol);
+                answer_t x = ask_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
                 if (!e->system) {
                     int faults = judge(e, &x, &a, &b, &q);
                     /* the bare local method may be in another valley, and leave it */
@@ -150,13 +145,13 @@ int main(void)
                         || (mpr && (angle_between(last.dir, before.n) > 1 || angle_between(x.dir, t.n) > 1))
                         || truth_value(&a, &b, last.dir) <= t.depth + tie + 2 * (tol + q.noise) + 1e-6 * q.size;
                     jumps += !(turn <= 1) && !true_turn;
-                    for (i = 0; i < 3; i++)
+                    for (int i = 0; i < 3; i++)
                         step += (x.pos[i] - last.pos[i]) * (x.pos[i] - last.pos[i]);
                     pos_step = fmax(pos_step, sqrt(step));
                 }
                 if (k == 0 || methods[k - 1].system)
                     memcpy(place[f], x.pos, sizeof place[f]);
-                for (i = 0; i < 3; i++)
+                for (int i = 0; i < 3; i++)
                     pos_off = fmax(pos_off, fabs(x.pos[i] - place[f][i]));
                 last = x;
                 before = t;

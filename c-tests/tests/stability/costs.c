@@ -29,8 +29,7 @@ static unsigned long supports_as(int what, int state, const shape_t *a, const sh
     const entry_t e = {"", 0, what, state};
     shape_t sa = *a, sb = *b;
     const ccd_t ccd = judge_query(tol);
-    answer_t x;
-    x = ask_guarded(&e, &sa, &sb, &ccd, warm, NULL, no_end);
+    answer_t x = ask_guarded(&e, &sa, &sb, &ccd, warm, NULL, no_end);
     return x.calls / 2;
 }
 
@@ -70,9 +69,8 @@ static int having_been_apart(int what)
         static pair_t p;
         dice_t d = dice(4000, (uint64_t)i);
         ccd_warm_t first = fresh(), second = fresh();
-        shape_t away;
         overlapping(&d, &p, any_kind, 7, 1e-2);
-        away = p.b;
+        shape_t away = p.b;
         shape_shift(&away, 2e-2 * pair_size(&p.a, &p.b), p.truth.n);
         supports(what, &p.a, &away, &first);
         supports(what, &p.a, &p.b, &first); /* the old direction is found to be none */
@@ -98,7 +96,6 @@ static int asked_once(int which)
         dice_t d = dice(4100, (uint64_t)i);
         ccd_warm_t state = fresh();
         double axis[3], rot[9], n[3];
-        int k;
         overlapping(&d, &p, any_kind, 7, 1e-2);
         shape_shift(&p.b, gap * pair_size(&p.a, &p.b), p.truth.n);
         if (what == ASK_LOCAL) {
@@ -107,7 +104,7 @@ static int asked_once(int which)
             dice_unit(&d, axis);
             truth_cross3(axis, p.truth.n, n);
             rotation_about(n[0], n[1], n[2], 3.14159265358979323846 / 18, rot);
-            for (k = 0; k < 3; k++)
+            for (int k = 0; k < 3; k++)
                 guess.v[k] = (ccd_real_t)truth_dot3(rot + 3 * k, p.truth.n);
             OURS(ccdWarmGuess)(&state, &guess);
         }
@@ -142,7 +139,7 @@ enum { UNCHANGED_FACES, UNCHANGED_FACES_UNREAD, UNCHANGED_FLAT, UNCHANGED_ROUND,
 static int unchanged(int which)
 {
     unsigned long again = 0, cold = 0;
-    int i, k;
+    int i;
     for (i = 0; i < 200; i++) {
         static pair_t p;
         dice_t d = dice(4200 + (uint64_t)which, (uint64_t)i);
@@ -154,7 +151,7 @@ static int unchanged(int which)
             overlapping(&d, &p, flat_kind, 2, dice_log(&d, 1e-5, 1e-2));
         else
             overlapping(&d, &p, round_kind, 3, which == UNCHANGED_ROUND ? dice_log(&d, 1e-5, 1e-2) : .1);
-        for (k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++) {
             judge_want = which == UNCHANGED_FACES_UNREAD ? 0 : CCD_WANT_ALL;
             n = supports(ASK_MPR_WARM, &p.a, &p.b, &warm);
             cold += k ? 0 : n;
@@ -171,20 +168,19 @@ static int unchanged(int which)
 static int sliding(int what)
 {
     unsigned long all = 0;
-    int i, k, m, frames = 0;
-    for (i = 0; i < 200; i++) {
+    int frames = 0;
+    for (int i = 0; i < 200; i++) {
         static pair_t p;
         dice_t d = dice(4300, (uint64_t)i);
         ccd_warm_t warm = fresh();
-        double way;
         resting_boxes(&d, &p);
-        way = dice_in(&d, 0, 6.28);
-        for (k = 0; k < 50; k++) {
+        double way = dice_in(&d, 0, 6.28);
+        for (int k = 0; k < 50; k++) {
             const unsigned long n = supports(what, &p.a, &p.b, &warm);
             double pos[3];
             all += k ? n : 0;
             frames += k > 0;
-            for (m = 0; m < 3; m++)
+            for (int m = 0; m < 3; m++)
                 pos[m] = (double)p.b.pos[m] + .002 * (cos(way) * (double)p.a.rot[3 * m] + sin(way) * (double)p.a.rot[3 * m + 1]);
             shape_move(&p.b, pos[0], pos[1], pos[2]);
         }
@@ -202,8 +198,8 @@ static int staying_apart(int what)
 {
     const double turn = .1 * 3.14159265358979323846 / 180;
     unsigned long all = 0;
-    int i, k, m, frames = 0;
-    for (i = 0; i < 200; i++) {
+    int frames = 0;
+    for (int i = 0; i < 200; i++) {
         static pair_t p;
         dice_t d = dice(4400, (uint64_t)i);
         ccd_warm_t warm = fresh();
@@ -213,23 +209,22 @@ static int staying_apart(int what)
         shape_shift(&p.b, 1e-2 * pair_size(&p.a, &p.b) + gap * dice_in(&d, 1, 10), p.truth.n);
         dice_unit(&d, way);
         dice_unit(&d, about);
-        for (k = 0; k < 50; k++, frames++) {
+        for (int k = 0; k < 50; k++, frames++) {
             const unsigned long n = supports(what, &p.a, &p.b, &warm), cold = k ? 0 : supports(what, &p.a, &p.b, NULL);
-            truth_t t;
             double aside[3];
             all += n > cold ? n - cold : 0;
             dice_unit(&d, aside);
-            for (m = 0; m < 3; m++) {
+            for (int m = 0; m < 3; m++) {
                 way[m] += .3 * aside[m];
                 about[m] += .3 * aside[(m + 1) % 3];
             }
             rotation_about(about[0], about[1], about[2], turn, rot);
-            for (m = 0; m < 3; m++)
+            for (int m = 0; m < 3; m++)
                 at[m] = (double)p.b.pos[m];
             shape_move(&p.b, 0, 0, 0);
             shape_turn_by(&p.b, rot, at[0], at[1], at[2]);
             shape_shift(&p.b, 1e-4 / sqrt(truth_dot3(way, way)), way);
-            t = truth_depth_within(&p.a, &p.b, 1e-5);
+            truth_t t = truth_depth_within(&p.a, &p.b, 1e-5);
             if (-t.depth < gap)
                 shape_shift(&p.b, 1.01 * (gap + t.depth), t.n);
         }
@@ -329,7 +324,7 @@ static int stack_of(int class)
     static const entry_t refused = {"", 0, ASK_ALONG, STATE_NONE};
     static pair_t p;
     size_t empty, most[ENTRIES] = {0}, limit = stack_limits[class] * 1024, deepest = 0;
-    int i, k;
+    int i;
     stack_query = judge_query(tol);
     if (!stack_floor)
         stack_floor = (uint64_t *)malloc(STACK_WORDS * sizeof *stack_floor);
@@ -348,16 +343,15 @@ static int stack_of(int class)
         stack_dir = NULL;
         empty += stack_touched();
         stack_dir = &stack_along;
-        for (k = 0; k < (int)ENTRIES; k++) {
+        for (int k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
             ccd_warm_t warm = fresh();
-            size_t n;
             if (e->system || !stack_asks(class, e))
                 continue;
             stack_entry = e;
             stack_warm = e->state == STATE_NONE ? NULL : &warm;
             judge_calls = 0;
-            n = stack_touched();
+            size_t n = stack_touched();
             if (e->state == STATE_AGAIN) {
                 judge_calls = 0;
                 n = stack_touched();
@@ -368,7 +362,7 @@ static int stack_of(int class)
             most[k] = n > most[k] ? n : most[k];
         }
     }
-    for (k = 0; k < (int)ENTRIES; k++) {
+    for (int k = 0; k < (int)ENTRIES; k++) {
         if (most[k] > limit)
             printf("%s %zu; ", entries[k].name, most[k]);
         deepest = most[k] > deepest ? most[k] : deepest;
@@ -403,16 +397,15 @@ int main(int argc, char **argv)
         {"U11", "deep round pairs, unchanged", unchanged, UNCHANGED_ROUND_DEEP, BROKEN},
     };
     const int n = (int)(sizeof listed / sizeof listed[0]);
-    int i, broken = 0, surprises = 0;
+    int broken = 0, surprises = 0;
     judge_begin();
-    for (i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         const promise_t *p = &listed[i];
-        int holds;
         if (argc > 1 && strncmp(p->id, argv[1], strlen(argv[1])) != 0)
             continue;
         printf("%-6s%s: ", p->id, p->what);
         fflush(stdout);
-        holds = p->holds(p->which);
+        int holds = p->holds(p->which);
         broken += !holds;
         surprises += holds == p->known;
         printf(" -- %s\n", holds ? p->known ? "FAILED: holds, and is marked as known to be broken" : "holds"

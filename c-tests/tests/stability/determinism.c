@@ -16,8 +16,7 @@
 static void digest_bytes(uint64_t *digest, const void *memory, size_t size)
 {
     const unsigned char *byte = (const unsigned char *)memory;
-    size_t i;
-    for (i = 0; i < size; i++) /* FNV-1a */
+    for (size_t i = 0; i < size; i++) /* FNV-1a */
         *digest = (*digest ^ byte[i]) * UINT64_C(0x100000001b3);
 }
 
@@ -30,10 +29,9 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
     const ccd_vec3_t along = {{(ccd_real_t).6, 0, (ccd_real_t).8}};
     shape_t a = p->a, b = p->b;
     ccd_t ccd;
-    int k;
     shape_query(&ccd);
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
-    for (k = 0; k < ASKS; k++) {
+    for (int k = 0; k < ASKS; k++) {
         struct {
             ccd_real_t depth;
             ccd_vec3_t dir, pos;
@@ -44,15 +42,14 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         const call_rest_t x = {.warm = warm, .along = &along, .margin1 = (ccd_real_t).01, .max_distance = (ccd_real_t)INFINITY,
                                .slop = (ccd_real_t)1e-3, .want = CCD_WANT_ALL, .max = 4, .depth = &plain.depth, .dir = &plain.dir,
                                .pos = &plain.pos, .contacts = contact, .full = &full, .distance = &distance};
-        int code, i;
         memset(&plain, 0, sizeof plain);
         memset(contact, 0, sizeof contact);
         memset(&full, 0, sizeof full);
         memset(&distance, 0, sizeof distance);
-        code = call_by_number(k, &a, &b, &ccd, &x);
+        int code = call_by_number(k, &a, &b, &ccd, &x);
         digest_bytes(digest, &code, sizeof code);
         digest_bytes(digest, &plain, sizeof plain);
-        for (i = 0; i < 4; i++)
+        for (int i = 0; i < 4; i++)
             digest_bytes(digest, &contact[i], offsetof(ccd_contact_t, id) + sizeof contact[i].id);
         digest_bytes(digest, &full, offsetof(ccd_penetration_t, point2) + sizeof full.point2);
         digest_bytes(digest, &distance, offsetof(ccd_distance_t, point2) + sizeof distance.point2);
@@ -70,11 +67,10 @@ static void digest_question(uint64_t *digest, const pair_t *p)
     enum { DIRECTIONS = 200 };
     shape_t shape[2] = {p->a, p->b};
     ccd_vec3_t dir, answer;
-    int side, k;
-    for (side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; side++) {
         shape_center(&shape[side], &answer);
         digest_bytes(digest, &answer, sizeof answer);
-        for (k = 0; k < DIRECTIONS; k++) {
+        for (int k = 0; k < DIRECTIONS; k++) {
             ccdVec3Set(&dir, (ccd_real_t)(k % 7 - 3), (ccd_real_t)(k % 11 - 5), (ccd_real_t)(k % 13) - (ccd_real_t)6.5);
             ccdVec3Normalize(&dir);
             shape_support(&shape[side], &dir, &answer);
@@ -87,9 +83,8 @@ int main(int argc, char **argv)
 {
     const int pairs = argc > 1 ? atoi(argv[1]) : 20;
     static pair_t p;
-    int category, i;
-    for (category = 0; category < CATEGORY_COUNT; category++)
-        for (i = 0; i < pairs; i++) {
+    for (int category = 0; category < CATEGORY_COUNT; category++)
+        for (int i = 0; i < pairs; i++) {
             uint64_t question = UINT64_C(0xcbf29ce484222325), answers = question;
             ccd_warm_t warm;
             memset(&warm, 0, sizeof warm);

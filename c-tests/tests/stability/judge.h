@@ -154,11 +154,10 @@ static inline void judge_begin(void)
 {
     static const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
     struct sigaction action;
-    size_t i;
     memset(&action, 0, sizeof action);
     action.sa_handler = judge_signal;
     action.sa_flags = SA_NODEFER;
-    for (i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         sigaction(numbers[i], &action, NULL);
 }
 
@@ -168,8 +167,7 @@ static const unsigned char judge_blank = 0xa5;
 static inline int judge_is_blank(const void *memory, size_t size)
 {
     const unsigned char *byte = (const unsigned char *)memory;
-    size_t i;
-    for (i = 0; i < size; i++)
+    for (size_t i = 0; i < size; i++)
         if (byte[i] != judge_blank)
             return 0;
     return 1;
@@ -177,8 +175,7 @@ static inline int judge_is_blank(const void *memory, size_t size)
 
 static inline void judge_vec(const ccd_vec3_t *v, double out[3])
 {
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out[i] = (double)v->v[i];
 }
 
@@ -223,12 +220,11 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
                               .pos = judge_want & CCD_WANT_POS ? &pos : NULL, .full = &p, .margin1 = margin, .margin2 = margin / 3,
                               .max_distance = (ccd_real_t)(e->state == STATE_NEAR ? .1 * judge_size : HUGE_VAL), .distance = &distance};
     const int full = e->ask >= ASK_PENETRATION;
-    int code, i;
     memset(&p, judge_blank, sizeof p);
     memset(&depth, judge_blank, sizeof depth);
     memset(&dir, judge_blank, sizeof dir);
     memset(&pos, judge_blank, sizeof pos);
-    code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
+    int code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
     if (entry_is_verdict(e))
         code = code ? CCD_HIT : CCD_MISS;
     if (e->ask == ASK_SEPARATE && code == 0) {
@@ -237,7 +233,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
         judge_vec(&dir, v);
         l = sqrt(truth_dot3(v, v));
         depth = (ccd_real_t)l;
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
     }
     out->code = code;
@@ -273,11 +269,10 @@ static inline answer_t ask_guarded(const entry_t *e, const void *a, const void *
                                    const ccd_vec3_t *along, unsigned long limit)
 {
     static answer_t out; /* static: kept over a siglongjmp */
-    int code;
     memset(&out, 0, sizeof out);
     judge_limit = limit;
     judge_calls = 0;
-    code = sigsetjmp(judge_back, 1);
+    int code = sigsetjmp(judge_back, 1);
     if (code == 0) {
         alarm(10);
         ask_once(e, a, b, ccd, warm, along, &out);
@@ -297,9 +292,8 @@ static inline answer_t ask_objects(const entry_t *e, const void *a, const void *
     ccd_warm_t warm;
     ccd_vec3_t along, guess;
     ccd_t swapped = *ccd;
-    int i;
     memset(&warm, 0, sizeof warm);
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         along.v[i] = (ccd_real_t)normal[i];
         guess.v[i] = (ccd_real_t)(e->state == STATE_BESIDE ? normal[(i + 1) % 3] : -normal[i]);
     }
@@ -446,8 +440,8 @@ static inline double judge_bound(const entry_t *e, const answer_t *x, const ques
 /* Is a point, told relative to origin, farther than this outside of the shape? By 26 planes. */
 static inline int judge_outside(const shape_t *s, const double origin[3], const double p[3], double bound)
 {
-    int i, outside = 0;
-    for (i = 0; i < 27; i++) {
+    int outside = 0;
+    for (int i = 0; i < 27; i++) {
         double n[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, l = sqrt(truth_dot3(n, n));
         if (l == 0)
             continue;
@@ -465,8 +459,7 @@ static inline int judge_position(const entry_t *e, const answer_t *x, const shap
 {
     const double inside = judge_bound(e, x, q) + (0.5 + 1.0 / 256) * x->depth;
     double origin[3], p[3];
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
         p[i] = x->pos[i] - origin[i];
     }
@@ -534,7 +527,7 @@ static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_
     const double within = x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_PROMISED) * fabs(t->depth)) : q->tol;
     const double bound = judge_bound(e, x, q) + x->margins;
     double origin[3], p[2][3], apart = 0;
-    int faults = 0, i;
+    int faults = 0;
     if (!x->has_proof)
         return FAULT_CODE;
     if (x->code == CCD_LIMIT && !q->surface)
@@ -553,7 +546,7 @@ static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_
         faults |= FAULT_NO_PROOF;
     if (x->distance <= x->near && x->depth > t->depth + within + rounding)
         faults |= FAULT_NOT_MINIMUM;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
         p[0][i] = x->point1[i] - origin[i];
         p[1][i] = x->point2[i] - origin[i];
@@ -571,7 +564,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
 {
     const truth_t *t = &q->truth;
     double gap = t->depth - t->lower, value, table, l2;
-    int faults = 0, i, finite;
+    int faults = 0, finite;
     if (x->code == ANSWER_LOOP)
         return FAULT_LOOP;
     if (x->code == ANSWER_CRASH)
@@ -604,7 +597,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         return faults | (t->depth > q->tol + q->noise ? FAULT_ZERO | FAULT_UNSOUND : 0);
 
     finite = isfinite(x->depth);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         finite = finite && isfinite(x->dir[i]) && (!x->has_pos || isfinite(x->pos[i]));
     if (!finite)
         return faults | FAULT_NAN;
@@ -673,8 +666,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
 /* Prints the faults' names; returns how many. */
 static inline int print_faults(FILE *file, int faults)
 {
-    int bit, n = 0;
-    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
+    int n = 0;
+    for (int bit = 0; bit < FAULT_BIT_COUNT; bit++)
         if (faults >> bit & 1)
             fprintf(file, "%s%s", n++ ? ", " : "", fault_text(bit));
     return n;
@@ -703,14 +696,13 @@ static inline void print_wrong(const entry_t *e, const answer_t *x, int faults, 
 /* A pair as C that makes it again. */
 static inline void print_shape(FILE *file, const char *name, const shape_t *s)
 {
-    int i;
     fprintf(file, "%s: type %d p %.17g %.17g %.17g tie %d pos %.17g %.17g %.17g rot", name, (int)s->type, (double)s->p[0],
             (double)s->p[1], (double)s->p[2], s->tie, (double)s->pos[0], (double)s->pos[1], (double)s->pos[2]);
-    for (i = 0; i < 9; i++)
+    for (int i = 0; i < 9; i++)
         fprintf(file, " %.17g", (double)s->rot[i]);
     if (s->type == SHAPE_POLYTOPE) {
         fprintf(file, " verts %d", s->nverts);
-        for (i = 0; i < 3 * s->nverts && i < 3 * 16; i++)
+        for (int i = 0; i < 3 * s->nverts && i < 3 * 16; i++)
             fprintf(file, " %.17g", (double)s->verts[i]);
     }
     fprintf(file, "\n");

@@ -48,8 +48,7 @@ static inline void dice_unit(dice_t *d, double n[3])
 {
     double l;
     do {
-        int i;
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             n[i] = dice_in(d, -1, 1);
         l = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     } while (!(l > 1e-3 && l <= 1));

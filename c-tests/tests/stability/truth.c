@@ -25,14 +25,13 @@ static void fail(const char *what, const shape_t *a, const shape_t *b, double go
  * after the move that it asks for. */
 static void methods_agree(int pairs)
 {
-    int i, k, compared = 0;
-    for (i = 0; i < pairs; i++) {
+    int compared = 0;
+    for (int i = 0; i < pairs; i++) {
         static const int kinds[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_TYPES};
         static pair_t p;
         dice_t d = dice(1000, (uint64_t)i);
         double u[3], at, eps;
-        truth_t t, s;
-        for (k = 0; k < 2; k++) {
+        for (int k = 0; k < 2; k++) {
             int kind = kinds[dice_below(&d, 5)];
             *(k ? &p.b : &p.a) = kind == SHAPE_TYPES ? pair_polygon(&d, p.verts[k], 1) : pair_shape(&d, p.verts[k], kind, .1, 1);
             pair_turn(&d, k ? &p.b : &p.a);
@@ -40,8 +39,8 @@ static void methods_agree(int pairs)
         dice_unit(&d, u);
         at = dice_in(&d, 0, 1) * pair_size(&p.a, &p.b);
         shape_move(&p.b, at * u[0], at * u[1], at * u[2]);
-        t = truth_depth(&p.a, &p.b);
-        s = truth_branch(&p.a, &p.b, 1e-9, 40000);
+        truth_t t = truth_depth(&p.a, &p.b);
+        truth_t s = truth_branch(&p.a, &p.b, 1e-9, 40000);
         eps = 64 * real_ulp() * pair_size(&p.a, &p.b);
         compared += t.enumerated;
         if (!t.enumerated)
@@ -84,10 +83,9 @@ int main(int argc, char **argv)
         for (i = 0; i < set.n; i += step) {
             shape_t a, b;
             pair_truth_t known;
-            truth_t t;
             double eps = 128 * DBL_EPSILON;
             pair_set_pose(&set, i, &a, &b, &known);
-            t = truth_depth(&a, &b);
+            truth_t t = truth_depth(&a, &b);
             worst = fmax(worst, fabs(t.depth - known.depth));
             widest = fmax(widest, t.depth - t.lower);
             if (!(t.lower <= known.depth + eps && t.depth >= known.depth - known.gap - eps))

@@ -41,8 +41,7 @@ static double now(void)
 static shape_t random_shape(ccd_real_t *corners)
 {
     double p[3];
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         p[i] = 0.05 * exp(uniform(0, 3));
     switch ((int)uniform(0, KINDS)) {
     case 0: return shape_sphere(p[0]);
@@ -53,14 +52,13 @@ static shape_t random_shape(ccd_real_t *corners)
     case 5: return shape_ellipsoid(p[0], p[1], p[2]);
     default: break;
     }
-    for (i = 0; i < CORNERS; i++) {
+    for (int i = 0; i < CORNERS; i++) {
         double x[3], length;
-        int k;
         do {
             x[0] = uniform(-1, 1), x[1] = uniform(-1, 1), x[2] = uniform(-1, 1);
             length = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
         } while (length > 1 || length < 0.1);
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             corners[3 * i + k] = (ccd_real_t)(p[k] * x[k] / length);
     }
     return shape_polytope(corners, CORNERS);
@@ -110,8 +108,7 @@ static void measure(method_t *m, long k, const shape_t *a, const shape_t *b, con
 {
     const unsigned long before = a->calls + b->calls;
     double least = HUGE_VAL;
-    int turn;
-    for (turn = 0; turn < 4 && (turn == 0 || least > AGAIN); turn++) {
+    for (int turn = 0; turn < 4 && (turn == 0 || least > AGAIN); turn++) {
         ccd_warm_t warm = *state;
         const double start = now();
         query(m, a, b, ccd, &warm);
@@ -136,8 +133,7 @@ static void report(method_t *m, long n)
 {
     const long high = n - 1 - n / 1000;
     double calls = 0, micros = 0;
-    long k;
-    for (k = 0; k < n; k++) {
+    for (long k = 0; k < n; k++) {
         calls += m->calls[k];
         micros += (double)m->micros[k];
     }
@@ -167,8 +163,6 @@ int main(int argc, char **argv)
     const long n = argc > 1 ? atol(argv[1]) : 0;
     const method_t leave_state = {"", ASK_PENETRATION, 0, 1, NULL, NULL, 0};
     ccd_t ccd;
-    long k;
-    int m;
     if (n < 1000) {
         fprintf(stderr, "usage: worst_case QUERIES [SEED], at least 1000\n");
         return 2;
@@ -177,28 +171,27 @@ int main(int argc, char **argv)
     shape_query(&ccd);
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
     ccd.max_iterations = 500;
-    for (m = 0; m < METHODS; m++) {
+    for (int m = 0; m < METHODS; m++) {
         methods[m].calls = (unsigned short *)calloc((size_t)n, sizeof *methods[m].calls);
         methods[m].micros = (float *)calloc((size_t)n, sizeof *methods[m].micros);
         if (!methods[m].calls || !methods[m].micros)
             return 1;
     }
-    for (k = 0; k < n; k++) {
+    for (long k = 0; k < n; k++) {
         shape_t a = random_shape(corners[0]), b = random_shape(corners[1]);
         ccd_warm_t state = {0};
-        double gap;
         turn_at_random(&a);
         turn_at_random(&b);
-        gap = (reach(&a, 1) + reach(&b, -1)) * uniform(0, 1.02);
+        double gap = (reach(&a, 1) + reach(&b, -1)) * uniform(0, 1.02);
         shape_move(&b, gap, uniform(-0.2, 0.2) * gap, uniform(-0.2, 0.2) * gap);
         query(&leave_state, &a, &b, &ccd, &state);
         /* the next frame, for the calls that start from the state */
         shape_move(&b, gap * 0.998, (double)b.pos[1], (double)b.pos[2]);
-        for (m = 0; m < METHODS; m++)
+        for (int m = 0; m < METHODS; m++)
             measure(&methods[m], k, &a, &b, &ccd, &state);
     }
     printf("| call | callbacks, mean | 99.9 %% | most | us, mean | 99.9 %% | most |\n|---|---|---|---|---|---|---|\n");
-    for (m = 0; m < METHODS; m++)
+    for (int m = 0; m < METHODS; m++)
         report(&methods[m], n);
     return 0;
 }

@@ -63,8 +63,7 @@ static void swallow(_Unwind_Exception_Class class, struct _Unwind_Exception *exc
     void *(*begin)(void *);
     void (*end)(void);
     uint64_t name = 0;
-    size_t i;
-    for (i = 0; i + 1 < sizeof vendor; i++)
+    for (size_t i = 0; i + 1 < sizeof vendor; i++)
         name = name << 8 | (unsigned char)vendor[i];
     if (library) {
         begin_symbol = dlsym(library, "__cxa_begin_catch");

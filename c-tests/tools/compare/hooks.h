@@ -28,10 +28,9 @@ const compare_counts_t *compare_counts(void) __attribute__((weak));
 static inline unsigned long compare_queries(void)
 {
     unsigned long n = 0;
-    int i;
     if (!compare_counts)
         return 0;
-    for (i = 0; i < COMPARE_CALLS; i++)
+    for (int i = 0; i < COMPARE_CALLS; i++)
         n += (unsigned long)compare_counts()->call[i].queries;
     return n;
 }

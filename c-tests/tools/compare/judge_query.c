@@ -105,10 +105,9 @@ static void work_value(void *argument)
 static double extent(const seen_t *seen, int which, double *largest)
 {
     double diagonal2 = 0;
-    int i, k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         double low = HUGE_VAL, high = -HUGE_VAL;
-        for (i = 0; i < seen->count[which]; i++) {
+        for (int i = 0; i < seen->count[which]; i++) {
             const double x = (double)seen->point[which][i].point.v[k];
             low = fmin(low, x);
             high = fmax(high, x);
@@ -155,8 +154,7 @@ static double inconsistency_at(const seen_t *seen, int which, const seen_point_t
 {
     const double length = sqrt((double)ccdVec3Len2(&p->dir)), h = (double)ccdVec3Dot(&p->dir, &p->point);
     double beyond = seen->centred[which] ? (double)ccdVec3Dot(&p->dir, &seen->centre[which]) - h : 0;
-    int i;
-    for (i = 0; i < seen->count[which] && beyond < HUGE_VAL; i++) {
+    for (int i = 0; i < seen->count[which] && beyond < HUGE_VAL; i++) {
         const double further = (double)ccdVec3Dot(&p->dir, &seen->point[which][i].point) - h;
         beyond = further <= beyond ? beyond : further == further ? further : HUGE_VAL; /* NaN is no point */
     }
@@ -168,10 +166,9 @@ static double inconsistency_at(const seen_t *seen, int which, const seen_point_t
 static double inconsistency(const seen_t *seen, int most)
 {
     double largest = 0;
-    int which, i;
-    for (which = 0; which < 2; which++) {
+    for (int which = 0; which < 2; which++) {
         const int n = seen->count[which];
-        for (i = 0; i < n; i += (n + most - 1) / most)
+        for (int i = 0; i < n; i += (n + most - 1) / most)
             largest = fmax(largest, inconsistency_at(seen, which, &seen->point[which][i]));
         if (seen->least < HUGE_VAL)
             largest = fmax(largest, inconsistency_at(seen, which, &seen->least_point[which]));
@@ -255,8 +252,7 @@ static void ask_timed(const timing_t *t, int what)
     } else {
         /* in the directions that the queries asked */
         ccd_vec3_t point;
-        int i;
-        for (i = 0; i < PAIRS; i++) {
+        for (int i = 0; i < PAIRS; i++) {
             q->ccd->support1(q->obj[0], &t->seen->point[0][i % t->seen->count[0]].dir, &point);
             q->ccd->support2(q->obj[1], &t->seen->point[1][i % t->seen->count[1]].dir, &point);
         }
@@ -268,13 +264,13 @@ static void ask_timed(const timing_t *t, int what)
 static void work_timing(void *argument)
 {
     timing_t *t = (timing_t *)argument;
-    int round, what, i, times = 1;
-    for (what = 0; what < TIMES; what++)
+    int times = 1;
+    for (int what = 0; what < TIMES; what++)
         t->least[what] = HUGE_VAL;
-    for (round = 0; round < ROUNDS; round++) {
-        for (what = 0; what < TIMES; what++) {
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int what = 0; what < TIMES; what++) {
             const uint64_t start = clock_now(CLOCK_MONOTONIC);
-            for (i = 0; i < times; i++)
+            for (int i = 0; i < times; i++)
                 ask_timed(t, what);
             t->least[what] = fmin(t->least[what], (double)(clock_now(CLOCK_MONOTONIC) - start) / times);
         }
@@ -286,14 +282,13 @@ static void take_times(const compare_t *compare, const sample_t *s)
 {
     compare_call_t *c = &compare->counts->call[s->q->call];
     timing_t t;
-    int side;
     t.compare = compare;
     t.q = s->q;
     t.seen = s->seen;
     if (!s->seen->count[0] || !s->seen->count[1] || guard_run(work_timing, &t) != GUARD_RETURNED)
         return;
     count_add(&c->timed, 1);
-    for (side = 0; side < COMPARE_SIDES; side++)
+    for (int side = 0; side < COMPARE_SIDES; side++)
         count_add(&c->side[side].nanoseconds, (uint64_t)t.least[side]);
     count_add(&c->minimum_nanoseconds, (uint64_t)t.least[TIME_MINIMUM]);
     count_add(&compare->counts->callback_pairs, PAIRS);
@@ -378,8 +373,8 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
  * to blame; that is counted. */
 static int judge(const compare_t *compare, sample_t *s)
 {
-    int side, wrong = 0;
-    for (side = 0; side < COMPARE_SIDES; side++) {
+    int wrong = 0;
+    for (int side = 0; side < COMPARE_SIDES; side++) {
         s->verdict[side] = sample_verdict(s->q, &s->answer[side], &s->truth);
         if (s->verdict[side] == VERDICT_RIGHT && sample_has_depth(s->q, &s->answer[side]))
             check_move(compare, s, side);
@@ -396,7 +391,6 @@ void sample_query(const compare_t *compare, const query_t *q, const answer_t *ow
 {
     compare_call_t *c = &compare->counts->call[q->call];
     sample_t s;
-    int side;
     memset(&s, 0, sizeof s);
     s.q = q;
     s.seen = (seen_t *)malloc(sizeof *s.seen);
@@ -408,12 +402,12 @@ void sample_query(const compare_t *compare, const query_t *q, const answer_t *ow
         count_add(&c->judged, 1);
         count_add(&c->minimum_calls, s.minimum_calls);
         count_add(&c->overlaps, s.truth.lower > s.truth.touch);
-        for (side = 0; side < COMPARE_SIDES; side++)
+        for (int side = 0; side < COMPARE_SIDES; side++)
             count_side(&c->side[side], &s, side);
         count_change(c, &s);
         if (compare->timed)
             take_times(compare, &s);
-        for (side = 0; side < COMPARE_SIDES && compare->keep; side++)
+        for (int side = 0; side < COMPARE_SIDES && compare->keep; side++)
             if (s.verdict[side] != VERDICT_RIGHT)
                 keep_case(compare, &s, side);
     }

@@ -56,13 +56,11 @@ static void give_up(const char *what)
 static compare_counts_t *counts_map(const char *dir)
 {
     char path[4096];
-    void *mapped;
-    int file;
     snprintf(path, sizeof path, "%s/counts", dir);
-    file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (file < 0 || ftruncate(file, sizeof(compare_counts_t)) != 0)
         give_up(path);
-    mapped = mmap(NULL, sizeof(compare_counts_t), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    void *mapped = mmap(NULL, sizeof(compare_counts_t), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (mapped == MAP_FAILED)
         give_up(path);
     close(file);
@@ -175,7 +173,6 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
 {
     compare_call_t *c = &compare.counts->call[q->call];
     const int hit = is_hit(q->call, code);
-    uint64_t start;
     answer_t own;
     count_add(&c->returned, 1);
     count_add(&c->hits, (uint64_t)hit);
@@ -185,7 +182,7 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
         answered(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
     if (!is_sampled(number))
         return;
-    start = clock_now(CLOCK_THREAD_CPUTIME_ID);
+    uint64_t start = clock_now(CLOCK_THREAD_CPUTIME_ID);
     read_outputs(q, code, depth, dir, &own);
     if (q->call == COMPARE_SEPARATE && own.hit && dir)
         answer_by_length(&own);
@@ -217,8 +214,6 @@ static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, 
 static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
     query_t q;
-    uint64_t number;
-    int code;
     pthread_once(&once, start);
     q.call = call;
     q.obj[0] = obj1;
@@ -227,8 +222,8 @@ static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd,
     /* a callback that asks while the tool asks it is the tool's doing */
     if (guard_active())
         return ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
-    number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
-    code = ask_audit ? answer_audited(&q, depth, dir, pos) : ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
+    uint64_t number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
+    int code = ask_audit ? answer_audited(&q, depth, dir, pos) : ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
     watch(&q, number, code, depth, dir);
     return code;
 }

@@ -180,8 +180,7 @@ static void along_x(const void *obj1, const void *obj2, ccd_vec3_t *dir)
 static ccd_t watched_settings(const query_t *q, asked_t *asked, watched_t w[2])
 {
     ccd_t ccd = *q->ccd;
-    int k;
-    for (k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         w[k].q = q;
         w[k].asked = asked;
         w[k].which = k;

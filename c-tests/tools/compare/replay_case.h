@@ -39,8 +39,7 @@ static inline void case_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3
     const int n = o->of->rows[o->which];
     const double *found = o->of->numbers[o->which];
     double most = -HUGE_VAL;
-    int i;
-    for (i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         const int row = (o->next + i) % n;
         const double *p = o->of->numbers[o->which] + 6 * row;
         const double x = (double)dir->v[0], y = (double)dir->v[1], z = (double)dir->v[2];
@@ -74,9 +73,8 @@ static inline void case_first_dir(const void *obj1, const void *obj2, ccd_vec3_t
 
 static inline void case_prepare(const case_t *c, case_object_t object[2], ccd_t *ccd)
 {
-    int k;
     memset(ccd, 0, sizeof *ccd);
-    for (k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         object[k].of = c;
         object[k].which = k;
         object[k].next = 0;
@@ -122,9 +120,8 @@ static int case_run(const case_t *c)
     static const char *const name[] = { "ccdMPRPenetration", "ccdMPRIntersect", "ccdGJKPenetration", "ccdGJKSeparate", "ccdGJKIntersect" };
     verdict_answer_t answer;
     ccd_vec3_t dir;
-    verdict_t v;
     case_ask(c, &answer, &dir);
-    v = verdict(&answer, &c->truth);
+    verdict_t v = verdict(&answer, &c->truth);
     printf("kept:  %s\n", c->title);
     printf("now:   %s: %s", name[c->call], answer.hit ? "hit" : "miss");
     if (answer.hit && answer.has_depth)

@@ -19,12 +19,11 @@ static compare_counts_t all;
 static void add_call(compare_call_t *to, const compare_call_t *from)
 {
     uint64_t most[COMPARE_SIDES];
-    size_t i;
-    for (i = 0; i < COMPARE_SIDES; i++)
+    for (size_t i = 0; i < COMPARE_SIDES; i++)
         most[i] = to->side[i].error_max > from->side[i].error_max ? to->side[i].error_max : from->side[i].error_max;
-    for (i = 0; i < sizeof *to / sizeof(uint64_t); i++)
+    for (size_t i = 0; i < sizeof *to / sizeof(uint64_t); i++)
         ((uint64_t *)to)[i] += ((const uint64_t *)from)[i];
-    for (i = 0; i < COMPARE_SIDES; i++)
+    for (size_t i = 0; i < COMPARE_SIDES; i++)
         to->side[i].error_max = most[i];
 }
 
@@ -50,9 +49,8 @@ static const char *thousands(uint64_t n)
 
 static void print_calls(compare_call_t *sum)
 {
-    int i;
     printf("%-20s %12s %8s %12s %10s\n", "call", "queries", "hits", "judged", "overlaps");
-    for (i = 0; i < COMPARE_CALLS; i++) {
+    for (int i = 0; i < COMPARE_CALLS; i++) {
         const compare_call_t *c = &all.call[i];
         if (!c->queries)
             continue;
@@ -174,9 +172,9 @@ static void print_change(const compare_call_t *sum)
 
 static void print_kept(const char *dir)
 {
-    int side, i, none = 1;
-    for (side = 0; side < COMPARE_SIDES; side++)
-        for (i = 0; i < COMPARE_KEPT; i++)
+    int none = 1;
+    for (int side = 0; side < COMPARE_SIDES; side++)
+        for (int i = 0; i < COMPARE_KEPT; i++)
             if (all.kept[side][i].used) {
                 printf("%s/%s-%d.c %s\n", dir, COMPARE_SIDE_NAME[side], i + 1, all.kept[side][i].title);
                 none = 0;
@@ -188,7 +186,6 @@ static void print_kept(const char *dir)
 static void print_screen(const char *every, const char *code)
 {
     static compare_call_t sum;
-    int i;
     const char *who = all.base == COMPARE_THEIRS ? "libccd" : "this library";
     printf("\n== %s, exit code %s, on the answers of %s; ", all.program, code, who);
     if (strcmp(every, "0") != 0)
@@ -199,7 +196,7 @@ static void print_screen(const char *every, const char *code)
         printf("; %d processes", (int)all.processes);
     printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);
     print_calls(&sum);
-    for (i = 0; i < COMPARE_CALLS; i++)
+    for (int i = 0; i < COMPARE_CALLS; i++)
         if (all.call[i].judged)
             print_wrong(&all.call[i], COMPARE_CALL_NAME[i]);
     printf("\n");
@@ -225,13 +222,12 @@ static void print_fields(void)
 {
     static compare_call_t sum;
     static const char *const name[COMPARE_SIDES] = { "theirs_", "ours_" };
-    int i;
-    for (i = 0; i < COMPARE_CALLS; i++)
+    for (int i = 0; i < COMPARE_CALLS; i++)
         add_call(&sum, &all.call[i]);
     printf("watched");
     print_numbers("", "queries returned hits zero not_finite not_unit sampled judged overlaps timed threw endless memory no_shape contradicted",
                   &sum);
-    for (i = 0; i < COMPARE_SIDES; i++) {
+    for (int i = 0; i < COMPARE_SIDES; i++) {
         const compare_side_t *s = &sum.side[i];
         print_numbers(name[i], "right missed spurious broken deep unsound hits calls slanted aside", s);
         printf(" %ssupports %llu %serror_max %.9g", name[i], (unsigned long long)(s->calls + 1) / 2, name[i], PICO * (double)s->error_max);
@@ -243,13 +239,12 @@ static void print_fields(void)
 int main(int argc, char **argv)
 {
     char path[4096];
-    FILE *file;
     if (argc != 3 && argc != 5) {
         fprintf(stderr, "usage: screen DIR EVERY EXIT KEPT | screen DIR fields\n");
         return 2;
     }
     snprintf(path, sizeof path, "%s/counts", argv[1]);
-    file = fopen(path, "rb");
+    FILE *file = fopen(path, "rb");
     if (!file || fread(&all, sizeof all, 1, file) != 1)
         all.processes = 0;
     if (file)

@@ -35,11 +35,10 @@ static double score_of(const sample_t *s, int side)
 static compare_kept_t *place_for(compare_kept_t *kept, int verdict, double score)
 {
     compare_kept_t *least = NULL;
-    int i;
-    for (i = 0; i < COMPARE_KEPT; i++)
+    for (int i = 0; i < COMPARE_KEPT; i++)
         if (kept[i].used && kept[i].verdict == (uint64_t)verdict && fabs(score - kept[i].score) <= 0.1 * kept[i].score)
             return score > kept[i].score ? &kept[i] : NULL;
-    for (i = 0; i < COMPARE_KEPT; i++) {
+    for (int i = 0; i < COMPARE_KEPT; i++) {
         if (!kept[i].used)
             return &kept[i];
         if (!least || kept[i].score < least->score)
@@ -65,21 +64,20 @@ static int shows(const compare_t *compare, const sample_t *s, int side, const ca
 
 static void case_of(const sample_t *s, case_t *c)
 {
-    int which, k;
     memset(c, 0, sizeof *c);
     c->call = s->q->call;
     c->max_iterations = s->q->ccd->max_iterations;
     c->epa_tolerance = c->mpr_tolerance = s->truth.tolerance; /* the one that is read */
     c->truth = s->truth;
     c->centred = s->seen->centred[0] && s->seen->centred[1];
-    for (which = 0; which < 2; which++) {
+    for (int which = 0; which < 2; which++) {
         c->rows[which] = s->seen->count[which];
         c->numbers[which] = (const double *)s->seen->point[which];
     }
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         c->truth_dir[k] = (double)s->truth_dir.v[k];
         c->first_dir[k] = s->seen->has_first_dir ? (double)s->seen->first_dir.v[k] : k == 0;
-        for (which = 0; which < 2; which++)
+        for (int which = 0; which < 2; which++)
             c->centre[which][k] = c->centred ? (double)s->seen->centre[which].v[k] : 0;
     }
 }
@@ -99,8 +97,7 @@ static void put_number(FILE *f, double x)
 
 static void put_row(FILE *f, const double *x, int n)
 {
-    int i;
-    for (i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++) {
         put_number(f, x[i]);
         fputs(i + 1 < n ? ", " : "", f);
     }
@@ -110,9 +107,8 @@ static void put_row(FILE *f, const double *x, int n)
 static int put_source(FILE *f, const char *dir, const char *name)
 {
     char path[4096], line[1024];
-    FILE *in;
     snprintf(path, sizeof path, "%s/%s", dir, name);
-    in = fopen(path, "r");
+    FILE *in = fopen(path, "r");
     if (!in)
         return -1;
     while (fgets(line, sizeof line, in))
@@ -124,10 +120,9 @@ static int put_source(FILE *f, const char *dir, const char *name)
 
 static void put_case(FILE *f, const case_t *c)
 {
-    int which, i;
-    for (which = 0; which < 2; which++) {
+    for (int which = 0; which < 2; which++) {
         fprintf(f, "\nstatic const double numbers%d[] = {\n", which + 1);
-        for (i = 0; i < c->rows[which]; i++) {
+        for (int i = 0; i < c->rows[which]; i++) {
             fputs("    ", f);
             put_row(f, c->numbers[which] + 6 * i, 6);
             fputs(",\n", f);
@@ -161,7 +156,6 @@ static void put_case(FILE *f, const case_t *c)
 static int write_case(const compare_t *compare, const case_t *c, const char *path)
 {
     FILE *f = fopen(path, "w");
-    int bad;
     if (!f)
         return -1;
     fprintf(f,
@@ -172,7 +166,7 @@ static int write_case(const compare_t *compare, const case_t *c, const char *pat
             " *\n"
             " * The objects are what their support functions answered, direction by direction, at the end. */\n\n",
             c->title);
-    bad = put_source(f, compare->case_source, "harness/verdict.h") | put_source(f, compare->case_source, "tools/compare/replay_case.h");
+    int bad = put_source(f, compare->case_source, "harness/verdict.h") | put_source(f, compare->case_source, "tools/compare/replay_case.h");
     put_case(f, c);
     return fclose(f) | bad;
 }
@@ -201,11 +195,10 @@ void keep_case(const compare_t *compare, const sample_t *s, int side)
 {
     compare_counts_t *counts = compare->counts;
     const double score = score_of(s, side);
-    compare_kept_t *place;
     /* One at a time; another thread's is let go rather than waited for, under a callback's lock */
     if (!(score >= 0) || !s->seen->count[0] || !s->seen->count[1] || __atomic_exchange_n(&counts->keeping, 1, __ATOMIC_ACQUIRE))
         return;
-    place = place_for(counts->kept[side], s->verdict[side], score);
+    compare_kept_t *place = place_for(counts->kept[side], s->verdict[side], score);
     if (place)
         make_case(compare, s, side, place, score);
     __atomic_store_n(&counts->keeping, 0, __ATOMIC_RELEASE);

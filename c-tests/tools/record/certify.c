@@ -11,7 +11,6 @@
 int main(int argc, char **argv)
 {
     recording_t r;
-    uint32_t f, i;
     size_t k = 0, wrong = 0, checked = 0;
     double widest = 0;
     shape_t *body;
@@ -21,17 +20,16 @@ int main(int argc, char **argv)
         return 2;
     }
     body = (shape_t *)malloc(r.bodies * sizeof *body);
-    for (f = 0; body && f < r.frames; f++) {
+    for (uint32_t f = 0; body && f < r.frames; f++) {
         recording_place(&r, f, body);
-        for (i = 0; i < r.frame_pairs[f]; i++, k++) {
+        for (uint32_t i = 0; i < r.frame_pairs[f]; i++, k++) {
             unsigned a, b;
             double lower, upper;
-            truth_t t;
             if (k % (size_t)stride)
                 continue;
             recording_pair(&r, f, i, &a, &b);
             recording_truth(&r, k, &lower, &upper);
-            t = truth_depth_within(&body[a], &body[b], 1e-10);
+            truth_t t = truth_depth_within(&body[a], &body[b], 1e-10);
             checked++;
             widest = fmax(widest, upper - lower);
             /* both intervals hold the same number */

@@ -98,7 +98,6 @@ static inline int recording_read(const char *path, recording_t *r)
 {
     FILE *file = fopen(path, "rb");
     long size = -1;
-    int bad;
     memset(r, 0, sizeof *r);
     if (!file)
         return -1;
@@ -107,7 +106,7 @@ static inline int recording_read(const char *path, recording_t *r)
     rewind(file);
     r->size = size > 0 ? (size_t)size : 0;
     r->bytes = size > 0 ? (unsigned char *)malloc((size_t)size) : NULL;
-    bad = !r->bytes || fread(r->bytes, r->size, 1, file) != 1 || recording_parse(r) != 0;
+    int bad = !r->bytes || fread(r->bytes, r->size, 1, file) != 1 || recording_parse(r) != 0;
     fclose(file);
     return bad ? -1 : 0;
 }
@@ -115,8 +114,7 @@ static inline int recording_read(const char *path, recording_t *r)
 /* The bodies of frame f, placed. */
 static inline void recording_place(const recording_t *r, uint32_t f, shape_t *body)
 {
-    uint32_t i;
-    for (i = 0; i < r->bodies; i++) {
+    for (uint32_t i = 0; i < r->bodies; i++) {
         float pose[7];
         double rot[9];
         memcpy(pose, r->frame[f] + 28 * (size_t)i, sizeof pose);

@@ -63,8 +63,7 @@ static inline void tally_add(tally_t *t, const recording_answer_t *answer, doubl
 static inline void tally_head(const recording_t *r)
 {
     unsigned long overlaps = 0;
-    size_t k;
-    for (k = 0; k < r->pairs; k++) {
+    for (size_t k = 0; k < r->pairs; k++) {
         double lower, upper;
         recording_truth(r, k, &lower, &upper);
         overlaps += lower > 0;
@@ -79,8 +78,7 @@ static inline void tally_head(const recording_t *r)
 static inline double replay_time(const tally_t *t, uint32_t frames, int overlap)
 {
     double sum = 0;
-    uint32_t f;
-    for (f = 0; f < frames; f++)
+    for (uint32_t f = 0; f < frames; f++)
         sum += t->frame[overlap][f];
     return sum;
 }
@@ -106,8 +104,7 @@ static inline double replay_clock(void)
 /* Room for what a method is measured by. Returns 0, or -1 without memory. */
 static inline int tally_begin(tally_t *t, const recording_t *r)
 {
-    int k;
-    for (k = 0; k < 2 && !t->frame[k]; k++)
+    for (int k = 0; k < 2 && !t->frame[k]; k++)
         if (!(t->frame[k] = (double *)calloc((size_t)r->frames + 1, sizeof *t->frame[k])))
             return -1;
     return 0;
@@ -119,8 +116,7 @@ static inline void recording_frame(const recording_t *r, tally_t *t, uint32_t f,
                                    const ccd_t *ccd, recording_answer_t *answer)
 {
     double start = replay_clock();
-    uint32_t i;
-    for (i = 0; i < r->frame_pairs[f]; i++) {
+    for (uint32_t i = 0; i < r->frame_pairs[f]; i++) {
         recording_query_t q;
         unsigned a, b;
         double lower, upper;
@@ -145,11 +141,11 @@ static inline int recording_pass(const recording_t *r, tally_t *tally)
 {
     const int first = tally->queries == 0;
     ccd_t ccd;
-    uint32_t f, i, most = 0;
+    uint32_t most = 0;
     size_t k = 0;
     shape_t *body = (shape_t *)malloc(r->bodies * sizeof *body);
     recording_answer_t *answer;
-    for (f = 0; f < r->frames; f++)
+    for (uint32_t f = 0; f < r->frames; f++)
         most = r->frame_pairs[f] > most ? r->frame_pairs[f] : most;
     answer = (recording_answer_t *)malloc(((size_t)most + 1) * sizeof *answer);
     shape_query(&ccd);
@@ -160,17 +156,17 @@ static inline int recording_pass(const recording_t *r, tally_t *tally)
         free(answer);
         return -1;
     }
-    for (f = 0; f < r->frames; k += r->frame_pairs[f++]) {
+    for (uint32_t f = 0; f < r->frames; k += r->frame_pairs[f++]) {
         recording_place(r, f, body);
         recording_frame(r, tally, f, k, 1, body, &ccd, answer);
         recording_frame(r, tally, f, k, 0, body, &ccd, answer);
-        for (i = 0; first && i < r->frame_pairs[f]; i++) {
+        for (uint32_t i = 0; first && i < r->frame_pairs[f]; i++) {
             double lower, upper;
             recording_truth(r, k + i, &lower, &upper);
             tally_add(tally, &answer[i], lower, upper);
             tally->overlaps += lower > 0;
         }
-        for (i = 0; first && i < r->bodies; i++)
+        for (uint32_t i = 0; first && i < r->bodies; i++)
             tally->supports += body[i].calls;
     }
     if (first)
@@ -185,8 +181,7 @@ enum { REPLAY_SUPPORTS = 8 };
 /* Calls both support functions in one direction after another, for their price alone. */
 static inline int replay_supports(const recording_query_t *q, const void *how, recording_answer_t *out)
 {
-    int i;
-    for (i = 0; i < REPLAY_SUPPORTS; i++) {
+    for (int i = 0; i < REPLAY_SUPPORTS; i++) {
         ccd_vec3_t dir, back, point;
         ccdVec3Set(&dir, (ccd_real_t)(i & 1 ? .6 : -.6), (ccd_real_t)(i & 2 ? .48 : -.48), (ccd_real_t)(i & 4 ? .64 : -.64));
         ccdVec3Set(&back, -dir.v[0], -dir.v[1], -dir.v[2]);
@@ -204,12 +199,10 @@ static inline int replay_supports(const recording_query_t *q, const void *how, r
 static inline int recording_replay(const recording_t *r, tally_t *tally, size_t methods, int passes, void (*forget)(void))
 {
     tally_t alone = { .name = "support points", .method = replay_supports };
-    size_t m;
-    int pass;
-    for (pass = 0; pass < passes; pass++) {
+    for (int pass = 0; pass < passes; pass++) {
         if (recording_pass(r, &alone) != 0)
             return 1;
-        for (m = 0; m < methods; m++) {
+        for (size_t m = 0; m < methods; m++) {
             if (forget)
                 forget();
             if (recording_pass(r, &tally[m]) != 0)
@@ -217,7 +210,7 @@ static inline int recording_replay(const recording_t *r, tally_t *tally, size_t 
         }
     }
     tally_head(r);
-    for (m = 0; m < methods; m++) {
+    for (size_t m = 0; m < methods; m++) {
         tally_print(&tally[m], r->frames);
         free(tally[m].frame[0]);
         free(tally[m].frame[1]);

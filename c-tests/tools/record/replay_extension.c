@@ -29,10 +29,9 @@ static int asked(const recording_query_t *q, const void *how, recording_answer_t
     const how_t *h = (const how_t *)how;
     ccd_penetration_t p;
     call_rest_t rest = {.want = CCD_WANT_ALL, .depth = &out->depth, .dir = &out->dir, .full = &p};
-    int code;
     rest.warm = h->warm ? &state[q->pair] : NULL;
     rest.pos = h->pos ? &out->pos : NULL;
-    code = call_by_number(h->ask, q->obj1, q->obj2, q->ccd, &rest);
+    int code = call_by_number(h->ask, q->obj1, q->obj2, q->ccd, &rest);
     if (h->ask == ASK_MPR || h->ask == ASK_MPR_WARM || (code != CCD_HIT && code != CCD_LIMIT))
         return code;
     out->depth = p.depth;

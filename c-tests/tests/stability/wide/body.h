@@ -52,8 +52,7 @@ static void narrow_farthest(const part_t *s, const double d[3], double o[3])
 {
     const double *best = s->points, *v = s->points;
     double most = -HUGE_VAL;
-    int i;
-    for (i = 0; i < s->count; i++, v += 3) {
+    for (int i = 0; i < s->count; i++, v += 3) {
         const double x = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
         if (x > most) {
             most = x;
@@ -69,12 +68,12 @@ static void wide_farthest(const part_t *s, const quad_t d[3], quad_t o[3])
     const double n[3] = {(double)d[0], (double)d[1], (double)d[2]}, *v = s->points;
     double far[3], most, size = 0;
     quad_t best = -HUGE_VAL;
-    int i, k;
+    int k;
     narrow_farthest(s, n, far);
     most = far[0] * n[0] + far[1] * n[1] + far[2] * n[2];
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         size += fabs(n[i]);
-    for (i = 0; i < s->count; i++, v += 3)
+    for (int i = 0; i < s->count; i++, v += 3)
         if (v[0] * n[0] + v[1] * n[1] + v[2] * n[2] >= most - 1e-14 * s->p[0] * size) {
             const quad_t x = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
             if (x > best)
@@ -112,20 +111,18 @@ static void body_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out
     const double d[3] = {(double)dir->v[0], (double)dir->v[1], (double)dir->v[2]};
     const char *here = (const char *)__builtin_frame_address(0);
     double o[3];
-    int i;
     body_calls++;
     if (here < body_stack_lowest)
         body_stack_lowest = here;
     narrow_body((const body_t *)obj, nowhere, d, o);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out->v[i] = (ccd_real_t)o[i];
 }
 
 static void body_centre(const void *obj, ccd_vec3_t *out)
 {
     const body_t *s = (const body_t *)obj;
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         out->v[i] = (ccd_real_t)(s->at[i] + s->m[3 * i] * s->centre[0] + s->m[3 * i + 1] * s->centre[1]
                                  + s->m[3 * i + 2] * s->centre[2]);
 }
@@ -136,12 +133,11 @@ static void body_centre(const void *obj, ccd_vec3_t *out)
 static double body_reach(const body_t *s)
 {
     double most = 0;
-    int i, k;
-    for (i = 0; i < 6; i++) {
+    for (int i = 0; i < 6; i++) {
         double d[3] = {0, 0, 0}, o[3];
         d[i / 2] = i % 2 ? 1 : -1;
         narrow_body(s, s->at, d, o);
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             most = fmax(most, fabs(o[k]));
     }
     return most * 1.7320508;

@@ -53,8 +53,7 @@ static void quad_cross(const quad_t a[3], const quad_t b[3], quad_t o[3])
 
 static void quad_less(const quad_t a[3], const quad_t b[3], quad_t o[3])
 {
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         o[i] = a[i] - b[i];
 }
 
@@ -63,8 +62,7 @@ static void quad_less(const quad_t a[3], const quad_t b[3], quad_t o[3])
 static quad_t wide_difference(const body_t *a, const body_t *b, const quad_t n[3], quad_t s[3])
 {
     quad_t m[3], t[3];
-    int i;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         m[i] = -n[i];
     wide_body(a, a->at, n, s);
     wide_body(b, a->at, m, t);
@@ -84,11 +82,10 @@ static double wide_value(const body_t *a, const body_t *b, const double n[3])
 static quad_t hull_ask(wide_hull_t *w, const quad_t n[3])
 {
     const quad_t h = wide_difference(w->a, w->b, n, w->v[w->points]), l = quad_root(quad_dot(n, n));
-    int i;
     w->found.supports++;
     if (l > 0 && (double)(h / l) < w->found.upper) {
         w->found.upper = (double)(h / l);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             w->found.n[i] = (double)(n[i] / l);
     }
     return h;
@@ -98,10 +95,9 @@ static quad_t hull_ask(wide_hull_t *w, const quad_t n[3])
 static int hull_face(wide_hull_t *w, int i, int j, int k, int *made)
 {
     quad_t e[3], g[3];
-    wide_face_t *f;
     const int at = w->frees ? w->free[--w->frees] : w->faces++;
     *made = at;
-    f = &w->face[at];
+    wide_face_t *f = &w->face[at];
     f->corner[0] = i;
     f->corner[1] = j;
     f->corner[2] = k;
@@ -121,7 +117,7 @@ static int hull_begin(wide_hull_t *w)
     static const int corners[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
     static const int twins[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
     quad_t u[3] = {0.9, 0.3, 0.31}, n[3], x[3], best, h;
-    int i, k, made;
+    int i, made;
     w->points = w->faces = w->frees = 0;
     hull_ask(w, u);
     for (i = 0; i < 3; i++)
@@ -136,7 +132,7 @@ static int hull_begin(wide_hull_t *w)
             best = quad_dot(x, x);
             memcpy(w->v[1], w->v[i ? 2 : 1], sizeof w->v[1]);
         }
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             n[k] = k == i / 2 ? (i % 2 ? 1 : -1) : 0;
         if (i < 6)
             hull_ask(w, n);
@@ -147,7 +143,7 @@ static int hull_begin(wide_hull_t *w)
     w->points = 3;
     for (best = 0, i = 0; i < 6; i++) {
         quad_t e[3], across[3];
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             e[k] = k == i / 2 ? (i % 2 ? 1 : -1) : 0;
         quad_cross(u, e, n);
         hull_ask(w, n);
@@ -164,11 +160,11 @@ static int hull_begin(wide_hull_t *w)
     quad_cross(u, x, n);
     h = hull_ask(w, n) - quad_dot(n, w->v[0]);
     memcpy(w->v[4], w->v[3], sizeof w->v[4]);
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         n[k] = -n[k];
     if (!(hull_ask(w, n) - quad_dot(n, w->v[0]) > h)) {
         memcpy(w->v[3], w->v[4], sizeof w->v[3]);
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             n[k] = -n[k];
     }
     /* v3 is on the side of n; outside the face 0 1 2 is the other */
@@ -278,8 +274,8 @@ static bounds_t wide_bounds(const body_t *a, const body_t *b, double gap, double
         return w.found;
     while (w.points + 1 < BOUNDS_POINTS && w.found.supports < most) {
         double least = HUGE_VAL;
-        int f, near = -1;
-        for (f = 0; f < w.faces; f++)
+        int near = -1;
+        for (int f = 0; f < w.faces; f++)
             if (w.face[f].key < least) {
                 least = w.face[f].key;
                 near = f;

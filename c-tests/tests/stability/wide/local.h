@@ -87,21 +87,21 @@ static void FN(part)(const part_t *s, const REAL d[3], REAL o[3])
 static void FN(body)(const body_t *s, const double origin[3], const REAL d[3], REAL o[3])
 {
     REAL e[3], x[3], t[3], l;
-    int i, k;
-    for (i = 0; i < 3; i++)
+    int k;
+    for (int i = 0; i < 3; i++)
         e[i] = s->m[i] * d[0] + s->m[3 + i] * d[1] + s->m[6 + i] * d[2];
     FN(part)(&s->part, e, x);
     if (s->child.kind != PART_POINT) {
         FN(part)(&s->child, e, t);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             x[i] += t[i];
     }
     if (s->margin > 0) {
         l = ROOT(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             x[i] += s->margin * e[i] / l;
     }
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         for (o[i] = (REAL)s->at[i] - origin[i], k = 0; k < 3; k++)
             o[i] += s->m[3 * i + k] * x[k];
 }

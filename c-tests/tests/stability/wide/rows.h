@@ -95,13 +95,12 @@ static void make_star(dice_t *d, body_t *s, double *points)
 {
     const int arms = 3 + dice_below(d, 10);
     const double inner = dice_in(d, .2, .9), top = some(d), turn = dice_in(d, 0, 1), high = dice_log(d, 1e-3, 1);
-    int i, k;
     set_points(s, points, 4 * arms);
-    for (i = 0; i < 4 * arms; i++) {
+    for (int i = 0; i < 4 * arms; i++) {
         const int up = i >= 2 * arms;
         const double angle = 3.14159265358979323846 * i / arms + up * turn, r = (i % 2 ? inner : 1) * (up ? top : 1);
         const double at[3] = {r * cos(angle), r * sin(angle), up ? high : -high};
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             points[3 * i + k] = at[k];
     }
 }
@@ -182,9 +181,8 @@ static void make_bent(dice_t *d, body_t *s, double *points)
 {
     const int n = (int)dice_log(d, 100, BODY_POINTS);
     const double bend = dice_log(d, 1e-12, 1e-2);
-    int i;
     set_points(s, points, n);
-    for (i = 0; i < n; i++, points += 3) {
+    for (int i = 0; i < n; i++, points += 3) {
         points[0] = dice_in(d, -1, 1);
         points[1] = dice_in(d, -1, 1);
         points[2] = i < n / 4 ? -.5 : .5 - bend * (points[0] * points[0] + points[1] * points[1]);
@@ -195,15 +193,14 @@ static void make_hull(dice_t *d, body_t *s, double *points)
 {
     const int n = 5 + dice_below(d, 60);
     const double x = some(d), y = some(d), z = some(d);
-    int i;
     set_points(s, points, n);
-    for (i = 0; i < n; i++, points += 3) {
+    for (int i = 0; i < n; i++, points += 3) {
         dice_unit(d, points);
         points[0] *= x;
         points[1] *= y;
         points[2] *= z;
     }
-    for (i = 0; i < 3 * n; i++)
+    for (int i = 0; i < 3 * n; i++)
         s->centre[i % 3] += s->part.points[i] / n;
 }
 
@@ -222,10 +219,9 @@ static double on_grid(dice_t *d)
 static void make_grid(dice_t *d, body_t *s, double *points)
 {
     const int n = 2 + dice_below(d, 8);
-    int i;
     set_points(s, points, n);
     s->margin = dice_below(d, 2) ? dice_in(d, 0, 1) : 0;
-    for (i = 0; i < 3 * n; i++) {
+    for (int i = 0; i < 3 * n; i++) {
         points[i] = on_grid(d);
         s->centre[i % 3] += points[i] / n;
     }
@@ -267,8 +263,7 @@ static void place_at_depth(wide_pair_t *p, double depth)
 {
     const bounds_t t = wide_bounds(&p->body[0], &p->body[1], 1e-8 * p->size, -HUGE_VAL, HUGE_VAL, 120);
     const double by = t.upper - depth;
-    int i;
-    for (i = 0; i < 3 && fabs(by) < HUGE_VAL; i++)
+    for (int i = 0; i < 3 && fabs(by) < HUGE_VAL; i++)
         p->body[1].at[i] += by * t.n[i];
 }
 
@@ -277,10 +272,9 @@ static void place(dice_t *d, wide_pair_t *p, int placement)
     body_t *const a = &p->body[0], *const b = &p->body[1];
     const double small = fmin(body_reach(a), body_reach(b)), size = body_reach(a) + body_reach(b);
     double u[3], far;
-    int i, once;
     p->size = size;
     if (placement == PLACE_GRID) {
-        for (i = 0; i < 3 && dice_below(d, 4); i++)
+        for (int i = 0; i < 3 && dice_below(d, 4); i++)
             b->at[i] = on_grid(d);
         return;
     }
@@ -294,11 +288,11 @@ static void place(dice_t *d, wide_pair_t *p, int placement)
         place_alike(d, a, b, 1e-16, 1e-2);
         far = dice_below(d, 4) ? dice_log(d, 1e-16, 1e-2) : 0;
     }
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         b->at[i] = .6 * far * size * u[i];
     if (placement == PLACE_NEAR || placement == PLACE_PARALLEL)
         place_at_depth(p, (dice_below(d, 3) ? 1 : -1) * small * dice_log(d, 1e-12, .1));
-    for (once = 0; placement == PLACE_TOUCHING && once < 2; once++)
+    for (int once = 0; placement == PLACE_TOUCHING && once < 2; once++)
         place_at_depth(p, dice_in(d, -1e-14, 1e-14) * size);
 }
 
@@ -345,8 +339,7 @@ enum { ROWS = sizeof rows / sizeof rows[0] };
 /* The same body is on both sides of a nearly coincident pair. */
 static void scale_part(part_t *s, double k)
 {
-    int i;
-    for (i = 0; i < (s->kind == PART_SUPERELLIPSOID ? 3 : 4); i++)
+    for (int i = 0; i < (s->kind == PART_SUPERELLIPSOID ? 3 : 4); i++)
         s->p[i] *= k;
 }
 
@@ -355,9 +348,8 @@ static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
     const row_t *const r = &rows[row];
     dice_t dd = dice(7000 + (uint64_t)row + 100 * seed, index), *d = &dd;
     double u[3];
-    int i, k;
     memset(p->body, 0, sizeof p->body);
-    for (k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         p->body[k].m[0] = p->body[k].m[4] = p->body[k].m[8] = 1;
         r->make[k](d, &p->body[k], p->points[k]);
     }
@@ -369,9 +361,9 @@ static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
         scale_part(&b->part, by);
         scale_part(&b->child, by);
         b->margin *= by;
-        for (i = 0; i < 3; i++)
+        for (int i = 0; i < 3; i++)
             b->centre[i] *= by;
-        for (i = 0; i < 3 * b->part.count; i++)
+        for (int i = 0; i < 3 * b->part.count; i++)
             p->points[1][i] *= by;
     }
     if (r->placement != PLACE_COINCIDENT && dice_below(d, 2)) { /* either may be obj1 */
@@ -381,8 +373,8 @@ static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
     }
     place(d, p, r->placement);
     dice_unit(d, u);
-    for (k = 0; k < 2 && r->far > 0; k++)
-        for (i = 0; i < 3; i++)
+    for (int k = 0; k < 2 && r->far > 0; k++)
+        for (int i = 0; i < 3; i++)
             p->body[k].at[i] += r->far * u[i];
     p->largest = fmax(body_farthest(&p->body[0]), body_farthest(&p->body[1]));
 }
@@ -392,13 +384,12 @@ static void wide_move(dice_t *d, wide_pair_t *p, double by)
 {
     body_t *const b = &p->body[1];
     double u[3], r[9], m[9];
-    int i;
     dice_unit(d, u);
     rotation_about(u[0], u[1], u[2], by * dice_in(d, 0, 1), r);
     rotation_times(r, b->m, m);
     memcpy(b->m, m, sizeof m);
     dice_unit(d, u);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         b->at[i] += by * p->size * dice_in(d, 0, 1) * u[i];
 }
 

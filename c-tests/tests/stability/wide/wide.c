@@ -53,14 +53,13 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
     ccd_vec3_t way;
     said_t x;
     ccd_t ccd;
-    int i;
     memset(&x, 0, sizeof x);
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = body_support;
     ccd.center1 = ccd.center2 = calls[call].bare ? NULL : body_centre;
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     ccd.max_iterations = (unsigned long)-1;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         way.v[i] = (ccd_real_t)along[i];
     x.call = call;
     x.ask = calls[call].entry.ask;
@@ -108,12 +107,11 @@ static int is_outside(const body_t *s, const double at[3], double bound)
 static double beside(const wide_pair_t *p, const double n[3], const double step[3], double far, double m[3])
 {
     double l = 0;
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         m[k] = n[k] + far * step[k];
         l += m[k] * m[k];
     }
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         m[k] /= sqrt(l);
     return wide_value(&p->body[0], &p->body[1], m);
 }
@@ -127,18 +125,17 @@ static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
     const double reach = .02;
     const double first = wide_value(&p->body[0], &p->body[1], n);
     double best[3], least = first, step = 1e-5 * reach;
-    int i, k;
     memcpy(best, n, sizeof best);
-    for (i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; i++) {
         double by[3], m[3], between[3], far = 0, before = least, h;
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             by[k] = step * dice_in(d, -1, 1);
         h = beside(p, best, by, 1, m);
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             far += (m[k] - n[k]) * (m[k] - n[k]);
         if (far > reach * reach)
             continue;
-        for (k = 1; k < 4 && h < before; k++) {
+        for (int k = 1; k < 4 && h < before; k++) {
             const double there = beside(p, best, by, k / 4., between);
             before = there < before ? there : -HUGE_VAL;
         }
@@ -163,8 +160,7 @@ typedef struct {
 static int judge_points(const said_t *x, const wide_pair_t *p, double within, dice_t *d)
 {
     const double bound = fmax(within, tolerance(TOL_INSIDE) * p->size) + tolerance(TOL_ULPS) * real_ulp() * p->largest;
-    int k;
-    for (k = 0; k < 2; k++)
+    for (int k = 0; k < 2; k++)
         if (is_outside(&p->body[k], k ? x->a.point2 : x->a.point1, bound))
             return FAULT_WITNESS_INSIDE;
     if (x->ask == ASK_LOCAL && x->a.code == CCD_HIT && fall(p, x->a.dir, d) > 2 * within + bound)
@@ -179,8 +175,7 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
     const entry_t *e = &calls[said->call].entry;
     const answer_t *x = &said->a;
     const double *n = x->normal;
-    int faults = 0, i;
-    double h, along;
+    int faults = 0;
     if (said->stack > STACK_BYTES)
         faults |= FAULT_STACK;
     if (t == DEFAULT_TOLERANCE && said->supports > TAIL_POINTS)
@@ -197,13 +192,13 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
         return faults;
     if (said->ask == ASK_SEPARATE && x->depth == 0)
         return faults;
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->has_proof && !(isfinite(x->point1[i]) && isfinite(x->point2[i]))))
             return faults | FAULT_NAN;
-    along = truth_dot3(x->dir, n);
+    double along = truth_dot3(x->dir, n);
     if (!(fabs(sqrt(truth_dot3(n, n)) - 1) <= tolerance(TOL_UNIT) * 4) || !(along > 0) || !isfinite(x->depth) || !isfinite(x->lower))
         return faults | FAULT_NAN;
-    h = wide_value(&p->body[0], &p->body[1], n);
+    double h = wide_value(&p->body[0], &p->body[1], n);
     if (x->depth * along < h - c->noise)
         faults |= FAULT_UNSOUND;
     /* along a direction of the caller's the least depth is greater, and so may its bound be */
@@ -230,18 +225,17 @@ static unsigned long most_supports[CALLS], most_stack[CALLS], limits_of[CALLS], 
 
 static void print_body(const char *name, const body_t *s)
 {
-    int i;
     printf("  %s: part %d (%.17g, %.17g, %.17g, %.17g) points %d child %d (%.17g, %.17g, %.17g) margin %.17g at (%.17g, %.17g, %.17g) m",
            name, (int)s->part.kind, s->part.p[0], s->part.p[1], s->part.p[2], s->part.p[3], s->part.count, (int)s->child.kind,
            s->child.p[0], s->child.p[1], s->child.p[2], s->margin, s->at[0], s->at[1], s->at[2]);
-    for (i = 0; i < 9; i++)
+    for (int i = 0; i < 9; i++)
         printf(" %.17g", s->m[i]);
     printf("\n");
 }
 
 static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c, const said_t *x, int t, int faults)
 {
-    int bit, new = 0;
+    int new = 0;
     judged++;
     limits_of[x->call] += x->a.code == CCD_LIMIT;
     if (x->ask == ASK_PROVEN && !calls[x->call].bare) {
@@ -249,7 +243,7 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
         limits[row] += x->a.code == CCD_LIMIT;
         limits_at[t] += x->a.code == CCD_LIMIT;
     }
-    for (bit = 0; bit < FAULT_BIT_COUNT; bit++)
+    for (int bit = 0; bit < FAULT_BIT_COUNT; bit++)
         if (faults >> bit & 1)
             new |= wrong[row][x->call][bit]++ == 0;
     if (new) {
@@ -270,12 +264,11 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
 static case_t known(const wide_pair_t *p, const said_t *said, int count)
 {
     case_t c;
-    int i;
     c.noise = wide_noise(p);
     c.truth = wide_bounds(&p->body[0], &p->body[1], c.noise / 4, -2 * c.noise, HUGE_VAL, 200);
     c.least = c.truth.upper;
     memset(c.may_be_deep, 0, sizeof c.may_be_deep);
-    for (i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++) {
         if (said[i].a.normal[0] != 0 || said[i].a.normal[1] != 0 || said[i].a.normal[2] != 0)
             c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].a.normal));
         if (said[i].ask == ASK_PROVEN && calls[said[i].call].bare && said[i].a.code == CCD_LIMIT)
@@ -292,13 +285,12 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
     dice_t d = dice(9000 + (uint64_t)row + 100 * seed, index);
     const int kept = (int)(index % TOLERANCES);
     double along[3];
-    case_t c;
-    int t, k, frame, open = 0;
+    int open = 0;
     wide_pair(row, seed, index, &p);
     dice_unit(&d, along);
     pairs_of[row]++;
-    for (t = 0; t < TOLERANCES; t++)
-        for (k = 0; k < CALLS; k++) {
+    for (int t = 0; t < TOLERANCES; t++)
+        for (int k = 0; k < CALLS; k++) {
             memset(&cold, 0, sizeof cold);
             said[t * CALLS + k] = say(k, &p, shares[t] * p.size, along, &cold);
             if (t == kept)
@@ -307,13 +299,13 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
                                                                                                         : most_supports[k];
             most_stack[k] = said[t * CALLS + k].stack > most_stack[k] ? said[t * CALLS + k].stack : most_stack[k];
         }
-    c = known(&p, said, TOLERANCES * CALLS);
-    for (t = 0; t < TOLERANCES; t++)
-        for (k = 0; k < CALLS; k++)
+    case_t c = known(&p, said, TOLERANCES * CALLS);
+    for (int t = 0; t < TOLERANCES; t++)
+        for (int k = 0; k < CALLS; k++)
             tally(row, index, &p, &c, &said[t * CALLS + k], t, judge_said(&said[t * CALLS + k], &p, &c, t, &d));
-    for (frame = 0; frame < 2; frame++) {
+    for (int frame = 0; frame < 2; frame++) {
         wide_move(&d, &p, dice_log(&d, 1e-9, 1e-2));
-        for (k = 0; k < CALLS; k++) {
+        for (int k = 0; k < CALLS; k++) {
             said[k] = say(k, &p, shares[kept] * p.size, along, &warm[k]);
             said[k].moved = 1;
             /* GJK is asked without a state: it proves what a cold minimum proves */
@@ -324,7 +316,7 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
         }
         c = known(&p, said, CALLS);
         c.may_be_deep[kept] = open || c.may_be_deep[0];
-        for (k = 0; k < CALLS; k++)
+        for (int k = 0; k < CALLS; k++)
             tally(row, index, &p, &c, &said[k], kept, judge_said(&said[k], &p, &c, kept, &d));
     }
 }
@@ -334,26 +326,26 @@ int main(int argc, char **argv)
     const int pairs = argc > 1 ? atoi(argv[1]) : 20, only = argc > 2 ? atoi(argv[2]) : -1;
     const uint64_t first = argc > 3 ? strtoull(argv[3], NULL, 10) : 0, seed = argc > 4 ? strtoull(argv[4], NULL, 10) : 0;
     unsigned long sum, all = 0;
-    int row, k, bit, i;
+    int k;
     if (pairs < 1 || only >= (int)ROWS) {
         fprintf(stderr, "usage: wide [pairs a row [row, -1 all [first pair [seed]]]]\n");
         return 2;
     }
-    for (row = 0; row < (int)ROWS; row++)
-        for (i = 0; i < pairs && (only < 0 || row == only); i++)
+    for (int row = 0; row < (int)ROWS; row++)
+        for (int i = 0; i < pairs && (only < 0 || row == only); i++)
             judge_pair(row, seed, first + (uint64_t)i);
     printf("\n| row | pairs |");
-    for (bit = 0; bit < COLUMNS; bit++)
+    for (int bit = 0; bit < COLUMNS; bit++)
         printf(" %s |", fault_text(columns[bit]));
     printf(" CCD_LIMIT of minima, %% |\n|---|---|");
-    for (bit = 0; bit <= COLUMNS; bit++)
+    for (int bit = 0; bit <= COLUMNS; bit++)
         printf("---|");
     printf("\n");
-    for (row = 0; row < (int)ROWS; row++) {
+    for (int row = 0; row < (int)ROWS; row++) {
         if (!pairs_of[row])
             continue;
         printf("| %s | %lu |", rows[row].name, pairs_of[row]);
-        for (bit = 0; bit < COLUMNS; bit++) {
+        for (int bit = 0; bit < COLUMNS; bit++) {
             for (sum = 0, k = 0; k < CALLS; k++)
                 sum += wrong[row][k][columns[bit]];
             all += sum;
@@ -365,7 +357,7 @@ int main(int argc, char **argv)
     for (k = 0; k < CALLS; k++)
         printf("| %s | %lu | %lu | %lu |\n", calls[k].entry.name, most_supports[k], most_stack[k], limits_of[k]);
     printf("\nCCD_LIMIT of the minimum by tolerance:");
-    for (i = 0; i < TOLERANCES; i++)
+    for (int i = 0; i < TOLERANCES; i++)
         printf(" %lu (%g)%s", limits_at[i], shares[i], i + 1 < TOLERANCES ? "," : "\n");
     printf("\n%lu calls judged, %lu faults\n", judged, all);
     return all > 0;
