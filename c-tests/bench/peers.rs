@@ -45,10 +45,7 @@ impl SupportMap for Convex {
 /// parry3d's GJK and EPA from the centre difference, its tolerance built in.
 pub fn parry<'a>(libraries: &'a Libraries) -> Method<'a> {
     let method = Method::new("parry EPA", |_, pair| {
-        let convex = |shape: *mut c_void| Convex {
-            shape,
-            support: libraries.callbacks.support,
-        };
+        let convex = |shape: *mut c_void| Convex { shape, support: libraries.callbacks.support };
         let answer = contact_support_map_support_map_with_params(
             &Pose::IDENTITY,
             &convex(pair.a),
@@ -58,10 +55,7 @@ pub fn parry<'a>(libraries: &'a Libraries) -> Method<'a> {
             Some(Vector::from(pair.truth.cold)),
         );
         match answer {
-            GJKResult::ClosestPoints(p, q, n) => Some(Answer {
-                depth: (p - q).dot(n),
-                dir: n.into(),
-            }),
+            GJKResult::ClosestPoints(p, q, n) => Some(Answer { depth: (p - q).dot(n), dir: n.into() }),
             _ => None,
         }
     });
@@ -85,60 +79,26 @@ fn parts() -> [Part; 5] {
     let include = |path: &str| format!("-isystem{path}");
     let runs_in = |path: &str| format!("-Wl,-rpath,{}", at(path));
     let coal = "coal/cmeel.prefix/lib";
-    let part = |name, define, tolerance, flags, with| Part {
-        name,
-        define,
-        tolerance,
-        flags,
-        with,
-    };
+    let part = |name, define, tolerance, flags, with| Part { name, define, tolerance, flags, with };
     [
-        part(
-            "Bullet EPA",
-            "-DPEER_BULLET",
-            None,
-            vec![include("/usr/include/bullet")],
-            vec![],
-        ),
+        part("Bullet EPA", "-DPEER_BULLET", None, vec![include("/usr/include/bullet")], vec![]),
         // Its own default: an assertion in it ends the process at others.
-        part(
-            "FCL EPA",
-            "-DPEER_FCL",
-            Some(1e-6),
-            vec![include("/usr/include/eigen3")],
-            vec!["-lfcl".to_owned()],
-        ),
+        part("FCL EPA", "-DPEER_FCL", Some(1e-6), vec![include("/usr/include/eigen3")], vec!["-lfcl".to_owned()]),
         part(
             "MuJoCo 3 ccd",
             "-DPEER_MUJOCO",
             Some(1e-6),
             vec![],
-            vec![
-                at("mujoco/mujoco/libmujoco.so.3.12.0"),
-                runs_in("mujoco/mujoco"),
-            ],
+            vec![at("mujoco/mujoco/libmujoco.so.3.12.0"), runs_in("mujoco/mujoco")],
         ),
         part(
             "Coal 3 EPA",
             "-DPEER_COAL",
             Some(1e-6),
-            vec![
-                include(&at("coal/cmeel.prefix/include")),
-                include(&at("coal/cmeel.prefix/include/eigen3")),
-            ],
-            vec![
-                format!("-L{}", at(coal)),
-                "-lcoal".to_owned(),
-                runs_in(coal),
-            ],
+            vec![include(&at("coal/cmeel.prefix/include")), include(&at("coal/cmeel.prefix/include/eigen3"))],
+            vec![format!("-L{}", at(coal)), "-lcoal".to_owned(), runs_in(coal)],
         ),
-        part(
-            "Jolt 5 EPA",
-            "-DPEER_JOLT",
-            None,
-            vec![include(&at("jolt/vendor/joltc-sys/JoltC/JoltPhysics"))],
-            vec![],
-        ),
+        part("Jolt 5 EPA", "-DPEER_JOLT", None, vec![include(&at("jolt/vendor/joltc-sys/JoltC/JoltPhysics"))], vec![]),
     ]
 }
 
@@ -146,11 +106,7 @@ fn parts() -> [Part; 5] {
 pub fn engines() -> PathBuf {
     // The folder of the build: the program is in `release/deps` of it.
     let program = std::env::current_exe().expect("a program has a path");
-    program
-        .ancestors()
-        .nth(3)
-        .expect("a folder of the build")
-        .join("engines")
+    program.ancestors().nth(3).expect("a folder of the build").join("engines")
 }
 
 /// The solvers, compiled when the program starts.
@@ -173,10 +129,7 @@ impl Compiled {
                 gjk: unsafe { function(library, "peer_penetration") },
                 ..libraries.system
             };
-            match libraries
-                .helper(part.define, "peers.cpp", &flags, &with)
-                .map(of)
-            {
+            match libraries.helper(part.define, "peers.cpp", &flags, &with).map(of) {
                 Ok(of) => found.push((part.name, part.tolerance, of)),
                 Err(why) => missing.push((part.name, why)),
             }

@@ -21,52 +21,27 @@ use measuring::measure::Row;
 #[test]
 fn quick_charts_are_whole_and_ours_sound() {
     let out = tempfile::tempdir().expect("a temporary directory");
-    charts::run(&charts::Options {
-        only: None,
-        quick: true,
-        no_instructions: true,
-        out: out.path().to_owned(),
-    });
+    charts::run(&charts::Options { only: None, quick: true, no_instructions: true, out: out.path().to_owned() });
     let rows: Vec<Row> = ["accuracy", "vertices", "coherence"]
         .iter()
         .flat_map(|name| csv::read::<Row>(&out.path().join(name).with_extension("csv")))
         .collect();
     assert!(rows.len() > 500, "{} rows", rows.len());
     for row in &rows {
-        let numbers = [
-            row.mean_error,
-            row.max_error,
-            row.mean_error_1mm,
-            row.unsound,
-            row.ns.unwrap_or(0.0),
-            row.supports,
-        ];
+        let numbers =
+            [row.mean_error, row.max_error, row.mean_error_1mm, row.unsound, row.ns.unwrap_or(0.0), row.supports];
         assert!(numbers.iter().all(|x| x.is_finite()), "{row:?}");
         if row.ours {
             assert!(row.unsound <= 1e-12, "unsound: {row:?}");
             assert!(row.missed == 0.0 && row.shallow == 0.0, "{row:?}");
         }
     }
-    for name in [
-        "front",
-        "accuracy_supports",
-        "accuracy_time",
-        "frames_supports",
-        "frames_time",
-        "vertices",
-    ] {
+    for name in ["front", "accuracy_supports", "accuracy_time", "frames_supports", "frames_time", "vertices"] {
         let path = out.path().join(name).with_extension("svg");
         let picture = std::fs::read_to_string(&path).unwrap_or_default();
-        assert!(
-            picture.starts_with("<svg") && picture.ends_with("</svg>\n"),
-            "{}",
-            path.display()
-        );
+        assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"), "{}", path.display());
         assert!(!picture.contains("NaN"), "{}", path.display());
     }
     let page = std::fs::read_to_string(out.path().join("README.md")).unwrap_or_default();
-    assert!(
-        page.contains("# Speed against accuracy") && !page.contains("{{"),
-        "{page}"
-    );
+    assert!(page.contains("# Speed against accuracy") && !page.contains("{{"), "{page}");
 }

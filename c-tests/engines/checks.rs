@@ -35,12 +35,7 @@ pub struct Way {
 
 impl Way {
     pub fn new(name: &'static str, side: &'static str, program: Executable) -> Way {
-        Way {
-            name,
-            side,
-            program,
-            more: "",
-        }
+        Way { name, side, program, more: "" }
     }
 
     pub fn with(mut self, more: &'static str) -> Way {
@@ -88,13 +83,7 @@ impl Swapped {
         let program = program.build().quiet();
         let theirs = program.compared(&["--no-times", "--every", every]);
         let ours = theirs.with_option("--swap");
-        Swapped {
-            consumer,
-            ways: [
-                Way::new("libccd", "theirs", theirs),
-                Way::new("this library", "ours", ours),
-            ],
-        }
+        Swapped { consumer, ways: [Way::new("libccd", "theirs", theirs), Way::new("this library", "ours", ours)] }
     }
 
     pub fn run(&self, args: &str) -> Vec<Vec<String>> {
@@ -103,9 +92,7 @@ impl Swapped {
 }
 
 fn c(source: &str) -> Program {
-    Program::c(source)
-        .standard("gnu99")
-        .source(format!("engines/{source}.c"))
+    Program::c(source).standard("gnu99").source(format!("engines/{source}.c"))
 }
 
 pub fn cpp(source: &str) -> Program {
@@ -176,8 +163,7 @@ fn children_seconds() -> f64 {
 /// Milliseconds of processor that a step of each consumer's program takes on either library: the
 /// least of some rounds in which the libraries take turns.
 pub fn step_table(rounds: usize) -> String {
-    let mut out =
-        String::from("| program | libccd, ms a step | here | ratio |\n|---|---|---|---|\n");
+    let mut out = String::from("| program | libccd, ms a step | here | ratio |\n|---|---|---|---|\n");
     for (title, program, args, steps) in consumers() {
         let system = program.link_system().without_tools().build().quiet();
         let ways = [system.swapped(), system];
@@ -190,11 +176,7 @@ pub fn step_table(rounds: usize) -> String {
             }
         }
         let [ours, theirs] = least.map(|seconds| 1000.0 * seconds / steps);
-        let _ = writeln!(
-            out,
-            "| {title} | {theirs:.3} | {ours:.3} | {:.2} |",
-            ours / theirs
-        );
+        let _ = writeln!(out, "| {title} | {theirs:.3} | {ours:.3} | {:.2} |", ours / theirs);
     }
     out
 }
@@ -204,9 +186,7 @@ type Run = BTreeMap<String, f64>;
 
 /// Of these keys those that are told, and are not to be.
 fn told_of(run: &Run, keys: &str) -> Vec<String> {
-    let told = keys
-        .split(' ')
-        .filter(|key| run.get(*key).is_some_and(|n| *n != 0.0));
+    let told = keys.split(' ').filter(|key| run.get(*key).is_some_and(|n| *n != 0.0));
     told.map(|key| format!("{key}: {}", run[key])).collect()
 }
 
@@ -232,10 +212,7 @@ pub fn judge_collide(what: &'static str, lines: &[Vec<String>]) -> Static {
     let wrong = lines[1].iter().filter(|line| line.starts_with("wrong: "));
     let mut against: Vec<String> = wrong.cloned().collect();
     // Of the program's own answers, before FCL or ODE has read them.
-    against.extend(told_of(
-        &fields(&lines[1], "watched"),
-        "zero not_finite not_unit",
-    ));
+    against.extend(told_of(&fields(&lines[1], "watched"), "zero not_finite not_unit"));
     if asked[1]["threw"] > asked[0]["threw"] {
         against.push(format!("threw: {asked:?}"));
     }
@@ -253,22 +230,14 @@ pub fn judge_collide(what: &'static str, lines: &[Vec<String>]) -> Static {
     if astray[1]["missed"] > 0.0 || off(&astray[1]) > off(&astray[0]) {
         against.push(format!("wrong callbacks: {astray:?}"));
     }
-    Static {
-        what,
-        collide,
-        astray,
-        asked,
-        against,
-    }
+    Static { what, collide, astray, asked, against }
 }
 
 /// FCL's signed distances, by GJK and EPA of its own on libccd's polytope functions: how many, and
 /// of these how many differ; in which FCL threw, on either library; what speaks against this one.
 pub fn judge_distances(lines: &[Vec<String>]) -> (usize, usize, [usize; 2], Vec<String>) {
     let of = |lines: &[String]| -> Vec<[f64; 2]> {
-        let told = lines
-            .iter()
-            .filter_map(|line| line.strip_prefix("distance "));
+        let told = lines.iter().filter_map(|line| line.strip_prefix("distance "));
         let number = |word: &str| word.parse().expect("a distance");
         told.map(|line| line.split_once(' ').expect("two numbers"))
             .map(|(value, truth)| [value, truth].map(number))
@@ -278,10 +247,7 @@ pub fn judge_distances(lines: &[Vec<String>]) -> (usize, usize, [usize; 2], Vec<
     assert_eq!(theirs.len(), ours.len(), "not the same was asked");
     let (mut differ, mut threw, mut against) = (0, [0; 2], Vec::new());
     for ([there, _], [here, truth]) in theirs.iter().zip(&ours) {
-        threw = [
-            threw[0] + usize::from(there.is_nan()),
-            threw[1] + usize::from(here.is_nan()),
-        ];
+        threw = [threw[0] + usize::from(there.is_nan()), threw[1] + usize::from(here.is_nan())];
         if !there.is_nan() && !((here - there).abs() <= 1e-6) {
             differ += 1;
             if !((here - truth).abs() <= (there - truth).abs()) {
@@ -325,9 +291,7 @@ fn run_of(lines: &[String], side: &str) -> Run {
         let (right, astray) = (fields(lines, "right"), fields(lines, "astray"));
         let off = right["deep"] + right["unsound"];
         let told = [("judged", right["queries"]), ("lost", right["missed"])];
-        let told = told
-            .into_iter()
-            .chain([("spurious", right["spurious"]), ("off", off)]);
+        let told = told.into_iter().chain([("spurious", right["spurious"]), ("off", off)]);
         run.extend(told.map(|(key, n)| (key.to_owned(), n)));
         run.insert("wrong_lost".to_owned(), astray["missed"]);
     }
@@ -360,23 +324,10 @@ fn run_piles(
             runs.push(run_of(lines, way.side));
         }
     }
-    Piles {
-        consumer,
-        scene,
-        names: ways.iter().map(|way| way.name).collect(),
-        steps,
-        runs,
-        against: Vec::new(),
-    }
+    Piles { consumer, scene, names: ways.iter().map(|way| way.name).collect(), steps, runs, against: Vec::new() }
 }
 
-pub fn piles(
-    program: &Swapped,
-    scene: &'static str,
-    starts: usize,
-    steps: usize,
-    after: &str,
-) -> Piles {
+pub fn piles(program: &Swapped, scene: &'static str, starts: usize, steps: usize, after: &str) -> Piles {
     let of = (program.consumer, scene);
     let mut p = run_piles(of, &program.ways, starts, steps, after);
     p.judge();
@@ -410,10 +361,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 impl Piles {
     /// A quantity over the starts; none where the program does not tell it.
     fn all(&self, way: usize, key: &str) -> Option<Vec<f64>> {
-        self.runs[way]
-            .iter()
-            .map(|run| run.get(key).copied())
-            .collect()
+        self.runs[way].iter().map(|run| run.get(key).copied()).collect()
     }
 
     fn told(&self, way: usize, key: &str) -> Vec<f64> {
@@ -423,18 +371,12 @@ impl Piles {
 
     fn range(&self, way: usize, key: &str) -> (f64, f64) {
         let all = self.told(way, key);
-        (
-            all.iter().copied().fold(f64::INFINITY, f64::min),
-            all.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        )
+        (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max))
     }
 
     fn judge(&mut self) {
         let none = "escaped bad zero not_finite not_unit slanted lost spurious wrong_lost missed unsound contradicted";
-        self.against = self.runs[1]
-            .iter()
-            .flat_map(|run| told_of(run, none))
-            .collect();
+        self.against = self.runs[1].iter().flat_map(|run| told_of(run, none)).collect();
         if let Some(off) = self.all(1, "off") {
             let judged: f64 = self.told(1, "judged").iter().sum();
             if off.iter().sum::<f64>() > OFTEN_OFF * judged {
@@ -498,8 +440,7 @@ pub fn pile_table(rows: &[Piles]) -> String {
     for p in rows {
         for (way, name) in p.names.iter().enumerate() {
             let start = format!("{} × {}", p.runs[way].len(), p.steps);
-            let [supports, asked] =
-                ["supports", "asked"].map(|key| p.told(way, key).iter().sum::<f64>());
+            let [supports, asked] = ["supports", "asked"].map(|key| p.told(way, key).iter().sum::<f64>());
             let supports = format!("{:.1}", supports / asked);
             let cells = [p.consumer, p.scene, &start, name, &supports];
             let mut cells = cells.map(String::from).to_vec();

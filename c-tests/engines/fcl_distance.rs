@@ -58,11 +58,7 @@ fn run(name: &'static str, program: &Executable, preload: bool, pairs: u32) -> D
         name,
         function: function.expect("a file").to_owned(),
         sets: SETS.map(|set| fields(&lines, set)),
-        wrong: lines
-            .iter()
-            .filter(|line| line.split(' ').next().is_some_and(|w| w.ends_with(':')))
-            .cloned()
-            .collect(),
+        wrong: lines.iter().filter(|line| line.split(' ').next().is_some_and(|w| w.ends_with(':'))).cloned().collect(),
     }
 }
 

@@ -27,11 +27,7 @@ pub struct Scene {
 fn by_header(timed: bool) -> Executable {
     let program = cpp("fcl_scene").library("fcl").without_tools();
     let program = program.flag("-DBY_HEADER").flag("-DOURS_ALONE");
-    let program = if timed {
-        program.flag("-DTIMED")
-    } else {
-        program
-    };
+    let program = if timed { program.flag("-DTIMED") } else { program };
     program.link_ours_shared().build().quiet()
 }
 
@@ -76,11 +72,7 @@ pub fn scenes(frames: usize, bodies: usize, exact: usize, times: usize) -> Vec<S
         }
     };
     let mut scenes = ways(false).map(judge).to_vec();
-    let timed = if times > 0 {
-        Vec::from(ways(true))
-    } else {
-        Vec::new()
-    };
+    let timed = if times > 0 { Vec::from(ways(true)) } else { Vec::new() };
     for _ in 0..times {
         for (way, scene) in timed.iter().zip(&mut scenes) {
             let nanoseconds = fields(&way.lines(&args), "timed")["nanoseconds"];
@@ -96,9 +88,7 @@ impl Scene {
     pub fn against(&self) -> Vec<String> {
         let wrong = ["missed", "spurious", "off"].map(|key| (key, self.judged[key]));
         let wrong = wrong.into_iter().filter(|(_, n)| *n != 0.0);
-        wrong
-            .map(|(key, n)| format!("{}: {n} {key}", self.name))
-            .collect()
+        wrong.map(|(key, n)| format!("{}: {n} {key}", self.name)).collect()
     }
 
     pub fn judged(&self, key: &str) -> f64 {
@@ -121,13 +111,7 @@ fn supports_a_query(scene: &Scene) -> f64 {
 pub fn table(scenes: &[Scene]) -> String {
     let keys = "hits contacts missed spurious off own_missed own_off";
     let keys: Vec<&str> = keys.split(' ').collect();
-    let first = [
-        "narrow phase",
-        "time a frame, ms",
-        "ratio",
-        "put to the library",
-        "supports a pair put",
-    ];
+    let first = ["narrow phase", "time a frame, ms", "ratio", "put to the library", "supports a pair put"];
     let last = ["largest error, mm", "of FCL's closed forms"];
     let mut out = head(&[&first[..], &keys, &last].concat());
     for s in scenes {
@@ -173,12 +157,7 @@ pub fn header_costs(times: usize) -> Vec<HeaderCost> {
             }
         }
         let (calls, all, library) = instructions_of(&header, &arguments("60"));
-        HeaderCost {
-            scene,
-            time_ratio: least[1] / least[0],
-            instructions: all / calls,
-            share: 1.0 - library / all,
-        }
+        HeaderCost { scene, time_ratio: least[1] / least[0], instructions: all / calls, share: 1.0 - library / all }
     };
     ["mixed", "round", "hulls"].map(cost).into()
 }
@@ -219,19 +198,10 @@ fn instructions_of(program: &Executable, arguments: &[&str]) -> (f64, f64, f64) 
 
 /// Markdown.
 pub fn header_table(costs: &[HeaderCost]) -> String {
-    let mut out = head(&[
-        "scene",
-        "time ratio",
-        "instructions a pair",
-        "of them the header",
-    ]);
+    let mut out = head(&["scene", "time ratio", "instructions a pair", "of them the header"]);
     for c in costs {
         let share = 100.0 * c.share;
-        let _ = writeln!(
-            out,
-            "| {} | {:.2} | {:.0} | {share:.1} % |",
-            c.scene, c.time_ratio, c.instructions
-        );
+        let _ = writeln!(out, "| {} | {:.2} | {:.0} | {share:.1} % |", c.scene, c.time_ratio, c.instructions);
     }
     out
 }

@@ -76,8 +76,8 @@ fn python_wheel_by_preloading() {
 #[test]
 fn ode_collide() {
     let ode = checks::ode_static();
-    let astray = ["asis", "corrected"]
-        .map(|callbacks| collide_must_pass("ODE", &ode.run(&format!("1 60 {callbacks}"))));
+    let astray =
+        ["asis", "corrected"].map(|callbacks| collide_must_pass("ODE", &ode.run(&format!("1 60 {callbacks}"))));
     assert!(astray[0] > 0.0 && astray[1] == 0.0, "{astray:?}");
 }
 
@@ -128,9 +128,7 @@ fn fcl_scene_with_a_state_a_pair() {
     }
     // It is the same scene for all, and one with something in it.
     for key in ["pairs", "hits", "exact"] {
-        let [first, rest @ ..] = &scenes[..] else {
-            unreachable!()
-        };
+        let [first, rest @ ..] = &scenes[..] else { unreachable!() };
         assert!(first.judged(key) > 100.0, "{key}: {}", first.judged(key));
         let same = |s: &fcl_scene::Scene| key == "hits" || s.judged(key) == first.judged(key);
         assert!(rest.iter().all(same), "{key}");

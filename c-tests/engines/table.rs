@@ -57,13 +57,7 @@ fn long() {
         (&ode, "a tower that touches", 1, 3000, "6 tower"),
         (&ode, "rolling cylinders", 8, 5000, "12 roll"),
         (&mujoco, "pile", 8, 3000, "30 pile"),
-        (
-            &mujoco,
-            "pile, several contacts a pair",
-            2,
-            5000,
-            "30 multi",
-        ),
+        (&mujoco, "pile, several contacts a pair", 2, 5000, "30 multi"),
         (&mujoco, "on a height field", 8, 3000, "20 field"),
         (&dart, "over FCL", 8, 3000, "15 fcl"),
         (&dart, "over FCL, triangles", 1, 400, "10 triangles"),
@@ -134,9 +128,7 @@ fn main() {
         Some("steps") => steps(),
         Some("world") => world(),
         Some(other) => {
-            eprintln!(
-                "unknown: {other}; nothing, `distance`, `scene`, `screens`, `steps`, `world` or `long`"
-            );
+            eprintln!("unknown: {other}; nothing, `distance`, `scene`, `screens`, `steps`, `world` or `long`");
             std::process::exit(2);
         }
     }

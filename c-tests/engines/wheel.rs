@@ -31,21 +31,19 @@ fn python() -> Result<PathBuf, String> {
 /// an error where the wheel cannot be installed.
 pub fn wheels(pairs: u32) -> Result<[BTreeMap<String, f64>; 2], String> {
     let python = python()?;
-    Ok(
-        [("libccd", false), ("warmccd ", true)].map(|(name, preload)| {
-            let mut command = Command::new(&python);
-            command.arg(root().join("c-tests/engines/wheel.py"));
-            command.arg(pairs.to_string());
-            if preload {
-                let library = harness::library(Precision::Double).dir.join("libccd.so");
-                command.env("LD_PRELOAD", library);
-            }
-            let (status, written) = run_command(&mut command, Duration::from_secs(60));
-            assert!(status.success(), "{}", written.stderr);
-            let lines: Vec<String> = written.stdout.lines().map(String::from).collect();
-            let expected = format!("library {name}");
-            assert!(lines[0].starts_with(&expected), "on {}", lines[0]);
-            fields(&lines, "wheel")
-        }),
-    )
+    Ok([("libccd", false), ("warmccd ", true)].map(|(name, preload)| {
+        let mut command = Command::new(&python);
+        command.arg(root().join("c-tests/engines/wheel.py"));
+        command.arg(pairs.to_string());
+        if preload {
+            let library = harness::library(Precision::Double).dir.join("libccd.so");
+            command.env("LD_PRELOAD", library);
+        }
+        let (status, written) = run_command(&mut command, Duration::from_secs(60));
+        assert!(status.success(), "{}", written.stderr);
+        let lines: Vec<String> = written.stdout.lines().map(String::from).collect();
+        let expected = format!("library {name}");
+        assert!(lines[0].starts_with(&expected), "on {}", lines[0]);
+        fields(&lines, "wheel")
+    }))
 }

@@ -14,10 +14,7 @@ fn name() -> String {
 }
 
 fn identity() -> Program {
-    Program::c("identity")
-        .source("harness/identity.c")
-        .flag("-pedantic")
-        .flag("-Werror")
+    Program::c("identity").source("harness/identity.c").flag("-pedantic").flag("-Werror")
 }
 
 const NO_ARGS: [&str; 0] = [];
@@ -25,24 +22,15 @@ const NO_ARGS: [&str; 0] = [];
 #[test]
 fn shared_and_static_programs_run_on_ours() {
     let expected = format!("libccd: {}\n", name());
-    assert_eq!(
-        identity().link_ours_shared().build().run(NO_ARGS).stdout,
-        expected
-    );
-    assert_eq!(
-        identity().link_ours_static().build().run(NO_ARGS).stdout,
-        expected
-    );
+    assert_eq!(identity().link_ours_shared().build().run(NO_ARGS).stdout, expected);
+    assert_eq!(identity().link_ours_static().build().run(NO_ARGS).stdout, expected);
 }
 
 /// The system's library is double.
 #[cfg(not(feature = "single"))]
 #[test]
 fn one_process_holds_both() {
-    let both = identity()
-        .flag("-DLINK_BOTH")
-        .link_ours_renamed_and_system()
-        .build();
+    let both = identity().flag("-DLINK_BOTH").link_ours_renamed_and_system().build();
     let expected = format!("libccd: another\nrenamed: {}\n", name());
     assert_eq!(both.run(NO_ARGS).stdout, expected);
 }

@@ -57,11 +57,7 @@ impl Default for Precision {
 
 impl Precision {
     /// The precision this test binary itself was compiled for.
-    pub const CURRENT: Precision = if cfg!(feature = "single") {
-        Precision::Single
-    } else {
-        Precision::Double
-    };
+    pub const CURRENT: Precision = if cfg!(feature = "single") { Precision::Single } else { Precision::Double };
 
     /// As in the last word of `ccdImplementation()`.
     pub fn name(self) -> &'static str {
@@ -116,9 +112,7 @@ pub fn compiler(cpp: bool) -> cc::Build {
 /// The command that runs a compiler; panics where there is none.
 pub fn compile_with(build: &cc::Build) -> Command {
     let found = build.try_get_compiler();
-    found
-        .unwrap_or_else(|e| panic!("{e}: run `sh c-tests/setup.sh` first"))
-        .to_command()
+    found.unwrap_or_else(|e| panic!("{e}: run `sh c-tests/setup.sh` first")).to_command()
 }
 
 /// Where everything this module makes goes: `target/c-tests`.
@@ -130,8 +124,7 @@ pub fn output_dir() -> PathBuf {
     };
     let dir = target.join("c-tests");
     fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
-    dir.canonicalize()
-        .unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
+    dir.canonicalize().unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
 }
 
 /// The release library, built at most once per process and precision.
@@ -150,10 +143,7 @@ fn build_library(precision: Precision) -> Built {
     let target = output.join(precision.name());
     // Test binaries may run side by side: one builds, the others wait for it.
     let lock_path = output.join(format!("{}.lock", precision.name()));
-    #[allow(
-        clippy::incompatible_msrv,
-        reason = "the tests' own crates need 1.89 too"
-    )]
+    #[allow(clippy::incompatible_msrv, reason = "the tests' own crates need 1.89 too")]
     let lock = File::create(&lock_path)
         .and_then(|file| file.lock().map(|()| file))
         .unwrap_or_else(|e| panic!("cannot lock {}: {e}", lock_path.display()));
@@ -210,9 +200,7 @@ pub fn machine() -> String {
         let text = fs::read_to_string(file).unwrap_or_default();
         let line = text.lines().find(|line| line.starts_with(key));
         let value = line.and_then(|line| line.split_once(['=', ':']));
-        value.map_or("unknown".to_owned(), |(_, value)| {
-            value.replace('"', "").trim().to_owned()
-        })
+        value.map_or("unknown".to_owned(), |(_, value)| value.replace('"', "").trim().to_owned())
     };
     let release = |key| after("/etc/os-release", key);
     let name = release("NAME=");
@@ -250,9 +238,7 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
     let mut nm = binutils("nm");
     nm.args(["-g", "--defined-only"]).arg(archive);
     let symbols = must_succeed(&mut nm, "nm (Debian: binutils)").stdout;
-    let names = symbols
-        .lines()
-        .filter_map(|line| line.split_whitespace().nth(2));
+    let names = symbols.lines().filter_map(|line| line.split_whitespace().nth(2));
     let ours = names.filter(|name| name.starts_with("ccd") || name.starts_with("__ccd"));
     let lines: BTreeSet<String> = ours.map(|n| format!("{n} rs_{n}\n")).collect();
     assert!(!lines.is_empty(), "{}: no libccd", archive.display());
@@ -277,9 +263,7 @@ fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
     let mut new = path.as_os_str().to_owned();
     new.push(format!(".{}-{number}", std::process::id()));
     let new = PathBuf::from(new);
-    make(&new)
-        .and_then(|()| fs::rename(&new, path))
-        .unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
+    make(&new).and_then(|()| fs::rename(&new, path)).unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
 }
 
 /// Runs a build tool; panics with what it wrote unless it succeeds.
@@ -337,19 +321,12 @@ pub struct Program {
 impl Program {
     /// A C program, C99 unless [`standard`](Self::standard) says otherwise.
     pub fn c(name: &str) -> Program {
-        Program {
-            name: name.to_owned(),
-            tools: true,
-            ..Program::default()
-        }
+        Program { name: name.to_owned(), tools: true, ..Program::default() }
     }
 
     /// A C++ program, C++17 unless [`standard`](Self::standard) says otherwise.
     pub fn cpp(name: &str) -> Program {
-        Program {
-            cpp: true,
-            ..Program::c(name)
-        }
+        Program { cpp: true, ..Program::c(name) }
     }
 
     /// A source file, relative to `c-tests/` (or absolute).
@@ -419,8 +396,7 @@ impl Program {
     /// Compiles and links; panics with the compiler's words when it does not.
     pub fn build(self) -> Executable {
         assert!(
-            self.precision == Precision::Double
-                || matches!(self.link, Link::OursShared | Link::OursStatic),
+            self.precision == Precision::Double || matches!(self.link, Link::OursShared | Link::OursStatic),
             "{}: the system's libccd is double, this program single",
             self.name
         );
@@ -472,11 +448,7 @@ impl Program {
             Ok(())
         });
 
-        let executable = Executable {
-            library_path,
-            tools: self.tools,
-            ..Executable::made_elsewhere(&self.name, path)
-        };
+        let executable = Executable { library_path, tools: self.tools, ..Executable::made_elsewhere(&self.name, path) };
         match self.link {
             Link::OursShared => executable.assert_loads_ours(),
             Link::OursStatic => assert_eq!(executable.loaded_ccd(), None, "linked statically"),
@@ -509,10 +481,7 @@ pub struct Written {
 impl Written {
     fn of(output: &Output) -> Written {
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        Written {
-            stdout: text(&output.stdout),
-            stderr: text(&output.stderr),
-        }
+        Written { stdout: text(&output.stdout), stderr: text(&output.stderr) }
     }
 }
 
@@ -546,9 +515,7 @@ impl Executable {
         let library = library(Precision::Double).dir.join("libccd.so");
         compared.library_path = None;
         compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
-        compared
-            .before
-            .extend(["--fields".into(), "--library".into(), library.into()]);
+        compared.before.extend(["--fields".into(), "--library".into(), library.into()]);
         compared.before.extend(options.iter().map(OsString::from));
         compared
     }
@@ -582,21 +549,12 @@ impl Executable {
     /// exits with 0 in time.
     pub fn run(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Written {
         let (status, written) = self.run_to_end(args);
-        assert!(
-            status.success(),
-            "{} failed: {status}\n{:?}\n{}",
-            self.name,
-            self.command(),
-            written.stderr
-        );
+        assert!(status.success(), "{} failed: {status}\n{:?}\n{}", self.name, self.command(), written.stderr);
         written
     }
 
     /// As [`run`](Self::run), whatever the exit code.
-    pub fn run_to_end(
-        &self,
-        args: impl IntoIterator<Item = impl AsRef<OsStr>>,
-    ) -> (ExitStatus, Written) {
+    pub fn run_to_end(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> (ExitStatus, Written) {
         let mut command = self.command();
         let factor = if self.runner().is_empty() { 1 } else { 20 };
         let (status, written) = run_command(command.args(args), self.timeout * factor);
@@ -629,10 +587,7 @@ impl Executable {
         let mut command = run_by(&emulator(), &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
         let said = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
-        let line = said
-            .stdout
-            .lines()
-            .find(|line| line.contains("libccd.so"))?;
+        let line = said.stdout.lines().find(|line| line.contains("libccd.so"))?;
         let path = line.split_once("=>")?.1.split_whitespace().next()?;
         Some(PathBuf::from(path))
     }
@@ -649,9 +604,7 @@ impl Executable {
 
     fn assert_loads_system(&self) {
         let loaded = self.loaded_ccd();
-        let file = loaded
-            .as_deref()
-            .filter(|path| !path.starts_with(output_dir()));
+        let file = loaded.as_deref().filter(|path| !path.starts_with(output_dir()));
         let bytes = file.and_then(|path| fs::read(path).ok());
         let bytes = bytes.unwrap_or_else(|| {
             let name = &self.name;
@@ -691,11 +644,7 @@ pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Wri
     let output = output.unwrap_or_else(|e| panic!("cannot run {limited:?}: {e}"));
     let written = Written::of(&output);
     let late = output.status.code() == Some(124);
-    assert!(
-        !late,
-        "{command:?} did not end in {timeout:?}\n{}{}",
-        written.stdout, written.stderr
-    );
+    assert!(!late, "{command:?} did not end in {timeout:?}\n{}{}", written.stdout, written.stderr);
     (output.status, written)
 }
 
@@ -755,9 +704,5 @@ pub fn under_tool() -> bool {
 
 /// An environment variable, split at blanks; empty when it is not set.
 fn words(variable: &str) -> Vec<String> {
-    std::env::var(variable)
-        .unwrap_or_default()
-        .split_whitespace()
-        .map(String::from)
-        .collect()
+    std::env::var(variable).unwrap_or_default().split_whitespace().map(String::from).collect()
 }

@@ -44,14 +44,7 @@ fn roster<'a>(bench: &Bench<'a>, scene: &Scene) -> Vec<Method<'a>> {
 
 /// The four kinds of pairs, and the methods, of the picture in front.
 const FRONT: [&str; 4] = ["box_box", "p642_p642", "cyl_box", "cap_cap"];
-const IN_FRONT: [&str; 6] = [
-    "libccd MPR",
-    "libccd EPA",
-    "Algorithm 4/5",
-    "MPR",
-    "local",
-    "minimum",
-];
+const IN_FRONT: [&str; 6] = ["libccd MPR", "libccd EPA", "Algorithm 4/5", "MPR", "local", "minimum"];
 
 /// A panel a set, a curve a method: what it costs against its error.
 fn picture(page: &Page, file: &str, title: &str, rows: &[&Row], sets: &[&str], columns: usize) {
@@ -69,10 +62,7 @@ fn picture(page: &Page, file: &str, title: &str, rows: &[&Row], sets: &[&str], c
         panel
     };
     let panels: Vec<Panel> = sets.iter().map(panel).collect();
-    let notes = [
-        "left of the dashes the truth is not known".to_owned(),
-        page.footer(),
-    ];
+    let notes = ["left of the dashes the truth is not known".to_owned(), page.footer()];
     figure::grid(&page.file(file), title, columns, &panels, &notes);
 }
 
@@ -82,26 +72,18 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
         let scene = Scene::load(bench.libraries, set, bench.poses());
         super::rows(bench, &scene, roster(bench, &scene), None)
     };
-    progress::over(&sets, "speed against accuracy")
-        .flat_map(of)
-        .collect()
+    progress::over(&sets, "speed against accuracy").flat_map(of).collect()
 }
 
 pub fn draw(page: &Page, rows: &[Row]) {
     let all: Vec<&Row> = rows.iter().collect();
     let some = rows.iter().filter(|r| IN_FRONT.contains(&&*r.method));
-    let (some, title) = (
-        some.collect::<Vec<_>>(),
-        "Time of a query over its error: left is more exact, down is faster",
-    );
+    let (some, title) =
+        (some.collect::<Vec<_>>(), "Time of a query over its error: left is more exact, down is faster");
     picture(page, "front.svg", title, &some, &FRONT, 2);
     for (sets, file, what) in [
         (&RANDOM[..], "accuracy", "independent poses, guesses 5° off"),
-        (
-            &MOTIONS[..],
-            "frames",
-            "motions of 0.1° and 0.1 mm a frame, warm",
-        ),
+        (&MOTIONS[..], "frames", "motions of 0.1° and 0.1 mm a frame, warm"),
     ] {
         for (cost, title) in [("time", "Time"), ("supports", "Support points")] {
             let title = format!("{title} against error: {what}");

@@ -46,4 +46,3 @@ fn roster<'a>(bench: &Bench<'a>) -> Vec<methods::Method<'a>> {
     let of = |(ask, start)| methods::of(bench.libraries, ask, start, 1e-6);
     asked.map(of).into()
 }
-

@@ -62,11 +62,7 @@ fn contacts(libraries: &Libraries) -> Scene {
 }
 
 fn roster<'a>(libraries: &'a Libraries, compiled: &Compiled) -> Vec<Method<'a>> {
-    let asked = [
-        (Ask::Penetration, Start::None),
-        (Ask::SystemMpr, Start::None),
-        (Ask::SystemEpa, Start::None),
-    ];
+    let asked = [(Ask::Penetration, Start::None), (Ask::SystemMpr, Start::None), (Ask::SystemEpa, Start::None)];
     let own = asked.map(|(ask, start)| methods::of(libraries, ask, start, TOLERANCE));
     let peers = compiled.all(libraries).chain([peers::parry(libraries)]);
     own.into_iter().chain(peers).collect()
@@ -118,44 +114,34 @@ fn measure_all(libraries: &Libraries, compiled: &Compiled, options: &Options) ->
     });
     let counted = scene.pairs.len().div_ceil(options.every) as f64;
     let times = measure::times(&scene, &mut methods, 5);
-    let rows = methods
-        .iter_mut()
-        .zip(times)
-        .enumerate()
-        .map(|(k, (method, ns))| {
-            let count = counts.get(k).copied().unwrap_or_default();
-            let solver = count.solver + if method.inside { count.program } else { 0 };
-            let [missed, deep, shallow, astray, wrong] = wrong(libraries, &scene, method);
-            Engine {
-                engine: name(&method.name),
-                ours: method.ours,
-                contacts: scene.pairs.len(),
-                supports: measure::judge(libraries, &scene, method).supports,
-                callbacks: count.callbacks as f64 / counted,
-                solver: solver as f64 / counted,
-                ns,
-                missed,
-                deep,
-                shallow,
-                astray,
-                wrong,
-            }
-        });
+    let rows = methods.iter_mut().zip(times).enumerate().map(|(k, (method, ns))| {
+        let count = counts.get(k).copied().unwrap_or_default();
+        let solver = count.solver + if method.inside { count.program } else { 0 };
+        let [missed, deep, shallow, astray, wrong] = wrong(libraries, &scene, method);
+        Engine {
+            engine: name(&method.name),
+            ours: method.ours,
+            contacts: scene.pairs.len(),
+            supports: measure::judge(libraries, &scene, method).supports,
+            callbacks: count.callbacks as f64 / counted,
+            solver: solver as f64 / counted,
+            ns,
+            missed,
+            deep,
+            shallow,
+            astray,
+            wrong,
+        }
+    });
     let mut rows: Vec<Engine> = rows.collect();
     rows.sort_by(|a, b| (a.callbacks + a.solver).total_cmp(&(b.callbacks + b.solver)));
     rows
 }
 
 fn table(rows: &[Engine]) -> String {
-    let base = rows
-        .iter()
-        .find(|r| r.engine.starts_with("libccd 2.1 `ccdMPR"));
+    let base = rows.iter().find(|r| r.engine.starts_with("libccd 2.1 `ccdMPR"));
     let percent = |p: f64| {
-        if p == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{p:.2} %")
-        }
+        if p == 0.0 { "0".to_owned() } else { format!("{p:.2} %") }
     };
     let lines = rows.iter().map(|r| {
         [
@@ -169,8 +155,7 @@ fn table(rows: &[Engine]) -> String {
             percent(r.astray),
         ]
     });
-    let head =
-        "solver|instructions|support points|time|missed|too deep|too shallow|wrong direction";
+    let head = "solver|instructions|support points|time|missed|too deep|too shallow|wrong direction";
     results::markdown(head, lines)
 }
 
@@ -188,12 +173,7 @@ fn draw(page: &Page, rows: &[Engine]) {
         "Wrong: overlap missed, depth off by more than 1 %, or a direction that is more than 1 % deeper.".to_owned(),
         page.footer(),
     ];
-    figure::bars(
-        &page.file("engines.svg"),
-        "Instructions of a query",
-        &bars,
-        &notes,
-    );
+    figure::bars(&page.file("engines.svg"), "Instructions of a query", &bars, &notes);
 }
 
 /// Downloads what engines.sh can have, measures all, and writes the table, its numbers and the picture.
@@ -201,10 +181,7 @@ pub fn run(options: &Options) {
     let libraries = Libraries::open();
     if !options.watched {
         let script = harness::root().join("c-tests/bench/engines.sh");
-        let downloaded = Command::new("sh")
-            .arg(script)
-            .arg(peers::engines())
-            .status();
+        let downloaded = Command::new("sh").arg(script).arg(peers::engines()).status();
         if let Err(why) = downloaded {
             println!("nothing downloaded: {why}");
         }
@@ -223,16 +200,10 @@ pub fn run(options: &Options) {
         return;
     }
     for (name, why) in &compiled.missing {
-        println!(
-            "not measured here: {name}: {}",
-            why.lines().next().unwrap_or("")
-        );
+        println!("not measured here: {name}: {}", why.lines().next().unwrap_or(""));
     }
     let rows = measure_all(&libraries, &compiled, options);
-    let page = Page {
-        out: Charts::default_out(),
-        machine: libraries.machine(),
-    };
+    let page = Page { out: Charts::default_out(), machine: libraries.machine() };
     csv::write(&page.file("engines.csv"), &page.machine, &rows);
     draw(&page, &rows);
     let table = table(&rows);

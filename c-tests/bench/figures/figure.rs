@@ -86,14 +86,7 @@ impl Unit {
     }
 }
 
-const METRES: [(f64, &str); 6] = [
-    (1.0, "m"),
-    (1e-3, "mm"),
-    (1e-6, "µm"),
-    (1e-9, "nm"),
-    (1e-12, "pm"),
-    (1e-15, "fm"),
-];
+const METRES: [(f64, &str); 6] = [(1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm"), (1e-12, "pm"), (1e-15, "fm")];
 
 /// Three digits at most, no trailing zeros.
 fn short(v: f64) -> String {
@@ -122,13 +115,7 @@ impl Panel {
     pub fn new(title: &str, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
         let title = title.to_owned();
         let limit = None;
-        Self {
-            title,
-            x,
-            y,
-            curves,
-            limit,
-        }
+        Self { title, x, y, curves, limit }
     }
 }
 
@@ -138,11 +125,7 @@ pub fn curves(points: impl IntoIterator<Item = (String, Look, (f64, f64))>) -> V
     for (label, look, point) in points {
         match curves.iter_mut().find(|c| c.label == label) {
             Some(curve) => curve.points.push(point),
-            None => curves.push(Curve {
-                label,
-                look,
-                points: vec![point],
-            }),
+            None => curves.push(Curve { label, look, points: vec![point] }),
         }
     }
     curves
@@ -150,14 +133,8 @@ pub fn curves(points: impl IntoIterator<Item = (String, Look, (f64, f64))>) -> V
 
 /// Smallest and largest, opened by a margin; none without points.
 fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
-    let (low, high) = values
-        .filter(|v| *v > 0.0)
-        .fold((f64::MAX, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
-    if high > 0.0 {
-        low / 1.35..high * 1.35
-    } else {
-        0.1..10.0
-    }
+    let (low, high) = values.filter(|v| *v > 0.0).fold((f64::MAX, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
+    if high > 0.0 { low / 1.35..high * 1.35 } else { 0.1..10.0 }
 }
 
 /// Ticks of a logarithmic axis: 1, 2, 5 a decade where they are few, else decades,
@@ -171,13 +148,7 @@ fn ticks(range: &std::ops::Range<f64>, most: usize) -> Vec<f64> {
     };
     let fine = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0];
     let one = &[1.0][..];
-    let choices = [
-        (&fine[..], 1),
-        (&[1.0, 2.0, 5.0], 1),
-        (one, 1),
-        (one, 2),
-        (one, 3),
-    ];
+    let choices = [(&fine[..], 1), (&[1.0, 2.0, 5.0], 1), (one, 1), (one, 2), (one, 3)];
     let mut picks = choices.iter().map(|(digits, every)| pick(digits, *every));
     let fits = picks.find(|ticks| ticks.len() <= most);
     fits.unwrap_or_else(|| pick(one, 4))
@@ -352,14 +323,9 @@ pub fn bars(path: &Path, title: &str, bars: &[Bar], notes: &[String]) {
         let (area, foot) = root.titled(title, ink(20))?.split_vertically(top);
         for (k, bar) in bars.iter().enumerate() {
             let y = ROW * k as i32 + 4;
-            let colour = if bar.bold {
-                RGBColor(37, 99, 235)
-            } else {
-                RGBColor(107, 114, 128)
-            };
+            let colour = if bar.bold { RGBColor(37, 99, 235) } else { RGBColor(107, 114, 128) };
             let at = |x: f64| LEFT + (ROOM * x / most) as i32;
-            let rectangle =
-                |from, to, style| Rectangle::new([(at(from), y), (at(to), y + ROW - 8)], style);
+            let rectangle = |from, to, style| Rectangle::new([(at(from), y), (at(to), y + ROW - 8)], style);
             area.draw(&rectangle(0.0, bar.parts[0], colour.mix(0.45).filled()))?;
             area.draw(&rectangle(bar.parts[0], sum(bar), colour.filled()))?;
             let middle = y + (ROW - 8) / 2;

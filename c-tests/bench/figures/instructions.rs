@@ -45,10 +45,7 @@ fn asked<'a>(libraries: &'a Libraries, scene: &Scene, of_the_page: bool) -> Vec<
     use Start::{Five, Warm};
     let cold = |ask| (ask, Start::None);
     let (shown, more) = match scene.motion > 0 {
-        true => (
-            vec![(Local, Warm), (Minimum, Warm)],
-            vec![(MprWarm, Warm), (IntersectWarm, Warm)],
-        ),
+        true => (vec![(Local, Warm), (Minimum, Warm)], vec![(MprWarm, Warm), (IntersectWarm, Warm)]),
         false => {
             let [mpr, epa] = [SystemMpr, SystemEpa].map(cold);
             (
@@ -115,11 +112,7 @@ pub fn run(options: &Options) {
 }
 
 pub fn measure(bench: &Bench) -> Vec<Split> {
-    let options = Options {
-        poses: if bench.quick { 25 } else { 100 },
-        set: None,
-        watched: false,
-    };
+    let options = Options { poses: if bench.quick { 25 } else { 100 }, set: None, watched: false };
     counted(bench.libraries, &options).unwrap_or_else(|why| {
         let last = why.lines().last().unwrap_or("");
         println!("instructions not counted: {last}");

@@ -80,10 +80,7 @@ impl Page {
     /// what it says of itself: it may be of another time.
     fn read<T: DeserializeOwned>(&self, name: &str) -> (Page, Vec<T>) {
         let file = self.file(&format!("{name}.csv"));
-        let page = Page {
-            out: self.out.clone(),
-            machine: csv::origin(&file),
-        };
+        let page = Page { out: self.out.clone(), machine: csv::origin(&file) };
         (page, csv::read(&file))
     }
 }
@@ -219,10 +216,7 @@ pub fn rows(bench: &Bench, scene: &Scene, mut methods: Vec<Method>, x: Option<f6
 
 /// The pictures and the page from the figures that are there.
 pub fn redraw(options: &Options) {
-    let page = Page {
-        out: options.out.clone(),
-        machine: csv::origin(&options.out.join("accuracy.csv")),
-    };
+    let page = Page { out: options.out.clone(), machine: csv::origin(&options.out.join("accuracy.csv")) };
     let (sets, vertices) = (page.read("accuracy").1, page.read("vertices").1);
     accuracy::draw(&page, &sets);
     paper::draw(&page, &vertices);
@@ -232,10 +226,7 @@ pub fn redraw(options: &Options) {
         ("MACHINE", page.machine.clone()),
         ("FASTER", results::times_faster(&sets)),
         ("COHERENCE", results::coherent(&page.read("coherence").1)),
-        (
-            "INSTRUCTIONS",
-            results::instructions(&page.read("instructions").1),
-        ),
+        ("INSTRUCTIONS", results::instructions(&page.read("instructions").1)),
     ];
     results::write(&page, &tables);
 }
@@ -244,11 +235,7 @@ pub fn run(options: &Options) {
     let libraries = Libraries::open();
     let compiled = Compiled::build(&libraries);
     std::fs::create_dir_all(&options.out).expect("the folder for the charts");
-    let bench = Bench {
-        libraries: &libraries,
-        compiled: &compiled,
-        quick: options.quick,
-    };
+    let bench = Bench { libraries: &libraries, compiled: &compiled, quick: options.quick };
     let machine = libraries.machine();
     println!("{machine}");
     for (name, why) in &compiled.missing {

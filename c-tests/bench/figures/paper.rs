@@ -55,11 +55,7 @@ pub fn vertices(bench: &Bench) -> Vec<Row> {
 
 pub fn draw(page: &Page, all: &[Row]) {
     let over_counts = |title: &str, wanted: &dyn Fn(&Row) -> bool, timed: bool| {
-        let (y, cost) = if timed {
-            (TIME, TIMED)
-        } else {
-            (SUPPORTS, COUNTED)
-        };
+        let (y, cost) = if timed { (TIME, TIMED) } else { (SUPPORTS, COUNTED) };
         let rows = all.iter().filter(|r| wanted(r));
         let curves = super::curves(rows, |r| r.x, cost);
         Panel::new(title, ("vertices", Unit::Count), y, curves)
@@ -72,18 +68,8 @@ pub fn draw(page: &Page, all: &[Row]) {
         over_counts("polytope – capsule: supports", &all_on, false),
         over_counts("shortcut on and off, 45°: time", &ablation, true),
         over_counts("shortcut on and off, 45°: supports", &ablation, false),
-        over_counts(
-            "polytope – polytope, climbing: time",
-            &|r| !capsule(r),
-            true,
-        ),
+        over_counts("polytope – polytope, climbing: time", &|r| !capsule(r), true),
     ];
     let title = "The paper's figures over vertex counts";
-    figure::grid(
-        &page.file("vertices.svg"),
-        title,
-        2,
-        &panels,
-        &[page.footer()],
-    );
+    figure::grid(&page.file("vertices.svg"), title, 2, &panels, &[page.footer()]);
 }

@@ -22,10 +22,8 @@ pub struct Position {
 }
 
 pub fn measure(_: &Bench) -> Vec<Position> {
-    let program = Program::c("pressure")
-        .source("tests/extension/pressure.c")
-        .link_ours_renamed_and_system()
-        .without_tools();
+    let program =
+        Program::c("pressure").source("tests/extension/pressure.c").link_ours_renamed_and_system().without_tools();
     let lines = program.build().run(["tilt"]).stdout;
     csv::rows(&lines)
 }
@@ -35,16 +33,8 @@ pub fn draw(page: &Page, all: &[Position]) {
     bodies.dedup();
     type Value = fn(&Position) -> f64;
     let lines: [(&str, Look, Value); 3] = [
-        (
-            "libccd MPR",
-            Look::new((239, 68, 68), Mark::Triangle, false),
-            |p| p.libccd,
-        ),
-        (
-            "warmccd MPR",
-            Look::new((37, 99, 235), Mark::Triangle, true),
-            |p| p.ours,
-        ),
+        ("libccd MPR", Look::new((239, 68, 68), Mark::Triangle, false), |p| p.libccd),
+        ("warmccd MPR", Look::new((37, 99, 235), Mark::Triangle, true), |p| p.ours),
         ("integral", Look::new(GREY, Mark::Ring, false), |p| p.truth),
     ];
     let panel = |body: &&str| {

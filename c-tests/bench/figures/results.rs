@@ -12,10 +12,7 @@ use super::paper::{AS_PUBLISHED, PAPER};
 use crate::measuring::measure::Row;
 
 /// The head's cells are between bars.
-pub fn markdown<const N: usize>(
-    head: &str,
-    lines: impl IntoIterator<Item = [String; N]>,
-) -> String {
+pub fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
     let mut table = Table::new();
     table.load_style(ASCII_MARKDOWN);
     table.set_header(head.split('|'));
@@ -25,33 +22,18 @@ pub fn markdown<const N: usize>(
     table.to_string()
 }
 
-fn find<'a>(
-    rows: &'a [Row],
-    set: &str,
-    method: &str,
-    start: &str,
-    tolerance: f64,
-) -> Option<&'a Row> {
-    rows.iter().find(|r| {
-        r.set == set
-            && r.method == method
-            && r.start == start
-            && r.tolerance.is_none_or(|t| t == tolerance)
-    })
+fn find<'a>(rows: &'a [Row], set: &str, method: &str, start: &str, tolerance: f64) -> Option<&'a Row> {
+    rows.iter()
+        .find(|r| r.set == set && r.method == method && r.start == start && r.tolerance.is_none_or(|t| t == tolerance))
 }
 
 pub fn times_faster(rows: &[Row]) -> String {
     let lines = PAPER.iter().map(|(set, faster)| {
         let ns = |m: &str, s: &str, t: f64| find(rows, set, m, s, t).and_then(|r| r.ns);
         let ratio = |m: &str, s: &str, t: f64| {
-            let own = if m.starts_with("Algorithm") {
-                AS_PUBLISHED
-            } else {
-                1e-6
-            };
+            let own = if m.starts_with("Algorithm") { AS_PUBLISHED } else { 1e-6 };
             let (epa, mine) = (ns("libccd EPA", "", t), ns(m, s, own));
-            epa.zip(mine)
-                .map_or("-".to_owned(), |(e, m)| format!("{:.1}", e / m))
+            epa.zip(mine).map_or("-".to_owned(), |(e, m)| format!("{:.1}", e / m))
         };
         [
             super::kind(set),
@@ -74,10 +56,7 @@ fn supports(row: Option<&Row>) -> String {
 
 pub fn coherent(rows: &[Row]) -> String {
     let at = |set: &str, method: &str, start: &str, x: f64| {
-        supports(
-            rows.iter()
-                .find(|r| r.set == set && r.method == method && r.start == start && r.x == Some(x)),
-        )
+        supports(rows.iter().find(|r| r.set == set && r.method == method && r.start == start && r.x == Some(x)))
     };
     let lines = super::sets(rows).into_iter().map(|set| {
         [

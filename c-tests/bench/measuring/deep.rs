@@ -63,11 +63,7 @@ impl Polytope {
                 normals.push(n);
                 edge = if p == edge { q } else { p };
             }
-            Corner {
-                at: vertices[v],
-                neighbours,
-                normals,
-            }
+            Corner { at: vertices[v], neighbours, normals }
         };
         Self {
             corners: (0..vertices.len()).map(corner).collect(),
@@ -196,14 +192,9 @@ struct Climber<'a> {
 }
 
 /// `ccd_support_fn` of a `Climber`.
-unsafe extern "C-unwind" fn climb(
-    object: *const c_void,
-    dir: *const ccd_vec3_t,
-    out: *mut ccd_vec3_t,
-) {
+unsafe extern "C-unwind" fn climb(object: *const c_void, dir: *const ccd_vec3_t, out: *mut ccd_vec3_t) {
     // SAFETY: queries hand the pointers through that they are given, and no other refers to it.
-    let (climber, dir, out) =
-        unsafe { (&mut *object.cast_mut().cast::<Climber>(), &*dir, &mut *out) };
+    let (climber, dir, out) = unsafe { (&mut *object.cast_mut().cast::<Climber>(), &*dir, &mut *out) };
     let local = climber.rotation.transpose() * V::from(dir.v);
     climber.last = climber.of.extremal(&local, climber.last);
     let at = climber.rotation * climber.of.corners[climber.last].at + climber.position;
@@ -218,11 +209,7 @@ unsafe extern "C-unwind" fn middle(object: *const c_void, out: *mut ccd_vec3_t) 
 
 /// DEEP from a guess, and the local query over support functions that climb over the same edges: both
 /// on meshes alone, so neither's support points are counted.
-pub fn methods<'a>(
-    libraries: &'a Libraries,
-    meshes: &'a [Polytope; 2],
-    start: Start,
-) -> [Method<'a>; 2] {
+pub fn methods<'a>(libraries: &'a Libraries, meshes: &'a [Polytope; 2], start: Start) -> [Method<'a>; 2] {
     let [a, b] = meshes;
     let pose = |pair: &Pair| [pair.a, pair.b].map(|shape| libraries.pose(shape));
     let guess = move |pair: &Pair| start.direction(&pair.truth).unwrap_or(pair.truth.cold);
@@ -233,10 +220,7 @@ pub fn methods<'a>(
         let shift = ra.transpose() * (pb - pa);
         let from = ra.transpose() * V::from(guess(pair));
         let (depth, n) = penetration(&Placed(a, b, turn, shift), from, &mut hub)?;
-        Some(Answer {
-            depth,
-            dir: (ra * n).into(),
-        })
+        Some(Answer { depth, dir: (ra * n).into() })
     };
     let mut last = (0, 0);
     let settings = ccd::internals::ffi::ccd_t {
@@ -248,12 +232,7 @@ pub fn methods<'a>(
     };
     let local = move |_: &Scene, pair: &Pair| {
         let [(ra, pa), (rb, pb)] = pose(pair);
-        let climber = |of, rotation, position, last| Climber {
-            of,
-            rotation,
-            position,
-            last,
-        };
+        let climber = |of, rotation, position, last| Climber { of, rotation, position, last };
         let (mut one, mut two) = (climber(a, ra, pa, last.0), climber(b, rb, pb, last.1));
         let (one_at, two_at) = ((&raw mut one).cast(), (&raw mut two).cast());
         let (mut state, toward) = (COLD, ccd_vec3_t { v: guess(pair) });
@@ -262,25 +241,12 @@ pub fn methods<'a>(
         let (code, out) = unsafe {
             let mut out: ccd_penetration_t = zeroed();
             (calls.guess)(&mut state, &toward);
-            let code = (calls.local)(
-                one_at,
-                two_at,
-                &settings,
-                &mut state,
-                CCD_WANT_POINTS,
-                &mut out,
-            );
+            let code = (calls.local)(one_at, two_at, &settings, &mut state, CCD_WANT_POINTS, &mut out);
             (code, out)
         };
         last = (one.last, two.last);
-        (code >= 0).then_some(Answer {
-            depth: out.depth,
-            dir: out.dir.v,
-        })
+        (code >= 0).then_some(Answer { depth: out.depth, dir: out.dir.v })
     };
-    let [deep, local] = [
-        Method::new("DEEP", deep),
-        Method::new("local, climbing", local).of_ours(),
-    ];
+    let [deep, local] = [Method::new("DEEP", deep), Method::new("local, climbing", local).of_ours()];
     [deep.from(start), local.from(start).within(1e-6)]
 }

@@ -26,10 +26,7 @@ use crate::harness;
 const RTLD_DEEPBIND: c_int = 8;
 
 /// A state that is cold.
-pub const COLD: ccd_warm_t = ccd_warm_t {
-    reals: [0.0; CCD_WARM_REALS],
-    words: [0; 2],
-};
+pub const COLD: ccd_warm_t = ccd_warm_t { reals: [0.0; CCD_WARM_REALS], words: [0; 2] };
 
 /// An answer of the extension's, to be filled.
 ///
@@ -67,8 +64,7 @@ type State = *mut ccd_warm_t;
 type Full = *mut ccd_penetration_t;
 
 /// `ccdMPRPenetration` and `ccdGJKPenetration`.
-pub type Query =
-    unsafe extern "C-unwind" fn(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
+pub type Query = unsafe extern "C-unwind" fn(Object, Object, Settings, *mut f64, Point, Point) -> c_int;
 
 functions! {
     /// libccd's calls, of either library.
@@ -151,8 +147,7 @@ pub struct Libraries {
 fn open(path: impl AsRef<Path>) -> Result<&'static Library, libloading::Error> {
     // SAFETY: libccd, and the objects compiled here, run no code when loaded. The
     // handle is leaked: every function pointer taken from it stays good.
-    let library =
-        unsafe { Library::open(Some(path.as_ref()), RTLD_LAZY | RTLD_LOCAL | RTLD_DEEPBIND) }?;
+    let library = unsafe { Library::open(Some(path.as_ref()), RTLD_LAZY | RTLD_LOCAL | RTLD_DEEPBIND) }?;
     Ok(Box::leak(Box::new(library)))
 }
 
@@ -190,30 +185,24 @@ impl Libraries {
         let tests = harness::root().join("c-tests");
         let object = work.path().join("callbacks.so");
         let source = tests.join("bench/measuring/callbacks.c");
-        let compiler = compile(false, &[], &source, &object, &[])
-            .unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
+        let compiler =
+            compile(false, &[], &source, &object, &[]).unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
 
         // The bare name: what the system's loader finds, which must not be ours. First,
         // because both answer to that name, and the loader takes the first that does:
         // also for a peer that needs libccd.
-        let system = open("libccd.so.2")
-            .expect("system libccd.so.2 (Debian: libccd2; without LD_LIBRARY_PATH)");
+        let system = open("libccd.so.2").expect("system libccd.so.2 (Debian: libccd2; without LD_LIBRARY_PATH)");
         let built = harness::library(harness::Precision::Double);
         let ours = open(built.dir.join("libccd.so.2")).expect("this library");
         // SAFETY: the type is that of <ccd/warm.h>; absent from libccd.
         let implementation = unsafe {
-            let identity: unsafe extern "C-unwind" fn() -> *const c_char =
-                function(ours, "ccdImplementation");
+            let identity: unsafe extern "C-unwind" fn() -> *const c_char = function(ours, "ccdImplementation");
             CStr::from_ptr(identity()).to_string_lossy().into_owned()
         };
         assert!(implementation.starts_with("warmccd "), "{implementation}");
         // SAFETY: only looked up, never called.
-        let absent =
-            |library: &Library, name: &str| unsafe { library.get::<*const c_void>(name).is_err() };
-        assert!(
-            absent(system, "ccdImplementation"),
-            "the system's libccd.so.2 is this library"
-        );
+        let absent = |library: &Library, name: &str| unsafe { library.get::<*const c_void>(name).is_err() };
+        assert!(absent(system, "ccdImplementation"), "the system's libccd.so.2 is this library");
         assert!(
             absent(&Library::this(), "ccdMPRPenetration"),
             "a libccd is global in this process: libraries would call its functions, not their own"
@@ -290,13 +279,7 @@ fn file_of(address: *const c_void) -> String {
 
 /// Compiles one source file to a shared object: fast code, and on x86-64 that of every machine of
 /// the last ten years. Answers the command's essence.
-fn compile(
-    cpp: bool,
-    flags: &[&str],
-    source: &Path,
-    object: &Path,
-    libraries: &[&str],
-) -> Result<String, String> {
+fn compile(cpp: bool, flags: &[&str], source: &Path, object: &Path, libraries: &[&str]) -> Result<String, String> {
     let mut compiler = harness::compiler(cpp);
     compiler.opt_level(3).debug(false);
     if cfg!(target_arch = "x86_64") {

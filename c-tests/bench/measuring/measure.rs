@@ -83,11 +83,7 @@ pub fn median(values: &[f64]) -> f64 {
     sorted.sort_unstable_by(f64::total_cmp);
     let of = |k: usize| sorted.get(k).copied().unwrap_or_default();
     let half = sorted.len() / 2;
-    if sorted.len() % 2 == 1 {
-        of(half)
-    } else {
-        (of(half.saturating_sub(1)) + of(half)) / 2.0
-    }
+    if sorted.len() % 2 == 1 { of(half) } else { (of(half.saturating_sub(1)) + of(half)) / 2.0 }
 }
 
 /// Runs the method over the scene and judges every answer. A warm method's first

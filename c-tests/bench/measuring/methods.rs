@@ -119,11 +119,7 @@ impl<'a> Method<'a> {
 
 /// A call of libccd's, without its position where it need not have one: `pos` of this library is
 /// charted beside libccd's by the recorded contacts and the worlds.
-pub fn classic(
-    query: Query,
-    settings: ccd_t,
-    needs_pos: bool,
-) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
+pub fn classic(query: Query, settings: ccd_t, needs_pos: bool) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
     move |_, pair| {
         let (mut depth, mut dir, mut pos) = (0.0, ccd_vec3_t::default(), ccd_vec3_t::default());
         let pos = if needs_pos { &raw mut pos } else { null_mut() };
@@ -176,9 +172,7 @@ pub fn of<'a>(libraries: &'a Libraries, ask: Ask, start: Start, tolerance: f64) 
     let method = match ask {
         Ask::SystemMpr => Method::new("libccd MPR", theirs(system.mpr)),
         Ask::SystemEpa => Method::new("libccd EPA", theirs(system.gjk)),
-        Ask::SystemIntersect => {
-            Method::new("libccd MPR intersect", intersect(system, settings(system)))
-        }
+        Ask::SystemIntersect => Method::new("libccd MPR intersect", intersect(system, settings(system))),
         Ask::Mpr => Method::new("MPR", here(ours.mpr)).of_ours(),
         Ask::Gjk => Method::new("GJK", here(ours.gjk)).of_ours(),
         Ask::Intersect => Method::new("MPR intersect", intersect(ours, settings(ours))).of_ours(),
@@ -204,10 +198,7 @@ fn extension<'a>(
     let calls = libraries.extension;
     let mut state = COLD;
     move |_, pair| {
-        if let Some(guess) = start
-            .direction(&pair.truth)
-            .filter(|_| start != Start::Centres)
-        {
+        if let Some(guess) = start.direction(&pair.truth).filter(|_| start != Start::Centres) {
             let guess = ccd_vec3_t { v: guess };
             // SAFETY: a state and a direction.
             unsafe { (calls.guess)(&mut state, &guess) };
@@ -229,10 +220,7 @@ fn extension<'a>(
             }
         };
         // CCD_HIT, or CCD_LIMIT: the best sound answer at the cap.
-        (code == 0 || code == CCD_LIMIT).then_some(Answer {
-            depth: out.depth,
-            dir: out.dir.v,
-        })
+        (code == 0 || code == CCD_LIMIT).then_some(Answer { depth: out.depth, dir: out.dir.v })
     }
 }
 
@@ -243,10 +231,7 @@ fn paper<'a>(
     start: Start,
     tolerance: f64,
 ) -> impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a {
-    let settings = Settings {
-        tolerance,
-        max_iterations: 10_000,
-    };
+    let settings = Settings { tolerance, max_iterations: 10_000 };
     let support = libraries.callbacks.support;
     let mut last = None;
     move |_, pair| {
@@ -265,9 +250,6 @@ fn paper<'a>(
         let answer = incremental(&md, from, None, until, &settings, |_| ());
         let found = answer.ok()?;
         last = Some(found.dir);
-        Some(Answer {
-            depth: found.depth,
-            dir: found.dir.into(),
-        })
+        Some(Answer { depth: found.depth, dir: found.dir.into() })
     }
 }

@@ -30,23 +30,10 @@ pub const RANDOM: [&str; 11] = [
     "sph_sph",
 ];
 /// Shallow contacts.
-pub const SHALLOW: [&str; 6] = [
-    "sph_cap_sh",
-    "cap_cap_sh",
-    "box_box_sh",
-    "p162_p162_sh",
-    "cyl_box_sh",
-    "ell_ell_sh",
-];
+pub const SHALLOW: [&str; 6] = ["sph_cap_sh", "cap_cap_sh", "box_box_sh", "p162_p162_sh", "cyl_box_sh", "ell_ell_sh"];
 /// The motions whose frames are near each other: 0.1° and 0.1 mm a step.
-pub const MOTIONS: [&str; 6] = [
-    "box_box_trajS",
-    "p162_p162_trajS",
-    "cyl_box_trajS",
-    "p642_cap_trajS",
-    "cap_cap_trajS",
-    "ell_ell_trajS",
-];
+pub const MOTIONS: [&str; 6] =
+    ["box_box_trajS", "p162_p162_trajS", "cyl_box_trajS", "p642_cap_trajS", "cap_cap_trajS", "ell_ell_trajS"];
 
 /// Cost and error of one method on one set, which no later change may exceed.
 #[derive(Debug, Serialize, Deserialize)]
@@ -70,9 +57,7 @@ pub fn measure(libraries: &Libraries) -> Vec<Row> {
     let of = |set: &&str| {
         let scene = Scene::load(libraries, set, usize::MAX);
         let mut methods = ours(libraries, &scene);
-        let rows = methods
-            .iter_mut()
-            .map(|m| measure::judge(libraries, &scene, m));
+        let rows = methods.iter_mut().map(|m| measure::judge(libraries, &scene, m));
         rows.collect::<Vec<Row>>()
     };
     sets.flat_map(of).collect()

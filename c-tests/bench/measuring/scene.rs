@@ -64,12 +64,7 @@ impl Scene {
                     Pair { a, b, truth, frame }
                 })
                 .collect();
-            Self {
-                name: name.to_owned(),
-                pairs,
-                motion,
-                _shapes: shapes,
-            }
+            Self { name: name.to_owned(), pairs, motion, _shapes: shapes }
         }
     }
 
@@ -118,11 +113,6 @@ impl Scene {
             let frame = if goes_on { age } else { 0 };
             pairs.push(Pair { a, b, truth, frame });
         }
-        Self {
-            name: "recorded".to_owned(),
-            pairs,
-            motion: 1,
-            _shapes: shapes,
-        }
+        Self { name: "recorded".to_owned(), pairs, motion: 1, _shapes: shapes }
     }
 }

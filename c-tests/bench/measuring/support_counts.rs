@@ -28,8 +28,7 @@ fn no_set_needs_more_supports_or_errs_more() {
     let mut lost = Vec::new();
     for now in recorded::measure(&libraries) {
         let then = recorded.iter().find(|h| {
-            (&h.set, &h.method, &h.start) == (&now.set, &now.method, &now.start)
-                && Some(h.tolerance) == now.tolerance
+            (&h.set, &h.method, &h.start) == (&now.set, &now.method, &now.start) && Some(h.tolerance) == now.tolerance
         });
         let then = then.unwrap_or_else(|| panic!("not recorded: {} {}", now.set, now.method));
         // Counts and errors repeat exactly; the slack is for another compiler's rounding

@@ -27,10 +27,7 @@ fn calls() -> Vec<(&'static str, bool)> {
 
 /// A program that includes everything it needs from this directory.
 fn program(name: &str) -> Program {
-    Program::c(name)
-        .source(format!("tests/contract/{name}.c"))
-        .flag("-pedantic")
-        .flag("-Werror")
+    Program::c(name).source(format!("tests/contract/{name}.c")).flag("-pedantic").flag("-Werror")
 }
 
 /// A program that runs on this library alone.
@@ -101,10 +98,7 @@ fn shared_library_exports_libccd_s_symbols_and_the_extension() {
 fn every_call_is_everywhere() {
     let read = |file: &str| std::fs::read_to_string(harness::root().join(file)).expect(file);
     let headers = read("include/ccd/warm.h") + &read("include/ccd/paper.h");
-    let places = [
-        ("api.rs", read("c-tests/tests/extension/api.rs")),
-        ("ccd.hpp", read("include/ccd/ccd.hpp")),
-    ];
+    let places = [("api.rs", read("c-tests/tests/extension/api.rs")), ("ccd.hpp", read("include/ccd/ccd.hpp"))];
     assert!(calls().len() > 20);
     for (name, is_extension) in calls() {
         let call = format!("{name}(");
@@ -115,10 +109,7 @@ fn every_call_is_everywhere() {
             // Called, or handed over to be called.
             let ways = ["({})", "({},", ", {})", ", {},"].map(|way| way.replace("{}", name));
             let named = text.contains(&call) || ways.iter().any(|way| text.contains(way));
-            assert!(
-                named || *place == "ccd.hpp" && is_c_alone,
-                "{place}: {name}"
-            );
+            assert!(named || *place == "ccd.hpp" && is_c_alone, "{place}: {name}");
         }
     }
 }
@@ -169,10 +160,7 @@ fn no_panic_is_linked() {
 fn soname_is_libccd_s() {
     for library in [ours("libccd.so"), installed()] {
         let dynamic = output("readelf", &["-d"], &library);
-        assert!(
-            dynamic.contains("Library soname: [libccd.so.2]"),
-            "{dynamic}"
-        );
+        assert!(dynamic.contains("Library soname: [libccd.so.2]"), "{dynamic}");
         assert!(!dynamic.contains("VERDEF"), "symbols have versions");
     }
 }
@@ -191,27 +179,18 @@ fn executables_reach_the_data_by_copy_relocations() {
         }
         for program in programs {
             let relocations = output("readelf", &["-rW"], &program.path);
-            for object in [
-                "ccd_vec3_origin",
-                "ccd_points_on_sphere",
-                "ccd_points_on_sphere_len",
-            ] {
+            for object in ["ccd_vec3_origin", "ccd_points_on_sphere", "ccd_points_on_sphere_len"] {
                 assert!(
-                    relocations
-                        .lines()
-                        .any(|line| line.contains("R_X86_64_COPY")
-                            && line.split_whitespace().any(|word| word == object)),
+                    relocations.lines().any(
+                        |line| line.contains("R_X86_64_COPY") && line.split_whitespace().any(|word| word == object)
+                    ),
                     "{flags:?}: no copy of {object}\n{relocations}"
                 );
             }
             texts.insert(program.run(NO_ARGS).stdout);
         }
     }
-    assert_eq!(
-        texts.len(),
-        1,
-        "the same data whatever the library and the link"
-    );
+    assert_eq!(texts.len(), 1, "the same data whatever the library and the link");
 }
 
 // --- headers ------------------------------------------------------------------
@@ -222,9 +201,7 @@ fn headers(include: &Path) -> String {
         let path = include.join(format!("ccd/{name}.h"));
         std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
     };
-    ["ccd", "ccd_export", "compiler", "config", "quat", "vec3"]
-        .map(read)
-        .concat()
+    ["ccd", "ccd_export", "compiler", "config", "quat", "vec3"].map(read).concat()
 }
 
 /// Every identifier of libccd's: types, tags, functions, macros. (That it stands in no comment alone
@@ -251,10 +228,7 @@ fn headers_have_every_name_of_libccd_s_and_every_name_is_compared() {
     let program = std::fs::read_to_string(path).expect("headers.c can be read");
     let program = names(&program);
     let exported = dynamic_symbols(&installed());
-    let exported: Vec<_> = exported
-        .iter()
-        .filter_map(|s| s.split(' ').next())
-        .collect();
+    let exported: Vec<_> = exported.iter().filter_map(|s| s.split(' ').next()).collect();
     // Guards; and what who builds a libccd defines, not who includes it.
     let guard = |name: &str| name.ends_with("_H__") || name.ends_with("_H");
     let builders = ["ccd_EXPORTS", "CCD_STATIC_DEFINE"];
@@ -280,8 +254,8 @@ fn headers_compute_what_libccd_s_do() {
             if single {
                 of_theirs = of_theirs.flag("-I").flag(&single_config);
             }
-            let [theirs, ours] = [of_theirs, program.standard(ours)]
-                .map(|program| program.build().quiet().run(NO_ARGS).stdout);
+            let [theirs, ours] =
+                [of_theirs, program.standard(ours)].map(|program| program.build().quiet().run(NO_ARGS).stdout);
             assert!(ours.lines().count() > 1_000_000);
             let different = ours.lines().zip(theirs.lines()).find(|(a, b)| a != b);
             assert_eq!(different, None, "ours and libccd's, single: {single}");
@@ -371,32 +345,15 @@ fn polytope_functions_take_no_more_instructions_than_libccd_s() {
     // A call is three lines: `cfn=FUNCTION`, `calls=...`, and what it took at the end of one.
     let taken = |counts: &str, function: &str| -> u64 {
         let (lines, call) = (counts.lines(), format!("cfn={function}"));
-        let costs = lines
-            .clone()
-            .zip(lines.skip(2))
-            .filter(|(first, _)| *first == call);
+        let costs = lines.clone().zip(lines.skip(2)).filter(|(first, _)| *first == call);
         let costs = costs.map(|(_, cost)| cost.rsplit(' ').next().unwrap_or_default());
-        costs
-            .map(|cost| cost.parse::<u64>().expect("a number"))
-            .sum()
+        costs.map(|cost| cost.parse::<u64>().expect("a number")).sum()
     };
-    let (theirs, ours) = (
-        counted(Program::link_system),
-        counted(Program::link_ours_shared),
-    );
-    for name in [
-        "AddVertex",
-        "AddEdge",
-        "AddFace",
-        "Nearest",
-        "RecomputeDistances",
-    ] {
+    let (theirs, ours) = (counted(Program::link_system), counted(Program::link_ours_shared));
+    for name in ["AddVertex", "AddEdge", "AddFace", "Nearest", "RecomputeDistances"] {
         let [theirs, ours] = [&theirs, &ours].map(|counts| taken(counts, &format!("ccdPt{name}")));
         println!("ccdPt{name}: libccd {theirs}, this library {ours} instructions");
-        assert!(
-            0 < ours && ours <= theirs,
-            "ccdPt{name}: libccd {theirs}, ours {ours}"
-        );
+        assert!(0 < ours && ours <= theirs, "ccdPt{name}: libccd {theirs}, ours {ours}");
     }
 }
 

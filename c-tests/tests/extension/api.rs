@@ -44,10 +44,7 @@ struct Random(u64);
 
 impl Random {
     fn within(&mut self, size: Real) -> Real {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         ((self.0 >> 40) as Real / (1u64 << 23) as Real - 1.0) * size
     }
 
@@ -63,11 +60,7 @@ impl Random {
     }
 }
 
-unsafe extern "C-unwind" fn support(
-    obj: *const c_void,
-    dir: *const ccd_vec3_t,
-    out: *mut ccd_vec3_t,
-) {
+unsafe extern "C-unwind" fn support(obj: *const c_void, dir: *const ccd_vec3_t, out: *mut ccd_vec3_t) {
     // SAFETY: a Rounded, a direction, room for a point.
     unsafe { (*out).v = (*obj.cast::<Rounded>()).support((*dir).v) };
 }
@@ -153,10 +146,7 @@ fn same(rust: Result<Option<Penetration>, Error>, (code, c): (c_int, ccd_penetra
     assert_eq!(code, if hit.limit { CCD_LIMIT } else { CCD_HIT });
     assert_eq!((hit.depth, hit.depth_lower), (c.depth, c.depth_lower));
     assert_eq!((hit.dir, hit.normal), (c.dir.v, c.normal.v));
-    assert_eq!(
-        [hit.pos, hit.point1, hit.point2],
-        [c.pos.v, c.point1.v, c.point2.v]
-    );
+    assert_eq!([hit.pos, hit.point1, hit.point2], [c.pos.v, c.point1.v, c.point2.v]);
     assert_eq!(hit.support_calls as c_ulong, c.support_calls);
     assert_eq!(hit.iterations as c_ulong, c.iterations);
 }
@@ -168,16 +158,10 @@ fn same_bits_as_c() {
     let (mut hits, mut misses) = (0, 0);
     for round in 0..if cfg!(miri) { 1 } else { 200 } {
         let centred = round % 2 == 0;
-        let want = Want {
-            pos: round % 3 != 0,
-            points: round % 5 != 0,
-        };
+        let want = Want { pos: round % 3 != 0, points: round % 5 != 0 };
         let bits = [(want.pos, CCD_WANT_POS), (want.points, CCD_WANT_POINTS)];
         let bits = bits.iter().filter(|b| b.0).map(|b| b.1).sum();
-        let settings = Settings {
-            want,
-            ..Settings::new(1e-5)
-        };
+        let settings = Settings { want, ..Settings::new(1e-5) };
         let (mut a, mut b) = (r.shape(0.5, centred), r.shape(0.8, centred));
         let c = in_c(&settings, centred);
         let mut warm = Warm::guess(DIR);
@@ -221,11 +205,7 @@ fn yes_or_no_and_distance(
     want: c_uint,
 ) {
     let (pa, pb) = (object(a), object(b));
-    let options = DistanceOptions {
-        margin1: 0.1,
-        margin2: 0.0,
-        max_distance: 0.5,
-    };
+    let options = DistanceOptions { margin1: 0.1, margin2: 0.0, max_distance: 0.5 };
     let mut out = MaybeUninit::<ccd_distance_t>::zeroed();
     // SAFETY: live objects of their types; zero is a value of the struct.
     let (yes, code, out) = unsafe {
@@ -236,14 +216,8 @@ fn yes_or_no_and_distance(
     assert_eq!(ccd::intersect(a, b, Some(warm)), Ok(yes));
     let d = ccd::signed_distance(a, b, settings, &options, Some(warm)).expect("good input");
     assert_eq!(d.limit, code == CCD_LIMIT);
-    assert_eq!(
-        (d.distance, d.distance_upper),
-        (out.distance, out.distance_upper)
-    );
-    assert_eq!(
-        [d.normal, d.point1, d.point2],
-        [out.normal.v, out.point1.v, out.point2.v]
-    );
+    assert_eq!((d.distance, d.distance_upper), (out.distance, out.distance_upper));
+    assert_eq!([d.normal, d.point1, d.point2], [out.normal.v, out.point1.v, out.point2.v]);
     assert_eq!(d.support_calls as c_ulong, out.support_calls);
 }
 
@@ -263,10 +237,7 @@ fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
     for (contact, out) in found.iter().zip(out) {
         // SAFETY: among those that were written.
         let out = unsafe { out.assume_init() };
-        assert_eq!(
-            [contact.point1, contact.point2],
-            [out.point1.v, out.point2.v]
-        );
+        assert_eq!([contact.point1, contact.point2], [out.point1.v, out.point2.v]);
         assert_eq!((contact.depth, contact.id), (out.depth, out.id));
     }
 }
@@ -288,14 +259,7 @@ fn good() -> Question {
     let (mut a, mut b) = (r.shape(0.0, true), r.shape(0.0, true));
     (a.half, b.half) = ([1.0; 3], [0.5; 3]);
     b.at = [1.3, 0.1, 0.2];
-    Question {
-        a,
-        b,
-        dir: DIR,
-        settings: Settings::default(),
-        options: DistanceOptions::default(),
-        slop: 0.01,
-    }
+    Question { a, b, dir: DIR, settings: Settings::default(), options: DistanceOptions::default(), slop: 0.01 }
 }
 
 impl Question {
@@ -317,20 +281,12 @@ impl Question {
             }
         };
         for call in &CALLS {
-            check(call.name, &mut |warm| {
-                (call.rust)(&q.a, &q.b, q.dir, &q.settings, Some(warm)).map(drop)
-            });
+            check(call.name, &mut |warm| (call.rust)(&q.a, &q.b, q.dir, &q.settings, Some(warm)).map(drop));
         }
-        check("intersect", &mut |warm| {
-            ccd::intersect(&q.a, &q.b, Some(warm)).map(drop)
-        });
-        check("distance", &mut |warm| {
-            ccd::signed_distance(&q.a, &q.b, &q.settings, &q.options, Some(warm)).map(drop)
-        });
+        check("intersect", &mut |warm| ccd::intersect(&q.a, &q.b, Some(warm)).map(drop));
+        check("distance", &mut |warm| ccd::signed_distance(&q.a, &q.b, &q.settings, &q.options, Some(warm)).map(drop));
         let mut room = [Contact::default(); 2];
-        check("contacts", &mut |_| {
-            ccd::contacts(&q.a, &q.b, q.dir, q.slop, None, &mut room).map(drop)
-        });
+        check("contacts", &mut |_| ccd::contacts(&q.a, &q.b, q.dir, q.slop, None, &mut room).map(drop));
         let written = room != [Contact::default(); 2];
         assert_eq!(written, !words.iter().any(|word| "contacts".contains(word)));
     }
@@ -350,18 +306,11 @@ fn what_no_query_can_work_with_is_refused() {
         slop.refused_by(&["contacts"][..usize::from(none)], "slop");
         for field in 0..3 {
             let mut q = good();
-            let DistanceOptions {
-                margin1,
-                margin2,
-                max_distance,
-            } = &mut q.options;
+            let DistanceOptions { margin1, margin2, max_distance } = &mut q.options;
             *[margin1, margin2, max_distance][field] = length;
             // No object has an infinite margin.
             let refused = none || field < 2 && length == infinite;
-            q.refused_by(
-                &["distance"][..usize::from(refused)],
-                "option of the distance",
-            );
+            q.refused_by(&["distance"][..usize::from(refused)], "option of the distance");
         }
     }
     for dir in [[0.0; 3], [0.0, nan, 1.0], [infinite, 0.0, 0.0]] {
@@ -467,13 +416,7 @@ const IN_C: [(&str, [c_int; 3], InC); 9] = [
 /// A box, or a ball, or both.
 fn rounded(half: [Real; 3], radius: Real, at: [Real; 3]) -> Rounded {
     let (turn, centred) = ([1.0, 0.0], true);
-    Rounded {
-        at,
-        half,
-        radius,
-        turn,
-        centred,
-    }
+    Rounded { at, half, radius, turn, centred }
 }
 
 /// Every state that C can hand over: cold, a guess, any bytes at all.
@@ -502,10 +445,7 @@ fn states() -> Vec<ccd_warm_t> {
 #[test]
 fn every_call_answers_in_c_from_every_state() {
     let (ball, brick) = (rounded([0.0; 3], 1.0, [0.0; 3]), [0.5, 1.0, 1.5]);
-    let ccd = ccd_t {
-        first_dir: Some(ccdFirstDirDefault),
-        ..in_c(&Settings::default(), true)
-    };
+    let ccd = ccd_t { first_dir: Some(ccdFirstDirDefault), ..in_c(&Settings::default(), true) };
     for (a, b, expected) in [
         (ball, rounded([0.0; 3], 0.5, [1.2, 0.0, 0.0]), 0),
         (rounded(brick, 0.0, [0.9, 0.1, 0.2]), ball, 0),
@@ -553,12 +493,7 @@ fn what_asks_no_pair() {
     // SAFETY: a live object of its type, and room for what is found; a string that stays; points, and
     // the witness may be one of the inputs.
     unsafe {
-        let faults = ccdCheck(
-            object(&ball),
-            Some(support),
-            Some(center),
-            found.as_mut_ptr(),
-        );
+        let faults = ccdCheck(object(&ball), Some(support), Some(center), found.as_mut_ptr());
         assert!(faults == 0 && (found.assume_init().size - 2.0).abs() < 0.1);
         ccdFirstDirDefault(null(), null(), &mut dir);
         assert_eq!(dir.v, [1.0, 0.0, 0.0]);
@@ -576,10 +511,7 @@ fn what_asks_no_pair() {
 #[test]
 fn polytope_in_c() {
     let a = rounded([0.0; 3], 1.0, [0.0; 3]);
-    let b = Rounded {
-        at: [3.0, 0.0, 0.0],
-        ..a
-    };
+    let b = Rounded { at: [3.0, 0.0, 0.0], ..a };
     let (mut out, ccd) = (ccd_support_t::default(), in_c(&Settings::default(), true));
     out.v.v = [0.0, 1.0, 0.0];
     let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
@@ -595,8 +527,8 @@ fn polytope_in_c() {
             ccdPtAddVertex(pt, &out)
         });
         assert_eq!((*ccdPtNearest(pt)).kind, CCD_PT_VERTEX);
-        let edge = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
-            .map(|(i, j)| ccdPtAddEdge(pt, vertex[i], vertex[j]));
+        let edge =
+            [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)].map(|(i, j)| ccdPtAddEdge(pt, vertex[i], vertex[j]));
         for [i, j, k] in [[0, 1, 3], [0, 2, 4], [1, 2, 5], [3, 4, 5]] {
             assert!(!ccdPtAddFace(pt, edge[i], edge[j], edge[k]).is_null());
         }

@@ -92,12 +92,7 @@ fn fcl_header() {
     };
     for standard in standards {
         let mut program = cpp("fcl").standard(standard).library("fcl");
-        for flag in [
-            "-D_GNU_SOURCE",
-            flags[0],
-            flags[1],
-            "-isystem/usr/include/eigen3",
-        ] {
+        for flag in ["-D_GNU_SOURCE", flags[0], flags[1], "-isystem/usr/include/eigen3"] {
             program = program.flag(flag);
         }
         program.link_ours_shared().build().run(["2"]);
@@ -137,10 +132,7 @@ fn states_in_a_hash_table() {
         let [near, _, warm, cold, places] = numbers.collect::<Vec<_>>()[..] else {
             panic!("{line}");
         };
-        assert!(
-            near > 150.0 && warm <= 0.9 * cold && places <= 1024.0,
-            "{line}"
-        );
+        assert!(near > 150.0 && warm <= 0.9 * cold && places <= 1024.0, "{line}");
     }
 }
 
@@ -153,12 +145,6 @@ fn small_worlds() {
     let cpp = example("world.cpp").build().run(NO_ARGS).stdout;
     assert_eq!(c, cpp);
     let lines: Vec<&str> = c.lines().collect();
-    assert_eq!(
-        lines[0],
-        "frame 9: 0 contacts, other pairs are 0.87 m apart"
-    );
-    assert_eq!(
-        lines[5],
-        "frame 59: 10 contacts, other pairs are 0.31 m apart"
-    );
+    assert_eq!(lines[0], "frame 9: 0 contacts, other pairs are 0.87 m apart");
+    assert_eq!(lines[5], "frame 59: 10 contacts, other pairs are 0.31 m apart");
 }

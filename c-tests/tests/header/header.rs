@@ -70,22 +70,12 @@ fn section(path: &Path) -> String {
     };
     config.function.prefix = Some("CCD_EXPORT".into());
     config.function.args = cbindgen::Layout::Auto;
-    config
-        .export
-        .rename
-        .insert("Real".into(), "ccd_real_t".into());
+    config.export.rename.insert("Real".into(), "ccd_real_t".into());
     let mut out = Vec::new();
-    cbindgen::Builder::new()
-        .with_config(config)
-        .with_src(path)
-        .generate()
-        .expect("cbindgen")
-        .write(&mut out);
+    cbindgen::Builder::new().with_config(config).with_src(path).generate().expect("cbindgen").write(&mut out);
     let made = String::from_utf8(out).expect("UTF-8");
     // A type is called by one name, in whatever file it is.
-    let made = made
-        .replace(" struct ccd_", " ccd_")
-        .replace("(struct ccd_", "(ccd_");
+    let made = made.replace(" struct ccd_", " ccd_").replace("(struct ccd_", "(ccd_");
     let made = made.replace("typedef ccd_", "typedef struct ccd_");
     // A pointer to a function of a type of ccd.h's may be NULL, as every such one in C.
     let (made, mut declared) = (made.replace("struct Option_ccd_", "ccd_"), false);
@@ -96,9 +86,7 @@ fn section(path: &Path) -> String {
     });
     let made = made.collect::<Vec<_>>().join("\n");
     let lines = made.trim().lines().map(|line| {
-        let macro_value = line
-            .strip_prefix("#define ")
-            .and_then(|l| l.split_once(" -"));
+        let macro_value = line.strip_prefix("#define ").and_then(|l| l.split_once(" -"));
         match macro_value {
             Some((name, value)) => format!("#define {name} (-{value})"),
             None => line.to_owned(),
@@ -141,9 +129,6 @@ fn headers_are_what_the_source_says() {
         }
         let committed = std::fs::read_to_string(&path).unwrap_or_default();
         let name = header.name;
-        assert!(
-            committed == fresh,
-            "{name} is stale: WRITE_HEADER=1 cargo test --test header"
-        );
+        assert!(committed == fresh, "{name} is stale: WRITE_HEADER=1 cargo test --test header");
     }
 }

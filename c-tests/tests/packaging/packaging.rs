@@ -19,10 +19,7 @@ use std::sync::OnceLock;
 
 /// An empty directory of this name, for one test.
 fn fresh(name: &str) -> PathBuf {
-    let dir = output_dir()
-        .join("packaging")
-        .join(Precision::CURRENT.name())
-        .join(name);
+    let dir = output_dir().join("packaging").join(Precision::CURRENT.name()).join(name);
     if dir.exists() {
         fs::remove_dir_all(&dir).expect("an old run's directory can be removed");
     }
@@ -136,17 +133,10 @@ fn runs_on_ours(program: &Path, shared_under: Option<&Path>) {
     let program = Executable::made_elsewhere(&name, program);
     let loaded = program.loaded_ccd();
     match shared_under {
-        Some(dir) => assert!(
-            loaded.as_ref().is_some_and(|path| path.starts_with(dir)),
-            "{name} runs on {loaded:?}"
-        ),
+        Some(dir) => assert!(loaded.as_ref().is_some_and(|path| path.starts_with(dir)), "{name} runs on {loaded:?}"),
         None => assert_eq!(loaded, None, "{name} is linked statically"),
     }
-    let expected = format!(
-        "warmccd {} {}\n",
-        env!("CARGO_PKG_VERSION"),
-        Precision::CURRENT.name()
-    );
+    let expected = format!("warmccd {} {}\n", env!("CARGO_PKG_VERSION"), Precision::CURRENT.name());
     assert_eq!(program.run([""; 0]).stdout, expected);
 }
 
@@ -175,12 +165,7 @@ fn add_subdirectory_and_fetch_content() {
         ("asked", "add_subdirectory", Some("-DCCD_INSTALL=ON"), ""),
         ("fetched", "FetchContent", None, ""),
         ("Ninja", "add_subdirectory", Some("-GNinja"), ""),
-        (
-            "several",
-            "add_subdirectory",
-            Some("-GNinja Multi-Config"),
-            "Debug",
-        ),
+        ("several", "add_subdirectory", Some("-GNinja Multi-Config"), "Debug"),
     ] {
         let prefix = fresh("parent").join(name);
         let mut options = vec![define("CMAKE_INSTALL_PREFIX", &prefix)];
@@ -258,11 +243,7 @@ fn the_archive_alone_without_shared_libraries() {
     find(&prefix, "libccd.a");
     assert!(!prefix.join("lib/libccd.so").exists());
     for (name, way, option) in [
-        (
-            "static-installed",
-            "find_package",
-            define("CMAKE_PREFIX_PATH", &prefix),
-        ),
+        ("static-installed", "find_package", define("CMAKE_PREFIX_PATH", &prefix)),
         ("static-part", "add_subdirectory", off),
     ] {
         let build = consumer(name, way, cargo, &[option]);
@@ -322,10 +303,7 @@ fn a_missing_or_old_rust_is_named() {
 fn setup_names_where_a_newer_rust_is() {
     let dir = fresh("old-rust");
     for tool in ["cargo", "rustc"] {
-        executable(
-            &dir.join(tool),
-            &format!("{tool} 1.63.0 (fd9c4297c 2022-07-01)"),
-        );
+        executable(&dir.join(tool), &format!("{tool} 1.63.0 (fd9c4297c 2022-07-01)"));
     }
     let path = std::env::var("PATH").expect("a path");
     for job in ["check", "main", "tests"] {
@@ -358,22 +336,15 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
             let place = dir.join(place);
             fs::create_dir_all(&place).expect("a directory");
             let (archive, strip) = (archive.trim(), "--strip-components=1");
-            ran(
-                Command::new("tar"),
-                &[&"-xf", &archive, &"-C", &place, &strip],
-            );
+            ran(Command::new("tar"), &[&"-xf", &archive, &"-C", &place, &strip]);
             let build = place.join("build");
-            ran(
-                configure(&place.join("cmake"), &build),
-                &[&precision_option()],
-            );
+            ran(configure(&place.join("cmake"), &build), &[&precision_option()]);
             let mut make = Command::new("cmake");
             // No crate that was fetched before, and no way to fetch one.
             make.env("CARGO_HOME", place.join("cargo-home"));
             make.env("CARGO_NET_OFFLINE", "true");
             ran(make, &[&"--build", &build]);
-            ["libccd.so.2.0", "libccd.a"]
-                .map(|name| fs::read(build.join("lib").join(name)).expect("a library"))
+            ["libccd.so.2.0", "libccd.a"].map(|name| fs::read(build.join("lib").join(name)).expect("a library"))
         })
         .collect();
     for (name, i) in [("libccd.so.2.0", 0), ("libccd.a", 1)] {
@@ -386,9 +357,7 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn notices_name_every_crate() {
     let prefix = installed_and_moved();
-    let installed = |name| {
-        fs::read_to_string(prefix.join("share/doc/ccd").join(name)).expect("an installed text")
-    };
+    let installed = |name| fs::read_to_string(prefix.join("share/doc/ccd").join(name)).expect("an installed text");
     assert!(installed("LICENSE").starts_with("BSD 3-Clause License"));
     let notices = installed("THIRD-PARTY");
     let named: BTreeSet<&str> = notices
@@ -398,13 +367,8 @@ fn notices_name_every_crate() {
         .map_while(|line| line.strip_prefix("  ")?.split(' ').next())
         .collect();
     let mut cargo = Command::new(env!("CARGO"));
-    cargo
-        .current_dir(root())
-        .args(["tree", "--offline", "--prefix=none"]);
-    let tree = ran(
-        cargo,
-        &[&"--edges=normal,no-proc-macro", &"--format={p} {l}"],
-    );
+    cargo.current_dir(root()).args(["tree", "--offline", "--prefix=none"]);
+    let tree = ran(cargo, &[&"--edges=normal,no-proc-macro", &"--format={p} {l}"]);
     let lines = tree.lines().filter(|line| !line.starts_with("warmccd "));
     let other = lines.clone().find(|line| !line.contains("Apache-2.0"));
     assert_eq!(other, None, "another licence");
@@ -503,8 +467,7 @@ fn pkg_config() {
     let compile = |name: &str, flags: &[String]| {
         let program = programs.join(name);
         let mut cc = c_compiler();
-        cc.arg(root().join("c-tests/tests/packaging/consumer/main.c"))
-            .args(flags);
+        cc.arg(root().join("c-tests/tests/packaging/consumer/main.c")).args(flags);
         ran(cc, &[&"-o", &program]);
         program
     };
@@ -576,11 +539,8 @@ fn the_other_precision_does_not_compile() {
     let prefix = installed_and_moved();
     let compiles = |flags: &[&str]| {
         let mut cc = c_compiler();
-        cc.arg("-I")
-            .arg(prefix.join("include"))
-            .arg("-fsyntax-only");
-        cc.arg(root().join("c-tests/tests/packaging/consumer/main.c"))
-            .args(flags);
+        cc.arg("-I").arg(prefix.join("include")).arg("-fsyntax-only");
+        cc.arg(root().join("c-tests/tests/packaging/consumer/main.c")).args(flags);
         cc.output().expect("cc runs").status.success()
     };
     assert!(compiles(&[]));
@@ -593,17 +553,11 @@ fn the_other_precision_does_not_compile() {
 fn oldest_rust() {
     let version = env!("CARGO_PKG_RUST_VERSION");
     let is_that_one = |command: &&[&str]| {
-        let said = Command::new(command[0])
-            .args(&command[1..])
-            .arg("--version")
-            .output();
+        let said = Command::new(command[0]).args(&command[1..]).arg("--version").output();
         let wanted = format!("cargo {version}.");
         said.is_ok_and(|said| said.stdout.starts_with(wanted.as_bytes()))
     };
-    let choices = [
-        &["rustup", "run", version, "cargo"][..],
-        &["/usr/bin/cargo"],
-    ];
+    let choices = [&["rustup", "run", version, "cargo"][..], &["/usr/bin/cargo"]];
     let Some(cargo) = choices.into_iter().find(is_that_one) else {
         println!("skipped: no Rust {version} (rustup toolchain install {version})");
         return;
@@ -618,12 +572,7 @@ fn oldest_rust() {
         .arg(output_dir().join("oldest-rust"))
         .env("RUSTFLAGS", "-D warnings");
     // What cargo told this test about the compiler it was made with.
-    for variable in [
-        "CARGO",
-        "RUSTC",
-        "RUSTUP_TOOLCHAIN",
-        "CARGO_ENCODED_RUSTFLAGS",
-    ] {
+    for variable in ["CARGO", "RUSTC", "RUSTUP_TOOLCHAIN", "CARGO_ENCODED_RUSTFLAGS"] {
         build.env_remove(variable);
     }
     if Precision::CURRENT == Precision::Single {
@@ -635,10 +584,7 @@ fn oldest_rust() {
     let library = output_dir().join("oldest-rust/release/libccd.so");
     let symbols = must_succeed(harness::binutils("nm").arg(library), "nm").stdout;
     assert!(symbols.contains(" t "), "no local symbols: nothing to see");
-    assert!(
-        !symbols.contains("panicking"),
-        "a panic is linked by Rust {version}"
-    );
+    assert!(!symbols.contains("panicking"), "a panic is linked by Rust {version}");
 }
 
 fn page(name: &str) -> String {
@@ -648,11 +594,8 @@ fn page(name: &str) -> String {
 /// A page's program in a language, in a file of its own below `place`.
 fn program_of(place: &str, name: &str, language: &str) -> PathBuf {
     let page = page(name);
-    let program = page
-        .split_once(&format!("```{language}\n"))
-        .and_then(|(_, rest)| rest.split_once("```"))
-        .expect("a program")
-        .0;
+    let program =
+        page.split_once(&format!("```{language}\n")).and_then(|(_, rest)| rest.split_once("```")).expect("a program").0;
     let source = fresh(place).join(format!("program.{language}"));
     fs::write(&source, program).expect("a file can be written");
     source
@@ -702,8 +645,7 @@ fn readme_c_program() {
     let program = strict(Program::c("readme"), "README.md", "c");
     assert_depth_of_the_ball(&program.run([""; 0]).stdout);
     if harness::Precision::CURRENT == Precision::Double {
-        let program =
-            Program::c("readme-libccd").source(program_of("readme-libccd", "README.md", "c"));
+        let program = Program::c("readme-libccd").source(program_of("readme-libccd", "README.md", "c"));
         let said = program.link_system().build().run([""; 0]).stdout;
         assert!(page("README.md").contains(said.trim()), "{said}");
     }
@@ -729,11 +671,7 @@ fn readme_links_its_program() {
     link(&root().join("include"), "include");
     link(&library.dir, "target/release");
     link(&library.dir.join("libccd.so"), "target/swap/libccd.so.2");
-    fs::copy(
-        program_of("readme-linked", "README.md", "c"),
-        here.join("program.c"),
-    )
-    .expect("a copy");
+    fs::copy(program_of("readme-linked", "README.md", "c"), here.join("program.c")).expect("a copy");
     let page = page("README.md");
     let lines = page
         .split(['`', '\n'])
@@ -742,10 +680,7 @@ fn readme_links_its_program() {
     assert_eq!(lines.clone().count(), 2);
     for line in lines {
         let mut shell = Command::new("sh");
-        shell
-            .current_dir(&here)
-            .arg("-c")
-            .arg(format!("{line} && ./a.out"));
+        shell.current_dir(&here).arg("-c").arg(format!("{line} && ./a.out"));
         assert_depth_of_the_ball(&must_succeed(&mut shell, line).stdout);
         // Of the archive's 15 MB what is not needed is left out.
         assert_small(line, size(&here.join("a.out")), 550_000);

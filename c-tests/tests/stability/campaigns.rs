@@ -25,10 +25,7 @@ use programs::program;
 /// Runs a program in sight, with the caller's arguments before what stands for the rest.
 fn show(program: &Executable, given: &[String], rest: &[&str]) {
     let rest = rest.iter().skip(given.len()).map(|s| (*s).to_owned());
-    let status = program
-        .command()
-        .args(given.iter().cloned().chain(rest))
-        .status();
+    let status = program.command().args(given.iter().cloned().chain(rest)).status();
     if !status.is_ok_and(|s| s.success()) {
         std::process::exit(1);
     }

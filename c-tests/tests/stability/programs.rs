@@ -45,11 +45,7 @@ pub fn pair_sets() -> Vec<String> {
 /// The judge in 128 bits. Other processors than x86 have no such numbers, or by another name.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub fn wide() -> Executable {
-    strict("wide")
-        .source("tests/stability/wide/wide.c")
-        .flag("-DOURS_ALONE")
-        .link_ours_static()
-        .build()
+    strict("wide").source("tests/stability/wide/wide.c").flag("-DOURS_ALONE").link_ours_static().build()
 }
 
 /// The same answers in all runs and builds.

@@ -173,11 +173,8 @@ fn threads_children_and_nested_queries() {
 
 /// Exit code, or 128 and the signal as shells say, and what the tool wrote.
 fn screen_of(program: &Path, args: &[&str], options: &[&str]) -> (i32, String) {
-    let (status, written) = Executable::made_elsewhere("compared", program)
-        .quiet()
-        .compared(options)
-        .with_screen()
-        .run_to_end(args);
+    let (status, written) =
+        Executable::made_elsewhere("compared", program).quiet().compared(options).with_screen().run_to_end(args);
     (status.code().expect("a code"), written.stderr)
 }
 
@@ -215,17 +212,9 @@ fn what_cannot_be_watched_is_said_in_one_line() {
         (screen("nothing", &[]), 0, "asked libccd nothing"),
         (of("/bin/true"), 0, "is not linked to libccd"),
         (of("/nowhere/at/all"), 125, "no such program"),
-        (
-            of(statically.to_str().expect("a path")),
-            125,
-            "not a dynamically linked",
-        ),
+        (of(statically.to_str().expect("a path")), 125, "not a dynamically linked"),
     ] {
-        assert_eq!(
-            (code, told.trim_end().lines().count()),
-            (expected, 1),
-            "{told}"
-        );
+        assert_eq!((code, told.trim_end().lines().count()), (expected, 1), "{told}");
         assert!(told.contains(part), "{told}");
     }
 }
@@ -242,9 +231,7 @@ fn the_recorded_contacts_are_counted_as_the_benchmark_counts_them() {
     let counted = fields_of(&told, "watched");
     // missed, false, broken, deep, unsound, mean and largest error, supports of both methods
     let column = |text: &str, column: usize| -> Vec<f64> {
-        let rows = text
-            .lines()
-            .filter(|l| l.starts_with("MPR") || l.starts_with("GJK"));
+        let rows = text.lines().filter(|l| l.starts_with("MPR") || l.starts_with("GJK"));
         rows.map(|row| {
             let words: Vec<&str> = row.split_whitespace().rev().collect();
             words[column].parse().expect("a number")
@@ -281,14 +268,9 @@ fn kept_cases_replay() {
     let dir = tempfile::tempdir().expect("a directory");
     let keep = dir.path().to_str().expect("a path");
     let (_, screen) = screen("plain", &["--every", "1", "--keep", keep]);
-    let kept: Vec<_> = (1..=5)
-        .map(|i| dir.path().join(format!("libccd-{i}.c")))
-        .filter(|path| path.exists())
-        .collect();
+    let kept: Vec<_> = (1..=5).map(|i| dir.path().join(format!("libccd-{i}.c"))).filter(|path| path.exists()).collect();
     assert!(kept.len() >= 3, "{screen}");
-    let left = std::fs::read_dir(dir.path())
-        .expect("the directory")
-        .count();
+    let left = std::fs::read_dir(dir.path()).expect("the directory").count();
     assert_eq!(left, kept.len(), "nothing else is left there");
     for path in &kept {
         assert!(screen.contains(path.to_str().expect("a path")), "{screen}");
@@ -304,8 +286,5 @@ fn kept_cases_replay() {
     replay.arg(root().join("c-tests/replay.sh"));
     replay.arg("--library").arg(library.dir.join("libccd.so"));
     let said = harness::must_succeed(replay.arg(&kept[0]), "replay.sh").stdout;
-    assert!(
-        said.contains("== libccd: ") && said.contains("== this library"),
-        "{said}"
-    );
+    assert!(said.contains("== libccd: ") && said.contains("== this library"), "{said}");
 }

@@ -18,9 +18,7 @@ fn recording() -> PathBuf {
 }
 
 fn program(name: &str) -> Program {
-    Program::c(name)
-        .source(format!("tools/record/{name}.c"))
-        .flag("-pedantic")
+    Program::c(name).source(format!("tools/record/{name}.c")).flag("-pedantic")
 }
 
 /// One method's line of the table that replay.h prints: its counts are missed, false, broken, deep
@@ -29,9 +27,7 @@ type Row = (String, [u64; 5]);
 
 /// How many pairs overlap, and the table's rows.
 fn table(written: &str) -> (u64, Vec<Row>) {
-    let counted = written
-        .lines()
-        .find_map(|line| line.strip_suffix(" of them overlap"));
+    let counted = written.lines().find_map(|line| line.strip_suffix(" of them overlap"));
     let overlaps = counted.and_then(|line| line.rsplit(' ').next()?.parse().ok());
     let lines = written.lines().skip_while(|l| !l.starts_with("method"));
     let row = |line: &str| {
@@ -42,10 +38,7 @@ fn table(written: &str) -> (u64, Vec<Row>) {
         (name.join(" "), wrong)
     };
     let lines = lines.skip(1).take_while(|l| !l.is_empty());
-    (
-        overlaps.expect("a line that counts the pairs"),
-        lines.map(row).collect(),
-    )
+    (overlaps.expect("a line that counts the pairs"), lines.map(row).collect())
 }
 
 /// Misses nothing, invents nothing, no answer unsound or without a direction; at most `most`
@@ -72,16 +65,12 @@ fn replay_on_both_libraries() {
     let (overlaps, rows) = table(&ours.run([recording()]).stdout);
     assert_eq!((rows.len(), theirs.len()), (2, 2));
     assert_eq!(overlaps, of_theirs, "not the same queries");
-    rows.iter()
-        .for_each(|row| assert_right(row, overlaps / 100));
+    rows.iter().for_each(|row| assert_right(row, overlaps / 100));
 }
 
 #[test]
 fn the_extension_cold_and_warm() {
-    let warm = program("replay_extension")
-        .flag("-DOURS_ALONE")
-        .link_ours_shared()
-        .build();
+    let warm = program("replay_extension").flag("-DOURS_ALONE").link_ours_shared().build();
     let (overlaps, rows) = table(&warm.run([recording()]).stdout);
     assert_eq!(rows.len(), 8);
     for row in &rows {
