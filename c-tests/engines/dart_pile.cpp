@@ -4,13 +4,10 @@
 /* A pile in DART falls on a plate with walls. Prints what the second half of the
  * run looked like. Scenes:
  *
- *   fcl        FCL's detector: boxes, spheres, ellipsoids
- *   triangles  the same with cylinders and cones, of which DART makes triangles
- *              that FCL puts to libccd one by one against the other shape
- *   cones      as triangles, cones alone
- *   ode        ODE's detector: cylinders, capsules, boxes
+ *   fcl  FCL's detector: boxes, spheres, ellipsoids
+ *   ode  ODE's detector: cylinders, capsules, boxes
  *
- * usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode */
+ * usage: dart_pile SEED STEPS BODIES fcl|ode */
 
 #include "engines/pile.h"
 #include "harness/uniform.h"
@@ -22,7 +19,6 @@
 #include <dart/dynamics/BodyNode.hpp>
 #include <dart/dynamics/BoxShape.hpp>
 #include <dart/dynamics/CapsuleShape.hpp>
-#include <dart/dynamics/ConeShape.hpp>
 #include <dart/dynamics/CylinderShape.hpp>
 #include <dart/dynamics/EllipsoidShape.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
@@ -35,17 +31,15 @@ using namespace dart;
 
 static dynamics::ShapePtr shape_of(int i, const std::string &scene)
 {
-    enum { BOX, SPHERE, ELLIPSOID, CAPSULE, CYLINDER, CONE };
+    enum { BOX, SPHERE, ELLIPSOID, CAPSULE, CYLINDER };
     static const int ode[] = { CYLINDER, CAPSULE, BOX }, fcl[] = { ELLIPSOID, BOX, SPHERE };
-    static const int triangles[] = { CYLINDER, SPHERE, BOX, ELLIPSOID, CONE };
     const double r = uniform(0.05, 0.12), h = uniform(0.1, 0.24), z = uniform(0.05, 0.12);
-    switch (scene == "cones" ? CONE : scene == "ode" ? ode[i % 3] : scene == "fcl" ? fcl[i % 3] : triangles[i % 5]) {
+    switch (scene == "ode" ? ode[i % 3] : fcl[i % 3]) {
     case BOX: return std::make_shared<dynamics::BoxShape>(Eigen::Vector3d(2 * r, h, 2 * z));
     case SPHERE: return std::make_shared<dynamics::SphereShape>(r);
     case ELLIPSOID: return std::make_shared<dynamics::EllipsoidShape>(Eigen::Vector3d(2 * r, h, 2 * z));
     case CAPSULE: return std::make_shared<dynamics::CapsuleShape>(0.75 * r, h);
-    case CYLINDER: return std::make_shared<dynamics::CylinderShape>(r, h);
-    default: return std::make_shared<dynamics::ConeShape>(r, h);
+    default: return std::make_shared<dynamics::CylinderShape>(r, h);
     }
 }
 
@@ -58,7 +52,7 @@ static void add_wall(dynamics::BodyNode *pen, const Eigen::Vector3d &size, const
 int main(int argc, char **argv)
 {
     if (argc != 5) {
-        fprintf(stderr, "usage: dart_pile SEED STEPS BODIES fcl|triangles|cones|ode\n");
+        fprintf(stderr, "usage: dart_pile SEED STEPS BODIES fcl|ode\n");
         return 2;
     }
     const long steps = atol(argv[2]);

@@ -50,7 +50,7 @@ fn long() {
     let ode = checks::ode_pile();
     let (mujoco, dart) = (checks::mujoco_pile(), checks::dart_pile());
     let towers = "towers of boxes and hulls";
-    let rows: [(&Swapped, &'static str, usize, usize, &str); 11] = [
+    let rows: [(&Swapped, &'static str, usize, usize, &str); 10] = [
         (&ode, "pile", 8, 5000, "32 pile"),
         (&ode, "convex hulls", 8, 5000, "32 hulls"),
         (&ode, towers, 8, 10_000, "20 stack"),
@@ -60,7 +60,6 @@ fn long() {
         (&mujoco, "pile, several contacts a pair", 2, 5000, "30 multi"),
         (&mujoco, "on a height field", 8, 3000, "20 field"),
         (&dart, "over FCL", 8, 3000, "15 fcl"),
-        (&dart, "over FCL, triangles", 1, 400, "10 triangles"),
         (&dart, "over ODE", 8, 3000, "15 ode"),
     ];
     let row = |(program, scene, starts, steps, after)| piles(program, scene, starts, steps, after);

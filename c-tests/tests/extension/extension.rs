@@ -67,14 +67,6 @@ fn pos_is_the_centre_of_pressure() {
     program("pressure").build().run(NO_ARGS);
 }
 
-/// What `pos` costs the boxes of the README, as include/README.md says it.
-#[test]
-fn callbacks_of_sliding_boxes_are_as_the_page_says() {
-    let said = program("position_cost").build().run(NO_ARGS).stdout;
-    let page = include_str!("../../../include/README.md");
-    assert!(page.contains(said.trim()), "{said}");
-}
-
 #[test]
 fn contacts_are_the_exact_ones() {
     program("contacts").build().run(NO_ARGS);

@@ -18,7 +18,7 @@
 #include <stdio.h>
 #include <time.h>
 
-enum { KINDS = 7, CORNERS = 60 };
+enum { CORNERS = 60 };
 static const double AGAIN = 20; /* microseconds */
 
 typedef struct {
@@ -43,15 +43,9 @@ static shape_t random_shape(ccd_real_t *corners)
     double p[3];
     for (int i = 0; i < 3; i++)
         p[i] = 0.05 * exp(uniform(0, 3));
-    switch ((int)uniform(0, KINDS)) {
-    case 0: return shape_sphere(p[0]);
-    case 1: return shape_capsule(p[0], p[1]);
-    case 2: return shape_box(p[0], p[1], p[2]);
-    case 3: return shape_cylinder(p[0], p[1]);
-    case 4: return shape_cone(p[0], p[1]);
-    case 5: return shape_ellipsoid(p[0], p[1], p[2]);
-    default: break;
-    }
+    const int kind = (int)uniform(0, SHAPE_TYPES);
+    if (kind != SHAPE_POLYTOPE)
+        return shape_make(kind, p[0], p[1], p[2]);
     for (int i = 0; i < CORNERS; i++) {
         double x[3], length;
         do {
