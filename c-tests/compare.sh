@@ -38,7 +38,7 @@ while [ $# -gt 0 ]; do
     case $1 in
     --swap) base=ours ;;
     --no-times) times=0 ;;
-    --fields) fields=1 ;; # for the tables of swap/: one line on stdout
+    --fields) fields=1 ;; # for the tables of engines/: one line on stdout
     --every | --keep | --libccd | --library)
         [ $# -ge 2 ] || usage
         case $1 in

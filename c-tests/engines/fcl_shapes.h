@@ -3,8 +3,8 @@
 
 /* The bodies of poses.h as FCL's geometries, in the precision of ccd_real_t. */
 
-#ifndef SWAP_FCL_SHAPES_H
-#define SWAP_FCL_SHAPES_H
+#ifndef ENGINES_FCL_SHAPES_H
+#define ENGINES_FCL_SHAPES_H
 
 #include "engines/poses.h"
 

@@ -3,8 +3,8 @@
 
 /* Random convex hulls with their faces, as ODE and FCL want them. */
 
-#ifndef SWAP_HULL_H
-#define SWAP_HULL_H
+#ifndef ENGINES_HULL_H
+#define ENGINES_HULL_H
 
 #include "harness/uniform.h"
 

@@ -3,8 +3,8 @@
 
 /* Summarises the second half of a simulation in one line, for every engine. */
 
-#ifndef SWAP_PILE_H
-#define SWAP_PILE_H
+#ifndef ENGINES_PILE_H
+#define ENGINES_PILE_H
 
 #include <math.h>
 #include <stdio.h>

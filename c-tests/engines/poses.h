@@ -10,8 +10,8 @@
  * at least s - (s - t) m.n >= t. So t is the signed depth of the new pose, for
  * every t <= s, positive or not. */
 
-#ifndef SWAP_POSES_H
-#define SWAP_POSES_H
+#ifndef ENGINES_POSES_H
+#define ENGINES_POSES_H
 
 #include "engines/hull.h"
 #include "engines/tally.h"

@@ -8,8 +8,8 @@
  * out of place. Such queries are about no convex shape, and counted apart; they are found by
  * holding every support point against the shape it is said to be of. */
 
-#ifndef SWAP_TALLY_H
-#define SWAP_TALLY_H
+#ifndef ENGINES_TALLY_H
+#define ENGINES_TALLY_H
 
 #include "harness/truth.h"
 #include "harness/verdict.h"

@@ -72,7 +72,7 @@ mod tests {
     fn callgrind_self_cost() {
         let text = "ob=/t/callbacks.so\nfl=/t/shapes.h\nfn=f\n1 10\nob=/l/libccd.so\nfl=/w/a.rs\nfn=g\n1 5\n\
             fi=/rustc/b.rs\n2 7\ncob=/t/callbacks.so\ncfn=f\ncalls=2 1\n3 15\n6 2\n\
-            ob=/bin/charts\nfl=/w/c-tests/lab.rs\nfn=run\n1 77\nob=/l/libccd.so\n8 1000\n";
+            ob=/bin/charts\nfl=/w/c-tests/bench.rs\nfn=run\n1 77\nob=/l/libccd.so\n8 1000\n";
         let expected = super::Count { solver: 1014, callbacks: 10, program: 77 };
         assert_eq!(super::parse(text, "/bin/charts"), expected);
     }

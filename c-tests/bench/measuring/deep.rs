@@ -176,10 +176,7 @@ fn closest_face(placed: &Placed, hub: (usize, usize)) -> Option<(f64, V)> {
         std::mem::swap(&mut cone, &mut clipped);
     }
     let v = a.at - (turn * b.at + shift);
-    let faces = cone.iter().map(|n| {
-        let n = n.normalize();
-        (n.dot(&v), n)
-    });
+    let faces = cone.iter().map(|n| n.normalize()).map(|n| (n.dot(&v), n));
     faces.min_by(|x, y| x.0.total_cmp(&y.0))
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* For a program that knows it is watched, as those of swap/ do. It may read what has been
+/* For a program that knows it is watched, as those of engines/ do. It may read what has been
  * counted so far, and define, exported (-rdynamic):
  *
  *   compare_audit     is shown every support point of its own queries, and may change it

@@ -4,7 +4,7 @@
 /* The screen at the end: what the watched processes counted.
  *
  * usage: screen DIR EVERY EXIT KEPT   for people; KEPT: where cases were kept, or empty
- *        screen DIR fields            `watched key value key value ...`, for the tables of swap/ */
+ *        screen DIR fields            `watched key value key value ...`, for the tables of engines/ */
 
 #include "tools/compare/counts.h"
 

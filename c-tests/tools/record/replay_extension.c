@@ -4,7 +4,7 @@
 /* Replays the recorded contact sequence through this library's extension, with
  * one warm state for each pair of bodies, and cold for comparison.
  *
- * usage: warm RECORDING [PASSES] */
+ * usage: replay_extension RECORDING [PASSES] */
 
 #define _POSIX_C_SOURCE 199309L
 #include "tools/record/replay.h"
