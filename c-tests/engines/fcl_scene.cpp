@@ -239,9 +239,8 @@ static bool judge_pair(object *o1, object *o2, void *)
     judged.hits += result.isCollision();
     part_t *part = put_so_far() == before ? &judged.own : &judged.put;
 
-    ccd_t ccd;
     ccd_penetration_t least;
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.center1 = ccd.center2 = NULL; /* the proof needs none */
     ccd.epa_tolerance = 1e-10;
     ccd.max_iterations = 5000;

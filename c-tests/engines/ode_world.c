@@ -43,9 +43,8 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
     shape_t b = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(o2), o2);
     ccd_contact_t contact[8];
     ccd_penetration_t hit;
-    ccd_t ccd;
     int n, written = 0, code;
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.mpr_tolerance = 1e-6; /* as ODE's */
     /* The pair's state, whichever order the broad phase hands the two over in. */
     if (i > j)

@@ -301,13 +301,13 @@ static inline void shape_center(const void *obj, ccd_vec3_t *out)
 }
 
 /* A ccd_t for two shapes, as CCD_INIT leaves it otherwise. */
-static inline void shape_query(ccd_t *ccd)
+static inline ccd_t shape_query(void)
 {
-    CCD_INIT(ccd);
-    ccd->support1 = shape_support;
-    ccd->support2 = shape_support;
-    ccd->center1 = shape_center;
-    ccd->center2 = shape_center;
+    ccd_t ccd;
+    CCD_INIT(&ccd);
+    ccd.support1 = ccd.support2 = shape_support;
+    ccd.center1 = ccd.center2 = shape_center;
+    return ccd;
 }
 
 #endif

@@ -99,7 +99,6 @@ static void degenerate(const call_t *entry)
                 for (int size = 0; size < 6; size += share < 100 ? 6 : 1) {
                     static ccd_real_t scaled[2][12];
                     shape_t s[2];
-                    ccd_t ccd;
                     s[0] = plain[i];
                     s[1] = plain[k];
                     for (int n = 0; n < 2; n++) {
@@ -112,7 +111,7 @@ static void degenerate(const call_t *entry)
                     }
                     /* In one place, just touching or nearly so, and well apart. */
                     shape_move(&s[1], at == 2 ? 10 * sizes[size] : 0, 0, at == 1 ? 2 * sizes[size] : 0);
-                    shape_query(&ccd);
+                    ccd_t ccd = shape_query();
                     ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)(1e-4 * sizes[size]);
                     int code = ask(entry, &s[0], &s[1], &ccd, 10 * sizes[size], "a degenerate pair");
                     if (at == 2 && entry->number != ASK_PLANAR)
@@ -123,8 +122,7 @@ static void degenerate(const call_t *entry)
                 }
     for (int i = 0; i < PLAIN; i++) {
         shape_t s = plain[i];
-        ccd_t ccd;
-        shape_query(&ccd);
+        ccd_t ccd = shape_query();
         ask(entry, &s, &s, &ccd, 10, "an object against itself");
     }
 }

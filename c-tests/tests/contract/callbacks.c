@@ -135,8 +135,7 @@ int main(void)
         shape_t a = shape_box(1, 2, 3);
         support_t s, aliased;
         ccd_vec3_t dir = {{2, -4, 6}};
-        ccd_t ccd;
-        shape_query(&ccd);
+        ccd_t ccd = shape_query();
         ccd.support2 = trusting_ball;
         __ccdSupport(&a, NULL, &dir, &ccd, &s);
         CHECK(s.v1.v[0] == 1 && s.v1.v[1] == -2 && s.v1.v[2] == 3, "box");

@@ -158,7 +158,7 @@ static inline void random_pair(const call_t *entry, int overlapping, shape_t *a,
     *a = planar ? random_polygon() : random_shape();
     *b = planar ? random_polygon() : random_shape();
     shape_move(b, distance * across * cos(angle), distance * across * sin(angle), distance * z);
-    shape_query(ccd);
+    *ccd = shape_query();
     if (entry->traits & FROM_FIRST_DIR)
         ccd->center1 = ccd->center2 = NULL;
     if (entry->traits & FROM_CENTERS)

@@ -33,7 +33,7 @@ static void setup(void)
 {
     one = other = shape_polytope(slab, 8);
     shape_move(&other, 1.75, 0.25, 0);
-    shape_query(&good);
+    good = shape_query();
     good.mpr_tolerance = good.epa_tolerance = good.dist_tolerance = CCD_REAL(1e-6);
 }
 

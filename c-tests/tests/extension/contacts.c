@@ -56,8 +56,7 @@ static contacts_t contacts_at_most(scene_t *s, int max)
 {
     contacts_t out;
     ccd_vec3_t normal;
-    ccd_t ccd;
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.center1 = ccd.center2 = NULL;
     ccd.first_dir = NULL;
     for (int k = 0; k < 3; k++)
@@ -341,7 +340,6 @@ static void anywhere(void)
         static ccd_real_t points_of[2][36];
         ccd_penetration_t hit;
         scene_t s;
-        ccd_t ccd;
         s.slop = slop_of();
         for (int k = 0; k < 36; k++) {
             points_of[0][k] = (ccd_real_t)uniform(-1, 1);
@@ -351,7 +349,7 @@ static void anywhere(void)
         s.b = i % 2 ? shape_polytope(points_of[1], 12) : shape_box(0.3, 0.8, 0.6);
         shape_move(&s.b, uniform(0, 1.5), 0, 0);
         place(&s, 1);
-        shape_query(&ccd);
+        ccd_t ccd = shape_query();
         ccd.epa_tolerance = CCD_REAL(0.0);
         if (OURS(ccdPenetrationProven)(&s.a, &s.b, &ccd, NULL, CCD_WANT_ALL, &hit) != CCD_HIT)
             continue;
@@ -429,7 +427,6 @@ static void categories(void)
         const int category = i % CATEGORY_COUNT;
         ccd_penetration_t hit;
         scene_t s;
-        ccd_t ccd;
         if (category == CATEGORY_FAR_8 || (single && category == CATEGORY_FAR_6))
             continue;
         category_pair(category, (uint64_t)(i / CATEGORY_COUNT), SHAPE_TIE_SIGN, &p);
@@ -438,7 +435,7 @@ static void categories(void)
         s.slop = pow(10, uniform(-4, -2)) * pair_size(&p.a, &p.b);
         if (i % 4 == 0)
             s.slop = 0;
-        shape_query(&ccd);
+        ccd_t ccd = shape_query();
         ccd.mpr_tolerance = (ccd_real_t)(1e-6 * pair_size(&p.a, &p.b));
         ccd_vec3_t n = random_vec3(1);
         ccdVec3Normalize(&n);

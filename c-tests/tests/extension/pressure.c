@@ -73,11 +73,10 @@ static void pose(const sweep_t *s, double angle, double depth, shape_t *body, sh
 
 static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    ccd_t ccd;
     ccd_real_t depth;
     ccd_penetration_t p;
     const call_rest_t x = {.warm = warm, .want = CCD_WANT_POS, .depth = &depth, .dir = dir, .pos = pos, .full = &p};
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.max_iterations = 500;
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-7);
     int code = call_by_number(call, a, b, &ccd, &x);
@@ -92,8 +91,7 @@ static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, c
 static void shared_place(const shape_t *body, const shape_t *floor, double place[3])
 {
     ccd_penetration_t p;
-    ccd_t ccd;
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     CHECK(OURS(ccdPenetration)(body, floor, &ccd, NULL, CCD_WANT_POINTS, &p) == CCD_HIT, "a hit");
     for (int i = 0; i < 3; i++)
         place[i] = ((double)p.point1.v[i] + (double)p.point2.v[i]) / 2;
@@ -204,7 +202,6 @@ static void tilt(const sweep_t *s)
         double place[3], off[3][3], far[3];
         shape_t body, floor;
         ccd_vec3_t low, dir, pos;
-        ccd_t ccd;
         ccd_real_t depth;
         pose(s, deg(degrees), 1e-3, &body, &floor);
         shape_support(&body, &down, &low);
@@ -214,7 +211,7 @@ static void tilt(const sweep_t *s)
         ask(ASK_MPR, &floor, &body, NULL, &dir, &pos);
         for (int i = 0; i < 3; i++)
             off[1][i] = (double)pos.v[i];
-        shape_query(&ccd);
+        ccd_t ccd = shape_query();
         ccd.mpr_tolerance = (ccd_real_t)1e-7;
         ccdMPRPenetration(&floor, &body, &ccd, &depth, &dir, &pos);
         for (int i = 0; i < 3; i++)
@@ -263,11 +260,10 @@ static void range_errors(unsigned kind, double share, double error[2])
         const int kinds = KINDS[kind].last - KINDS[kind].first + 1;
         shape_t a = random_body(&state, KINDS[kind].first + k % kinds), b = random_body(&state, KINDS[kind].first + k / kinds % kinds);
         ccd_penetration_t p;
-        ccd_t ccd;
         double normal[3], middle[3], pos[3], truth[3], reach, move;
         const double x = 0.3 * next_random(&state), y = 0.3 * next_random(&state), z = 0.3 * next_random(&state);
         shape_move(&b, x, y, z);
-        shape_query(&ccd);
+        ccd_t ccd = shape_query();
         ccd.max_iterations = 500;
         ccd.mpr_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-8);
         if (OURS(ccdPenetration)(&a, &b, &ccd, NULL, 0, &p) != CCD_HIT)

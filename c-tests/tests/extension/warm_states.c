@@ -221,9 +221,8 @@ static void sides(void)
     double rot[9];
     int kept = 0;
     ccd_warm_t warm[5];
-    ccd_t ccd;
     memset(warm, 0, sizeof warm);
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = CCD_REAL(1e-5);
     rotation_about(1, 2, 0.3, 0.02, rot);
     shape_turn(&plate, rot);

@@ -103,8 +103,7 @@ static void same_as_c()
         const ccd::Settings settings{CCD_REAL(1e-5)};
         const ccd::Vec3 dir{1, 2, -2};
         const ccd_vec3_t c_dir = dir;
-        ccd_t c;
-        shape_query(&c);
+        ccd_t c = shape_query();
         c.mpr_tolerance = c.epa_tolerance = c.dist_tolerance = settings.tolerance;
 
         ccd::Warm warm;

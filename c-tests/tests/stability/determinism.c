@@ -28,8 +28,7 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
 {
     const ccd_vec3_t along = {{(ccd_real_t).6, 0, (ccd_real_t).8}};
     shape_t a = p->a, b = p->b;
-    ccd_t ccd;
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
     for (int k = 0; k < ASKS; k++) {
         struct {

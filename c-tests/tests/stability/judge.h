@@ -313,8 +313,7 @@ static inline answer_t ask_objects(const entry_t *e, const void *a, const void *
 /* Of shapes, whose support points are counted, to one tolerance for every call. */
 static inline ccd_t judge_query(double tol)
 {
-    ccd_t ccd;
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.support1 = ccd.support2 = judge_support;
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     return ccd;

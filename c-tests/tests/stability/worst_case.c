@@ -156,13 +156,12 @@ int main(int argc, char **argv)
     static ccd_real_t corners[2][3 * CORNERS];
     const long n = argc > 1 ? atol(argv[1]) : 0;
     const method_t leave_state = {"", ASK_PENETRATION, 0, 1, NULL, NULL, 0};
-    ccd_t ccd;
     if (n < 1000) {
         fprintf(stderr, "usage: worst_case QUERIES [SEED], at least 1000\n");
         return 2;
     }
     uniform_seed(argc > 2 ? strtoull(argv[2], NULL, 10) : 1);
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
     ccd.max_iterations = 500;
     for (int m = 0; m < METHODS; m++) {

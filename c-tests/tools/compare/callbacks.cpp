@@ -100,10 +100,9 @@ static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 
 static void ask(const shape_t *a, const shape_t *b, int call, int *hit, double *depth)
 {
-    ccd_t ccd;
     ccd_real_t d = 0;
     ccd_vec3_t dir, pos;
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.support1 = ccd.support2 = support;
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)1e-6;
     ccd.max_iterations = 500;

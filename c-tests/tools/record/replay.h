@@ -140,7 +140,6 @@ static inline void recording_frame(const recording_t *r, tally_t *t, uint32_t f,
 static inline int recording_pass(const recording_t *r, tally_t *tally)
 {
     const int first = tally->queries == 0;
-    ccd_t ccd;
     uint32_t most = 0;
     size_t k = 0;
     shape_t *body = (shape_t *)malloc(r->bodies * sizeof *body);
@@ -148,7 +147,7 @@ static inline int recording_pass(const recording_t *r, tally_t *tally)
     for (uint32_t f = 0; f < r->frames; f++)
         most = r->frame_pairs[f] > most ? r->frame_pairs[f] : most;
     answer = (recording_answer_t *)malloc(((size_t)most + 1) * sizeof *answer);
-    shape_query(&ccd);
+    ccd_t ccd = shape_query();
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)REPLAY_TOLERANCE;
     ccd.max_iterations = 500;
     if (!body || !answer || tally_begin(tally, r) != 0) {
