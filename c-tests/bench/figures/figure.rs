@@ -68,7 +68,6 @@ pub enum Unit {
     Metres,
     Seconds,
     Count,
-    Degrees,
 }
 
 impl Unit {
@@ -77,7 +76,6 @@ impl Unit {
             Unit::Metres => &METRES,
             Unit::Seconds => &[(1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")],
             Unit::Count => return short(v),
-            Unit::Degrees => return format!("{}°", short(v)),
         };
         // Ticks are powers of ten; this rounds what their logarithms lost.
         let fits = scales.iter().find(|(scale, _)| v >= scale * 0.999);

@@ -10,7 +10,6 @@ pub mod engines;
 pub mod figure;
 pub mod instructions;
 pub mod paper;
-pub mod position;
 pub mod results;
 
 use std::path::PathBuf;
@@ -35,7 +34,7 @@ pub struct Options {
     /// Leave out the instruction counts (which run this program under valgrind).
     #[arg(long)]
     pub no_instructions: bool,
-    /// The figures of this name alone, as `position`; the others stay as they are.
+    /// The figures of this name alone, as `coherence`; the others stay as they are.
     #[arg(long)]
     pub only: Option<String>,
     /// Where CSV and pictures go.
@@ -76,12 +75,9 @@ impl Page {
         format!("thick: this library; {place}; {version}; all in one process, rustc and gcc -O3")
     }
 
-    /// None where the file is missing, as instructions.csv without valgrind; and the page with
-    /// what it says of itself: it may be of another time.
-    fn read<T: DeserializeOwned>(&self, name: &str) -> (Page, Vec<T>) {
-        let file = self.file(&format!("{name}.csv"));
-        let page = Page { out: self.out.clone(), machine: csv::origin(&file) };
-        (page, csv::read(&file))
+    /// None where the file is missing, as instructions.csv without valgrind.
+    fn read<T: DeserializeOwned>(&self, name: &str) -> Vec<T> {
+        csv::read(&self.file(&format!("{name}.csv")))
     }
 }
 
@@ -122,7 +118,7 @@ pub fn look(row: &Row) -> Look {
 }
 
 const TEAL: (u8, u8, u8) = (13, 148, 136);
-pub const GREY: (u8, u8, u8) = (107, 114, 128);
+const GREY: (u8, u8, u8) = (107, 114, 128);
 
 pub const SUPPORTS: Axis = ("support points per query", Unit::Count);
 pub const TIME: Axis = ("time per query", Unit::Seconds);
@@ -217,16 +213,14 @@ pub fn rows(bench: &Bench, scene: &Scene, mut methods: Vec<Method>, x: Option<f6
 /// The pictures and the page from the figures that are there.
 pub fn redraw(options: &Options) {
     let page = Page { out: options.out.clone(), machine: csv::origin(&options.out.join("accuracy.csv")) };
-    let (sets, vertices) = (page.read("accuracy").1, page.read("vertices").1);
+    let (sets, vertices) = (page.read("accuracy"), page.read("vertices"));
     accuracy::draw(&page, &sets);
     paper::draw(&page, &vertices);
-    let (of, position) = page.read("position");
-    position::draw(&of, &position);
     let tables = [
         ("MACHINE", page.machine.clone()),
         ("FASTER", results::times_faster(&sets)),
-        ("COHERENCE", results::coherent(&page.read("coherence").1)),
-        ("INSTRUCTIONS", results::instructions(&page.read("instructions").1)),
+        ("COHERENCE", results::coherent(&page.read("coherence"))),
+        ("INSTRUCTIONS", results::instructions(&page.read("instructions"))),
     ];
     results::write(&page, &tables);
 }
@@ -263,7 +257,6 @@ pub fn run(options: &Options) {
     measure!(
         "accuracy": accuracy::measure, "vertices": paper::vertices,
         "coherence": coherence::measure,
-        "position": position::measure,
         "instructions": instructions::measure
     );
     redraw(options);

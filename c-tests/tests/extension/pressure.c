@@ -7,11 +7,8 @@
  *
  * Besides, pairs at random, pushed apart to depths of 1 to 30 % of the smaller body's reach.
  *
- *   pressure [range | tilt]
- *                     range prints the errors of the random pairs, and of the middle of the witness
- *                     points, in % of that reach. tilt, which needs libccd beside this library, asks no more than MPR, a
- *                     millimetre deep: a line a pose, body, degrees, and how many metres off the
- *                     body's middle the truth, this library's pos and libccd's are */
+ *   pressure [range]   range prints the errors of the random pairs, and of the middle of the
+ *                      witness points, in % of that reach */
 
 #include "tests/extension/pressure.h"
 
@@ -192,37 +189,6 @@ static errors_t sweep(const sweep_t *s, double depth, int call, const double wor
     return e;
 }
 
-#ifndef OURS_ALONE
-/* A body that tips over: tilts of a thousandth of a degree to three. */
-static void tilt(const sweep_t *s)
-{
-    for (int k = 0; k <= 28; k++) {
-        const double degrees = 1e-3 * pow(10, k / 8.0), up[3] = {0, 0, 1};
-        const ccd_vec3_t down = {{0, 0, -1}};
-        double place[3], off[3][3], far[3];
-        shape_t body, floor;
-        ccd_vec3_t low, dir, pos;
-        ccd_real_t depth;
-        pose(s, deg(degrees), 1e-3, &body, &floor);
-        shape_support(&body, &down, &low);
-        for (int i = 0; i < 3; i++)
-            place[i] = (double)low.v[i];
-        pressure_centre(&body, &floor, up, place, off[0]);
-        ask(ASK_MPR, &floor, &body, NULL, &dir, &pos);
-        for (int i = 0; i < 3; i++)
-            off[1][i] = (double)pos.v[i];
-        ccd_t ccd = shape_query();
-        ccd.mpr_tolerance = (ccd_real_t)1e-7;
-        ccdMPRPenetration(&floor, &body, &ccd, &depth, &dir, &pos);
-        for (int i = 0; i < 3; i++)
-            off[2][i] = (double)pos.v[i];
-        for (int i = 0; i < 3; i++)
-            far[i] = hypot(off[i][0] - (double)body.pos[0], off[i][1] - (double)body.pos[1]);
-        printf("%s,%.6g,%.6g,%.6g,%.6g\n", s->name, degrees, far[0], far[1], far[2]);
-    }
-}
-#endif
-
 static double next_random(unsigned long long *state)
 {
     *state = *state * 6364136223846793005ULL + 1442695040888963407ULL;
@@ -355,21 +321,12 @@ int main(int argc, char **argv)
     unsigned i;
     rotation_about(0, 0, 1, 0, world[0]);
     rotation_quaternion(0.3, -0.5, 0.7, 0.2, world[1]);
-#ifndef OURS_ALONE
-    if (argc > 1 && strcmp(argv[1], "tilt") == 0) {
-        printf("body,degrees,truth,ours,libccd\n");
-        for (i = 0; i < sizeof all / sizeof *all; i++)
-            if ((strcmp(all[i].name, "box") == 0 || strstr(all[i].name, "standing") || strstr(all[i].name, "capsule") || strstr(all[i].name, "base")))
-                tilt(&all[i]);
-        return 0;
-    }
-#endif
     if (argc > 1 && strcmp(argv[1], "range") == 0) {
         range(1);
         return checks_end();
     }
     if (argc > 1) {
-        fprintf(stderr, "usage: %s [range | tilt]\n", argv[0]);
+        fprintf(stderr, "usage: %s [range]\n", argv[0]);
         return 2;
     }
     range(0);
