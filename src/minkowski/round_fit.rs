@@ -269,22 +269,17 @@ impl SphereFit {
         (self.is_warm, self.is_confirmed) = (false, false);
     }
 
-    /// Returns whether a vertex, its spheres taken off, is one at which the direction of the upper bound finds it.
-    fn is_core_active<const N: usize>(
+    /// Returns whether the centers of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
+    /// directions each, as far apart as `tolerance`, metres, at most. The tip of a drop looks like the center of a
+    /// sphere from one direction, and the rim of a thin disc nearly so from several.
+    pub fn is_seen_twice<const N: usize>(
         &self,
         set: &VertexSet<N>,
-        vertex: &Vertex,
-        upper: &UpperBound,
+        pair: VertexPair,
         tolerance: f64,
     ) -> bool {
-        let [core, ..] = self.core(set, &[*vertex; 3]);
-        (upper.dir.dot(&core) + self.sum() - upper.depth).abs() <= tolerance
-    }
-
-    /// Returns whether the centers of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
-    /// directions each. The tip of a drop looks like the center of a sphere from one direction.
-    pub fn is_seen_twice<const N: usize>(&self, set: &VertexSet<N>, pair: VertexPair) -> bool {
         let [r1, r2] = self.radius;
+        let most = lesser(EXACT_CENTER_REL * self.sum(), tolerance);
         let center1 = |i: usize| set.vertex1(i) - set.dir(i) * r1;
         let center2 = |i: usize| set.vertex2(i) + set.dir(i) * r2;
         let (a, b) = (usize::from(pair.a), usize::from(pair.b));
@@ -294,14 +289,14 @@ impl SphereFit {
             let at = center(i);
             !(radius > 0.0)
                 || (0..set.len()).any(|k| {
-                    is_other(i, k) && (center(k) - at).norm() <= EXACT_CENTER_REL * self.sum()
+                    is_other(i, k) && (center(k) - at).norm() <= most
                 })
         };
         is_twice(r1, a, &center1) && is_twice(r2, b, &center2)
     }
 
-    /// Returns whether the spheres at which the upper bound is found were seen twice: that of its entry, and those
-    /// of the corners.
+    /// Returns whether the spheres that carry an answer were seen twice: that of the upper bound's entry, and those of
+    /// the corners that share in the witness points.
     pub fn is_real<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -309,10 +304,16 @@ impl SphereFit {
         upper: &UpperBound,
         tolerance: f64,
     ) -> bool {
-        self.is_seen_twice(set, VertexSet::<N>::sample(upper.index))
-            && corners.iter().all(|v| {
-                !self.is_core_active(set, v, upper, tolerance) || self.is_seen_twice(set, v.pair)
-            })
+        let weights = self.weights(set, corners);
+        self.is_seen_twice(set, VertexSet::<N>::sample(upper.index), tolerance)
+            && (weights.iter().zip(corners))
+                .all(|(weight, v)| !(*weight > 0.0) || self.is_seen_twice(set, v.pair, tolerance))
+    }
+
+    /// Returns the shares of the corners' spheres in the point of their core that is closest to the origin.
+    fn weights<const N: usize>(&self, set: &VertexSet<N>, corners: &[Vertex; 3]) -> [f64; 3] {
+        let [a, b, c] = self.core(set, corners);
+        barycentric::triangle(&Vec3::zeros(), &a, &b, &c).weights
     }
 
     /// Returns the witness points of unit `dir` on the spheres of the corners: where the line along it through the
@@ -323,8 +324,7 @@ impl SphereFit {
         corners: &[Vertex; 3],
         dir: &Vec3,
     ) -> [Vec3; 2] {
-        let [a, b, c] = self.core(set, corners);
-        let weights = barycentric::triangle(&Vec3::zeros(), &a, &b, &c).weights;
+        let weights = self.weights(set, corners);
         let [r1, r2] = self.radius;
         let mut points = [dir * r1, -dir * r2];
         for (weight, v) in weights.iter().zip(corners) {

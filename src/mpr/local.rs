@@ -470,16 +470,15 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     fn is_met(&self, prediction: &Prediction, tolerance: f64) -> bool {
         let UpperBound { depth, dir, .. } = self.query.upper;
         let turn2 = (prediction.dir - dir).norm_squared();
-        match prediction.model {
+        let is_met = match prediction.model {
             Model::Sphere => {
                 let off = (self.fit.sum() - depth).powi(2);
-                self.is_level(prediction.value, tolerance)
-                    && turn2 * self.fit.sum() <= 0.5 * tolerance
-                    && turn2 * off <= depth * tolerance
+                turn2 * self.fit.sum() <= 0.5 * tolerance && turn2 * off <= depth * tolerance
             }
             // A direction that was queried tells nothing new.
             Model::Smooth(_) => turn2 < 1e-14 || self.has_meeting_vertices(tolerance),
-        }
+        };
+        is_met && self.is_level(prediction.value, tolerance)
     }
 
     /// Returns whether the vertices of the least support value meet when one is moved along its direction.
@@ -542,9 +541,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 if !self.is_least_beside(step, &upper, &ring, tolerance)? {
                     return Ok(false);
                 }
+                let apart = tolerance + self.query.scale.height_eps();
                 let is_real =
-                    self.fit
-                        .is_real(self.set, &face.corners, &self.query.upper, tolerance);
+                    (self.fit).is_real(self.set, &face.corners, &self.query.upper, apart);
                 if !is_real {
                     self.sphere_misses = MAX_MISSES;
                 }
@@ -563,6 +562,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         tolerance: f64,
     ) -> Result<bool, Halt> {
         let (before, before_len) = (self.query.upper.depth, self.set.len());
+        let apart = tolerance + self.query.scale.height_eps();
         let narrow = 2.5 * TILT_RAD;
         let is_sphere = matches!(step, Step::Fit(Model::Sphere));
         let far = if is_sphere { 0.6 } else { narrow };
@@ -582,7 +582,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     && across.dot(way) > cosine * sine
                     && (!is_sphere
                         || k >= before_len
-                        || walk.fit.is_seen_twice(walk.set, VertexSet::<N>::sample(k)))
+                        || walk.fit.is_seen_twice(walk.set, VertexSet::<N>::sample(k), apart))
             };
             if (0..self.set.len()).any(|k| is_near(self, k)) {
                 continue;
