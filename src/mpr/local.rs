@@ -96,19 +96,29 @@ impl Face {
         })
     }
 
-    /// Returns the distance of the foot of the origin from the closest edge, metres; negative where the foot
-    /// is outside.
+    /// Returns whether the foot of the origin is in the face, or outside by `eps`, metres, at most.
+    fn has_foot(&self, eps: f64) -> bool {
+        (0..3).all(|i| {
+            let (side, length2) = self.side(i);
+            side >= 0.0 || side * side <= eps * eps * length2
+        })
+    }
+
+    /// Returns the distance of a foot in the face from the closest edge, metres.
     fn inset(&self) -> f64 {
-        let foot = self.normal * self.offset;
-        let mut least = f64::INFINITY;
-        for i in 0..3 {
-            let (a, edge) = (self.corners[i].w, self.edge(i));
-            least = lesser(
-                self.normal.cross(&edge).dot(&(foot - a)) / edge.norm(),
-                least,
-            );
-        }
-        least
+        (0..3).fold(f64::INFINITY, |least, i| {
+            let (side, length2) = self.side(i);
+            lesser(side / length2.sqrt(), least)
+        })
+    }
+
+    /// Returns the distance of the foot from the line of edge `i`, positive inside, times the length of the edge,
+    /// and the square of that length.
+    fn side(&self, i: usize) -> (f64, f64) {
+        let edge = self.edge(i);
+        // The foot is on the normal.
+        let side = -self.normal.dot(&edge.cross(&self.corners[i].w));
+        (side, edge.norm_squared())
     }
 
     fn edge(&self, i: usize) -> Vec3 {
@@ -338,13 +348,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // A corner is above by rounding.
             let is_corner = portal.iter().any(|v| v.pair == w.pair);
             if is_corner || !(height > KNOWN_LEVEL * tolerance + height_eps) {
-                let inset = if face.offset > 0.0 {
-                    face.inset()
-                } else {
-                    -1.0
-                };
-                let is_inside = inset >= -4.0 * height_eps;
-                if let Some(step) = self.step_on_known(&face, inset, is_inside, tolerance) {
+                let is_inside = face.offset > 0.0 && face.has_foot(4.0 * height_eps);
+                if let Some(step) = self.step_on_known(&face, is_inside, tolerance) {
                     return Ok((step, face));
                 }
                 self.fit.update(self.set, self.query.upper.index);
@@ -401,24 +406,25 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     fn step_on_known(
         &self,
         face: &Face,
-        inset: f64,
         is_inside: bool,
         tolerance: f64,
     ) -> Option<Step> {
         let UpperBound { depth, dir, .. } = self.query.upper;
         let cosine = face.normal.dot(&dir);
         let angle2 = 2.0 * (1.0 - cosine);
-        let cone = 2.0 * inset / face.offset;
-        // So far beside the foot the witness points still meet.
-        let allowed2 = if cone < TILT_RAD {
-            lesser(0.04 * TILT_RAD * TILT_RAD, tolerance / depth)
-        } else {
-            0.25 * cone * cone
-        };
         // The rest is left for the witness points.
         let is_level = (face.offset - depth).abs() <= 0.8 * tolerance;
-        if is_inside && is_level && angle2 <= allowed2 {
-            return Some(Step::Face { dir, depth });
+        if is_inside && is_level {
+            let cone = 2.0 * face.inset() / face.offset;
+            // So far beside the foot the witness points still meet.
+            let allowed2 = if cone < TILT_RAD {
+                lesser(0.04 * TILT_RAD * TILT_RAD, tolerance / depth)
+            } else {
+                0.25 * cone * cone
+            };
+            if angle2 <= allowed2 {
+                return Some(Step::Face { dir, depth });
+            }
         }
         // This valley is higher.
         if face.offset > depth + tolerance && angle2 > 1e-12 {
@@ -445,7 +451,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             })
         };
         let newton = || {
-            let is_used = self.newton_misses < MAX_MISSES;
+            let is_used = self.newton_misses < MAX_MISSES && self.set.len() >= 4;
             is_used.then(|| newton_step(self.set, &self.query.upper))?
         };
         if self.fit.radius.iter().all(|r| *r > 0.0) {
