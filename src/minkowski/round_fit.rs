@@ -288,9 +288,7 @@ impl SphereFit {
         let is_twice = |radius: f64, i: usize, center: &dyn Fn(usize) -> Vec3| {
             let at = center(i);
             !(radius > 0.0)
-                || (0..set.len()).any(|k| {
-                    is_other(i, k) && (center(k) - at).norm() <= most
-                })
+                || (0..set.len()).any(|k| is_other(i, k) && (center(k) - at).norm() <= most)
         };
         is_twice(r1, a, &center1) && is_twice(r2, b, &center2)
     }

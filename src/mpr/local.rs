@@ -33,6 +33,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::contact::{Penetration, Settings, Status};
+use crate::epa::plane::Tetrahedron;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
@@ -43,7 +44,7 @@ use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{KNOWN_LEVEL, discover, replace_corner};
 
 /// The support calls of a walk, at most. Measured: 12 of 12,000 walks on the pair sets end without a minimum.
-pub const MAX_SAMPLES: usize = 60;
+pub const MAX_SAMPLES: usize = 48;
 /// The rays of a walk, at most.
 const MAX_RAYS: u32 = 60;
 /// The steps of one portal on known vertices, at most.
@@ -61,16 +62,16 @@ const MIN_GAIN: f64 = 0.3;
 const MAX_MISS: f64 = 0.3;
 /// The tangent of the tilt of the query against the start. Insensitive: 0.01 to 0.15.
 const ASLANT_TAN: f64 = 0.05;
-/// The rounding of a triple product, as a share of the three lengths. Derived: twice three products and two sums.
-const SIDE_EPS: f64 = 8.0 * f64::EPSILON;
 /// The largest trusted radius, as a share of the distance of the centers and the depth.
 const MAX_RADIUS: f64 = 1.5;
-/// The predictions that miss before a fit is not used any more.
-const MAX_MISSES: u32 = 5;
+/// Half of the square of the angle below which two directions are one.
+const SAME_DIR_EPS: f64 = 1e-13;
 
 /// The largest tangent of the angle between the entry of the least support value and those that tell its
 /// curvature, and of Newton's step.
 const MAX_NEWTON_TAN: f64 = 0.4;
+/// The number of support calls before it is used.
+const MIN_NEWTON_SAMPLES: usize = 4;
 /// The share by which e and f of two entries may differ for a smooth D.
 const SMOOTH_REL_TOL: f64 = 0.1;
 
@@ -197,8 +198,6 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     /// The centers' difference, else the support point against the start: in D for certain.
     apex: Vec3,
     iterations: u64,
-    sphere_misses: u32,
-    newton_misses: u32,
 }
 
 /// Finds a local minimum of the penetration depth from unit `start`. The set may hold entries. `fit` brings
@@ -223,8 +222,6 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         fit,
         settings,
         iterations: 0,
-        sphere_misses: 0,
-        newton_misses: 0,
     };
     walk.fit.is_exact = true;
     let found = walk.run(start);
@@ -403,12 +400,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Returns the next step from a face above which no known difference lies, if none needs a query.
-    fn step_on_known(
-        &self,
-        face: &Face,
-        is_inside: bool,
-        tolerance: f64,
-    ) -> Option<Step> {
+    fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<Step> {
         let UpperBound { depth, dir, .. } = self.query.upper;
         let cosine = face.normal.dot(&dir);
         let angle2 = 2.0 * (1.0 - cosine);
@@ -416,13 +408,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let is_level = (face.offset - depth).abs() <= 0.8 * tolerance;
         if is_inside && is_level {
             let cone = 2.0 * face.inset() / face.offset;
-            // So far beside the foot the witness points still meet.
-            let allowed2 = if cone < TILT_RAD {
-                lesser(0.04 * TILT_RAD * TILT_RAD, tolerance / depth)
-            } else {
-                0.25 * cone * cone
-            };
-            if angle2 <= allowed2 {
+            if angle2 <= 0.25 * cone * cone {
                 return Some(Step::Face { dir, depth });
             }
         }
@@ -433,32 +419,28 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         None
     }
 
-    /// Returns the minimum that the sphere fits of both objects predict, else Newton's, else that of one sphere fit;
-    /// of a model whose predictions have missed too often none.
+    /// Returns the minimum that the sphere fits predict, else Newton's direction of a smooth D, in a direction that
+    /// was not queried yet, or is that of the least support value.
     fn predict(&self, face: &Face) -> Option<Prediction> {
-        let sphere = || {
-            let sum = self.fit.sum();
-            let found = self.fit.predict(self.set, &face.corners, &face.normal);
-            // Balls about one center: any direction.
-            let is_concentric =
-                self.is_centered && self.interior.norm() <= MIN_CORE_DISTANCE_REL * sum;
-            let found = found.or_else(|| is_concentric.then_some((face.normal, sum)));
-            let (dir, value) = found.filter(|_| self.sphere_misses < MAX_MISSES)?;
-            Some(Prediction {
-                model: Model::Sphere,
-                dir,
-                value,
-            })
-        };
-        let newton = || {
-            let is_used = self.newton_misses < MAX_MISSES && self.set.len() >= 4;
-            is_used.then(|| newton_step(self.set, &self.query.upper))?
-        };
-        if self.fit.radius.iter().all(|r| *r > 0.0) {
-            sphere().or_else(newton)
-        } else {
-            newton().or_else(sphere)
-        }
+        let found = self.fit.predict(self.set, &face.corners, &face.normal);
+        // Balls about one center: any direction.
+        let sum = self.fit.sum();
+        let is_concentric = self.is_centered && self.interior.norm() <= MIN_CORE_DISTANCE_REL * sum;
+        let found = found.or_else(|| is_concentric.then_some((face.normal, sum)));
+        let sphere = found.map(|(dir, value)| Prediction {
+            model: Model::Sphere,
+            dir,
+            value,
+        });
+        sphere
+            .filter(|p| self.is_new(&p.dir))
+            .or_else(|| newton_step(self.set, &self.query.upper).filter(|p| self.is_new(&p.dir)))
+    }
+
+    /// Returns whether unit `dir` was not queried yet, or is the direction of the least support value.
+    fn is_new(&self, dir: &Vec3) -> bool {
+        let is_same = |n: &Vec3| n.dot(dir) > 1.0 - SAME_DIR_EPS;
+        is_same(&self.query.upper.dir) || !(0..self.set.len()).any(|k| is_same(&self.set.dir(k)))
     }
 
     /// Returns whether a prediction is lower than the least support value by enough for a query.
@@ -505,18 +487,14 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let value = prediction.value;
         let slack = larger(MAX_MISS * (before - value), KNOWN_LEVEL * tolerance);
         let is_true = h < value + slack;
-        let (misses, has_meeting) = match prediction.model {
+        let has_meeting = match prediction.model {
             Model::Sphere => {
                 self.fit.is_confirmed = is_true;
-                (&mut self.sphere_misses, true)
+                true
             }
-            Model::Smooth(_) => {
-                let has_meeting = self.has_meeting_vertices(tolerance);
-                (&mut self.newton_misses, has_meeting)
-            }
+            Model::Smooth(_) => self.has_meeting_vertices(tolerance),
         };
         if !is_true {
-            *misses += 1;
             return None;
         }
         let is_minimum = (h - value).abs() <= 0.5 * tolerance && has_meeting;
@@ -548,10 +526,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     return Ok(false);
                 }
                 let apart = tolerance + self.query.scale.height_eps();
-                let is_real =
-                    (self.fit).is_real(self.set, &face.corners, &self.query.upper, apart);
+                let is_real = (self.fit).is_real(self.set, &face.corners, &self.query.upper, apart);
                 if !is_real {
-                    self.sphere_misses = MAX_MISSES;
+                    self.fit.radius = [0.0; 2];
                 }
                 Ok(is_real)
             }
@@ -588,7 +565,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     && across.dot(way) > cosine * sine
                     && (!is_sphere
                         || k >= before_len
-                        || walk.fit.is_seen_twice(walk.set, VertexSet::<N>::sample(k), apart))
+                        || walk
+                            .fit
+                            .is_seen_twice(walk.set, VertexSet::<N>::sample(k), apart))
             };
             if (0..self.set.len()).any(|k| is_near(self, k)) {
                 continue;
@@ -645,10 +624,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if self.is_centered && !is_trusted {
             return Err(Halt::Status(Status::InconsistentSupport));
         }
-        // A trusted center is well inside D: an edge or a side of the tetrahedron may hold the origin.
-        let slack = if is_trusted { -SIDE_EPS } else { SIDE_EPS };
-        let eps = self.query.scale.height_eps();
-        if is_beyond_origin(face, eps) && is_crossed(&face.corners, &self.apex, slack) {
+        let [a, b, c] = face.corners.map(|v| v.w);
+        let ulp = f64::EPSILON * self.query.scale.size();
+        let tetrahedron = Tetrahedron::new([self.apex, a, b, c], ulp);
+        if tetrahedron.is_some_and(|t| t.inner_radius() > t.error) {
             return Ok(());
         }
         let v = self.interior;
@@ -661,21 +640,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         contains_origin(self.query, self.set, center, &face.normal, false)?;
         Ok(())
     }
-}
-
-/// Returns whether all of a face is beyond the origin, along its normal, by `eps`, metres.
-fn is_beyond_origin(face: &Face, eps: f64) -> bool {
-    (face.corners.iter()).all(|v| face.normal.dot(&v.w) > eps)
-}
-
-/// Returns whether the ray from a point through the origin passes through a portal, by `slack`, a share of the lengths
-/// of the edges of their tetrahedron.
-fn is_crossed(portal: &[Vertex; 3], from: &Vec3, slack: f64) -> bool {
-    let [a, b, c] = portal.each_ref().map(|v| v.w - from);
-    let length = from.norm();
-    [(a, b), (b, c), (c, a)]
-        .iter()
-        .all(|(p, q)| -from.dot(&p.cross(q)) >= slack * (length * p.norm() * q.norm()))
 }
 
 /// Returns whether two entries lie beyond each other's planes alike, as those of a smooth D do: by e and f, up to a
@@ -692,6 +656,9 @@ fn is_alike<const N: usize>(set: &VertexSet<N>, i: usize, k: usize, share: f64) 
 /// In the plane of directions n + x the support function is h + g x + x R x / 2, g the part of the support point
 /// across n and R its derivative; divided by the length of n + x it has the gradient g + (R − h) x.
 fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<Prediction> {
+    if set.len() < MIN_NEWTON_SAMPLES {
+        return None;
+    }
     let n = upper.dir;
     let at = set.difference(VertexSet::<N>::sample(upper.index));
     let e1 = perpendicular(&n);
