@@ -6,4 +6,5 @@
 pub mod directional;
 pub mod gao;
 pub mod local;
+pub mod newton;
 pub mod portal;

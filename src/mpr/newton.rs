@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Newton's step to a minimum of the support function, from known support points.
+//!
+//! Reference: J. Nocedal, S. Wright, "Numerical Optimization", chapters 3 and 6 (a Newton step whose Hessian is
+//! fitted to gradients).
+//!
+//! 1. *Gradient*: the support point of the least support value, less its part along the direction.
+//! 2. *Hessian*: from the two known support points nearest to it in direction that lie beyond each other's planes
+//!    alike, as those of a smooth D do.
+//! 3. *Step*: none where the Hessian has no minimum, or the step is longer than [`MAX_NEWTON_TAN`].
+//!
+//! Validity. The step tells where to query next; it proves nothing.
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::math::{Vec3, normalised, perpendicular};
+use crate::minkowski::query::UpperBound;
+use crate::minkowski::vertex_set::VertexSet;
+
+/// The largest tangent of the angle between the entry of the least support value and those that tell its
+/// curvature, and of Newton's step.
+const MAX_NEWTON_TAN: f64 = 0.4;
+/// The number of support calls before the step is used.
+const MIN_NEWTON_SAMPLES: usize = 4;
+/// The share by which e and f of two entries may differ for a smooth D.
+const SMOOTH_REL_TOL: f64 = 0.1;
+
+/// The minimum of the support function that Newton's step predicts.
+pub struct NewtonStep {
+    /// Unit.
+    pub dir: Vec3,
+    /// The support value, metres.
+    pub value: f64,
+    /// The unit vector across the direction of the least support value along which D is the flattest.
+    pub flattest: Vec3,
+}
+
+/// Returns the minimum that Newton's direction from the entry of the least support value predicts; `None` where no
+/// two entries near there tell the curvature, or the support function has no minimum near there.
+///
+/// In the plane of directions n + x the support function is h + g x + x R x / 2, g the part of the support point
+/// across n and R its derivative; divided by the length of n + x it has the gradient g + (R − h) x.
+pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<NewtonStep> {
+    if set.len() < MIN_NEWTON_SAMPLES {
+        return None;
+    }
+    let n = upper.dir;
+    let at = set.difference(VertexSet::<N>::sample(upper.index));
+    let e1 = perpendicular(&n);
+    let e2 = n.cross(&e1);
+    let tangent = |v: &Vec3| Vector2::new(v.dot(&e1), v.dot(&e2));
+    let mut best: [Option<(Vector2<f64>, Vector2<f64>)>; 2] = [None; 2];
+    for pass in 0..2 {
+        let mut least = MAX_NEWTON_TAN * MAX_NEWTON_TAN;
+        for k in (0..set.len()).filter(|k| *k != upper.index) {
+            let cosine = set.dir(k).dot(&n);
+            let x2 = 1.0 / (cosine * cosine) - 1.0;
+            let is_near = cosine > 0.0 && x2 < least && x2 > 1e-10;
+            if !is_near || !is_alike(set, upper.index, k, SMOOTH_REL_TOL) {
+                continue;
+            }
+            let x = tangent(&set.dir(k)) / cosine;
+            let d = set.difference(VertexSet::<N>::sample(k)) - at;
+            if pass > 0 {
+                // Not on a line with the first.
+                let first = best[0]?.0;
+                let area = first.perp(&x);
+                if area * area < 0.1 * x2 * first.norm_squared() {
+                    continue;
+                }
+            }
+            least = x2;
+            best[pass] = Some((x, tangent(&d)));
+        }
+    }
+    let [(x1, y1), (x2, y2)] = [best[0]?, best[1]?];
+    let slope =
+        Matrix2::from_columns(&[y1, y2]) * Matrix2::from_columns(&[x1, x2]).try_inverse()?;
+    let curvature = (slope + slope.transpose()) * 0.5;
+    let h = upper.depth;
+    let hessian = curvature - Matrix2::identity() * h;
+    let (a, c) = (hessian.m11, hessian.m22);
+    let is_minimum = a > 0.0 && hessian.determinant() > 0.01 * a * c;
+    if !is_minimum {
+        return None;
+    }
+    let g = tangent(&at);
+    let x = -(hessian.try_inverse()? * g);
+    let x2 = x.norm_squared();
+    if !(x2 < MAX_NEWTON_TAN * MAX_NEWTON_TAN) {
+        return None;
+    }
+    let value = (h + g.dot(&x) + 0.5 * x.dot(&(curvature * x))) / (1.0 + x2).sqrt();
+    let dir = normalised(&(n + e1 * x.x + e2 * x.y))?;
+    let v = flattest_axis(&curvature);
+    Some(NewtonStep {
+        dir,
+        value,
+        flattest: e1 * v.x + e2 * v.y,
+    })
+}
+
+/// Returns whether two entries lie beyond each other's planes alike, as those of a smooth D do: by e and f, up to a
+/// share of their sum.
+fn is_alike<const N: usize>(set: &VertexSet<N>, i: usize, k: usize, share: f64) -> bool {
+    let d = set.difference(VertexSet::<N>::sample(k)) - set.difference(VertexSet::<N>::sample(i));
+    let (e, f) = (set.dir(k).dot(&d), -set.dir(i).dot(&d));
+    e + f > 0.0 && (e - f).abs() <= share * (e + f)
+}
+
+/// Returns the unit eigenvector of the least eigenvalue of a symmetric matrix. In closed form: nalgebra's
+/// decomposition can panic.
+fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
+    let (a, b, c) = (m.m11, m.m12, m.m22);
+    let least = 0.5 * (a + c) - (0.5 * (a - c)).hypot(b);
+    // Both are eigenvectors; the longer one has digits.
+    let (p, q) = (Vector2::new(b, least - a), Vector2::new(least - c, b));
+    let longer = if p.norm_squared() > q.norm_squared() {
+        p
+    } else {
+        q
+    };
+    let norm = longer.norm();
+    if norm > 0.0 {
+        longer / norm
+    } else {
+        Vector2::x()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::minkowski::query::SupportQuery;
+    use crate::minkowski::support::MinkowskiDifference;
+    use crate::shapes::{Random, Rotation, ellipsoid};
+
+    #[test]
+    fn the_flattest_axis_is_an_eigenvector() {
+        let mut r = Random::new(3);
+        for _ in 0..100 {
+            let (a, b, c) = (r.within(0.1, 2.0), r.within(-1.0, 1.0), r.within(0.1, 2.0));
+            let m = Matrix2::new(a, b, b, c);
+            let v = flattest_axis(&m);
+            let least = v.dot(&(m * v));
+            assert!((m * v - v * least).norm() < 1e-12 && least <= a.min(c) + 1e-12);
+        }
+        assert_eq!(flattest_axis(&Matrix2::identity()), Vector2::x());
+    }
+
+    /// From directions near the shortest axis of an ellipsoid the step reaches it to second order.
+    #[test]
+    fn the_step_leads_to_the_shortest_axis() {
+        let mut r = Random::new(4);
+        for _ in 0..100 {
+            let radii = Vec3::new(r.within(0.5, 0.6), r.within(0.8, 1.0), r.within(0.8, 1.0));
+            let body = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
+            let md = MinkowskiDifference::new(body, |_: &Vec3| Vec3::zeros());
+            let mut query = SupportQuery::new(&md, None);
+            let mut set = VertexSet::<8>::EMPTY;
+            for y in [0.02, -0.03, 0.01] {
+                for z in [0.03, -0.02] {
+                    let n = Vec3::new(1.0, y, z).normalize();
+                    query.evaluate(&mut set, &n).unwrap();
+                }
+            }
+            let step = newton_step(&set, &query.upper).unwrap();
+            assert!((step.dir - Vec3::x()).norm() < 2e-3, "{:?}", step.dir);
+            assert!((step.value - radii.x).abs() < 1e-5, "{}", step.value);
+            assert!(step.flattest.x.abs() < 0.05);
+        }
+    }
+}
