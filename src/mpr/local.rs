@@ -43,7 +43,7 @@ use crate::mpr::newton::newton_step;
 use crate::mpr::portal::{KNOWN_LEVEL, discover, replace_corner};
 
 /// The support calls of a walk, at most. Measured: 12 of 12,000 walks on the pair sets end without a minimum.
-pub const MAX_SAMPLES: usize = 48;
+pub const MAX_SAMPLES: usize = 60;
 /// The rays of a walk, at most.
 const MAX_RAYS: u32 = 60;
 /// The steps of one portal on known vertices, at most.
@@ -63,6 +63,8 @@ const MAX_MISS: f64 = 0.3;
 const ASLANT_TAN: f64 = 0.05;
 /// The largest trusted radius, as a share of the distance of the centers and the depth.
 const MAX_RADIUS: f64 = 1.5;
+/// The predictions of a model that miss before it is not used any more.
+const MAX_MISSES: u32 = 5;
 /// Half of the square of the angle below which two directions are one.
 const SAME_DIR_EPS: f64 = 1e-13;
 
@@ -189,6 +191,8 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     /// The centers' difference, else the support point against the start: in D for certain.
     apex: Vec3,
     iterations: u64,
+    sphere_misses: u32,
+    newton_misses: u32,
 }
 
 /// Finds a local minimum of the penetration depth from unit `start`. The set may hold entries. `fit` brings
@@ -213,6 +217,8 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         fit,
         settings,
         iterations: 0,
+        sphere_misses: 0,
+        newton_misses: 0,
     };
     walk.fit.is_exact = true;
     let found = walk.run(start);
@@ -399,9 +405,13 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let is_level = (face.offset - depth).abs() <= 0.8 * tolerance;
         if is_inside && is_level {
             let cone = 2.0 * face.inset() / face.offset;
-            // So far beside the foot of a narrow face the witness points still meet.
-            let beside2 = lesser(0.04 * TILT_RAD * TILT_RAD, tolerance / depth);
-            if angle2 <= larger(0.25 * cone * cone, beside2) {
+            // So far beside the foot the witness points still meet.
+            let allowed2 = if cone < TILT_RAD {
+                lesser(0.04 * TILT_RAD * TILT_RAD, tolerance / depth)
+            } else {
+                0.25 * cone * cone
+            };
+            if angle2 <= allowed2 {
                 return Some(Step::Face { dir, depth });
             }
         }
@@ -426,7 +436,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             value,
         });
         let smooth = || {
-            let step = newton_step(self.set, &self.query.upper)?;
+            let is_used = self.newton_misses < MAX_MISSES;
+            let step = is_used.then(|| newton_step(self.set, &self.query.upper))??;
             Some(Prediction {
                 model: Model::Smooth(step.flattest),
                 dir: step.dir,
@@ -434,7 +445,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             })
         };
         sphere
-            .filter(|p| self.is_new(&p.dir))
+            .filter(|p| self.sphere_misses < MAX_MISSES && self.is_new(&p.dir))
             .or_else(|| smooth().filter(|p| self.is_new(&p.dir)))
     }
 
@@ -496,6 +507,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             Model::Smooth(_) => self.has_meeting_vertices(tolerance),
         };
         if !is_true {
+            match prediction.model {
+                Model::Sphere => self.sphere_misses += 1,
+                Model::Smooth(_) => self.newton_misses += 1,
+            }
             return None;
         }
         let is_minimum = (h - value).abs() <= 0.5 * tolerance && has_meeting;
@@ -529,7 +544,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let apart = tolerance + self.query.scale.height_eps();
                 let is_real = (self.fit).is_real(self.set, &face.corners, &self.query.upper, apart);
                 if !is_real {
-                    self.fit.radius = [0.0; 2];
+                    self.sphere_misses = MAX_MISSES;
                 }
                 Ok(is_real)
             }

@@ -22,8 +22,8 @@ use crate::minkowski::vertex_set::VertexSet;
 /// The largest tangent of the angle between the entry of the least support value and those that tell its
 /// curvature, and of Newton's step.
 const MAX_NEWTON_TAN: f64 = 0.4;
-/// The number of support calls before the step is used.
-const MIN_NEWTON_SAMPLES: usize = 4;
+/// Half of the square of the angle between two directions that tell no curvature.
+const MIN_NEWTON_TURN: f64 = 5e-11;
 /// The share by which e and f of two entries may differ for a smooth D.
 const SMOOTH_REL_TOL: f64 = 0.1;
 
@@ -43,39 +43,21 @@ pub struct NewtonStep {
 /// In the plane of directions n + x the support function is h + g x + x R x / 2, g the part of the support point
 /// across n and R its derivative; divided by the length of n + x it has the gradient g + (R − h) x.
 pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<NewtonStep> {
-    if set.len() < MIN_NEWTON_SAMPLES {
-        return None;
-    }
     let n = upper.dir;
     let at = set.difference(VertexSet::<N>::sample(upper.index));
+    let first = nearest(set, upper, |_| true)?;
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);
     let tangent = |v: &Vec3| Vector2::new(v.dot(&e1), v.dot(&e2));
-    let mut best: [Option<(Vector2<f64>, Vector2<f64>)>; 2] = [None; 2];
-    for pass in 0..2 {
-        let mut least = MAX_NEWTON_TAN * MAX_NEWTON_TAN;
-        for k in (0..set.len()).filter(|k| *k != upper.index) {
-            let cosine = set.dir(k).dot(&n);
-            let x2 = 1.0 / (cosine * cosine) - 1.0;
-            let is_near = cosine > 0.0 && x2 < least && x2 > 1e-10;
-            if !is_near || !is_alike(set, upper.index, k, SMOOTH_REL_TOL) {
-                continue;
-            }
-            let x = tangent(&set.dir(k)) / cosine;
-            let d = set.difference(VertexSet::<N>::sample(k)) - at;
-            if pass > 0 {
-                // Not on a line with the first.
-                let first = best[0]?.0;
-                let area = first.perp(&x);
-                if area * area < 0.1 * x2 * first.norm_squared() {
-                    continue;
-                }
-            }
-            least = x2;
-            best[pass] = Some((x, tangent(&d)));
-        }
-    }
-    let [(x1, y1), (x2, y2)] = [best[0]?, best[1]?];
+    let turn = |k: usize| tangent(&set.dir(k)) / set.dir(k).dot(&n);
+    let moved = |k: usize| tangent(&(set.difference(VertexSet::<N>::sample(k)) - at));
+    let x1 = turn(first);
+    // Not on a line with the first.
+    let second = nearest(set, upper, |k| {
+        let x = turn(k);
+        x1.perp(&x).powi(2) > 0.1 * x.norm_squared() * x1.norm_squared()
+    })?;
+    let (x2, y1, y2) = (turn(second), moved(first), moved(second));
     let slope =
         Matrix2::from_columns(&[y1, y2]) * Matrix2::from_columns(&[x1, x2]).try_inverse()?;
     let curvature = (slope + slope.transpose()) * 0.5;
@@ -102,12 +84,30 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Op
     })
 }
 
-/// Returns whether two entries lie beyond each other's planes alike, as those of a smooth D do: by e and f, up to a
-/// share of their sum.
-fn is_alike<const N: usize>(set: &VertexSet<N>, i: usize, k: usize, share: f64) -> bool {
+/// Returns the entry nearest in direction to that of the least support value, of those that are accepted, not the
+/// same direction, and on the same smooth part of D.
+fn nearest<const N: usize>(
+    set: &VertexSet<N>,
+    upper: &UpperBound,
+    is_accepted: impl Fn(usize) -> bool,
+) -> Option<usize> {
+    let mut best = (None, 1.0 / (1.0 + MAX_NEWTON_TAN * MAX_NEWTON_TAN).sqrt());
+    for k in 0..set.len() {
+        let cosine = set.dir(k).dot(&upper.dir);
+        let is_near = cosine > best.1 && cosine < 1.0 - MIN_NEWTON_TURN;
+        if is_near && k != upper.index && is_alike(set, upper.index, k) && is_accepted(k) {
+            best = (Some(k), cosine);
+        }
+    }
+    best.0
+}
+
+/// Returns whether two entries lie beyond each other's planes alike, as those of a smooth D do: by e and f, up to
+/// [`SMOOTH_REL_TOL`].
+fn is_alike<const N: usize>(set: &VertexSet<N>, i: usize, k: usize) -> bool {
     let d = set.difference(VertexSet::<N>::sample(k)) - set.difference(VertexSet::<N>::sample(i));
     let (e, f) = (set.dir(k).dot(&d), -set.dir(i).dot(&d));
-    e + f > 0.0 && (e - f).abs() <= share * (e + f)
+    e + f > 0.0 && (e - f).abs() <= SMOOTH_REL_TOL * (e + f)
 }
 
 /// Returns the unit eigenvector of the least eigenvalue of a symmetric matrix. In closed form: nalgebra's
