@@ -102,6 +102,19 @@ pub fn cpp(source: &str) -> Program {
         .flag("-isystem/usr/include/eigen3")
 }
 
+/// Of each kind of body, on either library: how far FCL's contact positions are off, metres rms.
+pub fn fcl_positions() -> Vec<(String, [f64; 2])> {
+    let program = Swapped::new("FCL", cpp("fcl_position").library("fcl"), "0");
+    let rms = |line: &String| {
+        let words: Vec<&str> = line.strip_prefix("position ")?.split(' ').collect();
+        Some((words[0].to_owned(), words[4].parse().expect("metres")))
+    };
+    let lines = program.run("1 200");
+    let both = lines[0].iter().filter_map(rms);
+    let both = both.zip(lines[1].iter().filter_map(rms));
+    both.map(|((kind, a), (_, b))| (kind, [a, b])).collect()
+}
+
 pub fn fcl_static() -> Swapped {
     Swapped::new("FCL", cpp("fcl_static").library("fcl"), "0")
 }

@@ -30,6 +30,17 @@ fn piles_must_pass(p: &Piles) {
     assert!(against.is_empty(), "{} {}:\n{against}", p.consumer, p.scene);
 }
 
+/// To 7 mm, as `pos` itself (`tests/extension/pressure.c`); a point contact is where libccd has it.
+#[test]
+fn fcl_positions_are_the_centre_of_pressure() {
+    let all = checks::fcl_positions();
+    assert_eq!(all.len(), 6);
+    for (kind, [theirs, ours]) in all {
+        assert!(ours <= 0.007, "{kind}: {ours} m, libccd's {theirs}");
+        assert!(ours <= 0.1 * theirs || ours <= 1e-4, "{kind}: {ours}");
+    }
+}
+
 fn collide_must_pass(what: &'static str, lines: &[Vec<String>]) -> f64 {
     let s = checks::judge_collide(what, lines);
     assert!(s.collide[1]["queries"] > 1000.0, "too few queries: {s:?}");
