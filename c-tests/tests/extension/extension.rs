@@ -6,7 +6,9 @@
 #[path = "../../harness/mod.rs"]
 mod harness;
 
-use harness::Program;
+use harness::{Precision, Program};
+use std::path::Path;
+use std::process::Command;
 
 const NO_ARGS: [&str; 0] = [];
 
@@ -77,10 +79,10 @@ fn contacts_are_the_exact_ones() {
 /// for each.
 #[test]
 fn fcl_header() {
-    let (standards, flags): (&[&str], [&str; 2]) = match harness::Precision::CURRENT {
-        harness::Precision::Double if harness::under_tool() => (&["c++17"], ["-O1", "-g"]),
-        harness::Precision::Double => (&["c++11", "c++17"], ["-O2", "-g"]),
-        harness::Precision::Single => (&["c++11"], ["-O0", "-g0"]),
+    let (standards, flags): (&[&str], [&str; 2]) = match Precision::CURRENT {
+        Precision::Double if harness::under_tool() => (&["c++17"], ["-O1", "-g"]),
+        Precision::Double => (&["c++11", "c++17"], ["-O2", "-g"]),
+        Precision::Single => (&["c++11"], ["-O0", "-g0"]),
     };
     for standard in standards {
         let mut program = cpp("fcl").standard(standard).library("fcl");
@@ -128,7 +130,21 @@ fn states_in_a_hash_table() {
     }
 }
 
-/// What the two small worlds print: everything comes to rest on the table, the box on four
+/// What the world in Rust prints.
+fn rust_world() -> String {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.current_dir(harness::root());
+    cargo.args(["run", "--quiet", "--offline", "--example", "world", "--target-dir"]);
+    cargo.arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join(".."));
+    if Precision::CURRENT == Precision::Single {
+        cargo.args(["--features", "single"]);
+    }
+    let out = cargo.output().expect("cargo runs");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8_lossy(&out.stdout).into_owned()
+}
+
+/// What the small worlds print, the same in each language: everything comes to rest on the table, the box on four
 /// points, the capsule on two, the hull, a square pyramid, on four; the hull and the capsule
 /// fall side by side, the nearest of what is apart, and the box comes no nearer to either.
 #[test]
@@ -136,6 +152,9 @@ fn small_worlds() {
     let c = example("world.c").build().run(NO_ARGS).stdout;
     let cpp = example("world.cpp").build().run(NO_ARGS).stdout;
     assert_eq!(c, cpp);
+    if !harness::under_tool() && !harness::emulated() {
+        assert_eq!(c, rust_world());
+    }
     let lines: Vec<&str> = c.lines().collect();
     assert_eq!(lines[0], "frame 9: 0 contacts, other pairs are 0.87 m apart");
     assert_eq!(lines[5], "frame 59: 10 contacts, other pairs are 0.31 m apart");
