@@ -21,7 +21,7 @@
 
 use crate::gjk::barycentric;
 use crate::gjk::simplex::{Simplex, compact, direction};
-use crate::math::{EPSILON, Vec3, larger, lesser, normal, unit};
+use crate::math::{EPSILON, Vec3, larger, lesser, normal};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
@@ -52,20 +52,25 @@ pub struct Enclosing {
 }
 
 impl Enclosing {
+    /// Takes the points of known differences and of the interior point.
+    fn new<const N: usize>(
+        set: &VertexSet<N>,
+        corners: &[Vertex; 4],
+        interior: Option<&SupportPoint>,
+    ) -> Self {
+        let corners = corners.each_ref().map(|corner| match interior {
+            Some(point) if corner.pair.is_interior() => *point,
+            _ => set.point(corner.pair),
+        });
+        Self { corners }
+    }
+
     /// Returns a point of obj1 and a point of obj2 that meet, within rounding.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
         let corners = self.corners.each_ref();
         let origin = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
         barycentric::witnesses(&origin.weights, corners)
     }
-}
-
-/// The corners of a simplex that contains the origin.
-enum Found {
-    /// Known differences, and the interior point.
-    Known([Vertex; 4]),
-    /// Points that the portal which decides has found.
-    Points([SupportPoint; 4]),
 }
 
 /// Tests whether the objects intersect, from unit `first`. `interior`: the difference of trusted centers.
@@ -96,7 +101,10 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     set.push(&query.upper.dir, first);
     let c = match query.interior {
         Some(c) => c,
-        None => find_interior(query, &mut set, first)?,
+        None => {
+            let dir = direction(&-first.v).unwrap_or(-query.upper.dir);
+            find_interior(query, &mut set, first, &dir)?.v
+        }
     };
     let is_shown = find_enclosing_portal(query, &mut set, &c)?.is_some();
     let has_interior = query.interior.is_some() == interior.is_some();
@@ -107,7 +115,7 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
         set.truncate(0);
     }
     let dir = query.upper.dir;
-    find_enclosing_simplex(query, &mut set, interior, &dir, false).map(|_| ())
+    contains_origin(query, &mut set, interior, &dir, false).map(|_| ())
 }
 
 /// Shows that D contains the origin by more than the contact epsilon: from the known vertices of the set,
@@ -125,41 +133,39 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     dir: &Vec3,
     is_planar: bool,
 ) -> Result<Enclosing, Stop> {
-    let corners = match find_enclosing_simplex(query, set, interior, dir, is_planar)? {
-        Found::Points(points) => points,
-        Found::Known(corners) => corners.map(|corner| point_of(set, &corner, interior)),
-    };
-    Ok(Enclosing { corners })
-}
-
-/// Returns the point of D that a corner is.
-fn point_of<const N: usize>(
-    set: &VertexSet<N>,
-    corner: &Vertex,
-    interior: Option<&SupportPoint>,
-) -> SupportPoint {
-    match interior {
-        Some(point) if corner.pair.is_interior() => *point,
-        _ => set.point(corner.pair),
+    let interior = interior.filter(|_| query.interior.is_some());
+    let was_inconsistent = query.is_inconsistent;
+    let found = run_gjk(query, set, interior, dir, is_planar)?;
+    // Again where a callback has contradicted itself, or the interior point is outside.
+    let is_tainted = query.is_inconsistent && !was_inconsistent;
+    if is_tainted {
+        set.truncate(0);
     }
+    if is_tainted || interior.is_some() && query.interior.is_none() {
+        return run_gjk(query, set, None, dir, is_planar);
+    }
+    Ok(found)
 }
 
-/// Returns a point in the interior of D: on the chord from the first vertex through D towards the origin, as
-/// close to the origin as [`CHORD`] allows. Queries the chord's other end, and along the ray from the point
-/// where that is far from the first direction.
+/// Returns a point in the interior of D: on the chord of D from a point along unit `dir`, as close to the origin
+/// as [`CHORD`] allows. Queries the chord's other end, and along the ray from the point through the origin
+/// where that is far from the best direction so far.
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    first: &SupportPoint,
-) -> Result<Vec3, Stop> {
-    let dir = query.upper.dir;
-    let a = first.v;
-    let b = query.evaluate(set, &direction(&-a).unwrap_or(-dir))?.w;
-    let ab = b - a;
-    let closest = barycentric::segment(&Vec3::zeros(), &a, &b).weights[1];
-    let c = a + ab * lesser(larger(closest, CHORD), 1.0 - CHORD);
-    if let Some(ray) = direction(&-c) {
-        if (ray - dir).norm_squared() > MAX_TURN2 {
+    from: &SupportPoint,
+    dir: &Vec3,
+) -> Result<SupportPoint, Stop> {
+    let best = query.upper.dir;
+    let far = query.evaluate(set, dir)?;
+    let far = set.point(far.pair);
+    let closest = barycentric::segment(&Vec3::zeros(), &from.v, &far.v).weights[1];
+    let mut c = from.towards(&far, lesser(larger(closest, CHORD), 1.0 - CHORD));
+    if !(c.v.norm() > query.scale.contact_eps()) {
+        c = c.towards(&far, 0.5);
+    }
+    if let Some(ray) = direction(&-c.v) {
+        if (ray - best).norm_squared() > MAX_TURN2 {
             query.evaluate(set, &ray)?;
         }
     }
@@ -218,37 +224,14 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(None)
 }
 
-/// Moves a simplex towards the origin until it contains it. Again without the interior point where that turns
-/// out to lie outside, and without known vertices where callbacks contradict themselves.
-fn find_enclosing_simplex<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
-    set: &mut VertexSet<N>,
-    interior: Option<&SupportPoint>,
-    dir: &Vec3,
-    is_planar: bool,
-) -> Result<Found, Stop> {
-    let interior = interior.filter(|_| query.interior.is_some());
-    let was_inconsistent = query.is_inconsistent;
-    let found = run_gjk(query, set, interior, dir, is_planar)?;
-    let is_outside = interior.is_some() && query.interior.is_none();
-    let is_tainted = query.is_inconsistent && !was_inconsistent;
-    if !is_outside && !is_tainted {
-        return Ok(found);
-    }
-    if is_tainted {
-        set.truncate(0);
-    }
-    run_gjk(query, set, None, dir, is_planar)
-}
-
-/// As [`find_enclosing_simplex`], with this interior point or without one.
+/// Moves a simplex towards the origin until it contains it, from this interior point or without one.
 fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     interior: Option<&SupportPoint>,
     dir: &Vec3,
     is_planar: bool,
-) -> Result<Found, Stop> {
+) -> Result<Enclosing, Stop> {
     const { assert!(N >= 16) };
     let mut dir = *dir;
     let mut simplex = interior.map_or(Simplex::EMPTY, |point| Simplex::of_interior(&point.v));
@@ -276,17 +259,17 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
                 }
                 query.evaluate(set, &-dir)?;
             }
-            let mut corners = simplex.tetrahedron();
+            let corners = simplex.tetrahedron();
             if simplex.is_certain() {
-                return Ok(Found::Known(corners));
+                return Ok(Enclosing::new(set, &corners, interior));
             }
-            return decide(query, set, &mut corners, interior, &dir);
+            return decide(query, set, corners, interior, &dir);
         };
         // Between a point in the interior and another one, the origin is in the interior.
         let is_between = simplex.has_interior() && simplex.len() == 2;
         if (is_planar || is_between) && distance2 <= touch * touch {
             let [a, b, c] = simplex.corners();
-            return Ok(Found::Known([a, b, c, c]));
+            return Ok(Enclosing::new(set, &[a, b, c, c], interior));
         }
         // Negated for NaN.
         if !(distance2 > touch * touch && distance2 < closest2) {
@@ -301,12 +284,11 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
             None => break,
         }
     }
-    let mut corners = simplex.corners();
-    let len = simplex.len().min(3);
-    decide(query, set, &mut corners[..len], interior, &dir)
+    let [a, b, c] = simplex.corners();
+    decide(query, set, [a, b, c, c], interior, &dir)
 }
 
-/// Decides where the origin is on the surface of a simplex, within rounding: a portal from the middle between
+/// Decides where the origin is on the surface of a simplex, within rounding: a portal from a point between
 /// the simplex and the far side of D, which is well inside however flat the simplex is. Returns the corners
 /// of the simplex where there is no portal: no direction separates.
 #[cold]
@@ -314,36 +296,21 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
 fn decide<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    corners: &mut [Vertex],
+    mut corners: [Vertex; 4],
     interior: Option<&SupportPoint>,
     dir: &Vec3,
-) -> Result<Found, Stop> {
-    compact(query, set, corners);
-    // The last one is repeated.
-    let points: [SupportPoint; 4] = core::array::from_fn(|i| {
-        let corner = corners.get(i).or(corners.last());
-        corner.map_or(SupportPoint::default(), |c| point_of(set, c, interior))
-    });
-    // The mean of the corners, one after the other.
-    let mut inner = points[0];
-    for (count, point) in (1..=corners.len()).zip(&points) {
-        inner = inner.towards(point, 1.0 / count as f64);
-    }
-    let far = query.evaluate(set, &-dir)?;
-    let far = set.point(far.pair);
-    inner = inner.towards(&far, 0.5);
-    if !(inner.v.norm() > query.scale.contact_eps()) {
-        inner = inner.towards(&far, 0.5);
-    }
-    let ray = unit(&-inner.v).unwrap_or(*dir);
-    query.evaluate(set, &ray)?;
-    let found = find_enclosing_portal(query, set, &inner.v)?;
-    Ok(match found {
-        Some(portal) => {
-            let [a, b, c] = portal.map(|corner| set.point(corner.pair));
-            Found::Points([inner, a, b, c])
-        }
-        None => Found::Points(points),
+) -> Result<Enclosing, Stop> {
+    compact(query, set, &mut corners);
+    let simplex = Enclosing::new(set, &corners, interior);
+    let [a, b, c, d] = &simplex.corners;
+    let middle = a.towards(b, 0.5).towards(&c.towards(d, 0.5), 0.5);
+    let inner = find_interior(query, set, &middle, &-dir)?;
+    let Some(portal) = find_enclosing_portal(query, set, &inner.v)? else {
+        return Ok(simplex);
+    };
+    let [a, b, c] = portal.map(|corner| set.point(corner.pair));
+    Ok(Enclosing {
+        corners: [inner, a, b, c],
     })
 }
 
@@ -374,13 +341,11 @@ mod tests {
             let point = query.evaluate_first(&n).unwrap();
             let mut set = VertexSet::<16>::EMPTY;
             set.push(&n, &point);
-            let mut corner = [set.farthest_vertex(&n)];
-            let decided = decide(&mut query, &mut set, &mut corner, None, &n).unwrap();
-            if let Found::Points(corners) = decided {
-                found += 1;
-                let (p, q) = Enclosing { corners }.witnesses();
-                assert!((p - q).norm() <= 64.0 * EPSILON);
-            }
+            let corners = [set.farthest_vertex(&n); 4];
+            let (p, q) = decide(&mut query, &mut set, corners, None, &n)
+                .unwrap()
+                .witnesses();
+            found += u32::from((p - q).norm() <= 64.0 * EPSILON);
         }
         assert!(found > 190, "{found}");
     }
