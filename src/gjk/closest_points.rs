@@ -19,8 +19,8 @@
 
 use crate::gjk::barycentric;
 use crate::gjk::intersect::Enclosing;
-use crate::gjk::simplex::{Simplex, compact, direction};
-use crate::math::{Vec3, larger};
+use crate::gjk::simplex::{Simplex, compact};
+use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap};
@@ -187,7 +187,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 }
                 closest = self.upper;
             }
-            let Some(dir) = direction(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
+            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
                 return Ok(End::Stalled);
             };
             is_step = !self.has_predicted(&dir, self.gap(goal))?;
@@ -248,7 +248,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         if !(length > MAX_TILT * along) || !(length > 0.0) {
             return None;
         }
-        direction(&(best + across * (MAX_TILT / length)))
+        unit(&(best + across * (MAX_TILT / length)))
     }
 
     /// Queries where the sphere fits predict the closest plane; returns whether they do. `dir`: the unit

@@ -20,13 +20,13 @@
 //! contact epsilon. `Ok`: D contains the origin, or no queried direction separates.
 
 use crate::gjk::barycentric;
-use crate::gjk::simplex::{Simplex, compact, direction};
-use crate::math::{EPSILON, Vec3, larger, lesser, normal};
+use crate::gjk::simplex::{Simplex, compact, make_room};
+use crate::math::{EPSILON, Vec3, larger, lesser, normal, unit};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::{discover, is_crossed, replace_corner};
+use crate::mpr::portal::{discover, replace_corner};
 
 /// Steps of GJK before the portal decides. Of a hundred thousand pairs none needs forty.
 const MAX_STEPS: u32 = 64;
@@ -41,8 +41,6 @@ const MAX_PORTAL_STEPS: u32 = 100;
 /// The share of a chord that is left at either end of it, so that a point in between is in the interior.
 /// Measured on the recorded contacts: 0.05 takes 7 % more support points of pairs apart, 0.5 takes 10 %.
 const CHORD: f64 = 0.25;
-/// The square of the angle between a ray and the first direction from which on the ray is queried too.
-const MAX_TURN2: f64 = 0.3;
 
 /// Points of D whose hull contains the origin, within rounding.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +100,7 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     let c = match query.interior {
         Some(c) => c,
         None => {
-            let dir = direction(&-first.v).unwrap_or(-query.upper.dir);
+            let dir = unit(&-first.v).unwrap_or(-query.upper.dir);
             find_interior(query, &mut set, first, &dir)?.v
         }
     };
@@ -148,15 +146,13 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns a point in the interior of D: on the chord of D from a point along unit `dir`, as close to the origin
-/// as [`CHORD`] allows. Queries the chord's other end, and along the ray from the point through the origin
-/// where that is far from the best direction so far.
+/// as [`CHORD`] allows. Queries the chord's other end, and along the ray from the point through the origin.
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     from: &SupportPoint,
     dir: &Vec3,
 ) -> Result<SupportPoint, Stop> {
-    let best = query.upper.dir;
     let far = query.evaluate(set, dir)?;
     let far = set.point(far.pair);
     let closest = barycentric::segment(&Vec3::zeros(), &from.v, &far.v).weights[1];
@@ -164,10 +160,8 @@ fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     if !(c.v.norm() > query.scale.contact_eps()) {
         c = c.towards(&far, 0.5);
     }
-    if let Some(ray) = direction(&-c.v) {
-        if (ray - best).norm_squared() > MAX_TURN2 {
-            query.evaluate(set, &ray)?;
-        }
+    if let Some(ray) = unit(&-c.v) {
+        query.evaluate(set, &ray)?;
     }
     Ok(c)
 }
@@ -202,18 +196,14 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
         let edge2 = larger((b - a).norm_squared(), (d - a).norm_squared());
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * query.scale.size() * edge2;
         if offset > larger(touch, error) {
-            let is_enclosing =
-                n.dot(c) < 0.0 && is_crossed(&portal, &ray, query.scale.height_eps());
-            return Ok(is_enclosing.then_some(portal));
+            return Ok((n.dot(c) < 0.0).then_some(portal));
         }
         let mut w = set.farthest_vertex(&n);
         if !(n.dot(&w.w) > touch) {
             if !(length > 0.0) {
                 return Ok(None);
             }
-            if set.is_full() {
-                compact(query, set, &mut portal);
-            }
+            make_room(query, set, &mut portal);
             w = query.evaluate(set, &(n / length))?.vertex();
         }
         if !(n.dot(&w.w) - offset > query.scale.height_eps() * length) {
@@ -244,9 +234,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         let is_corner = |w: &Vertex| simplex.corners().iter().any(|c| c.pair == w.pair);
         let is_beyond = dir.dot(&w.w) > query.scale.contact_eps();
         if set.len() == 0 || !is_beyond || is_corner(&w) {
-            if set.is_full() {
-                compact(query, set, simplex.slots());
-            }
+            make_room(query, set, simplex.slots());
             w = query.evaluate(set, &dir)?.vertex();
         }
         let touch = query.scale.contact_eps();
@@ -254,9 +242,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         let Some((to, distance2)) = simplex.add(w, touch, query.scale.size2()) else {
             if !(closest2 > touch * touch || is_backed || simplex.has_interior()) {
                 // The origin is in the plane of the old face, within rounding: D must have another side.
-                if set.is_full() {
-                    compact(query, set, simplex.slots());
-                }
+                make_room(query, set, simplex.slots());
                 query.evaluate(set, &-dir)?;
             }
             let corners = simplex.tetrahedron();
@@ -279,10 +265,8 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
             }
         }
         (closest2, is_backed) = (distance2, was_triangle && simplex.len() == 3);
-        match direction(&to) {
-            Some(n) => dir = n,
-            None => break,
-        }
+        let Some(n) = unit(&to) else { break };
+        dir = n;
     }
     let [a, b, c] = simplex.corners();
     decide(query, set, [a, b, c, c], interior, &dir)

@@ -8,11 +8,9 @@
 //! Unsmooth Functionals", 1969). So an axis that turns is followed at one support call a query. Measured on
 //! pairs that stay apart and turn by 0.1° a frame (`costs`, U14): 1.29 support calls a query without.
 
-use crate::math::{Vec3, larger};
+use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::support::{Fault, SupportMap};
-
-use super::simplex::direction;
 
 /// Axes tried before a pair is queried as if it were new.
 const MAX_TRIES: u32 = 2;
@@ -59,7 +57,7 @@ impl SeparatingAxis {
             if margin < MIN_MARGIN * self.aim {
                 let g = point.v + n * margin;
                 let turned = n - g * ((self.aim - margin) / g.norm_squared());
-                self.dir = direction(&turned).unwrap_or(n);
+                self.dir = unit(&turned).unwrap_or(n);
             }
             if is_apart {
                 return Ok(Some(n));

@@ -32,13 +32,9 @@ pub struct Simplex {
     /// their normal looks to the origin.
     order: [usize; 3],
     len: usize,
-    /// The slot of the interior point, if it is a corner, else [`NO_SLOT`].
-    interior: usize,
     /// The slot of the point added last.
     newest: usize,
 }
-
-const NO_SLOT: usize = 4;
 
 /// The closest feature of a simplex.
 #[derive(Clone, Copy)]
@@ -59,7 +55,6 @@ impl Simplex {
         }; 4],
         order: [3; 3],
         len: 0,
-        interior: NO_SLOT,
         newest: 0,
     };
 
@@ -68,7 +63,7 @@ impl Simplex {
     pub fn of_interior(c: &Vec3) -> Self {
         let mut simplex = Self::EMPTY;
         simplex.slots[0].w = *c;
-        (simplex.order, simplex.len, simplex.interior) = ([0; 3], 1, 0);
+        (simplex.order, simplex.len) = ([0; 3], 1);
         simplex
     }
 
@@ -95,7 +90,7 @@ impl Simplex {
     /// [`Simplex::add`] returned `None`. (The normal of a sliver may look to either side.) A face with the
     /// interior point is inside D, and rounding there decides nothing.
     pub fn is_certain(&self) -> bool {
-        if self.has_interior() && self.newest != self.interior {
+        if self.has_interior() {
             return true;
         }
         let [a, b, c, w] = self.tetrahedron().map(|corner| corner.w);
@@ -118,7 +113,11 @@ impl Simplex {
     /// Returns whether the interior point is a corner.
     #[inline(always)]
     pub fn has_interior(&self) -> bool {
-        self.interior != NO_SLOT
+        self.len > 0
+            && self
+                .corners()
+                .iter()
+                .any(|corner| corner.pair.is_interior())
     }
 
     /// Adds a point and keeps the feature closest to the origin. `touch`: the distance below which the
@@ -133,9 +132,6 @@ impl Simplex {
         let free = (!(1_u32 << i | 1 << j | 1 << k)).trailing_zeros() as usize & 3;
         self.slots[free] = point;
         self.newest = free;
-        if free == self.interior {
-            self.interior = NO_SLOT;
-        }
         let w = point.w;
         let feature = match self.len {
             0 => self.corner(free),
@@ -253,7 +249,7 @@ impl Simplex {
         let least = 8.0 * size2 * touch;
         // A face with the interior point is inside D, and rounding there decides nothing: the face
         // opposite to that point does.
-        let interior = [i, j, k].map(|slot| slot == self.interior);
+        let interior = [i, j, k].map(|slot| self.slots[slot & 3].pair.is_interior());
         let has_interior = interior != [false; 3];
         // NaN is outside.
         let is_clear = |height: f64, p: &Vec3, q: &Vec3, is_opposite: bool| {
@@ -295,20 +291,19 @@ fn is_off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     height > 2.0 * slack * normal(p, q, w).norm() + error
 }
 
-/// Returns the unit vector along `v`, `None` where it has no direction.
+/// Makes room for another entry in a set that is full, as [`compact`] does.
 #[inline(always)]
-pub fn direction(v: &Vec3) -> Option<Vec3> {
-    let length2 = v.norm_squared();
-    // Squares that are neither rounded to nothing nor infinite.
-    if length2 > f64::MIN_POSITIVE / f64::EPSILON && length2 < f64::INFINITY {
-        Some(v / length2.sqrt())
-    } else {
-        unit(v)
+pub fn make_room<A: SupportMap, B: SupportMap, const N: usize>(
+    query: &mut SupportQuery<'_, A, B>,
+    set: &mut VertexSet<N>,
+    corners: &mut [Vertex],
+) {
+    if set.is_full() {
+        compact(query, set, corners);
     }
 }
 
-/// Makes room in a full set: keeps the entries of at most four corners and that of the least support value.
-/// Their indices change.
+/// Keeps the entries of at most four corners and that of the least support value. Their indices change.
 #[cold]
 #[inline(never)]
 pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
@@ -380,7 +375,7 @@ mod tests {
                 if simplex.len() > 0 && dir.dot(&(w - simplex.corners()[0].w)) <= 1e-12 {
                     break;
                 }
-                let pair = VertexPair::INTERIOR;
+                let pair = VertexPair::default();
                 let Some((to, distance2)) = simplex.add(Vertex { w, pair }, 1e-14, 100.0) else {
                     met[3] += 1;
                     let [a, b, c, d] = &simplex.tetrahedron().map(|v| v.w);
@@ -419,7 +414,7 @@ mod tests {
                     .iter()
                     .max_by(|p, q| dir.dot(p).total_cmp(&dir.dot(q)));
                 let w = *farthest.unwrap();
-                let pair = VertexPair::INTERIOR;
+                let pair = VertexPair::default();
                 let Some((to, distance2)) = simplex.add(Vertex { w, pair }, touch, 10.0) else {
                     break;
                 };
