@@ -5,14 +5,14 @@
 //! weights of the corners in it, and what points mix to with such weights.
 //!
 //! Projection, then the search of the violated edges or faces only (the regions are those
-//! of Ericson, f64-Time Collision Detection, 5.1.5). libccd calls a triangle degenerate by
+//! of Ericson, Real-Time Collision Detection, 5.1.5). libccd calls a triangle degenerate by
 //! an absolute area and then looks at its edges alone; here no triangle is special.
 //!
 //! The weights of a sliver are mostly rounding, and any are good that lead to the right
 //! place: here the point is what its weights lead to, and what is compared is where the
 //! points are.
 
-use crate::math::{EPSILON, Vec3, larger, normal};
+use crate::math::{Vec3, normal};
 use crate::minkowski::support::SupportPoint;
 
 /// The point of a simplex of `N` corners that is nearest to a given one.
@@ -172,60 +172,40 @@ pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> Nearest<3> {
 /// The point of tetrahedron `abcd` nearest to `p`: `p` itself, to rounding, where the
 /// tetrahedron holds it.
 ///
-/// Six times the volume between `p` and a face is the weight of the corner opposite,
-/// as a share of the whole. Where `p` is outside, the nearest of the faces' points is the
-/// tetrahedron's; and also where it is flat to rounding and the signs of the volumes tell
-/// nothing: what is nearest counts.
+/// A weight grows linearly from the face, where it is 0, to the corner opposite, where it is 1. Where `p` is
+/// outside, the nearest of the faces' points is the tetrahedron's; and also where it is flat to rounding and
+/// the signs of the weights tell nothing: what is nearest counts.
 #[inline]
 pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
     // Each face, and the corner opposite.
     const FACES: [[usize; 4]; 4] = [[1, 2, 3, 0], [0, 2, 3, 1], [0, 1, 3, 2], [0, 1, 2, 3]];
-    // The growth of a weight from the face to the corner opposite.
-    let rise = FACES.map(|[i, j, k, opposite]| {
-        let [a, b, c, d] = [i, j, k, opposite].map(|i| corners[i % 4]);
+    let gradients = FACES.map(|face| {
+        let [a, b, c, opposite] = face.map(|i| corners[i]);
         let n = normal(a, b, c);
-        n / n.dot(&(d - a))
+        n / n.dot(&(opposite - a))
     });
-    let [at_b, at_a] = [p - corners[1], p - corners[0]];
-    let mut shares = [
-        rise[0].dot(&at_b),
-        rise[1].dot(&at_a),
-        rise[2].dot(&at_a),
-        rise[3].dot(&at_a),
-    ];
-    // A flat one's may be NaN or infinite.
-    let inner = |s: &f64| *s >= 0.0 && *s < f64::INFINITY;
-    // No candidate yet.
-    let mut best = Nearest {
-        point: *corners[0],
-        distance2: f64::NAN,
-        weights: [1.0, 0.0, 0.0, 0.0],
-    };
-    if shares.iter().all(inner) {
-        // Where the shares lead is off by ulps over the thickness; the same shares of what
-        // is missing mend that.
-        let sum: f64 = shares.iter().sum();
-        let missing = p - mix(&shares.map(|s| s / sum), corners);
-        for (share, rise) in shares.iter_mut().zip(&rise) {
-            *share = larger(*share / sum + rise.dot(&missing), 0.0);
+    // From the middle to `p`, and again: where the weights lead is off by ulps over the thickness.
+    let mut weights = [0.25; 4];
+    for _ in 0..2 {
+        let missing = p - mix(&weights, corners);
+        for (weight, gradient) in weights.iter_mut().zip(&gradients) {
+            *weight += gradient.dot(&missing);
         }
-        let sum: f64 = shares.iter().sum();
-        let weights = shares.map(|s| s / sum);
-        let point = mix(&weights, corners);
-        let distance2 = (point - p).norm_squared();
-        let size2 = (corners.iter()).fold(0.0, |m, c| larger(m, (*c - p).norm_squared()));
-        let mixed = Nearest {
-            point,
-            distance2,
-            weights,
-        };
-        // No face can be better than by rounding; this saves the look at the faces. (The factor is
-        // insensitive: 8 to 512 tried on the recorded contacts.)
-        if distance2 <= (64.0 * EPSILON) * (64.0 * EPSILON) * size2 {
-            return mixed;
-        }
-        best = mixed;
+        // What `mix` takes it for.
+        weights[0] = 1.0 - (weights[1] + weights[2] + weights[3]);
     }
+    let point = mix(&weights, corners);
+    let is_inside = weights.iter().all(|weight| *weight >= 0.0);
+    // NaN: no candidate yet, as of a flat one.
+    let mut best = Nearest {
+        point,
+        distance2: if is_inside {
+            (point - p).norm_squared()
+        } else {
+            f64::NAN
+        },
+        weights,
+    };
     for [i, j, k, _] in FACES {
         let face = triangle(p, corners[i], corners[j], corners[k]).among([i, j, k]);
         if best.distance2.is_nan() || face.distance2 < best.distance2 {
@@ -242,6 +222,7 @@ const PARALLEL: f64 = if cfg!(feature = "single") { 1e-2 } else { 1e-6 };
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::EPSILON;
     use crate::shapes::Random;
 
     /// Corners of every kind of simplex: solid, flat, a needle, with two corners equal.

@@ -20,7 +20,7 @@
 use crate::gjk::barycentric;
 use crate::gjk::intersect::Enclosing;
 use crate::gjk::simplex::{Simplex, compact};
-use crate::math::{Vec3, larger, unit};
+use crate::math::{Vec3, ZERO, larger, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap};
@@ -142,25 +142,15 @@ struct Search<'s, 'q, A, B> {
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     /// Returns the closest points, or points that meet.
     fn points(&self, end: End) -> (Vec3, Vec3) {
-        let origin = Vec3::zeros();
         let point = |corner: Vertex| self.set.point(corner.pair);
+        if end == End::Inside {
+            let corners = self.simplex.tetrahedron().map(point);
+            return Enclosing { corners }.witnesses();
+        }
         let corners = self.simplex.corners().map(point);
         let [a, b, c] = corners.each_ref();
-        match (end, self.simplex.len()) {
-            (End::Inside, _) => {
-                let corners = self.simplex.tetrahedron().map(point);
-                Enclosing { corners }.witnesses()
-            }
-            (_, 1) => (a.v1, a.v2),
-            (_, 2) => {
-                let closest = barycentric::segment(&origin, &a.v, &b.v);
-                barycentric::witnesses(&closest.weights, [a, b])
-            }
-            _ => {
-                let closest = barycentric::triangle(&origin, &a.v, &b.v, &c.v);
-                barycentric::witnesses(&closest.weights, [a, b, c])
-            }
-        }
+        let closest = barycentric::triangle(&ZERO, &a.v, &b.v, &c.v);
+        barycentric::witnesses(&closest.weights, [a, b, c])
     }
 
     fn run(&mut self, goal: &Goal, start: &Vec3) -> Result<End, Fault> {
@@ -168,8 +158,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         self.add(first);
         let mut closest = f64::INFINITY;
         let mut stalls = 0;
-        // Of the last query: whether it was to bring the simplex closer; whether its tilt found nothing closer.
-        let (mut is_step, mut has_failed) = (false, false);
+        // Of the last query: whether it was to bring the simplex closer, and whether it was tilted.
+        let (mut is_step, mut was_tilted) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_KNOWN_STEPS {
                 match self.add_farthest(KNOWN_LEVEL * self.gap(goal)) {
@@ -194,15 +184,13 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             if !is_step {
                 continue;
             }
-            let tilted = self.tilted(&dir).filter(|_| !has_failed);
+            let tilted = self.tilted(&dir).filter(|_| !was_tilted);
+            was_tilted = tilted.is_some();
             if let Some(n) = tilted {
+                is_step = false;
                 self.query.evaluate_signed(&mut self.set, &n)?;
-                let w = self.set.farthest_vertex(&dir);
-                is_step = self.height(&dir, &w.w) > KNOWN_LEVEL * self.gap(goal);
-                has_failed = !is_step;
                 continue;
             }
-            has_failed = false;
             let w = self.query.evaluate_signed(&mut self.set, &dir)?.vertex();
             if self.height(&dir, &w.w) > 0.5 * self.query.scale.contact_eps() && !self.add(w) {
                 return Ok(End::Inside);
@@ -266,17 +254,10 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             self.pause -= 1;
             return Ok(false);
         }
-        // Where the gap is closed, only the sign of the distance is open.
-        let is_closed = self.upper + bound.depth <= gap;
-        let worth = MIN_GAIN
-            * if is_closed {
-                self.query.scale.contact_eps()
-            } else {
-                gap
-            };
         let predicted = self.fit.predict(&self.set, &self.simplex.corners(), dir);
         // A gain, and no closer than the objects are known to come.
-        let is_useful = |value: f64| value < bound.depth - worth && -value < self.upper + gap;
+        let is_useful =
+            |value: f64| value < bound.depth - MIN_GAIN * gap && -value < self.upper + gap;
         let Some((n, value)) = predicted.filter(|p| is_useful(p.1)) else {
             return Ok(false);
         };
