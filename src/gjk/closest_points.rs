@@ -20,7 +20,7 @@
 use crate::gjk::barycentric;
 use crate::gjk::intersect::Enclosing;
 use crate::gjk::simplex::{Simplex, compact};
-use crate::math::{Vec3, ZERO, larger, unit};
+use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap};
@@ -148,9 +148,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             return Enclosing { corners }.witnesses();
         }
         let corners = self.simplex.corners().map(point);
-        let [a, b, c] = corners.each_ref();
-        let closest = barycentric::triangle(&ZERO, &a.v, &b.v, &c.v);
-        barycentric::witnesses(&closest.weights, [a, b, c])
+        barycentric::witnesses(&self.simplex.weights(), corners.each_ref())
     }
 
     fn run(&mut self, goal: &Goal, start: &Vec3) -> Result<End, Fault> {

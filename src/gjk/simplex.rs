@@ -7,14 +7,16 @@
 //!
 //! 1. n points from the closest point of the simplex to the origin. The new point w is farther along n
 //!    than the simplex, so that a feature with w is closest.
-//! 2. Of two or three points, the signs of the barycentric coordinates tell the feature.
+//! 2. Of two or three points, the signs of the barycentric coordinates tell the feature; they are the weights of
+//!    the corners in the closest point.
 //! 3. Of four, the origin is on the inner side of face w, a, b when det(w, a, b) > 0 (base abc wound so
 //!    that its normal is n), and inside the tetrahedron when that holds for all three new faces.
 //!
 //! Departures. In a simplex as flat as rounding, the old edge of a new face may be the closest feature. Near
 //! the origin the closest point is mostly rounding error, the normal of a face is not: a face is left along
-//! its normal, and an origin within the contact epsilon of an edge counts as one in the face. No length is compared with an absolute epsilon. The new point need not be a support point: step 1
-//! holds for any known difference that is farther along n.
+//! its normal, and an origin within the contact epsilon of an edge counts as one in the face. No length is
+//! compared with an absolute epsilon. The new point need not be a support point: step 1 holds for any known
+//! difference that is farther along n.
 
 use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
 use crate::minkowski::query::SupportQuery;
@@ -32,6 +34,8 @@ pub struct Simplex {
     /// their normal looks to the origin.
     order: [usize; 3],
     len: usize,
+    /// Those of the corners in the closest point.
+    weights: [f64; 3],
     /// The slot of the point added last.
     newest: usize,
 }
@@ -41,6 +45,7 @@ pub struct Simplex {
 struct Feature {
     order: [usize; 3],
     len: usize,
+    weights: [f64; 3],
     /// To the origin, of any length.
     dir: Vec3,
     distance2: f64,
@@ -55,6 +60,7 @@ impl Simplex {
         }; 4],
         order: [3; 3],
         len: 0,
+        weights: [1.0, 0.0, 0.0],
         newest: 0,
     };
 
@@ -71,6 +77,11 @@ impl Simplex {
     #[inline(always)]
     pub fn corners(&self) -> [Vertex; 3] {
         self.order.map(|i| self.slots[i & 3])
+    }
+
+    /// Returns the weights of [`Simplex::corners`] in the closest point.
+    pub fn weights(&self) -> [f64; 3] {
+        self.weights
     }
 
     /// Returns the number of corners, at most three.
@@ -134,7 +145,7 @@ impl Simplex {
         self.newest = free;
         let w = point.w;
         let feature = match self.len {
-            0 => self.corner(free),
+            0 => self.corner(free, [1.0, 0.0, 0.0]),
             1 => self.line(i, free, touch),
             2 => {
                 let [a, b] = [i, j].map(|slot| &self.slots[slot & 3].w);
@@ -148,23 +159,24 @@ impl Simplex {
             }
             _ => self.faces(free, touch, size2)?,
         };
-        self.order = feature.order;
-        self.len = feature.len;
+        (self.order, self.len, self.weights) = (feature.order, feature.len, feature.weights);
         Some((feature.dir, feature.distance2))
     }
 
+    /// Returns a corner. `weights`: any that sum to 1.
     #[inline(always)]
-    fn corner(&self, i: usize) -> Feature {
+    fn corner(&self, i: usize, weights: [f64; 3]) -> Feature {
         let w = &self.slots[i & 3].w;
         Feature {
             order: [i; 3],
             len: 1,
+            weights,
             dir: -w,
             distance2: w.norm_squared(),
         }
     }
 
-    /// Returns the closest feature of a segment.
+    /// Returns the closest feature of a segment. Its weights are those of `i` and `j`.
     #[inline(always)]
     fn segment(&self, i: usize, j: usize) -> Feature {
         let (a, b) = (&self.slots[i & 3].w, &self.slots[j & 3].w);
@@ -173,17 +185,21 @@ impl Simplex {
         let length2 = ab.norm_squared();
         // NaN and a segment without length end at a corner.
         if !(t > 0.0) {
-            self.corner(j)
+            self.corner(j, [0.0, 1.0, 0.0])
         } else if !(t < length2) {
-            self.corner(i)
+            self.corner(i, [1.0, 0.0, 0.0])
         } else {
             // Close to the origin the sum is all rounding error: the part along the segment is taken
             // away, so that the direction stays perpendicular.
-            let v = b + ab * (t / length2);
-            let v = v - ab * (v.dot(&ab) / length2);
+            let t = t / length2;
+            let v = b + ab * t;
+            let rest = v.dot(&ab) / length2;
+            let v = v - ab * rest;
+            let weight = (t - rest).clamp(0.0, 1.0);
             Feature {
                 order: [i, j, j],
                 len: 2,
+                weights: [weight, 1.0 - weight, 0.0],
                 dir: -v,
                 distance2: v.norm_squared(),
             }
@@ -207,35 +223,39 @@ impl Simplex {
     fn triangle(&self, order: [usize; 3], n: Vec3, touch: f64) -> Feature {
         let [i, j, k] = order;
         let [a, b, c] = order.map(|slot| &self.slots[slot & 3].w);
-        let face = |distance2| Feature {
+        let face = |order, weights, distance2| Feature {
             order,
             len: 3,
+            weights,
             dir: n,
             distance2,
         };
-        // Whether the origin is beyond the edge opposite to a, b and c: the sign of a barycentric coordinate.
-        let is_beyond = [(b, c), (c, a), (a, b)].map(|(p, q)| !(n.dot(&p.cross(q)) > 0.0));
-        let edge = match is_beyond {
+        // The barycentric coordinates, times n². The origin is beyond the edge opposite to a negative one.
+        let coordinates = [(b, c), (c, a), (a, b)].map(|(p, q)| n.dot(&p.cross(q)));
+        let (edge, order) = match coordinates.map(|x| !(x > 0.0)) {
             [false, false, false] => {
-                let height = n.dot(c);
-                return face(height / n.norm_squared() * height);
+                // The point, and not the height of the plane: the normal of a sliver is off along its length.
+                let sum: f64 = coordinates.iter().sum();
+                let weights = coordinates.map(|x| x / sum);
+                let point = a * weights[0] + b * weights[1] + c * weights[2];
+                return face(order, weights, point.norm_squared());
             }
-            [false, false, true] => self.segment(i, j),
-            [true, false, _] => self.segment(j, k),
-            [false, true, _] => self.segment(i, k),
+            [false, false, true] => (self.segment(i, j), order),
+            [true, false, _] => (self.segment(j, k), [j, k, i]),
+            [false, true, _] => (self.segment(k, i), [k, i, j]),
             [true, true, _] => {
-                let (one, other) = (self.segment(i, k), self.segment(j, k));
+                let (one, other) = (self.segment(k, i), self.segment(j, k));
                 if other.distance2 < one.distance2 {
-                    other
+                    (other, [j, k, i])
                 } else {
-                    one
+                    (one, [k, i, j])
                 }
             }
         };
         if edge.distance2 > touch * touch {
             return edge;
         }
-        face(edge.distance2)
+        face(order, edge.weights, edge.distance2)
     }
 
     /// Returns the closest feature of the three new faces; `None` where the origin is inside.
