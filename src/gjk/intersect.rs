@@ -26,7 +26,7 @@ use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::{discover, replace_corner};
+use crate::mpr::portal::{discover, is_crossed, replace_corner};
 
 /// Steps of GJK before the portal decides. Of a hundred thousand pairs none needs forty.
 const MAX_STEPS: u32 = 64;
@@ -133,20 +133,22 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<Enclosing, Stop> {
     let interior = interior.filter(|_| query.interior.is_some());
     let was_inconsistent = query.is_inconsistent;
-    let found = run_gjk(query, set, interior, dir, is_planar)?;
+    let found = run_gjk(query, set, interior, dir, is_planar);
     // Again where a callback has contradicted itself, or the interior point is outside.
     let is_tainted = query.is_inconsistent && !was_inconsistent;
+    let is_outside = interior.is_some() && query.interior.is_none();
+    if found.is_err() || !is_tainted && !is_outside {
+        return found;
+    }
     if is_tainted {
         set.truncate(0);
     }
-    if is_tainted || interior.is_some() && query.interior.is_none() {
-        return run_gjk(query, set, None, dir, is_planar);
-    }
-    Ok(found)
+    run_gjk(query, set, None, dir, is_planar)
 }
 
 /// Returns a point in the interior of D: on the chord of D from a point along unit `dir`, as close to the origin
 /// as [`CHORD`] allows. Queries the chord's other end, and along the ray from the point through the origin.
+#[inline(never)]
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
@@ -196,7 +198,9 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
         let edge2 = larger((b - a).norm_squared(), (d - a).norm_squared());
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * query.scale.size() * edge2;
         if offset > larger(touch, error) {
-            return Ok((n.dot(c) < 0.0).then_some(portal));
+            let is_enclosing =
+                n.dot(c) < 0.0 && is_crossed(&portal, &ray, query.scale.height_eps());
+            return Ok(is_enclosing.then_some(portal));
         }
         let mut w = set.farthest_vertex(&n);
         if !(n.dot(&w.w) > touch) {

@@ -164,7 +164,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
 
 /// Queries three directions around a ray that passes through its own support vertex, as wide as the face
 /// of a sphere of radius `length` may be for a gap; `gap_over_length` is their quotient. The inner error
-/// is an axis across the ray, where all rings are thin or the ray passes beside them.
+/// is an axis across the ray, where all rings are thin.
 #[cold]
 #[inline(never)]
 fn ring<A: SupportMap, B: SupportMap, const N: usize>(
@@ -191,8 +191,7 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
         }
         let (x, y) = (corners[0].w - corners[2].w, corners[1].w - corners[2].w);
         let normal = x.cross(&y);
-        let is_thick = normal.norm_squared() > 0.01 * x.norm_squared() * y.norm_squared();
-        if is_thick && is_crossed(&corners, ray, query.scale.height_eps()) {
+        if normal.norm_squared() > 0.01 * x.norm_squared() * y.norm_squared() {
             return Ok(Ok(corners));
         }
         tilt *= RING_GROWTH;
@@ -216,8 +215,9 @@ pub fn replace_corner(portal: &mut [Vertex; 3], ray: &Vec3, w: Vertex) {
     }
 }
 
-/// Returns whether the ray passes through a portal, within `eps`, metres.
-fn is_crossed(portal: &[Vertex; 3], ray: &Vec3, eps: f64) -> bool {
+/// Returns whether the ray passes through a portal, within `eps`, metres. The first portal may be a ring
+/// that it does not pass through.
+pub fn is_crossed(portal: &[Vertex; 3], ray: &Vec3, eps: f64) -> bool {
     let [a, b, c] = portal.each_ref().map(|corner| &corner.w);
     [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| {
         // A product with the edge keeps the digits of small portals.
