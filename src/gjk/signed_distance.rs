@@ -186,7 +186,9 @@ fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Dis
         cores.normal
     };
     let (mut lower, mut upper) = (cores.lower - margin, cores.upper - margin);
-    let mut is_limited = cores.end != End::Met;
+    // Of cores that touch within rounding no query tells more.
+    let is_touch = cores.lower >= -touch && cores.upper <= touch;
+    let mut is_limited = cores.end != End::Met && !is_touch;
     if lower.abs() <= touch + 4.0 * EPSILON * margin {
         lower = 0.0;
         upper = larger(upper, 0.0);
