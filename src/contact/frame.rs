@@ -4,6 +4,7 @@
 //! The contact frame: the contact normal and two axes across it.
 
 use crate::math::{POLE, Vec3};
+use crate::minkowski::support::Fault;
 
 /// Unit, across [`POLE`]: of a box whose axes are the world's no two corners are equally far along it.
 const AXIS: Vec3 = Vec3::new(37.6 / 61.0, 31.8 / 61.0, -36.0 / 61.0);
@@ -70,6 +71,22 @@ impl ContactFrame {
     #[inline(always)]
     pub fn tilted_normal(&self, x: f64, y: f64) -> Vec3 {
         self.normal + self.axes[0] * x + self.axes[1] * y
+    }
+
+    /// Returns how far a point is from the origin along each axis and along the normal.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(always)]
+    pub fn project(&self, p: &Vec3) -> Result<Vec3, Fault> {
+        let p = p - self.origin;
+        // NaN ends here too; beyond that squares of squares overflow.
+        let square = p.norm_squared();
+        if !(square * square).is_finite() {
+            return Err(Fault::NonFinite);
+        }
+        let [e1, e2] = &self.axes;
+        Ok(Vec3::new(e1.dot(&p), e2.dot(&p), self.normal.dot(&p)))
     }
 
     /// Returns the point `x` and `y` from the origin along the axes.

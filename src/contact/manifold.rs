@@ -17,9 +17,9 @@
 
 use crate::contact::face::{Face, MAX_CORNERS, faces};
 use crate::contact::frame::ContactFrame;
-use crate::contact::manifold_cache::{ContactIds, ManifoldCache};
-use crate::contact::polygon::{Corner, FixedVec, Point2, Polygon, cross, dot, lerp, norm, vector};
-use crate::math::{Vec3, larger};
+use crate::contact::manifold_cache::ManifoldCache;
+use crate::contact::polygon::{FixedVec, Polygon, Vec2, way};
+use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 
 /// One point of a contact manifold.
@@ -71,29 +71,30 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     let ([one, two], slop) = faces(obj1, obj2, &mut frame, slop, cached)?;
     let (mut region, beside) = overlap(&one, &two);
     for corner in region.iter_mut() {
-        corner.low = one.low(&corner.at) + two.low(&corner.at);
+        corner.z = one.corners.low(corner) + two.corners.low(corner);
     }
-    let ids = cache.as_ref().map_or(ContactIds::default(), |cache| {
+    let (mut ids, mut first_id) = ([0; MAX_CONTACTS], 0);
+    if let Some(cache) = &mut cache {
         let slop = larger(one.slop, two.slop);
-        cache.ids([one.motion, two.motion], &region, slop)
-    });
-    let reduced = reduced(&region, &ids, max, one.rounding + two.rounding);
+        ids = cache.ids([one.motion, two.motion], &region, slop);
+        first_id = cache.first_id();
+    }
+    let order = reduced(&region, &ids, first_id, max, one.rounding + two.rounding);
     let mut manifold = Manifold::default();
-    let mut stored_ids: FixedVec<(Point2, u32), MAX_CONTACTS> = FixedVec::default();
-    for corner in reduced.iter() {
-        let [at1, at2] = beside.unwrap_or([corner.at; 2]);
-        let lows = [one.low(&at1), two.low(&at2)];
-        let point1 = frame.point(at1[0], at1[1]) + frame.normal * (one.top - lows[0]);
+    let mut stored_ids: FixedVec<(Vec3, u32), MAX_CONTACTS> = FixedVec::default();
+    for i in order.iter() {
+        let at = *region.at(*i);
+        let mut id = id_of(&ids, i % region.len().max(1));
+        let [at1, at2] = beside.unwrap_or([at; 2]);
+        let lows = [one.corners.low(&at1), two.corners.low(&at2)];
+        let point1 = frame.point(at1.x, at1.y) + frame.normal * (one.top - lows[0]);
         let depth = one.top + two.top - lows[0] - lows[1];
-        let [x, y] = vector(&at1, &at2);
-        let across = frame.axes[0] * x + frame.axes[1] * y;
-        let mut all = region.iter();
-        let id = ids.of(all.position(|c| c.at == corner.at).unwrap_or(MAX_CONTACTS));
-        let id = match &mut cache {
-            Some(cache) if id == 0 => cache.new_id(),
-            _ => id,
-        };
-        stored_ids.push((corner.at, id));
+        let beside = way(&at1, &at2);
+        let across = frame.axes[0] * beside.x + frame.axes[1] * beside.y;
+        if let Some(cache) = cache.as_mut().filter(|_| id == 0) {
+            id = cache.new_id();
+        }
+        stored_ids.push((at, id));
         manifold.0.push(Contact {
             point1,
             point2: point1 - frame.normal * depth + across,
@@ -102,134 +103,124 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
         });
     }
     if let (Some(out_cache), Some(mut cache)) = (out_cache, cache) {
-        cache.store(&frame, slop, [one.ring, two.ring], &stored_ids);
+        cache.store(&frame, slop, [one.cached, two.cached], &stored_ids);
         *out_cache = cache;
     }
     Ok(manifold)
 }
 
-/// Returns at most `max` corners of the region, the deepest first. Those that have ids stay while they span nine
-/// tenths of the largest area; differences of depth by `tie` are rounding.
+fn id_of(ids: &[u32; MAX_CONTACTS], i: usize) -> u32 {
+    ids.get(i).copied().unwrap_or(0)
+}
+
+/// Returns the indices of at most `max` corners of the region, the deepest first. Those that have ids stay while they
+/// span nine tenths of the largest area; differences of depth by `tie` are rounding.
 fn reduced(
     region: &Polygon<MAX_CONTACTS>,
-    ids: &ContactIds,
+    ids: &[u32; MAX_CONTACTS],
+    first_id: u32,
     max: usize,
     tie: f64,
-) -> Polygon<MAX_CONTACTS> {
-    let corners: &[Corner] = region;
+) -> FixedVec<usize, MAX_CONTACTS> {
+    let id_of = |i: usize| id_of(ids, i % region.len().max(1));
     // Rounding alone makes no corner the deepest.
-    let (mut deepest, mut least) = (0, corners.first().map_or(0.0, |corner| corner.low));
-    for (i, corner) in corners.iter().enumerate() {
-        if corner.low < least - tie {
-            (deepest, least) = (i, corner.low);
-        }
-    }
-    if let Some(i) = ids.first {
-        let still = corners.get(i).is_some_and(|c| c.low <= least + tie);
-        deepest = if still { i } else { deepest };
-    }
+    let is_deeper = |i: usize, j: usize| region.at(i).z < region.at(j).z - tie;
+    let mut deepest = (1..region.len()).fold(0, |k, i| if is_deeper(i, k) { i } else { k });
+    let is_first = |i: &usize| first_id != 0 && id_of(*i) == first_id && !is_deeper(deepest, *i);
+    deepest = (0..region.len()).find(is_first).unwrap_or(deepest);
     let best = region.reduced(deepest, max);
-    if corners.len() <= max || ids.of(deepest) == 0 {
-        return best;
-    }
-    let mut kept = Polygon::default();
-    for i in (deepest..corners.len()).chain(0..deepest) {
-        if ids.of(i) != 0 {
-            kept.push(*region.at(i));
+    if region.len() > max && id_of(deepest) != 0 {
+        let kept = (deepest..deepest + region.len()).filter(|i| id_of(*i) != 0);
+        let kept: FixedVec<usize, MAX_CONTACTS> = kept.collect();
+        let size = |indices: &[usize]| {
+            let corners: Polygon<MAX_CONTACTS> = indices.iter().map(|i| *region.at(*i)).collect();
+            match &*corners {
+                [a, b] => way(a, b).norm(),
+                _ => corners.area(),
+            }
+        };
+        if kept.len() == best.len() && size(&kept) >= 0.9 * size(&best) {
+            return kept;
         }
-    }
-    let size = |p: &Polygon<MAX_CONTACTS>| match &**p {
-        [a, b] => norm(&vector(&a.at, &b.at)),
-        _ => p.area(),
-    };
-    if kept.len() == best.len() && size(&kept) >= 0.9 * size(&best) {
-        return kept;
     }
     best
 }
 
 /// Returns the region that two faces share. Where they share nothing within the slop: the point between them, and
 /// the closest point of each.
-fn overlap(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Point2; 2]>) {
+fn overlap(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>) {
     let rounding = larger(one.rounding, two.rounding);
-    let reach = [one.reach(), two.reach()];
-    let (mut small, mut large, mut own) = (&one.corners, &two.corners, reach[0]);
-    let swapped = small.area() > large.area();
-    if swapped {
-        (small, large, own) = (large, small, reach[1]);
-    }
-    let slack = reach[0] + reach[1];
-    // A point between the two is to be on both: the rounder one reaches farther.
-    let share = own / slack;
-    let mut region: Polygon<MAX_CONTACTS> = Polygon::default();
-    let lines = match (&**small, &**large) {
-        ([a, b], [c, d]) => Some([[a.at, b.at], [c.at, d.at]]),
+    let is_swapped = one.corners.area() > two.corners.area();
+    let [small, large] = if is_swapped { [two, one] } else { [one, two] };
+    let mut region = Polygon::default();
+    let lines = match (&*small.corners, &*large.corners) {
+        ([a, b], [c, d]) => Some([[*a, *b], [*c, *d]]),
         _ => None,
     };
     if let Some(sides) = &lines {
-        region = crossing(sides).map_or(region, Polygon::point);
-    } else if large.len() > 2 {
-        small.iter().for_each(|corner| region.push(*corner));
-        region = region.clipped_by(large, rounding);
+        region = crossing(sides).into_iter().collect();
+    } else if large.corners.len() > 2 {
+        region = small.corners.iter().copied().collect();
+        region = region.clipped_by(&large.corners, rounding);
     }
     if !region.is_empty() {
         return (region.tidied(rounding, rounding), None);
     }
-    let Some((sides, [a, b])) = small.closest_sides(large) else {
+    let Some((sides, [a, b])) = small.corners.closest_sides(&large.corners) else {
         return (region, None);
     };
-    if lines.is_some() || one.round() + two.round() > 0.0 {
-        region = parallel_overlap(&sides, slack, share, rounding);
+    if lines.is_some() || one.round + two.round > 0.0 {
+        region = parallel_overlap(&sides, [small.reach(), large.reach()], rounding);
     }
     if !region.is_empty() {
         return (region, None);
     }
-    region = Polygon::point(lerp(&a, &b, 0.5));
-    let far = norm(&vector(&a, &b)) > one.slop.min(two.slop);
-    let points = if swapped { [b, a] } else { [a, b] };
-    (region, far.then_some(points))
+    region.push(a.lerp(&b, 0.5));
+    let is_far = way(&a, &b).norm() > lesser(one.slop, two.slop);
+    let points = if is_swapped { [b, a] } else { [a, b] };
+    (region, is_far.then_some(points))
 }
 
 /// Returns where two segments cross that are not nearly parallel.
-fn crossing([[p, q], [r, s]]: &[[Point2; 2]; 2]) -> Option<Point2> {
-    let (u, v, w) = (vector(p, q), vector(r, s), vector(p, r));
-    let whole = cross(&u, &v);
-    if !(whole.abs() > MAX_PARALLEL_SINE * norm(&u) * norm(&v)) {
+fn crossing([[p, q], [r, s]]: &[[Vec3; 2]; 2]) -> Option<Vec3> {
+    let (u, v, w) = (way(p, q), way(r, s), way(p, r));
+    let sine = u.perp(&v);
+    if !(sine.abs() > MAX_PARALLEL_SINE * u.norm() * v.norm()) {
         return None;
     }
-    let [t, k] = [cross(&w, &v), cross(&w, &u)].map(|x| x / whole);
-    let on = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&k);
-    on.then(|| lerp(p, q, t))
+    let [t, k] = [w.perp(&v), w.perp(&u)].map(|x| x / sine);
+    let is_on_both = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&k);
+    is_on_both.then(|| p.lerp(q, t))
 }
 
-/// Returns the ends of what two nearly parallel segments share, where they are no farther apart than `slack`,
-/// moved by a `share` of the way to the second. These lie between the ends of both segments: across the
-/// second one they may be moved beyond an end of the first. None where nothing is shared.
+/// Returns the ends of what two nearly parallel segments share, where they are no farther apart than both reach: on
+/// the way from the first to the second by the share of the first one's reach, because the rounder one reaches
+/// farther. These lie between the ends of both segments: across the second one they may be moved beyond an end of
+/// the first. None where nothing is shared.
 fn parallel_overlap(
-    [[p, q], [r, s]]: &[[Point2; 2]; 2],
-    slack: f64,
-    share: f64,
+    [[p, q], [r, s]]: &[[Vec3; 2]; 2],
+    reach: [f64; 2],
     rounding: f64,
 ) -> Polygon<MAX_CONTACTS> {
-    let mut ends = Polygon::default();
-    let (u, v) = (vector(p, q), vector(r, s));
-    let whole = norm(&u) * norm(&v);
-    if !(cross(&u, &v).abs() <= MAX_PARALLEL_SINE * whole && whole > 0.0) {
-        return ends;
+    let (u, v, slack) = (way(p, q), way(r, s), reach[0] + reach[1]);
+    let size = u.norm() * v.norm();
+    if !(u.perp(&v).abs() <= MAX_PARALLEL_SINE * size && size > 0.0) {
+        return Polygon::default();
     }
-    let longer = slack / norm(&u);
-    for at in [lerp(p, q, -longer), lerp(p, q, 1.0 + longer)] {
-        ends.push(Corner { at, low: 0.0 });
-    }
-    let (left, right) = ([-v[1], v[0]], [v[1], -v[0]]);
-    let mut ends = ends.clipped(r, &left, slack).clipped(r, &right, slack);
+    let longer = slack / u.norm();
+    let left = Vec2::new(-v.y, v.x);
+    let ends: Polygon<MAX_CONTACTS> = [-longer, 1.0 + longer]
+        .map(|t| p.lerp(q, t))
+        .into_iter()
+        .collect();
+    let mut ends = ends.clipped(r, &left, slack).clipped(r, &-left, slack);
     for end in ends.iter_mut() {
-        let t = dot(&v, &vector(r, &end.at)) / dot(&v, &v);
-        end.at = lerp(&end.at, &lerp(r, s, t), share);
+        let t = v.dot(&way(r, end)) / v.norm_squared();
+        *end = end.lerp(&r.lerp(s, t), reach[0] / slack);
     }
-    let [back_u, back_v] = [u, v].map(|way| way.map(|x| -x));
-    let ends = ends.clipped(p, &u, rounding).clipped(q, &back_u, rounding);
-    let ends = ends.clipped(r, &v, rounding).clipped(s, &back_v, rounding);
+    for (from, inwards) in [(p, u), (q, -u), (r, v), (s, -v)] {
+        ends = ends.clipped(from, &inwards, rounding);
+    }
     ends.tidied(rounding, 0.0)
 }
 

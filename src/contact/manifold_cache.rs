@@ -1,149 +1,58 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Stores the contact manifold of a pair from one query to the next: both faces, and the contacts with their ids.
+//! Stores the contact manifold of a pair from one query to the next: what finds both faces again, and the contacts
+//! with their ids.
 //!
-//! A contact keeps its id while it moves with either object, or beside it by less than a quarter of the region: the
-//! closest of the old ones, moved along, has its id.
+//! 1. *Faces.* Of a polygon whose corners are all known, the direction across each side, with a [`CACHED_LEAN`] to
+//!    its second corner, is queried again: so each corner is confirmed, and nothing is beyond a side. Of other faces
+//!    the directions are that found their corners.
+//! 2. *Motion.* Where the vertices found moved as one body, within a quarter of the slop, the face is the same.
+//! 3. *Ids.* A contact keeps its id while it moves with either object, or beside it by less than a quarter of the
+//!    region: the closest to an old one, moved along, has its id.
 
-use crate::contact::face::MAX_CORNERS;
+use crate::contact::face::{FaceSample, MAX_CORNERS, THREE_WAYS, across};
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold::MAX_CONTACTS;
-use crate::contact::polygon::{Corner, Point2, cross, dot, norm, vector};
+use crate::contact::polygon::{FixedVec, Polygon, Vec2, way};
 use crate::math::{Vec3, larger};
-use core::mem::swap;
+use nalgebra::{Complex, UnitComplex};
 
 /// Contacts whose ids are stored.
 const MAX_IDS: usize = 8;
-/// Corners are stored as `f32`: their error, as a share of the size of the face.
+/// How far a direction across a side leans to its second corner, in tilts: 3.6°, by which the face may turn about
+/// the normal. Insensitive: 1/64 to 1/8 tried.
+const CACHED_LEAN: f64 = 1.0 / 16.0;
+/// Vertices are stored as `f32`: their error, as a share of the size of the face.
 const F32_REL_TOL: f64 = 4.0 * f32::EPSILON as f64;
 
-/// Converts to what is stored.
-#[allow(clippy::unnecessary_cast, reason = "it is one in double precision")]
-pub fn to_f32(x: f64) -> f32 {
-    x as f32
-}
-
-/// Converts from what is stored.
-#[allow(clippy::useless_conversion, reason = "it is none in double precision")]
-pub fn to_f64(x: f32) -> f64 {
-    f64::from(x)
-}
-
-/// A corner of a cached face.
+/// A direction and what it finds, as x and y of the frame: its tilt, the vertex, and the way from that to the corner
+/// without roundness.
 #[derive(Clone, Copy, Debug, Default)]
-#[repr(C)]
-pub struct CachedCorner {
-    /// Its place in the frame.
-    pub at: [f32; 2],
-    /// How far below the support plane.
-    pub low: f32,
-    /// The tilt of a direction that found it.
-    pub tilt: [f32; 2],
-    /// How much it moves for each tilt.
-    pub radius: f32,
-}
+#[repr(transparent)]
+pub struct CachedSample([[f32; 2]; 3]);
 
-impl CachedCorner {
-    /// Returns the corner.
-    pub fn corner(&self) -> Corner {
-        Corner {
-            at: self.at.map(to_f64),
-            low: to_f64(self.low),
-        }
-    }
-}
-
-/// A cached face: its corners, counterclockwise; a tilt of 0 stands for none.
+/// A cached face.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
 pub struct CachedFace {
-    pub tilt_size: f32,
-    pub slop: f32,
-    /// The number of corners.
+    /// The number of samples: 0 where nothing is cached.
     pub len: f32,
-    /// Not 0: a polygon inscribed in a face that is curved or has more corners.
-    pub inscribed: f32,
-    /// Not 0: the support plane is higher than the corners, and is queried too.
-    pub own: f32,
-    pub corners: [CachedCorner; MAX_CORNERS],
-}
-
-impl CachedFace {
-    /// Returns the corners.
-    pub fn corners(&self) -> &[CachedCorner] {
-        // NaN and what is below 0 become 0.
-        let len = (self.len as usize).min(MAX_CORNERS);
-        self.corners.get(..len).unwrap_or(&[])
-    }
-
-    /// Returns a corner.
-    pub fn corner(&self, i: usize) -> &CachedCorner {
-        &self.corners[i.min(MAX_CORNERS - 1)]
-    }
-
-    /// Returns how the corners moved to where they are now, if they did as one body, within the slack.
-    pub fn motion(&self, now: &[Corner], slack: f64) -> Option<Motion> {
-        let (from, to) = (self.corner(0).at.map(to_f64), now.first()?.at);
-        let spokes = || {
-            let ways = self.corners().iter().zip(now);
-            ways.map(|(a, b)| (vector(&from, &a.at.map(to_f64)), vector(&to, &b.at)))
-        };
-        let mut motion = Motion {
-            turn: [1.0, 0.0],
-            from,
-            to,
-        };
-        let (mut reach, mut turn) = (0.0, motion.turn);
-        for (a, b) in spokes() {
-            if norm(&a) > reach {
-                (reach, turn) = (norm(&a), [dot(&a, &b), cross(&a, &b)]);
-            }
-        }
-        let slack = slack + F32_REL_TOL * reach;
-        // A face no longer than its rounding has no measurable turn.
-        if reach > 64.0 * slack {
-            let whole = norm(&turn);
-            motion.turn = turn.map(|x| x / whole);
-        }
-        let as_one = |(a, b): (Point2, Point2)| norm(&vector(&motion.turned(&a), &b)) <= slack;
-        spokes().all(as_one).then_some(motion)
-    }
-
-    /// Turns the face round, as the frame of the swapped pair sees it.
-    fn mirror(&mut self) {
-        let count = self.corners().len();
-        for known in &mut self.corners {
-            known.at[1] = -known.at[1];
-            known.tilt[1] = -known.tilt[1];
-        }
-        if let Some(corners) = self.corners.get_mut(..count) {
-            corners.reverse();
-        }
-    }
+    pub slop: f32,
+    pub tilt_size: f32,
+    /// How far beside its corners the surface is the slop low.
+    pub round: f32,
+    /// Not 0: the samples are a polygon's corners, all of them.
+    pub is_complete: f32,
+    samples: [CachedSample; MAX_CORNERS],
 }
 
 /// How a face moved in the frame from one query to the next.
 #[derive(Clone, Copy)]
 pub struct Motion {
-    /// Cosine and sine of the angle.
-    turn: Point2,
-    from: Point2,
-    to: Point2,
-}
-
-impl Motion {
-    /// Returns a vector turned.
-    pub fn turned(&self, [x, y]: &Point2) -> Point2 {
-        let [c, s] = self.turn;
-        [c * x - s * y, s * x + c * y]
-    }
-
-    /// Returns where a point that moved along is now.
-    fn of(&self, at: &Point2) -> Point2 {
-        let [x, y] = self.turned(&vector(&self.from, at));
-        [self.to[0] + x, self.to[1] + y]
-    }
+    pub turn: UnitComplex<f64>,
+    from: Vec2,
+    to: Vec2,
 }
 
 /// All zero is cold. Any other bits are harmless: where the checksum is wrong it is cold.
@@ -155,7 +64,7 @@ pub struct ManifoldCache {
     axis: [f32; 3],
     /// The slop in force when the faces were found.
     slop: f32,
-    rings: [CachedFace; 2],
+    pub faces: [CachedFace; 2],
     points: [[f32; 2]; MAX_IDS],
     ids: [u32; MAX_IDS],
     count: u32,
@@ -164,17 +73,107 @@ pub struct ManifoldCache {
     checksum: u32,
 }
 
-/// The ids of the corners of a region, 0 for none, and which of them was the first contact.
-#[derive(Default)]
-pub struct ContactIds {
-    of: [u32; MAX_CONTACTS],
-    pub first: Option<usize>,
+impl CachedSample {
+    fn new(tilt: Vec2, found: &Vec3, offset: Vec2) -> Self {
+        Self([tilt, found.xy(), offset].map(|v| [v.x as f32, v.y as f32]))
+    }
+
+    pub fn tilt(&self) -> Vec2 {
+        self.0[0].map(f64::from).into()
+    }
+
+    fn found(&self) -> Vec2 {
+        self.0[1].map(f64::from).into()
+    }
+
+    pub fn offset(&self) -> Vec2 {
+        self.0[2].map(f64::from).into()
+    }
 }
 
-impl ContactIds {
-    /// Returns the id of corner `i`.
-    pub fn of(&self, i: usize) -> u32 {
-        self.of.get(i).copied().unwrap_or(0)
+impl CachedFace {
+    /// Returns what finds a polygon again of which all corners are known. A point is found by three directions, and the
+    /// ends of a segment by those along it too.
+    pub fn of_polygon(corners: &Polygon<MAX_CORNERS>, tilt_size: f64) -> Self {
+        let n = corners.len().max(1);
+        let tilt = |i: usize| {
+            let (last, corner) = (corners.at(i % n + n - 1), corners.at(i % n));
+            match n {
+                1 => THREE_WAYS[i % 3] * tilt_size,
+                2 if i > 1 => way(last, corner).normalize() * tilt_size,
+                _ => across(last, corner, tilt_size, CACHED_LEAN * tilt_size),
+            }
+        };
+        let sample = |i: usize| CachedSample::new(tilt(i), corners.at(i % n), Vec2::zeros());
+        let count = [3, 3, 4].get(n).copied().unwrap_or(n);
+        Self::of(&(0..count).map(sample).collect(), tilt_size, 1.0)
+    }
+
+    /// Returns what finds samples again.
+    pub fn of_samples(samples: &[FaceSample], tilt_size: f64) -> Self {
+        let sample = |s: &FaceSample| CachedSample::new(s.tilt, &s.found, way(&s.found, &s.corner));
+        Self::of(&samples.iter().map(sample).collect(), tilt_size, 0.0)
+    }
+
+    fn of(samples: &FixedVec<CachedSample, MAX_CORNERS>, tilt_size: f64, is_complete: f32) -> Self {
+        let mut face = Self {
+            len: samples.len() as f32,
+            tilt_size: tilt_size as f32,
+            is_complete,
+            ..Self::default()
+        };
+        for (place, sample) in face.samples.iter_mut().zip(&**samples) {
+            *place = *sample;
+        }
+        face
+    }
+
+    /// Returns the samples.
+    pub fn samples(&self) -> &[CachedSample] {
+        // NaN and what is below 0 become 0.
+        self.samples.get(..self.len as usize).unwrap_or(&[])
+    }
+
+    /// Returns how the vertices moved to where they are now, if they did as one body, within the slack.
+    pub fn motion(&self, now: &[FaceSample], slack: f64) -> Option<Motion> {
+        let (from, to) = (self.samples[0].found(), now.first()?.found.xy());
+        let spokes = || {
+            let pairs = self.samples().iter().zip(now);
+            pairs.map(|(old, new)| (old.found() - from, new.found.xy() - to))
+        };
+        let (mut reach, mut ways) = (0.0, (Vec2::x(), Vec2::x()));
+        for (a, b) in spokes() {
+            if a.norm() > reach {
+                (reach, ways) = (a.norm(), (a, b));
+            }
+        }
+        let slack = slack + F32_REL_TOL * reach;
+        let mut turn = UnitComplex::identity();
+        // A face no longer than its rounding has no measurable turn.
+        if reach > 64.0 * slack {
+            let (a, b) = ways;
+            turn = UnitComplex::new_normalize(Complex::new(a.dot(&b), a.perp(&b)));
+        }
+        let is_one = |(a, b): (Vec2, Vec2)| (turn * a - b).norm() <= slack;
+        spokes().all(is_one).then_some(Motion { turn, from, to })
+    }
+
+    /// Turns the face round, as the frame of the swapped pair sees it.
+    fn mirror(&mut self) {
+        let len = self.samples().len();
+        let samples = self.samples.get_mut(..len).unwrap_or(&mut []);
+        samples.reverse();
+        samples
+            .iter_mut()
+            .flat_map(|s| &mut s.0)
+            .for_each(|v| v[1] = -v[1]);
+    }
+}
+
+impl Motion {
+    /// Returns where a point that moved along is now.
+    fn of(&self, at: &Vec2) -> Vec2 {
+        self.to + self.turn * (at - self.from)
     }
 }
 
@@ -185,101 +184,93 @@ impl ManifoldCache {
         if self.checksum != self.checksum() {
             *self = Self::default();
         }
-        let vector = |v: [f32; 3]| Vec3::from(v.map(to_f64));
-        let mut along = vector(self.normal).dot(normal);
+        let mut along = Vec3::from(self.normal.map(f64::from)).dot(normal);
         if along < 0.0 {
-            self.flip();
+            self.faces.reverse();
+            self.faces.iter_mut().for_each(CachedFace::mirror);
+            self.points.iter_mut().for_each(|p| p[1] = -p[1]);
             along = -along;
         }
         // NaN is no normal.
         let is_same = along > 0.5 && along < 2.0;
-        let frame = ContactFrame::along_axis(normal, &vector(self.axis));
+        let frame = ContactFrame::along_axis(normal, &self.axis.map(f64::from).into());
         frame.filter(|_| is_same)
     }
 
     /// Returns whether the faces were found with a slop, or with one that is a little less: of a deep
     /// overlap it changes with the depth.
     pub fn has_slop(&self, slop: f64) -> bool {
-        let (old, new) = (self.slop, to_f32(slop));
+        let (old, new) = (self.slop, slop as f32);
         0.8 * new <= old && old <= new
     }
 
     /// Returns the checksum.
     fn checksum(&self) -> u32 {
-        let mut sum = self.count ^ self.last.rotate_left(16);
-        let mut mix = |x: f32| sum = (sum.rotate_left(5) ^ x.to_bits()).wrapping_mul(0x9e37_79b1);
-        self.normal.into_iter().for_each(&mut mix);
-        self.axis.into_iter().for_each(&mut mix);
-        mix(self.slop);
-        for ring in &self.rings {
+        let of_face = |face: &CachedFace| {
             let head = [
-                ring.tilt_size,
-                ring.slop,
-                ring.len,
-                ring.inscribed,
-                ring.own,
+                face.len,
+                face.slop,
+                face.tilt_size,
+                face.round,
+                face.is_complete,
             ];
-            head.into_iter().for_each(&mut mix);
-            for known in &ring.corners {
-                let ([x, y], [u, v]) = (known.at, known.tilt);
-                let all = [x, y, known.low, u, v, known.radius];
-                all.into_iter().for_each(&mut mix);
-            }
-        }
-        self.points.iter().flatten().copied().for_each(&mut mix);
-        let ids = self.ids.map(f32::from_bits);
-        ids.into_iter().for_each(&mut mix);
-        sum
+            let samples = face.samples.into_iter().flat_map(|s| s.0).flatten();
+            samples.chain(head)
+        };
+        let frame = self.normal.into_iter().chain(self.axis);
+        let reals = frame
+            .chain([self.slop])
+            .chain(self.faces.iter().flat_map(of_face));
+        let reals = reals
+            .chain(self.points.into_iter().flatten())
+            .map(f32::to_bits);
+        let words = reals.chain(self.ids).chain([self.count, self.last]);
+        words.fold(0, |sum: u32, x| {
+            (sum.rotate_left(5) ^ x).wrapping_mul(0x9e37_79b1)
+        })
     }
 
-    fn flip(&mut self) {
-        let [one, two] = &mut self.rings;
-        swap(one, two);
-        self.rings.iter_mut().for_each(CachedFace::mirror);
-        self.points.iter_mut().for_each(|p| p[1] = -p[1]);
-    }
-
-    /// Returns the cached faces.
-    pub fn rings(&self) -> &[CachedFace; 2] {
-        &self.rings
-    }
-
-    /// Returns the ids of the corners of a region.
-    pub fn ids(&self, motions: [Option<Motion>; 2], corners: &[Corner], slop: f64) -> ContactIds {
-        let mut ids = ContactIds::default();
-        let root = corners.first().map_or([0.0; 2], |c| c.at);
-        let square = |a: &Point2, b: &Point2| dot(&vector(a, b), &vector(a, b));
-        let reach = corners.iter().map(|c| square(&root, &c.at));
-        let near = 0.25 * reach.fold(0.0, larger).sqrt() + slop;
-        // The closest of the old contacts to each corner that is the closest to it.
-        let mut closest = [(near * near, MAX_IDS); MAX_CONTACTS];
+    /// Returns the ids of the corners of a region, 0 for none.
+    pub fn ids(
+        &self,
+        motions: [Option<Motion>; 2],
+        corners: &[Vec3],
+        slop: f64,
+    ) -> [u32; MAX_CONTACTS] {
+        let mut ids = [0; MAX_CONTACTS];
+        let first = corners.first().copied().unwrap_or_default();
+        let reach = corners.iter().map(|c| way(c, &first).norm());
+        let near = 0.25 * reach.fold(0.0, larger) + slop;
         let count = (self.count as usize).min(MAX_IDS);
-        for (k, old) in self.points.iter().enumerate().take(count) {
-            let old = old.map(to_f64);
-            let mut best = (near * near, MAX_CONTACTS);
-            for now in motions.iter().flatten().map(|m| m.of(&old)) {
+        for (old, id) in self.points.iter().zip(self.ids).take(count) {
+            // The closest corner that has none.
+            let (mut best, mut least) = (MAX_CONTACTS, near);
+            for now in motions
+                .iter()
+                .flatten()
+                .map(|m| m.of(&old.map(f64::from).into()))
+            {
                 for (i, corner) in corners.iter().enumerate() {
-                    let apart = square(&now, &corner.at);
-                    if apart < best.0 {
-                        best = (apart, i);
+                    let apart = (corner.xy() - now).norm();
+                    if apart < least && ids.get(i) == Some(&0) {
+                        (best, least) = (i, apart);
                     }
                 }
             }
-            if let Some(closest) = closest.get_mut(best.1) {
-                if best.0 < closest.0 {
-                    *closest = (best.0, k);
-                }
-            }
-        }
-        for (i, ((_, k), id)) in closest.iter().zip(&mut ids.of).enumerate() {
-            if let Some(old) = self.ids.get(*k) {
-                *id = (*old).max(1);
-                if *k == 0 {
-                    ids.first = Some(i);
-                }
+            if let Some(place) = ids.get_mut(best) {
+                *place = id.max(1);
             }
         }
         ids
+    }
+
+    /// Returns the id of the first contact; 0 for none.
+    pub fn first_id(&self) -> u32 {
+        if self.count > 0 {
+            self.ids[0].max(1)
+        } else {
+            0
+        }
     }
 
     /// Returns a new id.
@@ -293,16 +284,15 @@ impl ManifoldCache {
         &mut self,
         frame: &ContactFrame,
         slop: f64,
-        rings: [CachedFace; 2],
-        points: &[(Point2, u32)],
+        faces: [CachedFace; 2],
+        points: &[(Vec3, u32)],
     ) {
-        self.normal = frame.normal.map(to_f32).into();
-        self.axis = frame.axes[0].map(to_f32).into();
-        self.slop = to_f32(slop);
-        self.rings = rings;
+        self.normal = frame.normal.map(|x| x as f32).into();
+        self.axis = frame.axes[0].map(|x| x as f32).into();
+        (self.slop, self.faces) = (slop as f32, faces);
         let places = self.points.iter_mut().zip(&mut self.ids);
         for ((at, id), (place, old)) in points.iter().zip(places) {
-            (*place, *old) = (at.map(to_f32), *id);
+            (*place, *old) = ([at.x as f32, at.y as f32], *id);
         }
         self.count = points.len().min(MAX_IDS) as u32;
         self.checksum = self.checksum();

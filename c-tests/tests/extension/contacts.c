@@ -556,7 +556,7 @@ static void imperfect_normals(void)
         const double depth = pow(10, uniform(single ? -2 : -3, -1.5)), angle = uniform(0, 6.28), x = uniform(0.8, 1.2), y = uniform(0.8, 1.2);
         const double dir[3] = {cos(angle), sin(angle), 0};
         double rot[9], low = 0, high = 1, most;
-        flats_t face, found;
+        flats_t face, floor, found;
         scene_t s;
         s.slop = 0;
         s.a = at(shape_box(x, y, 0.5), 0, 0, -0.5);
@@ -584,6 +584,8 @@ static void imperfect_normals(void)
             face.n = 1;
             face.p[0] = manifold_flat(&f, p);
         }
+        manifold_face(&s.a, &f, 1, 0.1 * depth, noise_of(&s), &floor, &most);
+        face = flat_clip(&face, &floor); /* a corner may be beyond the edge */
         for (int j = 0; j < 60; j++) {
             const double t = (low + high) / 2, length = sqrt(1 + t * t);
             for (int k = 0; k < 3; k++)
