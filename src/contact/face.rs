@@ -321,7 +321,9 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         }
         // A corner costs up to two, and those that are not settled one.
         let pending = self.ring.iter().filter(|s| !s.is_settled).count() as u32;
-        if self.ring.len() == MAX_CORNERS || self.query_count + pending + 2 > self.query_limit() {
+        let count = self.query_count + 2;
+        let is_last = count > self.query_limit() || count + pending > MAX_QUERIES;
+        if self.ring.len() == MAX_CORNERS || is_last {
             return Ok(None);
         }
         let [a, b] = [i, i + 1].map(|i| self.ring.at(i).found);
