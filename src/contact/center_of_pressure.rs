@@ -46,7 +46,7 @@
 //! So no answer is blended to that middle, however deep.
 
 use crate::contact::Penetration;
-use crate::contact::feature::{Fan, FeatureKind, FeatureQuery, FeatureVertex, MAX_KNOWN};
+use crate::contact::feature::{Fan, FeatureKind, FeatureQuery, MAX_KNOWN, area2};
 use crate::contact::frame::ContactFrame;
 use crate::math::{Vec3, larger};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -104,7 +104,7 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
     if !query.fan(smaller, &feature, &mut fan)? {
         return Ok(false);
     }
-    let ends = fan.vertices.map(|v| OutlineVertex::of(&v));
+    let ends = fan.vertices.map(|v| outline_vertex(&v));
     if is_plane(query, other, ends.get(..fan.len).unwrap_or(&[])) {
         sum.add_fan_on_plane(&fan, &ends);
         return Ok(true);
@@ -128,9 +128,9 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
 fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
     query: &FeatureQuery<A, B, N>,
     object: usize,
-    outline: &[OutlineVertex],
+    outline: &[Vec3],
 ) -> bool {
-    let mut level = query.known(object).filter(|v| v.low <= LEVEL_TOL);
+    let mut level = query.known(object).filter(|v| v.z <= LEVEL_TOL);
     let Some(first) = level.next() else {
         return false;
     };
@@ -164,25 +164,12 @@ fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
     })
 }
 
-/// A vertex of the outline of the overlap, and the local depth there in depths.
-#[derive(Clone, Copy, Debug, Default)]
-struct OutlineVertex {
-    x: f64,
-    y: f64,
-    depth: f64,
-}
-
-impl OutlineVertex {
-    /// Returns how far the overlap reaches towards a vertex of an object on a plane.
-    #[inline(always)]
-    fn of(v: &FeatureVertex) -> Self {
-        let share = 1.0 / larger(v.low, 1.0);
-        Self {
-            x: v.x * share,
-            y: v.y * share,
-            depth: larger(1.0 - v.low, 0.0),
-        }
-    }
+/// Returns how far the overlap reaches towards a vertex of an object on a plane (z: the local depth there, in
+/// depths).
+#[inline(always)]
+fn outline_vertex(v: &Vec3) -> Vec3 {
+    let share = 1.0 / larger(v.z, 1.0);
+    Vec3::new(v.x * share, v.y * share, larger(1.0 - v.z, 0.0))
 }
 
 /// A ray from the deepest point through a vertex of a fan, and what is at most 1 in the overlap at that
@@ -195,22 +182,17 @@ struct Ray {
     /// The index of the largest bound.
     top: usize,
     /// The point of the ray at which the largest bound is 1.
-    end: OutlineVertex,
+    end: Vec3,
 }
 
 impl Ray {
     /// Returns the ray through vertex `v` of fan `own`, which is between the vertices `p` and `q` of the other
     /// fan; `pv`, `vq` and `pq`: their cross products.
     #[inline(always)]
-    fn new(
-        v: &FeatureVertex,
-        own: usize,
-        [p, q]: [&FeatureVertex; 2],
-        [pv, vq, pq]: [f64; 3],
-    ) -> Self {
+    fn new(v: &Vec3, own: usize, [p, q]: [&Vec3; 2], [pv, vq, pq]: [f64; 3]) -> Self {
         let share = 1.0 / pq;
         let (one, two) = (vq * share, pv * share);
-        let low = v.low + one * p.low + two * q.low;
+        let low = v.z + one * p.z + two * q.z;
         let mut bounds = [one + two, one + two, low];
         bounds[own % 2] = 1.0;
         let k = usize::from(bounds[1] > bounds[0]);
@@ -225,19 +207,15 @@ impl Ray {
     }
 
     #[inline(always)]
-    fn end(x: f64, y: f64, top: f64, low: f64) -> OutlineVertex {
+    fn end(x: f64, y: f64, top: f64, low: f64) -> Vec3 {
         let share = 1.0 / top;
-        OutlineVertex {
-            x: x * share,
-            y: y * share,
-            depth: larger(1.0 - low * share, 0.0),
-        }
+        Vec3::new(x * share, y * share, larger(1.0 - low * share, 0.0))
     }
 
     /// Returns where the outline passes from bound `i`, the larger one on this ray, to bound `j`, the larger one
     /// on `next`; and by how much the third one is larger there.
     #[inline(always)]
-    fn crossing(&self, next: &Self, i: usize, j: usize) -> (OutlineVertex, f64) {
+    fn crossing(&self, next: &Self, i: usize, j: usize) -> (Vec3, f64) {
         let k = 3_usize.wrapping_sub(i + j).min(2);
         let [i, j] = [i, j].map(|i| i.min(2));
         let (a, b) = (&self.bounds, &next.bounds);
@@ -272,14 +250,14 @@ impl PressureSum {
 
     /// Adds the triangle from the deepest point to a side of the outline, and the flank beyond that.
     #[inline(always)]
-    fn add(&mut self, v: &OutlineVertex, w: &OutlineVertex) {
+    fn add(&mut self, v: &Vec3, w: &Vec3) {
         let (x, y) = (w.x - v.x, w.y - v.y);
         let length2 = x * x + y * y;
         if length2 < self.min_side2 {
             return;
         }
         let length = length2.sqrt();
-        let (a, b) = (v.depth, w.depth);
+        let (a, b) = (v.z, w.z);
         let area = v.x * w.y - v.y * w.x;
         let k = self.flank * length;
         let both = area + (area + k * (a + b)) * (a + b);
@@ -292,17 +270,17 @@ impl PressureSum {
 
     /// Adds a fan on a plane that reaches farther; `ends`: the outline towards its vertices.
     #[inline(always)]
-    fn add_fan_on_plane<const M: usize>(&mut self, fan: &Fan, ends: &[OutlineVertex; M]) {
+    fn add_fan_on_plane<const M: usize>(&mut self, fan: &Fan, ends: &[Vec3; M]) {
         for i in 0..fan.len.min(M - 1) {
             let (p, q) = (&fan.vertices[i], &fan.vertices[i + 1]);
             if !(fan.areas[i] > 0.0) {
                 continue;
             }
             let mut start = ends[i];
-            if (p.low > 1.0) != (q.low > 1.0) {
-                let t = (1.0 - p.low) / (q.low - p.low);
+            if (p.z > 1.0) != (q.z > 1.0) {
+                let t = (1.0 - p.z) / (q.z - p.z);
                 let (x, y) = (p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t);
-                let middle = OutlineVertex { x, y, depth: 0.0 };
+                let middle = Vec3::new(x, y, 0.0);
                 self.add(&start, &middle);
                 start = middle;
             }
@@ -325,23 +303,23 @@ impl PressureSum {
         let p = vertex(0, 0);
         while at[1] + 1 < two.len {
             let [q, r] = [vertex(1, at[1]), vertex(1, at[1] + 1)];
-            if q.cross(p) >= 0.0 && p.cross(r) > 0.0 {
+            if area2(q, p) >= 0.0 && area2(p, r) > 0.0 {
                 break;
             }
             at[1] += 1;
         }
         let [q, r] = [vertex(1, at[1]), vertex(1, at[1] + 1)];
-        let crosses = [q.cross(p), p.cross(r), area(1, at[1])];
+        let crosses = [area2(q, p), area2(p, r), area(1, at[1])];
         let mut last = Ray::new(p, 0, [q, r], crosses);
         for _ in 0..one.len + two.len {
             let nexts = [vertex(0, at[0] + 1), vertex(1, at[1] + 1)];
-            let turn = nexts[0].cross(nexts[1]);
+            let turn = area2(nexts[0], nexts[1]);
             // The fan whose vertex comes next.
             let own = usize::from(!(turn > 0.0));
             let other = 1 - own;
             let v = nexts[own];
             let p = vertex(other, at[other]);
-            let crosses = [p.cross(v), turn.abs(), area(other, at[other])];
+            let crosses = [area2(p, v), turn.abs(), area(other, at[other])];
             let next = Ray::new(v, own, [p, nexts[other]], crosses);
             self.add_cone(&last, &next);
             last = next;
@@ -388,18 +366,18 @@ mod tests {
     fn fan(corners: &[(f64, f64, f64)]) -> Fan {
         let mut fan = Fan::EMPTY;
         for &(x, y, low) in corners {
-            fan.push(FeatureVertex { x, y, low });
+            fan.push(Vec3::new(x, y, low));
         }
         assert!(fan.close());
         fan
     }
 
     /// Returns w and low of a fan at a place.
-    fn bounds(fan: &Fan, r: &FeatureVertex) -> [f64; 2] {
+    fn bounds(fan: &Fan, r: &Vec3) -> [f64; 2] {
         let mut found = (0..fan.len).filter_map(|i| {
             let (p, q) = (&fan.vertices[i], &fan.vertices[i + 1]);
-            let (one, two) = (r.cross(q) / fan.areas[i], p.cross(r) / fan.areas[i]);
-            (one >= 0.0 && two >= 0.0).then_some([one + two, one * p.low + two * q.low])
+            let (one, two) = (area2(r, q) / fan.areas[i], area2(p, r) / fan.areas[i]);
+            (one >= 0.0 && two >= 0.0).then_some([one + two, one * p.z + two * q.z])
         });
         found.next().unwrap_or([9.0; 2])
     }
@@ -410,7 +388,7 @@ mod tests {
         let mut sum = [0.0; 3];
         for (x, y) in (-N..N).flat_map(|x| (-N..N).map(move |y| (x, y))) {
             let [x, y] = [x, y].map(|x| (x as f64 + 0.5) * 1.5 / N as f64);
-            let r = FeatureVertex { x, y, low: 0.0 };
+            let r = Vec3::new(x, y, 0.0);
             let [[w1, low1], [w2, low2]] = [0, 1].map(|i| bounds(&fans[i], &r));
             let depth = 1.0 - low1 - low2;
             if w1 <= 1.0 && w2 <= 1.0 && depth > 0.0 {

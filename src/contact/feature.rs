@@ -23,7 +23,7 @@
 //! No reference is known to us; the figures are from `c-tests/tests/extension/pressure.c` and recorded contacts.
 
 use crate::contact::frame::ContactFrame;
-use crate::math::{EPSILON, Vec3, larger, lesser};
+use crate::math::{EPSILON, Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;
 
@@ -73,43 +73,16 @@ const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
 /// The ways between them.
 const DIAGONALS: [[f64; 2]; 4] = [[H, H], [-H, H], [-H, -H], [H, -H]];
 
-/// A vertex in the contact frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FeatureVertex {
-    /// From the deepest point along the axes, metres.
-    pub x: f64,
-    pub y: f64,
-    /// How far below the support plane, in depths.
-    pub low: f64,
+/// Returns whether two vertices are no farther apart than `distance` along either axis.
+#[inline(always)]
+fn is_within(a: &Vec3, b: &Vec3, distance: f64) -> bool {
+    (a.x - b.x).abs() <= distance && (a.y - b.y).abs() <= distance
 }
 
-impl FeatureVertex {
-    /// Returns twice the area of the triangle of the deepest point, this vertex and another, positive
-    /// counterclockwise.
-    #[inline(always)]
-    pub fn cross(&self, other: &Self) -> f64 {
-        self.x * other.y - self.y * other.x
-    }
-
-    #[inline(always)]
-    fn minus(&self, other: &Self) -> Self {
-        Self {
-            x: self.x - other.x,
-            y: self.y - other.y,
-            low: self.low - other.low,
-        }
-    }
-
-    #[inline(always)]
-    fn length2(&self) -> f64 {
-        self.x * self.x + self.y * self.y
-    }
-
-    #[inline(always)]
-    fn is_within(&self, other: &Self, distance: f64) -> bool {
-        let d = self.minus(other);
-        d.x.abs() <= distance && d.y.abs() <= distance
-    }
+/// Returns twice the area of the triangle of the deepest point and two vertices, positive counterclockwise.
+#[inline(always)]
+pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
+    a.x * b.y - a.y * b.x
 }
 
 /// The kind of a feature.
@@ -128,14 +101,14 @@ pub enum FeatureKind {
 #[derive(Clone, Copy, Debug)]
 pub struct Feature {
     pub kind: FeatureKind,
-    pub vertices: [FeatureVertex; 4],
+    pub vertices: [Vec3; 4],
     /// The way outwards of each, unit.
     ways: [[f64; 2]; 4],
 }
 
 /// The known vertices that are farthest along the four tilted normals.
 struct Prediction {
-    vertices: [FeatureVertex; 4],
+    vertices: [Vec3; 4],
     /// How far each is along its tilted normal, over T.
     scores: [f64; 4],
     /// How far towards the way a known direction that found it is tilted.
@@ -148,7 +121,7 @@ struct Prediction {
 #[derive(Clone, Copy, Debug)]
 pub struct Fan {
     /// `vertices[len]` is the first one again.
-    pub vertices: [FeatureVertex; Fan::CAPACITY],
+    pub vertices: [Vec3; Fan::CAPACITY],
     /// Twice the area of the triangle of the deepest point, each vertex and the next one.
     pub areas: [f64; Fan::CAPACITY],
     pub len: usize,
@@ -162,18 +135,18 @@ struct Slope {
 
 impl Slope {
     /// Returns that of the plane of three vertices.
-    fn of([a, b, c]: [&FeatureVertex; 3]) -> Self {
-        let (v, w) = (b.minus(a), c.minus(a));
-        let share = 1.0 / v.cross(&w);
+    fn of([a, b, c]: [&Vec3; 3]) -> Self {
+        let (v, w) = (b - a, c - a);
+        let share = 1.0 / area2(&v, &w);
         Self {
-            x: (v.low * w.y - w.low * v.y) * share,
-            y: (w.low * v.x - v.low * w.x) * share,
+            x: (v.z * w.y - w.z * v.y) * share,
+            y: (w.z * v.x - v.z * w.x) * share,
         }
     }
 
     /// Returns how low the plane through a vertex is at a place.
-    fn low(&self, through: &FeatureVertex, x: f64, y: f64) -> f64 {
-        through.low + self.x * (x - through.x) + self.y * (y - through.y)
+    fn low(&self, through: &Vec3, x: f64, y: f64) -> f64 {
+        through.z + self.x * (x - through.x) + self.y * (y - through.y)
     }
 }
 
@@ -263,13 +236,11 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
 
     /// Returns the known vertices of an object.
     #[inline(always)]
-    pub fn known(&self, object: usize) -> impl Iterator<Item = FeatureVertex> + '_ {
+    pub fn known(&self, object: usize) -> impl Iterator<Item = Vec3> + '_ {
         let k = object % 2;
-        self.known.iter().map(move |[x, y, low]| FeatureVertex {
-            x: x[k],
-            y: y[k],
-            low: low[k],
-        })
+        self.known
+            .iter()
+            .map(move |[x, y, low]| Vec3::new(x[k], y[k], low[k]))
     }
 
     /// Queries an object along the normal tilted by the tangents `x` and `y`.
@@ -277,7 +248,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
-    fn query(&self, object: usize, x: f64, y: f64) -> Result<FeatureVertex, Fault> {
+    fn query(&self, object: usize, x: f64, y: f64) -> Result<Vec3, Fault> {
         self.query_unit(
             object,
             &(self.frame.tilted_normal(x, y) / (1.0 + x * x + y * y).sqrt()),
@@ -285,26 +256,17 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     }
 
     #[inline(always)]
-    fn query_unit(&self, object: usize, dir: &Vec3) -> Result<FeatureVertex, Fault> {
+    fn query_unit(&self, object: usize, dir: &Vec3) -> Result<Vec3, Fault> {
         let side = if object == 0 { 1.0 } else { -1.0 };
-        let p = (self.md.point_of(object, dir) - self.frame.origin) * side;
-        // NaN ends here too; beyond that squares of squares overflow.
-        let q = p.norm_squared();
-        if !(q * q).is_finite() {
-            return Err(Fault::NonFinite);
-        }
-        let [e1, e2] = &self.frame.axes;
-        Ok(FeatureVertex {
-            x: e1.dot(&p),
-            y: e2.dot(&p),
-            low: larger((self.half - self.frame.normal.dot(&p)) / self.depth, 0.0),
-        })
+        let p = self.frame.project(&self.md.point_of(object, dir))? * side;
+        let low = larger((self.half - p.z) / self.depth, 0.0);
+        Ok(Vec3::new(p.x, p.y, low))
     }
 
     /// Returns how far a vertex is along each of the tilted normals, over T.
     #[inline(always)]
-    fn scores(&self, v: &FeatureVertex) -> [f64; 4] {
-        let low = v.low * self.fall;
+    fn scores(&self, v: &Vec3) -> [f64; 4] {
+        let low = v.z * self.fall;
         [v.x - low, v.y - low, -v.x - low, -v.y - low]
     }
 
@@ -318,7 +280,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     #[inline(always)]
     fn predict(&self, object: usize) -> Prediction {
         let mut found = Prediction {
-            vertices: [FeatureVertex::default(); 4],
+            vertices: [Vec3::zeros(); 4],
             scores: [f64::NEG_INFINITY; 4],
             cover: [0.0; 4],
             is_polytope: false,
@@ -339,8 +301,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                     if is_facing {
                         found.cover[k] = tilt;
                     }
-                } else if gain >= -same && is_facing && v.is_within(&found.vertices[k], self.same())
-                {
+                } else if gain >= -same && is_facing && is_within(&v, &found.vertices[k], same) {
                     found.is_polytope |= is_found[k];
                     is_found[k] = true;
                     found.cover[k] = larger(tilt, found.cover[k]);
@@ -371,7 +332,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             }
             let axis = self.frame.axes[next % 2] * if next < 2 { self.tilt } else { -self.tilt };
             let v = self.query_unit(object, &((self.frame.normal + axis) * self.cosine))?;
-            if v.is_within(&found.vertices[next % 4], self.same()) {
+            if is_within(&v, &found.vertices[next % 4], self.same()) {
                 (found.is_polytope, hits) = (true, hits + 1);
             } else {
                 misses += 1;
@@ -411,7 +372,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     #[inline(always)]
     fn confirm(&self, object: usize, feature: &mut Feature) -> Result<(), Fault> {
         let [a, rest @ ..] = feature.vertices;
-        let is_same = |p: &FeatureVertex, q: &FeatureVertex| p.is_within(q, self.same());
+        let is_same = |p: &Vec3, q: &Vec3| is_within(p, q, self.same());
         let end = rest.iter().find(|v| !is_same(v, &a));
         let b = *end.unwrap_or(&a);
         if !rest.iter().all(|v| is_same(v, &a) || is_same(v, &b)) {
@@ -420,8 +381,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         if end.is_none() {
             return Ok(());
         }
-        let along = b.minus(&a);
-        let length = along.length2().sqrt();
+        let along = b - a;
+        let length = along.xy().norm_squared().sqrt();
         let (x, y) = (along.x / length, along.y / length);
         feature.vertices = [a, a, b, b];
         feature.ways = [[-x, -y], [y, -x], [x, y], [-y, x]];
@@ -452,16 +413,16 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     }
 
     /// Returns whether two vertices are symmetric about the deepest point.
-    fn is_symmetric(&self, a: &FeatureVertex, b: &FeatureVertex) -> bool {
+    fn is_symmetric(&self, a: &Vec3, b: &Vec3) -> bool {
         let (x, y) = (a.x + b.x, a.y + b.y);
         let most = SYMMETRY_REL_TOL * self.extent;
-        x * x + y * y < most * most && (a.low - b.low).abs() < SAME_FACE
+        x * x + y * y < most * most && (a.z - b.z).abs() < SAME_FACE
     }
 
-    fn is_point(&self, vertices: &[FeatureVertex]) -> bool {
+    fn is_point(&self, vertices: &[Vec3]) -> bool {
         vertices.iter().all(|v| {
-            let most = POINT_REL * self.extent * larger(v.low, 1.0);
-            v.length2() <= most * most
+            let most = POINT_REL * self.extent * larger(v.z, 1.0);
+            v.xy().norm_squared() <= most * most
         })
     }
 
@@ -496,13 +457,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         if self.is_point(fan.vertices.get(..fan.len).unwrap_or(&[])) {
             return Ok(false);
         }
-        let lows = vertices
-            .iter()
-            .chain(between.iter().flatten())
-            .map(|v| v.low);
+        let lows = vertices.iter().chain(between.iter().flatten()).map(|v| v.z);
         let level = LEVEL * lows.fold(1.0, lesser);
         for v in fan.vertices.iter_mut().take(fan.len) {
-            v.low -= level;
+            v.z -= level;
         }
         if !fan.close() {
             fan.enclose(self.margin);
@@ -512,12 +470,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
 
     /// Returns a vertex moved outwards by the margin.
     #[inline(always)]
-    fn moved(&self, v: &FeatureVertex, [x, y]: [f64; 2]) -> FeatureVertex {
-        FeatureVertex {
-            x: v.x + self.margin * x,
-            y: v.y + self.margin * y,
-            low: v.low,
-        }
+    fn moved(&self, v: &Vec3, [x, y]: [f64; 2]) -> Vec3 {
+        Vec3::new(v.x + self.margin * x, v.y + self.margin * y, v.z)
     }
 
     /// Returns the corner that a polytope has beyond a side of the four, moved outwards, and its place
@@ -527,15 +481,11 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// the side that has the deepest point outside. The direction is the normal of the plane of three corners,
     /// tilted across that side.
     #[inline(always)]
-    fn fifth(
-        &self,
-        object: usize,
-        vertices: &[FeatureVertex; 4],
-    ) -> Result<Option<(usize, FeatureVertex)>, Fault> {
+    fn fifth(&self, object: usize, vertices: &[Vec3; 4]) -> Result<Option<(usize, Vec3)>, Fault> {
         let at = |i: usize| &vertices[i % 4];
-        let lengths2 = [0, 1, 2, 3].map(|i| at(i + 1).minus(at(i)).length2());
-        let areas = [0, 1, 2, 3].map(|i| at(i).cross(at(i + 1)));
-        let twice = (0..4).find(|i| at(*i).is_within(at(i + 1), 2.0 * self.margin));
+        let lengths2 = [0, 1, 2, 3].map(|i| (at(i + 1) - at(i)).xy().norm_squared());
+        let areas = [0, 1, 2, 3].map(|i| area2(at(i), at(i + 1)));
+        let twice = (0..4).find(|i| is_within(at(*i), at(i + 1), 2.0 * self.margin));
         let (side, opposite) = if let Some(twice) = twice {
             let side = (1..4).fold(0, |k, i| if lengths2[i] > lengths2[k] { i } else { k });
             let is_next = (side + 1) % 4 == twice;
@@ -548,11 +498,11 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             (side, side + 2)
         };
         let [o, p, q] = [opposite, side, side + 1].map(at);
-        let area = p.minus(o).cross(&q.minus(o));
+        let area = area2(&(p - o), &(q - o));
         let length = lengths2[side].sqrt();
         // Beyond a side that is all too low nothing is shared.
         let is_wide = area > NARROW_REL * lengths2[side] && area > 2.0 * self.margin * length;
-        if !(is_wide && (p.low < 1.0 || q.low < 1.0)) {
+        if !(is_wide && (p.z < 1.0 || q.z < 1.0)) {
             return Ok(None);
         }
         let slope = Slope::of([o, p, q]);
@@ -563,14 +513,14 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             slope.y * self.depth + y * self.tilt,
         )?;
         let is_beyond = x * (v.x - p.x) + y * (v.y - p.y) > 2.0 * self.margin;
-        let is_in_plane = v.low <= slope.low(o, v.x, v.y) + SAME_FACE;
+        let is_in_plane = v.z <= slope.low(o, v.x, v.y) + SAME_FACE;
         Ok((is_beyond && is_in_plane).then(|| (side + 1, self.moved(&v, [x, y]))))
     }
 
     /// Returns the points between four vertices, where these are on the rim of a disc. A disc returns, for a
     /// direction, its middle and the radius that way; so may corners of a square, where it lies as the ways do
     /// to a ten thousandth of a radian.
-    fn rim(&self, vertices: &[FeatureVertex; 4]) -> Option<[FeatureVertex; 4]> {
+    fn rim(&self, vertices: &[Vec3; 4]) -> Option<[Vec3; 4]> {
         let [a, b, c, d] = vertices;
         let slope = Slope::of([a, b, c]);
         let (sx, sy) = (slope.x * self.depth, slope.y * self.depth);
@@ -586,23 +536,23 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         };
         let [first, second, third, fourth] = WAYS.map(outwards);
         let (x, y) = (first.0 - third.0, first.1 - third.1);
-        let chord = a.minus(c);
+        let chord = a - c;
         let whole2 = x * x + y * y;
         // Other faces' corners mostly lie in other directions.
         let cross = x * chord.y - y * chord.x;
-        if !(cross * cross <= RIM_REL_TOL * whole2 * chord.length2()) {
+        if !(cross * cross <= RIM_REL_TOL * whole2 * chord.xy().norm_squared()) {
             return None;
         }
         let radius = (x * chord.x + y * chord.y) / whole2;
         let on_rim = |(x, y): (f64, f64)| {
             let (x, y) = (a.x + radius * (x - first.0), a.y + radius * (y - first.1));
             let low = slope.low(a, x, y);
-            FeatureVertex { x, y, low }
+            Vec3::new(x, y, low)
         };
-        let is_there = |way, found: &FeatureVertex| {
-            let off = on_rim(way).minus(found);
+        let is_there = |way, found: &Vec3| {
+            let off = on_rim(way) - found;
             let most = RIM_REL_TOL * radius;
-            off.length2() <= most * most && off.low.abs() <= SAME_FACE
+            off.xy().norm_squared() <= most * most && off.z.abs() <= SAME_FACE
         };
         // False for NaN.
         let is_rim = radius > 2.0 * self.margin
@@ -615,7 +565,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
 
 impl Feature {
     #[inline(always)]
-    fn new(kind: FeatureKind, vertices: [FeatureVertex; 4]) -> Self {
+    fn new(kind: FeatureKind, vertices: [Vec3; 4]) -> Self {
         Self {
             kind,
             vertices,
@@ -627,7 +577,7 @@ impl Feature {
 impl Prediction {
     /// Takes a queried vertex for the prediction of the other tilts that it is farther along.
     #[inline(always)]
-    fn consider(&mut self, v: &FeatureVertex, scores: &[f64; 4], is_queried: &[bool; 4]) {
+    fn consider(&mut self, v: &Vec3, scores: &[f64; 4], is_queried: &[bool; 4]) {
         for k in 0..4 {
             if !is_queried[k] && scores[k] > self.scores[k] {
                 (self.scores[k], self.vertices[k], self.cover[k]) = (scores[k], *v, 0.0);
@@ -640,30 +590,26 @@ impl Fan {
     /// Eight of a disc, or five corners, and the two that enclose the deepest point; the first one again.
     pub const CAPACITY: usize = 11;
     pub const EMPTY: Self = Self {
-        vertices: [FeatureVertex {
-            x: 0.0,
-            y: 0.0,
-            low: 0.0,
-        }; Self::CAPACITY],
+        vertices: [ZERO; Self::CAPACITY],
         areas: [0.0; Self::CAPACITY],
         len: 0,
     };
 
     /// Returns the vertex with an index that counts on from the first.
     #[inline(always)]
-    fn around(&self, i: usize) -> FeatureVertex {
+    fn around(&self, i: usize) -> Vec3 {
         self.vertices[(i % self.len.max(1)).min(Self::CAPACITY - 1)]
     }
 
     #[inline(always)]
-    pub fn push(&mut self, v: FeatureVertex) {
+    pub fn push(&mut self, v: Vec3) {
         if self.len < Self::CAPACITY - 1 {
             self.vertices[self.len] = v;
             self.len += 1;
         }
     }
 
-    fn insert(&mut self, i: usize, v: FeatureVertex) {
+    fn insert(&mut self, i: usize, v: Vec3) {
         self.push(v);
         let mut moved = v;
         for place in self.vertices.iter_mut().take(self.len).skip(i) {
@@ -678,7 +624,7 @@ impl Fan {
         self.vertices[len] = self.vertices[0];
         let mut least = f64::INFINITY;
         for i in 0..len {
-            self.areas[i] = self.vertices[i].cross(&self.vertices[i + 1]);
+            self.areas[i] = area2(&self.vertices[i], &self.vertices[i + 1]);
             least = lesser(self.areas[i], least);
         }
         least > 0.0
@@ -700,14 +646,10 @@ impl Fan {
         }
         let (p, q) = (self.around(first + kept), self.around(first));
         // Across the bisector of the two, so that it is beyond the deepest point also where both are on one side.
-        let [a, b] = [&p, &q].map(|v| 1.0 / (v.length2() + f64::MIN_POSITIVE).sqrt());
+        let [a, b] = [&p, &q].map(|v| 1.0 / (v.xy().norm_squared() + f64::MIN_POSITIVE).sqrt());
         let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
         let share = margin / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
-        fan.push(FeatureVertex {
-            x: x * share,
-            y: y * share,
-            low: 0.0,
-        });
+        fan.push(Vec3::new(x * share, y * share, 0.0));
         fan.close();
         let min_area = MIN_AREA_REL * margin * margin;
         for area in fan.areas.iter_mut().take(fan.len) {
@@ -746,7 +688,7 @@ mod tests {
             let mut fan = Fan::EMPTY;
             for (x, y) in [corners[0], corners[1], corners[2]] {
                 let (x, y) = (x * cos - y * sin, x * sin + y * cos);
-                fan.push(FeatureVertex { x, y, low: 0.0 });
+                fan.push(Vec3::new(x, y, 0.0));
             }
             assert!(!fan.close());
             fan.enclose(1e-3);
