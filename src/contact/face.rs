@@ -311,14 +311,6 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
 
     /// Finds the corner beyond the side from sample `i` to the next, if there is one.
     fn beyond(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
-        let apart = |s: &Self| way(&s.ring.at(i).corner, &s.ring.at(i + 1).corner).norm();
-        if apart(self) <= ROUND_CORNER_SLOPS * self.slop {
-            self.remove_roundness(i)?;
-            self.remove_roundness(i + 1)?;
-            if apart(self) <= self.slop {
-                return Ok(None);
-            }
-        }
         // A corner costs up to two, and those that are not settled one.
         let pending = self.ring.iter().filter(|s| !s.is_settled).count() as u32;
         let count = self.query_count + 2;
@@ -337,9 +329,8 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         // One more of a round corner tells nothing.
         let apart = [a, b].map(|end| way(&end, &new.found).norm());
         if lesser(apart[0], apart[1]) <= ROUND_CORNER_SLOPS * self.slop {
-            let end = if apart[0] < apart[1] { i } else { i + 1 };
-            self.remove_roundness(end)?;
-            if self.ring.at(end).radius > 0.0 {
+            self.remove_roundness(if apart[0] < apart[1] { i } else { i + 1 })?;
+            if self.round_corner_at(&new).is_some() {
                 return Ok(None);
             }
         }
@@ -355,12 +346,12 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     /// Returns the limit of queries: few corners, all of them sharp, need half.
     fn query_limit(&self) -> u32 {
         let is_round = self.ring.iter().any(|s| s.radius > 0.0);
-        MAX_QUERIES
-            / if self.ring.len() > 4 || is_round {
-                1
-            } else {
-                2
-            }
+        let share = if self.ring.len() > 4 || is_round {
+            1
+        } else {
+            2
+        };
+        MAX_QUERIES / share
     }
 
     /// Removes roundness: what moves in proportion to the tilt.
@@ -369,9 +360,8 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         if full.is_settled || self.query_count >= self.query_limit() {
             return Ok(());
         }
-        full.is_settled = true;
-        *self.ring.at_mut(i) = full;
-        if self.is_of_round_corner(i) {
+        self.ring.at_mut(i).is_settled = true;
+        if self.round_corner_at(&full).is_some() {
             return Ok(());
         }
         let share = self.tilt_size / full.tilt.norm();
@@ -381,7 +371,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             if self.is_found(&new) {
                 return Ok(());
             }
-            (full.tilt, full.found, full.corner) = (new.tilt, new.found, new.found);
+            full = new;
         }
         let near = self.query(full.tilt * 0.5)?;
         let moved = way(&full.found, &near.found).norm();
@@ -393,21 +383,20 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             full.corner = near.found * 2.0 - full.found;
             full.corner.z = larger((4.0 * near.found.z - full.found.z) / 3.0, 0.0);
         }
-        *self.ring.at_mut(i) = full;
+        *self.ring.at_mut(i) = FaceSample {
+            is_settled: true,
+            is_closed: self.ring.at(i).is_closed,
+            ..full
+        };
         Ok(())
     }
 
-    /// Returns whether a sample is one more of a round corner, which it gets.
-    fn is_of_round_corner(&mut self, i: usize) -> bool {
-        let found = self.ring.at(i).found;
-        let near = ROUND_CORNER_SLOPS * self.slop;
-        let is_near = |s: &&FaceSample| s.radius > 0.0 && way(&s.found, &found).norm() <= near;
-        let Some(round) = self.ring.iter().find(is_near).copied() else {
-            return false;
-        };
-        let sample = self.ring.at_mut(i);
-        (sample.corner, sample.radius) = (round.corner, round.radius);
-        true
+    /// Returns the sample of a round corner that another sample is one more of.
+    fn round_corner_at(&self, new: &FaceSample) -> Option<FaceSample> {
+        let apart = |s: &FaceSample| way(&s.found, &new.found).norm();
+        let is_here = |s: &&FaceSample| apart(s) <= ROUND_CORNER_SLOPS * self.slop;
+        let mut round = self.ring.iter().filter(|s| s.radius > 0.0);
+        round.find(is_here).copied()
     }
 
     /// Finds the face from nothing.
@@ -419,66 +408,62 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         for i in 0..self.ring.len() {
             self.remove_roundness(i)?;
         }
-        // Where half the tilt found another corner.
         for i in 0..self.ring.len() {
-            self.is_of_round_corner(i);
+            if let Some(round) = self.round_corner_at(self.ring.at(i)) {
+                let sample = self.ring.at_mut(i);
+                (sample.corner, sample.radius) = (round.corner, round.radius);
+            }
         }
-        // One that was found twice is one, to the rounding of both.
-        let merged = larger(self.slop, 4.0 * self.rounding);
-        let corners = self.ring.iter().map(|s| s.corner);
-        let corners = corners
-            .collect::<Polygon<MAX_CORNERS>>()
-            .tidied(merged, self.flat());
-        let radius = corners.iter().map(|corner| {
-            let here = self
-                .ring
-                .iter()
-                .filter(|s| way(&s.corner, corner).norm() <= merged);
-            here.map(|s| s.radius).fold(0.0, larger)
-        });
-        let round = (2.0 * radius.fold(f64::INFINITY, lesser) * self.slop).sqrt();
-        // There may be corners between those of a full ring, and the support plane may be higher than all.
-        let is_sharp = self.ring.iter().all(|s| s.corner == s.found);
-        let has_highest = corners.iter().any(|corner| corner.z <= self.rounding);
-        let is_complete = is_sharp && has_highest && self.ring.len() < MAX_CORNERS;
-        Ok(self.face(corners, round, is_complete, None))
+        Ok(self.face(None))
     }
 
-    fn face(
-        &self,
-        corners: Polygon<MAX_CORNERS>,
-        round: f64,
-        is_complete: bool,
-        motion: Option<Motion>,
-    ) -> Face {
-        let mut cached = if is_complete {
+    /// Returns the face of the samples, which are the cached ones if it is cached.
+    fn face(&self, cached: Option<(&CachedFace, Motion)>) -> Face {
+        // One that was found twice is one, to the rounding of both.
+        let merged = larger(self.slop, 4.0 * self.rounding);
+        let corners: Polygon<MAX_CORNERS> = self.ring.iter().map(|s| s.corner).collect();
+        let corners = corners.tidied(merged, self.flat());
+        let (round, is_complete) = if let Some((cached, _)) = cached {
+            (cached.round.into(), cached.is_complete != 0.0)
+        } else {
+            let radius = corners.iter().map(|corner| {
+                let is_here = |s: &&FaceSample| way(&s.corner, corner).norm() <= merged;
+                let radii = self.ring.iter().filter(is_here).map(|s| s.radius);
+                radii.fold(0.0, larger)
+            });
+            let radius = radius.fold(f64::INFINITY, lesser);
+            // There may be corners between those of a full ring, and the support plane may be higher than all.
+            let is_sharp = self.ring.iter().all(|s| s.corner == s.found);
+            let has_highest = corners.iter().any(|corner| corner.z <= self.rounding);
+            let is_complete = is_sharp && has_highest && self.ring.len() < MAX_CORNERS;
+            ((2.0 * radius * self.slop).sqrt(), is_complete)
+        };
+        let mut new = if is_complete {
             CachedFace::of_polygon(&corners, self.tilt_size)
         } else {
             CachedFace::of_samples(&self.ring, self.tilt_size)
         };
-        (cached.slop, cached.round) = (self.slop as f32, round as f32);
-        if !(self.tilt_size > 0.0) {
-            cached.len = 0.0;
-        }
+        (new.slop, new.round) = (self.slop as f32, round as f32);
         Face {
             corners,
             top: self.top,
             slop: self.slop,
             rounding: self.rounding,
             round,
-            cached,
-            motion,
+            cached: new,
+            motion: cached.map(|(_, motion)| motion),
         }
     }
 
     /// Confirms the cached face; None where it is another.
     fn find_cached(&mut self, cached: &CachedFace) -> Result<Option<Face>, Fault> {
         for sample in cached.samples() {
-            // NaN ends here too.
-            if !(sample.tilt().norm() <= 0.5) {
+            // NaN ends here too, and what has no tilt.
+            let [tilt, ..] = sample.parts();
+            if !(tilt.norm() > 0.0 && tilt.norm() <= 0.5) {
                 return Ok(None);
             }
-            let new = self.query(sample.tilt())?;
+            let new = self.query(tilt)?;
             self.ring.push(new);
         }
         (self.tilt_size, self.slop) = (cached.tilt_size.into(), cached.slop.into());
@@ -487,40 +472,25 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let Some(motion) = cached.motion(&self.ring, slack) else {
             return Ok(None);
         };
-        let (mut top, is_complete) = (f64::NEG_INFINITY, cached.is_complete != 0.0);
-        if !is_complete {
-            top = -self.query(Vec2::zeros())?.found.z;
-        }
         for (new, old) in self.ring.iter_mut().zip(cached.samples()) {
-            let offset = old.offset();
-            let low = 0.5 * offset.dot(&new.tilt);
+            let [tilt, _, offset] = old.parts();
+            let low = 0.5 * offset.dot(&tilt);
             let offset = motion.turn * offset;
             new.corner += Vec3::new(offset.x, offset.y, low);
-            new.tilt = motion.turn * new.tilt;
-            if is_complete {
-                top = larger(top, -new.corner.z);
-            }
+            new.tilt = motion.turn * tilt;
         }
-        self.top = top;
+        self.top = if cached.is_complete != 0.0 {
+            let heights = self.ring.iter().map(|s| -s.corner.z);
+            heights.fold(f64::NEG_INFINITY, larger)
+        } else {
+            -self.query(Vec2::zeros())?.found.z
+        };
         for sample in self.ring.iter_mut() {
-            sample.found.z += top;
-            sample.corner.z = larger(sample.corner.z + top, 0.0);
+            sample.found.z += self.top;
+            sample.corner.z = larger(sample.corner.z + self.top, 0.0);
         }
-        if !self
-            .ring
-            .iter()
-            .all(|s| s.corner.z <= self.slop + self.rounding)
-        {
-            return Ok(None);
-        }
-        let corners = self.ring.iter().map(|s| s.corner);
-        let corners = corners.collect::<Polygon<MAX_CORNERS>>();
-        let corners = corners.tidied(larger(self.slop, 4.0 * self.rounding), self.flat());
-        Ok(Some(self.face(
-            corners,
-            cached.round.into(),
-            is_complete,
-            Some(motion),
-        )))
+        let is_low = |s: &FaceSample| s.corner.z > self.slop + self.rounding;
+        let is_face = !self.ring.iter().any(is_low);
+        Ok(is_face.then(|| self.face(Some((cached, motion)))))
     }
 }

@@ -14,7 +14,7 @@
 use crate::contact::face::{FaceSample, MAX_CORNERS, THREE_WAYS, across};
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold::MAX_CONTACTS;
-use crate::contact::polygon::{FixedVec, Polygon, Vec2, way};
+use crate::contact::polygon::{Polygon, Vec2, way};
 use crate::math::{Vec3, larger};
 use nalgebra::{Complex, UnitComplex};
 
@@ -78,16 +78,9 @@ impl CachedSample {
         Self([tilt, found.xy(), offset].map(|v| [v.x as f32, v.y as f32]))
     }
 
-    pub fn tilt(&self) -> Vec2 {
-        self.0[0].map(f64::from).into()
-    }
-
-    fn found(&self) -> Vec2 {
-        self.0[1].map(f64::from).into()
-    }
-
-    pub fn offset(&self) -> Vec2 {
-        self.0[2].map(f64::from).into()
+    /// Returns the tilt, the vertex and the way from that to the corner.
+    pub fn parts(&self) -> [Vec2; 3] {
+        self.0.map(|v| v.map(f64::from).into())
     }
 }
 
@@ -106,24 +99,24 @@ impl CachedFace {
         };
         let sample = |i: usize| CachedSample::new(tilt(i), corners.at(i % n), Vec2::zeros());
         let count = [3, 3, 4].get(n).copied().unwrap_or(n);
-        Self::of(&(0..count).map(sample).collect(), tilt_size, 1.0)
+        Self::of((0..count).map(sample), tilt_size, 1.0)
     }
 
     /// Returns what finds samples again.
     pub fn of_samples(samples: &[FaceSample], tilt_size: f64) -> Self {
         let sample = |s: &FaceSample| CachedSample::new(s.tilt, &s.found, way(&s.found, &s.corner));
-        Self::of(&samples.iter().map(sample).collect(), tilt_size, 0.0)
+        Self::of(samples.iter().map(sample), tilt_size, 0.0)
     }
 
-    fn of(samples: &FixedVec<CachedSample, MAX_CORNERS>, tilt_size: f64, is_complete: f32) -> Self {
+    fn of(all: impl Iterator<Item = CachedSample>, tilt_size: f64, is_complete: f32) -> Self {
         let mut face = Self {
-            len: samples.len() as f32,
             tilt_size: tilt_size as f32,
             is_complete,
             ..Self::default()
         };
-        for (place, sample) in face.samples.iter_mut().zip(&**samples) {
-            *place = *sample;
+        for (place, sample) in face.samples.iter_mut().zip(all) {
+            *place = sample;
+            face.len += 1.0;
         }
         face
     }
@@ -136,11 +129,12 @@ impl CachedFace {
 
     /// Returns how the vertices moved to where they are now, if they did as one body, within the slack.
     pub fn motion(&self, now: &[FaceSample], slack: f64) -> Option<Motion> {
-        let (from, to) = (self.samples[0].found(), now.first()?.found.xy());
-        let spokes = || {
-            let pairs = self.samples().iter().zip(now);
-            pairs.map(|(old, new)| (old.found() - from, new.found.xy() - to))
+        let ([_, from, _], to) = (self.samples[0].parts(), now.first()?.found.xy());
+        let spoke = |(old, new): (&CachedSample, &FaceSample)| {
+            let [_, old, _] = old.parts();
+            (old - from, new.found.xy() - to)
         };
+        let spokes = || self.samples().iter().zip(now).map(spoke);
         let (mut reach, mut ways) = (0.0, (Vec2::x(), Vec2::x()));
         for (a, b) in spokes() {
             if a.norm() > reach {
