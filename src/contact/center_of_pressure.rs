@@ -46,7 +46,7 @@
 //! So no answer is blended to that middle, however deep.
 
 use crate::contact::Penetration;
-use crate::contact::feature::{Fan, FeatureKind, FeatureQuery, MAX_KNOWN, area2};
+use crate::contact::feature::{Fan, FeatureQuery, MAX_KNOWN, area2};
 use crate::contact::frame::ContactFrame;
 use crate::math::{Vec3, larger};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -96,12 +96,8 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
     sum: &mut PressureSum,
 ) -> Result<bool, Fault> {
     let (smaller, other) = (query.smaller, 1 - query.smaller % 2);
-    let feature = query.find(smaller, query.towards_center(smaller))?;
-    if feature.kind == FeatureKind::Symmetric {
-        return Ok(false);
-    }
     let mut fan = Fan::EMPTY;
-    if !query.fan(smaller, &feature, &mut fan)? {
+    if !query.fan(smaller, query.towards_center(smaller), &mut fan)? {
         return Ok(false);
     }
     let ends = fan.vertices.map(|v| outline_vertex(&v));
@@ -109,12 +105,8 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
         sum.add_fan_on_plane(&fan, &ends);
         return Ok(true);
     }
-    let feature = query.find(other, [ends[0].x, ends[0].y])?;
-    if feature.kind == FeatureKind::Symmetric {
-        return Ok(false);
-    }
     let mut fan2 = Fan::EMPTY;
-    if !query.fan(other, &feature, &mut fan2)? {
+    if !query.fan(other, [ends[0].x, ends[0].y], &mut fan2)? {
         return Ok(false);
     }
     fan2.mirror();

@@ -85,25 +85,15 @@ pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// The kind of a feature.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FeatureKind {
-    /// Vertices of a polytope.
-    Polytope,
-    /// Each tilt found another vertex.
-    Round,
-    /// Opposite vertices are symmetric about the deepest point.
-    Symmetric,
-}
-
 /// Four vertices of an object around the deepest point, counterclockwise: the support vertices of the tilted
 /// normals, or those about an edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Feature {
-    pub kind: FeatureKind,
-    pub vertices: [Vec3; 4],
+struct Feature {
+    vertices: [Vec3; 4],
     /// The way outwards of each, unit.
     ways: [[f64; 2]; 4],
+    /// Whether they are vertices of a polytope; else each tilt found another vertex.
+    is_polytope: bool,
 }
 
 /// The known vertices that are farthest along the four tilted normals.
@@ -311,12 +301,13 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         found
     }
 
-    /// Finds the feature of an object. `towards`: the way that is queried first of what may be round.
+    /// Finds the feature of an object; None where opposite vertices are symmetric about the deepest point. `towards`:
+    /// the way that is queried first of what may be round.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    pub fn find(&self, object: usize, towards: [f64; 2]) -> Result<Feature, Fault> {
+    fn find(&self, object: usize, towards: [f64; 2]) -> Result<Option<Feature>, Fault> {
         let mut found = self.predict(object);
         let mut is_queried = [false; 4];
         let mut next = usize::from(towards[1].abs() > towards[0].abs());
@@ -348,7 +339,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                 let opposite = (next + 2) % 4;
                 if misses == 2 && is_queried[opposite] {
                     if self.is_symmetric(&v, &found.vertices[opposite]) {
-                        return Ok(Feature::new(FeatureKind::Symmetric, found.vertices));
+                        return Ok(None);
                     }
                     next = (next + 1) % 4;
                 } else {
@@ -359,12 +350,15 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                 }
             }
         }
-        let mut feature = Feature::new(FeatureKind::Round, found.vertices);
-        if found.is_polytope {
-            feature.kind = FeatureKind::Polytope;
+        let mut feature = Feature {
+            vertices: found.vertices,
+            ways: WAYS,
+            is_polytope: found.is_polytope,
+        };
+        if feature.is_polytope {
             self.confirm(object, &mut feature)?;
         }
-        Ok(feature)
+        Ok(Some(feature))
     }
 
     /// Looks beside a feature that is one vertex or an edge, where a face may be that no direction has found:
@@ -426,22 +420,26 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         })
     }
 
-    /// Makes the fan of a feature. Returns false where that ends close to the deepest point, as far as the
-    /// depth goes.
+    /// Makes the fan of an object. `towards`: the way that is queried first of what may be round. Returns false
+    /// where the deepest point is the center of pressure: the object is symmetric about it, or ends close to it as far
+    /// as the depth goes.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    pub fn fan(&self, object: usize, feature: &Feature, fan: &mut Fan) -> Result<bool, Fault> {
-        let vertices = &feature.vertices;
-        let between = match feature.kind {
-            FeatureKind::Round => self.rim(vertices),
-            _ => None,
+    pub fn fan(&self, object: usize, towards: [f64; 2], fan: &mut Fan) -> Result<bool, Fault> {
+        let Some(feature) = self.find(object, towards)? else {
+            return Ok(false);
         };
-        let is_round = feature.kind == FeatureKind::Round;
-        if is_round && self.is_point(vertices) {
+        let vertices = &feature.vertices;
+        if !feature.is_polytope && self.is_point(vertices) {
             return Ok(false);
         }
+        let between = if feature.is_polytope {
+            None
+        } else {
+            self.rim(vertices)
+        };
         fan.len = 0;
         for k in 0..4 {
             fan.push(self.moved(&vertices[k], feature.ways[k]));
@@ -560,17 +558,6 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             && is_there(third, c)
             && is_there(fourth, d);
         is_rim.then(|| DIAGONALS.map(|way| on_rim(outwards(way))))
-    }
-}
-
-impl Feature {
-    #[inline(always)]
-    fn new(kind: FeatureKind, vertices: [Vec3; 4]) -> Self {
-        Self {
-            kind,
-            vertices,
-            ways: WAYS,
-        }
     }
 }
 
