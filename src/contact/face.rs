@@ -373,15 +373,29 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             }
             full = new;
         }
-        let near = self.query(full.tilt * 0.5)?;
-        let moved = way(&full.found, &near.found).norm();
-        let (there, back) = (full.gain_over(&near), near.gain_over(&full));
-        let is_smooth = (there - back).abs() <= 0.5 * (there + back) + self.rounding;
-        if !self.is_same(&full, &near) && moved * moved <= 0.5 * self.slop * self.size && is_smooth
-        {
-            full.radius = moved / (full.tilt - near.tilt).norm();
-            full.corner = near.found * 2.0 - full.found;
-            full.corner.z = larger((4.0 * near.found.z - full.found.z) / 3.0, 0.0);
+        let mut tilt = full.tilt * 0.5;
+        for _ in 0..2 {
+            if self.query_count >= self.query_limit() {
+                break;
+            }
+            let near = self.query(tilt)?;
+            let outwards = way(&near.found, &full.found);
+            let (moved, most) = (outwards.norm(), (0.5 * self.slop * self.size).sqrt());
+            let (there, back) = (full.gain_over(&near), near.gain_over(&full));
+            let is_smooth = (there - back).abs() <= 0.5 * (there + back) + self.rounding;
+            if self.is_same(&full, &near) {
+                break;
+            }
+            if moved <= most && is_smooth {
+                full.radius = moved / (full.tilt - near.tilt).norm();
+                full.corner = near.found * 2.0 - full.found;
+                full.corner.z = larger((4.0 * near.found.z - full.found.z) / 3.0, 0.0);
+                break;
+            }
+            // Half the tilt finds the higher one of two round ends of a line. A lean that makes them level, and
+            // more, finds this one.
+            let lean = lesser(0.125 * self.tilt_size + back / moved, self.tilt_size);
+            tilt += outwards * (lean / moved);
         }
         *self.ring.at_mut(i) = FaceSample {
             is_settled: true,
