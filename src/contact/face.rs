@@ -12,12 +12,12 @@
 //! 2. *All corners.* The direction across the side of two corners, in which both have the same value, finds
 //!    what is beyond that side. A face of k corners is complete after 3 + k + (k − 3) queries; a curved one
 //!    becomes an inscribed polygon, whose gaps are halved in a fixed order, so that it moves with the object.
+//!    Missed, 1 in 100,000: of a face that leans so much that only an edge and a corner beside it are within the
+//!    slop, that corner; every tilt finds the edge or what is lower than the slop.
 //! 3. *Roundness.* A corner that two directions found is sharp. Others are queried with half the tilt: on a
 //!    round surface p = c + R t, and c = 2 p(t/2) − p(t) is the corner. A smooth piece is known by equal gains
 //!    of both points in their directions (trapezoidal rule). A point that moves by more than
 //!    sqrt(slop · size / 2) stays: it would leave a circle as large as the object by the slop.
-//!    Missed, 1 in 100,000: of a face that leans so much that only an edge and a corner beside it are within the
-//!    slop, that corner; every tilt finds the edge or what is lower than the slop.
 //! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. Where what they
 //!    find moved as one body, so did the corners; else the face is found from nothing.
 
