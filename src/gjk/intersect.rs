@@ -306,7 +306,7 @@ fn decide<A: SupportMap, B: SupportMap, const N: usize>(
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, Shape, ball, corners, hull, placed};
+    use crate::shapes::{Random, ball, corners, hull, placed};
 
     fn test_cold<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
@@ -344,7 +344,7 @@ mod tests {
     #[cfg(not(feature = "single"))]
     fn a_sliver_portal_encloses_nothing() {
         // The radius and the height of either rim in the body's frame, and its rows.
-        let frustum = |rims: [[f64; 2]; 2], rows: [f64; 9], at: Vec3| -> Shape {
+        let frustum = |rims: [[f64; 2]; 2], rows: [f64; 9], at: Vec3| -> crate::shapes::Shape {
             let turn = nalgebra::Matrix3::from_row_slice(&rows);
             Box::new(move |d: &Vec3| {
                 let d = turn.transpose() * d;
