@@ -221,12 +221,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_samples: MAX_SAMPLES,
             max_iterations: settings.max_iterations.saturating_sub(walked),
         };
-        self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
-        if hit.limit {
-            // No proof is wanted: a walk that ends at its direction is the answer.
-            hit.limit = !self.floor(hit, &limits)?;
-            hit.pos = hit.middle();
-        }
+        let is_minimum = self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
+        // No proof is wanted: a walk that ends at its direction is the answer.
+        hit.limit &= !is_minimum;
         if self.center.is_some() {
             // The lower bound would rest on the caller's center.
             hit.depth_lower = 0.0;
@@ -350,7 +347,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_samples: MAX_SAMPLES,
             max_iterations: settings.max_iterations,
         };
-        self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)
+        self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
+        Ok(())
     }
 
     /// The global minimum of the depth, proven by support points alone: from the state,
@@ -371,10 +369,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_samples: MAX_PROVEN_SAMPLES,
             max_iterations: settings.max_iterations,
         };
-        self.global(None, state, &limits, Some(arena), wants_pos, hit)
+        self.global(None, state, &limits, Some(arena), wants_pos, hit)?;
+        Ok(())
     }
 
     /// Finds the global minimum of the depth from the state. `apex`: a point that is trusted to be in D.
+    /// Returns whether the depth is that of a minimum, a local one where `limit` is set.
     #[inline(never)]
     fn global(
         &self,
@@ -384,7 +384,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
         wants_pos: bool,
         hit: &mut Penetration,
-    ) -> Result<(), Stop> {
+    ) -> Result<bool, Stop> {
         let aim = self.test_separating_axis(state)?;
         let request = EpaRequest {
             center: apex,
@@ -422,7 +422,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut WarmStart,
         wants_pos: bool,
         hit: &mut Penetration,
-    ) -> Result<(), Stop> {
+    ) -> Result<bool, Stop> {
         let mut warm = WarmStart::COLD;
         let mut set = VertexSet::EMPTY;
         let mut answer = EpaAnswer {
@@ -435,15 +435,18 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             *state = self.facing(warm);
         }
         hit.limit = status != Status::Converged;
-        if hit.limit {
-            if status != Status::InconsistentSupport {
-                self.floor(hit, &request.limits)?;
+        if !hit.limit {
+            if wants_pos {
+                hit.pos = self.position(&set, hit, request.limits.gap.tolerance)?;
             }
-            hit.pos = hit.middle();
-        } else if wants_pos {
-            hit.pos = self.position(&set, hit, request.limits.gap.tolerance)?;
+            return Ok(true);
         }
-        Ok(())
+        let is_minimum = match status {
+            Status::InconsistentSupport => false,
+            _ => self.floor(hit, &request.limits)?,
+        };
+        hit.pos = hit.middle();
+        Ok(is_minimum)
     }
 
     /// Returns the center of pressure of a hit, from the vertices that its search has found.
