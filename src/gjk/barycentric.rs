@@ -35,7 +35,8 @@ impl<const N: usize> Nearest<N> {
     fn among<const M: usize>(self, places: [usize; N]) -> Nearest<M> {
         let mut weights = [0.0; M];
         for (weight, place) in self.weights.into_iter().zip(places) {
-            weights[place] = weight;
+            // In range for certain, so that no access is checked.
+            weights[place % M] = weight;
         }
         Nearest {
             point: self.point,
@@ -180,7 +181,7 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
     // Each face, and the corner opposite.
     const FACES: [[usize; 4]; 4] = [[1, 2, 3, 0], [0, 2, 3, 1], [0, 1, 3, 2], [0, 1, 2, 3]];
     let gradients = FACES.map(|face| {
-        let [a, b, c, opposite] = face.map(|i| corners[i]);
+        let [a, b, c, opposite] = face.map(|i| corners[i % 4]);
         let n = normal(a, b, c);
         n / n.dot(&(opposite - a))
     });
@@ -207,7 +208,8 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
         weights,
     };
     for [i, j, k, _] in FACES {
-        let face = triangle(p, corners[i], corners[j], corners[k]).among([i, j, k]);
+        let [a, b, c] = [i, j, k].map(|i| corners[i % 4]);
+        let face = triangle(p, a, b, c).among([i, j, k]);
         if best.distance2.is_nan() || face.distance2 < best.distance2 {
             best = face;
         }
