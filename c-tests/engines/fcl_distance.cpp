@@ -19,31 +19,36 @@
 #include "harness/identity.h"
 
 #include <dlfcn.h>
-#include <setjmp.h>
-#include <signal.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 static const double TOLERANCE = 1e-6; /* FCL's */
 
-/* A failed assertion, a crash and a query of more than a second come back here; what FCL held is
- * lost. */
-static sigjmp_buf after_signal;
-static void on_signal(int signal)
-{
-    siglongjmp(after_signal, signal);
-}
-
-static struct {
+typedef struct {
     long queries, threw, endless, wrong, outside;
     double nanoseconds;
-} set;
+} set_t;
+static const char *const SET_NAMES[] = {"configurations", "kissing", "random"};
 
-static void print_set(const char *name)
+/* The queries run in a child process. A failed assertion, a crash and a query of more than a second end it,
+ * and the next child goes on behind that query: what such a query leaves in memory spoils no other. */
+typedef struct {
+    set_t sets[3];
+    int current; /* set */
+    long done;   /* queries, the one that runs included */
+    char name[64];
+} progress_t;
+static progress_t *progress; /* shared with the child */
+
+static void print_sets()
 {
-    printf("%s queries %ld threw %ld endless %ld wrong %ld outside %ld nanoseconds %.0f\n", name, set.queries,
-           set.threw, set.endless, set.wrong, set.outside, set.nanoseconds / (double)(set.queries - set.endless));
-    memset(&set, 0, sizeof set);
+    for (int i = 0; i < 3; i++) {
+        const set_t &set = progress->sets[i];
+        printf("%s queries %ld threw %ld endless %ld wrong %ld outside %ld nanoseconds %.0f\n", SET_NAMES[i], set.queries,
+               set.threw, set.endless, set.wrong, set.outside, set.nanoseconds / (double)(set.queries - set.endless));
+    }
 }
 
 static double now()
@@ -90,32 +95,26 @@ static double outside(const shape_t &s, const fcl::Vector3d &p)
 
 static void query(const char *name, const shape_t &a, const shape_t &b, double lower, double upper)
 {
-    /* kept over the jump out of a failed assertion */
-    static double value;
-    static fcl::DistanceResultd result;
-    static bool answered;
+    static long index;
+    if (index++ < progress->done)
+        return;
+    set_t &set = progress->sets[progress->current];
+    progress->done = index;
+    snprintf(progress->name, sizeof progress->name, "%s", name);
+    set.queries++;
+    double value = 0;
+    bool answered = false;
+    fcl::DistanceResultd result;
     fcl::DistanceRequestd request(true, true, 0, 0, TOLERANCE, fcl::GST_LIBCCD);
     fcl::CollisionObjectd first(fcl_shape(a), fcl_pose(a)), second(fcl_shape(b), fcl_pose(b));
-    result.clear();
-    answered = false;
-    static int signal;
     const double start = now();
     alarm(1);
-    signal = sigsetjmp(after_signal, 1);
-    if (!signal) {
-        try {
-            value = fcl::distance(&first, &second, request, result);
-            answered = true;
-        } catch (const std::exception &) {
-        }
+    try {
+        value = fcl::distance(&first, &second, request, result);
+        answered = true;
+    } catch (const std::exception &) {
     }
     alarm(0);
-    set.queries++;
-    if (signal == SIGALRM) {
-        set.endless++;
-        printf("endless: %s\n", name);
-        return;
-    }
     set.nanoseconds += now() - start;
     set.threw += !answered;
     if (!answered) {
@@ -175,6 +174,41 @@ static void query_random(long pairs)
     }
 }
 
+static void query_all(long pairs)
+{
+    uniform_seed(45);
+    progress->current = 0;
+    configurations_all(query_configuration);
+    progress->current = 1;
+    query_kissing(pairs);
+    progress->current = 2;
+    query_random(pairs / 3);
+}
+
+/* Runs the queries that are left in a child. Whether all are done. */
+static bool child_ends(long pairs)
+{
+    int status;
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        query_all(pairs);
+        fflush(stdout);
+        _exit(0);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child) {
+        perror("fcl_distance");
+        exit(2);
+    }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        return true;
+    set_t &set = progress->sets[progress->current];
+    const bool is_endless = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM;
+    (is_endless ? set.endless : set.threw)++;
+    printf("%s: %s\n", is_endless ? "endless" : "threw", progress->name);
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -184,16 +218,15 @@ int main(int argc, char **argv)
     Dl_info from;
     void *function = dlsym(RTLD_DEFAULT, "_ZN3fcl6detail17GJKSignedDistanceIdEEbPvPFvPKvPK11_ccd_vec3_tPS5_ES2_SA_jT_PSB_"
                                          "PN5Eigen6MatrixISB_Li3ELi1ELi0ELi3ELi1EEESG_");
-    for (int kind : {SIGABRT, SIGSEGV, SIGALRM})
-        signal(kind, on_signal);
+    void *memory = mmap(NULL, sizeof *progress, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED)
+        return 2;
+    progress = (progress_t *)memory;
+    setvbuf(stdout, NULL, _IOLBF, 0);
     tell_library();
     printf("function %s\n", function && dladdr(function, &from) ? strrchr(from.dli_fname, '/') + 1 : "none");
-    uniform_seed(45);
-    configurations_all(query_configuration);
-    print_set("configurations");
-    query_kissing(atol(argv[1]));
-    print_set("kissing");
-    query_random(atol(argv[1]) / 3);
-    print_set("random");
+    while (!child_ends(atol(argv[1])))
+        ;
+    print_sets();
     return 0;
 }
