@@ -192,7 +192,7 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
         for (weight, gradient) in weights.iter_mut().zip(&gradients) {
             *weight += gradient.dot(&missing);
         }
-        // What `mix` takes it for.
+        // The weights sum to 1, as `mix` assumes.
         weights[0] = 1.0 - (weights[1] + weights[2] + weights[3]);
     }
     let point = mix(&weights, corners);

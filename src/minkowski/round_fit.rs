@@ -272,7 +272,7 @@ impl SphereFit {
     /// Returns whether the centers of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
     /// directions each, as far apart as `tolerance`, metres, at most. The tip of a drop looks like the center of a
     /// sphere from one direction, and the rim of a thin disc nearly so from several.
-    pub fn is_seen_twice<const N: usize>(
+    pub fn is_found_twice<const N: usize>(
         &self,
         set: &VertexSet<N>,
         pair: VertexPair,
@@ -293,9 +293,9 @@ impl SphereFit {
         is_twice(r1, a, &center1) && is_twice(r2, b, &center2)
     }
 
-    /// Returns whether the spheres that carry an answer were seen twice: that of the upper bound's entry, and those of
+    /// Returns whether the spheres that carry an answer were found twice: that of the upper bound's entry, and those of
     /// the corners that share in the witness points.
-    pub fn is_real<const N: usize>(
+    pub fn has_real_spheres<const N: usize>(
         &self,
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
@@ -303,9 +303,9 @@ impl SphereFit {
         tolerance: f64,
     ) -> bool {
         let weights = self.weights(set, corners);
-        self.is_seen_twice(set, VertexSet::<N>::sample(upper.index), tolerance)
+        self.is_found_twice(set, VertexSet::<N>::sample(upper.index), tolerance)
             && (weights.iter().zip(corners))
-                .all(|(weight, v)| !(*weight > 0.0) || self.is_seen_twice(set, v.pair, tolerance))
+                .all(|(weight, v)| !(*weight > 0.0) || self.is_found_twice(set, v.pair, tolerance))
     }
 
     /// Returns the shares of the corners' spheres in the point of their core that is closest to the origin.

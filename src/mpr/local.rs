@@ -541,14 +541,20 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 if !self.is_least_beside(step, &upper, &ring, tolerance)? {
                     return Ok(false);
                 }
-                let apart = tolerance + self.query.scale.height_eps();
-                let is_real = (self.fit).is_real(self.set, &face.corners, &self.query.upper, apart);
+                let apart = self.center_tolerance(tolerance);
+                let upper = &self.query.upper;
+                let is_real = (self.fit).has_real_spheres(self.set, &face.corners, upper, apart);
                 if !is_real {
                     self.sphere_misses = MAX_MISSES;
                 }
                 Ok(is_real)
             }
         }
+    }
+
+    /// Returns how far apart two centers of one sphere may be found, metres.
+    fn center_tolerance(&self, tolerance: f64) -> f64 {
+        tolerance + self.query.scale.height_eps()
     }
 
     /// Queries beside unit `n`, tilted towards each of the unit vectors `ways` across it, unless a direction
@@ -561,7 +567,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         tolerance: f64,
     ) -> Result<bool, Halt> {
         let (before, before_len) = (self.query.upper.depth, self.set.len());
-        let apart = tolerance + self.query.scale.height_eps();
+        let apart = self.center_tolerance(tolerance);
         let narrow = 2.5 * TILT_RAD;
         let is_sphere = matches!(step, Step::Fit(Model::Sphere));
         let far = if is_sphere { 0.6 } else { narrow };
@@ -583,7 +589,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                         || k >= before_len
                         || walk
                             .fit
-                            .is_seen_twice(walk.set, VertexSet::<N>::sample(k), apart))
+                            .is_found_twice(walk.set, VertexSet::<N>::sample(k), apart))
             };
             if (0..self.set.len()).any(|k| is_near(self, k)) {
                 continue;
