@@ -42,36 +42,61 @@ fn preloaded() -> PathBuf {
     path
 }
 
-fn run(name: &'static str, program: &Executable, preload: bool, pairs: u32) -> Distances {
+/// What the program says with so many pairs: none of any set for 0.
+fn said(program: &Executable, preload: bool, pairs: u32) -> Vec<String> {
     let mut command = program.command();
     command.arg(pairs.to_string());
     if preload {
         command.env("LD_PRELOAD", preloaded());
     }
     let (status, written) = harness::run_command(&mut command, Duration::from_secs(300));
-    assert!(status.success(), "{name}: {status}\n{}", written.stderr);
-    let lines: Vec<String> = written.stdout.lines().map(String::from).collect();
+    assert!(status.success(), "{status}\n{}", written.stderr);
+    written.stdout.lines().map(String::from).collect()
+}
+
+/// The file that FCL's signed distance is taken from.
+fn function(lines: &[String]) -> String {
+    let function = lines.iter().find_map(|line| line.strip_prefix("function "));
+    function.expect("a file").to_owned()
+}
+
+fn run(name: &'static str, program: &Executable, preload: bool, pairs: u32) -> Distances {
+    let lines = said(program, preload, pairs);
     let library = ["library libccd", "library warmccd "][usize::from(name.contains("this"))];
     assert!(lines[0].starts_with(library), "{name}: on {}", lines[0]);
-    let function = lines.iter().find_map(|line| line.strip_prefix("function "));
     Distances {
         name,
-        function: function.expect("a file").to_owned(),
+        function: function(&lines),
         sets: SETS.map(|set| fields(&lines, set)),
         wrong: lines.iter().filter(|line| line.split(' ').next().is_some_and(|w| w.ends_with(':'))).cloned().collect(),
     }
 }
 
-pub fn distances(pairs: u32) -> [Distances; 3] {
+/// The program on libccd, and on this library.
+fn programs() -> [Executable; 2] {
     let program: Program = cpp("fcl_distance").library("fcl").without_tools();
     // The rows of configurations.h name the fields that they set.
     let program = program.flag("-Wno-missing-field-initializers");
     let theirs = program.link_system().build().quiet();
     let ours = theirs.swapped();
+    [theirs, ours]
+}
+
+const PRELOADED: &str = "this library and `libwarmccd-fcl.so`";
+
+/// The files that FCL's signed distance is taken from without preloading, on either library; and the answers with it.
+pub fn preloaded_distances(pairs: u32) -> ([String; 2], Distances) {
+    let programs = programs();
+    let functions = programs.each_ref().map(|program| function(&said(program, false, 0)));
+    (functions, run(PRELOADED, &programs[1], true, pairs))
+}
+
+pub fn distances(pairs: u32) -> [Distances; 3] {
+    let [theirs, ours] = programs();
     [
         run("FCL on libccd", &theirs, false, pairs),
         run("FCL on this library", &ours, false, pairs),
-        run("this library and `libwarmccd-fcl.so`", &ours, true, pairs),
+        run(PRELOADED, &ours, true, pairs),
     ]
 }
 
