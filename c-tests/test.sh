@@ -9,13 +9,13 @@ set -eu
 cd "$(dirname "$0")/.."
 
 cat <<'END'
-All tests, in 5 steps: about 9 minutes on 2 cores, once packages and crates are
+All tests, in 3 steps: about 9 minutes on 2 cores, once packages and crates are
 there; the first time some minutes more, to fetch and compile them.
 END
 sh c-tests/setup.sh
 
 log=$(mktemp)
-trap 'rm -f "$log" "$log.code"' EXIT
+trap 'rm -f "$log" "$log.code" "$log.address"' EXIT
 step=0
 passed=0
 failed=0
@@ -31,7 +31,7 @@ sum() {
 # run WHAT COMMAND...: one step. All are run, so that one failure does not hide another.
 run() {
     step=$((step + 1))
-    printf '\n== step %s of 5, %s s after the start: %s\n\n' "$step" "$(($(date +%s) - start))" "$1"
+    printf '\n== step %s of 3, %s s after the start: %s\n\n' "$step" "$(($(date +%s) - start))" "$1"
     shift
     {
         code=0
@@ -53,14 +53,21 @@ start=$(date +%s)
 run "double precision" cargo test --no-fail-fast
 # The same C programs where errors that leave no trace show, without what no tool sees:
 # headers and symbols, counts of supports, programs with a malloc of their own or under
-# callgrind.
-unseen="--skip headers_ --skip archive_defines --skip memory --skip take_no_more"
-# shellcheck disable=SC2086  # one word each
-{
-    run "gcc's sanitizers" sh c-tests/tools/check.sh address --test contract --test extension -- $unseen
-    run "valgrind, memory" sh c-tests/tools/check.sh memcheck --test contract -- $unseen
+# callgrind. Side by side: the sanitizers wait for one compilation for half a minute.
+tools() {
+    unseen="--skip headers_ --skip archive_defines --skip memory --skip take_no_more"
+    wrong=0
+    # shellcheck disable=SC2086  # one word each
+    {
+        sh c-tests/tools/check.sh address --test contract --test extension -- $unseen >"$log.address" 2>&1 &
+        sh c-tests/tools/check.sh memcheck --test contract -- $unseen || wrong=1
+    }
+    sh c-tests/tools/check.sh helgrind --test contract threads || wrong=1
+    wait $! || wrong=1
+    cat "$log.address"
+    return "$wrong"
 }
-run "valgrind, threads" sh c-tests/tools/check.sh helgrind --test contract threads
+run "gcc's sanitizers; valgrind, memory and threads" tools
 # Last: what the others run is compiled for double.
 run "single precision" cargo test --no-fail-fast --features single
 
