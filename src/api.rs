@@ -631,7 +631,7 @@ query!(
     /// # Errors
     /// A `plane_normal` that is zero or not finite, and as [`penetration`].
     penetration_planar(plane_normal),
-    |pair, state, settings, _, hit| pair.planar(plane_normal, state, settings, hit)
+    |pair, state, settings, _, hit| pair.incremental(Some(plane_normal), state, settings, false, hit)
 );
 
 query!(
@@ -642,7 +642,7 @@ query!(
     /// # Errors
     /// As [`penetration`].
     penetration_incremental,
-    |pair, state, settings, wants, hit| pair.incremental(state, settings, wants, hit)
+    |pair, state, settings, wants, hit| pair.incremental(None, state, settings, wants, hit)
 );
 
 /// Tests a shape's support function and center along 192 directions, each evaluated twice; for

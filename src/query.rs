@@ -16,26 +16,21 @@
 //!    `planar`, and of queries that did not converge.
 //! 5. *Warm state*: stored in the [`WarmStart`], if the caller keeps one.
 
-mod local_minimum;
 pub mod warm_start;
 
 use crate::contact::center_of_pressure::center_of_pressure;
 use crate::contact::{Penetration, Settings, Status};
-use crate::epa::penetration::{Arena, EpaAnswer, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
+use crate::epa::penetration::{Arena, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
 use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{contains_origin, intersect};
-use crate::gjk::separating_axis::SeparatingAxis;
-use crate::gjk::signed_distance::{Distance, Start, Wanted, signed_distance};
+use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
 use crate::math::{Vec3, larger, unit};
-use crate::minkowski::query::{Stop, SupportQuery};
-use crate::minkowski::round_fit::SphereFit;
+use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::tolerance::{GAP_REL, GapLimit};
+use crate::minkowski::tolerance::GAP_REL;
 use crate::minkowski::vertex_set::VertexSet;
-use crate::mpr::{
-    self,
-    gao::{self, Until},
-};
+use crate::mpr::gao::{self, Until};
+use crate::mpr::{directional, local};
 use warm_start::{WarmKind, WarmStart};
 
 /// The vertices of the proof of an overlap.
@@ -56,34 +51,25 @@ pub struct Pair<A, B> {
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Runs `solve` if the axis of the last query does not separate, and stores the axis that does.
     #[inline(always)]
-    fn with_separating_axis(
+    fn with_separating_axis<R>(
         &self,
         state: &mut WarmStart,
-        solve: impl FnOnce(&mut WarmStart) -> Result<(), Stop>,
-    ) -> Result<(), Stop> {
-        let aim = self.test_separating_axis(state)?;
+        solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
+    ) -> Result<R, Stop> {
+        let mut aim = 0.0;
+        if let Some(mut axis) = state.separating_axis() {
+            let found = axis.test(&mut SupportQuery::new(&self.md, None))?;
+            aim = axis.aim;
+            if let Some(n) = found {
+                *state = WarmStart::apart(axis.dir, aim, state.radius);
+                return Err(Stop::Apart(n));
+            }
+        }
         let found = solve(state);
         if let Err(Stop::Apart(n)) = &found {
-            *state = WarmStart::apart(&SeparatingAxis { dir: *n, aim }, state.radius);
+            *state = WarmStart::apart(*n, aim, state.radius);
         }
         found
-    }
-
-    /// Evaluates the axis of the state. Returns the margin to aim at with another one, metres.
-    ///
-    /// # Errors
-    /// [`Stop::Apart`]: it separates. [`Fault::NonFinite`].
-    #[inline(always)]
-    fn test_separating_axis(&self, state: &mut WarmStart) -> Result<f64, Stop> {
-        let Some(mut axis) = state.separating_axis() else {
-            return Ok(0.0);
-        };
-        let found = axis.test(&mut SupportQuery::new(&self.md, None))?;
-        if let Some(n) = found {
-            *state = WarmStart::apart(&axis, state.radius);
-            return Err(Stop::Apart(n));
-        }
-        Ok(axis.aim)
     }
 
     /// The way from the center of D through the origin, or the caller's first
@@ -175,28 +161,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wanted: &Wanted,
         minimum: impl Fn(&Self, &mut WarmStart, &Settings, &mut Penetration) -> Result<(), Stop>,
     ) -> Result<Distance, Fault> {
-        let start = Start {
-            dir: state
-                .separating_axis()
-                .map_or_else(|| self.cold_start(), |axis| axis.dir),
-            radius: state.radius,
-            is_overlapping: state.is_overlap(),
-        };
-        let depth = |from: Option<&Vec3>, hit: &mut Penetration| {
-            if let Some(dir) = from {
-                *state = WarmStart::guess(dir);
-            }
+        let depth = |state: &mut WarmStart, hit: &mut Penetration| {
             minimum(self, state, &wanted.settings, hit)
         };
-        let mut distance = Distance::default();
-        if let Some(left) = signed_distance(&self.md, wanted, &start, depth, &mut distance)? {
-            let axis = SeparatingAxis {
-                dir: left.dir,
-                aim: larger(distance.lower, 0.0),
-            };
-            *state = WarmStart::apart(&axis, left.radius);
-        }
-        Ok(distance)
+        signed_distance(&self.md, wanted, &self.cold_start(), state, depth)
     }
 
     /// Finds a local minimum of the depth by a walk on the known vertices; where that ends without one, the
@@ -213,14 +181,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(());
         }
         let walked = hit.iterations;
-        let limits = EpaLimits {
-            gap: GapLimit {
-                tolerance: settings.tolerance,
-                share: 0.0,
-            },
-            max_samples: MAX_SAMPLES,
-            max_iterations: settings.max_iterations.saturating_sub(walked),
-        };
+        let mut limits = EpaLimits::new(settings, 0.0, MAX_SAMPLES);
+        limits.max_iterations -= walked;
         let is_minimum = self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
         // No proof is wanted: a walk that ends at its direction is the answer.
         hit.limit &= !is_minimum;
@@ -241,71 +203,61 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<Status, Stop> {
-        let aim = self.test_separating_axis(state)?;
-        let warm = match &self.center {
-            Some(c) if state.is_swapped(&c.v) => WarmStart::COLD,
-            _ => *state,
-        };
-        let start = warm.direction().unwrap_or_else(|| self.cold_start());
-        let mut query = SupportQuery::new(&self.md, self.center.as_ref());
-        let mut set = VertexSet::<{ mpr::local::MAX_SAMPLES }>::EMPTY;
-        let mut fit = SphereFit::default();
-        (fit.radius, fit.is_warm) = (warm.radius, warm.radius != [0.0; 2]);
-        let found = mpr::local::penetration(&mut query, &mut set, &mut fit, &start, settings);
-        *state = match &found {
-            Ok((walked, _)) => {
-                let radius = if fit.is_confirmed {
-                    fit.radius
-                } else {
-                    [0.0; 2]
-                };
-                self.facing(WarmStart::hit(walked.dir, walked.depth, radius, false))
+        self.with_separating_axis(state, |state| {
+            if self.center.is_some_and(|c| state.is_swapped(&c.v)) {
+                *state = WarmStart::COLD;
             }
-            Err(Stop::Apart(axis)) => {
-                WarmStart::apart(&SeparatingAxis { dir: *axis, aim }, warm.radius)
+            let start = state.direction().unwrap_or_else(|| self.cold_start());
+            let mut query = SupportQuery::new(&self.md, self.center.as_ref());
+            let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
+            let mut radius = state.radius;
+            let (found, status) =
+                local::penetration(&mut query, &mut set, &mut radius, &start, settings)?;
+            *hit = found;
+            *state = self.facing(WarmStart::hit(hit.dir, hit.depth, radius, false));
+            if status == Status::Converged && wants_pos {
+                hit.pos = self.position(&set, hit, settings.tolerance)?;
             }
-            Err(Stop::Fault(fault)) => return Err((*fault).into()),
-        };
-        let (walked, mut status) = found?;
-        *hit = walked;
-        // A face is as far from its support plane as both are rounded.
-        let tolerance = query.scale.tolerance(settings.tolerance) + query.scale.height_eps();
-        if !hit.has_sound_witnesses(tolerance) {
-            status = Status::Rounding;
-        }
-        if status == Status::Converged && wants_pos {
-            hit.pos = self.position(&set, hit, settings.tolerance)?;
-        }
-        Ok(status)
+            Ok(status)
+        })
     }
 
-    /// A local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5): from
-    /// the last direction, else from the centers.
+    /// Lowers a depth that the global query could not prove. Where minima form a curve or a surface, no polytope
+    /// proves them in the steps there are, and the least depth met need not be theirs to the tolerance. But its
+    /// direction is near them, and a walk from there finds one, to a hundredth of the tolerance.
+    /// Returns whether the depth is that of a local minimum, within the tolerance.
+    #[cold]
+    #[inline(never)]
+    fn lower(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<bool, Fault> {
+        let settings = Settings {
+            tolerance: limits.gap.tolerance * 0.01,
+            max_iterations: limits.max_iterations.saturating_sub(hit.iterations),
+        };
+        let mut query = SupportQuery::new(&self.md, self.center.as_ref());
+        let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
+        let start = hit.normal;
+        let found = local::penetration(&mut query, &mut set, &mut [0.0; 2], &start, &settings);
+        let Some((found, Status::Converged)) = if_overlapping(found)? else {
+            return Ok(false);
+        };
+        let is_minimum = found.depth <= hit.depth + query.scale.tolerance(settings.tolerance);
+        if is_minimum {
+            *hit = Penetration {
+                depth_lower: hit.depth_lower.min(found.depth),
+                iterations: hit.iterations + found.iterations,
+                limit: true,
+                ..found
+            };
+        }
+        Ok(is_minimum)
+    }
+
+    /// Finds a local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5), from the last
+    /// direction, else from the centers. `plane`: among the directions perpendicular to this unit vector; the
+    /// position then is the middle of the witness points.
     pub fn incremental(
         &self,
-        state: &mut WarmStart,
-        settings: &Settings,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.as_published(None, state, settings, wants_pos, hit)
-    }
-
-    /// The same among the directions perpendicular to the unit vector `m`.
-    pub fn planar(
-        &self,
-        m: Vec3,
-        state: &mut WarmStart,
-        settings: &Settings,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.as_published(Some(m), state, settings, false, hit)
-    }
-
-    /// The paper's method; in the plane with unit normal `flat`, where there is one.
-    fn as_published(
-        &self,
-        flat: Option<Vec3>,
+        plane: Option<Vec3>,
         state: &mut WarmStart,
         settings: &Settings,
         wants_pos: bool,
@@ -313,14 +265,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<(), Stop> {
         self.with_separating_axis(state, |state| {
             let start = state.direction().unwrap_or_else(|| self.cold_start());
-            *hit = match flat {
-                Some(m) => mpr::directional::planar(&self.md, &m, &start, settings)?,
-                None => gao::penetration(&self.md, start, None, Until::Shortcut, settings, |_| ())?,
-            };
+            *hit = gao::penetration(&self.md, start, plane, Until::Shortcut, settings, |_| ())?;
             let mut set = VertexSet::EMPTY;
-            self.prove(hit, &mut set, settings, flat.is_some())?;
+            self.prove(hit, &mut set, settings, plane.is_some())?;
             *state = self.facing(WarmStart::towards(hit.normal));
-            hit.pos = if wants_pos && !hit.limit {
+            hit.pos = if wants_pos && !hit.limit && plane.is_none() {
                 self.position(&set, hit, settings.tolerance)?
             } else {
                 hit.middle()
@@ -329,9 +278,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         })
     }
 
-    /// The minimum depth at MPR's price: within the tolerance or a thousandth of the depth,
-    /// in at most [`MPR_SUPPORTS`] support points; where these do not do, a local search lowers
-    /// the depth. Trusts the center.
+    /// Finds the minimum of the depth at MPR's price: within the tolerance or a thousandth of the depth, in at
+    /// most [`MAX_SAMPLES`] support points; where these do not do, a walk lowers the depth. Trusts the center.
     pub fn mpr(
         &self,
         state: &mut WarmStart,
@@ -339,20 +287,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let limits = EpaLimits {
-            gap: GapLimit {
-                tolerance: settings.tolerance,
-                share: GAP_REL,
-            },
-            max_samples: MAX_SAMPLES,
-            max_iterations: settings.max_iterations,
-        };
+        let limits = EpaLimits::new(settings, GAP_REL, MAX_SAMPLES);
         self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
         Ok(())
     }
 
-    /// The global minimum of the depth, proven by support points alone: from the state,
-    /// else from the centers, else from the first direction.
+    /// Finds the global minimum of the depth, proven by support points alone: from the state, else from the
+    /// centers, else from the first direction.
     pub fn minimum(
         &self,
         state: &mut WarmStart,
@@ -361,14 +302,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let limits = EpaLimits {
-            gap: GapLimit {
-                tolerance: settings.tolerance,
-                share: 0.0,
-            },
-            max_samples: MAX_PROVEN_SAMPLES,
-            max_iterations: settings.max_iterations,
-        };
+        let limits = EpaLimits::new(settings, 0.0, MAX_PROVEN_SAMPLES);
         self.global(None, state, &limits, Some(arena), wants_pos, hit)?;
         Ok(())
     }
@@ -385,25 +319,21 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
-        let aim = self.test_separating_axis(state)?;
-        let request = EpaRequest {
-            center: apex,
-            ray: self.cold_start(),
-            // The axis of a state that was apart has been queried.
-            warm: match state.kind {
-                WarmKind::Apart => WarmStart::COLD,
-                _ => *state,
-            },
-            limits: *limits,
-        };
-        let mut query = SupportQuery::new(&self.md, apex);
-        let found = query
-            .evaluate_first(&request.first_dir())
-            .and_then(|first| self.overlap(query, &first, &request, arena, state, wants_pos, hit));
-        if let (Err(Stop::Apart(axis)), true) = (&found, self.keeps_state) {
-            *state = WarmStart::apart(&SeparatingAxis { dir: *axis, aim }, request.warm.radius);
-        }
-        found
+        self.with_separating_axis(state, |state| {
+            let request = EpaRequest {
+                center: apex,
+                ray: self.cold_start(),
+                // The axis of a state that was apart has been queried.
+                warm: match state.kind {
+                    WarmKind::Apart => WarmStart::COLD,
+                    _ => *state,
+                },
+                limits: *limits,
+            };
+            let mut query = SupportQuery::new(&self.md, apex);
+            let first = query.evaluate_first(&request.first_dir())?;
+            self.overlap(query, &first, &request, arena, state, wants_pos, hit)
+        })
     }
 
     /// Finds the global minimum of a pair whose first direction does not separate it, and the contact
@@ -423,14 +353,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
-        let mut warm = WarmStart::COLD;
         let mut set = VertexSet::EMPTY;
-        let mut answer = EpaAnswer {
-            hit,
-            warm: &mut warm,
-            set: &mut set,
-        };
-        let status = epa::penetration::penetration(&mut query, first, request, arena, &mut answer)?;
+        let (status, warm) =
+            epa::penetration::penetration(&mut query, first, request, arena, &mut set, hit)?;
         if self.keeps_state {
             *state = self.facing(warm);
         }
@@ -441,10 +366,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             return Ok(true);
         }
-        let is_minimum = match status {
-            Status::InconsistentSupport => false,
-            _ => self.floor(hit, &request.limits)?,
-        };
+        let is_minimum =
+            status != Status::InconsistentSupport && self.lower(hit, &request.limits)?;
         hit.pos = hit.middle();
         Ok(is_minimum)
     }
@@ -473,7 +396,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),
                 ..*settings
             };
-            let (found, portal) = mpr::directional::along(&self.md, &dir, &capped)?;
+            let (found, portal) = directional::along(&self.md, &dir, &capped)?;
             *hit = found;
             let mut set = VertexSet::EMPTY;
             for plane in portal.iter().flat_map(|p| &p.planes) {

@@ -19,6 +19,7 @@
 //! [`ExpandEnd::NoRoom`] too, if the closest face is at a distance > 0; else nothing is known but the upper
 //! bound.
 
+use crate::contact::Settings;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric::triangle;
 use crate::math::{Vec3, lesser};
@@ -47,6 +48,18 @@ pub struct EpaLimits {
     pub max_samples: u64,
     /// Support calls after the first tetrahedron.
     pub max_iterations: u64,
+}
+
+impl EpaLimits {
+    /// Returns the limits of a query that may be off by the tolerance, or by this share of the depth.
+    pub fn new(settings: &Settings, share: f64, max_samples: u64) -> Self {
+        let tolerance = settings.tolerance;
+        Self {
+            gap: GapLimit { tolerance, share },
+            max_samples,
+            max_iterations: settings.max_iterations,
+        }
+    }
 }
 
 /// The corners of the polytope, by their indices: the interior point or known differences.

@@ -113,7 +113,7 @@ pub struct EpaRequest<'a> {
     pub center: Option<&'a SupportPoint>,
     /// The unit direction of a cold start: from an interior point through the origin.
     pub ray: Vec3,
-    /// The state of the last query.
+    /// The state of the last query; not that of a pair that was apart.
     pub warm: WarmStart,
     /// How far to go.
     pub limits: EpaLimits,
@@ -123,38 +123,16 @@ impl EpaRequest<'_> {
     /// Returns the direction to evaluate first, unit.
     #[inline(always)]
     pub fn first_dir(&self) -> Vec3 {
-        match self.warm.kind {
-            WarmKind::Apart | WarmKind::Plain => self.warm.dir,
-            WarmKind::Cold | WarmKind::Round => self.ray,
+        if self.warm.kind == WarmKind::Plain {
+            self.warm.dir
+        } else {
+            self.ray
         }
     }
 }
 
-/// The answer of a query about objects that overlap.
-pub struct EpaAnswer<'a> {
-    /// The overlap, without its contact position.
-    pub hit: &'a mut Penetration,
-    /// The state for the next query.
-    pub warm: &'a mut WarmStart,
-    /// The vertices of the first support calls, for the contact position.
-    pub set: &'a mut VertexSet<SMALL_VERTICES>,
-}
-
 /// A tetrahedron to start the polytope from.
 type Start = [Vertex; 4];
-
-/// The ways to a first tetrahedron, in the order of their cost.
-const STARTS: [StartKind; 3] = [StartKind::Portal, StartKind::Farthest, StartKind::Gjk];
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum StartKind {
-    /// The interior point and the portal.
-    Portal,
-    /// The interior point and the points farthest from it, from a line and from a plane.
-    Farthest,
-    /// The tetrahedron in which GJK finds the origin.
-    Gjk,
-}
 
 /// How a polytope ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,7 +162,8 @@ struct Solver<'q, 'm, A, B> {
 /// Finds the global minimum of the penetration depth. `first`: the support point along
 /// [`EpaRequest::first_dir`], which does not separate ([`SupportQuery::evaluate_first`]: most misses end
 /// there, before this function's stack is in use). Without an `arena` the buffers on the stack are all
-/// there is.
+/// there is. The overlap in `hit` has no contact position. Returns the state for the next query; `set` holds the
+/// vertices of the first support calls, for the contact position.
 ///
 /// # Errors
 /// [`Stop::Apart`]: apart, or touching within rounding. [`Fault::NonFinite`]; [`Fault::NoMemory`].
@@ -194,30 +173,25 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     first: &SupportPoint,
     request: &EpaRequest<'_>,
     mut arena: Option<&mut dyn Arena>,
-    answer: &mut EpaAnswer<'_>,
-) -> Result<Status, Stop> {
+    set: &mut VertexSet<SMALL_VERTICES>,
+    hit: &mut Penetration,
+) -> Result<(Status, WarmStart), Stop> {
     let dir = &request.first_dir();
-    let set = &mut *answer.set;
     set.push(dir, first);
     let warm = &request.warm;
-    let is_warm = matches!(warm.kind, WarmKind::Apart | WarmKind::Plain);
-    if is_warm && is_stale(warm, request.center, query.upper.depth) {
+    let is_warm = warm.kind == WarmKind::Plain;
+    let distance = request.center.map_or(0.0, |c| c.v.norm());
+    if is_warm && is_stale(warm, distance, query.upper.depth) {
         query.evaluate(set, &request.ray)?;
     }
-    let mut fit = SphereFit::default();
-    let rho = warm.radius[0] + warm.radius[1];
-    let distance = request.center.map_or(0.0, |c| c.v.norm());
-    if rho > 0.0 && rho < 1.5 * (distance + query.upper.depth) {
-        (fit.radius, fit.is_confirmed, fit.is_warm) = (warm.radius, true, is_warm);
-    }
     let mut solver = Solver {
-        query,
         limits: &request.limits,
         interior: SupportPoint::default(),
-        fit,
+        fit: SphereFit::warm(warm.radius, distance + query.upper.depth),
+        query,
         iterations: 0,
         gap: f64::INFINITY,
-        hit: answer.hit,
+        hit,
     };
     let mut center = request.center;
     let mut status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
@@ -240,26 +214,16 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             status = Status::InconsistentSupport;
         }
     }
-    let Solver {
-        query,
-        fit,
-        iterations,
-        ..
-    } = solver;
-    let radius = if fit.is_confirmed {
-        fit.radius
-    } else {
-        [0.0; 2]
-    };
-    let UpperBound { dir, depth, .. } = query.upper;
-    *answer.warm = WarmStart::hit(dir, depth, radius, iterations > MAX_PLAIN_ITERATIONS);
-    Ok(status)
+    let UpperBound { dir, depth, .. } = solver.query.upper;
+    let radius = solver.fit.confirmed_radius();
+    let is_round = solver.iterations > MAX_PLAIN_ITERATIONS;
+    Ok((status, WarmStart::hit(dir, depth, radius, is_round)))
 }
 
-/// Returns whether a warm direction with this support value is no start of its own.
-fn is_stale(warm: &WarmStart, center: Option<&SupportPoint>, depth: f64) -> bool {
-    let distance = center.map_or(0.0, |c| c.v.norm());
-    let is_round = warm.kind == WarmKind::Plain && warm.radius[0] * warm.radius[1] > 0.0;
+/// Returns whether a warm direction with this support value is no start of its own. `distance`: of the centers,
+/// metres.
+fn is_stale(warm: &WarmStart, distance: f64, depth: f64) -> bool {
+    let is_round = warm.radius[0] * warm.radius[1] > 0.0;
     // Negated for NaN.
     is_round || !(depth <= 2.0 * warm.depth + STALE_REL * distance)
 }
@@ -420,15 +384,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<Status, Stop> {
         let mut status = Status::Rounding;
-        for kind in STARTS {
-            if kind != StartKind::Portal && set.len() + START_VERTICES > SMALL_VERTICES {
+        for attempt in 0..3 {
+            if attempt > 0 {
                 set.truncate(SMALL_VERTICES - START_VERTICES);
             }
-            let start = match (kind, portal) {
-                (StartKind::Portal, Some([a, b, c])) => Some([self.interior_vertex(), *a, *b, *c]),
-                (StartKind::Portal, None) => None,
-                (StartKind::Farthest, _) => self.find_farthest(set)?,
-                (StartKind::Gjk, _) => self.find_gjk_tetrahedron(set)?,
+            let start = match attempt {
+                0 => portal.map(|[a, b, c]| [self.interior_vertex(), *a, *b, *c]),
+                1 => self.find_farthest(set)?,
+                _ => self.find_gjk_tetrahedron(set)?,
             };
             let Some(start) = start else { continue };
             let mut found = self.expand_small(set, &start, is_warm)?;

@@ -284,10 +284,6 @@ impl<const F: usize> EpaPolytope<F> {
 
     /// Returns the proven lower bound of the distance from the origin to all faces, metres.
     pub fn lower_bound(&self, closest: &ClosestFace) -> f64 {
-        if self.key_error > 0.0 {
-            let distance = self.distance(closest.face);
-            return distance - self.key_error(distance);
-        }
         let most = closest.key + 4.0 * KEY_ERROR_REL * closest.key.abs();
         let tied = (0..self.used.min(F)).filter(|&f| self.keys[f] <= most);
         tied.fold(f64::INFINITY, |least, f| lesser(self.distance(f), least))

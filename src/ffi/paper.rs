@@ -12,7 +12,8 @@ use super::callbacks::{Kind, Query};
 use super::types::ccd_t;
 use super::warm::penetration::{ccd_penetration_t, fill};
 use super::warm::state::ccd_warm_t;
-use crate::query::Pair;
+use crate::contact::Settings;
+use crate::query::{Pair, warm_start::WarmStart};
 
 /// Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
 /// shortcut. The result is sound: depth is the least support value evaluated, and an overlap is
@@ -34,5 +35,11 @@ pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { fill(query, Kind::Penetration, warm, want, out, Pair::incremental) }
+    unsafe {
+        let solve =
+            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, wants, hit: &mut _| {
+                pair.incremental(None, state, settings, wants, hit)
+            };
+        fill(query, Kind::Penetration, warm, want, out, solve)
+    }
 }

@@ -10,7 +10,7 @@
 //! 3. *Margins* are balls added all around: h grows by their radii for every n, so the signed distance is
 //!    that of the cores less both margins, exactly, on both sides of the touch.
 //!
-//! [`Start`], the state of the last query, chooses where the next one starts, and proves nothing.
+//! The state of the last query chooses where the next one starts, and proves nothing.
 //!
 //! Outputs: both bounds are proven, whatever `is_limited` says; the points are on the surfaces with their
 //! margins.
@@ -18,9 +18,10 @@
 use crate::contact::{Penetration, Settings};
 use crate::gjk::closest_points::{ClosestPoints, End, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
-use crate::minkowski::query::{Stop, SupportQuery};
+use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::query::warm_start::WarmStart;
 
 /// The input of a query besides the objects.
 #[derive(Clone, Copy, Debug)]
@@ -62,70 +63,51 @@ pub struct Distance {
     pub is_limited: bool,
 }
 
-/// Where a query starts, and what it leaves for the next one of the pair.
-#[derive(Clone, Copy, Debug)]
-pub struct Start {
-    /// Unit; queried first.
-    pub dir: Vec3,
-    /// The radii of the sphere fits, metres; 0 for none.
-    pub radius: [f64; 2],
-    /// Whether the cores overlapped: the penetration depth is looked for first.
-    pub is_overlapping: bool,
-}
-
-/// Computes the signed distance of the objects with their margins. `minimum` computes the penetration depth
-/// of the cores, from a direction or from what the caller has kept. Returns what the next query of the pair
-/// starts from; `None` where the cores overlap: it is then what `minimum` has kept.
+/// Computes the signed distance of the objects with their margins, from the state of the last query of the pair, or
+/// unit `cold`. `minimum` computes the penetration depth of the cores from a state; where they are apart, it stores
+/// the axis that separates them.
 ///
 /// # Errors
 /// [`Fault`].
 pub fn signed_distance<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     wanted: &Wanted,
-    start: &Start,
-    mut minimum: impl FnMut(Option<&Vec3>, &mut Penetration) -> Result<(), Stop>,
-    out: &mut Distance,
-) -> Result<Option<Start>, Fault> {
-    // Returns a separating axis, `None` where the cores overlap and the answer is written.
-    let mut depth = |from: Option<&Vec3>, out: &mut Distance| {
+    cold: &Vec3,
+    state: &mut WarmStart,
+    mut minimum: impl FnMut(&mut WarmStart, &mut Penetration) -> Result<(), Stop>,
+) -> Result<Distance, Fault> {
+    // Returns the answer for cores that overlap, `None` where they are apart.
+    let mut depth = |state: &mut WarmStart| {
         let mut hit = Penetration::default();
-        match minimum(from, &mut hit) {
-            Ok(()) => {
-                write_overlapping(&hit, wanted, out);
-                Ok(None)
-            }
-            Err(Stop::Apart(normal)) => Ok(Some(normal)),
-            Err(Stop::Fault(fault)) => Err(fault),
-        }
+        let found = if_overlapping(minimum(state, &mut hit))?;
+        Ok(found.map(|()| overlapping_distance(&hit, wanted)))
     };
-    let mut start = *start;
-    if start.is_overlapping {
-        match depth(None, out)? {
-            None => return Ok(None),
-            Some(normal) => start.dir = normal,
+    if state.is_overlap() {
+        if let Some(distance) = depth(state)? {
+            return Ok(distance);
         }
     }
-    let (mut cores, radius, mut touch) = find_cores(md, wanted, &start)?;
+    let start = state.separating_axis().map_or(*cold, |axis| axis.dir);
+    let (mut cores, radius, mut touch) = find_cores(md, wanted, &start, state.radius)?;
     // Without a separating plane the proof decides, however close the bounds are.
     let is_open = cores.end != End::Limit && !(cores.lower >= -touch);
     if cores.end == End::Inside || is_open {
-        let Some(normal) = depth(Some(&cores.normal), out)? else {
-            return Ok(None);
-        };
+        *state = WarmStart::guess(&cores.normal);
+        if let Some(distance) = depth(state)? {
+            return Ok(distance);
+        }
         // The proof decides, whatever one support value is. The points stay those where the origin was
         // met.
+        let normal = state.dir;
         let h = normal.dot(&md.support(&normal)?.v);
         touch = larger(touch, h.abs());
         (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
         let is_closed = cores.upper <= larger(touch, wanted.settings.tolerance);
         cores.end = if is_closed { End::Met } else { End::Limit };
     }
-    write_apart(&cores, touch, wanted, out);
-    Ok(Some(Start {
-        dir: cores.normal,
-        radius,
-        is_overlapping: false,
-    }))
+    let distance = distance_apart(&cores, touch, wanted);
+    *state = WarmStart::apart(cores.normal, larger(distance.lower, 0.0), radius);
+    Ok(distance)
 }
 
 /// Finds the closest points of the cores. Returns them with the radii of the sphere fits and the contact
@@ -134,27 +116,23 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
 fn find_cores<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     wanted: &Wanted,
-    start: &Start,
+    start: &Vec3,
+    radius: [f64; 2],
 ) -> Result<(ClosestPoints, [f64; 2], f64), Fault> {
     let mut query = SupportQuery::new(md, None);
-    let mut fit = SphereFit::from_radius(start.radius);
+    let mut fit = SphereFit::from_radius(radius);
     let goal = Goal {
         tolerance: wanted.settings.tolerance,
         margin: wanted.margin(),
         max_distance: wanted.max_distance,
         max_samples: wanted.settings.max_iterations,
     };
-    let cores = closest_points(&mut query, &mut fit, &start.dir, &goal)?;
-    let radius = if fit.is_confirmed {
-        fit.radius
-    } else {
-        [0.0; 2]
-    };
-    Ok((cores, radius, query.scale.contact_eps()))
+    let cores = closest_points(&mut query, &mut fit, start, &goal)?;
+    Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
 }
 
-/// Writes the answer for cores that overlap.
-fn write_overlapping(hit: &Penetration, wanted: &Wanted, out: &mut Distance) {
+/// Returns the distance of cores that overlap.
+fn overlapping_distance(hit: &Penetration, wanted: &Wanted) -> Distance {
     let n = hit.normal;
     let margin = wanted.margin();
     // No depth is minus nothing.
@@ -163,7 +141,7 @@ fn write_overlapping(hit: &Penetration, wanted: &Wanted, out: &mut Distance) {
     } else {
         0.0
     };
-    *out = Distance {
+    Distance {
         lower,
         upper: larger(-hit.depth_lower - margin, lower),
         normal: n,
@@ -172,11 +150,11 @@ fn write_overlapping(hit: &Penetration, wanted: &Wanted, out: &mut Distance) {
         iterations: hit.iterations,
         is_hit: lower < 0.0,
         is_limited: hit.limit,
-    };
+    }
 }
 
-/// Writes the answer for cores that are apart, `touch` being rounding, metres.
-fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Distance) {
+/// Returns the distance of cores that are apart, `touch` being rounding, metres.
+fn distance_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted) -> Distance {
     let margin = wanted.margin();
     // Points of the surfaces on the line through the closest points of the cores. Of cores that touch, the
     // line is rounding.
@@ -195,7 +173,7 @@ fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Dis
         // The bounds that are returned decide.
         is_limited &= !(upper <= larger(touch, wanted.settings.tolerance));
     }
-    *out = Distance {
+    Distance {
         lower,
         upper: larger(upper, lower),
         normal: cores.normal,
@@ -204,5 +182,5 @@ fn write_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted, out: &mut Dis
         iterations: cores.iterations,
         is_hit: lower < 0.0,
         is_limited,
-    };
+    }
 }

@@ -69,6 +69,9 @@ const BESIDE_MAX_RATIO: f64 = 100.0;
 /// The k below which a second ring is no wider than EPA's own. Insensitive: 0.33 to 0.6.
 const BESIDE_MIN_K: f64 = 0.5;
 
+/// The largest radius of a warm state that is trusted, as a share of the distance of the centers and the depth.
+const MAX_RADIUS: f64 = 1.5;
+
 /// The source of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
@@ -138,6 +141,30 @@ impl SphereFit {
         Self {
             radius,
             ..Self::default()
+        }
+    }
+
+    /// Returns a fit with the radii of a warm state, which count as confirmed; without them where their sum is too
+    /// large for a distance of the centers and a depth that sum to `length`, metres.
+    pub fn warm(radius: [f64; 2], length: f64) -> Self {
+        let sum = radius[0] + radius[1];
+        if !(sum > 0.0 && sum < MAX_RADIUS * length) {
+            return Self::default();
+        }
+        Self {
+            radius,
+            is_confirmed: true,
+            is_warm: true,
+            ..Self::default()
+        }
+    }
+
+    /// Returns the radii if a prediction has confirmed them, metres; else 0.
+    pub fn confirmed_radius(&self) -> [f64; 2] {
+        if self.is_confirmed {
+            self.radius
+        } else {
+            [0.0; 2]
         }
     }
 
@@ -263,12 +290,6 @@ impl SphereFit {
 /// The exact fits of the local query, whose minimum a prediction may be: e = f and the moves parallel but for
 /// rounding.
 impl SphereFit {
-    /// Forgets radii that no entry of the set confirms, and compares all entries again.
-    pub fn reset_exact(&mut self) {
-        (self.radius, self.compared) = ([0.0; 2], 0);
-        (self.is_warm, self.is_confirmed) = (false, false);
-    }
-
     /// Returns whether the centers of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
     /// directions each, as far apart as `tolerance`, metres, at most. The tip of a drop looks like the center of a
     /// sphere from one direction, and the rim of a thin disc nearly so from several.

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The penetration depth along a direction, and among the directions of a plane.
+//! The penetration depth along a direction.
 //!
 //! [`along`]: the origin ray of W. Gao, Algorithm 1, followed to where it leaves D. The support plane that the ray meets first is the upper bound; where it crosses the
 //! portal, which is inscribed in D, less the rounding, is the lower bound once the origin is known to be in D.
-//! [`planar`]: Algorithms 4 and 5 with n = 2.
 //!
 //! Departures: those of [`gao`]. The bounds are measured along the ray.
 //!
@@ -13,10 +12,10 @@
 //! whatever ended the search. The overlap is not proven here.
 
 use crate::contact::{Penetration, Settings};
-use crate::math::{Vec3, perpendicular, unit};
+use crate::math::Vec3;
 use crate::minkowski::query::Stop;
 use crate::minkowski::support::{MinkowskiDifference, SupportMap};
-use crate::mpr::gao::{self, Portal, RayEnd, RaySearch, SupportPlane, Until, answer, rounding};
+use crate::mpr::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, answer, rounding};
 
 /// Follows the ray along unit `dir` to where it leaves D, as long as the origin is in D. Returns the
 /// answer with its lower bound, and the last portal, where there was one.
@@ -70,21 +69,6 @@ pub fn along<A: SupportMap, B: SupportMap>(
 
 /// The finest tolerance in force, in units of the rounding of a support point.
 const FLOOR_ROUNDINGS: f64 = 8.0;
-
-/// Finds a local minimum of the depth among the directions perpendicular to unit `m`, from the part of unit
-/// `start` across it.
-///
-/// # Errors
-/// As [`gao::penetration`].
-pub fn planar<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    m: &Vec3,
-    start: &Vec3,
-    settings: &Settings,
-) -> Result<Penetration, Stop> {
-    let across = unit(&(start - m * m.dot(start))).unwrap_or_else(|| perpendicular(m));
-    gao::penetration(md, across, Some(*m), Until::Shortcut, settings, |_| ())
-}
 
 /// Returns the support plane that the ray meets first, of `plane` and those of the portal: all are sound.
 fn first_met(dir: &Vec3, plane: SupportPlane, portal: Option<&Portal>) -> SupportPlane {

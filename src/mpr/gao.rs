@@ -36,9 +36,9 @@ use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportP
 /// slope. The two parts have no simple ratio, so that no symmetry of a shape hides the slope.
 const ASIDE_TAN: (f64, f64) = (0.093, 0.041);
 
-/// A local minimum of the penetration depth, searched from the unit direction
-/// `start`: Algorithm 3, or with [`Until::Shortcut`] Algorithms 4 and 5. `flat`: the unit normal of the
-/// plane that D and `start` lie in, where there is one. `switched` gets |z| at each switch of the ray.
+/// Finds a local minimum of the penetration depth from the unit direction `start`: Algorithm 3, or with
+/// [`Until::Shortcut`] Algorithms 4 and 5. `flat`: the unit normal of the plane that D lies in, where there is one;
+/// the search then starts along the part of `start` in it. `switched` gets |z| at each switch of the ray.
 ///
 /// # Errors
 /// `Stop::Apart`; a callback's answer that is not finite.
@@ -50,6 +50,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     settings: &Settings,
     switched: impl FnMut(f64),
 ) -> Result<Penetration, Stop> {
+    let start = match flat {
+        Some(m) => unit(&(start - m * m.dot(&start))).unwrap_or_else(|| perpendicular(&m)),
+        None => start,
+    };
     let ray = SupportPlane::of(md, start)?;
     let mut search = RaySearch {
         md,
@@ -334,7 +338,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     pub fn follow(&mut self, first: &SupportPlane) -> Result<RayEnd, Stop> {
         let found = match self.flat {
             Some(m) => self.find_segment(first, &m)?,
-            None => self.find_portal(first, None)?,
+            None => self.find_portal(first)?,
         };
         match found {
             Ok(portal) => self.refine(portal),
@@ -342,17 +346,10 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         }
     }
 
-    /// Portal discovery (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
-    /// Game Programming Gems 7), for the ray along `first.normal`. `Err`: there is none.
-    ///
-    /// `behind` is the original algorithm's interior point, where one is known: a point of D
-    /// on the line of the ray, behind the origin. Else `v0 = -d`, scaled to the portal's size,
-    /// stands in for it.
-    pub fn find_portal(
-        &mut self,
-        first: &SupportPlane,
-        behind: Option<&Vec3>,
-    ) -> Result<Result<Portal, RayEnd>, Stop> {
+    /// Finds a portal of the ray along `first.normal` (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
+    /// Game Programming Gems 7). `Err`: there is none. For the interior point stands `v0 = -d`, scaled to the
+    /// portal's size.
+    fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<Portal, RayEnd>, Stop> {
         let d = first.normal;
         if first.depth < 0.0 {
             return Err(Stop::Apart(d));
@@ -376,10 +373,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         };
         while self.take_iteration() {
             let [a, b, _] = portal.planes.each_ref().map(|p| p.point.v);
-            let v0 = match behind {
-                Some(inner) => *inner,
-                None => -d * larger(largest(&a), largest(&b)),
-            };
+            let v0 = -d * larger(largest(&a), largest(&b));
             let Some(n) = unit(&(a - v0).cross(&(b - v0))) else {
                 return Ok(Err(RayEnd::Touch));
             };
@@ -772,7 +766,7 @@ mod portal_tests {
         let md = alone(support);
         let first = SupportPlane::of(&md, d).unwrap();
         let mut search = search(&md, first, tolerance, Until::Ray, 1000);
-        match search.find_portal(&first, None).unwrap() {
+        match search.find_portal(&first).unwrap() {
             Ok(found) => {
                 assert!(crosses(&found));
                 // Each vertex is the support point of its own plane.

@@ -61,8 +61,6 @@ const MIN_GAIN: f64 = 0.3;
 const MAX_MISS: f64 = 0.3;
 /// The tangent of the tilt of the query against the start. Insensitive: 0.01 to 0.15.
 const ASLANT_TAN: f64 = 0.05;
-/// The largest trusted radius, as a share of the distance of the centers and the depth.
-const MAX_RADIUS: f64 = 1.5;
 /// The predictions of a model that miss before it is not used any more.
 const MAX_MISSES: u32 = 5;
 /// Half of the square of the angle below which two directions are one.
@@ -182,7 +180,7 @@ struct Minimum {
 struct Walk<'w, 'q, A, B, const N: usize> {
     query: &'w mut SupportQuery<'q, A, B>,
     set: &'w mut VertexSet<N>,
-    fit: &'w mut SphereFit,
+    fit: SphereFit,
     settings: &'w Settings,
     /// The centers' difference, else the middle of the support points along the start and against it.
     interior: Vec3,
@@ -195,15 +193,15 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     newton_misses: u32,
 }
 
-/// Finds a local minimum of the penetration depth from unit `start`. The set may hold entries. `fit` brings
-/// radii that are trusted, or none, and takes those that a prediction confirmed. See the head of this file.
+/// Finds a local minimum of the penetration depth from unit `start`. The set may hold entries. `radius`: those of a
+/// warm state, or 0; those that a prediction has confirmed take their place. See the head of this file.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    fit: &mut SphereFit,
+    radius: &mut [f64; 2],
     start: &Vec3,
     settings: &Settings,
 ) -> Result<(Penetration, Status), Stop> {
@@ -214,20 +212,18 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         is_centered: query.interior.is_some(),
         query,
         set,
-        fit,
+        fit: SphereFit::default(),
         settings,
         iterations: 0,
         sphere_misses: 0,
         newton_misses: 0,
     };
-    walk.fit.is_exact = true;
-    let found = walk.run(start);
-    let iterations = walk.iterations;
-    let (minimum, status) = match found {
+    let (minimum, mut status) = match walk.run(start, *radius) {
         Ok(minimum) => (minimum, Status::Converged),
         Err(Halt::Stop(stop)) => return Err(stop),
         Err(Halt::Status(status)) => (walk.lowest(), status),
     };
+    *radius = walk.fit.confirmed_radius();
     let [point1, point2] = minimum.points;
     let hit = Penetration {
         depth: minimum.depth,
@@ -235,15 +231,20 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         normal: minimum.dir,
         point1,
         point2,
-        iterations,
+        iterations: walk.iterations,
         ..Penetration::default()
     };
+    // A face is as far from its support plane as both are rounded.
+    let tolerance = walk.tolerance() + walk.query.scale.height_eps();
+    if status == Status::Converged && !hit.has_sound_witnesses(tolerance) {
+        status = Status::Rounding;
+    }
     Ok((hit, status))
 }
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
-    fn run(&mut self, start: &Vec3) -> Result<Minimum, Halt> {
+    fn run(&mut self, start: &Vec3, radius: [f64; 2]) -> Result<Minimum, Halt> {
         let ahead = self.query.evaluate(self.set, start)?;
         // The least cosine to the way from the interior point through the origin for which that is not queried as
         // well: a start that leads to the far side; any without a center.
@@ -265,11 +266,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.query.evaluate(self.set, &to_origin)?;
         }
         let mut ray = self.query.upper.dir;
-        let most = MAX_RADIUS * (self.interior.norm() + self.query.upper.depth);
-        // Negated for NaN.
-        if !(self.fit.radius.iter().all(|r| *r >= 0.0) && self.fit.sum() < most) {
-            self.fit.reset_exact();
-        }
+        self.fit = SphereFit::warm(radius, self.interior.norm() + self.query.upper.depth);
+        self.fit.is_exact = true;
         for _ in 0..MAX_RAYS {
             let tolerance = self.tolerance();
             self.check_limits()?;
@@ -693,8 +691,7 @@ mod tests {
         let before = md.supports();
         let mut query = SupportQuery::new(md, center.as_ref());
         let mut set = VertexSet::<MAX_SAMPLES>::EMPTY;
-        let mut fit = SphereFit::default();
-        let found = penetration(&mut query, &mut set, &mut fit, start, settings);
+        let found = penetration(&mut query, &mut set, &mut [0.0; 2], start, settings);
         (found, md.supports() - before)
     }
 

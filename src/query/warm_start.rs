@@ -95,11 +95,12 @@ impl WarmStart {
         unit(dir).map_or(Self::COLD, Self::towards)
     }
 
-    /// Makes the state of a pair that is apart. `radius`: of the objects' spheres, metres.
-    pub fn apart(axis: &SeparatingAxis, radius: [f64; 2]) -> Self {
+    /// Makes the state of a pair that unit `dir` separates. `aim`: the margin that the axis is to separate it by,
+    /// metres. `radius`: of the objects' spheres, metres.
+    pub fn apart(dir: Vec3, aim: f64, radius: [f64; 2]) -> Self {
         Self {
-            dir: axis.dir,
-            depth: axis.aim,
+            dir,
+            depth: aim,
             radius,
             kind: WarmKind::Apart,
             facing: 0,

@@ -125,7 +125,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
         let query = Query { obj1, obj2, ccd };
         let solve =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
-                pair.planar(plane_normal, state, settings, hit)
+                pair.incremental(Some(plane_normal), state, settings, false, hit)
             };
         fill(query, Kind::Penetration, warm, want, out, solve)
     }
