@@ -414,7 +414,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, capsule, corners, hull, placed};
+    use crate::shapes::{Random, capsule, corners, difference, hull, placed};
 
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-4 },
@@ -428,7 +428,7 @@ mod tests {
         mut state: WarmStart,
     ) -> (u64, f64, WarmStart) {
         let pair = Pair {
-            md: MinkowskiDifference::new(a, b),
+            md: difference(a, b),
             center: None,
             first_dir: None,
             keeps_state: true,
@@ -473,7 +473,7 @@ mod tests {
             let b = placed(&a, &r.rotation(), r.vector(1.0));
             let v1 = r.vector(3.0);
             let pair = Pair {
-                md: MinkowskiDifference::new(hull(&a), hull(&b)),
+                md: difference(hull(&a), hull(&b)),
                 center: Some(SupportPoint {
                     v: v1,
                     v1,
@@ -505,7 +505,7 @@ mod tests {
                 placed(&plate, &turn, at),
             );
             let pair = Pair {
-                md: MinkowskiDifference::new(hull(&a), hull(&b)),
+                md: difference(hull(&a), hull(&b)),
                 center: Some(SupportPoint {
                     v: -at,
                     v1: Vec3::zeros(),

@@ -9,12 +9,24 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use crate::math::{Vec3, unit};
+use crate::minkowski::support::{MinkowskiDifference, SupportMap};
 
 pub type Rotation = nalgebra::Rotation3<f64>;
 
 /// One type for all: the solvers are compiled once for it, not once for each pair of
 /// shapes.
-pub type Shape = Box<dyn Fn(&Vec3) -> Vec3>;
+pub type Shape<'a> = Box<dyn Fn(&Vec3) -> Vec3 + 'a>;
+
+/// The difference of two bodies, whatever types they are.
+pub fn difference<'a>(
+    a: impl SupportMap + 'a,
+    b: impl SupportMap + 'a,
+) -> MinkowskiDifference<Shape<'a>, Shape<'a>> {
+    MinkowskiDifference::new(
+        Box::new(move |d: &Vec3| a.support(d)),
+        Box::new(move |d: &Vec3| b.support(d)),
+    )
+}
 
 /// The same numbers on every machine.
 pub struct Random(Pcg64);
@@ -57,7 +69,7 @@ impl Random {
 }
 
 /// The hull of the points.
-pub fn hull(points: &[Vec3]) -> Shape {
+pub fn hull(points: &[Vec3]) -> Shape<'static> {
     let points = points.to_vec();
     Box::new(move |d| {
         let mut best = points[0];
@@ -85,16 +97,16 @@ pub fn placed(points: &[Vec3], rotation: &Rotation, at: Vec3) -> Vec<Vec3> {
     points.iter().map(|p| rotation * p + at).collect()
 }
 
-pub fn ball(at: Vec3, radius: f64) -> Shape {
+pub fn ball(at: Vec3, radius: f64) -> Shape<'static> {
     Box::new(move |d| at + d * radius)
 }
 
 /// All points within `radius` of the segment.
-pub fn capsule(a: Vec3, b: Vec3, radius: f64) -> Shape {
+pub fn capsule(a: Vec3, b: Vec3, radius: f64) -> Shape<'static> {
     Box::new(move |d| (if d.dot(&(b - a)) > 0.0 { b } else { a }) + d * radius)
 }
 
-pub fn ellipsoid(radii: Vec3, rotation: Rotation, at: Vec3) -> Shape {
+pub fn ellipsoid(radii: Vec3, rotation: Rotation, at: Vec3) -> Shape<'static> {
     Box::new(move |d| {
         let e = radii.component_mul(&(rotation.inverse() * d));
         rotation * radii.component_mul(&(e / e.norm())) + at

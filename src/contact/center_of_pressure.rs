@@ -352,7 +352,7 @@ impl PressureSum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::{Random, ball, corners, hull, placed};
+    use crate::shapes::{Random, ball, corners, difference, hull, placed};
     use nalgebra::{Rotation3, Vector3};
 
     fn fan(corners: &[(f64, f64, f64)]) -> Fan {
@@ -427,7 +427,7 @@ mod tests {
             &Rotation3::identity(),
             -Vec3::z(),
         );
-        let md = MinkowskiDifference::new(hull(&floor), hull(&body));
+        let md = difference(hull(&floor), hull(&body));
         let mut set = VertexSet::<16>::EMPTY;
         for dir in dirs {
             set.push(dir, &md.support(dir).unwrap());
@@ -508,7 +508,7 @@ mod tests {
             calls.set(calls.get() + 1);
             n * if calls.get() > 1 { f64::NAN } else { 1.0 }
         };
-        let md = MinkowskiDifference::new(broken, ball(Vec3::z() * 1.9, 1.0));
+        let md = difference(broken, ball(Vec3::z() * 1.9, 1.0));
         let mut set = VertexSet::<4>::EMPTY;
         set.push(&Vec3::z(), &md.support(&Vec3::z()).unwrap());
         let hit = Penetration {

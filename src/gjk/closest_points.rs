@@ -295,8 +295,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
 mod tests {
     use super::*;
     use crate::math::{EPSILON, from_real, to_real};
-    use crate::minkowski::support::MinkowskiDifference;
-    use crate::shapes::{Random, ball, corners, hull, placed};
+    use crate::shapes::{Random, ball, corners, difference, hull, placed};
 
     /// Boxes face to face and balls: the bounds close around the known distance, the points are that far
     /// apart, and a distance larger than wanted is not refined.
@@ -319,12 +318,11 @@ mod tests {
                 };
                 let mut fit = SphereFit::default();
                 if round % 2 == 0 {
-                    let md = MinkowskiDifference::new(hull(&cube), hull(&other));
+                    let md = difference(hull(&cube), hull(&other));
                     closest_points(&mut SupportQuery::new(&md, None), &mut fit, &start, &goal)
                 } else {
                     let up = turn * Vec3::z();
-                    let md =
-                        MinkowskiDifference::new(ball(up * 0.5, 0.5), ball(-up * (0.5 + gap), 0.5));
+                    let md = difference(ball(up * 0.5, 0.5), ball(-up * (0.5 + gap), 0.5));
                     closest_points(&mut SupportQuery::new(&md, None), &mut fit, &start, &goal)
                 }
             };
@@ -346,7 +344,7 @@ mod tests {
             let cube = corners(Vec3::repeat(0.5));
             let a = placed(&cube, &r.rotation(), Vec3::zeros());
             let b = placed(&cube, &r.rotation(), r.direction() * 0.7);
-            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let md = difference(hull(&a), hull(&b));
             let goal = Goal {
                 tolerance: 1e-6,
                 margin: 0.0,
@@ -378,7 +376,7 @@ mod tests {
             };
             let a = plate(Vec3::zeros());
             let b = plate(Vec3::new(0.3, 0.1, 2.0 * thin));
-            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let md = difference(hull(&a), hull(&b));
             let goal = Goal {
                 tolerance: 0.0,
                 margin: 0.0,

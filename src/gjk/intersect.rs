@@ -306,7 +306,7 @@ fn decide<A: SupportMap, B: SupportMap, const N: usize>(
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, ball, corners, hull, placed};
+    use crate::shapes::{Random, ball, corners, difference, hull, placed};
 
     fn test_cold<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
@@ -323,7 +323,7 @@ mod tests {
         for _ in 0..200 {
             let half = Vec3::new(0.5, 0.4, 0.3);
             let turned = placed(&corners(half), &r.rotation(), r.vector(0.2));
-            let md = MinkowskiDifference::new(hull(&corners(half)), hull(&turned));
+            let md = difference(hull(&corners(half)), hull(&turned));
             let mut query = SupportQuery::new(&md, None);
             let n = r.direction();
             let point = query.evaluate_first(&n).unwrap();
@@ -397,7 +397,7 @@ mod tests {
             ],
             at,
         );
-        let md = MinkowskiDifference::new(a, b);
+        let md = difference(a, b);
         let c = SupportPoint {
             v: -at,
             v1: Vec3::zeros(),
@@ -429,20 +429,20 @@ mod tests {
             let gap = r.within(-0.1, 0.1);
             let [a, b] = cubes(gap, &mut r);
             let dir = r.direction();
-            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let md = difference(hull(&a), hull(&b));
             let one = test_cold(&md, &dir);
             assert_eq!(one.is_ok(), gap < 0.0, "{gap}");
             if let Err(Stop::Apart(n)) = one {
                 assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
             }
-            let swapped = MinkowskiDifference::new(hull(&b), hull(&a));
+            let swapped = difference(hull(&b), hull(&a));
             assert_eq!(test_cold(&swapped, &-dir).is_ok(), one.is_ok());
             assert!(swapped.supports() < 100, "{}", swapped.supports());
             for exponent in [-20, 20] {
                 let scale = (2.0 as f64).powi(exponent);
                 let [a, b] = [&a, &b].map(|of| of.iter().map(|p| p * scale).collect::<Vec<_>>());
-                let other = MinkowskiDifference::new(hull(&a), hull(&b));
+                let other = difference(hull(&a), hull(&b));
                 assert_eq!(one, test_cold(&other, &dir));
             }
         }
@@ -457,7 +457,7 @@ mod tests {
         for round in 0..3000 {
             let gap = r.within(-0.1, 0.1);
             let [a, b] = cubes(gap, &mut r);
-            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let md = difference(hull(&a), hull(&b));
             let mut query = SupportQuery::new(&md, None);
             let mut set = VertexSet::<16>::EMPTY;
             for _ in 0..round % 17 {
@@ -503,19 +503,19 @@ mod tests {
                 for by in [Vec3::zeros(), aside] {
                     let at = up * (2.0 * size.z + gap) + by;
                     let other: Vec<_> = cube.iter().map(|p| p + at).collect();
-                    let md = MinkowskiDifference::new(hull(&cube), hull(&other));
+                    let md = difference(hull(&cube), hull(&other));
                     let found = intersect(&md, Some(&center(at)), &at.normalize());
                     assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
                     assert!(md.supports() < 100, "{}", md.supports());
                 }
                 let at = up * (1.5 + gap);
-                let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
+                let md = difference(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
                 let found = intersect(&md, Some(&center(at)), &up);
                 assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
             }
         }
         // The same center.
-        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
+        let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
         let found = intersect(&md, Some(&SupportPoint::default()), &Vec3::x());
         assert!(found.is_ok());
     }
@@ -533,7 +533,7 @@ mod tests {
                 v1,
                 v2: Vec3::zeros(),
             };
-            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let md = difference(hull(&a), hull(&b));
             let mut query = SupportQuery::new(&md, Some(&center));
             query.interior = None;
             let mut set = VertexSet::<16>::EMPTY;

@@ -70,8 +70,7 @@ impl SeparatingAxis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::minkowski::support::MinkowskiDifference;
-    use crate::shapes::{Random, ball, capsule};
+    use crate::shapes::{Random, ball, capsule, difference};
 
     /// An axis that hardly separates is turned to one that separates by most of the distance.
     #[test]
@@ -80,7 +79,7 @@ mod tests {
         for _ in 0..200 {
             let gap = r.within(0.05, 1.0);
             let up = r.direction();
-            let md = MinkowskiDifference::new(
+            let md = difference(
                 capsule(up * -0.6, up * -0.2, 0.2),
                 ball(up * (0.2 + gap), 0.2),
             );
@@ -102,7 +101,7 @@ mod tests {
     fn no_axis_separates_objects_that_intersect() {
         let mut r = Random::new(63);
         for _ in 0..200 {
-            let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(r.direction(), 0.5));
+            let md = difference(ball(Vec3::zeros(), 1.0), ball(r.direction(), 0.5));
             let (dir, aim) = (r.direction(), r.within(0.0, 1.0));
             let mut axis = SeparatingAxis { dir, aim };
             let found = axis.test(&mut SupportQuery::new(&md, None)).unwrap();

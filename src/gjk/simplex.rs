@@ -450,7 +450,7 @@ mod tests {
     #[test]
     fn a_compacted_set_keeps_what_is_in_use() {
         let mut r = Random::new(44);
-        let md = crate::minkowski::support::MinkowskiDifference::new(
+        let md = crate::shapes::difference(
             crate::shapes::ball(Vec3::zeros(), 1.0),
             crate::shapes::ball(Vec3::x() * 3.0, 1.0),
         );

@@ -327,12 +327,12 @@ fn representable(dir: &Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::ball;
+    use crate::shapes::{ball, difference};
     use core::cell::Cell;
 
     #[test]
     fn samples_are_kept_with_the_least_support_value() {
-        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 1.5, 1.0));
+        let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 1.5, 1.0));
         let mut query = SupportQuery::new(&md, None);
         let mut set = VertexSet::<4>::EMPTY;
         let first = query.evaluate(&mut set, &Vec3::y()).unwrap();
@@ -348,7 +348,7 @@ mod tests {
     fn a_gap_and_a_touch_are_apart() {
         for gap in [1.0, 0.0] {
             let other = ball(Vec3::x() * (2.0 + gap), 1.0);
-            let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), other);
+            let md = difference(ball(Vec3::zeros(), 1.0), other);
             let mut set = VertexSet::<4>::EMPTY;
             let mut query = SupportQuery::new(&md, None);
             let stop = query.evaluate(&mut set, &Vec3::x()).unwrap_err();
@@ -362,7 +362,7 @@ mod tests {
     #[test]
     fn a_vertex_found_beside_contradicts_a_separating_axis() {
         let short = |n: &Vec3| Vec3::x() * if *n == Vec3::x() { -1.0 } else { 1.0 };
-        let md = MinkowskiDifference::new(short, |_: &Vec3| Vec3::zeros());
+        let md = difference(short, |_: &Vec3| Vec3::zeros());
         let mut query = SupportQuery::new(&md, None);
         let mut set = VertexSet::<4>::EMPTY;
         query.evaluate(&mut set, &Vec3::new(0.8, 0.6, 0.0)).unwrap();
@@ -379,7 +379,7 @@ mod tests {
             calls.set(calls.get() + 1);
             Vec3::x() * if calls.get() == 1 { 1.0 } else { -1.0 }
         };
-        let md = MinkowskiDifference::new(wrong, |_: &Vec3| Vec3::zeros());
+        let md = difference(wrong, |_: &Vec3| Vec3::zeros());
         let mut query = SupportQuery::new(&md, None);
         let mut set = VertexSet::<4>::EMPTY;
         query.evaluate(&mut set, &Vec3::new(0.8, 0.6, 0.0)).unwrap();
@@ -396,7 +396,7 @@ mod tests {
             let height = if r < 1e-3 { 0.05 } else { 0.0 };
             Vec3::new(n.x / r.max(1e-300), n.y / r.max(1e-300), height)
         };
-        let md = MinkowskiDifference::new(disc, |_: &Vec3| -Vec3::z());
+        let md = difference(disc, |_: &Vec3| -Vec3::z());
         let mut query = SupportQuery::new(&md, None);
         let mut set = VertexSet::<4>::EMPTY;
         assert_eq!(query.evaluate(&mut set, &Vec3::z()).unwrap().h, 1.05);
@@ -406,7 +406,7 @@ mod tests {
 
     #[test]
     fn an_interior_point_beyond_a_plane_is_given_up() {
-        let md = MinkowskiDifference::new(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 1.0));
+        let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 1.0));
         for (x, is_inside) in [(1.9, true), (2.0, true), (2.0 + 1e3 * EPSILON, false)] {
             let v1 = Vec3::x() * x;
             let point = SupportPoint {
@@ -424,8 +424,7 @@ mod tests {
 
     #[test]
     fn a_point_that_is_not_finite_is_a_fault() {
-        let md =
-            MinkowskiDifference::new(|_: &Vec3| Vec3::x() * f64::NAN, |_: &Vec3| Vec3::zeros());
+        let md = difference(|_: &Vec3| Vec3::x() * f64::NAN, |_: &Vec3| Vec3::zeros());
         let mut set = VertexSet::<4>::EMPTY;
         let stop = SupportQuery::new(&md, None)
             .evaluate(&mut set, &Vec3::x())

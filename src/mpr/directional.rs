@@ -94,7 +94,7 @@ fn inscribed(dir: &Vec3, portal: &Portal) -> f64 {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, Rotation, ellipsoid};
+    use crate::shapes::{Random, Rotation, difference, ellipsoid};
 
     /// On an ellipsoid around the origin the ray along d leaves at 1 / |d / radii|; the
     /// bounds hold it, from every direction.
@@ -110,7 +110,7 @@ mod tests {
             let d = r.direction();
             let exact = 1.0 / d.component_div(&radii).norm();
             let support = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
-            let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
+            let md = difference(support, |_: &Vec3| Vec3::zeros());
             for _ in 0..2 {
                 let (hit, _) = along(&md, &d, &settings).expect("the origin is inside");
                 let slack = 100.0 * EPSILON;
@@ -143,7 +143,7 @@ mod tests {
             let (turn, at) = (r.rotation(), r.vector(1e-15));
             let turned = move |n: &Vec3| turn * disc(&(turn.inverse() * n));
             let other = move |n: &Vec3| turned(n) + at;
-            let md = MinkowskiDifference::new(turned, other);
+            let md = difference(turned, other);
             let d = turn * (Vec3::x() + r.vector(1e-3)).normalize();
             let Ok((hit, _)) = along(&md, &d, &settings) else {
                 panic!("the centers coincide");

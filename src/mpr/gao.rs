@@ -474,7 +474,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::{Random, ball, capsule, corners, ellipsoid, hull, placed};
+    use crate::shapes::{Random, ball, capsule, corners, difference, ellipsoid, hull, placed};
 
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-5 },
@@ -562,7 +562,7 @@ mod tests {
             assert!(e.normal(&v).cross(&v).norm() < 1e4 * EPSILON);
 
             let support = ellipsoid(e.radii, crate::shapes::Rotation::identity(), e.center);
-            let md = MinkowskiDifference::new(support, |_: &Vec3| Vec3::zeros());
+            let md = difference(support, |_: &Vec3| Vec3::zeros());
             let mut ray = SupportPlane::of(&md, r.direction()).unwrap();
             for _ in 0..20 {
                 let normal = e.normal(&e.exit(&ray.normal));
@@ -611,7 +611,7 @@ mod tests {
             let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
             let (a, b) = (r.vector(0.5), r.vector(0.5));
             let cube = placed(&corners(half), &turn, r.vector(0.1));
-            let md = MinkowskiDifference::new(hull(&cube), capsule(a, b, 0.3));
+            let md = difference(hull(&cube), capsule(a, b, 0.3));
             let start = r.direction();
             for (i, shortcut) in [Until::Normal, Until::Shortcut].into_iter().enumerate() {
                 let before = md.supports();
@@ -640,11 +640,11 @@ mod tests {
     #[test]
     fn steps_aside_from_a_maximum() {
         // A ball on the axis of a capsule: 1.3 along the axis, 1.0 across it.
-        let md = MinkowskiDifference::new(
+        let md = difference(
             ball(Vec3::zeros(), 0.5),
             capsule(Vec3::z() * -0.5, Vec3::z() * 0.5, 0.5),
         );
-        let shifted = MinkowskiDifference::new(
+        let shifted = difference(
             ball(Vec3::z() * 0.2, 0.5),
             capsule(Vec3::z() * -0.5, Vec3::z() * 0.5, 0.5),
         );
@@ -669,7 +669,7 @@ mod tests {
             points.push(Vec3::new(s, t, 0.0));
             points.push(Vec3::new(t, 0.0, s));
         }
-        let md = MinkowskiDifference::new(hull(&points), hull(&points));
+        let md = difference(hull(&points), hull(&points));
         // Of the icosahedron with edge 2: the distance between two opposite faces.
         let inradius = (3.0 as f64).sqrt() * (3.0 + (5.0 as f64).sqrt()) / 6.0;
         for v in &points {
@@ -682,7 +682,7 @@ mod tests {
     #[test]
     fn a_box_on_itself() {
         let cube = corners(Vec3::new(0.5, 0.4, 0.3));
-        let md = MinkowskiDifference::new(hull(&cube), hull(&cube));
+        let md = difference(hull(&cube), hull(&cube));
         let mut r = Random::new(5);
         for _ in 0..100 {
             let hit = solve(&md, r.direction(), Until::Shortcut, |_| ());
@@ -697,7 +697,7 @@ mod tests {
         let mut r = Random::new(6);
         for max_iterations in 0..30 {
             let center = r.vector(0.3);
-            let md = MinkowskiDifference::new(ball(center, 0.5), ball(Vec3::zeros(), 0.4));
+            let md = difference(ball(center, 0.5), ball(Vec3::zeros(), 0.4));
             let settings = Settings {
                 max_iterations,
                 tolerance: 1e-9,
@@ -716,13 +716,13 @@ mod tests {
 #[cfg(test)]
 mod portal_tests {
     use super::*;
-    use crate::shapes::{Random, Rotation, corners, ellipsoid, hull, placed};
+    use crate::shapes::{Random, Rotation, Shape, corners, difference, ellipsoid, hull, placed};
 
     const ULPS: f64 = 100.0 * EPSILON;
 
     /// D itself, as the difference to a point.
-    fn alone<A: SupportMap>(d: A) -> MinkowskiDifference<A, fn(&Vec3) -> Vec3> {
-        MinkowskiDifference::new(d, |_| Vec3::zeros())
+    fn alone<'a>(d: impl SupportMap + 'a) -> MinkowskiDifference<Shape<'a>, Shape<'a>> {
+        difference(d, |_: &Vec3| Vec3::zeros())
     }
 
     /// A search that begins with this plane.
@@ -881,7 +881,7 @@ mod portal_tests {
 #[cfg(test)]
 mod planar_tests {
     use super::*;
-    use crate::shapes::{Random, Rotation, hull};
+    use crate::shapes::{Random, Rotation, difference, hull};
 
     const TAU: f64 = core::f64::consts::TAU as f64;
 
@@ -941,7 +941,7 @@ mod planar_tests {
                     center + unit(&flat).map_or(Vec3::zeros(), |f| f * radius)
                 }
             };
-            let md = MinkowskiDifference::new(disc(at, 1.0), disc(at + way * distance, 0.5));
+            let md = difference(disc(at, 1.0), disc(at + way * distance, 0.5));
             let angle = r.within(0.0, TAU);
             let hit = solve(&md, &m, x * angle.cos() + y * angle.sin());
             let error = hit.depth - (1.5 - distance);
@@ -980,7 +980,7 @@ mod planar_tests {
             };
             let a = polygon(at);
             let b = polygon(at + x * 0.3 + y * 0.1);
-            let md = MinkowskiDifference::new(hull(&a), hull(&b));
+            let md = difference(hull(&a), hull(&b));
             let h = |n: &Vec3| n.dot(&md.support(n).unwrap().v);
             let mut edges = vec![];
             for (points, sign) in [(&a, 1.0), (&b, -1.0)] {
@@ -1021,7 +1021,7 @@ mod planar_tests {
             let (_, x, y, m, at) = frame(&mut r);
             let square = |c: Vec3| [c + x, c + y, c - x, c - y];
             let by = unit(&(x + y)).unwrap() * ((2.0 as f64).sqrt() + 0.01);
-            let md = MinkowskiDifference::new(hull(&square(at)), hull(&square(at + by)));
+            let md = difference(hull(&square(at)), hull(&square(at + by)));
             let angle = r.within(0.0, TAU);
             let start = x * angle.cos() + y * angle.sin();
             match penetration(&md, &m, start, &SETTINGS) {

@@ -667,7 +667,9 @@ mod tests {
     use super::*;
     use crate::math::EPSILON;
     use crate::minkowski::support::{Fault, MinkowskiDifference};
-    use crate::shapes::{Random, Rotation, ball, capsule, corners, ellipsoid, hull, placed};
+    use crate::shapes::{
+        Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,
+    };
 
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-4 },
@@ -736,7 +738,7 @@ mod tests {
         for round in 0..200 {
             let at = r.direction() * r.within(0.2, 0.6);
             let (a, b) = pair(r, at);
-            let md = MinkowskiDifference::new(a, b);
+            let md = difference(a, b);
             let center = (round % 2 == 0).then_some(-at);
             let start = r.direction();
             let (found, count) = walk(&md, center, &start, &SETTINGS);
@@ -807,7 +809,7 @@ mod tests {
             let depth = if EPSILON < 1e-10 { 1.18e-7 } else { 1e-3 };
             let way = r.direction();
             let at = way * (radius + 0.001_08 - depth);
-            let md = MinkowskiDifference::new(ball(Vec3::zeros(), 0.001_08), ball(at, radius));
+            let md = difference(ball(Vec3::zeros(), 0.001_08), ball(at, radius));
             let tolerance = [1e-4, 1e-6, 1e-9, 0.0][round / 2 % 4];
             let settings = Settings {
                 tolerance,
@@ -837,7 +839,7 @@ mod tests {
             wall(-3.0, -3.0),
         ]
         .concat();
-        let md = MinkowskiDifference::new(hull(&points), |_: &Vec3| Vec3::zeros());
+        let md = difference(hull(&points), |_: &Vec3| Vec3::zeros());
         for center in [None, Some(Vec3::new(-0.5, -1.0, 0.0))] {
             let (found, _) = walk(&md, center, &Vec3::y(), &SETTINGS);
             let (hit, status) = found.unwrap();
@@ -858,7 +860,7 @@ mod tests {
                 let on_ball = n * 0.5;
                 if n.dot(&tip) > 0.5 { tip } else { on_ball }
             };
-            let md = MinkowskiDifference::new(drop, ball(tip * 0.3, 0.1));
+            let md = difference(drop, ball(tip * 0.3, 0.1));
             let start = (tip.normalize() + r.vector(0.2)).normalize();
             if let (Ok((hit, Status::Converged)), _) =
                 walk(&md, Some(tip * -0.3), &start, &SETTINGS)
@@ -886,10 +888,7 @@ mod tests {
             };
             let tips = [r.direction() * 0.77, r.direction() * 0.32];
             let at = r.vector(0.005);
-            let md = MinkowskiDifference::new(
-                drop(0.3, tips[0], Vec3::zeros()),
-                drop(0.09, tips[1], at),
-            );
+            let md = difference(drop(0.3, tips[0], Vec3::zeros()), drop(0.09, tips[1], at));
             let settings = Settings {
                 tolerance: 0.0,
                 ..SETTINGS
@@ -911,7 +910,7 @@ mod tests {
         let plate = corners(Vec3::new(1.0, 1.0, 0.01));
         for z in [0.12, 0.2, 0.5] {
             let at = Vec3::new(0.1, 0.05, z);
-            let md = MinkowskiDifference::new(hull(&plate), ball(at, 0.1));
+            let md = difference(hull(&plate), ball(at, 0.1));
             for center in [None, Some(-at)] {
                 let (found, _) = walk(&md, center, &-Vec3::z(), &SETTINGS);
                 let Err(Stop::Apart(n)) = found else {
@@ -930,7 +929,7 @@ mod tests {
             Rotation::identity(),
             Vec3::zeros(),
         );
-        let md = MinkowskiDifference::new(one, ball(Vec3::x() * 0.4, 0.5));
+        let md = difference(one, ball(Vec3::x() * 0.4, 0.5));
         for max_iterations in 0..12 {
             let settings = Settings {
                 max_iterations,
@@ -955,13 +954,13 @@ mod tests {
                 *n
             }
         };
-        let md = MinkowskiDifference::new(nan, ball(Vec3::x() * 0.5, 1.0));
+        let md = difference(nan, ball(Vec3::x() * 0.5, 1.0));
         let (found, _) = walk(&md, None, &Vec3::x(), &SETTINGS);
         assert!(matches!(found, Err(Stop::Fault(Fault::NonFinite))));
         // Noise of a tenth of the size.
         let noise = core::cell::RefCell::new(Random::new(28));
         let rough = |n: &Vec3| n + noise.borrow_mut().vector(0.1);
-        let md = MinkowskiDifference::new(rough, ball(Vec3::x() * 0.5, 1.0));
+        let md = difference(rough, ball(Vec3::x() * 0.5, 1.0));
         for _ in 0..200 {
             let (_, count) = walk(&md, None, &r.direction(), &SETTINGS);
             assert!(count <= 2 * MAX_SAMPLES as u64, "{count}");

@@ -134,8 +134,7 @@ fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
 mod tests {
     use super::*;
     use crate::minkowski::query::SupportQuery;
-    use crate::minkowski::support::MinkowskiDifference;
-    use crate::shapes::{Random, Rotation, ellipsoid};
+    use crate::shapes::{Random, Rotation, difference, ellipsoid};
 
     #[test]
     fn the_flattest_axis_is_an_eigenvector() {
@@ -157,7 +156,7 @@ mod tests {
         for _ in 0..100 {
             let radii = Vec3::new(r.within(0.5, 0.6), r.within(0.8, 1.0), r.within(0.8, 1.0));
             let body = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
-            let md = MinkowskiDifference::new(body, |_: &Vec3| Vec3::zeros());
+            let md = difference(body, |_: &Vec3| Vec3::zeros());
             let mut query = SupportQuery::new(&md, None);
             let mut set = VertexSet::<8>::EMPTY;
             for y in [0.02, -0.03, 0.01] {

@@ -287,9 +287,9 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::minkowski::support::{MinkowskiDifference, SupportPoint};
+    use crate::minkowski::support::SupportPoint;
     use crate::minkowski::tolerance::GAP_REL;
-    use crate::shapes::{Random, ball, capsule, corners, hull, placed};
+    use crate::shapes::{Random, ball, capsule, corners, difference, hull, placed};
 
     const LIMIT: GapLimit = GapLimit {
         tolerance: 1e-6,
@@ -303,7 +303,7 @@ mod tests {
         center1: Vec3,
         center2: Vec3,
     ) -> Option<(Vec3, [[Vertex; 3]; 2], f64)> {
-        let md = MinkowskiDifference::new(a, b);
+        let md = difference(a, b);
         let c = SupportPoint {
             v: center1 - center2,
             v1: center1,
