@@ -88,12 +88,14 @@ fn in_c(settings: &Settings, centred: bool) -> ccd_t {
 const DIR: [Real; 3] = [1.0, 2.0, -2.0];
 const WAY: ccd_vec3_t = ccd_vec3_t { v: DIR };
 type Object = *const c_void;
+/// Of whatever type a shape is, so that the library is compiled for one.
+type Body<'a> = &'a dyn Shape;
 type Answer = Result<Option<Penetration>, Error>;
 
 /// A penetration query in Rust, along DIR or in its plane where it asks for one, and in C.
 struct Call {
     name: &'static str,
-    rust: fn(&Rounded, &Rounded, [Real; 3], &Settings, Option<&mut Warm>) -> Answer,
+    rust: fn(Body, Body, [Real; 3], &Settings, Option<&mut Warm>) -> Answer,
     c: fn(Object, Object, *const ccd_t, *mut ccd_warm_t, c_uint, *mut ccd_penetration_t) -> c_int,
 }
 
@@ -213,6 +215,7 @@ fn yes_or_no_and_distance(
         let code = ccdSignedDistance(pa, pb, c, 0.1, 0.0, 0.5, state, want, out.as_mut_ptr());
         (yes, code, out.assume_init())
     };
+    let (a, b): (Body, Body) = (a, b);
     assert_eq!(ccd::intersect(a, b, Some(warm)), Ok(yes));
     let d = ccd::signed_distance(a, b, settings, &options, Some(warm)).expect("good input");
     assert_eq!(d.limit, code == CCD_LIMIT);
@@ -224,7 +227,8 @@ fn yes_or_no_and_distance(
 fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
     let mut room = [Contact::default(); 4];
     let mut memory = ccd::Manifold::default();
-    let found = ccd::contacts(a, b, DIR, 0.01, Some(&mut memory), &mut room).expect("good input");
+    let bodies: [Body; 2] = [a, b];
+    let found = ccd::contacts(bodies[0], bodies[1], DIR, 0.01, Some(&mut memory), &mut room).expect("good input");
     let (a, b) = (object(a), object(b));
     let mut out = [const { MaybeUninit::<ccd_contact_t>::uninit() }; 4];
     let mut manifold = MaybeUninit::<ccd_manifold_t>::zeroed();
@@ -263,12 +267,17 @@ fn good() -> Question {
 }
 
 impl Question {
+    fn bodies(&self) -> [Body<'_>; 2] {
+        [&self.a, &self.b]
+    }
+
     /// Asks every call, from the state that an overlap left: those whose names hold one of these
     /// words refuse, and write nothing.
     fn refused_by(&self, words: &[&str], what: &str) {
         let (q, of) = (self, good());
+        let ([a, b], [of_a, of_b]) = (q.bodies(), of.bodies());
         let mut before = Warm::default();
-        let hit = ccd::penetration(&of.a, &of.b, &of.settings, Some(&mut before));
+        let hit = ccd::penetration(of_a, of_b, &of.settings, Some(&mut before));
         assert!(hit.expect("good input").is_some());
         let check = |name: &str, ask: &mut dyn FnMut(&mut Warm) -> Result<(), Error>| {
             let mut warm = before;
@@ -281,12 +290,12 @@ impl Question {
             }
         };
         for call in &CALLS {
-            check(call.name, &mut |warm| (call.rust)(&q.a, &q.b, q.dir, &q.settings, Some(warm)).map(drop));
+            check(call.name, &mut |warm| (call.rust)(a, b, q.dir, &q.settings, Some(warm)).map(drop));
         }
-        check("intersect", &mut |warm| ccd::intersect(&q.a, &q.b, Some(warm)).map(drop));
-        check("distance", &mut |warm| ccd::signed_distance(&q.a, &q.b, &q.settings, &q.options, Some(warm)).map(drop));
+        check("intersect", &mut |warm| ccd::intersect(a, b, Some(warm)).map(drop));
+        check("distance", &mut |warm| ccd::signed_distance(a, b, &q.settings, &q.options, Some(warm)).map(drop));
         let mut room = [Contact::default(); 2];
-        check("contacts", &mut |_| ccd::contacts(&q.a, &q.b, q.dir, q.slop, None, &mut room).map(drop));
+        check("contacts", &mut |_| ccd::contacts(a, b, q.dir, q.slop, None, &mut room).map(drop));
         let written = room != [Contact::default(); 2];
         assert_eq!(written, !words.iter().any(|word| "contacts".contains(word)));
     }
@@ -328,7 +337,8 @@ fn what_no_query_can_work_with_is_refused() {
         }
     }
     let q = good();
-    assert!(ccd::contacts(&q.a, &q.b, DIR, 0.0, None, &mut []).is_err());
+    let [a, b] = q.bodies();
+    assert!(ccd::contacts(a, b, DIR, 0.0, None, &mut []).is_err());
 }
 
 /// Errors go through `?`, and say what is wrong.
@@ -336,7 +346,8 @@ fn what_no_query_can_work_with_is_refused() {
 fn errors_are_errors() {
     fn fails() -> Result<(), Box<dyn std::error::Error>> {
         let q = good();
-        ccd::penetration(&q.a, &q.b, &Settings::new(Real::NAN), None)?;
+        let [a, b] = q.bodies();
+        ccd::penetration(a, b, &Settings::new(Real::NAN), None)?;
         Ok(())
     }
     let said = fails().expect_err("a NaN").to_string();
@@ -355,7 +366,8 @@ fn a_panic_leaves_the_state() {
             d.map(|x| 0.1 * x)
         };
         let mut warm = before;
-        let ask = || ccd::penetration_proven(&a, &tired, &settings, Some(&mut warm)).map(|_| ());
+        let bodies: [Body; 2] = [&a, &tired];
+        let ask = || ccd::penetration_proven(bodies[0], bodies[1], &settings, Some(&mut warm)).map(|_| ());
         let left = catch_unwind(AssertUnwindSafe(ask));
         let kept = format!("{warm:?}") == format!("{before:?}");
         assert_eq!(left.is_err(), kept, "after {} answers", asked.get());
