@@ -19,7 +19,7 @@ tool=${1:-}
 case $tool in
 address)
     # All of a program's undefined behaviour ends it: without that UBSan only writes.
-    export C_TESTS_FLAGS="-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
+    export C_TESTS_FLAGS="-O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
     exec cargo test --no-fail-fast "$@"
     ;;
 memcheck)

@@ -380,8 +380,8 @@ fn threads() {
 
 #[test]
 fn longjmp_out_of_callbacks() {
-    alone("exceptions").build().run(NO_ARGS);
-    alone("exceptions").link_ours_static().build().run(NO_ARGS);
+    alone("exceptions").build().run([harness::rounds(20)]);
+    alone("exceptions").link_ours_static().build().run([harness::rounds(20)]);
 }
 
 #[test]
@@ -391,6 +391,6 @@ fn exceptions_out_of_callbacks() {
         .flag("-pedantic")
         .flag("-Werror")
         .flag("-DOURS_ALONE");
-    exceptions.clone().link_ours_shared().build().run(NO_ARGS);
-    exceptions.link_ours_static().build().run(NO_ARGS);
+    exceptions.clone().link_ours_shared().build().run([harness::rounds(20)]);
+    exceptions.link_ours_static().build().run([harness::rounds(20)]);
 }

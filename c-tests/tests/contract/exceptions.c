@@ -82,9 +82,9 @@ static void leaving_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *di
     ccdFirstDirDefault(obj1, obj2, dir);
 }
 
-static void test(const call_t *entry)
+static void test(const call_t *entry, int rounds)
 {
-    for (int round = 0; round < 20; round++) {
+    for (int round = 0; round < rounds; round++) {
         shape_t a, b;
         ccd_t ccd;
         outputs_t expected, out;
@@ -111,10 +111,11 @@ static void test(const call_t *entry)
     }
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    const int rounds = argc > 1 ? atoi(argv[1]) : 20;
     for (int i = 0; i < ENTRIES; i++)
-        test(&entries[i]);
-    test(&support_entry);
+        test(&entries[i], rounds);
+    test(&support_entry, rounds);
     return checks_end();
 }

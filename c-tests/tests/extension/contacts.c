@@ -3,7 +3,9 @@
 
 /* ccdContacts against exact regions: boxes and hulls at rest and tilted, edges, corners;
  * round objects by formula; flat ones; how many support points it takes; that the region
- * moves as the objects do. */
+ * moves as the objects do.
+ *
+ *   contacts [N]   one scene in N, for a tool that looks at memory */
 
 #include "tests/stability/categories.h"
 
@@ -11,6 +13,8 @@
 #include "manifold.h"
 
 enum { ROOM = 32 };
+
+static int share = 1; /* one scene in so many is made */
 
 static const int single = sizeof(ccd_real_t) == sizeof(float);
 static const double pi = 3.14159265358979323846;
@@ -315,7 +319,7 @@ static double slop_of(void)
 static void rest(void)
 {
     static const double up[3] = {0, 0, 1};
-    for (int i = 0; i < 4000; i++) {
+    for (int i = 0; i < 4000 / share; i++) {
         const double depth = i % 3 ? uniform(-0.01, 0.05) : uniform(-1, 5) * pow(10, uniform(-7, -2)), angle = uniform(0, 6.28);
         double rot[9];
         scene_t s;
@@ -336,7 +340,7 @@ static void rest(void)
 /* Hulls of random points, or boxes, anywhere in touch, with the normal of an answer. */
 static void anywhere(void)
 {
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < 3000 / share; i++) {
         static ccd_real_t points_of[2][36];
         ccd_penetration_t hit;
         scene_t s;
@@ -382,7 +386,7 @@ static shape_t turned(shape_t s, double x, double y, double z, double angle)
 /* The contacts of a scene in its own frame: as many as said, at these places, in any order. */
 static void expect(const char *what, shape_t a, shape_t b, int n, const double (*xy)[2])
 {
-    for (int round = 0; round < 40; round++) {
+    for (int round = 0; round < 40 / share; round++) {
         const double error = single ? 1e-4 : 1e-6;
         scene_t s;
         double room;
@@ -422,7 +426,7 @@ static void expect(const char *what, shape_t a, shape_t b, int n, const double (
  * within the slop of its object, as 200 directions tell. */
 static void categories(void)
 {
-    for (int i = 0; i < 6000; i++) {
+    for (int i = 0; i < 6000 / share; i++) {
         static pair_t p;
         const int category = i % CATEGORY_COUNT;
         ccd_penetration_t hit;
@@ -497,7 +501,7 @@ static void shapes(void)
 /* A disc is inscribed: all points within it, most of its area. */
 static void discs(void)
 {
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200 / share; i++) {
         const double radius = uniform(0.3, 1), tilt = i % 2 ? 0 : uniform(0, 0.1), angle = uniform(0, 6.28);
         scene_t s;
         truth_real axis[3];
@@ -526,7 +530,7 @@ static void discs(void)
  * than its surface falls off within the slop. */
 static void along_edges(void)
 {
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000 / share; i++) {
         const double x = uniform(0.3, 1.2), y = uniform(0.3, 1.2), radius = uniform(0.1, 0.5), half = uniform(0.1, 0.8);
         const double angle = uniform(0, 0.17), end = uniform(-1, 1) * y;
         double beyond, rot[9];
@@ -552,7 +556,7 @@ static double depth_along(const scene_t *s, const double n[3]) { return reach(&s
 static void imperfect_normals(void)
 {
     static const double up[3] = {0, 0, 1};
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < 3000 / share; i++) {
         const double depth = pow(10, uniform(single ? -2 : -3, -1.5)), angle = uniform(0, 6.28), x = uniform(0.8, 1.2), y = uniform(0.8, 1.2);
         const double dir[3] = {cos(angle), sin(angle), 0};
         double rot[9], low = 0, high = 1, most;
@@ -680,7 +684,7 @@ static void steady(int motion, scene_t start, double step)
 
 static void motions(void)
 {
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 600 / share; i++) {
         const int motion = i % MOTIONS;
         scene_t s;
         double half = blocks(&s);
@@ -781,7 +785,7 @@ static void tipping(void)
 {
     static const double tilts[] = {0.3, 0.1, 0.02, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 5e-5, 0, 0, 1e-5, 1e-4, 1e-3, 5e-3, 0.1};
     static const double up[3] = {0, 0, 1};
-    for (int i = 0; i < 400; i++) {
+    for (int i = 0; i < 400 / share; i++) {
         static ccd_manifold_t memory;
         const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_ulp());
         const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
@@ -800,7 +804,7 @@ static void tipping(void)
 /* Whatever bits it holds. */
 static void garbage(void)
 {
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < 20000 / share; i++) {
         static ccd_manifold_t memory, good;
         unsigned char *bytes = (unsigned char *)&memory;
         scene_t s;
@@ -843,7 +847,7 @@ static void garbage(void)
 static void fewer(void)
 {
     static const ccd_contact_t none;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300 / share; i++) {
         double last = 0;
         scene_t s;
         const double half = blocks(&s);
@@ -867,9 +871,10 @@ static void fewer(void)
     }
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     static ccd_manifold_t memory;
+    share = argc > 1 ? atoi(argv[1]) : share;
     for (int round = 0; round < 3; round++) {
         /* The same scenes without a memory, with that of the last pair, with the pair's own. */
         random_state = 88172645463325252u;
@@ -894,6 +899,6 @@ int main(void)
     along_edges();
     imperfect_normals();
     printf("%lu regions, %lu segments, %lu points, %lu beside each other, %lu doubtful\n", regions, segments, points, beside, doubtful);
-    CHECK(regions > 1000 && segments > 10 && points > 10 && beside > 300, "too few of a kind");
+    CHECK(regions > 1000U / share && segments > 10U / share && points > 10U / share && beside > 300U / share, "too few of a kind");
     return checks_end();
 }
