@@ -87,9 +87,9 @@ fi
 
 # --- what is built ---------------------------------------------------------------------
 
-sh "$here/setup.sh" main >&2
 target=${CARGO_TARGET_DIR:-$here/../target}
 if [ -z "$ours" ]; then
+    sh "$here/setup.sh" main >&2
     cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
     ours=$target/release/libccd.so
 fi

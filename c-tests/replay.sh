@@ -19,8 +19,8 @@ if [ $# -ne 1 ] || [ ! -r "$1" ]; then
     exit 2
 fi
 
-sh "$here/setup.sh" main >&2
 if [ -z "$ours" ]; then
+    sh "$here/setup.sh" main >&2
     cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
     ours=$(cd "${CARGO_TARGET_DIR:-$here/../target}/release" && pwd)/libccd.so
 fi

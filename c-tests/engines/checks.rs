@@ -43,30 +43,21 @@ impl Way {
         self
     }
 
-    /// What it writes after its first line, which names the library found in the process.
-    pub fn lines(&self, args: &str) -> Vec<String> {
+    /// What it writes. Its first line names the library found in the process.
+    pub fn said(&self, args: &str) -> String {
         let args = args.split_whitespace().chain(self.more.split_whitespace());
         let said = self.program.run(args).stdout;
-        let mut lines = said.lines().map(String::from);
-        let (library, expected) = (
-            lines.next().unwrap_or_default(),
-            match self.side {
-                "theirs" => "library libccd",
-                _ => "library warmccd ",
-            },
-        );
-        let name = self.name;
-        assert!(library.starts_with(expected), "{name}: on `{library}`");
-        lines.collect()
+        let expected = if self.side == "theirs" { "library libccd" } else { "library warmccd " };
+        assert!(said.starts_with(expected), "{}: on `{:?}`", self.name, said.lines().next());
+        said
     }
 }
 
 /// Output of every way, side by side.
-fn run_all(ways: &[Way], args: &str) -> Vec<Vec<String>> {
+fn run_all(ways: &[Way], args: &str) -> Vec<String> {
     std::thread::scope(|scope| {
-        let runs: Vec<_> = ways.iter().map(|w| scope.spawn(|| w.lines(args))).collect();
-        let lines = runs.into_iter().map(|run| run.join().expect("a run"));
-        lines.collect()
+        let runs: Vec<_> = ways.iter().map(|w| scope.spawn(|| w.said(args))).collect();
+        runs.into_iter().map(|run| run.join().expect("a run")).collect()
     })
 }
 
@@ -82,11 +73,18 @@ impl Swapped {
         let program = program.flag("-rdynamic").link_system().without_tools();
         let program = program.build().quiet();
         let theirs = program.compared(&["--no-times", "--every", every]);
-        let ours = theirs.with_option("--swap");
+        let ours = theirs.with_options(&["--swap"]);
         Swapped { consumer, ways: [Way::new("libccd", "theirs", theirs), Way::new("this library", "ours", ours)] }
     }
 
-    pub fn run(&self, args: &str) -> Vec<Vec<String>> {
+    /// For judges of this library alone: on libccd's side nothing is judged.
+    pub fn theirs_unjudged(mut self) -> Swapped {
+        let theirs = &mut self.ways[0].program;
+        *theirs = theirs.with_options(&["--every", "0"]);
+        self
+    }
+
+    pub fn run(&self, args: &str) -> Vec<String> {
         run_all(&self.ways, args)
     }
 }
@@ -105,13 +103,12 @@ pub fn cpp(source: &str) -> Program {
 /// Of each kind of body, on either library: how far FCL's contact positions are off, metres rms.
 pub fn fcl_positions() -> Vec<(String, [f64; 2])> {
     let program = Swapped::new("FCL", cpp("fcl_position").library("fcl"), "0");
-    let rms = |line: &String| {
+    let rms = |line: &str| {
         let words: Vec<&str> = line.strip_prefix("position ")?.split(' ').collect();
         Some((words[0].to_owned(), words[4].parse().expect("metres")))
     };
-    let lines = program.run("1 200");
-    let both = lines[0].iter().filter_map(rms);
-    let both = both.zip(lines[1].iter().filter_map(rms));
+    let said = program.run("1 200");
+    let both = said[0].lines().filter_map(rms).zip(said[1].lines().filter_map(rms));
     both.map(|((kind, a), (_, b))| (kind, [a, b])).collect()
 }
 
@@ -217,15 +214,15 @@ pub struct Static {
     pub against: Vec<String>,
 }
 
-pub fn judge_collide(what: &'static str, lines: &[Vec<String>]) -> Static {
-    let both = |name: &str| [0, 1].map(|i| fields(&lines[i], name));
+pub fn judge_collide(what: &'static str, said: &[String]) -> Static {
+    let both = |name: &str| [0, 1].map(|i| fields(&said[i], name));
     let (collide, astray, asked) = (both("collide"), both("astray"), both("asked"));
     let all = |i: usize| collide[i]["queries"] + astray[i]["queries"] + asked[i]["threw"];
     assert_eq!(all(0), all(1), "{what}: not the same was asked");
-    let wrong = lines[1].iter().filter(|line| line.starts_with("wrong: "));
-    let mut against: Vec<String> = wrong.cloned().collect();
+    let wrong = said[1].lines().filter(|line| line.starts_with("wrong: "));
+    let mut against: Vec<String> = wrong.map(String::from).collect();
     // Of the program's own answers, before FCL or ODE has read them.
-    against.extend(told_of(&fields(&lines[1], "watched"), "zero not_finite not_unit"));
+    against.extend(told_of(&fields(&said[1], "watched"), "zero not_finite not_unit"));
     if asked[1]["threw"] > asked[0]["threw"] {
         against.push(format!("threw: {asked:?}"));
     }
@@ -248,15 +245,15 @@ pub fn judge_collide(what: &'static str, lines: &[Vec<String>]) -> Static {
 
 /// FCL's signed distances, by GJK and EPA of its own on libccd's polytope functions: how many, and
 /// of these how many differ; in which FCL threw, on either library; what speaks against this one.
-pub fn judge_distances(lines: &[Vec<String>]) -> (usize, usize, [usize; 2], Vec<String>) {
-    let of = |lines: &[String]| -> Vec<[f64; 2]> {
-        let told = lines.iter().filter_map(|line| line.strip_prefix("distance "));
+pub fn judge_distances(said: &[String]) -> (usize, usize, [usize; 2], Vec<String>) {
+    let of = |said: &str| -> Vec<[f64; 2]> {
+        let told = said.lines().filter_map(|line| line.strip_prefix("distance "));
         let number = |word: &str| word.parse().expect("a distance");
         told.map(|line| line.split_once(' ').expect("two numbers"))
             .map(|(value, truth)| [value, truth].map(number))
             .collect()
     };
-    let [theirs, ours] = [0, 1].map(|i| of(&lines[i]));
+    let [theirs, ours] = [0, 1].map(|i| of(&said[i]));
     assert_eq!(theirs.len(), ours.len(), "not the same was asked");
     let (mut differ, mut threw, mut against) = (0, [0; 2], Vec::new());
     for ([there, _], [here, truth]) in theirs.iter().zip(&ours) {
@@ -288,8 +285,8 @@ fn verdict(against: &[String]) -> String {
 
 /// What the program says of its pile, and what compare.sh counts of the library whose answers
 /// it went on with.
-fn run_of(lines: &[String], side: &str) -> Run {
-    let mut run = fields(lines, "watched");
+fn run_of(said: &str, side: &str) -> Run {
+    let mut run = fields(said, "watched");
     for key in ["supports", "slanted", "missed", "spurious", "unsound"] {
         if let Some(count) = run.get(&format!("{side}_{key}")).copied() {
             run.insert(key.to_owned(), count);
@@ -298,10 +295,10 @@ fn run_of(lines: &[String], side: &str) -> Run {
     // Support points are counted of those that were judged, where not all were.
     let asked = *run.get("judged").unwrap_or(&run["queries"]);
     run.insert("asked".to_owned(), asked);
-    run.extend(fields(lines, "pile"));
+    run.extend(fields(said, "pile"));
     // ODE's contacts against exact truth; those apart where a callback was wrong.
-    if lines.iter().any(|line| line.starts_with("right ")) {
-        let (right, astray) = (fields(lines, "right"), fields(lines, "astray"));
+    if said.contains("\nright ") {
+        let (right, astray) = (fields(said, "right"), fields(said, "astray"));
         let off = right["deep"] + right["unsound"];
         let told = [("judged", right["queries"]), ("lost", right["missed"])];
         let told = told.into_iter().chain([("spurious", right["spurious"]), ("off", off)]);
@@ -333,8 +330,8 @@ fn run_piles(
     for seed in 1..=starts {
         eprintln!("{consumer} {scene}: start {seed} of {starts}");
         let all = run_all(ways, &format!("{seed} {steps} {after}"));
-        for ((way, lines), runs) in ways.iter().zip(&all).zip(&mut runs) {
-            runs.push(run_of(lines, way.side));
+        for ((way, said), runs) in ways.iter().zip(&all).zip(&mut runs) {
+            runs.push(run_of(said, way.side));
         }
     }
     Piles { consumer, scene, names: ways.iter().map(|way| way.name).collect(), steps, runs, against: Vec::new() }
@@ -347,13 +344,13 @@ pub fn piles(program: &Swapped, scene: &'static str, starts: usize, steps: usize
     p
 }
 
-/// An ODE scene through libccd as ODE asks it, and through this library behind ODE's own class of
+/// An ODE scene through libccd as ODE asks it (`ode_pile`), and through this library behind ODE's own class of
 /// geoms, with one contact a pair and with several.
-pub fn worlds(scene: &'static str, starts: usize, steps: usize, bodies: usize) -> Piles {
+pub fn worlds(libccd: Swapped, scene: &'static str, starts: usize, steps: usize, bodies: usize) -> Piles {
     let world = c("ode_world").library("ode").flag("-D_GNU_SOURCE");
     let world = world.flag("-DOURS_ALONE").link_ours_shared();
     let world = world.without_tools().build().quiet();
-    let [libccd, _] = ode_pile().ways;
+    let [libccd, _] = libccd.ways;
     let ways = [
         libccd,
         Way::new("this library, one contact a pair", "ours", world.clone()).with("one"),

@@ -43,7 +43,7 @@ fn preloaded() -> PathBuf {
 }
 
 /// What the program says with so many pairs: none of any set for 0.
-fn said(program: &Executable, preload: bool, pairs: u32) -> Vec<String> {
+fn said(program: &Executable, preload: bool, pairs: u32) -> String {
     let mut command = program.command();
     command.arg(pairs.to_string());
     if preload {
@@ -51,24 +51,28 @@ fn said(program: &Executable, preload: bool, pairs: u32) -> Vec<String> {
     }
     let (status, written) = harness::run_command(&mut command, Duration::from_secs(300));
     assert!(status.success(), "{status}\n{}", written.stderr);
-    written.stdout.lines().map(String::from).collect()
+    written.stdout
 }
 
 /// The file that FCL's signed distance is taken from.
-fn function(lines: &[String]) -> String {
-    let function = lines.iter().find_map(|line| line.strip_prefix("function "));
+fn function(said: &str) -> String {
+    let function = said.lines().find_map(|line| line.strip_prefix("function "));
     function.expect("a file").to_owned()
 }
 
 fn run(name: &'static str, program: &Executable, preload: bool, pairs: u32) -> Distances {
-    let lines = said(program, preload, pairs);
+    let said = said(program, preload, pairs);
     let library = ["library libccd", "library warmccd "][usize::from(name.contains("this"))];
-    assert!(lines[0].starts_with(library), "{name}: on {}", lines[0]);
+    assert!(said.starts_with(library), "{name}: on {said}");
     Distances {
         name,
-        function: function(&lines),
-        sets: SETS.map(|set| fields(&lines, set)),
-        wrong: lines.iter().filter(|line| line.split(' ').next().is_some_and(|w| w.ends_with(':'))).cloned().collect(),
+        function: function(&said),
+        sets: SETS.map(|set| fields(&said, set)),
+        wrong: said
+            .lines()
+            .filter(|line| line.split(' ').next().is_some_and(|w| w.ends_with(':')))
+            .map(String::from)
+            .collect(),
     }
 }
 

@@ -45,7 +45,7 @@ fn ways(timed: bool) -> [Way; 4] {
     } else {
         let both = program().link_ours_renamed_and_system().build().quiet();
         let theirs = both.compared(&["--every", "1", "--no-times"]);
-        (theirs.clone(), theirs.with_option("--swap"))
+        (theirs.clone(), theirs.with_options(&["--swap"]))
     };
     let header = by_header(timed);
     let by_header = |name| Way::new(name, "ours", header.clone());
@@ -62,20 +62,20 @@ fn ways(timed: bool) -> [Way; 4] {
 pub fn scenes(frames: usize, bodies: usize, exact: usize, times: usize) -> Vec<Scene> {
     let args = format!("{frames} {bodies} {exact}");
     let judge = |way: Way| {
-        let lines = way.lines(&args);
+        let said = way.said(&args);
         Scene {
             name: way.name,
             frames,
             milliseconds: f64::INFINITY,
-            judged: fields(&lines, "judged"),
-            watched: fields(&lines, "watched"),
+            judged: fields(&said, "judged"),
+            watched: fields(&said, "watched"),
         }
     };
     let mut scenes = ways(false).map(judge).to_vec();
     let timed = if times > 0 { Vec::from(ways(true)) } else { Vec::new() };
     for _ in 0..times {
         for (way, scene) in timed.iter().zip(&mut scenes) {
-            let nanoseconds = fields(&way.lines(&args), "timed")["nanoseconds"];
+            let nanoseconds = fields(&way.said(&args), "timed")["nanoseconds"];
             scene.milliseconds = scene.milliseconds.min(1e-6 * nanoseconds / frames as f64);
         }
     }
@@ -152,8 +152,7 @@ pub fn header_costs(times: usize) -> Vec<HeaderCost> {
         for _ in 0..times {
             for (least, program) in least.iter_mut().zip([&plain, &header]) {
                 let said = program.run(arguments("100")).stdout;
-                let lines: Vec<String> = said.lines().map(String::from).collect();
-                *least = least.min(fields(&lines, "timed")["nanoseconds"]);
+                *least = least.min(fields(&said, "timed")["nanoseconds"]);
             }
         }
         let (calls, all, library) = instructions_of(&header, &arguments("60"));
@@ -169,7 +168,6 @@ fn instructions_of(program: &Executable, arguments: &[&str]) -> (f64, f64, f64) 
     let toggle = "--toggle-collect=*ccd_fcl::CollisionFunction*";
     let counted = harness::callgrind(plain.args(arguments), &[toggle]);
     let (said, counts) = counted.unwrap_or_else(|why| panic!("{why}"));
-    let lines: Vec<String> = said.stdout.lines().map(String::from).collect();
     let text = counts.concat();
     let (mut all, mut library) = (0.0, 0.0);
     let (mut object, mut callee, mut is_call) = ("", "", false);
@@ -193,7 +191,7 @@ fn instructions_of(program: &Executable, arguments: &[&str]) -> (f64, f64, f64) 
             (callee, is_call) = ("", false);
         }
     }
-    (fields(&lines, "timed")["pairs"], all, library)
+    (fields(&said.stdout, "timed")["pairs"], all, library)
 }
 
 /// Markdown.

@@ -41,8 +41,8 @@ fn fcl_positions_are_the_centre_of_pressure() {
     }
 }
 
-fn collide_must_pass(what: &'static str, lines: &[Vec<String>]) -> f64 {
-    let s = checks::judge_collide(what, lines);
+fn collide_must_pass(what: &'static str, said: &[String]) -> f64 {
+    let s = checks::judge_collide(what, said);
     assert!(s.collide[1]["queries"] > 1000.0, "too few queries: {s:?}");
     assert!(s.against.is_empty(), "{what}:\n{}", s.against.join("\n"));
     s.astray[1]["queries"]
@@ -94,19 +94,19 @@ fn ode_collide() {
 
 #[test]
 fn ode_pile() {
-    let program = checks::ode_pile();
+    let program = checks::ode_pile().theirs_unjudged();
     piles_must_pass(&checks::piles(&program, "pile", 10, 1500, "32 pile"));
 }
 
 #[test]
 fn mujoco_pile() {
-    let program = checks::mujoco_pile();
+    let program = checks::mujoco_pile().theirs_unjudged();
     piles_must_pass(&checks::piles(&program, "pile", 10, 1500, "30 pile"));
 }
 
 #[test]
 fn dart_over_fcl_and_ode() {
-    let program = checks::dart_pile();
+    let program = checks::dart_pile().theirs_unjudged();
     for (scene, after) in [("fcl", "12 fcl"), ("ode", "12 ode")] {
         piles_must_pass(&checks::piles(&program, scene, 10, 800, after));
     }
@@ -115,13 +115,13 @@ fn dart_over_fcl_and_ode() {
 /// Towers on several contacts a pair hold at least as well as on libccd's one.
 #[test]
 fn towers_stand() {
-    piles_must_pass(&checks::worlds("stack", 10, 1500, 20));
+    piles_must_pass(&checks::worlds(checks::ode_pile().theirs_unjudged(), "stack", 10, 1500, 20));
 }
 
 /// Towers on the one contact a pair that ODE takes from libccd, and a tower whose hulls just touch.
 #[test]
 fn towers_stand_on_one_contact_a_pair() {
-    let program = checks::ode_pile();
+    let program = checks::ode_pile().theirs_unjudged();
     for (scene, after) in [("stack", "20 stack"), ("tower", "6 tower")] {
         let towers = checks::piles(&program, scene, 2, 3000, after);
         let against = towers.restless(1.0, 5e-3);

@@ -72,18 +72,7 @@ fn screens() {
     let screens = checks::screens();
     println!("{}", screens.join("\n\n"));
     let first = format!("\n```text\n{}\n```\n", screens[0]);
-    between_marks("c-tests/engines/README.md", "screens", &first);
-}
-
-/// Replaces what stands in a page between the marks of this name.
-fn between_marks(page: &str, name: &str, text: &str) {
-    let path = harness::root().join(page);
-    let page = std::fs::read_to_string(&path).expect("a page");
-    let mark = format!("<!-- {name} -->\n");
-    let (before, rest) = page.split_once(&mark).expect("a mark");
-    let (_, after) = rest.split_once("<!-- end -->").expect("a mark");
-    let page = format!("{before}{mark}{text}<!-- end -->{after}");
-    std::fs::write(&path, page).expect("a page");
+    harness::write_between_marks("c-tests/engines/README.md", "screens", &first);
 }
 
 /// Prints the processor time of a step on both libraries, which take turns, and writes it into the
@@ -92,13 +81,13 @@ fn steps() {
     let table = checks::step_table(5);
     let table = format!("{table}\n{}.\n", harness::machine());
     println!("{table}");
-    between_marks("README.md", "steps", &table);
+    harness::write_between_marks("README.md", "steps", &table);
 }
 
 fn world() {
     let rows = [("stack", 20), ("hulls", 32), ("roll", 12)].map(|(scene, bodies)| {
         let steps = if scene == "stack" { 10_000 } else { 3000 };
-        let row = checks::worlds(scene, 10, steps, bodies);
+        let row = checks::worlds(checks::ode_pile(), scene, 10, steps, bodies);
         for line in &row.against {
             eprintln!("{scene}: {line}");
         }

@@ -40,7 +40,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 /// The scalar of a build of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -96,7 +96,8 @@ pub fn compiler(cpp: bool) -> cc::Build {
         .target(TARGET)
         .host(env!("HOST"))
         .opt_level(2)
-        .debug(true)
+        // Of C++ it takes a third of the time to compile.
+        .debug(!cpp || under_tool())
         .warnings(true)
         .extra_warnings(true)
         .cargo_metadata(false)
@@ -140,13 +141,10 @@ pub fn library(precision: Precision) -> &'static Built {
 
 fn build_library(precision: Precision) -> Built {
     let output = output_dir();
-    let target = output.join(precision.name());
-    // Test binaries may run side by side: one builds, the others wait for it.
-    let lock_path = output.join(format!("{}.lock", precision.name()));
-    #[allow(clippy::incompatible_msrv, reason = "the tests' own crates need 1.89 too")]
-    let lock = File::create(&lock_path)
-        .and_then(|file| file.lock().map(|()| file))
-        .unwrap_or_else(|e| panic!("cannot lock {}: {e}", lock_path.display()));
+    // Both precisions share their crates. Test binaries may run side by side: one builds, the others
+    // wait for it.
+    let target = output.join("library");
+    let lock = locked(&output.join("library.lock"));
 
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["rustc", "--release", "--lib", "--manifest-path"]);
@@ -172,15 +170,26 @@ fn build_library(precision: Precision) -> Built {
         .map(String::from)
         .collect();
 
-    let dir = target.join("lib");
+    let dir = output.join(precision.name());
     fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
-    for name in ["libccd.so", "libccd.so.2", "libccd.a"] {
-        let file = release.join(name.trim_end_matches(".2"));
-        replace(&dir.join(name), |new| std::os::unix::fs::symlink(file, new));
+    for name in ["libccd.so", "libccd.a"] {
+        let built = fs::read(release.join(name)).unwrap_or_else(|e| panic!("no {name}: {e}"));
+        // Programs are compiled anew where it is newer.
+        if fs::read(dir.join(name)).ok().as_ref() != Some(&built) {
+            replace(&dir.join(name), |new| fs::write(new, &built));
+        }
     }
+    replace(&dir.join("libccd.so.2"), |new| std::os::unix::fs::symlink("libccd.so", new));
     rename_symbols(&dir.join("libccd.a"), &dir.join("librs_ccd.a"));
     drop(lock);
     Built { dir, native_flags }
+}
+
+/// Opens a file that one thread of all processes holds at a time.
+#[allow(clippy::incompatible_msrv, reason = "the tests' own crates need 1.89 too")]
+fn locked(path: &Path) -> File {
+    let file = File::options().create(true).append(true).open(path);
+    file.and_then(|file| file.lock().map(|()| file)).unwrap_or_else(|e| panic!("cannot lock {}: {e}", path.display()))
 }
 
 /// A tool for object files: as the environment names it, or by its own name.
@@ -231,8 +240,7 @@ fn run_by(runner: &[String], path: &Path) -> Command {
 /// Puts `rs_` before every name of libccd's in a copy of the archive, so that
 /// one process can hold this library and the system's.
 fn rename_symbols(archive: &Path, renamed: &Path) {
-    let time = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).ok();
-    if time(renamed) > time(archive) {
+    if written_at(renamed) > written_at(archive) {
         return;
     }
     let mut nm = binutils("nm");
@@ -253,6 +261,21 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
         Ok(())
     });
     fs::remove_file(&table).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
+}
+
+/// When a file was written; `None` where there is none.
+fn written_at(path: &Path) -> Option<SystemTime> {
+    fs::metadata(path).and_then(|data| data.modified()).ok()
+}
+
+/// Whether a program is newer than the archives of its command and than every file that the
+/// compiler's rule, as for make, says it is made of.
+fn is_up_to_date(program: &Path, command: &Command, rule: &Path) -> bool {
+    let rule = fs::read_to_string(rule).unwrap_or_default();
+    let files = rule.split_whitespace().skip(1).filter(|word| *word != "\\").map(Path::new);
+    let archives = command.get_args().map(Path::new).filter(|file| file.extension().is_some_and(|end| end == "a"));
+    let made = written_at(program);
+    !rule.is_empty() && files.chain(archives).all(|file| written_at(file).is_some_and(|time| Some(time) < made))
 }
 
 /// Makes a file under a name of its own, then moves it into place: whoever is
@@ -309,7 +332,7 @@ pub struct Program {
     name: String,
     cpp: bool,
     standard: Option<String>,
-    sources: Vec<PathBuf>,
+    source: PathBuf,
     system_headers: bool,
     flags: Vec<OsString>,
     libraries: Vec<String>,
@@ -329,9 +352,9 @@ impl Program {
         Program { cpp: true, ..Program::c(name) }
     }
 
-    /// A source file, relative to `c-tests/` (or absolute).
+    /// The source file, relative to `c-tests/` (or absolute).
     pub fn source(mut self, path: impl AsRef<Path>) -> Program {
-        self.sources.push(root().join("c-tests").join(path));
+        self.source = root().join("c-tests").join(path);
         self
     }
 
@@ -415,7 +438,7 @@ impl Program {
         if self.tools {
             compile.args(words("C_TESTS_FLAGS"));
         }
-        compile.args(&self.sources).args(&self.libraries);
+        compile.arg(&self.source).args(&self.libraries);
         let mut library_path = None;
         if self.link == Link::System {
             compile.arg("-lccd");
@@ -441,12 +464,18 @@ impl Program {
         let dir = output_dir().join("programs");
         fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
         let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
-        replace(&path, |new| {
-            let what = format!("the compiler (for {})", self.name);
-            let said = must_succeed(compile.arg("-o").arg(new), &what);
-            print!("{}", said.stderr);
-            Ok(())
-        });
+        // Compiled once, for all tests and runs until a file of it changes.
+        let rule = path.with_extension("d");
+        let lock = locked(&rule);
+        if !is_up_to_date(&path, &compile, &rule) {
+            replace(&path, |new| {
+                let what = format!("the compiler (for {})", self.name);
+                let said = must_succeed(compile.arg("-MD").arg("-MF").arg(&rule).arg("-o").arg(new), &what);
+                print!("{}", said.stderr);
+                Ok(())
+            });
+        }
+        drop(lock);
 
         let executable = Executable { library_path, tools: self.tools, ..Executable::made_elsewhere(&self.name, path) };
         match self.link {
@@ -516,14 +545,13 @@ impl Executable {
         compared.library_path = None;
         compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
         compared.before.extend(["--fields".into(), "--library".into(), library.into()]);
-        compared.before.extend(options.iter().map(OsString::from));
-        compared
+        compared.with_options(options)
     }
 
-    /// With one more option of compare.sh's.
-    pub fn with_option(&self, option: &str) -> Executable {
+    /// With more options of compare.sh's.
+    pub fn with_options(&self, options: &[&str]) -> Executable {
         let mut compared = self.clone();
-        compared.before.push(option.into());
+        compared.before.extend(options.iter().map(OsString::from));
         compared
     }
 
@@ -674,11 +702,11 @@ pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<Stri
 }
 
 /// The line `first key value key value …` of what a program wrote.
-pub fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
-    let line = lines
-        .iter()
+pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
+    let line = text
+        .lines()
         .find(|line| line.split(' ').next() == Some(first))
-        .unwrap_or_else(|| panic!("no `{first}` line in {lines:?}"));
+        .unwrap_or_else(|| panic!("no `{first}` line in {text}"));
     let words: Vec<&str> = line.split(' ').skip(1).collect();
     words
         .chunks(2)
@@ -687,6 +715,21 @@ pub fn fields(lines: &[String], first: &str) -> BTreeMap<String, f64> {
             (pair[0].to_owned(), value)
         })
         .collect()
+}
+
+/// Replaces what stands in a text between the mark `<!-- NAME -->` and the next `<!-- end -->`.
+pub fn between_marks(text: &str, name: &str, new: &str) -> String {
+    let mark = format!("<!-- {name} -->\n");
+    let parts = text.split_once(&mark).and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?.1)));
+    let (before, after) = parts.unwrap_or_else(|| panic!("no mark {name}"));
+    format!("{before}{mark}{new}<!-- end -->{after}")
+}
+
+/// The same in a page of the repository.
+pub fn write_between_marks(page: &str, name: &str, new: &str) {
+    let path = root().join(page);
+    let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{page}: {e}"));
+    fs::write(&path, between_marks(&text, name, new)).unwrap_or_else(|e| panic!("{page}: {e}"));
 }
 
 /// How many inputs a program gets: all, or a tenth under a tool, which looks at memory and

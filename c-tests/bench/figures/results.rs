@@ -9,6 +9,7 @@ use comfy_table::{Table, presets::ASCII_MARKDOWN};
 use super::Page;
 use super::instructions::Split;
 use super::paper::{AS_PUBLISHED, PAPER};
+use crate::harness;
 use crate::measuring::measure::Row;
 
 /// The head's cells are between bars.
@@ -95,29 +96,11 @@ pub fn instructions(split: &[Split]) -> String {
 
 /// Writes the page's tables between their marks.
 pub fn write(page: &Page, tables: &[(&str, String)]) {
-    let committed = crate::harness::root().join("c-tests/bench/charts/README.md");
+    let committed = harness::root().join("c-tests/bench/charts/README.md");
     let mut text = std::fs::read_to_string(&committed).expect("the charts' page");
     for (name, table) in tables {
-        let place = between_marks(&text, name).unwrap_or_else(|| panic!("no table {name}"));
-        text.replace_range(place, &format!("{table}\n"));
+        text = harness::between_marks(&text, &format!("table {name}"), &format!("{table}\n"));
     }
     let path = page.file("README.md");
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-}
-
-/// Writes a table of README.md between its marks.
-pub fn write_root_page(name: &str, table: &str) {
-    let path = crate::harness::root().join("README.md");
-    let mut text = std::fs::read_to_string(&path).expect("README.md");
-    let place = between_marks(&text, name).unwrap_or_else(|| panic!("no table {name}"));
-    text.replace_range(place, &format!("{table}\n"));
-    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-}
-
-/// Finds the text between `<!-- table NAME -->` and the next `<!-- end -->`.
-fn between_marks(text: &str, name: &str) -> Option<std::ops::Range<usize>> {
-    let mark = format!("<!-- table {name} -->\n");
-    let start = text.find(&mark)? + mark.len();
-    let end = start + text[start..].find("<!-- end -->")?;
-    Some(start..end)
 }

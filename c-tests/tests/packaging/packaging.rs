@@ -15,7 +15,7 @@ use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 /// An empty directory of this name, for one test.
 fn fresh(name: &str) -> PathBuf {
@@ -65,9 +65,9 @@ fn precision_option() -> OsString {
 enum Cargo {
     /// As it is installed, at one place for all tests of this file.
     Release,
-    /// Not optimised, at a place of this name: for one more way to find and link the
-    /// library, where what it computes is not looked at.
-    Quick(&'static str),
+    /// Not optimised, at another: for one more way to find and link the library, where what
+    /// it computes is not looked at.
+    Quick,
 }
 
 impl Cargo {
@@ -75,7 +75,7 @@ impl Cargo {
     fn options(self) -> [OsString; 2] {
         let name = match self {
             Cargo::Release => "cargo",
-            Cargo::Quick(name) => name,
+            Cargo::Quick => "cargo-quick",
         };
         // Crates are compiled once for both precisions.
         let dir = output_dir().join("packaging").join(name);
@@ -86,7 +86,11 @@ impl Cargo {
     fn build(self, tree: &Path) {
         let mut make = Command::new("cmake");
         make.arg("--build").arg(tree);
-        if let Cargo::Quick(_) = self {
+        // Sources of two places are built there, one after the other.
+        static QUICK: Mutex<()> = Mutex::new(());
+        let mut _one = None;
+        if let Cargo::Quick = self {
+            _one = Some(QUICK.lock());
             make.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0");
             make.env("CARGO_PROFILE_RELEASE_DEBUG", "false");
         }
@@ -227,7 +231,7 @@ fn git_tag() {
 
     // Behind the consumer's own.
     let options = [define("TAG", tag), define("REPOSITORY", upstream)];
-    let build = consumer("git", "git", Cargo::Quick("cargo-git"), &options);
+    let build = consumer("git", "git", Cargo::Quick, &options);
     all_run_on_ours(&build, &build, &["plain", "namespaced"]);
 }
 
@@ -236,7 +240,7 @@ fn git_tag() {
 fn the_archive_alone_without_shared_libraries() {
     let dir = fresh("static-alone");
     let (build, prefix) = (dir.join("build"), dir.join("prefix"));
-    let cargo = Cargo::Quick("cargo-static");
+    let cargo = Cargo::Quick;
     let off = define("BUILD_SHARED_LIBS", "OFF");
     build_library(&build, &prefix, cargo, std::slice::from_ref(&off));
     cmake(&[&"--install", &build]);

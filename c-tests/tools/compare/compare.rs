@@ -25,10 +25,6 @@ fn callbacks() -> Executable {
     watchable(program.flag("-pthread"))
 }
 
-fn fields_of(text: &str, first: &str) -> BTreeMap<String, f64> {
-    fields(&text.lines().map(String::from).collect::<Vec<_>>(), first)
-}
-
 /// What the program itself saw, and what the tool counted, with every query judged.
 struct Watched {
     alone: BTreeMap<String, f64>,
@@ -41,11 +37,7 @@ impl Watched {
         let program = callbacks();
         let alone = program.run([way]).stdout;
         let with = program.compared(options).run([way]).stdout;
-        Watched {
-            alone: fields_of(&alone, "seen"),
-            seen: fields_of(&with, "seen"),
-            counted: fields_of(&with, "watched"),
-        }
+        Watched { alone: fields(&alone, "seen"), seen: fields(&with, "seen"), counted: fields(&with, "watched") }
     }
 
     /// The program went on as if nobody watched.
@@ -228,7 +220,7 @@ fn the_recorded_contacts_are_counted_as_the_benchmark_counts_them() {
     let theirs = replay.run([&recording]).stdout;
     let ours = replay.swapped().run([&recording]).stdout;
     let told = replay.compared(EVERY).run([&recording]).stdout;
-    let counted = fields_of(&told, "watched");
+    let counted = fields(&told, "watched");
     // missed, false, broken, deep, unsound, mean and largest error, supports of both methods
     let column = |text: &str, column: usize| -> Vec<f64> {
         let rows = text.lines().filter(|l| l.starts_with("MPR") || l.starts_with("GJK"));
