@@ -106,7 +106,7 @@ newest() {
 
 # build OUT FLAG...: by a name of its own first, for others may be running the old one
 build() {
-    newest "$work/$1" "$here/tools/compare" "$here/harness/verdict.h" "$here/../include" && return
+    newest "$work/$1" "$here/tools/compare" "$here/harness" "$here/../include" && return
     out=$1
     shift
     cc -O2 -Wall -Wextra -I"$here" -I"$here/../include" "$@" -o "$work/$out.$$" -lm -ldl -lpthread

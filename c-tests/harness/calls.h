@@ -2,45 +2,51 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The one table of what this library exports, but for the polytope functions, which no header
- * declares. this_library.h, tests/contract/every_call.h, tests/extension/bad_input.c and tests/stability/judge.h ask by it; the contract test
- * holds it against the library's symbols, the extension's interfaces and the Rust tests.
- *
- * PAIR_CALLS: name, the word that the judges have for it, what its arguments behind (obj1, obj2,
- * ccd) are, and its traits. The kinds:
- *
- *   YES         none                     1 or 0
- *   YES_WARM    warm                     1 or 0
- *   SEPARATION  sep                      0 or -1
- *   DEPTH       depth, dir, pos          0 or -1
- *   DEPTH_WARM  warm, depth, dir, pos    0 or -1
- *   FULL        warm, want, out          CCD_HIT ...
- *   FULL_ALONG  vector, warm, want, out  CCD_HIT ...
- *   MANIFOLD    ccdContacts' own         how many, or CCD_BAD_INPUT
- *   DISTANCE    ccdSignedDistance's own  CCD_HIT ... */
+ * declares. Every test and measuring program in C asks by it, through this_library.h; the contract test
+ * holds it against the library's symbols, the extension's interfaces and the Rust tests. */
 
 #ifndef TESTS_CALLS_H
 #define TESTS_CALLS_H
 
-enum { FROM_FIRST_DIR = 1, FROM_CENTERS = 2, STORES_DEPTH = 4, STORES_DIR_POS = 8, MAY_ALLOCATE = 16, EXTENSION = 32,
-       ONE_BY_ONE = 64 /* asks the objects one by one */, STORES = STORES_DEPTH | STORES_DIR_POS };
+/* Kinds of calls: what their arguments behind (obj1, obj2, ccd) are, and what they return of an overlap, of a
+ * miss and of what they cannot work with. ccdContacts' is how many. */
+#define CALL_KINDS(X) \
+    X(YES, 1, 0, 0)                                      /* none */ \
+    X(YES_WARM, 1, 0, 0)                                 /* warm */ \
+    X(SEPARATION, 0, -1, -1)                             /* sep */ \
+    X(DEPTH, 0, -1, -1)                                  /* depth, dir, pos */ \
+    X(DEPTH_WARM, 0, -1, -1)                             /* warm, depth, dir, pos */ \
+    X(FULL, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)            /* warm, want, out */ \
+    X(FULL_ALONG, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)      /* vector, warm, want, out */ \
+    X(MANIFOLD, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)        /* ccdContacts' own */ \
+    X(DISTANCE, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)        /* ccdSignedDistance's own */
 
-#define PAIR_CALLS(X) \
-    X(ccdGJKIntersect, GJK_INTERSECT, YES, FROM_FIRST_DIR) \
-    X(ccdGJKSeparate, SEPARATE, SEPARATION, FROM_FIRST_DIR | MAY_ALLOCATE) \
-    X(ccdGJKPenetration, GJK, DEPTH, FROM_FIRST_DIR | STORES | MAY_ALLOCATE) \
+/* The tolerance that a call reads, where it starts, what it writes and does besides. */
+enum { MPR_TOLERANCE = 1, EPA_TOLERANCE = 2, DIST_TOLERANCE = 4, FROM_FIRST_DIR = 8, FROM_CENTERS = 16, STORES = 32,
+       MAY_ALLOCATE = 64, EXTENSION = 128, ONE_BY_ONE = 256 /* asks the objects one by one */ };
+
+/* Name, the word that the judges have for it, kind, traits. */
+#define LIBCCD_CALLS(X) \
+    X(ccdMPRPenetration, MPR, DEPTH, FROM_CENTERS | MPR_TOLERANCE | STORES) \
     X(ccdMPRIntersect, MPR_INTERSECT, YES, FROM_CENTERS) \
-    X(ccdMPRPenetration, MPR, DEPTH, FROM_CENTERS | STORES) \
-    X(ccdMPRPenetrationWarm, MPR_WARM, DEPTH_WARM, FROM_CENTERS | STORES | EXTENSION) \
+    X(ccdGJKPenetration, GJK, DEPTH, FROM_FIRST_DIR | EPA_TOLERANCE | STORES | MAY_ALLOCATE) \
+    X(ccdGJKSeparate, SEPARATE, SEPARATION, FROM_FIRST_DIR | EPA_TOLERANCE | MAY_ALLOCATE) \
+    X(ccdGJKIntersect, GJK_INTERSECT, YES, FROM_FIRST_DIR)
+
+#define EXTENSION_CALLS(X) \
+    X(ccdMPRPenetrationWarm, MPR_WARM, DEPTH_WARM, FROM_CENTERS | MPR_TOLERANCE | STORES | EXTENSION) \
     X(ccdMPRIntersectWarm, MPR_INTERSECT_WARM, YES_WARM, FROM_CENTERS | EXTENSION) \
     X(ccdIntersect, INTERSECT, YES_WARM, EXTENSION) \
-    X(ccdPenetration, PENETRATION, FULL, STORES | EXTENSION) \
-    X(ccdPenetrationLocal, LOCAL, FULL, STORES | EXTENSION) \
-    X(ccdPenetrationIncremental, INCREMENTAL, FULL, STORES | EXTENSION) \
-    X(ccdPenetrationProven, PROVEN, FULL, STORES | MAY_ALLOCATE | EXTENSION) \
-    X(ccdPenetrationAlong, ALONG, FULL_ALONG, STORES | EXTENSION) \
+    X(ccdPenetration, PENETRATION, FULL, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdPenetrationLocal, LOCAL, FULL, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdPenetrationIncremental, INCREMENTAL, FULL, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdPenetrationProven, PROVEN, FULL, EPA_TOLERANCE | STORES | MAY_ALLOCATE | EXTENSION) \
+    X(ccdPenetrationAlong, ALONG, FULL_ALONG, MPR_TOLERANCE | STORES | EXTENSION) \
     X(ccdContacts, CONTACTS, MANIFOLD, STORES | EXTENSION | ONE_BY_ONE) \
-    X(ccdPenetrationPlanar, PLANAR, FULL_ALONG, STORES | EXTENSION) \
-    X(ccdSignedDistance, DISTANCE, DISTANCE, STORES | MAY_ALLOCATE | EXTENSION)
+    X(ccdPenetrationPlanar, PLANAR, FULL_ALONG, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdSignedDistance, DISTANCE, DISTANCE, DIST_TOLERANCE | STORES | MAY_ALLOCATE | EXTENSION)
+
+#define PAIR_CALLS(X) LIBCCD_CALLS(X) EXTENSION_CALLS(X)
 
 /* Functions that query no pair of objects: name, traits. */
 #define OTHER_CALLS(X) \

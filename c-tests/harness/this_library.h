@@ -44,6 +44,35 @@ enum {
 #undef CALL_NUMBER
         ASKS
 };
+enum {
+#define COUNT_CALL(name, word, kind, traits) + 1
+    LIBCCD_ASKS = 0 LIBCCD_CALLS(COUNT_CALL) /* the first of them are libccd's */
+#undef COUNT_CALL
+};
+
+enum {
+#define CALL_KIND(kind, hit, miss, bad) KIND_##kind,
+    CALL_KINDS(CALL_KIND)
+#undef CALL_KIND
+};
+enum {
+#define CALL_CODES(kind, hit, miss, bad) HIT_##kind = hit, MISS_##kind = miss, BAD_##kind = bad,
+    CALL_KINDS(CALL_CODES)
+#undef CALL_CODES
+};
+
+typedef struct {
+    const char *name;
+    int number; /* of call_by_number */
+    int kind, traits;
+    int hit, miss, bad; /* what it returns */
+} call_t;
+
+static const call_t call_table[] = {
+#define CALL_ROW(name, word, kind, traits) {#name, ASK_##word, KIND_##kind, traits, HIT_##kind, MISS_##kind, BAD_##kind},
+    PAIR_CALLS(CALL_ROW)
+#undef CALL_ROW
+};
 
 /* Arguments and outputs of a call besides the objects and their ccd_t; each uses its part. */
 typedef struct {
@@ -60,21 +89,21 @@ typedef struct {
     ccd_contact_t *contacts;
 } call_rest_t;
 
-#define KIND_YES(f) f(a, b, ccd)
-#define KIND_YES_WARM(f) f(a, b, ccd, x->warm)
-#define KIND_SEPARATION(f) f(a, b, ccd, x->dir)
-#define KIND_DEPTH(f) f(a, b, ccd, x->depth, x->dir, x->pos)
-#define KIND_DEPTH_WARM(f) f(a, b, ccd, x->warm, x->depth, x->dir, x->pos)
-#define KIND_FULL(f) f(a, b, ccd, x->warm, x->want, x->full)
-#define KIND_FULL_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->full)
-#define KIND_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->memory, x->contacts, x->max)
-#define KIND_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
+#define PASS_YES(f) f(a, b, ccd)
+#define PASS_YES_WARM(f) f(a, b, ccd, x->warm)
+#define PASS_SEPARATION(f) f(a, b, ccd, x->dir)
+#define PASS_DEPTH(f) f(a, b, ccd, x->depth, x->dir, x->pos)
+#define PASS_DEPTH_WARM(f) f(a, b, ccd, x->warm, x->depth, x->dir, x->pos)
+#define PASS_FULL(f) f(a, b, ccd, x->warm, x->want, x->full)
+#define PASS_FULL_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->full)
+#define PASS_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->memory, x->contacts, x->max)
+#define PASS_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
 
 static inline int call_by_number(int number, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
 {
     switch (number) {
 #define CALL_CASE(name, word, kind, traits) \
-    case ASK_##word: return KIND_##kind(OURS(name));
+    case ASK_##word: return PASS_##kind(OURS(name));
         PAIR_CALLS(CALL_CASE)
 #undef CALL_CASE
     default: return CCD_BAD_INPUT;

@@ -48,7 +48,7 @@ static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, do
           (double)(clock() - start) / CLOCKS_PER_SEC);
     if (code != entry->hit) {
         CHECK(same_bits(&out, &before, sizeof out), "%s, %s: outputs touched with %d", entry->name, what, code);
-    } else if (entry->traits & STORES_DIR_POS) {
+    } else if (entry->traits & STORES) {
         CHECK(fabs((double)ccdVec3Len2(&out.dir) - 1) <= 8 * (double)CCD_EPS, "%s, %s: dir not unit", entry->name, what);
         CHECK(out.depth >= 0 && out.depth <= CCD_REAL_MAX, "%s, %s: depth %g", entry->name, what, (double)out.depth);
         for (int i = 0; i < 3; i++)
@@ -73,7 +73,7 @@ static void iterations(const call_t *entry)
         ccd.max_iterations = limits[round / 2 % 10];
         int code = ask(entry, &a, &b, &ccd, 10, "few iterations");
         CHECK(ccd.max_iterations <= 20 || code == (round % 2 ? entry->hit : entry->miss), "%s: returned %d", entry->name, code);
-        /* The extension may say CCD_LIMIT, which these entries count as a hit. */
+        /* The extension may say CCD_LIMIT, which these call_table count as a hit. */
         if (round % 2 == 0 && (!(entry->traits & EXTENSION) || (entry->traits & FROM_CENTERS)))
             CHECK(code != entry->hit, "%s: objects far apart hit after %lu iterations", entry->name, ccd.max_iterations);
         /* No support function is needed to know that they overlap. */
@@ -172,7 +172,7 @@ static void null_outputs(void)
         call_rest_t rest = {.depth = &depth[0], .dir = &dir[0], .pos = &pos[0]};
         shape_t a, b;
         ccd_t ccd;
-        random_pair(&entries[2], round % 2, &a, &b, &ccd);
+        random_pair(&call_table[ASK_GJK], round % 2, &a, &b, &ccd);
         ccd.center1 = ccd.center2 = shape_center;
         for (int i = 0; i < 2; i++)
             for (int skip = 0; skip < 8; skip++) {
@@ -196,10 +196,10 @@ static void null_outputs(void)
 int main(int argc, char **argv)
 {
     share = argc > 1 ? atoi(argv[1]) : share;
-    for (int i = 0; i < ENTRIES; i++) {
-        other_fields(&entries[i]);
-        iterations(&entries[i]);
-        degenerate(&entries[i]);
+    for (int i = 0; i < ASKS; i++) {
+        other_fields(&call_table[i]);
+        iterations(&call_table[i]);
+        degenerate(&call_table[i]);
     }
     null_outputs();
     return checks_end();

@@ -84,7 +84,7 @@ static void trusting_ball(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *ou
 
 int main(void)
 {
-    for (int i = 0; i < ENTRIES; i++) {
+    for (int i = 0; i < ASKS; i++) {
         for (int round = 0; round < 400; round++) {
             const double length[] = {1, 1e-300, 1e300, 1e-30, 30};
             shape_t a, b;
@@ -92,8 +92,8 @@ int main(void)
             outputs_t out;
             int code, hit = round % 2;
             /* Each way as often hit or missed, and with every length. */
-            const int want = round / 2 % 2 ? CCD_WANT_ALL : entries[i].number == ASK_DISTANCE ? 0 : CCD_WANT_POINTS;
-            random_pair(&entries[i], hit, &a, &b, &ccd);
+            const int want = round / 2 % 2 ? CCD_WANT_ALL : call_table[i].number == ASK_DISTANCE ? 0 : CCD_WANT_POINTS;
+            random_pair(&call_table[i], hit, &a, &b, &ccd);
             if (round % 5 == 0) {
                 /* Centers in one place leave no first ray to start from. */
                 memcpy(b.pos, a.pos, sizeof b.pos);
@@ -103,7 +103,7 @@ int main(void)
             }
             memset(&seen, 0, sizeof seen);
             seen.obj1 = &a;
-            seen.apart = (entries[i].traits & ONE_BY_ONE) != 0 || want == CCD_WANT_ALL;
+            seen.apart = (call_table[i].traits & ONE_BY_ONE) != 0 || want == CCD_WANT_ALL;
             seen.obj2 = &b;
             seen.thread = pthread_self();
             for (int k = 0; k < 3; k++)
@@ -118,16 +118,16 @@ int main(void)
             }
             if (ccd.first_dir != NULL)
                 ccd.first_dir = first_dir;
-            code = run_wanting(want, &entries[i], &a, &b, &ccd, &out);
-            CHECK(code == (hit ? entries[i].hit : entries[i].miss), "%s returned %d", entries[i].name, code);
+            code = run_wanting(want, &call_table[i], &a, &b, &ccd, &out);
+            CHECK(code == (hit ? call_table[i].hit : call_table[i].miss), "%s returned %d", call_table[i].name, code);
             /* Equal centers alone prove an overlap. */
             CHECK((seen.pairs > 0 || round % 5 == 0) && !seen.expect_second, "%s: both supports every time",
-                  entries[i].name);
+                  call_table[i].name);
             CHECK(b.calls == seen.pairs && a.calls == seen.firsts && (seen.apart || a.calls == b.calls), "callbacks may write through their objects");
-            if (entries[i].traits & FROM_FIRST_DIR)
-                CHECK(seen.first_dirs > 0, "%s asks first_dir", entries[i].name);
-            if (entries[i].traits & FROM_CENTERS)
-                CHECK(seen.centers > 0, "%s asks the centers", entries[i].name);
+            if (call_table[i].traits & FROM_FIRST_DIR)
+                CHECK(seen.first_dirs > 0, "%s asks first_dir", call_table[i].name);
+            if (call_table[i].traits & FROM_CENTERS)
+                CHECK(seen.centers > 0, "%s asks the centers", call_table[i].name);
         }
     }
     {

@@ -18,30 +18,8 @@ typedef struct {
     support_t support;
 } outputs_t;
 
-typedef struct {
-    const char *name;
-    int number;    /* of call_by_number */
-    int hit, miss; /* what it returns */
-    int traits;
-} call_t;
-
-/* Return values of the kinds. */
-enum {
-    HIT_YES = 1, HIT_YES_WARM = 1, HIT_SEPARATION = 0, HIT_DEPTH = 0, HIT_DEPTH_WARM = 0, HIT_FULL = CCD_HIT,
-    HIT_FULL_ALONG = CCD_HIT, HIT_MANIFOLD = CCD_HIT, HIT_DISTANCE = CCD_HIT,
-    MISS_YES = 0, MISS_YES_WARM = 0, MISS_SEPARATION = -1, MISS_DEPTH = -1, MISS_DEPTH_WARM = -1, MISS_FULL = CCD_MISS,
-    MISS_FULL_ALONG = CCD_MISS, MISS_MANIFOLD = CCD_MISS, MISS_DISTANCE = CCD_MISS
-};
-
-static const call_t entries[] = {
-#define ENTRY(name, word, kind, traits) {#name, ASK_##word, HIT_##kind, MISS_##kind, traits},
-    PAIR_CALLS(ENTRY)
-#undef ENTRY
-};
-enum { ENTRIES = sizeof entries / sizeof entries[0] };
-
 /* __ccdSupport as an entry like the others. */
-static const call_t support_entry = {"__ccdSupport", ASKS, 0, 0, 0};
+static const call_t support_entry = {"__ccdSupport", ASKS, 0, 0, 0, 0, 0};
 
 static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
 {

@@ -169,8 +169,8 @@ static void check_nodes(void)
 
 static void check_queries(void)
 {
-    for (int i = 0; i < ENTRIES; i++) {
-        const call_t *entry = &entries[i];
+    for (int i = 0; i < ASKS; i++) {
+        const call_t *entry = &call_table[i];
         for (int round = 0; round < 100; round++) {
             const int overlapping = round % 4 != 0;
             shape_t a, b;

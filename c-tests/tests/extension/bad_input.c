@@ -9,8 +9,9 @@
 #include "harness/this_library.h"
 #include "harness/shapes.h"
 
-/* The first of `calls`. */
-enum { PENETRATION, LOCAL, INCREMENTAL, PROVEN, ALONG, PLANAR, QUERIES };
+/* Of all calls those for a penetration. */
+static const int queries[] = {ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_ALONG, ASK_PLANAR};
+enum { ALONG = 4, QUERIES = 6 };
 
 static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}}, across = {{2, 0, 0}};
 
@@ -21,7 +22,7 @@ static int same_answer(const ccd_penetration_t *a, const ccd_penetration_t *b)
     return same_bits(a, b, reals) && a->support_calls == b->support_calls && a->iterations == b->iterations;
 }
 
-static const ccd_vec3_t *dir_of(int query) { return query == PLANAR ? &up : &way; }
+static const ccd_vec3_t *dir_of(int call) { return call == ASK_PLANAR ? &up : &way; }
 
 /* Two square slabs that overlap by 0.25 along x; flat squares would only touch. */
 static const ccd_real_t slab[24] = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,
@@ -48,34 +49,15 @@ typedef struct {
     ccd_vec3_t dir, pos;
 } outputs_t;
 
-enum { MPR_TOLERANCE = 1, EPA_TOLERANCE = 2, DIST_TOLERANCE = 4, CHECKS_TOLERANCE = 8, TAKES_DIR = 16, TAKES_WANT = 32,
-       NEEDS_OUT = 64, NEEDS_CENTRES = 128, NO_CENTRES = 256, NEEDS_FIRST_DIR = 512, TAKES_MARGINS = 1024,
-       TAKES_SLOP = 2048, FILLS = CHECKS_TOLERANCE | TAKES_WANT | NEEDS_OUT };
+/* What calls of a kind take besides, and look at. */
+enum { TAKES_DIR = 1, TAKES_WANT = 2, NEEDS_OUT = 4, TAKES_MARGINS = 8, TAKES_SLOP = 16 };
+static const int taken[] = {[KIND_FULL] = TAKES_WANT | NEEDS_OUT,
+                            [KIND_FULL_ALONG] = TAKES_WANT | NEEDS_OUT | TAKES_DIR,
+                            [KIND_MANIFOLD] = NEEDS_OUT | TAKES_DIR | TAKES_SLOP,
+                            [KIND_DISTANCE] = TAKES_WANT | NEEDS_OUT | TAKES_MARGINS};
 
-/* Every call that asks the callbacks: what it returns for the good question, and for a bad one. */
-static const struct {
-    const char *name;
-    int ask, good, bad, traits;
-} calls[] = {
-    {"ccdPenetration", ASK_PENETRATION, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
-    {"ccdPenetrationLocal", ASK_LOCAL, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
-    {"ccdPenetrationIncremental", ASK_INCREMENTAL, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE},
-    {"ccdPenetrationProven", ASK_PROVEN, CCD_HIT, CCD_BAD_INPUT, FILLS | EPA_TOLERANCE},
-    {"ccdPenetrationAlong", ASK_ALONG, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
-    {"ccdPenetrationPlanar", ASK_PLANAR, CCD_HIT, CCD_BAD_INPUT, FILLS | MPR_TOLERANCE | TAKES_DIR},
-    {"ccdSignedDistance", ASK_DISTANCE, CCD_HIT, CCD_BAD_INPUT, FILLS | DIST_TOLERANCE | TAKES_MARGINS},
-    {"ccdContacts", ASK_CONTACTS, 4, CCD_BAD_INPUT, NEEDS_OUT | TAKES_DIR | TAKES_SLOP | NO_CENTRES},
-    {"ccdIntersect", ASK_INTERSECT, 1, 0, 0},
-    {"ccdMPRPenetrationWarm", ASK_MPR_WARM, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
-    {"ccdMPRIntersectWarm", ASK_MPR_INTERSECT_WARM, 1, 0, NEEDS_CENTRES},
-    {"ccdMPRPenetration", ASK_MPR, 0, -1, NEEDS_CENTRES | MPR_TOLERANCE},
-    {"ccdMPRIntersect", ASK_MPR_INTERSECT, 1, 0, NEEDS_CENTRES},
-    {"ccdGJKPenetration", ASK_GJK, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
-    {"ccdGJKSeparate", ASK_SEPARATE, 0, -1, NO_CENTRES | NEEDS_FIRST_DIR | EPA_TOLERANCE},
-    {"ccdGJKIntersect", ASK_GJK_INTERSECT, 1, 0, NO_CENTRES | NEEDS_FIRST_DIR},
-};
-enum { CALLS = sizeof calls / sizeof calls[0] };
-typedef char every_call_is_there[(int)CALLS == (int)ASKS ? 1 : -1];
+/* What it returns of the good question. */
+static int good_answer(const call_t *call) { return call->kind == KIND_MANIFOLD ? 4 : call->hit; }
 
 /* With these outputs; NULL: with none. */
 static int ask_number(int number, const ccd_t *ccd, const call_rest_t *rest, ccd_warm_t *warm, outputs_t *out)
@@ -97,13 +79,13 @@ static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const 
                ccd_penetration_t *out)
 {
     const call_rest_t rest = {.warm = warm, .along = dir, .want = want, .full = out};
-    return call_by_number(calls[query].ask, a, b, ccd, &rest);
+    return call_by_number(query, a, b, ccd, &rest);
 }
 
 static int no_out;
 
 /* Asks, with a state and without: the code, and nothing written where that is the bad one. */
-static void expect(int call, const ccd_t *ccd, const call_rest_t *rest, int code, const char *why)
+static void expect(const call_t *call, const ccd_t *ccd, const call_rest_t *rest, int code, const char *why)
 {
     static outputs_t out, before; /* static: no padding differs */
     ccd_warm_t warm, warm_before;
@@ -113,11 +95,11 @@ static void expect(int call, const ccd_t *ccd, const call_rest_t *rest, int code
     for (int i = 0; i < 2; i++) {
         memcpy(&out, &before, sizeof out);
         warm = warm_before;
-        answer = ask_number(calls[call].ask, ccd, rest, i ? NULL : &warm, no_out ? NULL : &out);
-        CHECK(answer == code, "%s, %s%s: %d", calls[call].name, why, i ? ", without a state" : "", answer);
-        if (code == calls[call].bad) {
-            CHECK(same_bits(&out, &before, sizeof out), "%s, %s: an output was written", calls[call].name, why);
-            CHECK(same_bits(&warm, &warm_before, sizeof warm), "%s, %s: the state was written", calls[call].name, why);
+        answer = ask_number(call->number, ccd, rest, i ? NULL : &warm, no_out ? NULL : &out);
+        CHECK(answer == code, "%s, %s%s: %d", call->name, why, i ? ", without a state" : "", answer);
+        if (code == call->bad) {
+            CHECK(same_bits(&out, &before, sizeof out), "%s, %s: an output was written", call->name, why);
+            CHECK(same_bits(&warm, &warm_before, sizeof warm), "%s, %s: the state was written", call->name, why);
         }
     }
 }
@@ -139,7 +121,7 @@ static void bad_center(const void *obj, ccd_vec3_t *out)
 }
 
 /* Points of obj1 or of obj2 that are no number: from the first call on, from the second on, ... */
-static void bad_points(int call, const call_rest_t *rest, int of_obj2)
+static void bad_points(const call_t *call, const call_rest_t *rest, int of_obj2)
 {
     static outputs_t out, before;
     ccd_warm_t warm, good_state;
@@ -152,21 +134,21 @@ static void bad_points(int call, const call_rest_t *rest, int of_obj2)
         memcpy(&out, &before, sizeof out);
         warm = good_state;
         asked = 0;
-        answer = ask_number(calls[call].ask, &ccd, rest, &warm, &out);
+        answer = ask_number(call->number, &ccd, rest, &warm, &out);
         if (asked <= bad_call) {
-            CHECK(answer == calls[call].good, "%s: %d of good points", calls[call].name, answer);
+            CHECK(answer == good_answer(call), "%s: %d of good points", call->name, answer);
             return;
         }
-        CHECK(answer == calls[call].bad, "%s: point %d is no number: %d", calls[call].name, bad_call, answer);
+        CHECK(answer == call->bad, "%s: point %d is no number: %d", call->name, bad_call, answer);
         CHECK(same_bits(&out, &before, sizeof out) && same_bits(&warm, &good_state, sizeof warm),
-              "%s: point %d is no number, and something was written", calls[call].name, bad_call);
+              "%s: point %d is no number, and something was written", call->name, bad_call);
     }
-    CHECK(0, "%s: no end", calls[call].name);
+    CHECK(0, "%s: no end", call->name);
 }
 
-static void bad_objects(int call, const call_rest_t *rest, const ccd_real_t strange[3])
+static void bad_objects(const call_t *call, const call_rest_t *rest, const ccd_real_t strange[3])
 {
-    const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
+    const int good_code = good_answer(call), bad = call->bad;
     ccd_t ccd;
     expect(call, NULL, rest, bad, "no ccd");
     for (int i = 0; i < 2; i++) {
@@ -180,40 +162,40 @@ static void bad_objects(int call, const call_rest_t *rest, const ccd_real_t stra
             ccd.center1 = NULL;
         if (i & 2)
             ccd.center2 = NULL;
-        expect(call, &ccd, rest, traits & NEEDS_CENTRES ? bad : good_code, "no centre");
+        expect(call, &ccd, rest, call->traits & FROM_CENTERS ? bad : good_code, "no centre");
         ccd.first_dir = NULL;
-        expect(call, &ccd, rest, traits & (NEEDS_CENTRES | NEEDS_FIRST_DIR) ? bad : good_code, "no centre, no first_dir");
+        expect(call, &ccd, rest, call->traits & (FROM_CENTERS | FROM_FIRST_DIR) ? bad : good_code, "no centre, no first_dir");
     }
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++) {
             bad_value = strange[i];
             ccd = good;
             *(k ? &ccd.center2 : &ccd.center1) = bad_center;
-            expect(call, &ccd, rest, traits & NO_CENTRES ? good_code : bad, "a centre that is no number");
+            expect(call, &ccd, rest, call->traits & (FROM_FIRST_DIR | ONE_BY_ONE) ? good_code : bad, "a centre that is no number");
             bad_points(call, rest, k);
         }
 }
 
-static void bad_tolerances(int call, const call_rest_t *rest, ccd_real_t inf)
+static void bad_tolerances(const call_t *call, const call_rest_t *rest, ccd_real_t inf)
 {
     const ccd_real_t none[3] = {inf - inf, CCD_REAL(-1e-9), -inf};
-    const int traits = calls[call].traits;
+    const int checks = taken[call->kind] & TAKES_WANT;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             ccd_t ccd = good;
             *(k == 0 ? &ccd.mpr_tolerance : k == 1 ? &ccd.epa_tolerance : &ccd.dist_tolerance) = none[i];
             /* libccd's calls take their default, and what a call does not read is not looked at */
-            expect(call, &ccd, rest, traits & CHECKS_TOLERANCE && traits >> k & 1 ? calls[call].bad : calls[call].good,
+            expect(call, &ccd, rest, checks && call->traits >> k & 1 ? call->bad : good_answer(call),
                    "a tolerance that is none");
         }
     for (int i = 0; i < 2; i++) {
         ccd_t ccd = good;
         ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = i ? inf : 0;
-        expect(call, &ccd, rest, calls[call].good, i ? "an infinite tolerance" : "tolerance 0");
+        expect(call, &ccd, rest, good_answer(call), i ? "an infinite tolerance" : "tolerance 0");
     }
 }
 
-static void bad_arguments(int call, const call_rest_t *good_rest, const ccd_real_t strange[3])
+static void bad_arguments(const call_t *call, const call_rest_t *good_rest, const ccd_real_t strange[3])
 {
     static const struct { size_t at; int taken_by; const char *why; } lengths[] = {
         {offsetof(call_rest_t, margin1), TAKES_MARGINS, "margin1 that is none"},
@@ -222,43 +204,43 @@ static void bad_arguments(int call, const call_rest_t *good_rest, const ccd_real
         {offsetof(call_rest_t, slop), TAKES_SLOP, "slop that is none"},
     };
     const ccd_real_t no_length[] = {strange[0], CCD_REAL(-1e-9), strange[2]};
-    const int good_code = calls[call].good, bad = calls[call].bad, traits = calls[call].traits;
+    const int good_code = good_answer(call), bad = call->bad, takes = taken[call->kind];
     call_rest_t rest = *good_rest;
     ccd_vec3_t dir = {{0, 0, 0}};
     no_out = 1;
-    expect(call, &good, &rest, traits & NEEDS_OUT ? bad : good_code, "no out");
+    expect(call, &good, &rest, takes & NEEDS_OUT ? bad : good_code, "no out");
     no_out = 0;
     for (int i = 0; i < 32; i++) {
         rest.want = 1u << i;
-        expect(call, &good, &rest, traits & TAKES_WANT && i > 1 ? bad : good_code, "a flag");
+        expect(call, &good, &rest, takes & TAKES_WANT && i > 1 ? bad : good_code, "a flag");
     }
     rest = *good_rest;
     rest.along = NULL;
-    expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "no direction");
+    expect(call, &good, &rest, takes & TAKES_DIR ? bad : good_code, "no direction");
     rest.along = &dir;
-    expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "zero direction");
+    expect(call, &good, &rest, takes & TAKES_DIR ? bad : good_code, "zero direction");
     for (int i = 0; i < 9; i++) {
         dir = *good_rest->along;
         dir.v[i % 3] = strange[i / 3];
-        expect(call, &good, &rest, traits & TAKES_DIR ? bad : good_code, "a direction that is no number");
+        expect(call, &good, &rest, takes & TAKES_DIR ? bad : good_code, "a direction that is no number");
     }
     for (int i = 0; i < 12; i++) {
         rest = *good_rest;
         memcpy((char *)&rest + lengths[i % 4].at, &no_length[i / 4], sizeof(ccd_real_t));
-        expect(call, &good, &rest, traits & lengths[i % 4].taken_by ? bad : good_code, lengths[i % 4].why);
+        expect(call, &good, &rest, takes & lengths[i % 4].taken_by ? bad : good_code, lengths[i % 4].why);
     }
     rest = *good_rest;
     rest.margin2 = strange[1];
-    expect(call, &good, &rest, traits & TAKES_MARGINS ? bad : good_code, "an infinite margin");
+    expect(call, &good, &rest, takes & TAKES_MARGINS ? bad : good_code, "an infinite margin");
     for (int i = 0; i < 2; i++) {
         rest = *good_rest;
         rest.slop = i ? strange[1] : 0;
-        expect(call, &good, &rest, i && traits & TAKES_SLOP ? 1 : good_code, i ? "any slop" : "no slop");
+        expect(call, &good, &rest, i && takes & TAKES_SLOP ? 1 : good_code, i ? "any slop" : "no slop");
     }
     for (int i = -1; i < 2; i++) {
         rest = *good_rest;
         rest.max = i > 0 ? 2147483647 : i;
-        expect(call, &good, &rest, i < 1 && traits & TAKES_SLOP ? bad : good_code, "room");
+        expect(call, &good, &rest, i < 1 && takes & TAKES_SLOP ? bad : good_code, "room");
     }
 }
 
@@ -307,9 +289,9 @@ static void draw_lie(void)
 
 /* Objects that answer anything, from any state: each call ends, with a code of its own; what it
  * claims is finite; there is no answer from points that are none, and nothing written without one. */
-static void lies(int call, const call_rest_t *rest)
+static void lies(const call_t *call, const call_rest_t *rest)
 {
-    const int libccd = calls[call].bad != CCD_BAD_INPUT, number = calls[call].ask;
+    const int libccd = call->bad != CCD_BAD_INPUT, number = call->number;
     for (int round = 0; round < 3000; round++) {
         static outputs_t out, before;
         ccd_warm_t warm;
@@ -326,31 +308,31 @@ static void lies(int call, const call_rest_t *rest)
         ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = random_below(4) ? (ccd_real_t)pow(10, -2 * random_below(4)) : 0;
         asked = nonsense = 0;
         int code = ask_number(number, &ccd, rest, random_below(4) ? &warm : NULL, &out);
-        CHECK(asked < 40000, "%s: %d calls", calls[call].name, asked);
+        CHECK(asked < 40000, "%s: %d calls", call->name, asked);
         if (number == ASK_CONTACTS) {
-            CHECK(code == CCD_BAD_INPUT || (code >= 1 && code <= 4), "%s: %d", calls[call].name, code);
+            CHECK(code == CCD_BAD_INPUT || (code >= 1 && code <= 4), "%s: %d", call->name, code);
             for (int i = 0; i < code; i++)
-                CHECK(isfinite(out.contact[i].depth), "%s: a contact of no depth", calls[call].name);
+                CHECK(isfinite(out.contact[i].depth), "%s: a contact of no depth", call->name);
             continue;
         }
-        CHECK(libccd ? code == calls[call].good || code == calls[call].bad || (code == -2 && calls[call].good == 0)
-                     : code >= CCD_BAD_INPUT && code <= CCD_LIMIT, "%s of lies: %d", calls[call].name, code);
-        CHECK(!nonsense || code == calls[call].bad, "%s: %d from no numbers", calls[call].name, code);
-        int hit = code == calls[call].good || (!libccd && code == CCD_LIMIT);
+        CHECK(libccd ? code == call->hit || code == call->bad || (code == -2 && call->hit == 0)
+                     : code >= CCD_BAD_INPUT && code <= CCD_LIMIT, "%s of lies: %d", call->name, code);
+        CHECK(!nonsense || code == call->bad, "%s: %d from no numbers", call->name, code);
+        int hit = code == call->hit || (!libccd && code == CCD_LIMIT);
         if (number == ASK_DISTANCE) {
             CHECK(!(hit || code == CCD_MISS)
                       || (isfinite(out.distance.distance) && isfinite(out.distance.distance_upper)
                           && out.distance.distance <= out.distance.distance_upper), "distance of lies: %g", (double)out.distance.distance);
             CHECK(code != CCD_HIT || out.distance.distance < 0, "a hit at %g", (double)out.distance.distance);
         } else if (!hit) {
-            CHECK(same_bits(&out, &before, sizeof out), "%s of lies: written", calls[call].name);
+            CHECK(same_bits(&out, &before, sizeof out), "%s of lies: written", call->name);
         } else if (number == ASK_MPR || number == ASK_GJK || number == ASK_MPR_WARM || !libccd) {
             const int full = !libccd;
             const ccd_real_t depth = full ? out.penetration.depth : out.depth;
             const ccd_vec3_t *dir = full ? &out.penetration.dir : &out.dir;
-            CHECK(depth >= 0 && isfinite(depth), "%s of lies: depth %g", calls[call].name, (double)depth);
-            CHECK(fabs((double)ccdVec3Len2(dir) - 1) <= 8 * (double)CCD_EPS, "%s of lies: direction not unit", calls[call].name);
-            CHECK(!full || (out.penetration.depth_lower >= 0 && isfinite(out.penetration.depth_lower)), "%s of lies: bound", calls[call].name);
+            CHECK(depth >= 0 && isfinite(depth), "%s of lies: depth %g", call->name, (double)depth);
+            CHECK(fabs((double)ccdVec3Len2(dir) - 1) <= 8 * (double)CCD_EPS, "%s of lies: direction not unit", call->name);
+            CHECK(!full || (out.penetration.depth_lower >= 0 && isfinite(out.penetration.depth_lower)), "%s of lies: bound", call->name);
         }
     }
 }
@@ -359,9 +341,9 @@ static void bad_input(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2, strange[3] = {inf - inf, inf, -inf};
     call_rest_t rest = {.max_distance = inf, .slop = CCD_REAL(1e-3), .want = CCD_WANT_ALL, .max = 4};
-    for (int call = 0; call < CALLS; call++) {
-        rest.along = calls[call].ask == ASK_ALONG ? &way : calls[call].ask == ASK_PLANAR ? &up : &across;
-        expect(call, &good, &rest, calls[call].good, "the good question");
+    for (const call_t *call = call_table; call < call_table + ASKS; call++) {
+        rest.along = call->number == ASK_ALONG ? &way : call->number == ASK_PLANAR ? &up : &across;
+        expect(call, &good, &rest, good_answer(call), "the good question");
         bad_objects(call, &rest, strange);
         bad_tolerances(call, &rest, inf);
         bad_arguments(call, &rest, strange);
@@ -374,7 +356,8 @@ static void bad_input(void)
 /* Face on face, sliding: where pos is wanted it is asked for; else it costs nothing. */
 static void wanted(void)
 {
-    for (int query = 0; query < ALONG; query++) {
+    for (int i = 0; i < ALONG; i++) {
+        const int query = queries[i];
         unsigned long cost[CCD_WANT_ALL + 1] = {0};
         ccd_penetration_t all, out;
         for (unsigned want = 0; want <= CCD_WANT_ALL; want++) {
@@ -385,22 +368,22 @@ static void wanted(void)
             for (int frame = 0; frame < 20; frame++) {
                 const ccd_vec3_t zero = {{0, 0, 0}};
                 shape_move(&other, 1.75, 0.25 + 0.002 * frame, 0.001 * frame);
-                CHECK(ask(query, &one, &other, &ccd, NULL, &warm[0], CCD_WANT_ALL, &all) == CCD_HIT, "%s", calls[query].name);
-                CHECK(ask(query, &one, &other, &ccd, NULL, &warm[1], want, &out) == CCD_HIT, "%s", calls[query].name);
+                CHECK(ask(query, &one, &other, &ccd, NULL, &warm[0], CCD_WANT_ALL, &all) == CCD_HIT, "%s", call_table[query].name);
+                CHECK(ask(query, &one, &other, &ccd, NULL, &warm[1], want, &out) == CCD_HIT, "%s", call_table[query].name);
                 cost[want] += frame ? out.support_calls : 0;
-                CHECK(fabs((double)(out.depth - all.depth)) <= 1e-6, "%s: depth %g", calls[query].name, (double)out.depth);
+                CHECK(fabs((double)(out.depth - all.depth)) <= 1e-6, "%s: depth %g", call_table[query].name, (double)out.depth);
                 for (int k = 0; k < 3; k++) {
                     const ccd_vec3_t *points[3] = {&out.pos, &out.point1, &out.point2};
                     const unsigned flag = k ? CCD_WANT_POINTS : CCD_WANT_POS;
                     CHECK((want & flag) != 0 || same_bits(points[k], &zero, sizeof zero), "%s: not wanted, and not zero",
-                          calls[query].name);
-                    CHECK((want & flag) == 0 || !same_bits(points[k], &zero, sizeof zero), "%s: wanted, and zero", calls[query].name);
+                          call_table[query].name);
+                    CHECK((want & flag) == 0 || !same_bits(points[k], &zero, sizeof zero), "%s: wanted, and zero", call_table[query].name);
                 }
             }
         }
-        printf("%s, face on face, 19 frames: %lu calls of each support function, %lu with pos\n", calls[query].name, cost[0],
+        printf("%s, face on face, 19 frames: %lu calls of each support function, %lu with pos\n", call_table[query].name, cost[0],
                cost[CCD_WANT_POS]);
-        CHECK(cost[0] < cost[CCD_WANT_POS], "%s: pos for nothing: %lu, %lu", calls[query].name, cost[0], cost[CCD_WANT_POS]);
+        CHECK(cost[0] < cost[CCD_WANT_POS], "%s: pos for nothing: %lu, %lu", call_table[query].name, cost[0], cost[CCD_WANT_POS]);
     }
     setup();
 }
@@ -432,9 +415,10 @@ static void freedoms(void)
     ccd_t ccd = good;
     ccd.support1 = ccd.support2 = fixed_support;
     ccd.center1 = ccd.center2 = NULL;
-    for (int query = 0; query < QUERIES; query++)
-        CHECK(ask(query, NULL, NULL, &ccd, dir_of(query), NULL, CCD_WANT_ALL, &out) >= CCD_HIT && out.depth > 1, "%s: NULL objects", calls[query].name);
-    for (int query = ALONG; query < QUERIES; query++) {
+    for (int q = 0; q < QUERIES; q++)
+        CHECK(ask(queries[q], NULL, NULL, &ccd, dir_of(queries[q]), NULL, CCD_WANT_ALL, &out) >= CCD_HIT && out.depth > 1, "%s: NULL objects", call_table[queries[q]].name);
+    for (int q = ALONG; q < QUERIES; q++) {
+        const int query = queries[q];
         ccd_penetration_t unit;
         ask(query, &one, &other, &good, dir_of(query), NULL, CCD_WANT_ALL, &unit);
         for (int i = -30; i <= 30; i += 10) {
@@ -442,8 +426,8 @@ static void freedoms(void)
             for (int k = 0; k < 3; k++)
                 d.v[k] = (ccd_real_t)ldexp((double)d.v[k], i);
             memset(&out, 0, sizeof out);
-            CHECK(ask(query, &one, &other, &good, &d, NULL, CCD_WANT_ALL, &out) == CCD_HIT, "%s: length", calls[query].name);
-            CHECK(same_answer(&out, &unit), "%s: a direction of length 2^%d", calls[query].name, i);
+            CHECK(ask(query, &one, &other, &good, &d, NULL, CCD_WANT_ALL, &out) == CCD_HIT, "%s: length", call_table[query].name);
+            CHECK(same_answer(&out, &unit), "%s: a direction of length 2^%d", call_table[query].name, i);
         }
     }
 }

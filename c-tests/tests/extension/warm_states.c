@@ -18,10 +18,6 @@ static int pairs = PAIRS;
 /* Every call that takes a state, but ccdIntersect, which is one of them. */
 static const int asks[] = {ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_PENETRATION, ASK_ALONG, ASK_PLANAR, ASK_MPR_WARM,
                            ASK_MPR_INTERSECT_WARM, ASK_DISTANCE};
-static const char *const ask_name[] = {
-#define NAME(name, word, kind, traits) #name,
-    PAIR_CALLS(NAME)
-};
 
 typedef struct {
     entry_t call;
@@ -107,7 +103,7 @@ static void make(case_t *c, int call, int i)
 {
     static const int categories[] = {CATEGORY_GENERIC, CATEGORY_SHALLOW3, CATEGORY_GENERIC, CATEGORY_APART};
     dice_t d = dice(5000, (uint64_t)i);
-    c->call.name = ask_name[call];
+    c->call.name = call_table[call].name;
     c->call.ask = call;
     c->limited = 0;
     dice_unit(&d, c->dir);
@@ -200,21 +196,21 @@ static void from_states(int ask)
         every_state(&c, &other, &n);
     }
     printf("%s: %d hits, %.1f supports, %.1f when asked again; from a flipped state %.2f for %.2f, %d differ; %d pairs at the cap\n",
-           ask_name[ask], n.hits, n.first / 2. / n.hits, n.again / 2. / n.hits, n.flipped / 2. / pairs, n.own / 2. / pairs, n.apart,
+           call_table[ask].name, n.hits, n.first / 2. / n.hits, n.again / 2. / n.hits, n.flipped / 2. / pairs, n.own / 2. / pairs, n.apart,
            n.limited);
     if (pairs < PAIRS)
         return; /* few pairs tell no costs */
     /* Of a distance another of two ties is asked first: 5 % more. In single precision more are ties. */
-    CHECK(100 * n.flipped <= (ask == ASK_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103) * n.own, "%s: a flipped state is worth less", ask_name[ask]);
+    CHECK(100 * n.flipped <= (ask == ASK_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103) * n.own, "%s: a flipped state is worth less", call_table[ask].name);
     /* A portal's first directions are turned the same way round in the mirror: few walks differ. */
     if (ask == ASK_LOCAL || ask == ASK_PLANAR)
-        CHECK(n.apart <= PAIRS / 20, "%s: %d differ", ask_name[ask], n.apart);
+        CHECK(n.apart <= PAIRS / 20, "%s: %d differ", call_table[ask].name, n.apart);
     /* A state is one direction: a depth along another gains nothing by it. */
     if (ask == ASK_LOCAL)
-        CHECK(10 * n.again <= 7 * n.first, "%s: asked again", ask_name[ask]);
+        CHECK(10 * n.again <= 7 * n.first, "%s: asked again", call_table[ask].name);
     /* The paper's method halves its way to round minima: it says so where others are long done. */
-    CHECK(n.limited <= (ask == ASK_INCREMENTAL ? PAIRS / 16 : PAIRS / 200), "%s: %d pairs at the cap", ask_name[ask], n.limited);
-    CHECK(n.hits > PAIRS / 4, "%s: %d hits", ask_name[ask], n.hits);
+    CHECK(n.limited <= (ask == ASK_INCREMENTAL ? PAIRS / 16 : PAIRS / 200), "%s: %d pairs at the cap", call_table[ask].name, n.limited);
+    CHECK(n.hits > PAIRS / 4, "%s: %d hits", call_table[ask].name, n.hits);
 }
 
 /* A tilted plate sinks through a slab, a millimetre a frame. The least depth changes sides half

@@ -9,15 +9,12 @@
 #ifndef COMPARE_COUNTS_H
 #define COMPARE_COUNTS_H
 
+#include "harness/this_library.h"
 #include "harness/verdict.h"
 
 #include <stdint.h>
 
-enum { COMPARE_PENETRATION_MPR, COMPARE_INTERSECT_MPR, COMPARE_PENETRATION_GJK, COMPARE_SEPARATE, COMPARE_INTERSECT_GJK, COMPARE_CALLS };
 enum { COMPARE_THEIRS, COMPARE_OURS, COMPARE_SIDES };
-
-static const char *const COMPARE_CALL_NAME[COMPARE_CALLS] = { "ccdMPRPenetration", "ccdMPRIntersect", "ccdGJKPenetration", "ccdGJKSeparate",
-                                                              "ccdGJKIntersect" };
 
 /* One library on the judged queries of one call. */
 typedef struct {
@@ -57,7 +54,7 @@ typedef struct {
     char program[256]; /* of the first */
     char theirs[512], ours[512]; /* which libraries */
     uint64_t base;               /* whose answers the program goes on with */
-    compare_call_t call[COMPARE_CALLS];
+    compare_call_t call[LIBCCD_ASKS];
     uint64_t raw_supports; /* __ccdSupport, which FCL's own GJK calls */
     uint64_t callback_pairs, callback_nanoseconds; /* support1 and support2 alone */
     uint64_t process_nanoseconds, watch_nanoseconds; /* processor time of all, and of it the tool's */

@@ -142,8 +142,8 @@ int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t
 verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth)
 {
     verdict_answer_t a = { answer->hit, 1, (double)answer->depth, (double)ccdVec3Len2(&answer->dir) };
-    a.has_depth = q->call != COMPARE_INTERSECT_MPR && q->call != COMPARE_INTERSECT_GJK;
-    if (q->call == COMPARE_SEPARATE && answer->depth == 0)
+    a.has_depth = !is_verdict(q->call);
+    if (q->call == ASK_SEPARATE && answer->depth == 0)
         a.length2 = 1; /* a vector of no length has no direction */
     return verdict(&a, truth);
 }
@@ -189,7 +189,7 @@ static int same_answer(int call, const answer_t *a, const answer_t *b)
 {
     if (a->code != b->code)
         return 0;
-    if (!a->hit || call == COMPARE_INTERSECT_MPR || call == COMPARE_INTERSECT_GJK)
+    if (!a->hit || is_verdict(call))
         return 1;
     /* bits: what is NaN in one alone was not asked for */
     return (a->depth == b->depth || a->depth != a->depth || b->depth != b->depth)
@@ -199,7 +199,7 @@ static int same_answer(int call, const answer_t *a, const answer_t *b)
 
 int sample_has_depth(const query_t *q, const answer_t *a)
 {
-    return a->hit && a->depth > 0 && q->call != COMPARE_INTERSECT_MPR && q->call != COMPARE_INTERSECT_GJK;
+    return a->hit && a->depth > 0 && !is_verdict(q->call);
 }
 
 /* An answer that is deep enough may still point elsewhere: where its direction is not the

@@ -176,7 +176,7 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
     answer_t own;
     count_add(&c->returned, 1);
     count_add(&c->hits, (uint64_t)hit);
-    if (hit && q->call != COMPARE_SEPARATE)
+    if (hit && q->call != ASK_SEPARATE)
         count_broken(c, depth, dir);
     if (answered)
         answered(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
@@ -184,7 +184,7 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
         return;
     uint64_t start = clock_now(CLOCK_THREAD_CPUTIME_ID);
     read_outputs(q, code, depth, dir, &own);
-    if (q->call == COMPARE_SEPARATE && own.hit && dir)
+    if (q->call == ASK_SEPARATE && own.hit && dir)
         answer_by_length(&own);
     sample_query(&compare, q, &own);
     count_process_time();
@@ -200,7 +200,7 @@ static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, 
     ask_watched(base, q, &asked, &answer);
     if (!is_hit(q->call, answer.code))
         return answer.code;
-    if (q->call == COMPARE_SEPARATE)
+    if (q->call == ASK_SEPARATE)
         ccdVec3Scale(&answer.dir, answer.depth);
     if (depth)
         *depth = answer.depth;
@@ -213,6 +213,7 @@ static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, 
 
 static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
+    const call_rest_t rest = {.depth = depth, .dir = dir, .pos = pos};
     query_t q;
     pthread_once(&once, start);
     q.call = call;
@@ -221,36 +222,36 @@ static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd,
     q.ccd = ccd;
     /* a callback that asks while the tool asks it is the tool's doing */
     if (guard_active())
-        return ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
+        return ask_call(base, call, obj1, obj2, ccd, &rest);
     uint64_t number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
-    int code = ask_audit ? answer_audited(&q, depth, dir, pos) : ask_call(base, call, obj1, obj2, ccd, depth, dir, pos);
+    int code = ask_audit ? answer_audited(&q, depth, dir, pos) : ask_call(base, call, obj1, obj2, ccd, &rest);
     watch(&q, number, code, depth, dir);
     return code;
 }
 
 EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    return query(COMPARE_PENETRATION_MPR, obj1, obj2, ccd, depth, dir, pos);
+    return query(ASK_MPR, obj1, obj2, ccd, depth, dir, pos);
 }
 
 EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    return query(COMPARE_PENETRATION_GJK, obj1, obj2, ccd, depth, dir, pos);
+    return query(ASK_GJK, obj1, obj2, ccd, depth, dir, pos);
 }
 
 EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_vec3_t *sep)
 {
-    return query(COMPARE_SEPARATE, obj1, obj2, ccd, NULL, sep, NULL);
+    return query(ASK_SEPARATE, obj1, obj2, ccd, NULL, sep, NULL);
 }
 
 EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
 {
-    return query(COMPARE_INTERSECT_MPR, obj1, obj2, ccd, NULL, NULL, NULL);
+    return query(ASK_MPR_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
 }
 
 EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
 {
-    return query(COMPARE_INTERSECT_GJK, obj1, obj2, ccd, NULL, NULL, NULL);
+    return query(ASK_GJK_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
 }
 
 EXPORT void __ccdSupport(const void *obj1, const void *obj2, const ccd_vec3_t *dir, const ccd_t *ccd, ccd_support_t *supp)

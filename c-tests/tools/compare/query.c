@@ -31,9 +31,10 @@ int library_open(library_t *library, const char *path, int ours)
         fprintf(stderr, "compare: %s\n", dlerror());
         return -1;
     }
-    if (symbol_of(handle, "ccdMPRPenetration", &library->mpr_penetration) || symbol_of(handle, "ccdGJKPenetration", &library->gjk_penetration)
-        || symbol_of(handle, "ccdMPRIntersect", &library->mpr_intersect) || symbol_of(handle, "ccdGJKIntersect", &library->gjk_intersect)
-        || symbol_of(handle, "ccdGJKSeparate", &library->separate) || symbol_of(handle, "__ccdSupport", &library->raw_support)) {
+    int missing = symbol_of(handle, "__ccdSupport", &library->raw_support);
+    for (int call = 0; call < LIBCCD_ASKS; call++)
+        missing |= symbol_of(handle, call_table[call].name, &library->call[call]);
+    if (missing) {
         fprintf(stderr, "compare: %s is no libccd\n", path);
         return -1;
     }
@@ -45,36 +46,30 @@ int library_open(library_t *library, const char *path, int ours)
     return 0;
 }
 
-int is_hit(int call, int code)
-{
-    return call == COMPARE_INTERSECT_MPR || call == COMPARE_INTERSECT_GJK ? code == 1 : code == 0;
-}
-
 double query_tolerance(const query_t *q)
 {
-    const int mpr = q->call == COMPARE_PENETRATION_MPR || q->call == COMPARE_INTERSECT_MPR;
-    const double t = (double)(mpr ? q->ccd->mpr_tolerance : q->ccd->epa_tolerance);
+    const double t = (double)(call_table[q->call].traits & FROM_CENTERS ? q->ccd->mpr_tolerance : q->ccd->epa_tolerance);
     return t >= 0 && t < HUGE_VAL ? t : 1e-4;
 }
 
-int ask_call(const library_t *library, int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
-             ccd_vec3_t *dir, ccd_vec3_t *pos)
+int ask_call(const library_t *library, int call, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
 {
     switch (call) {
-    case COMPARE_PENETRATION_MPR: return library->mpr_penetration(obj1, obj2, ccd, depth, dir, pos);
-    case COMPARE_PENETRATION_GJK: return library->gjk_penetration(obj1, obj2, ccd, depth, dir, pos);
-    case COMPARE_INTERSECT_MPR: return library->mpr_intersect(obj1, obj2, ccd);
-    case COMPARE_INTERSECT_GJK: return library->gjk_intersect(obj1, obj2, ccd);
-    default: return library->separate(obj1, obj2, ccd, dir);
+#define CALL_CASE(name, word, kind, traits) \
+    case ASK_##word: return PASS_##kind(((__typeof__(&name))library->call[ASK_##word]));
+        LIBCCD_CALLS(CALL_CASE)
+#undef CALL_CASE
+    default: return CCD_BAD_INPUT;
     }
 }
 
 static void ask(const library_t *library, int call, const void *obj1, const void *obj2, const ccd_t *ccd, answer_t *out)
 {
+    const call_rest_t rest = {.depth = &out->depth, .dir = &out->dir, .pos = &out->pos};
     memset(out, 0, sizeof *out);
-    out->code = ask_call(library, call, obj1, obj2, ccd, &out->depth, &out->dir, &out->pos);
+    out->code = ask_call(library, call, obj1, obj2, ccd, &rest);
     out->hit = is_hit(call, out->code);
-    if (call == COMPARE_SEPARATE)
+    if (call == ASK_SEPARATE)
         answer_by_length(out);
 }
 

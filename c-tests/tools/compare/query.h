@@ -11,11 +11,10 @@
 
 #include "tools/compare/counts.h"
 
-#include <ccd/warm.h>
 #include <stddef.h>
 
 typedef struct {
-    int call; /* COMPARE_PENETRATION_MPR ... */
+    int call; /* of libccd's, by number */
     const void *obj[2];
     const ccd_t *ccd;
 } query_t;
@@ -27,17 +26,12 @@ typedef struct {
     ccd_vec3_t dir, pos;
 } answer_t;
 
-typedef int (*penetration_fn)(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
-typedef int (*intersect_fn)(const void *, const void *, const ccd_t *);
-typedef int (*separate_fn)(const void *, const void *, const ccd_t *, ccd_vec3_t *);
 typedef struct _ccd_support_t ccd_support_t;
 typedef void (*raw_support_fn)(const void *, const void *, const ccd_vec3_t *, const ccd_t *, ccd_support_t *);
 typedef int (*minimum_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned, ccd_penetration_t *);
 
 typedef struct {
-    penetration_fn mpr_penetration, gjk_penetration;
-    intersect_fn mpr_intersect, gjk_intersect;
-    separate_fn separate;
+    void (*call[LIBCCD_ASKS])(void); /* by number, each of its own type */
     raw_support_fn raw_support;
     minimum_fn minimum; /* NULL in libccd */
 } library_t;
@@ -72,11 +66,13 @@ typedef struct {
 /* Opens a library; returns 0, or -1 after a line on stderr. `ours`: whether it is to be this one. */
 int library_open(library_t *library, const char *path, int ours);
 
-int is_hit(int call, int code);
+static inline int is_hit(int call, int code) { return code == call_table[call].hit; }
+
+/* Whether the call answers yes or no alone. */
+static inline int is_verdict(int call) { return call_table[call].kind == KIND_YES; }
 
 /* By its number. */
-int ask_call(const library_t *library, int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth,
-             ccd_vec3_t *dir, ccd_vec3_t *pos);
+int ask_call(const library_t *library, int call, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x);
 
 /* Makes depth and direction of the vector that ccdGJKSeparate answers. */
 void answer_by_length(answer_t *out);

@@ -50,11 +50,11 @@ static const char *thousands(uint64_t n)
 static void print_calls(compare_call_t *sum)
 {
     printf("%-20s %12s %8s %12s %10s\n", "call", "queries", "hits", "judged", "overlaps");
-    for (int i = 0; i < COMPARE_CALLS; i++) {
+    for (int i = 0; i < LIBCCD_ASKS; i++) {
         const compare_call_t *c = &all.call[i];
         if (!c->queries)
             continue;
-        printf("%-20s %12s %6.1f %% %12s %10s\n", COMPARE_CALL_NAME[i], thousands(c->queries), 100 * part(c->hits, c->returned),
+        printf("%-20s %12s %6.1f %% %12s %10s\n", call_table[i].name, thousands(c->queries), 100 * part(c->hits, c->returned),
                thousands(c->judged), thousands(c->overlaps));
         add_call(sum, c);
     }
@@ -196,9 +196,9 @@ static void print_screen(const char *every, const char *code)
         printf("; %d processes", (int)all.processes);
     printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);
     print_calls(&sum);
-    for (int i = 0; i < COMPARE_CALLS; i++)
+    for (int i = 0; i < LIBCCD_ASKS; i++)
         if (all.call[i].judged)
-            print_wrong(&all.call[i], COMPARE_CALL_NAME[i]);
+            print_wrong(&all.call[i], call_table[i].name);
     printf("\n");
     print_notes(&sum);
     print_price(&sum);
@@ -222,7 +222,7 @@ static void print_fields(void)
 {
     static compare_call_t sum;
     static const char *const name[COMPARE_SIDES] = { "theirs_", "ours_" };
-    for (int i = 0; i < COMPARE_CALLS; i++)
+    for (int i = 0; i < LIBCCD_ASKS; i++)
         add_call(&sum, &all.call[i]);
     printf("watched");
     print_numbers("", "queries returned hits zero not_finite not_unit sampled judged overlaps timed threw endless memory no_shape contradicted",

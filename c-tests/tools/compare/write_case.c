@@ -177,7 +177,7 @@ static void make_case(const compare_t *compare, const sample_t *s, int side, com
     char title[sizeof place->title], path[4096];
     case_t c;
     case_of(s, &c);
-    snprintf(title, sizeof title, "%s of %s, %s: ", COMPARE_CALL_NAME[s->q->call], COMPARE_SIDE_NAME[side], VERDICT_NAME[s->verdict[side]]);
+    snprintf(title, sizeof title, "%s of %s, %s: ", call_table[s->q->call].name, COMPARE_SIDE_NAME[side], VERDICT_NAME[s->verdict[side]]);
     if (s->answer[side].hit)
         snprintf(title + strlen(title), sizeof title - strlen(title), "depth %.6g, ", (double)s->answer[side].depth);
     snprintf(title + strlen(title), sizeof title - strlen(title), "the signed depth is at most %.6g", s->truth.upper);
