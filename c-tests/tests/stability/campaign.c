@@ -3,10 +3,9 @@
 
 /* How often each library fails, by category of pair.
  *
- *   campaign [pairs a category [tie rule: 0 sign of zero, 1 centre [category, -1 all
- *             [compatible | proven | local]]]]
+ *   campaign [pairs a category [category, -1 all [compatible | proven | local]]]
  *
- * Prints one table for libccd and one for this library, at the default tolerance of
+ * Prints a table of both libraries for each tie rule, at the default tolerance of
  * 1e-4 m, and exits with 1 when this library breaks a promise at that tolerance or
  * at a fine one (TOL_TIGHT of the size), with the first pairs that show it. */
 
@@ -20,8 +19,13 @@ typedef struct {
     double calls;
 } row_t;
 
+enum { TIES = SHAPE_TIE_CENTRE + 1 };
+
+/* At the default tolerance, and at the fine one for ours. */
+static row_t table[TIES][ENTRIES][CATEGORY_COUNT], fine[TIES][ENTRIES][CATEGORY_COUNT];
+
 /* which fault of which entry point has been shown in full */
-static int shown[ENTRIES];
+static int shown[TIES][ENTRIES];
 
 static void tally(row_t *r, const answer_t *x, int faults)
 {
@@ -73,76 +77,66 @@ static int is_known(const char *category, const char *entry, const char *fault, 
     return 0;
 }
 
-int main(int argc, char **argv)
+/* Pair number i of a category, put to an entry point. */
+static void ask_pair(int category, int i, const pair_t *p, int k)
 {
-    int pairs = argc > 1 ? atoi(argv[1]) : 2000, tie = argc > 2 ? atoi(argv[2]) : SHAPE_TIE_SIGN;
-    const char *group = argc > 4 ? argv[4] : NULL;
-    int only = argc > 3 ? atoi(argv[3]) : -1, category, i, k, broken = 0, rows = 0;
-    /* [entry][category] at the default tolerance, and the fine one for ours */
-    static row_t table[ENTRIES][CATEGORY_COUNT], fine[ENTRIES][CATEGORY_COUNT];
-    static pair_t p;
-    if (pairs < 1) {
-        fprintf(stderr, "usage: campaign [pairs a category [tie rule [category [group]]]]\n");
-        return 2;
-    }
-    judge_begin();
-    for (category = 0; category < CATEGORY_COUNT; category++) {
-        if (only >= 0 && category != only)
-            continue;
-        fprintf(stderr, "%d/%d %s\n", category + 1, CATEGORY_COUNT, category_text(category));
-        for (i = 0; i < pairs; i++) {
-            category_pair(category, (uint64_t)i, tie, &p);
-            for (k = 0; k < (int)ENTRIES; k++) {
-                const entry_t *e = &entries[k];
-                double tols[2];
-                if (!e->system && !entry_in(e, group))
-                    continue;
-                tols[0] = 1e-4;
-                tols[1] = tolerance(TOL_TIGHT) * pair_size(&p.a, &p.b);
-                for (int t = 0; t < (e->system ? 1 : 2); t++) {
-                    question_t q = question(&p.a, &p.b, tols[t], &p.truth);
-                    answer_t x = ask(e, &p.a, &p.b, tols[t], p.truth.n, most_calls(e));
-                    q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_stop(&p, tols[t]);
-                    int faults = judge(e, &x, &p.a, &p.b, &q);
-                    tally(t ? &fine[k][category] : &table[k][category], &x, faults);
-                    if (!e->system && faults & FAULTS_NEVER & ~shown[k]) {
-                        shown[k] |= faults;
-                        printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t], q.surface ? ", surface" : "");
-                        print_wrong(e, &x, faults & FAULTS_NEVER, &p.truth);
-                        print_shape(stdout, "  a", &p.a);
-                        print_shape(stdout, "  b", &p.b);
-                    }
-                }
-            }
+    const entry_t *e = &entries[k];
+    const double tols[2] = {1e-4, tolerance(TOL_TIGHT) * pair_size(&p->a, &p->b)};
+    const int tie = p->a.tie;
+    for (int t = 0; t < (e->system ? 1 : 2); t++) {
+        question_t q = question(&p->a, &p->b, tols[t], &p->truth);
+        answer_t x = ask(e, &p->a, &p->b, tols[t], p->truth.n, most_calls(e));
+        q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_stop(p, tols[t]);
+        int faults = judge(e, &x, &p->a, &p->b, &q);
+        tally(t ? &fine[tie][k][category] : &table[tie][k][category], &x, faults);
+        if (!e->system && faults & FAULTS_NEVER & ~shown[tie][k]) {
+            shown[tie][k] |= faults;
+            printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t], q.surface ? ", surface" : "");
+            print_wrong(e, &x, faults & FAULTS_NEVER, &p->truth);
+            print_shape(stdout, "  a", &p->a);
+            print_shape(stdout, "  b", &p->b);
         }
     }
+}
+
+/* Prints the rates; returns how many rows. */
+static int print_rates(int pairs, int tie)
+{
+    int rows = 0;
     printf("Rates in %% of %d pairs a category, tolerance 1e-4 m (fine: 1e-9 of the size), %s tie rule; calls of "
            "both support functions.\n\n", pairs, tie == SHAPE_TIE_CENTRE ? "centre" : "sign");
     printf("| category | method | loop | crash | NaN | dir 0 | deep miss | shallow miss | false hit | over | under | depth ~0 | "
            "unsound | bad dir | calls |\n");
     printf("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (category = 0; category < CATEGORY_COUNT; category++)
-        for (k = 0; k < (int)ENTRIES; k++) {
+    for (int category = 0; category < CATEGORY_COUNT; category++)
+        for (int k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
             int rated = e->ask == ASK_MPR || e->ask == ASK_GJK || (e->ask == ASK_PROVEN && e->state == STATE_NONE);
-            if (!rated || !table[k][category].asked)
+            if (!rated || !table[tie][k][category].asked)
                 continue;
             report(e->system ? e->name : e->ask == ASK_MPR ? "**our MPR**" : e->ask == ASK_GJK ? "**our GJK**" : "**minimum**",
-                   category_text(category), &table[k][category]);
+                   category_text(category), &table[tie][k][category]);
             if (!e->system && e->ask == ASK_MPR)
-                report("**our MPR, fine**", category_text(category), &fine[k][category]);
+                report("**our MPR, fine**", category_text(category), &fine[tie][k][category]);
             rows++;
         }
     printf("\n");
-    for (category = 0; category < CATEGORY_COUNT; category++)
-        for (k = 0; k < (int)ENTRIES; k++)
-            if (!entries[k].system && (table[k][category].limit || fine[k][category].limit))
+    return rows;
+}
+
+/* Prints what stopped at the cap, and broken promises; returns how many of these are not known. */
+static int print_broken(int pairs, int tie)
+{
+    int broken = 0;
+    for (int category = 0; category < CATEGORY_COUNT; category++)
+        for (int k = 0; k < (int)ENTRIES; k++)
+            if (!entries[k].system && (table[tie][k][category].limit || fine[tie][k][category].limit))
                 printf("stopped at the cap: %s, %s: %d (default), %d (fine) of %d\n", category_text(category), entries[k].name,
-                       table[k][category].limit, fine[k][category].limit, pairs);
-    for (category = 0; category < CATEGORY_COUNT; category++)
-        for (k = 0; k < (int)ENTRIES; k++)
-            for (i = 0; i < FAULT_BIT_COUNT && !entries[k].system; i++) {
-                int n = table[k][category].count[i], m = fine[k][category].count[i];
+                       table[tie][k][category].limit, fine[tie][k][category].limit, pairs);
+    for (int category = 0; category < CATEGORY_COUNT; category++)
+        for (int k = 0; k < (int)ENTRIES; k++)
+            for (int i = 0; i < FAULT_BIT_COUNT && !entries[k].system; i++) {
+                int n = table[tie][k][category].count[i], m = fine[tie][k][category].count[i];
                 if (!(FAULTS_NEVER >> i & 1) || n + m == 0)
                     continue;
                 if (is_known(category_text(category), entries[k].name, fault_text(i), n, m)) {
@@ -153,6 +147,39 @@ int main(int argc, char **argv)
                        fault_text(i), n, m, pairs);
                 broken += n + m;
             }
-    printf("%d rows, %d broken promises\n", rows, broken);
+    return broken;
+}
+
+int main(int argc, char **argv)
+{
+    const int pairs = argc > 1 ? atoi(argv[1]) : 2000, only = argc > 2 ? atoi(argv[2]) : -1;
+    const char *group = argc > 3 ? argv[3] : NULL;
+    static pair_t p;
+    int broken = 0;
+    if (pairs < 1) {
+        fprintf(stderr, "usage: campaign [pairs a category [category [group]]]\n");
+        return 2;
+    }
+    judge_begin();
+    for (int category = 0; category < CATEGORY_COUNT; category++) {
+        if (only >= 0 && category != only)
+            continue;
+        fprintf(stderr, "%d/%d %s\n", category + 1, CATEGORY_COUNT, category_text(category));
+        for (int i = 0; i < pairs; i++) {
+            /* Its truth, which takes longer than the calls, is that of both rules. */
+            category_pair(category, (uint64_t)i, SHAPE_TIE_SIGN, &p);
+            for (int tie = 0; tie < TIES; tie++) {
+                p.a.tie = p.b.tie = tie;
+                for (int k = 0; k < (int)ENTRIES; k++)
+                    if (entries[k].system || entry_in(&entries[k], group))
+                        ask_pair(category, i, &p, k);
+            }
+        }
+    }
+    for (int tie = 0; tie < TIES; tie++) {
+        const int rows = print_rates(pairs, tie), unknown = print_broken(pairs, tie);
+        printf("%d rows, %d broken promises\n", rows, unknown);
+        broken += unknown;
+    }
     return broken > 0;
 }

@@ -36,13 +36,7 @@ fn main() {
     let name = arguments.next().unwrap_or_default();
     let given: Vec<String> = arguments.collect();
     match name.as_str() {
-        "rates" => {
-            let pairs = given.first().map_or("2000", String::as_str);
-            let campaign = program("campaign");
-            for tie in ["0", "1"] {
-                show(&campaign, &[], &[pairs, tie]);
-            }
-        }
+        "rates" => show(&program("campaign"), &given, &["2000"]),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         "wide" => show(&programs::wide(), &given, &["1000", "-1", "0", "1"]),
         "worst" => show(&program("worst_case"), &given, &["1000000", "1"]),
