@@ -77,10 +77,9 @@ impl Swapped {
         Swapped { consumer, ways: [Way::new("libccd", "theirs", theirs), Way::new("this library", "ours", ours)] }
     }
 
-    /// For judges of this library alone: on libccd's side nothing is judged.
+    /// For judges of this library alone: libccd's side is not watched, and so nothing is judged there.
     pub fn theirs_unjudged(mut self) -> Swapped {
-        let theirs = &mut self.ways[0].program;
-        *theirs = theirs.with_options(&["--every", "0"]);
+        self.ways[0].program = self.ways[0].program.uncompared();
         self
     }
 
@@ -286,7 +285,11 @@ fn verdict(against: &[String]) -> String {
 /// What the program says of its pile, and what compare.sh counts of the library whose answers
 /// it went on with.
 fn run_of(said: &str, side: &str) -> Run {
-    let mut run = fields(said, "watched");
+    let mut run = fields(said, "pile");
+    if !said.contains("\nwatched ") {
+        return run;
+    }
+    run.extend(fields(said, "watched"));
     for key in ["supports", "slanted", "missed", "spurious", "unsound"] {
         if let Some(count) = run.get(&format!("{side}_{key}")).copied() {
             run.insert(key.to_owned(), count);
@@ -295,7 +298,6 @@ fn run_of(said: &str, side: &str) -> Run {
     // Support points are counted of those that were judged, where not all were.
     let asked = *run.get("judged").unwrap_or(&run["queries"]);
     run.insert("asked".to_owned(), asked);
-    run.extend(fields(said, "pile"));
     // ODE's contacts against exact truth; those apart where a callback was wrong.
     if said.contains("\nright ") {
         let (right, astray) = (fields(said, "right"), fields(said, "astray"));

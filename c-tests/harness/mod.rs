@@ -458,9 +458,9 @@ impl Program {
         }
         compile.arg("-lm");
 
-        // The command's hash keeps two programs of one name apart.
+        // The hash of the command's words keeps two programs of one name apart.
         let mut hash = DefaultHasher::new();
-        format!("{compile:?}").hash(&mut hash);
+        words_of(&compile).hash(&mut hash);
         let dir = output_dir().join("programs");
         fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
         let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
@@ -546,6 +546,11 @@ impl Executable {
         compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
         compared.before.extend(["--fields".into(), "--library".into(), library.into()]);
         compared.with_options(options)
+    }
+
+    /// The same program by itself again.
+    pub fn uncompared(&self) -> Executable {
+        Executable { before: Vec::new(), ..self.clone() }
     }
 
     /// With more options of compare.sh's.

@@ -7,8 +7,8 @@
  *
  * Besides, pairs at random, pushed apart to depths of 1 to 30 % of the smaller body's reach.
  *
- *   pressure [range]   range prints the errors of the random pairs, and of the middle of the
- *                      witness points, in % of that reach */
+ *   pressure [range | N]   range prints the errors of the random pairs, and of the middle of the
+ *                          witness points, in % of that reach; N: one sweep and depth in N */
 
 #include "tests/extension/pressure.h"
 
@@ -262,10 +262,12 @@ static void range_errors(unsigned kind, double share, double error[2])
     error[1] = 100 * sqrt(square[1] / n);
 }
 
+static unsigned every = 1;
+
 static void range(int prints)
 {
     for (unsigned k = 0; k < sizeof KINDS / sizeof *KINDS; k++)
-        for (unsigned i = 0; i < sizeof RANGE / sizeof *RANGE; i++) {
+        for (unsigned i = 0; i < sizeof RANGE / sizeof *RANGE; i += every) {
             double error[2];
             range_errors(k, RANGE[i], error);
             if (prints)
@@ -325,12 +327,13 @@ int main(int argc, char **argv)
         range(1);
         return checks_end();
     }
-    if (argc > 1) {
-        fprintf(stderr, "usage: %s [range]\n", argv[0]);
+    every = argc > 1 ? (unsigned)atoi(argv[1]) : every;
+    if (!every) {
+        fprintf(stderr, "usage: %s [range | N]\n", argv[0]);
         return 2;
     }
     range(0);
-    for (i = 0; i < sizeof all / sizeof *all; i++) {
+    for (i = 0; i < sizeof all / sizeof *all; i += every) {
         for (int d = 0; d < (single ? 1 : 2); d++) {
             const double depth = d ? 1e-5 : 1e-3;
             set_poses(&all[i], depth);
