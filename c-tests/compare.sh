@@ -123,7 +123,7 @@ build() {
 
 # The libccd.so.2 that a program gets, by what the dynamic linker says.
 libccd_of() {
-    sed -n 's|.*libccd\.so\.2 => \(/[^ ]*\) .*|\1|p' | head -n 1
+    sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p' | head -n 1
 }
 
 if [ -z "$theirs" ]; then
@@ -148,9 +148,13 @@ fi
 
 # --- the run ---------------------------------------------------------------------------
 
-preload=$work/compare.so
+# LD_PRELOAD is split at blanks and colons, which a path may have.
+links=$(mktemp -d)
+trap 'rm -rf "$counts" "$links"' EXIT
+ln -s "$work/compare.so" "$counts/libccd.so.2" "$links"
+preload=$links/compare.so
 # Its name is libccd.so.2: the program gets it for its own.
-[ "$base" = theirs ] || preload="$preload $counts/libccd.so.2"
+[ "$base" = theirs ] || preload="$preload $links/libccd.so.2"
 shift
 code=0
 # Interrupted, the program ends and the screen comes.

@@ -31,7 +31,7 @@ compile() {
 
 # The libccd.so.2 that the dynamic linker gives the program.
 libccd_of() {
-    ldd "$1" | sed -n 's|.*libccd\.so\.2 => \(/[^ ]*\).*|\1|p'
+    ldd "$1" | sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p'
 }
 
 # turn PROGRAM TABLE [LIBRARY]: some passes, of which the table keeps the best times: the last two

@@ -33,7 +33,7 @@ ln -s "$ours" "$work/libccd.so.2"
 cc -std=c99 -O2 -ffp-contract=off -I"$here/../include" "$1" -o "$work/case" "$work/libccd.so.2" -lm
 
 unset LD_LIBRARY_PATH
-theirs=$(ldd "$work/case" | sed -n 's|.*libccd\.so\.2 => \(/[^ ]*\) .*|\1|p')
+theirs=$(ldd "$work/case" | sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p')
 if [ -z "$theirs" ]; then
     echo "== no libccd on this system"
 elif grep -q ccdImplementation "$theirs"; then

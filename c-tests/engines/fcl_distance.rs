@@ -47,7 +47,7 @@ fn said(program: &Executable, preload: bool, pairs: u32) -> String {
     let mut command = program.command();
     command.arg(pairs.to_string());
     if preload {
-        command.env("LD_PRELOAD", preloaded());
+        harness::preload(&mut command, &preloaded());
     }
     let (status, written) = harness::run_command(&mut command, Duration::from_secs(300));
     assert!(status.success(), "{status}\n{}", written.stderr);

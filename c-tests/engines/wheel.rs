@@ -37,7 +37,7 @@ pub fn wheels(pairs: u32) -> Result<[BTreeMap<String, f64>; 2], String> {
         command.arg(pairs.to_string());
         if preload {
             let library = harness::library(Precision::Double).dir.join("libccd.so");
-            command.env("LD_PRELOAD", library);
+            harness::preload(&mut command, &library);
         }
         let (status, written) = run_command(&mut command, Duration::from_secs(60));
         assert!(status.success(), "{}", written.stderr);

@@ -272,10 +272,13 @@ fn written_at(path: &Path) -> Option<SystemTime> {
 /// compiler's rule, as for make, says it is made of.
 fn is_up_to_date(program: &Path, command: &Command, rule: &Path) -> bool {
     let rule = fs::read_to_string(rule).unwrap_or_default();
-    let files = rule.split_whitespace().skip(1).filter(|word| *word != "\\").map(Path::new);
-    let archives = command.get_args().map(Path::new).filter(|file| file.extension().is_some_and(|end| end == "a"));
+    // Blanks within a path are escaped.
+    let rule = rule.replace("\\\n", "").replace("\\ ", "\0");
+    let files = rule.split_whitespace().skip(1).map(|word| PathBuf::from(word.replace('\0', " ")));
+    let arguments = command.get_args().map(PathBuf::from);
+    let archives = arguments.filter(|file| file.extension().is_some_and(|end| end == "a"));
     let made = written_at(program);
-    !rule.is_empty() && files.chain(archives).all(|file| written_at(file).is_some_and(|time| Some(time) < made))
+    !rule.is_empty() && files.chain(archives).all(|file| written_at(&file).is_some_and(|time| Some(time) < made))
 }
 
 /// Makes a file under a name of its own, then moves it into place: whoever is
@@ -438,7 +441,9 @@ impl Program {
         if self.tools {
             compile.args(words("C_TESTS_FLAGS"));
         }
-        compile.arg(&self.source).args(&self.libraries);
+        // Some C++ programs are C sources, which clang compiles as C++ only when told to.
+        compile.args(["-x", ["c", "c++"][usize::from(self.cpp)]]).arg(&self.source);
+        compile.args(["-x", "none"]).args(&self.libraries);
         let mut library_path = None;
         if self.link == Link::System {
             compile.arg("-lccd");
@@ -621,7 +626,8 @@ impl Executable {
         set_library_path(&mut command, self.library_path.as_deref());
         let said = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
         let line = said.stdout.lines().find(|line| line.contains("libccd.so"))?;
-        let path = line.split_once("=>")?.1.split_whitespace().next()?;
+        // A path may have blanks in it.
+        let (path, _address) = line.split_once("=> ")?.1.rsplit_once(" (0x")?;
         Some(PathBuf::from(path))
     }
 
@@ -651,6 +657,13 @@ impl Executable {
             self.name
         );
     }
+}
+
+/// Loads a library before the others of a command's program. By its name: the dynamic linker splits
+/// `LD_PRELOAD` at blanks, which the path may have.
+pub fn preload(command: &mut Command, library: &Path) {
+    command.env("LD_PRELOAD", library.file_name().expect("a file"));
+    command.env("LD_LIBRARY_PATH", library.parent().expect("a file in a directory"));
 }
 
 fn set_library_path(command: &mut Command, dir: Option<&Path>) {

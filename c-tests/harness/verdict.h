@@ -19,7 +19,10 @@ typedef enum {
     VERDICTS
 } verdict_t;
 
-static const char *const VERDICT_NAME[VERDICTS] = { "right", "overlap missed", "false hit", "no direction", "too deep", "unsound" };
+/* Programs use a part of this file. */
+#define VERDICT_UNUSED __attribute__((unused))
+
+VERDICT_UNUSED static const char *const VERDICT_NAME[VERDICTS] = { "right", "overlap missed", "false hit", "no direction", "too deep", "unsound" };
 
 /* Metres. The signed depth: positive overlapping, negative the gap. */
 typedef struct {
@@ -34,7 +37,7 @@ typedef struct {
     double depth, length2; /* square of the direction's length */
 } verdict_answer_t;
 
-static inline verdict_t verdict(const verdict_answer_t *answer, const verdict_truth_t *truth)
+VERDICT_UNUSED static inline verdict_t verdict(const verdict_answer_t *answer, const verdict_truth_t *truth)
 {
     if (!answer->hit)
         return truth->lower > truth->touch ? VERDICT_MISSED : VERDICT_RIGHT;
@@ -51,13 +54,13 @@ static inline verdict_t verdict(const verdict_answer_t *answer, const verdict_tr
 }
 
 /* Whether the depth can be held against the truth: a hit that is one, and a number. */
-static inline int verdict_has_error(const verdict_answer_t *answer, verdict_t v)
+VERDICT_UNUSED static inline int verdict_has_error(const verdict_answer_t *answer, verdict_t v)
 {
     return answer->hit && answer->has_depth && v != VERDICT_SPURIOUS && v != VERDICT_BROKEN;
 }
 
 /* How far the depth is off the bounds, metres. */
-static inline double verdict_error(const verdict_answer_t *answer, const verdict_truth_t *truth)
+VERDICT_UNUSED static inline double verdict_error(const verdict_answer_t *answer, const verdict_truth_t *truth)
 {
     if (answer->depth > truth->upper)
         return answer->depth - truth->upper;

@@ -18,6 +18,8 @@ tool=${1:-}
 
 case $tool in
 address)
+    # clang's runtime is another package, and another library.
+    export CC=gcc CXX=g++
     # All of a program's undefined behaviour ends it: without that UBSan only writes.
     export C_TESTS_FLAGS="-O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer"
     exec cargo test --no-fail-fast "$@"

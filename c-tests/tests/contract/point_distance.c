@@ -13,7 +13,11 @@
 #include <float.h>
 #include <math.h>
 
+#ifdef __clang__
+typedef __float128 exact_t; /* clang has no other name for it */
+#else
 __extension__ typedef _Float128 exact_t;
+#endif
 typedef struct { exact_t v[3]; } exact_vec_t;
 
 static exact_vec_t exact(const ccd_vec3_t *a)

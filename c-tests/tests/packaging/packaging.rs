@@ -465,7 +465,10 @@ fn pkg_config() {
         let mut ask = Command::new("pkg-config");
         ask.env("PKG_CONFIG_PATH", libdir.join("pkgconfig"));
         let said = must_succeed(ask.args(args).arg("ccd"), "pkg-config");
-        said.stdout.split_whitespace().map(String::from).collect()
+        // A shell takes the words apart: blanks within a path are escaped.
+        let mut split = Command::new("sh");
+        split.arg("-c").arg(format!("printf '%s\\n' {}", said.stdout.trim()));
+        must_succeed(&mut split, "sh").stdout.lines().map(String::from).collect()
     };
     assert_eq!(ask(&["--modversion"]), ["2.0"]);
     let compile = |name: &str, flags: &[String]| {

@@ -11,6 +11,9 @@
 
 /* 113 bits on every platform of the tests; x86's long double has 64. */
 __extension__ typedef __float128 quad_t;
+#ifdef __clang__
+extern quad_t powf128(quad_t, quad_t); /* the C library's, declared by its headers for gcc alone */
+#endif
 
 typedef enum {
     PART_POINT,
