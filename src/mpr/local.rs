@@ -524,7 +524,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let upper = self.query.upper.dir;
         match step {
             Step::Ray(_) => Ok(false),
-            Step::Face { dir, .. } => {
+            Step::Face { dir, depth } => {
+                // A lower support value is known: the walk goes on from there.
+                if *depth > self.query.upper.depth + KNOWN_LEVEL * tolerance {
+                    return Ok(false);
+                }
                 let is_narrow = 2.0 * (face.inset() / face.offset).atan() < TILT_RAD;
                 let across = face.across();
                 Ok(!is_narrow || self.is_least_beside(step, dir, &[across, -across], tolerance)?)
@@ -901,6 +905,58 @@ mod tests {
             }
         }
         assert!(converged > 500, "{converged}");
+    }
+
+    /// The foot is in the known face of two drops' tips and balls, and a lower support value is known beside it.
+    #[test]
+    fn a_face_above_the_least_support_value_is_no_minimum() {
+        let drop = |radius: f64, tip: Vec3, at: Vec3| {
+            move |n: &Vec3| {
+                at + if n.dot(&tip) > radius {
+                    tip
+                } else {
+                    n * radius
+                }
+            }
+        };
+        let axes = [
+            Vec3::new(-0.932_477_614_117, -0.171_060_354_810, 0.318_156_964_693),
+            Vec3::new(0.556_685_227_222, 0.630_027_878_454, -0.541_448_454_236),
+        ];
+        let at = Vec3::new(-0.000_234_222_086, -0.000_430_533_990, -0.000_294_359_649);
+        let md = difference(
+            drop(
+                0.326_002_707_228,
+                axes[0] * 1.042_213_933_554,
+                Vec3::zeros(),
+            ),
+            drop(0.215_498_975_870, axes[1] * 0.820_162_066_817, at),
+        );
+        let settings = Settings {
+            tolerance: if EPSILON < 1e-10 { 3.2e-6 } else { 3.2e-4 },
+            ..SETTINGS
+        };
+        let h = |n: &Vec3| n.dot(&md.support(n).unwrap().v);
+        let mut r = Random::new(30);
+        let mut converged = 0;
+        for round in 0..20 {
+            // The first start leads to that face.
+            let start = [Vec3::x(), r.direction()][usize::from(round > 0)];
+            let (hit, status) = walk(&md, None, &start, &settings).0.unwrap();
+            if status != Status::Converged {
+                continue;
+            }
+            converged += 1;
+            for _ in 0..200 {
+                let n = (hit.dir + r.vector(0.05)).normalize();
+                let lower = h(&n);
+                assert!(
+                    lower >= hit.depth - 4.0 * settings.tolerance,
+                    "{round}: {lower} {hit:?}"
+                );
+            }
+        }
+        assert!(converged > 5, "{converged}");
     }
 
     /// A plate that a ball has passed through: from the old side there is a local minimum of the support function,
