@@ -662,8 +662,11 @@ impl Executable {
 /// Loads a library before the others of a command's program. By its name: the dynamic linker splits
 /// `LD_PRELOAD` at blanks, which the path may have.
 pub fn preload(command: &mut Command, library: &Path) {
+    let mut dirs = vec![library.parent().expect("a file in a directory").to_owned()];
+    let own = command.get_envs().find(|(name, _)| *name == "LD_LIBRARY_PATH");
+    dirs.extend(own.and_then(|(_, dir)| dir).map(PathBuf::from));
     command.env("LD_PRELOAD", library.file_name().expect("a file"));
-    command.env("LD_LIBRARY_PATH", library.parent().expect("a file in a directory"));
+    command.env("LD_LIBRARY_PATH", std::env::join_paths(dirs).expect("paths without a colon"));
 }
 
 fn set_library_path(command: &mut Command, dir: Option<&Path>) {
