@@ -568,7 +568,7 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     let memory = memory.map(|memory| &mut memory.0);
     let manifold = manifold::contacts(&SupportOf(a), &SupportOf(b), &normal, slop, memory, max)?;
     let mut count = 0;
-    for (out, contact) in room.iter_mut().zip(manifold.contacts()) {
+    for (out, contact) in room.iter_mut().zip(manifold.iter()) {
         *out = Contact {
             point1: to_real(&contact.point1),
             point2: to_real(&contact.point2),

@@ -303,7 +303,7 @@ int ccdSignedDistance(const void *obj1,
 /**
  * How many numbers a ccd_manifold_t holds.
  */
-#define CCD_MANIFOLD_REALS 141
+#define CCD_MANIFOLD_REALS 139
 
 /**
  * The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the
@@ -318,7 +318,11 @@ typedef struct ccd_manifold_t {
   /**
    * Private.
    */
-  unsigned int words[11];
+  unsigned int words[9];
+  /**
+   * Private.
+   */
+  unsigned int checksum;
 } ccd_manifold_t;
 
 /**

@@ -73,6 +73,15 @@ pub struct FaceSample {
 }
 
 impl FaceSample {
+    pub fn new(tilt: Vec2, found: Vec3) -> Self {
+        Self {
+            tilt,
+            found,
+            corner: found,
+            ..Self::default()
+        }
+    }
+
     /// Returns by how much its vertex has a larger value in its own direction than another one.
     fn gain_over(&self, other: &Self) -> f64 {
         self.tilt.dot(&way(&other.found, &self.found)) + other.found.z - self.found.z
@@ -80,6 +89,7 @@ impl FaceSample {
 }
 
 /// The face of one object.
+#[derive(Clone, Copy, Default)]
 pub struct Face {
     pub corners: Polygon<MAX_CORNERS>,
     /// The height of its support plane, outwards.
@@ -90,36 +100,37 @@ pub struct Face {
     pub rounding: f64,
     /// How far beside its corners the surface is the slop low; of a segment beside the less round end.
     pub round: f64,
-    /// The part that the cache stores.
-    pub cached: CachedFace,
+    /// The samples that found the corners, in their order.
+    pub samples: FixedVec<FaceSample, MAX_CORNERS>,
+    /// The tilt that finds corners.
+    pub tilt_size: f64,
+    /// Whether all corners are known, all of them sharp.
+    pub is_complete: bool,
     /// How it moved, where it was cached.
     pub motion: Option<Motion>,
 }
 
 /// Finds both faces, cached or from nothing. Returns them with the slop in force: the caller's, or the least one
-/// of the depth. The first vertex of obj1 becomes the origin of the frame.
+/// of the depth.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
 pub fn faces<A: SupportMap, B: SupportMap>(
     obj1: &A,
     obj2: &B,
-    frame: &mut ContactFrame,
+    frame: &ContactFrame,
     slop: f64,
     cache: Option<&ManifoldCache>,
 ) -> Result<([Face; 2], f64), Fault> {
-    let mut one = FaceSearch::new(obj1, frame, 1.0, false);
-    let found1 = one.find_cached_or_plane(cache.map(|cache| &cache.faces[0]))?;
-    *frame = one.frame;
-    let mut two = FaceSearch::new(obj2, frame, -1.0, true);
-    let found2 = two.find_cached_or_plane(cache.map(|cache| &cache.faces[1]))?;
-    let slop = larger(slop, MIN_SLOP_REL * (one.top + two.top));
+    let mut one = FaceSearch::new(obj1, frame, 1.0);
+    let mut two = FaceSearch::new(obj2, frame, -1.0);
+    one.find_cached_or_plane(cache.map(|cache| &cache.faces[0]))?;
+    two.find_cached_or_plane(cache.map(|cache| &cache.faces[1]))?;
+    let slop = larger(slop, MIN_SLOP_REL * (one.face.top + two.face.top));
     let has_slop = cache.is_some_and(|cache| cache.has_slop(slop));
-    let faces = [
-        one.face_of(found1, has_slop, slop)?,
-        two.face_of(found2, has_slop, slop)?,
-    ];
-    Ok((faces, slop))
+    one.find(slop, has_slop)?;
+    two.find(slop, has_slop)?;
+    Ok(([one.face, two.face], slop))
 }
 
 impl Face {
@@ -145,128 +156,121 @@ pub fn across(a: &Vec3, b: &Vec3, tilt: f64, lean: f64) -> Vec2 {
 /// Finds the corners of one face.
 struct FaceSearch<'a, S> {
     object: &'a S,
-    frame: ContactFrame,
-    /// Whether the frame has its origin; else the first vertex becomes it.
-    has_origin: bool,
+    frame: &'a ContactFrame,
     sign: f64,
-    /// The height of the support plane, and the vertex on it.
-    top: f64,
-    first: FaceSample,
-    slop: f64,
-    size: f64,
-    /// The tilt that finds corners.
-    tilt_size: f64,
-    rounding: f64,
     query_count: u32,
-    /// The corners found, in their order.
-    ring: FixedVec<FaceSample, MAX_CORNERS>,
+    /// The vertex on the support plane.
+    first: FaceSample,
+    /// What is known of it.
+    face: Face,
 }
 
 impl<'a, S: SupportMap> FaceSearch<'a, S> {
-    fn new(object: &'a S, frame: &ContactFrame, sign: f64, has_origin: bool) -> Self {
+    fn new(object: &'a S, frame: &'a ContactFrame, sign: f64) -> Self {
         FaceSearch {
             object,
-            frame: *frame,
-            has_origin,
+            frame,
             sign,
-            top: 0.0,
-            first: FaceSample::default(),
-            slop: 0.0,
-            size: 0.0,
-            tilt_size: 0.0,
-            rounding: 0.0,
             query_count: 0,
-            ring: FixedVec::default(),
+            first: FaceSample::default(),
+            face: Face::default(),
         }
     }
 
     fn query(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
         let dir = self.frame.tilted_direction(self.sign, tilt.into());
         let p = self.object.support(&dir);
-        if !self.has_origin {
-            (self.frame.origin, self.has_origin) = (p, true);
-        }
         self.query_count += 1;
-        self.rounding = larger(self.rounding, 8.0 * EPSILON * largest(&p));
-        let [x, y, height] = self.frame.project(&p)?.into();
-        let found = Vec3::new(x, y, self.top - self.sign * height);
-        Ok(FaceSample {
-            tilt,
-            found,
-            corner: found,
-            ..FaceSample::default()
-        })
+        self.face.rounding = larger(self.face.rounding, 8.0 * EPSILON * largest(&p));
+        let mut found = self.frame.project(&p)?;
+        found.z = self.face.top - self.sign * found.z;
+        Ok(FaceSample::new(tilt, found))
     }
 
     /// Finds what may be a corner of the face: with the tilt, else with half of it.
     fn corner(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
         let new = self.query(tilt)?;
-        if new.found.z <= self.slop {
+        if new.found.z <= self.face.slop {
             return Ok(new);
         }
         self.query(tilt * 0.5)
     }
 
     /// Finds the cached face, or the support plane where it is another.
-    fn find_cached_or_plane(&mut self, cached: Option<&CachedFace>) -> Result<Option<Face>, Fault> {
+    fn find_cached_or_plane(&mut self, cached: Option<&CachedFace>) -> Result<(), Fault> {
         if let Some(cached) = cached {
-            let found = self.find_cached(cached)?;
-            if found.is_some() {
-                return Ok(found);
-            }
+            self.face.motion = self.find_cached(cached)?;
         }
-        self.find_plane()?;
-        Ok(None)
-    }
-
-    /// Returns the cached face, or finds it from nothing where its slop was another.
-    fn face_of(mut self, found: Option<Face>, has_slop: bool, slop: f64) -> Result<Face, Fault> {
-        if let Some(face) = found {
-            if has_slop {
-                return Ok(face);
-            }
+        if self.face.motion.is_none() {
             self.find_plane()?;
         }
-        self.find(slop)
+        Ok(())
     }
 
     /// Queries the support plane.
     fn find_plane(&mut self) -> Result<(), Fault> {
-        (self.top, self.query_count, self.ring) = (0.0, 0, FixedVec::default());
+        self.face.top = 0.0;
         self.first = self.query(Vec2::zeros())?;
-        self.top = -self.first.found.z;
+        self.face.top = -self.first.found.z;
         (self.first.found.z, self.first.corner.z) = (0.0, 0.0);
+        Ok(())
+    }
+
+    /// Finds the face from nothing, where it is not the cached one or that had another slop.
+    fn find(&mut self, slop: f64, has_slop: bool) -> Result<(), Fault> {
+        if self.face.motion.is_none() || !has_slop {
+            if self.face.motion.is_some() {
+                self.find_plane()?;
+            }
+            self.face.samples = FixedVec::default();
+            self.query_count = 1;
+            self.start(slop)?;
+            if self.face.samples.len() > 1 {
+                self.refine()?;
+            }
+            for i in 0..self.face.samples.len() {
+                self.remove_roundness(i)?;
+            }
+            for i in 0..self.face.samples.len() {
+                if let Some(round) = self.round_corner_at(self.face.samples.at(i)) {
+                    let sample = self.face.samples.at_mut(i);
+                    (sample.corner, sample.radius) = (round.corner, round.radius);
+                }
+            }
+        }
+        self.join_corners();
         Ok(())
     }
 
     /// Finds the size, and the first corners.
     fn start(&mut self, slop: f64) -> Result<(), Fault> {
+        let mut size = 0.0;
         let mut wide = [self.first; 3];
         for i in 0..3 {
             let new = self.query(THREE_WAYS[i] * WIDE_TILT)?;
             for known in &wide {
-                self.size = larger(self.size, way(&known.found, &new.found).norm());
+                size = larger(size, way(&known.found, &new.found).norm());
             }
             wide[i] = new;
         }
         // No coarser than the face, no finer than what rounding does to it.
-        self.slop = slop.min(self.size).max(MIN_SLOP_ROUNDINGS * self.rounding);
-        if self.size > self.rounding {
-            self.tilt_size = lesser(2.0 * self.slop / self.size, WIDE_TILT);
+        self.face.slop = slop.min(size).max(MIN_SLOP_ROUNDINGS * self.face.rounding);
+        if size > self.face.rounding {
+            self.face.tilt_size = lesser(2.0 * self.face.slop / size, WIDE_TILT);
             for mut new in wide {
-                if new.found.z > self.slop {
-                    new = self.corner(new.tilt * (self.tilt_size / WIDE_TILT))?;
+                if new.found.z > self.face.slop {
+                    new = self.corner(new.tilt * (self.face.tilt_size / WIDE_TILT))?;
                 }
-                if new.found.z <= self.slop && !self.is_found(&new) {
-                    self.ring.push(new);
+                if new.found.z <= self.face.slop && !self.is_found(&new) {
+                    self.face.samples.push(new);
                 }
             }
         }
         let first = self.first;
-        if !self.is_found(&first) && self.ring.len() < 2 {
-            self.ring.push(first);
+        if !self.is_found(&first) && self.face.samples.len() < 2 {
+            self.face.samples.push(first);
         }
-        if let [a, b, c] = &mut *self.ring {
+        if let [a, b, c] = &mut *self.face.samples {
             if way(&a.found, &b.found).perp(&way(&a.found, &c.found)) < 0.0 {
                 swap(b, c);
             }
@@ -276,63 +280,71 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
 
     fn is_same(&self, a: &FaceSample, b: &FaceSample) -> bool {
         let apart = a.found - b.found;
-        apart.xy().norm() <= self.rounding && apart.z.abs() <= self.rounding
+        apart.xy().norm() <= self.face.rounding && apart.z.abs() <= self.face.rounding
     }
 
-    /// Returns whether a vertex is one of those found; from another direction it is sharp then.
+    /// Returns whether two samples may be of one round corner.
+    fn is_near(&self, a: &FaceSample, b: &FaceSample) -> bool {
+        way(&a.found, &b.found).norm() <= ROUND_CORNER_SLOPS * self.face.slop
+    }
+
+    /// Returns whether a vertex is one of those found; from another direction it is sharp then. Of a round end two
+    /// directions that differ along the line alone find one point: beside another sample it may still be round.
     fn is_found(&mut self, new: &FaceSample) -> bool {
-        let known = (0..self.ring.len()).find(|i| self.is_same(self.ring.at(*i), new));
+        let samples = &self.face.samples;
+        let known = (0..samples.len()).find(|i| self.is_same(samples.at(*i), new));
         if let Some(i) = known {
-            let (least, known) = (0.25 * self.tilt_size, self.ring.at_mut(i));
-            known.is_settled |= (known.tilt - new.tilt).norm() >= least;
+            let turned = (samples.at(i).tilt - new.tilt).norm();
+            let near_count = samples.iter().filter(|s| self.is_near(s, new)).count();
+            let is_sharp = near_count == 1 && turned >= 0.25 * self.face.tilt_size;
+            self.face.samples.at_mut(i).is_settled |= is_sharp;
         }
         known.is_some()
     }
 
-    /// Finds the corners between those found, in passes around the face.
+    /// Finds the corners between those found, around the face until every side is closed.
     fn refine(&mut self) -> Result<(), Fault> {
-        loop {
-            let before = self.ring.len();
-            let mut i = 0;
-            while i < self.ring.len() {
-                if !self.ring.at(i).is_closed {
-                    if let Some(new) = self.beyond(i)? {
-                        self.ring.insert(i + 1, new);
-                        i += 1;
-                    } else {
-                        self.ring.at_mut(i).is_closed = true;
-                    }
+        let (mut i, mut closed) = (0, 0);
+        while closed < self.face.samples.len() {
+            i %= self.face.samples.len();
+            closed += 1;
+            if !self.face.samples.at(i).is_closed {
+                if let Some(new) = self.beyond(i)? {
+                    self.face.samples.insert(i + 1, new);
+                    i += 1;
+                    closed = 0;
+                } else {
+                    self.face.samples.at_mut(i).is_closed = true;
                 }
-                i += 1;
             }
-            if self.ring.len() == before {
-                return Ok(());
-            }
+            i += 1;
         }
+        Ok(())
     }
 
     /// Finds the corner beyond the side from sample `i` to the next, if there is one.
     fn beyond(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
         // A corner costs up to two, and those that are not settled one.
-        let pending = self.ring.iter().filter(|s| !s.is_settled).count() as u32;
+        let pending = self.face.samples.iter().filter(|s| !s.is_settled).count() as u32;
         let count = self.query_count + 2;
         let is_last = count > self.query_limit() || count + pending > MAX_QUERIES;
-        if self.ring.len() == MAX_CORNERS || is_last {
+        if self.face.samples.len() == MAX_CORNERS || is_last {
             return Ok(None);
         }
-        let [a, b] = [i, i + 1].map(|i| self.ring.at(i).found);
-        let length = way(&a, &b).norm();
-        let bias = larger(2.0 * self.rounding / length, SIDE_LEAN * self.tilt_size);
-        let bias = lesser(bias, self.tilt_size / 64.0);
-        let new = self.corner(across(&a, &b, self.tilt_size, bias))?;
-        if new.found.z > self.slop || self.is_found(&new) {
+        let [a, b] = [i, i + 1].map(|i| self.face.samples.at(i).found);
+        let (length, tilt_size) = (way(&a, &b).norm(), self.face.tilt_size);
+        let lean = larger(2.0 * self.face.rounding / length, SIDE_LEAN * tilt_size);
+        let lean = lesser(lean, tilt_size / 64.0);
+        let new = self.corner(across(&a, &b, tilt_size, lean))?;
+        if new.found.z > self.face.slop || self.is_found(&new) {
             return Ok(None);
         }
         // One more of a round corner tells nothing.
-        let apart = [a, b].map(|end| way(&end, &new.found).norm());
-        if lesser(apart[0], apart[1]) <= ROUND_CORNER_SLOPS * self.slop {
-            self.remove_roundness(if apart[0] < apart[1] { i } else { i + 1 })?;
-            if self.round_corner_at(&new).is_some() {
+        let [to_a, to_b] = [a, b].map(|end| way(&end, &new.found).norm());
+        let end = if to_a < to_b { i } else { i + 1 };
+        if self.is_near(self.face.samples.at(end), &new) {
+            self.remove_roundness(end)?;
+            if self.round_corner_at(&new).is_some() || self.is_found(&new) {
                 return Ok(None);
             }
         }
@@ -342,31 +354,27 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
 
     /// Returns how far a corner is beyond a side at least: rounding, and what is left of roundness, is less.
     fn flat(&self) -> f64 {
-        self.rounding + self.tilt_size * self.slop
+        self.face.rounding + self.face.tilt_size * self.face.slop
     }
 
     /// Returns the limit of queries: few corners, all of them sharp, need half.
     fn query_limit(&self) -> u32 {
-        let is_round = self.ring.iter().any(|s| s.radius > 0.0);
-        let share = if self.ring.len() > 4 || is_round {
-            1
-        } else {
-            2
-        };
-        MAX_QUERIES / share
+        let samples = &self.face.samples;
+        let is_few = samples.len() <= 4 && samples.iter().all(|s| s.radius == 0.0);
+        if is_few { MAX_QUERIES / 2 } else { MAX_QUERIES }
     }
 
     /// Removes roundness: what moves in proportion to the tilt.
     fn remove_roundness(&mut self, i: usize) -> Result<(), Fault> {
-        let mut full = *self.ring.at(i);
+        let mut full = *self.face.samples.at(i);
         if full.is_settled || self.query_count >= self.query_limit() {
             return Ok(());
         }
-        self.ring.at_mut(i).is_settled = true;
+        self.face.samples.at_mut(i).is_settled = true;
         if self.round_corner_at(&full).is_some() {
             return Ok(());
         }
-        let share = self.tilt_size / full.tilt.norm();
+        let share = self.face.tilt_size / full.tilt.norm();
         if share < 0.5 {
             // One of the first directions found it.
             let new = self.query(full.tilt * share)?;
@@ -382,9 +390,10 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             }
             let near = self.query(tilt)?;
             let outwards = way(&near.found, &full.found);
-            let (moved, most) = (outwards.norm(), (0.5 * self.slop * self.size).sqrt());
+            let moved = outwards.norm();
+            let most = self.face.slop / self.face.tilt_size.sqrt();
             let (there, back) = (full.gain_over(&near), near.gain_over(&full));
-            let is_smooth = (there - back).abs() <= 0.5 * (there + back) + self.rounding;
+            let is_smooth = (there - back).abs() <= 0.5 * (there + back) + self.face.rounding;
             if self.is_same(&full, &near) {
                 break;
             }
@@ -396,12 +405,15 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             }
             // Half the tilt finds the higher one of two round ends of a line. A lean that makes them level, and
             // more, finds this one.
-            let lean = lesser(0.125 * self.tilt_size + back / moved, self.tilt_size);
+            let lean = lesser(
+                0.125 * self.face.tilt_size + back / moved,
+                self.face.tilt_size,
+            );
             tilt += outwards * (lean / moved);
         }
-        *self.ring.at_mut(i) = FaceSample {
+        *self.face.samples.at_mut(i) = FaceSample {
             is_settled: true,
-            is_closed: self.ring.at(i).is_closed,
+            is_closed: self.face.samples.at(i).is_closed,
             ..full
         };
         Ok(())
@@ -409,104 +421,66 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
 
     /// Returns the sample of a round corner that another sample is one more of.
     fn round_corner_at(&self, new: &FaceSample) -> Option<FaceSample> {
-        let apart = |s: &FaceSample| way(&s.found, &new.found).norm();
-        let is_here = |s: &&FaceSample| apart(s) <= ROUND_CORNER_SLOPS * self.slop;
-        let mut round = self.ring.iter().filter(|s| s.radius > 0.0);
-        round.find(is_here).copied()
+        let mut round = self.face.samples.iter().filter(|s| s.radius > 0.0);
+        round.find(|s| self.is_near(s, new)).copied()
     }
 
-    /// Finds the face from nothing.
-    fn find(mut self, slop: f64) -> Result<Face, Fault> {
-        self.start(slop)?;
-        if self.ring.len() > 1 {
-            self.refine()?;
-        }
-        for i in 0..self.ring.len() {
-            self.remove_roundness(i)?;
-        }
-        for i in 0..self.ring.len() {
-            if let Some(round) = self.round_corner_at(self.ring.at(i)) {
-                let sample = self.ring.at_mut(i);
-                (sample.corner, sample.radius) = (round.corner, round.radius);
-            }
-        }
-        Ok(self.face(None))
-    }
-
-    /// Returns the face of the samples, which are the cached ones if it is cached.
-    fn face(&self, cached: Option<(&CachedFace, Motion)>) -> Face {
+    /// Makes the polygon of the samples.
+    fn join_corners(&mut self) {
         // One that was found twice is one, to the rounding of both.
-        let merged = larger(self.slop, 4.0 * self.rounding);
-        let corners: Polygon<MAX_CORNERS> = self.ring.iter().map(|s| s.corner).collect();
+        let merged = larger(self.face.slop, 4.0 * self.face.rounding);
+        let samples = self.face.samples;
+        let corners: Polygon<MAX_CORNERS> = samples.iter().map(|s| s.corner).collect();
         let corners = corners.tidied(merged, self.flat());
-        let (round, is_complete) = if let Some((cached, _)) = cached {
-            (cached.round.into(), cached.is_complete != 0.0)
-        } else {
-            let radius = corners.iter().map(|corner| {
-                let is_here = |s: &&FaceSample| way(&s.corner, corner).norm() <= merged;
-                let radii = self.ring.iter().filter(is_here).map(|s| s.radius);
-                radii.fold(0.0, larger)
-            });
-            let radius = radius.fold(f64::INFINITY, lesser);
-            // There may be corners between those of a full ring, and the support plane may be higher than all.
-            let is_sharp = self.ring.iter().all(|s| s.corner == s.found);
-            let has_highest = corners.iter().any(|corner| corner.z <= self.rounding);
-            let is_complete = is_sharp && has_highest && self.ring.len() < MAX_CORNERS;
-            ((2.0 * radius * self.slop).sqrt(), is_complete)
-        };
-        let mut new = if is_complete {
-            CachedFace::of_polygon(&corners, self.tilt_size)
-        } else {
-            CachedFace::of_samples(&self.ring, self.tilt_size)
-        };
-        (new.slop, new.round) = (self.slop as f32, round as f32);
-        Face {
-            corners,
-            top: self.top,
-            slop: self.slop,
-            rounding: self.rounding,
-            round,
-            cached: new,
-            motion: cached.map(|(_, motion)| motion),
-        }
+        let radius = corners.iter().map(|corner| {
+            let is_here = |s: &&FaceSample| way(&s.corner, corner).norm() <= merged;
+            let radii = samples.iter().filter(is_here).map(|s| s.radius);
+            radii.fold(0.0, larger)
+        });
+        let radius = radius.fold(f64::INFINITY, lesser);
+        // There may be corners between those of a full ring, and the support plane may be higher than all.
+        let is_sharp = samples.iter().all(|s| s.corner == s.found);
+        let has_highest = corners.iter().any(|corner| corner.z <= self.face.rounding);
+        self.face.is_complete = is_sharp && has_highest && samples.len() < MAX_CORNERS;
+        self.face.round = (2.0 * radius * self.face.slop).sqrt();
+        self.face.corners = corners;
     }
 
-    /// Confirms the cached face; None where it is another.
-    fn find_cached(&mut self, cached: &CachedFace) -> Result<Option<Face>, Fault> {
-        for sample in cached.samples() {
+    /// Confirms the cached face, and returns how it moved; None where it is another.
+    fn find_cached(&mut self, cached: &CachedFace) -> Result<Option<Motion>, Fault> {
+        for [tilt, ..] in cached.samples() {
             // NaN ends here too, and what has no tilt.
-            let [tilt, ..] = sample.parts();
             if !(tilt.norm() > 0.0 && tilt.norm() <= 0.5) {
                 return Ok(None);
             }
             let new = self.query(tilt)?;
-            self.ring.push(new);
+            self.face.samples.push(new);
         }
-        (self.tilt_size, self.slop) = (cached.tilt_size.into(), cached.slop.into());
-        self.slop = larger(self.slop, self.rounding);
-        let slack = 0.25 * self.slop + self.rounding;
-        let Some(motion) = cached.motion(&self.ring, slack) else {
+        let slop = larger(f64::from(cached.slop), self.face.rounding);
+        (self.face.slop, self.face.tilt_size) = (slop, cached.tilt_size.into());
+        let slack = 0.25 * slop + self.face.rounding;
+        let Some(motion) = cached.motion(&self.face.samples, slack) else {
             return Ok(None);
         };
-        for (new, old) in self.ring.iter_mut().zip(cached.samples()) {
-            let [tilt, _, offset] = old.parts();
+        for (new, [tilt, _, offset]) in self.face.samples.iter_mut().zip(cached.samples()) {
             let low = 0.5 * offset.dot(&tilt);
+            new.radius = offset.norm() / tilt.norm();
             let offset = motion.turn * offset;
             new.corner += Vec3::new(offset.x, offset.y, low);
             new.tilt = motion.turn * tilt;
         }
-        self.top = if cached.is_complete != 0.0 {
-            let heights = self.ring.iter().map(|s| -s.corner.z);
-            heights.fold(f64::NEG_INFINITY, larger)
+        if cached.is_complete != 0.0 {
+            let heights = self.face.samples.iter().map(|s| -s.corner.z);
+            self.face.top = heights.fold(f64::NEG_INFINITY, larger);
         } else {
-            -self.query(Vec2::zeros())?.found.z
-        };
-        for sample in self.ring.iter_mut() {
-            sample.found.z += self.top;
-            sample.corner.z = larger(sample.corner.z + self.top, 0.0);
+            self.find_plane()?;
         }
-        let is_low = |s: &FaceSample| s.corner.z > self.slop + self.rounding;
-        let is_face = !self.ring.iter().any(is_low);
-        Ok(is_face.then(|| self.face(Some((cached, motion)))))
+        let top = self.face.top;
+        for sample in self.face.samples.iter_mut() {
+            sample.found.z += top;
+            sample.corner.z = larger(sample.corner.z + top, 0.0);
+        }
+        let is_low = |s: &FaceSample| s.corner.z > slop + self.face.rounding;
+        Ok((!self.face.samples.iter().any(is_low)).then_some(motion))
     }
 }

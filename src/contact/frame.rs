@@ -35,28 +35,28 @@ impl ContactFrame {
         }
     }
 
-    /// Returns the frame at the world's origin across unit `normal`, whose axes and normal are right-handed.
-    pub fn right_handed(normal: &Vec3) -> Self {
-        let mut frame = Self::new(normal, &Vec3::zeros());
-        if POLE.dot(normal) < 0.0 {
-            frame.axes.swap(0, 1);
-        }
-        frame
-    }
-
-    /// Returns the same whose first axis is the part of `axis` across the normal. None where there is none.
-    pub fn along_axis(normal: &Vec3, axis: &Vec3) -> Option<Self> {
-        let across = axis - normal * normal.dot(axis);
+    /// Returns the frame at the world's origin across unit `normal` whose first axis is the part of `axes[0]` across
+    /// it; a point is on the same side of that as with `axes`, also where the normal is turned round. None where the
+    /// axes have no plane that is within 60° of it.
+    pub fn following(normal: &Vec3, axes: &[Vec3; 2]) -> Option<Self> {
+        let along = axes[0].cross(&axes[1]).dot(normal);
+        let across = axes[0] - normal * normal.dot(&axes[0]);
         let norm = across.norm();
         // NaN is no axis.
-        (norm > 0.5 && norm < 2.0).then(|| {
+        let is_same = [along.abs(), norm].iter().all(|x| *x > 0.5 && *x < 2.0);
+        is_same.then(|| {
             let e1 = across / norm;
             Self {
                 origin: Vec3::zeros(),
                 normal: *normal,
-                axes: [e1, normal.cross(&e1)],
+                axes: [e1, normal.cross(&e1) * along.signum()],
             }
         })
+    }
+
+    /// Returns whether the axes and the normal are right-handed.
+    pub fn is_right_handed(&self) -> bool {
+        self.axes[0].cross(&self.axes[1]).dot(&self.normal) > 0.0
     }
 
     /// Returns the unit direction along the normal (`sign` 1) or against it (-1), tilted by the tangents `x`
@@ -112,8 +112,15 @@ mod tests {
             let products = [e1.dot(&n), e2.dot(&n), e1.dot(&e2), e1.norm() - 1.0];
             assert!(products.iter().all(|x| x.abs() < 1e-14), "{products:?}");
             assert_eq!(f.axes, h.axes);
-            let g1 = ContactFrame::right_handed(&n);
-            assert!((g1.axes[0].cross(&g1.axes[1]) - n).norm() < 1e-14);
+            for normal in [m, -m] {
+                let next = ContactFrame::following(&normal, &f.axes).unwrap();
+                assert_eq!(next.is_right_handed(), f.is_right_handed() == (normal == m));
+                let turned = [0, 1].map(|i| (next.axes[i] - f.axes[i]).norm());
+                assert!(
+                    turned.iter().all(|x| *x < 3.0 * (n - m).norm()),
+                    "{turned:?}"
+                );
+            }
             if POLE.dot(&n) * POLE.dot(&m) > 0.0 {
                 assert!((e1 - g.axes[0]).norm() < 3.0 * (n - m).norm() + 1e-14);
             }

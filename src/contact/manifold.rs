@@ -40,16 +40,8 @@ pub const MAX_CONTACTS: usize = 2 * MAX_CORNERS;
 /// The sine of the angle up to which segments share a strip: 10°.
 const MAX_PARALLEL_SINE: f64 = 0.17;
 
-/// A contact manifold.
-#[derive(Clone, Copy, Default)]
-pub struct Manifold(FixedVec<Contact, MAX_CONTACTS>);
-
-impl Manifold {
-    /// Returns the contacts, the deepest first.
-    pub fn contacts(&self) -> &[Contact] {
-        &self.0
-    }
-}
+/// A contact manifold: its contacts, the deepest first.
+pub type Manifold = FixedVec<Contact, MAX_CONTACTS>;
 
 /// Returns the contacts of the faces along unit `normal` and against it, at most `max` of them. Takes at most 24
 /// queries of each object, and those of a cache that no longer fits.
@@ -64,73 +56,76 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     out_cache: Option<&mut ManifoldCache>,
     max: usize,
 ) -> Result<Manifold, Fault> {
-    let mut cache = out_cache.as_deref().copied();
-    let again = cache.as_mut().and_then(|cache| cache.frame(normal));
-    let cached = cache.as_ref().filter(|_| again.is_some());
-    let mut frame = again.unwrap_or_else(|| ContactFrame::right_handed(normal));
-    let ([one, two], slop) = faces(obj1, obj2, &mut frame, slop, cached)?;
+    let mut cache = out_cache.as_deref().copied().unwrap_or_default();
+    let followed = cache.frame(normal);
+    let frame = followed.unwrap_or_else(|| ContactFrame::new(normal, &Vec3::zeros()));
+    let ([one, two], slop) = faces(obj1, obj2, &frame, slop, followed.map(|_| &cache))?;
     let (mut region, beside) = overlap(&one, &two);
     for corner in region.iter_mut() {
         corner.z = one.corners.low(corner) + two.corners.low(corner);
     }
-    let (mut ids, mut first_id) = ([0; MAX_CONTACTS], 0);
-    if let Some(cache) = &mut cache {
-        let slop = larger(one.slop, two.slop);
-        ids = cache.ids([one.motion, two.motion], &region, slop);
-        first_id = cache.first_id();
-    }
-    let order = reduced(&region, &ids, first_id, max, one.rounding + two.rounding);
+    let ids = cache.ids(
+        [one.motion, two.motion],
+        &region,
+        larger(one.slop, two.slop),
+    );
+    let order = reduced(
+        &region,
+        &ids,
+        cache.ids[0],
+        max,
+        one.rounding + two.rounding,
+    );
     let mut manifold = Manifold::default();
     let mut stored_ids: FixedVec<(Vec3, u32), MAX_CONTACTS> = FixedVec::default();
     for i in order.iter() {
         let at = *region.at(*i);
-        let mut id = id_of(&ids, i % region.len().max(1));
         let [at1, at2] = beside.unwrap_or([at; 2]);
         let lows = [one.corners.low(&at1), two.corners.low(&at2)];
         let point1 = frame.point(at1.x, at1.y) + frame.normal * (one.top - lows[0]);
         let depth = one.top + two.top - lows[0] - lows[1];
         let beside = way(&at1, &at2);
         let across = frame.axes[0] * beside.x + frame.axes[1] * beside.y;
-        if let Some(cache) = cache.as_mut().filter(|_| id == 0) {
+        let mut id = *ids.at(*i);
+        if id == 0 {
             id = cache.new_id();
         }
         stored_ids.push((at, id));
-        manifold.0.push(Contact {
+        manifold.push(Contact {
             point1,
             point2: point1 - frame.normal * depth + across,
             depth,
-            id,
+            id: if out_cache.is_some() { id } else { 0 },
         });
     }
-    if let (Some(out_cache), Some(mut cache)) = (out_cache, cache) {
-        cache.store(&frame, slop, [one.cached, two.cached], &stored_ids);
+    if let Some(out_cache) = out_cache {
+        cache.store(&frame, slop, [&one, &two], &stored_ids);
         *out_cache = cache;
     }
+    // In order around the normal.
+    if let ([_, others @ ..], false) = (&mut *manifold, frame.is_right_handed()) {
+        others.reverse();
+    }
     Ok(manifold)
-}
-
-fn id_of(ids: &[u32; MAX_CONTACTS], i: usize) -> u32 {
-    ids.get(i).copied().unwrap_or(0)
 }
 
 /// Returns the indices of at most `max` corners of the region, the deepest first. Those that have ids stay while they
 /// span nine tenths of the largest area; differences of depth by `tie` are rounding.
 fn reduced(
     region: &Polygon<MAX_CONTACTS>,
-    ids: &[u32; MAX_CONTACTS],
+    ids: &FixedVec<u32, MAX_CONTACTS>,
     first_id: u32,
     max: usize,
     tie: f64,
 ) -> FixedVec<usize, MAX_CONTACTS> {
-    let id_of = |i: usize| id_of(ids, i % region.len().max(1));
     // Rounding alone makes no corner the deepest.
     let is_deeper = |i: usize, j: usize| region.at(i).z < region.at(j).z - tie;
     let mut deepest = (1..region.len()).fold(0, |k, i| if is_deeper(i, k) { i } else { k });
-    let is_first = |i: &usize| first_id != 0 && id_of(*i) == first_id && !is_deeper(deepest, *i);
+    let is_first = |i: &usize| first_id != 0 && *ids.at(*i) == first_id && !is_deeper(deepest, *i);
     deepest = (0..region.len()).find(is_first).unwrap_or(deepest);
     let best = region.reduced(deepest, max);
-    if region.len() > max && id_of(deepest) != 0 {
-        let kept = (deepest..deepest + region.len()).filter(|i| id_of(*i) != 0);
+    if region.len() > max && *ids.at(deepest) != 0 {
+        let kept = (deepest..deepest + region.len()).filter(|i| *ids.at(*i) != 0);
         let kept: FixedVec<usize, MAX_CONTACTS> = kept.collect();
         let size = |indices: &[usize]| {
             let corners: Polygon<MAX_CONTACTS> = indices.iter().map(|i| *region.at(*i)).collect();
@@ -246,8 +241,8 @@ mod tests {
     fn an_octagon_and_what_is_left_of_it() {
         let angle = core::f64::consts::FRAC_PI_8 as f64;
         let whole = stacked(angle, MAX_CONTACTS);
-        assert_eq!(whole.contacts().len(), 8);
-        for c in whole.contacts() {
+        assert_eq!(whole.len(), 8);
+        for c in whole.iter() {
             assert!((c.depth - 0.01).abs() < 64.0 * EPSILON);
             assert!(c.point1.z.abs() < 64.0 * EPSILON);
             let apart = c.point1 - c.point2 - Vec3::z() * c.depth;
@@ -255,8 +250,8 @@ mod tests {
         }
         // In order around the normal.
         let area = |m: &Manifold| {
-            let first = m.contacts()[0].point1;
-            let spokes = m.contacts().iter().map(|c| c.point1 - first);
+            let first = m[0].point1;
+            let spokes = m.iter().map(|c| c.point1 - first);
             let pairs = spokes.clone().zip(spokes.skip(1));
             pairs.map(|(a, b)| 0.5 * a.cross(&b).z).sum::<f64>()
         };
@@ -264,16 +259,16 @@ mod tests {
         assert!((area(&whole) - octagon).abs() < 8.0 * SLOP);
         // Four of a regular octagon: a square, which has 1 / sqrt(2) of its area.
         let four = stacked(angle, 4);
-        assert_eq!(four.contacts().len(), 4);
+        assert_eq!(four.len(), 4);
         assert!((area(&four) - octagon * (0.5 as f64).sqrt()).abs() < 8.0 * SLOP);
         let two = stacked(angle, 2);
-        let long = (two.contacts()[0].point1 - two.contacts()[1].point1).norm();
+        let long = (two[0].point1 - two[1].point1).norm();
         let angle = 2.0 * angle.cos();
         assert!(
             (long - 2.0 * (1.0 / (0.5 * angle))).abs() < 8.0 * SLOP,
             "{long}"
         );
-        assert_eq!(stacked(0.3, 1).contacts().len(), 1);
+        assert_eq!(stacked(0.3, 1).len(), 1);
     }
 
     #[test]
@@ -291,13 +286,8 @@ mod tests {
             let slop = 0.6;
             let cube = placed(&corners(Vec3::repeat(0.5)), &turn.into(), Vec3::z());
             let found = contacts(&hull(&plate), &hull(&cube), &Vec3::z(), slop, None, 4).unwrap();
-            let deepest = found.contacts()[0].depth;
-            assert!(
-                found
-                    .contacts()
-                    .iter()
-                    .all(|c| c.depth <= deepest + 64.0 * EPSILON)
-            );
+            let deepest = found[0].depth;
+            assert!(found.iter().all(|c| c.depth <= deepest + 64.0 * EPSILON));
         }
     }
 
@@ -308,14 +298,14 @@ mod tests {
         for _ in 0..100 {
             let at = Vec3::new(r.within(-0.3, 0.3), r.within(-0.3, 0.3), 0.89);
             let found = contacts(&hull(&plate), &ball(at, 0.4), &Vec3::z(), SLOP, None, 8).unwrap();
-            assert_eq!(found.contacts().len(), 1);
-            let across = found.contacts()[0].point1 - at;
+            assert_eq!(found.len(), 1);
+            let across = found[0].point1 - at;
             assert!(across.xy().norm() < SLOP, "{across}");
             let way = Vec3::new(0.3, r.within(-0.3, 0.3), 0.0);
             let rod = capsule(at - way, at + way, 0.4);
             let found = contacts(&hull(&plate), &rod, &Vec3::z(), SLOP, None, 8).unwrap();
-            assert_eq!(found.contacts().len(), 2);
-            for c in found.contacts() {
+            assert_eq!(found.len(), 2);
+            for c in found.iter() {
                 let across = (c.point1 - at).xy();
                 let end = (across - way.xy()).norm().min((across + way.xy()).norm());
                 assert!(end < 2.0 * SLOP, "{end:e}");
@@ -334,7 +324,7 @@ mod tests {
             let at = Vec3::new((p + q) * (1.0 - 1e-7), 0.0, r.within(-0.2, 0.2));
             let (one, two) = (capsule(-a, a, p), capsule(at - b, at + b, q));
             let found = contacts(&one, &two, &Vec3::x(), 0.0, None, 4).unwrap();
-            for c in found.contacts() {
+            for c in found.iter() {
                 let near = EPSILON.sqrt();
                 assert!(c.point1.z.abs() < a.z + near, "{round}: {}", c.point1);
                 assert!(

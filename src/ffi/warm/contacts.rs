@@ -30,7 +30,7 @@ pub struct ccd_contact_t {
 }
 
 /// How many numbers a ccd_manifold_t holds.
-pub const CCD_MANIFOLD_REALS: usize = 141;
+pub const CCD_MANIFOLD_REALS: usize = 139;
 
 /// The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the
 /// others. All bytes zero is cold; plain data, to be copied and stored freely. It serves either
@@ -41,13 +41,26 @@ pub struct ccd_manifold_t {
     /// Private.
     pub reals: [f32; CCD_MANIFOLD_REALS],
     /// Private.
-    pub words: [c_uint; 11],
+    pub words: [c_uint; 9],
+    /// Private.
+    pub checksum: c_uint,
 }
 
 const _: () = {
-    assert!(size_of::<ccd_manifold_t>() == size_of::<ManifoldCache>());
+    assert!(size_of::<ccd_manifold_t>() == size_of::<ManifoldCache>() + size_of::<c_uint>());
     assert!(align_of::<ccd_manifold_t>() == align_of::<ManifoldCache>());
 };
+
+impl ccd_manifold_t {
+    /// Returns the checksum of all numbers; 0 where all are zero.
+    fn sum(&self) -> c_uint {
+        let bits = self.reals.iter().map(|x| x.to_bits());
+        let bits = bits.chain(self.words.iter().copied());
+        bits.fold(0, |sum: c_uint, x| {
+            (sum.rotate_left(5) ^ x).wrapping_mul(0x9e37_79b1)
+        })
+    }
+}
 
 /// Where two objects touch, not only how deep: the region in which the faces that look along
 /// `normal` lie over each other, reduced to at most `max` points: the deepest first, the
@@ -97,17 +110,26 @@ pub unsafe extern "C-unwind" fn ccdContacts(
         return CCD_BAD_INPUT;
     };
     let max = (max as usize).min(manifold::MAX_CONTACTS);
-    // SAFETY: [inputs]; every bit pattern is a ManifoldCache of the same layout.
-    let mut known = unsafe { memory.cast::<ManifoldCache>().as_ref() }.copied();
+    // SAFETY: [inputs]; every bit pattern is a ManifoldCache, which is all but the checksum.
+    let mut known = unsafe { memory.as_ref() }.map(|memory| {
+        if memory.checksum == memory.sum() {
+            unsafe { *(&raw const *memory).cast::<ManifoldCache>() }
+        } else {
+            ManifoldCache::default()
+        }
+    });
     let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop.into(), known.as_mut(), max)
     else {
         return CCD_BAD_INPUT;
     };
     if let Some(known) = known {
         // SAFETY: [outputs].
-        unsafe { *memory.cast::<ManifoldCache>() = known };
+        unsafe {
+            *memory.cast::<ManifoldCache>() = known;
+            (*memory).checksum = (*memory).sum();
+        }
     }
-    for (i, contact) in manifold.contacts().iter().enumerate() {
+    for (i, contact) in manifold.iter().enumerate() {
         // SAFETY: [outputs]; `contacts` has room for `max`. What is between the fields stays.
         unsafe {
             let out = contacts.add(i);
@@ -117,5 +139,5 @@ pub unsafe extern "C-unwind" fn ccdContacts(
             (&raw mut (*out).id).write(contact.id);
         }
     }
-    manifold.contacts().len() as c_int
+    manifold.len() as c_int
 }
