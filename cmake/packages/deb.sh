@@ -20,7 +20,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 tar -xf "$archive" -C "$work"
 cd "$work"/warmccd-*
-version=$(sed -n 's/^version = "\(.*\)"$/\1/p' Cargo.toml)
+version=$(sh cmake/packages/version.sh)
 release=$(. /etc/os-release && echo "$VERSION_ID")
 maintainer="${DEBFULLNAME:-warmccd developers} <${DEBEMAIL:-warmccd@users.noreply.github.com}>"
 # The archive's files have the commit's date: so have the packages' files.

@@ -15,7 +15,7 @@ mkdir -p "$1"
 out=$(cd "$1" && pwd)
 cd "$(dirname "$0")/../.."
 
-version=$(sed -n 's/^version = "\(.*\)"$/\1/p' Cargo.toml)
+version=$(sh cmake/packages/version.sh)
 name=warmccd-$version
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

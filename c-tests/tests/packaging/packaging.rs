@@ -334,6 +334,8 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
     let dir = fresh("source");
     let source = root().join("cmake/packages/source.sh");
     let archive = ran(Command::new("sh"), &[&source, &dir]);
+    let name = concat!("warmccd-", env!("CARGO_PKG_VERSION"), ".tar.xz");
+    assert_eq!(Path::new(archive.trim()), dir.join(name));
     let libraries: Vec<[Vec<u8>; 2]> = ["a", "another/place"]
         .into_iter()
         .map(|place| {
