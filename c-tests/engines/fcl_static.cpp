@@ -67,11 +67,11 @@ static void distance(const known_t &known)
 {
     fcl::DistanceRequestd request(true, true);
     fcl::DistanceResultd result;
-    const uint64_t before = compare_counts()->raw_supports;
+    const unsigned long before = compare_supports();
     static double value;
     request.gjk_solver_type = fcl::GST_LIBCCD;
     const bool answered = answers([&] { value = fcl::distance(object_a.get(), object_b.get(), request, result); });
-    if (compare_counts()->raw_supports != before)
+    if (compare_supports() != before)
         printf("distance %.17g %.17g\n", answered ? value : NAN, -0.5 * (known.lower + known.upper));
 }
 

@@ -35,6 +35,12 @@ static inline unsigned long compare_queries(void)
     return n;
 }
 
+/* Support points of FCL's own solvers so far; 0 where the program runs without the tool. */
+static inline unsigned long compare_supports(void)
+{
+    return compare_counts ? (unsigned long)compare_counts()->raw_supports : 0;
+}
+
 #ifdef __cplusplus
 }
 #endif
