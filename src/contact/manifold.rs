@@ -148,13 +148,7 @@ fn overlap(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>)
     let is_swapped = one.corners.area() > two.corners.area();
     let [small, large] = if is_swapped { [two, one] } else { [one, two] };
     let mut region = Polygon::default();
-    let lines = match (&*small.corners, &*large.corners) {
-        ([a, b], [c, d]) => Some([[*a, *b], [*c, *d]]),
-        _ => None,
-    };
-    if let Some(sides) = &lines {
-        region = crossing(sides).into_iter().collect();
-    } else if large.corners.len() > 2 {
+    if large.corners.len() > 2 {
         region = small.corners.iter().copied().collect();
         region = region.clipped_by(&large.corners, rounding);
     }
@@ -164,8 +158,8 @@ fn overlap(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>)
     let Some((sides, [a, b])) = small.corners.closest_sides(&large.corners) else {
         return (region, None);
     };
-    if lines.is_some() || one.round + two.round > 0.0 {
-        region = parallel_overlap(&sides, [small.reach(), large.reach()], rounding);
+    if large.corners.len() == 2 || one.round + two.round > 0.0 {
+        region = shared_by_segments(&sides, [small.reach(), large.reach()], rounding);
     }
     if !region.is_empty() {
         return (region, None);
@@ -176,38 +170,28 @@ fn overlap(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>)
     (region, is_far.then_some(points))
 }
 
-/// Returns where two segments cross that are not nearly parallel.
-fn crossing([[p, q], [r, s]]: &[[Vec3; 2]; 2]) -> Option<Vec3> {
-    let (u, v, w) = (way(p, q), way(r, s), way(p, r));
-    let sine = u.perp(&v);
-    if !(sine.abs() > MAX_PARALLEL_SINE * u.norm() * v.norm()) {
-        return None;
-    }
-    let [t, k] = [w.perp(&v), w.perp(&u)].map(|x| x / sine);
-    let is_on_both = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&k);
-    is_on_both.then(|| p.lerp(q, t))
-}
-
-/// Returns the ends of what two nearly parallel segments share, where they are no farther apart than both reach: on
-/// the way from the first to the second by the share of the first one's reach, because the rounder one reaches
-/// farther. These lie between the ends of both segments: across the second one they may be moved beyond an end of
-/// the first. None where nothing is shared.
-fn parallel_overlap(
+/// Returns the point at which two segments cross. Of nearly parallel ones the ends of what they share, where they are
+/// no farther apart than both reach: on the way from the first to the second by the share of the first one's reach,
+/// because the rounder one reaches farther. These lie between the ends of both segments: across the second one they
+/// may be moved beyond an end of the first. None where nothing is shared.
+fn shared_by_segments(
     [[p, q], [r, s]]: &[[Vec3; 2]; 2],
     reach: [f64; 2],
     rounding: f64,
 ) -> Polygon<MAX_CONTACTS> {
     let (u, v, slack) = (way(p, q), way(r, s), reach[0] + reach[1]);
-    let size = u.norm() * v.norm();
-    if !(u.perp(&v).abs() <= MAX_PARALLEL_SINE * size && size > 0.0) {
+    let (size, sine) = (u.norm() * v.norm(), u.perp(&v));
+    if sine.abs() > MAX_PARALLEL_SINE * size {
+        let [t, k] = [v, u].map(|along| way(p, r).perp(&along) / sine);
+        let is_on_both = [t, k].iter().all(|t| (0.0..=1.0).contains(t));
+        return is_on_both.then(|| p.lerp(q, t)).into_iter().collect();
+    }
+    if !(size > 0.0) {
         return Polygon::default();
     }
     let longer = slack / u.norm();
     let left = Vec2::new(-v.y, v.x);
-    let ends: Polygon<MAX_CONTACTS> = [-longer, 1.0 + longer]
-        .map(|t| p.lerp(q, t))
-        .into_iter()
-        .collect();
+    let ends = Polygon::from_iter([-longer, 1.0 + longer].map(|t| p.lerp(q, t)));
     let mut ends = ends.clipped(r, &left, slack).clipped(r, &-left, slack);
     for end in ends.iter_mut() {
         let t = v.dot(&way(r, end)) / v.norm_squared();

@@ -26,7 +26,7 @@ fn segment_parameter(p: &Vec3, a: &Vec3, b: &Vec3) -> f64 {
 }
 
 /// Returns the closest point to `p` of the segment from `a` to `b`.
-pub fn closest_on_segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Vec3 {
+fn closest_on_segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Vec3 {
     a.lerp(b, segment_parameter(p, a, b))
 }
 
@@ -90,14 +90,6 @@ impl<T: Copy + Default, const CAPACITY: usize> FixedVec<T, CAPACITY> {
         let places = self.iter_mut().skip(i);
         places.for_each(|place| swap(place, &mut new));
     }
-
-    /// Removes one; those after it move down.
-    pub fn remove(&mut self, i: usize) {
-        let mut last = T::default();
-        let places = self.iter_mut().skip(i).rev();
-        places.for_each(|place| swap(place, &mut last));
-        self.len = self.len.saturating_sub(1);
-    }
 }
 
 impl<T: Copy + Default, const CAPACITY: usize> FromIterator<T> for FixedVec<T, CAPACITY> {
@@ -146,7 +138,8 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
             out.norm() <= flat || way(p, q).perp(&out) > 0.0 && t > 0.0 && t < 1.0
         };
         while let Some(i) = (0..rest.len()).find(|i| rest.len() > 2 && is_flat(&rest, *i)) {
-            rest.remove(i);
+            let others = (0..rest.len()).filter(|k| *k != i);
+            rest = others.map(|k| *rest.at(k)).collect();
         }
         rest
     }
@@ -169,15 +162,8 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
         if self.sides().all(is_inside) {
             return *p;
         }
-        let distance = |at: &Vec3| way(at, p).norm();
-        self.sides().fold(*self.at(0), |best, (a, b)| {
-            let at = closest_on_segment(p, &a, &b);
-            if distance(&at) < distance(&best) {
-                at
-            } else {
-                best
-            }
-        })
+        let point = Polygon::<1>::from_iter([*p]);
+        self.closest_sides(&point).map_or(*p, |(_, [at, _])| at)
     }
 
     /// Returns what of it is no farther than `slack` behind the line through `from` across `inwards`.
@@ -248,28 +234,24 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
             return all.collect();
         }
         let spoke = |j: usize| way(self.at(first), self.at(first + j));
-        // The best area of a fan that ends at a corner, and its corners, a bit each: a fan of no triangle
-        // is a spoke, and then of one triangle more.
-        let mut best: [(f64, u32); CAPACITY] = core::array::from_fn(|j| (0.0, 1 | 1 << j));
+        // Of the fans that end at a corner: the largest area, and the corners, a bit each. A fan of no triangle is a
+        // spoke; each pass adds a triangle.
+        let length = |j: usize| if most == 2 { spoke(j).norm() } else { 0.0 };
+        let mut best: [(f64, u32); CAPACITY] = core::array::from_fn(|j| (length(j), 1 | 1 << j));
+        let larger_fan = |a: (f64, u32), b: (f64, u32)| if b.0 > a.0 { b } else { a };
         for _ in 2..most {
             let shorter = best;
             for (j, best) in best.iter_mut().enumerate().skip(1) {
-                *best = (f64::NEG_INFINITY, 0);
-                for (i, (area, fan)) in shorter.iter().enumerate().take(j).skip(1) {
-                    let area = area + spoke(i).perp(&spoke(j));
-                    if area > best.0 {
-                        *best = (area, fan | 1 << j);
-                    }
-                }
+                let fans = shorter.iter().enumerate().take(j).skip(1);
+                let longer = fans.map(|(i, (area, fan))| {
+                    let triangle = spoke(i).perp(&spoke(j));
+                    (area + triangle, fan | 1 << j)
+                });
+                *best = longer.fold((f64::NEG_INFINITY, 0), larger_fan);
             }
         }
-        let (mut largest, mut taken) = (f64::NEG_INFINITY, 1);
-        for (j, (area, fan)) in best.into_iter().enumerate().take(self.len()).skip(1) {
-            let score = if most == 2 { spoke(j).norm() } else { area };
-            if score > largest {
-                (largest, taken) = (score, fan);
-            }
-        }
+        let fans = best.into_iter().take(self.len()).skip(1);
+        let (_, taken) = fans.fold((f64::NEG_INFINITY, 1), larger_fan);
         all.filter(|i| taken >> (i - first) & 1 != 0)
             .take(most)
             .collect()
