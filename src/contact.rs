@@ -6,6 +6,7 @@
 pub mod center_of_pressure;
 pub mod face;
 pub mod feature;
+pub mod fixed_vec;
 pub mod frame;
 pub mod manifold;
 pub mod manifold_cache;

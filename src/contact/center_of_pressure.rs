@@ -48,6 +48,7 @@
 use crate::contact::Penetration;
 use crate::contact::feature::{Fan, FeatureQuery, MAX_KNOWN, area2};
 use crate::contact::frame::ContactFrame;
+use crate::contact::polygon::Vec2;
 use crate::math::{Vec3, larger};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::VertexSet;
@@ -79,7 +80,7 @@ pub fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
     let query = FeatureQuery::new(md, set, &mut known, frame, centers, [hit.depth, depth]);
     let mut sum = PressureSum::new(depth, query.margin);
     let is_patch = integrate(&query, &mut sum)?;
-    let [x, y] = sum.center();
+    let [x, y] = sum.center().into();
     // Negated for NaN: where nothing is shared.
     if !(is_patch && x * x + y * y < f64::MAX) {
         return Ok(hit.middle());
@@ -100,13 +101,16 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
     if !query.fan(smaller, query.towards_center(smaller), &mut fan)? {
         return Ok(false);
     }
-    let ends = fan.vertices.map(|v| outline_vertex(&v));
+    let mut ends = fan.vertices;
+    for end in ends.iter_mut().take(fan.len + 1) {
+        *end = outline_end(end.xy(), larger(end.z, 1.0), end.z);
+    }
     if is_plane(query, other, ends.get(..fan.len).unwrap_or(&[])) {
         sum.add_fan_on_plane(&fan, &ends);
         return Ok(true);
     }
     let mut fan2 = Fan::EMPTY;
-    if !query.fan(other, [ends[0].x, ends[0].y], &mut fan2)? {
+    if !query.fan(other, ends[0].xy().into(), &mut fan2)? {
         return Ok(false);
     }
     fan2.mirror();
@@ -128,12 +132,8 @@ fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
     };
     let mut face = [first; 4];
     for v in level {
-        let is_farther = [
-            v.x > face[0].x,
-            v.y > face[1].y,
-            v.x < face[2].x,
-            v.y < face[3].y,
-        ];
+        let [a, b, c, d] = &face;
+        let is_farther = [v.x > a.x, v.y > b.y, v.x < c.x, v.y < d.y];
         for (vertex, is_farther) in face.iter_mut().zip(is_farther) {
             if is_farther {
                 *vertex = v;
@@ -156,20 +156,19 @@ fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
     })
 }
 
-/// Returns how far the overlap reaches towards a vertex of an object on a plane (z: the local depth there, in
-/// depths).
+/// Returns where the outline of the overlap is on the ray through a place at which the largest bound is `top` and the
+/// sum of the lows `low`; z: the local depth there, in depths.
 #[inline(always)]
-fn outline_vertex(v: &Vec3) -> Vec3 {
-    let share = 1.0 / larger(v.z, 1.0);
-    Vec3::new(v.x * share, v.y * share, larger(1.0 - v.z, 0.0))
+fn outline_end(at: Vec2, top: f64, low: f64) -> Vec3 {
+    let share = 1.0 / top;
+    Vec3::new(at.x * share, at.y * share, larger(1.0 - low * share, 0.0))
 }
 
 /// A ray from the deepest point through a vertex of a fan, and what is at most 1 in the overlap at that
 /// vertex: w of both fans, and the sum of the lows.
 #[derive(Clone, Copy)]
 struct Ray {
-    x: f64,
-    y: f64,
+    at: Vec2,
     bounds: [f64; 3],
     /// The index of the largest bound.
     top: usize,
@@ -190,18 +189,11 @@ impl Ray {
         let k = usize::from(bounds[1] > bounds[0]);
         let top = if low > bounds[k] { 2 } else { k };
         Self {
-            x: v.x,
-            y: v.y,
+            at: v.xy(),
             bounds,
             top,
-            end: Self::end(v.x, v.y, bounds[top], low),
+            end: outline_end(v.xy(), bounds[top], low),
         }
-    }
-
-    #[inline(always)]
-    fn end(x: f64, y: f64, top: f64, low: f64) -> Vec3 {
-        let share = 1.0 / top;
-        Vec3::new(x * share, y * share, larger(1.0 - low * share, 0.0))
     }
 
     /// Returns where the outline passes from bound `i`, the larger one on this ray, to bound `j`, the larger one
@@ -212,19 +204,16 @@ impl Ray {
         let [i, j] = [i, j].map(|i| i.min(2));
         let (a, b) = (&self.bounds, &next.bounds);
         let t = (a[i] - a[j]) / ((a[i] - a[j]) - (b[i] - b[j]));
-        let at = |k: usize| a[k.min(2)] + (b[k.min(2)] - a[k.min(2)]) * t;
-        let (x, y) = (
-            self.x + (next.x - self.x) * t,
-            self.y + (next.y - self.y) * t,
-        );
-        (Self::end(x, y, at(i), at(2)), at(k) - at(i))
+        let bounds = [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t);
+        let at = self.at + (next.at - self.at) * t;
+        (outline_end(at, bounds[i], bounds[2]), bounds[k] - bounds[i])
     }
 }
 
 /// The integrals of the local depth.
 struct PressureSum {
     volume: f64,
-    moment: [f64; 2],
+    moment: Vec2,
     /// d / s.
     flank: f64,
     min_side2: f64,
@@ -234,7 +223,7 @@ impl PressureSum {
     fn new(depth: f64, margin: f64) -> Self {
         Self {
             volume: 0.0,
-            moment: [0.0; 2],
+            moment: Vec2::zeros(),
             flank: depth / FLANK_SLOPE,
             min_side2: MIN_SIDE * MIN_SIDE * margin * margin,
         }
@@ -256,8 +245,7 @@ impl PressureSum {
         let one = both + (area + 2.0 * k * a) * a;
         let two = both + (area + 2.0 * k * b) * b;
         self.volume += 4.0 * (both - k * a * b);
-        self.moment[0] += one * v.x + two * w.x;
-        self.moment[1] += one * v.y + two * w.y;
+        self.moment += v.xy() * one + w.xy() * two;
     }
 
     /// Adds a fan on a plane that reaches farther; `ends`: the outline towards its vertices.
@@ -271,8 +259,7 @@ impl PressureSum {
             let mut start = ends[i];
             if (p.z > 1.0) != (q.z > 1.0) {
                 let t = (1.0 - p.z) / (q.z - p.z);
-                let (x, y) = (p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t);
-                let middle = Vec3::new(x, y, 0.0);
+                let middle = Vec3::new(p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t, 0.0);
                 self.add(&start, &middle);
                 start = middle;
             }
@@ -285,21 +272,14 @@ impl PressureSum {
     #[inline(always)]
     fn add_fans(&mut self, one: &Fan, two: &Fan) {
         let fans = [one, two];
-        let vertex = |f: usize, i: usize| {
-            let fan = fans[f % 2];
-            &fan.vertices[i.min(Fan::CAPACITY - 1)]
-        };
+        let vertex = |f: usize, i: usize| &fans[f % 2].vertices[i.min(Fan::CAPACITY - 1)];
         let area = |f: usize, i: usize| fans[f % 2].areas[i.min(Fan::CAPACITY - 1)];
         // The triangles that the last ray is in.
-        let mut at = [0, 0];
         let p = vertex(0, 0);
-        while at[1] + 1 < two.len {
-            let [q, r] = [vertex(1, at[1]), vertex(1, at[1] + 1)];
-            if area2(q, p) >= 0.0 && area2(p, r) > 0.0 {
-                break;
-            }
-            at[1] += 1;
-        }
+        let is_here =
+            |i: &usize| area2(vertex(1, *i), p) >= 0.0 && area2(p, vertex(1, *i + 1)) > 0.0;
+        let last = two.len.saturating_sub(1);
+        let mut at = [0, (0..last).find(is_here).unwrap_or(last)];
         let [q, r] = [vertex(1, at[1]), vertex(1, at[1] + 1)];
         let crosses = [area2(q, p), area2(p, r), area(1, at[1])];
         let mut last = Ray::new(p, 0, [q, r], crosses);
@@ -315,11 +295,8 @@ impl PressureSum {
             let next = Ray::new(v, own, [p, nexts[other]], crosses);
             self.add_cone(&last, &next);
             last = next;
-            at[own] = if at[own] + 1 < fans[own].len {
-                at[own] + 1
-            } else {
-                0
-            };
+            let next = at[own] + 1;
+            at[own] = if next < fans[own].len { next } else { 0 };
         }
     }
 
@@ -344,8 +321,8 @@ impl PressureSum {
     }
 
     /// Returns the center of pressure, from the deepest point; NaN where nothing is shared.
-    fn center(&self) -> [f64; 2] {
-        self.moment.map(|m| m / self.volume)
+    fn center(&self) -> Vec2 {
+        self.moment / self.volume
     }
 }
 
@@ -408,7 +385,7 @@ mod tests {
             });
             let mut sum = PressureSum::new(1e-9, 1e-9);
             sum.add_fans(&fans[0], &fans[1]);
-            let ([x, y], [u, v]) = (sum.center(), center_by_grid(&fans));
+            let ([x, y], [u, v]) = (sum.center().into(), center_by_grid(&fans));
             assert!((x - u).hypot(y - v) < 3e-3, "{round}: {x} {y} {u} {v}");
         }
     }

@@ -21,9 +21,10 @@
 //! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. Where what they
 //!    find moved as one body, so did the corners; else the face is found from nothing.
 
+use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
-use crate::contact::polygon::{FixedVec, Polygon, Vec2, way};
+use crate::contact::polygon::{Polygon, Vec2, way};
 use crate::math::{EPSILON, Vec3, larger, largest, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 use core::mem::swap;

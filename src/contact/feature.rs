@@ -23,6 +23,7 @@
 //! No reference is known to us; the figures are from `c-tests/tests/extension/pressure.c` and recorded contacts.
 
 use crate::contact::frame::ContactFrame;
+use crate::contact::polygon::{Vec2, way};
 use crate::math::{EPSILON, Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;
@@ -117,27 +118,11 @@ pub struct Fan {
     pub len: usize,
 }
 
-/// The slope of a plane: how much lower it is a metre along each axis, in depths.
-struct Slope {
-    x: f64,
-    y: f64,
-}
-
-impl Slope {
-    /// Returns that of the plane of three vertices.
-    fn of([a, b, c]: [&Vec3; 3]) -> Self {
-        let (v, w) = (b - a, c - a);
-        let share = 1.0 / area2(&v, &w);
-        Self {
-            x: (v.z * w.y - w.z * v.y) * share,
-            y: (w.z * v.x - v.z * w.x) * share,
-        }
-    }
-
-    /// Returns how low the plane through a vertex is at a place.
-    fn low(&self, through: &Vec3, x: f64, y: f64) -> f64 {
-        through.z + self.x * (x - through.x) + self.y * (y - through.y)
-    }
+/// Returns how much lower the plane of three vertices is a metre along each axis, in depths.
+#[inline(always)]
+fn slope_of([a, b, c]: [&Vec3; 3]) -> Vec2 {
+    let across = (b - a).cross(&(c - a));
+    across.xy() / -across.z
 }
 
 /// The vertices of both objects around the deepest point of a contact: known ones and queries.
@@ -163,8 +148,6 @@ pub struct FeatureQuery<'q, A, B, const N: usize> {
     tilt: f64,
     /// Depth over T, metres.
     fall: f64,
-    /// One over the length of a tilted normal.
-    cosine: f64,
     /// How far vertices are moved outwards, metres.
     pub margin: f64,
 }
@@ -219,7 +202,6 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             half,
             tilt,
             fall: depth / tilt,
-            cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
             margin: larger(depth * MARGIN, 64.0 * EPSILON * extent),
         }
     }
@@ -239,16 +221,9 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// [`Fault::NonFinite`].
     #[inline(always)]
     fn query(&self, object: usize, x: f64, y: f64) -> Result<Vec3, Fault> {
-        self.query_unit(
-            object,
-            &(self.frame.tilted_normal(x, y) / (1.0 + x * x + y * y).sqrt()),
-        )
-    }
-
-    #[inline(always)]
-    fn query_unit(&self, object: usize, dir: &Vec3) -> Result<Vec3, Fault> {
+        let dir = self.frame.tilted_direction(1.0, [x, y]);
         let side = if object == 0 { 1.0 } else { -1.0 };
-        let p = self.frame.project(&self.md.point_of(object, dir))? * side;
+        let p = self.frame.project(&self.md.point_of(object, &dir))? * side;
         let low = larger((self.half - p.z) / self.depth, 0.0);
         Ok(Vec3::new(p.x, p.y, low))
     }
@@ -321,8 +296,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                     break;
                 }
             }
-            let axis = self.frame.axes[next % 2] * if next < 2 { self.tilt } else { -self.tilt };
-            let v = self.query_unit(object, &((self.frame.normal + axis) * self.cosine))?;
+            let [x, y] = WAYS[next % 4];
+            let v = self.query(object, x * self.tilt, y * self.tilt)?;
             if is_within(&v, &found.vertices[next % 4], self.same()) {
                 (found.is_polytope, hits) = (true, hits + 1);
             } else {
@@ -367,12 +342,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     fn confirm(&self, object: usize, feature: &mut Feature) -> Result<(), Fault> {
         let [a, rest @ ..] = feature.vertices;
         let is_same = |p: &Vec3, q: &Vec3| is_within(p, q, self.same());
-        let end = rest.iter().find(|v| !is_same(v, &a));
-        let b = *end.unwrap_or(&a);
-        if !rest.iter().all(|v| is_same(v, &a) || is_same(v, &b)) {
+        let Some(&b) = rest.iter().find(|v| !is_same(v, &a)) else {
             return Ok(());
-        }
-        if end.is_none() {
+        };
+        if !rest.iter().all(|v| is_same(v, &a) || is_same(v, &b)) {
             return Ok(());
         }
         let along = b - a;
@@ -435,11 +408,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         if !feature.is_polytope && self.is_point(vertices) {
             return Ok(false);
         }
-        let between = if feature.is_polytope {
-            None
-        } else {
-            self.rim(vertices)
-        };
+        let is_round = !feature.is_polytope;
+        let between = is_round.then(|| self.rim(vertices)).flatten();
         fan.len = 0;
         for k in 0..4 {
             fan.push(self.moved(&vertices[k], feature.ways[k]));
@@ -503,7 +473,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         if !(is_wide && (p.z < 1.0 || q.z < 1.0)) {
             return Ok(None);
         }
-        let slope = Slope::of([o, p, q]);
+        let slope = slope_of([o, p, q]);
         let [x, y] = [(q.y - p.y) / length, (p.x - q.x) / length];
         let v = self.query(
             object,
@@ -511,7 +481,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             slope.y * self.depth + y * self.tilt,
         )?;
         let is_beyond = x * (v.x - p.x) + y * (v.y - p.y) > 2.0 * self.margin;
-        let is_in_plane = v.z <= slope.low(o, v.x, v.y) + SAME_FACE;
+        let is_in_plane = v.z <= o.z + slope.dot(&way(o, &v)) + SAME_FACE;
         Ok((is_beyond && is_in_plane).then(|| (side + 1, self.moved(&v, [x, y]))))
     }
 
@@ -520,8 +490,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// to a ten thousandth of a radian.
     fn rim(&self, vertices: &[Vec3; 4]) -> Option<[Vec3; 4]> {
         let [a, b, c, d] = vertices;
-        let slope = Slope::of([a, b, c]);
-        let (sx, sy) = (slope.x * self.depth, slope.y * self.depth);
+        let slope = slope_of([a, b, c]);
+        let [sx, sy] = (slope * self.depth).into();
         let share = 1.0 / (1.0 + sx * sx + sy * sy);
         // The way in which a disc that leans so reaches farthest: the tilted normal without its part along the
         // axis of the disc.
@@ -544,8 +514,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         let radius = (x * chord.x + y * chord.y) / whole2;
         let on_rim = |(x, y): (f64, f64)| {
             let (x, y) = (a.x + radius * (x - first.0), a.y + radius * (y - first.1));
-            let low = slope.low(a, x, y);
-            Vec3::new(x, y, low)
+            Vec3::new(x, y, a.z + slope.dot(&(Vec2::new(x, y) - a.xy())))
         };
         let is_there = |way, found: &Vec3| {
             let off = on_rim(way) - found;

@@ -67,12 +67,6 @@ impl ContactFrame {
         (self.normal * sign + (self.axes[0] * x + self.axes[1] * y)) * share
     }
 
-    /// Returns the normal tilted towards the axes by the tangents `x` and `y`, not unit.
-    #[inline(always)]
-    pub fn tilted_normal(&self, x: f64, y: f64) -> Vec3 {
-        self.normal + self.axes[0] * x + self.axes[1] * y
-    }
-
     /// Returns how far a point is from the origin along each axis and along the normal.
     ///
     /// # Errors

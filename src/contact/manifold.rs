@@ -16,9 +16,10 @@
 //!    stay while they span nine tenths of that.
 
 use crate::contact::face::{Face, MAX_CORNERS, faces};
+use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::ManifoldCache;
-use crate::contact::polygon::{FixedVec, Polygon, Vec2, way};
+use crate::contact::polygon::{Polygon, Vec2, way};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 

@@ -14,9 +14,10 @@
 //! The faces of the swapped pair are the same in the same frame.
 
 use crate::contact::face::{Face, FaceSample, MAX_CORNERS, THREE_WAYS, across};
+use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold::MAX_CONTACTS;
-use crate::contact::polygon::{FixedVec, Polygon, Vec2, way};
+use crate::contact::polygon::{Polygon, Vec2, way};
 use crate::math::{Vec3, larger};
 use nalgebra::{Complex, UnitComplex};
 

@@ -4,9 +4,8 @@
 //! Convex polygons in a contact frame: x and y of a corner are along the axes, z is how far it lies below a support
 //! plane. Segments and points are polygons of two corners and of one.
 
+use crate::contact::fixed_vec::FixedVec;
 use crate::math::{Vec3, larger, lesser};
-use core::mem::swap;
-use core::ops::{Deref, DerefMut};
 
 /// A vector of the frame.
 pub type Vec2 = nalgebra::Vector2<f64>;
@@ -28,76 +27,6 @@ fn segment_parameter(p: &Vec3, a: &Vec3, b: &Vec3) -> f64 {
 /// Returns the closest point to `p` of the segment from `a` to `b`.
 fn closest_on_segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Vec3 {
     a.lerp(b, segment_parameter(p, a, b))
-}
-
-/// At most `CAPACITY` elements, in order; a full one takes no more.
-#[derive(Clone, Copy, Debug)]
-pub struct FixedVec<T, const CAPACITY: usize> {
-    all: [T; CAPACITY],
-    len: usize,
-}
-
-impl<T: Copy + Default, const CAPACITY: usize> Default for FixedVec<T, CAPACITY> {
-    fn default() -> Self {
-        Self {
-            all: [T::default(); CAPACITY],
-            len: 0,
-        }
-    }
-}
-
-impl<T, const CAPACITY: usize> Deref for FixedVec<T, CAPACITY> {
-    type Target = [T];
-
-    fn deref(&self) -> &[T] {
-        self.all.get(..self.len).unwrap_or(&[])
-    }
-}
-
-impl<T, const CAPACITY: usize> DerefMut for FixedVec<T, CAPACITY> {
-    fn deref_mut(&mut self) -> &mut [T] {
-        self.all.get_mut(..self.len).unwrap_or(&mut [])
-    }
-}
-
-impl<T: Copy + Default, const CAPACITY: usize> FixedVec<T, CAPACITY> {
-    fn index(&self, i: usize) -> usize {
-        let i = if i < self.len { i } else { i - self.len };
-        i.min(CAPACITY - 1)
-    }
-
-    /// Returns the `i`th, counted on from the first after the last.
-    pub fn at(&self, i: usize) -> &T {
-        &self.all[self.index(i)]
-    }
-
-    /// Returns the same, mutable.
-    pub fn at_mut(&mut self, i: usize) -> &mut T {
-        &mut self.all[self.index(i)]
-    }
-
-    /// Adds one after the last.
-    pub fn push(&mut self, new: T) {
-        if let Some(end) = self.all.get_mut(self.len) {
-            *end = new;
-            self.len += 1;
-        }
-    }
-
-    /// Inserts one; those from there on move up, the last out of a full one.
-    pub fn insert(&mut self, i: usize, mut new: T) {
-        self.len = (self.len + 1).min(CAPACITY);
-        let places = self.iter_mut().skip(i);
-        places.for_each(|place| swap(place, &mut new));
-    }
-}
-
-impl<T: Copy + Default, const CAPACITY: usize> FromIterator<T> for FixedVec<T, CAPACITY> {
-    fn from_iter<I: IntoIterator<Item = T>>(all: I) -> Self {
-        let mut vec = Self::default();
-        all.into_iter().for_each(|new| vec.push(new));
-        vec
-    }
 }
 
 /// A convex polygon of at most `CAPACITY` corners, counterclockwise.
