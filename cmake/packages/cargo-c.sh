@@ -15,8 +15,6 @@ here=$(dirname "$(realpath "$0")")
 make_chroot cargo-c trixie
 apt_in_chroot cargo-c cargo-c rustc cargo gcc libc6-dev pkg-config ca-certificates
 root=$chroots/cargo-c
-# Whom this machine trusts, for a registry behind a proxy.
-cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/ca-certificates.crt"
 rm -rf "$root/tree" "$root/installed"
 mkdir "$root/tree"
 (cd "$here/../.." && git ls-files -z | tar -c --null -T -) | tar -x -C "$root/tree"

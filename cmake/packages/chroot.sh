@@ -26,11 +26,13 @@ make_chroot() {
 }
 
 # in_chroot NAME COMMAND...: /proc and /dev are there; nothing else of this machine but
-# the resolver
+# the resolver and the certificates that it trusts, for a registry behind a proxy
 in_chroot() {
     root=$chroots/$1
     shift
     cp -L /etc/resolv.conf "$root/etc/resolv.conf"
+    trusted=/etc/ssl/certs/ca-certificates.crt
+    [ ! -e "$root$trusted" ] || [ ! -e $trusted ] || cp -L $trusted "$root$trusted"
     # A mount namespace of its own: the mounts end with the command.
     # shellcheck disable=SC2016  # the inner shell expands
     unshare --mount --propagation private sh -c '

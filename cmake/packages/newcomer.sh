@@ -21,8 +21,6 @@ name=newcomer-$suite
 root=$chroots/$name
 make_chroot "$name" "$suite"
 apt_in_chroot "$name" git build-essential ca-certificates
-# Whom this machine trusts, for a registry behind a proxy.
-cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/ca-certificates.crt"
 rust=$(rustc --print sysroot)
 if [ "$(cat "$root/opt/rust-version" 2>/dev/null)" != "$(rustc --version)" ]; then
     rm -rf "$root/opt/rust"

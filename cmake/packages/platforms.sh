@@ -22,8 +22,6 @@ apt_in_chroot platforms rustc cargo rust-src gcc-mingw-w64-x86-64-win32 wine win
     exit 1
 }
 root=$chroots/platforms
-# Whom this machine trusts, for a registry behind a proxy.
-cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/ca-certificates.crt"
 rm -rf "$root/tree"
 mkdir "$root/tree"
 (cd "$here/../.." && git ls-files -z | tar -c --null -T -) | tar -x -C "$root/tree"

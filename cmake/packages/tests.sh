@@ -24,8 +24,6 @@ for updates in "debian $suite-updates" "debian-security $suite-security"; do
     echo "deb http://deb.debian.org/${updates% *} ${updates#* } main"
 done >"$root/etc/apt/sources.list.d/updates.list"
 apt_in_chroot "$name" git ca-certificates rustc-web cargo-web
-# Whom this machine trusts, for a registry behind a proxy.
-cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/ca-certificates.crt"
 rm -rf "$root/root/warmccd"
 git clone -q "$here/../.." "$root/root/warmccd"
 
