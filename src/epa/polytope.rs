@@ -226,7 +226,9 @@ impl<const F: usize> EpaPolytope<F> {
 
     /// Iterates over the faces.
     pub fn faces(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.used.min(F)).filter(|&f| self.keys[f] < f64::INFINITY)
+        let keys = self.keys.iter().take(self.used).enumerate();
+        keys.filter(|(_, key)| **key < f64::INFINITY)
+            .map(|(f, _)| f)
     }
 
     #[inline(always)]
