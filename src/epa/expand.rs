@@ -248,9 +248,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             if queried_height > queried_level {
                 w = sample.vertex();
             } else if choice != Choice::Normal {
-                if choice == Choice::Prediction {
-                    fit.set_pause();
-                }
                 progress.last_failed_key = closest.key;
                 continue;
             } else if query.upper.depth < upper {

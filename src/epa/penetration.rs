@@ -187,7 +187,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let mut solver = Solver {
         limits: &request.limits,
         interior: SupportPoint::default(),
-        fit: SphereFit::warm(warm.radius, distance + query.upper.depth),
+        fit: SphereFit::warm(warm.radius),
         query,
         iterations: 0,
         gap: f64::INFINITY,

@@ -266,7 +266,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.query.evaluate(self.set, &to_origin)?;
         }
         let mut ray = self.query.upper.dir;
-        self.fit = SphereFit::warm(radius, self.interior.norm() + self.query.upper.depth);
+        self.fit = SphereFit::warm(radius);
         self.fit.is_exact = true;
         for _ in 0..MAX_RAYS {
             let tolerance = self.tolerance();
