@@ -210,11 +210,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let start = state.direction().unwrap_or_else(|| self.cold_start());
             let mut query = SupportQuery::new(&self.md, self.center.as_ref());
             let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
-            let mut radius = state.radius;
-            let (found, status) =
-                local::penetration(&mut query, &mut set, &mut radius, &start, settings)?;
+            let (found, status) = local::penetration(&mut query, &mut set, &start, settings)?;
             *hit = found;
-            *state = self.facing(WarmStart::hit(hit.dir, hit.depth, radius, false));
+            *state = self.facing(WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false));
             if status == Status::Converged && wants_pos {
                 hit.pos = self.position(&set, hit, settings.tolerance)?;
             }
@@ -236,7 +234,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut query = SupportQuery::new(&self.md, self.center.as_ref());
         let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
         let start = hit.normal;
-        let found = local::penetration(&mut query, &mut set, &mut [0.0; 2], &start, &settings);
+        let found = local::penetration(&mut query, &mut set, &start, &settings);
         let Some((found, Status::Converged)) = if_overlapping(found)? else {
             return Ok(false);
         };

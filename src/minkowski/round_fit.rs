@@ -91,7 +91,7 @@ pub struct SphereFit {
     /// Whether the last prediction came true.
     pub is_confirmed: bool,
     /// Whether two samples must fit one sphere but for rounding: a prediction may then be an answer.
-    pub is_exact: bool,
+    is_exact: bool,
     /// The number of entries that were compared.
     compared: usize,
 }
@@ -135,6 +135,14 @@ impl SphereFit {
         Self {
             is_confirmed: radius[0] + radius[1] > 0.0,
             ..Self::from_radius(radius)
+        }
+    }
+
+    /// Returns a fit of samples that must fit one sphere but for rounding.
+    pub fn exact() -> Self {
+        Self {
+            is_exact: true,
+            ..Self::default()
         }
     }
 
