@@ -36,7 +36,9 @@ use crate::gjk::barycentric;
 use crate::gjk::intersect::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
-use crate::minkowski::round_fit::{MAX_MISS, MIN_CORE_DISTANCE_REL, MIN_GAIN, SphereFit};
+use crate::minkowski::round_fit::{
+    MAX_MISS, MAX_MISSES, MIN_CORE_DISTANCE_REL, MIN_GAIN, SphereFit,
+};
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::newton::newton_step;
@@ -55,9 +57,6 @@ const TILT_RAD: f64 = 0.015;
 /// the normal: 11 degrees, the same valley. Measured on hulls from 5 degrees: 0.9 leaves it in 2.2 % of the pairs
 /// for 1.0 %.
 const SAME_VALLEY_COS: f64 = 0.98;
-/// The predictions of a model that miss before it is not used any more. Measured: without a limit some walks take
-/// 60 support points more.
-const MAX_MISSES: u32 = 5;
 /// Half of the square of the angle below which two directions are one.
 const SAME_DIR_EPS: f64 = 1e-13;
 

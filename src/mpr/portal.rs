@@ -30,29 +30,22 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 
-/// The tilt of a query in discovery, in units of the upper bound over the distance from the ray: the
-/// angle at which a plane of that depth passes through the ray.
-const TILT: f64 = 1.15;
+/// The tilt of a query in discovery, in units of the upper bound over the distance from the ray, the angle at which
+/// a plane of that depth passes through the ray; and its growth where it found nothing on the other side of the
+/// ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more support points of intersection tests.
+const TILT_GROWTH: f64 = 1.4;
 /// The widest such tilt: the width of the portal over the length of the ray in D, the width being this
 /// times the distance from the ray. Measured: 4 takes 1 % fewer support points for the global minimum, and
 /// 13 % more for a local one of hulls, whose portals then reach into other valleys.
 const TILT_WIDTH_OFF: f64 = 2.75;
 /// … or this times the length of AB.
 const TILT_WIDTH_EDGE: f64 = 0.75;
-/// The growth of the tilt where it found nothing on the other side of the ray.
-const TILT_GROWTH: f64 = 1.5;
 /// The number of tilts that find nothing before the query is a quarter turn aside.
 const MAX_TILTS: u32 = 3;
-/// The widest ring around a vertex on the ray, as a tangent.
-const MAX_RING_TILT: f64 = 0.3;
-/// The growth of a ring whose points are thin, and how often it grows.
-const RING_GROWTH: f64 = 5.0;
-const MAX_RINGS: u32 = 4;
 /// Steps of discovery; each brings a point closer to the ray or beyond it.
 const MAX_DISCOVERY_STEPS: u32 = 24;
-/// Steps of refinement, and queries among them while the origin is inside the portal.
+/// Steps of refinement.
 const MAX_REFINEMENT_STEPS: u32 = 20;
-const MAX_INNER_QUERIES: u32 = 4;
 /// The share of the gap that a known difference must lie above a plane to replace a query.
 pub const KNOWN_LEVEL: f64 = 0.2;
 /// The upper bound, as a share of the size, up to which a contact is shallow: a portal near the minimum
@@ -109,7 +102,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
             if failures < MAX_TILTS {
                 let edge = b.map_or(0.0, |b| TILT_WIDTH_EDGE * (b.w - a.w).norm());
                 let widest = (TILT_WIDTH_OFF * off).max(edge) / length;
-                tilt = lesser(TILT * query.upper.depth / off, widest);
+                tilt = lesser(TILT_GROWTH * query.upper.depth / off, widest);
                 for _ in 0..failures {
                     tilt *= TILT_GROWTH;
                 }
@@ -162,9 +155,8 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(None)
 }
 
-/// Queries three directions around a ray that passes through its own support vertex, as wide as the face
-/// of a sphere of radius `length` may be for a gap; `gap_over_length` is their quotient. The inner error
-/// is an axis across the ray, where all rings are thin.
+/// Queries three directions around a ray that passes through its own support vertex, tilted by the tangent `tilt`. The
+/// inner error is an axis across the ray, where the three points are nearly on a line.
 #[cold]
 #[inline(never)]
 fn ring<A: SupportMap, B: SupportMap, const N: usize>(
@@ -176,27 +168,21 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
-    let mut tilt = lesser(tilt, MAX_RING_TILT);
-    for _ in 0..MAX_RINGS {
-        let mut corners = [Vertex::default(); 3];
-        for (corner, turn) in corners
-            .iter_mut()
-            .zip([[-0.5, half], [-0.5, -half], [1.0, 0.0]])
-        {
-            if set.is_full() {
-                return Ok(Err(e1));
-            }
-            let n = ray + (e1 * turn[0] + e2 * turn[1]) * tilt;
-            *corner = query.evaluate(set, &(n / n.norm()))?.vertex();
+    // At most 45 degrees; also for NaN.
+    let tilt = lesser(tilt, 1.0);
+    let turns = [[-0.5, half], [-0.5, -half], [1.0, 0.0]];
+    let mut corners = [Vertex::default(); 3];
+    for (corner, turn) in corners.iter_mut().zip(turns) {
+        if set.is_full() {
+            return Ok(Err(e1));
         }
-        let (x, y) = (corners[0].w - corners[2].w, corners[1].w - corners[2].w);
-        let normal = x.cross(&y);
-        if normal.norm_squared() > 0.01 * x.norm_squared() * y.norm_squared() {
-            return Ok(Ok(corners));
-        }
-        tilt *= RING_GROWTH;
+        let n = ray + (e1 * turn[0] + e2 * turn[1]) * tilt;
+        *corner = query.evaluate(set, &(n / n.norm()))?.vertex();
     }
-    Ok(Err(e1))
+    let (x, y) = (corners[0].w - corners[2].w, corners[1].w - corners[2].w);
+    let normal = x.cross(&y);
+    let is_wide = normal.norm_squared() > 0.01 * x.norm_squared() * y.norm_squared();
+    Ok(if is_wide { Ok(corners) } else { Err(e1) })
 }
 
 /// Replaces one corner by `w`, a point beyond the portal, so that the ray still passes through.
@@ -228,7 +214,7 @@ pub fn is_crossed(portal: &[Vertex; 3], ray: &Vec3, eps: f64) -> bool {
 }
 
 /// Moves a portal outwards: to known differences as far as they go, to queried ones while the origin is
-/// beyond it, and a few times while the contact is shallow.
+/// beyond it, and while the contact is shallow.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -242,7 +228,6 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
     limit: &GapLimit,
 ) -> Result<(), Stop> {
     let tolerance = query.scale.tolerance(limit.tolerance);
-    let mut inner_queries = 0;
     let mut is_plain = false;
     for _ in 0..MAX_REFINEMENT_STEPS {
         let normal = (portal[1].w - portal[0].w).cross(&(portal[2].w - portal[0].w));
@@ -260,11 +245,8 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
                 return Ok(());
             }
-            if is_inside {
-                inner_queries += 1;
-                if inner_queries > MAX_INNER_QUERIES || !is_shallow(query) {
-                    return Ok(());
-                }
+            if is_inside && !is_shallow(query) {
+                return Ok(());
             }
             let plain = is_plain || !is_inside;
             let (sample, choice) = evaluate_beyond(query, set, fit, portal, &normal, gap, plain)?;
