@@ -22,9 +22,10 @@ use crate::gjk::intersect::Enclosing;
 use crate::gjk::simplex::{Simplex, compact};
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
-use crate::minkowski::round_fit::SphereFit;
+use crate::minkowski::round_fit::{MAX_MISS, MIN_GAIN, SphereFit};
 use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
+use crate::mpr::portal::KNOWN_LEVEL;
 
 /// The number of support calls before the vertex set is compacted.
 const CAPACITY: usize = 24;
@@ -32,18 +33,9 @@ const CAPACITY: usize = 24;
 const MAX_STALLS: u32 = 3;
 /// Known differences that the simplex takes between two queries: a cycle is not endless.
 const MAX_KNOWN_STEPS: u32 = 32;
-/// The share of the allowed gap that a known difference must be closer than the simplex. (A share of the
-/// open gap besides, as in the polytope, saves no instructions: 0.3 takes 4 % more support points.)
-const KNOWN_LEVEL: f64 = 0.2;
-
 /// The largest tangent of the angle between a query and the normal of the best plane. Measured on nine sets of
 /// pairs: without, 12 % more support points; insensitive from 0.5 to 0.8.
 const MAX_TILT: f64 = 0.6;
-/// The share of the allowed gap that a prediction of the sphere fits must gain: less does not pay for a query.
-const MIN_GAIN: f64 = 0.3;
-/// The share of its gain that a prediction must keep, or predictions pause. Insensitive: 0.5 to 0.8, at most
-/// 1 % of the support points of ellipsoids.
-const MIN_KEPT: f64 = 0.5;
 
 /// How close the bounds are to come.
 pub struct Goal {
@@ -105,8 +97,7 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         simplex: Simplex::EMPTY,
         to_origin: *start,
         upper: f64::INFINITY,
-        pause: 0,
-        next_pause: 1,
+        has_missed: false,
     };
     let before = search.query.sample_count();
     let end = search.run(goal, start)?;
@@ -134,9 +125,8 @@ struct Search<'s, 'q, A, B> {
     to_origin: Vec3,
     /// The distance of the simplex, metres.
     upper: f64,
-    /// Queries without a prediction, and how many the next one that fails costs.
-    pause: u32,
-    next_pause: u32,
+    /// Whether the last query was a prediction that missed: the next one is none.
+    has_missed: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
@@ -248,8 +238,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
         let bound = self.query.upper;
         self.fit.update(&self.set, bound.index);
-        if self.pause > 0 {
-            self.pause -= 1;
+        if core::mem::take(&mut self.has_missed) {
             return Ok(false);
         }
         let predicted = self.fit.predict(&self.set, &self.simplex.corners(), dir);
@@ -260,11 +249,8 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             return Ok(false);
         };
         let sample = self.query.evaluate_signed(&mut self.set, &n)?;
-        self.fit.is_confirmed = bound.depth - sample.h >= MIN_KEPT * (bound.depth - value);
-        if !self.fit.is_confirmed {
-            self.pause = self.next_pause;
-            self.next_pause += 2;
-        }
+        self.has_missed = !(sample.h <= value + MAX_MISS * (bound.depth - value));
+        self.fit.is_confirmed = !self.has_missed;
         Ok(true)
     }
 

@@ -17,8 +17,6 @@ const MAX_TRIES: u32 = 2;
 /// The share of the last aim that is aimed at next, where the margin is less. Insensitive: 0.8 to 0.99, at
 /// most 0.3 % of the support points of recorded contacts.
 const KEPT_AIM: f64 = 0.95;
-/// The share of the aim below which a margin has the axis turned. Insensitive: 0.5 to 0.8, as above.
-const MIN_MARGIN: f64 = 0.7;
 /// The share of the size that is aimed at, at least, where an axis has failed. Measured: 0.01 costs as much
 /// as none for a cylinder over a box.
 const MIN_AIM_REL: f64 = 0.0035;
@@ -54,7 +52,7 @@ impl SeparatingAxis {
                 MIN_AIM_REL * query.scale.size()
             };
             self.aim = larger(larger(margin, KEPT_AIM * self.aim), least);
-            if margin < MIN_MARGIN * self.aim {
+            if margin < self.aim {
                 let g = point.v + n * margin;
                 let turned = n - g * ((self.aim - margin) / g.norm_squared());
                 self.dir = unit(&turned).unwrap_or(n);
@@ -93,7 +91,7 @@ mod tests {
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
             }
             let n = axis.dir;
-            assert!(-n.dot(&md.support(&n).unwrap().v) >= MIN_MARGIN * MIN_MARGIN * gap);
+            assert!(-n.dot(&md.support(&n).unwrap().v) >= 0.5 * gap);
         }
     }
 
