@@ -58,8 +58,8 @@ const LENT_CORNERS: usize = 2 * LENT_VERTICES;
 const LENT_FACES: usize = max_faces(LENT_CORNERS);
 /// Room for support calls beyond the limit, which holds only while the origin is inside.
 const SPARE_VERTICES: usize = 8;
-/// The entries that the first tetrahedron may add, for which there must be room.
-const START_VERTICES: usize = 9;
+/// The entries that a first tetrahedron may add, for which there must be room.
+const START_VERTICES: usize = 12;
 
 /// Returns the corners for so many vertices. Known differences become corners without a callback: an
 /// eighth more (measured, deep ellipsoids).
@@ -82,13 +82,8 @@ const _: () = assert!(LENT_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
 const ROUNDING_GAP_EPS: f64 = 32.0;
 /// The extent of D, in height epsilons, below which it counts as flat. Derived: as [`ROUNDING_GAP_EPS`].
 const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
-/// The share of the size that a known corner of a first tetrahedron must be away from the others.
-const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The support calls of a polytope after which D counts as round there.
 const MAX_PLAIN_ITERATIONS: u64 = 3;
-/// A warm direction is stale if its support value exceeds twice the last depth by more than this share of
-/// the distance of the centers.
-const STALE_REL: f64 = 0.1;
 
 /// Memory for the largest polytopes. All bytes zero is a valid value.
 pub struct EpaBuffers {
@@ -180,8 +175,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     set.push(dir, first);
     let warm = &request.warm;
     let is_warm = warm.kind == WarmKind::Plain;
-    let distance = request.center.map_or(0.0, |c| c.v.norm());
-    if is_warm && is_stale(warm, distance, query.upper.depth) {
+    // No start of its own: a guess, or one whose support value is far above the last depth; and of two round objects,
+    // where its vertex is a poor corner of a portal. Negated for NaN.
+    let is_round = warm.radius[0] * warm.radius[1] > 0.0;
+    if is_warm && (is_round || !(query.upper.depth <= 2.0 * warm.depth)) {
         query.evaluate(set, &request.ray)?;
     }
     let mut solver = Solver {
@@ -218,14 +215,6 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let radius = solver.fit.confirmed_radius();
     let is_round = solver.iterations > MAX_PLAIN_ITERATIONS;
     Ok((status, WarmStart::hit(dir, depth, radius, is_round)))
-}
-
-/// Returns whether a warm direction with this support value is no start of its own. `distance`: of the centers,
-/// metres.
-fn is_stale(warm: &WarmStart, distance: f64, depth: f64) -> bool {
-    let is_round = warm.radius[0] * warm.radius[1] > 0.0;
-    // Negated for NaN.
-    is_round || !(depth <= 2.0 * warm.depth + STALE_REL * distance)
 }
 
 impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
@@ -512,8 +501,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.conclude(set, corners, polytope, &progress, end, is_warm)
     }
 
-    /// Returns the interior point and the points farthest from it, from a line and from a plane, known or
-    /// queried; `None` where D is flat within rounding.
+    /// Returns the interior point and points far from it, from a line and from a plane; `None` where D is flat within
+    /// rounding.
     #[cold]
     #[inline(never)]
     fn find_farthest<const N: usize>(
@@ -530,40 +519,25 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                     let e = perpendicular(&(found[1].w - c));
                     [e, e.cross(&(found[1].w - c))]
                 }
-                _ => {
-                    let n = (found[1].w - c).cross(&(found[2].w - c));
-                    [n, n]
-                }
+                _ => [(found[1].w - c).cross(&(found[2].w - c)), Vec3::zeros()],
             };
-            let mut best = 0.0;
-            // Known differences first; then queries along the axes, the second only where the first finds
-            // nothing.
-            for pass in 0..3 {
-                let Some(n) = normalised(&axes[usize::from(pass > 1)]) else {
-                    continue;
-                };
+            let least = MIN_EXTENT_EPS * self.query.scale.height_eps();
+            let mut best = least;
+            // The second axis only where the first finds nothing.
+            for n in axes.iter().filter_map(normalised) {
                 for m in [n, -n] {
-                    if pass > 0 {
-                        self.query.evaluate(set, &m)?;
-                    }
+                    self.query.evaluate(set, &m)?;
                     let v = set.farthest_vertex(&m);
                     let distance = m.dot(&(v.w - c));
                     if distance > best {
                         (best, found[i]) = (distance, v);
                     }
                 }
-                // A known difference need not be the farthest one, but it must not make a sliver.
-                let scale = &self.query.scale;
-                let known = if pass == 0 {
-                    KNOWN_EXTENT_REL * scale.size()
-                } else {
-                    0.0
-                };
-                if best > larger(known, MIN_EXTENT_EPS * scale.height_eps()) {
+                if best > least {
                     break;
                 }
             }
-            if !(best > MIN_EXTENT_EPS * self.query.scale.height_eps()) {
+            if !(best > least) {
                 return Ok(None);
             }
         }
