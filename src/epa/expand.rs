@@ -58,6 +58,12 @@ impl EpaLimits {
             max_iterations: settings.max_iterations,
         }
     }
+
+    /// Returns whether the tolerance is finer than what interpolated planes are good for.
+    pub fn needs_exact_planes(&self, scale: &Scale) -> bool {
+        let tolerance = scale.tolerance(self.gap.tolerance);
+        !(tolerance > EXACT_PLANES_REL * scale.size() && tolerance > 64.0 * scale.support_eps())
+    }
 }
 
 /// The corners of the polytope, by their indices: the interior point or known differences.
@@ -124,53 +130,7 @@ pub enum ExpandEnd {
     NoRoom,
 }
 
-/// The progress of an expansion, which goes on in larger buffers.
-#[derive(Clone, Copy, Debug)]
-pub struct Expansion {
-    /// Support calls so far.
-    pub iterations: u64,
-    /// The tolerance in force, metres.
-    pub tolerance: f64,
-    /// The square of the size that the tolerances were made for, m².
-    size2: f64,
-    /// A point higher above a face is above it, metres.
-    height_eps: f64,
-    support_eps: f64,
-    /// The key of the closest face when a fit's direction found nothing above it.
-    last_failed_key: f64,
-}
-
-impl Expansion {
-    /// Begins an expansion after so many iterations.
-    pub fn new(iterations: u64, scale: &Scale, limits: &EpaLimits) -> Self {
-        let mut progress = Self {
-            iterations,
-            tolerance: 0.0,
-            size2: 0.0,
-            height_eps: 0.0,
-            support_eps: 0.0,
-            last_failed_key: -1.0,
-        };
-        progress.set_scale(scale, limits);
-        progress
-    }
-
-    #[inline(never)]
-    fn set_scale(&mut self, scale: &Scale, limits: &EpaLimits) {
-        self.size2 = scale.size2();
-        self.tolerance = scale.tolerance(limits.gap.tolerance);
-        self.height_eps = scale.height_eps();
-        self.support_eps = scale.support_eps();
-    }
-
-    /// Returns whether the tolerance is finer than what interpolated planes are good for.
-    pub fn needs_exact_planes(&self) -> bool {
-        !(self.tolerance > EXACT_PLANES_REL * self.size2.sqrt()
-            && self.tolerance > 64.0 * self.support_eps)
-    }
-}
-
-/// Expands the polytope until the bounds meet. See the head of this file. `has_larger`: whether larger
+/// Expands the polytope until the bounds meet. See the head of this file. `iterations`: of the query. `has_larger`: whether larger
 /// buffers take over where these are full.
 ///
 /// # Errors
@@ -184,21 +144,21 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     interior: &Vec3,
     corners: &mut EpaCorners<C>,
     polytope: &mut EpaPolytope<F>,
-    progress: &mut Expansion,
+    iterations: &mut u64,
     limits: &EpaLimits,
     has_larger: bool,
 ) -> Result<ExpandEnd, Stop> {
+    // The key of the closest face when a fit's direction found nothing above it.
+    let mut last_failed_key = -1.0;
     // Terminates: each turn evaluates, which fills the set, or inserts, which fills the corners, or makes a
     // key exact.
     loop {
         let closest = polytope.closest_face();
-        if query.scale.size2() > progress.size2 {
-            progress.set_scale(&query.scale, limits);
-            polytope.set_size(query.scale.size());
-        }
+        polytope.set_size(query.scale.size());
+        let tolerance = query.scale.tolerance(limits.gap.tolerance);
         let upper = query.upper.depth;
-        let allowed = limits.gap.allowed(upper, progress.tolerance);
-        let error = polytope.error() + polytope.key_error(upper) + progress.support_eps;
+        let allowed = limits.gap.allowed(upper, tolerance);
+        let error = polytope.error() + polytope.key_error(upper) + query.scale.support_eps();
         let target = upper - allowed + lesser(error, 0.5 * allowed);
         let target_key = target * target.abs();
         let is_inside = closest.key >= 0.0;
@@ -210,7 +170,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         }
         // While the origin is outside, the buffers are the only limit: the caller's limits must not make
         // a miss of an overlap.
-        if is_inside && progress.iterations >= limits.max_iterations {
+        if is_inside && *iterations >= limits.max_iterations {
             return Ok(ExpandEnd::IterationLimit);
         }
         if is_inside && query.sample_count() >= limits.max_samples {
@@ -222,7 +182,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let face = closest.face;
         let (normal, offset) = (polytope.normal(face), polytope.offset(face));
         // A queried point is above the face by more than rounding; a known one is worth an insertion.
-        let queried_level = progress.height_eps;
+        let queried_level = query.scale.height_eps();
         let level = queried_level
             + if is_inside {
                 KNOWN_LEVEL * allowed
@@ -237,18 +197,18 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         // Of the largest buffers the queries that are left have theirs.
         let has_room = has_larger || C - corners.len > N - set.len();
         if !(height > level && is_gain && has_room) {
-            let is_plain = !is_inside || closest.key == progress.last_failed_key;
+            let is_plain = !is_inside || closest.key == last_failed_key;
             let vertices = polytope
                 .corners(face)
                 .map(|id| corners.vertex(set, interior, id));
             let (sample, choice) =
                 evaluate_beyond(query, set, fit, &vertices, &normal, allowed, is_plain)?;
-            progress.iterations += 1;
+            *iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
             if queried_height > queried_level {
                 w = sample.vertex();
             } else if choice != Choice::Normal {
-                progress.last_failed_key = closest.key;
+                last_failed_key = closest.key;
                 continue;
             } else if query.upper.depth < upper {
                 continue;

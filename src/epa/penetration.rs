@@ -24,7 +24,7 @@
 //! [`Status::Converged`]: depth − depth_lower is within the gap.
 
 use crate::contact::{Penetration, Status};
-use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, Expansion, exit_face, expand};
+use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, exit_face, expand};
 use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
@@ -480,8 +480,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let Some(tetrahedron) = Tetrahedron::new(start.map(|v| v.w), ulp) else {
             return Ok(Expanded::Outside);
         };
-        let mut progress = Expansion::new(self.iterations, &self.query.scale, self.limits);
-        polytope.start(&tetrahedron, progress.needs_exact_planes());
+        let is_exact = self.limits.needs_exact_planes(&self.query.scale);
+        polytope.start(&tetrahedron, is_exact);
         corners.start(start);
         let end = expand(
             self.query,
@@ -490,15 +490,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             &self.interior.v,
             corners,
             polytope,
-            &mut progress,
+            &mut self.iterations,
             self.limits,
             has_larger,
         )?;
-        self.iterations = progress.iterations;
         if end == ExpandEnd::NoRoom && has_larger {
             return Ok(Expanded::NoRoom);
         }
-        self.conclude(set, corners, polytope, &progress, end, is_warm)
+        self.conclude(set, corners, polytope, end, is_warm)
     }
 
     /// Returns the interior point and points far from it, from a line and from a plane; `None` where D is flat within
@@ -569,12 +568,12 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         set: &mut VertexSet<N>,
         corners: &EpaCorners<C>,
         polytope: &EpaPolytope<F>,
-        progress: &Expansion,
         end: ExpandEnd,
         is_warm: bool,
     ) -> Result<Expanded, Stop> {
         let closest = polytope.closest_face();
         let support_eps = self.query.scale.support_eps();
+        let tolerance = self.query.scale.tolerance(self.limits.gap.tolerance);
         let is_inside = polytope.encloses_interior_point() && closest.key >= 0.0;
         let lower = if is_inside {
             larger(polytope.lower_bound(&closest) - support_eps, 0.0)
@@ -587,10 +586,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 .corners(f)
                 .map(|id| corners.vertex(set, &interior, id))
         };
-        if is_warm
-            && end == ExpandEnd::Converged
-            && self.query.upper.depth - lower > progress.tolerance
-        {
+        if is_warm && end == ExpandEnd::Converged && self.query.upper.depth - lower > tolerance {
             let face = vertices(closest.face);
             self.polish(set, &face, &polytope.normal(closest.face))?;
         }
@@ -598,16 +594,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         if self.gap == f64::INFINITY || upper.depth - lower < self.gap {
             let corner = |id: usize| corners.vertex(set, &interior, id).w;
             let (dir, depth) = (&upper.dir, upper.depth);
-            let tolerance = progress.tolerance;
             let face = exit_face(polytope, &corner, closest.face, dir, depth, tolerance);
             let face = polytope
                 .corners(face)
                 .map(|id| corners.vertex(set, &interior, id));
             self.write_answer(set, face, lower, tolerance);
-            self.hit.iterations = progress.iterations;
         }
         // The bound as it is rounded down must be within the gap, whatever ended the search.
-        let tolerance = larger(self.limits.gap.tolerance, progress.tolerance);
+        let tolerance = larger(self.limits.gap.tolerance, tolerance);
         let allowed = self
             .limits
             .gap
