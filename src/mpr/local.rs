@@ -180,8 +180,6 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     interior: Vec3,
     /// Whether the interior point is the centers' difference.
     is_centered: bool,
-    /// The centers' difference, else the support point against the start: in D for certain.
-    apex: Vec3,
     iterations: u64,
     sphere_misses: u32,
     newton_misses: u32,
@@ -201,7 +199,6 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     const { assert!(N >= MAX_SAMPLES) };
     let mut walk = Walk {
         interior: query.interior.unwrap_or_default(),
-        apex: query.interior.unwrap_or_default(),
         is_centered: query.interior.is_some(),
         query,
         set,
@@ -242,13 +239,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if !has_center {
             // Aslant: the point opposite to a minimum mostly is on one line with it and the origin.
             let aslant = perpendicular(start) * TILT_RAD - start;
-            let upper = self.query.upper;
-            let behind = self.query.evaluate(self.set, &(aslant / aslant.norm()))?;
-            self.apex = behind.w;
-            // A wide corner would lead the portals astray.
-            self.set.truncate(self.set.len() - 1);
-            self.query.upper = upper;
-            self.interior = (ahead.w + behind.w) * 0.5;
+            // Not in the set: a wide corner would lead the portals astray.
+            let behind = self
+                .query
+                .evaluate_point(&(aslant / aslant.norm()))
+                .map_err(Stop::from)?;
+            self.interior = (ahead.w + behind.v) * 0.5;
         }
         let to_origin = normalised(&-self.interior).unwrap_or(*start);
         // A start that leads to the far side, and any without a center: the way from the interior point as well.
@@ -627,7 +623,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
     }
 
-    /// Proves that the origin is in D: in the tetrahedron of the apex and the face, else by GJK on the known vertices.
+    /// Proves that the origin is in D: in the tetrahedron of the interior point and the face, else by GJK on the known vertices.
     fn prove_overlap(&mut self, face: &Face) -> Result<(), Halt> {
         let is_trusted = self.query.interior.is_some();
         if self.is_centered && !is_trusted {
@@ -635,7 +631,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
         let [a, b, c] = face.corners.map(|v| v.w);
         let ulp = f64::EPSILON * self.query.scale.size();
-        let tetrahedron = Tetrahedron::new([self.apex, a, b, c], ulp);
+        let tetrahedron = Tetrahedron::new([self.interior, a, b, c], ulp);
         if tetrahedron.is_some_and(|t| t.inner_radius() > t.error) {
             return Ok(());
         }
