@@ -236,7 +236,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             None => Some(self.find_interior(set, &mut ray)?),
         };
         let portal = self.find_portal(set, &ray)?;
-        if let Some((dir, point)) = &opposite {
+        // A full set has no room for it: the last entry may be a corner.
+        if let Some((dir, point)) = opposite.as_ref().filter(|_| !set.is_full()) {
             let index = set.push(dir, point);
             if self.query.upper.dir == *dir {
                 self.query.upper.index = index;

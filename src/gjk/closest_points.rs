@@ -19,20 +19,16 @@
 
 use crate::gjk::barycentric;
 use crate::gjk::intersect::Enclosing;
-use crate::gjk::simplex::{Simplex, compact};
+use crate::gjk::simplex::{MAX_STALLS, Simplex, compact};
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::round_fit::{MAX_MISS, MIN_GAIN, SphereFit};
 use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::KNOWN_LEVEL;
+use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS};
 
 /// The number of support calls before the vertex set is compacted.
 const CAPACITY: usize = 24;
-/// Steps that bring the simplex no closer before what is left is rounding.
-const MAX_STALLS: u32 = 3;
-/// Known differences that the simplex takes between two queries: a cycle is not endless.
-const MAX_KNOWN_STEPS: u32 = 32;
 /// The largest tangent of the angle between a query and the normal of the best plane. Measured on nine sets of
 /// pairs: without, 12 % more support points; insensitive from 0.5 to 0.8.
 const MAX_TILT: f64 = 0.6;
@@ -149,7 +145,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         // Of the last query: whether it was to bring the simplex closer, and whether it was tilted.
         let (mut is_step, mut was_tilted) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
-            for _ in 0..MAX_KNOWN_STEPS {
+            for _ in 0..MAX_STEPS {
                 match self.add_farthest(KNOWN_LEVEL * self.gap(goal)) {
                     None => return Ok(End::Inside),
                     Some(true) => (),

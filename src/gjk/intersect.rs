@@ -20,24 +20,16 @@
 //! contact epsilon. `Ok`: D contains the origin, or no queried direction separates.
 
 use crate::gjk::barycentric;
-use crate::gjk::simplex::{Simplex, compact, make_room};
+use crate::gjk::simplex::{MAX_STALLS, Simplex, compact, make_room};
 use crate::math::{EPSILON, Vec3, larger, lesser, normal, unit};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::{discover, is_crossed, replace_corner};
+use crate::mpr::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
 
-/// Steps of GJK before the portal decides. Of a hundred thousand pairs none needs forty.
-const MAX_STEPS: u32 = 64;
-/// Steps within rounding of the surface of the simplex before the portal decides. One finds the other side
-/// of a face that the origin is on.
-const MAX_STALLS: u32 = 3;
 /// The number of support calls of an intersection test before its vertex set is compacted.
 const CAPACITY: usize = 16;
-/// Steps of a portal. Each brings a corner nearer to the surface of D, and what is open after so many is
-/// rounding.
-const MAX_PORTAL_STEPS: u32 = 100;
 /// The share of a chord that is left at either end of it, so that a point in between is in the interior.
 /// Measured on the recorded contacts: 0.05 takes 7 % more support points of pairs apart, 0.5 takes 10 %.
 const CHORD: f64 = 0.25;
@@ -188,7 +180,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
         return Ok(None);
     };
     // Each step replaces a corner by a point beyond the origin, or finds nothing above the portal.
-    for _ in 0..MAX_PORTAL_STEPS {
+    for _ in 0..MAX_STEPS {
         let [a, b, d] = &portal.each_ref().map(|corner| corner.w);
         let n = normal(a, b, d);
         let length = n.norm();

@@ -24,6 +24,10 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
+/// The steps that bring a simplex no closer to the origin before what is left is rounding. One finds the other side of
+/// a face that the origin is on.
+pub const MAX_STALLS: u32 = 3;
+
 /// A simplex of points of D: at most three corners, and a slot for the next point.
 ///
 /// A corner keeps its slot: only the order changes.

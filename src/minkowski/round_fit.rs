@@ -47,8 +47,8 @@ const EXACT: FitTolerance = if cfg!(feature = "single") {
 };
 /// The share of the radius by which centers of exact fits may differ.
 const EXACT_CENTER_REL: f64 = 1.0 - EXACT.cos2;
-/// The least square of the angle between two samples that tell a radius.
-const MIN_ANGLE2: f64 = 1e-10;
+/// The least square of the angle between two samples that tell a radius or a curvature.
+pub const MIN_ANGLE2: f64 = 1e-10;
 /// The share of the radius below which a distance of the core from the origin is rounding.
 pub const MIN_CORE_DISTANCE_REL: f64 = 1e-9;
 /// The number of support calls before fits are made. Measured: without it 3 % more instructions for recorded hits,
@@ -58,7 +58,7 @@ const MIN_SAMPLES: usize = 4;
 /// support points of proofs.
 pub const MIN_GAIN: f64 = 0.3;
 /// The share of a prediction's gain that may be missed. Insensitive: 0.2 to 0.5.
-pub const MAX_MISS: f64 = 0.3;
+pub const MAX_MISS: f64 = 0.2;
 /// The predictions of a model that miss before it is not used any more. Without a limit some walks take 60 support
 /// points more, and a proof of `campaign` ("centre offset along a shared axis") ends at the support limit.
 pub const MAX_MISSES: u32 = 5;

@@ -42,14 +42,10 @@ use crate::minkowski::round_fit::{
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::newton::newton_step;
-use crate::mpr::portal::{KNOWN_LEVEL, discover, replace_corner};
+use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS, discover, replace_corner};
 
 /// The support calls of a walk, at most. Measured: 12 of 12,000 walks on the pair sets end without a minimum.
 pub const MAX_SAMPLES: usize = 60;
-/// The rays of a walk, at most.
-const MAX_RAYS: u32 = 60;
-/// The steps of one portal on known vertices, at most.
-const MAX_STEPS: u32 = 100;
 /// The tilt of the queries that confirm a minimum, radians: as far beside a stationary direction it must not
 /// be lower. Also the width below which a face is narrow.
 const TILT_RAD: f64 = 0.015;
@@ -252,7 +248,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.query.evaluate(self.set, &to_origin)?;
         }
         let mut ray = self.query.upper.dir;
-        for _ in 0..MAX_RAYS {
+        for _ in 0..MAX_STEPS {
             let tolerance = self.tolerance();
             self.check_limits()?;
             let first = self.set.farthest_vertex(&ray);

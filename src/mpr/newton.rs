@@ -17,13 +17,12 @@ use nalgebra::{Matrix2, Vector2};
 
 use crate::math::{Vec3, normalised, perpendicular};
 use crate::minkowski::query::UpperBound;
+use crate::minkowski::round_fit::MIN_ANGLE2;
 use crate::minkowski::vertex_set::VertexSet;
 
 /// The largest tangent of the angle between the entry of the least support value and those that tell its
 /// curvature, and of Newton's step.
 const MAX_NEWTON_TAN: f64 = 0.4;
-/// Half of the square of the angle between two directions that tell no curvature.
-const MIN_NEWTON_TURN: f64 = 5e-11;
 /// The share by which e and f of two entries may differ for a smooth D.
 const SMOOTH_REL_TOL: f64 = 0.1;
 
@@ -94,7 +93,7 @@ fn nearest<const N: usize>(
     let mut best = (None, 1.0 / (1.0 + MAX_NEWTON_TAN * MAX_NEWTON_TAN).sqrt());
     for k in 0..set.len() {
         let cosine = set.dir(k).dot(&upper.dir);
-        let is_near = cosine > best.1 && cosine < 1.0 - MIN_NEWTON_TURN;
+        let is_near = cosine > best.1 && cosine < 1.0 - 0.5 * MIN_ANGLE2;
         if is_near && k != upper.index && is_alike(set, upper.index, k) && is_accepted(k) {
             best = (Some(k), cosine);
         }

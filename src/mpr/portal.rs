@@ -42,10 +42,9 @@ const TILT_WIDTH_OFF: f64 = 2.75;
 const TILT_WIDTH_EDGE: f64 = 0.75;
 /// The number of tilts that find nothing before the query is a quarter turn aside.
 const MAX_TILTS: u32 = 3;
-/// Steps of discovery; each brings a point closer to the ray or beyond it.
-const MAX_DISCOVERY_STEPS: u32 = 24;
-/// Steps of refinement.
-const MAX_REFINEMENT_STEPS: u32 = 20;
+/// The steps of a portal, of a walk from portal to portal or of a simplex, at most. Each comes closer to the surface
+/// of D, few take forty, and what is open after so many is rounding. Insensitive: 24 to 100.
+pub const MAX_STEPS: u32 = 100;
 /// The share of the gap that a known difference must lie above a plane to replace a query.
 pub const KNOWN_LEVEL: f64 = 0.2;
 /// The upper bound, as a share of the size, up to which a contact is shallow: a portal near the minimum
@@ -88,7 +87,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     let tiny = 1e-12 * query.scale.size2();
     let mut side = 1.0;
     let mut failures = 0;
-    for _ in 0..MAX_DISCOVERY_STEPS {
+    for _ in 0..MAX_STEPS {
         // Closer to the ray than A and B are.
         let is_closer = |w: &Vec3| across.dot(w) > 0.999 * height + tiny;
         let mut p = set.farthest_vertex(&across);
@@ -229,7 +228,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<(), Stop> {
     let tolerance = query.scale.tolerance(limit.tolerance);
     let mut is_plain = false;
-    for _ in 0..MAX_REFINEMENT_STEPS {
+    for _ in 0..MAX_STEPS {
         let normal = (portal[1].w - portal[0].w).cross(&(portal[2].w - portal[0].w));
         let n2 = normal.norm_squared();
         let offset = normal.dot(&portal[0].w);
