@@ -82,6 +82,9 @@ const _: () = assert!(LENT_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
 const ROUNDING_GAP_EPS: f64 = 32.0;
 /// The extent of D, in height epsilons, below which it counts as flat. Derived: as [`ROUNDING_GAP_EPS`].
 const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
+/// The share of the size that a known corner of a first tetrahedron must be away from the others. Without known
+/// corners, or with any, more proofs end at the support limit (`campaign` in single precision, `wide` at tolerance 0).
+const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The support calls of a polytope after which D counts as round there.
 const MAX_PLAIN_ITERATIONS: u64 = 3;
 
@@ -501,8 +504,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.conclude(set, corners, polytope, end, is_warm)
     }
 
-    /// Returns the interior point and points far from it, from a line and from a plane; `None` where D is flat within
-    /// rounding.
+    /// Returns the interior point and the points farthest from it, from a line and from a plane, known or
+    /// queried; `None` where D is flat within rounding.
     #[cold]
     #[inline(never)]
     fn find_farthest<const N: usize>(
@@ -519,25 +522,40 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                     let e = perpendicular(&(found[1].w - c));
                     [e, e.cross(&(found[1].w - c))]
                 }
-                _ => [(found[1].w - c).cross(&(found[2].w - c)), Vec3::zeros()],
+                _ => {
+                    let n = (found[1].w - c).cross(&(found[2].w - c));
+                    [n, n]
+                }
             };
-            let least = MIN_EXTENT_EPS * self.query.scale.height_eps();
-            let mut best = least;
-            // The second axis only where the first finds nothing.
-            for n in axes.iter().filter_map(normalised) {
+            let mut best = 0.0;
+            // Known differences first; then queries along the axes, the second only where the first finds
+            // nothing.
+            for pass in 0..3 {
+                let Some(n) = normalised(&axes[usize::from(pass > 1)]) else {
+                    continue;
+                };
                 for m in [n, -n] {
-                    self.query.evaluate(set, &m)?;
+                    if pass > 0 {
+                        self.query.evaluate(set, &m)?;
+                    }
                     let v = set.farthest_vertex(&m);
                     let distance = m.dot(&(v.w - c));
                     if distance > best {
                         (best, found[i]) = (distance, v);
                     }
                 }
-                if best > least {
+                // A known difference need not be the farthest one, but it must not make a sliver.
+                let scale = &self.query.scale;
+                let known = if pass == 0 {
+                    KNOWN_EXTENT_REL * scale.size()
+                } else {
+                    0.0
+                };
+                if best > larger(known, MIN_EXTENT_EPS * scale.height_eps()) {
                     break;
                 }
             }
-            if !(best > least) {
+            if !(best > MIN_EXTENT_EPS * self.query.scale.height_eps()) {
                 return Ok(None);
             }
         }
