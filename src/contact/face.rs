@@ -433,12 +433,8 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let samples = self.face.samples;
         let corners: Polygon<MAX_CORNERS> = samples.iter().map(|s| s.corner).collect();
         let corners = corners.tidied(merged, self.flat());
-        let radius = corners.iter().map(|corner| {
-            let is_here = |s: &&FaceSample| way(&s.corner, corner).norm() <= merged;
-            let radii = samples.iter().filter(is_here).map(|s| s.radius);
-            radii.fold(0.0, larger)
-        });
-        let radius = radius.fold(f64::INFINITY, lesser);
+        let radii = samples.iter().map(|s| s.radius);
+        let radius = radii.fold(f64::INFINITY, lesser);
         // There may be corners between those of a full ring, and the support plane may be higher than all.
         let is_sharp = samples.iter().all(|s| s.corner == s.found);
         let has_highest = corners.iter().any(|corner| corner.z <= self.face.rounding);

@@ -405,9 +405,6 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             return Ok(false);
         };
         let vertices = &feature.vertices;
-        if !feature.is_polytope && self.is_point(vertices) {
-            return Ok(false);
-        }
         let is_round = !feature.is_polytope;
         let between = is_round.then(|| self.rim(vertices)).flatten();
         fan.len = 0;

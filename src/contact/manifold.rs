@@ -82,20 +82,17 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     for i in order.iter() {
         let at = *region.at(*i);
         let [at1, at2] = beside.unwrap_or([at; 2]);
-        let lows = [one.corners.low(&at1), two.corners.low(&at2)];
-        let point1 = frame.point(at1.x, at1.y) + frame.normal * (one.top - lows[0]);
-        let depth = one.top + two.top - lows[0] - lows[1];
-        let beside = way(&at1, &at2);
-        let across = frame.axes[0] * beside.x + frame.axes[1] * beside.y;
+        let height1 = one.top - one.corners.low(&at1);
+        let height2 = two.top - two.corners.low(&at2);
         let mut id = *ids.at(*i);
         if id == 0 {
             id = cache.new_id();
         }
         stored_ids.push((at, id));
         manifold.push(Contact {
-            point1,
-            point2: point1 - frame.normal * depth + across,
-            depth,
+            point1: frame.point(at1.x, at1.y) + frame.normal * height1,
+            point2: frame.point(at2.x, at2.y) - frame.normal * height2,
+            depth: height1 + height2,
             id: if out_cache.is_some() { id } else { 0 },
         });
     }

@@ -19,7 +19,7 @@ use crate::contact::frame::ContactFrame;
 use crate::contact::manifold::MAX_CONTACTS;
 use crate::contact::polygon::{Polygon, Vec2, way};
 use crate::math::{Vec3, larger};
-use nalgebra::{Complex, UnitComplex};
+use nalgebra::UnitComplex;
 
 /// Contacts whose ids are stored.
 const MAX_IDS: usize = 8;
@@ -127,18 +127,13 @@ impl CachedFace {
         let spoke =
             |([_, old, _], new): ([Vec2; 3], &FaceSample)| (old - from, new.found.xy() - to);
         let spokes = || self.samples().zip(now).map(spoke);
-        let (mut reach, mut ways) = (0.0, (Vec2::x(), Vec2::x()));
-        for (a, b) in spokes() {
-            if a.norm() > reach {
-                (reach, ways) = (a.norm(), (a, b));
-            }
-        }
-        let slack = slack + F32_REL_TOL * reach;
+        let longer = |a: (Vec2, Vec2), b: (Vec2, Vec2)| if b.0.norm() > a.0.norm() { b } else { a };
+        let (a, b) = spokes().fold((Vec2::zeros(), Vec2::zeros()), longer);
+        let slack = slack + F32_REL_TOL * a.norm();
         let mut turn = UnitComplex::identity();
         // A face no longer than its rounding has no measurable turn.
-        if reach > 64.0 * slack {
-            let (a, b) = ways;
-            turn = UnitComplex::new_normalize(Complex::new(a.dot(&b), a.perp(&b)));
+        if a.norm() > 64.0 * slack {
+            turn = UnitComplex::rotation_between(&a, &b);
         }
         let is_one = |(a, b): (Vec2, Vec2)| (turn * a - b).norm() <= slack;
         spokes().all(is_one).then_some(Motion { turn, from, to })
