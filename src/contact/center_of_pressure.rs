@@ -110,7 +110,7 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
         return Ok(true);
     }
     let mut fan2 = Fan::EMPTY;
-    if !query.fan(other, ends[0].xy().into(), &mut fan2)? {
+    if !query.fan(other, ends[0].xy(), &mut fan2)? {
         return Ok(false);
     }
     fan2.mirror();

@@ -179,7 +179,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     }
 
     fn query(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
-        let dir = self.frame.tilted_direction(self.sign, tilt.into());
+        let dir = self.frame.tilted_direction(self.sign, tilt);
         let p = self.object.support(&dir);
         self.query_count += 1;
         self.face.rounding = larger(self.face.rounding, 8.0 * EPSILON * largest(&p));

@@ -69,10 +69,20 @@ const MARGIN: f64 = 1.0 / 512.0;
 const MIN_AREA_REL: f64 = f64::EPSILON;
 
 /// The four tilts: the way of each, along the axes.
-const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+const WAYS: [Vec2; 4] = [
+    Vec2::new(1.0, 0.0),
+    Vec2::new(0.0, 1.0),
+    Vec2::new(-1.0, 0.0),
+    Vec2::new(0.0, -1.0),
+];
 const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
 /// The ways between them.
-const DIAGONALS: [[f64; 2]; 4] = [[H, H], [-H, H], [-H, -H], [H, -H]];
+const DIAGONALS: [Vec2; 4] = [
+    Vec2::new(H, H),
+    Vec2::new(-H, H),
+    Vec2::new(-H, -H),
+    Vec2::new(H, -H),
+];
 
 /// Returns whether two vertices are no farther apart than `distance` along either axis.
 #[inline(always)]
@@ -87,24 +97,17 @@ pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
 }
 
 /// Four vertices of an object around the deepest point, counterclockwise: the support vertices of the tilted
-/// normals, or those about an edge.
-#[derive(Clone, Copy, Debug)]
+/// normals, predicted or queried, or those about an edge.
 struct Feature {
     vertices: [Vec3; 4],
     /// The way outwards of each, unit.
-    ways: [[f64; 2]; 4],
-    /// Whether they are vertices of a polytope; else each tilt found another vertex.
-    is_polytope: bool,
-}
-
-/// The known vertices that are farthest along the four tilted normals.
-struct Prediction {
-    vertices: [Vec3; 4],
+    ways: [Vec2; 4],
     /// How far each is along its tilted normal, over T.
     scores: [f64; 4],
     /// How far towards the way a known direction that found it is tilted.
     cover: [f64; 4],
-    /// Whether two known directions found one of them.
+    /// Whether they are vertices of a polytope, as two known directions that found one of them show; else each tilt
+    /// found another vertex.
     is_polytope: bool,
 }
 
@@ -215,13 +218,13 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             .map(move |[x, y, low]| Vec3::new(x[k], y[k], low[k]))
     }
 
-    /// Queries an object along the normal tilted by the tangents `x` and `y`.
+    /// Queries an object along the normal with a tilt, as tangents.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
-    fn query(&self, object: usize, x: f64, y: f64) -> Result<Vec3, Fault> {
-        let dir = self.frame.tilted_direction(1.0, [x, y]);
+    fn query(&self, object: usize, tilt: Vec2) -> Result<Vec3, Fault> {
+        let dir = self.frame.tilted_direction(1.0, tilt);
         let side = if object == 0 { 1.0 } else { -1.0 };
         let p = self.frame.project(&self.md.point_of(object, &dir))? * side;
         let low = larger((self.half - p.z) / self.depth, 0.0);
@@ -243,9 +246,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
 
     /// Predicts the support vertices of the tilted normals.
     #[inline(always)]
-    fn predict(&self, object: usize) -> Prediction {
-        let mut found = Prediction {
+    fn predict(&self, object: usize) -> Feature {
+        let mut found = Feature {
             vertices: [Vec3::zeros(); 4],
+            ways: WAYS,
             scores: [f64::NEG_INFINITY; 4],
             cover: [0.0; 4],
             is_polytope: false,
@@ -282,10 +286,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    fn find(&self, object: usize, towards: [f64; 2]) -> Result<Option<Feature>, Fault> {
+    fn find(&self, object: usize, towards: Vec2) -> Result<Option<Feature>, Fault> {
         let mut found = self.predict(object);
         let mut is_queried = [false; 4];
-        let mut next = usize::from(towards[1].abs() > towards[0].abs());
+        let mut next = usize::from(towards.y.abs() > towards.x.abs());
         let (mut hits, mut misses) = (0, 0);
         // Each turn queries another one of the four.
         for _ in 0..4 {
@@ -296,8 +300,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                     break;
                 }
             }
-            let [x, y] = WAYS[next % 4];
-            let v = self.query(object, x * self.tilt, y * self.tilt)?;
+            let v = self.query(object, WAYS[next % 4] * self.tilt)?;
             if is_within(&v, &found.vertices[next % 4], self.same()) {
                 (found.is_polytope, hits) = (true, hits + 1);
             } else {
@@ -325,15 +328,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                 }
             }
         }
-        let mut feature = Feature {
-            vertices: found.vertices,
-            ways: WAYS,
-            is_polytope: found.is_polytope,
-        };
-        if feature.is_polytope {
-            self.confirm(object, &mut feature)?;
+        if found.is_polytope {
+            self.confirm(object, &mut found)?;
         }
-        Ok(Some(feature))
+        Ok(Some(found))
     }
 
     /// Looks beside a feature that is one vertex or an edge, where a face may be that no direction has found:
@@ -348,25 +346,24 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         if !rest.iter().all(|v| is_same(v, &a) || is_same(v, &b)) {
             return Ok(());
         }
-        let along = b - a;
-        let length = along.xy().norm_squared().sqrt();
-        let (x, y) = (along.x / length, along.y / length);
+        let along = way(&a, &b) / way(&a, &b).norm();
+        let left = Vec2::new(-along.y, along.x);
         feature.vertices = [a, a, b, b];
-        feature.ways = [[-x, -y], [y, -x], [x, y], [-y, x]];
-        for k in [1, 3] {
-            let [u, v] = feature.ways[k % 4];
+        feature.ways = [-along, -left, along, left];
+        let [_, vertex1, _, vertex3] = &mut feature.vertices;
+        for (vertex, out) in [(vertex1, -left), (vertex3, left)] {
             let is_covered = self.known(object).enumerate().any(|(i, p)| {
                 let dir = self.set.dir(self.first + i);
                 let cosine = self.frame.normal.dot(&dir);
-                let [x, y] = self.frame.axes.map(|e| e.dot(&dir) / cosine);
+                let tilt = Vec2::from(self.frame.axes.map(|e| e.dot(&dir) / cosine));
                 let is_across =
-                    x * u + y * v - 2.0 * (x * v - y * u).abs() >= MIN_COVER * self.tilt;
+                    tilt.dot(&out) - 2.0 * tilt.perp(&out).abs() >= MIN_COVER * self.tilt;
                 cosine > MIN_COSINE && is_across && (is_same(&p, &a) || is_same(&p, &b))
             });
             if !is_covered {
-                let p = self.query(object, u * self.tilt, v * self.tilt)?;
-                if u * (p.x - a.x) + v * (p.y - a.y) > 2.0 * self.margin {
-                    feature.vertices[k % 4] = p;
+                let p = self.query(object, out * self.tilt)?;
+                if out.dot(&way(&a, &p)) > 2.0 * self.margin {
+                    *vertex = p;
                 }
             }
         }
@@ -375,15 +372,14 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
 
     /// Returns the way from the deepest point to the center of an object.
     #[inline(always)]
-    pub fn towards_center(&self, object: usize) -> [f64; 2] {
-        self.centers.map(|xy| xy[object % 2])
+    pub fn towards_center(&self, object: usize) -> Vec2 {
+        self.centers.map(|xy| xy[object % 2]).into()
     }
 
     /// Returns whether two vertices are symmetric about the deepest point.
     fn is_symmetric(&self, a: &Vec3, b: &Vec3) -> bool {
-        let (x, y) = (a.x + b.x, a.y + b.y);
         let most = SYMMETRY_REL_TOL * self.extent;
-        x * x + y * y < most * most && (a.z - b.z).abs() < SAME_FACE
+        (a + b).xy().norm_squared() < most * most && (a.z - b.z).abs() < SAME_FACE
     }
 
     fn is_point(&self, vertices: &[Vec3]) -> bool {
@@ -400,7 +396,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    pub fn fan(&self, object: usize, towards: [f64; 2], fan: &mut Fan) -> Result<bool, Fault> {
+    pub fn fan(&self, object: usize, towards: Vec2, fan: &mut Fan) -> Result<bool, Fault> {
         let Some(feature) = self.find(object, towards)? else {
             return Ok(false);
         };
@@ -435,8 +431,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
 
     /// Returns a vertex moved outwards by the margin.
     #[inline(always)]
-    fn moved(&self, v: &Vec3, [x, y]: [f64; 2]) -> Vec3 {
-        Vec3::new(v.x + self.margin * x, v.y + self.margin * y, v.z)
+    fn moved(&self, v: &Vec3, way: Vec2) -> Vec3 {
+        Vec3::new(v.x + self.margin * way.x, v.y + self.margin * way.y, v.z)
     }
 
     /// Returns the corner that a polytope has beyond a side of the four, moved outwards, and its place
@@ -471,15 +467,11 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             return Ok(None);
         }
         let slope = slope_of([o, p, q]);
-        let [x, y] = [(q.y - p.y) / length, (p.x - q.x) / length];
-        let v = self.query(
-            object,
-            slope.x * self.depth + x * self.tilt,
-            slope.y * self.depth + y * self.tilt,
-        )?;
-        let is_beyond = x * (v.x - p.x) + y * (v.y - p.y) > 2.0 * self.margin;
+        let out = Vec2::new(q.y - p.y, p.x - q.x) / length;
+        let v = self.query(object, slope * self.depth + out * self.tilt)?;
+        let is_beyond = out.dot(&way(p, &v)) > 2.0 * self.margin;
         let is_in_plane = v.z <= o.z + slope.dot(&way(o, &v)) + SAME_FACE;
-        Ok((is_beyond && is_in_plane).then(|| (side + 1, self.moved(&v, [x, y]))))
+        Ok((is_beyond && is_in_plane).then(|| (side + 1, self.moved(&v, out))))
     }
 
     /// Returns the points between four vertices, where these are on the rim of a disc. A disc returns, for a
@@ -488,30 +480,28 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     fn rim(&self, vertices: &[Vec3; 4]) -> Option<[Vec3; 4]> {
         let [a, b, c, d] = vertices;
         let slope = slope_of([a, b, c]);
-        let [sx, sy] = (slope * self.depth).into();
-        let share = 1.0 / (1.0 + sx * sx + sy * sy);
+        let lean = slope * self.depth;
+        let share = 1.0 / (1.0 + lean.norm_squared());
         // The way in which a disc that leans so reaches farthest: the tilted normal without its part along the
         // axis of the disc.
-        let outwards = |way: [f64; 2]| {
-            let (x, y) = (way[0] * self.tilt - sx, way[1] * self.tilt - sy);
-            let down = (sx * x + sy * y) * share;
-            let (x, y) = (x - sx * down, y - sy * down);
-            let share = 1.0 / (x * x + y * y + down * down).sqrt();
-            (x * share, y * share)
+        let outwards = |way: Vec2| {
+            let tilt = way * self.tilt - lean;
+            let down = lean.dot(&tilt) * share;
+            let across = tilt - lean * down;
+            across / (across.norm_squared() + down * down).sqrt()
         };
         let [first, second, third, fourth] = WAYS.map(outwards);
-        let (x, y) = (first.0 - third.0, first.1 - third.1);
-        let chord = a - c;
-        let whole2 = x * x + y * y;
+        let (whole, chord) = (first - third, way(c, a));
+        let whole2 = whole.norm_squared();
         // Other faces' corners mostly lie in other directions.
-        let cross = x * chord.y - y * chord.x;
-        if !(cross * cross <= RIM_REL_TOL * whole2 * chord.xy().norm_squared()) {
+        let cross = whole.perp(&chord);
+        if !(cross * cross <= RIM_REL_TOL * whole2 * chord.norm_squared()) {
             return None;
         }
-        let radius = (x * chord.x + y * chord.y) / whole2;
-        let on_rim = |(x, y): (f64, f64)| {
-            let (x, y) = (a.x + radius * (x - first.0), a.y + radius * (y - first.1));
-            Vec3::new(x, y, a.z + slope.dot(&(Vec2::new(x, y) - a.xy())))
+        let radius = whole.dot(&chord) / whole2;
+        let on_rim = |out: Vec2| {
+            let from_a = (out - first) * radius;
+            a + Vec3::new(from_a.x, from_a.y, slope.dot(&from_a))
         };
         let is_there = |way, found: &Vec3| {
             let off = on_rim(way) - found;
@@ -527,7 +517,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     }
 }
 
-impl Prediction {
+impl Feature {
     /// Takes a queried vertex for the prediction of the other tilts that it is farther along.
     #[inline(always)]
     fn consider(&mut self, v: &Vec3, scores: &[f64; 4], is_queried: &[bool; 4]) {

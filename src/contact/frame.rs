@@ -3,6 +3,7 @@
 
 //! The contact frame: the contact normal and two axes across it.
 
+use crate::contact::polygon::Vec2;
 use crate::math::{POLE, Vec3};
 use crate::minkowski::support::Fault;
 
@@ -59,12 +60,12 @@ impl ContactFrame {
         self.axes[0].cross(&self.axes[1]).dot(&self.normal) > 0.0
     }
 
-    /// Returns the unit direction along the normal (`sign` 1) or against it (-1), tilted by the tangents `x`
-    /// and `y`.
+    /// Returns the unit direction along the normal (`sign` 1) or against it (-1), tilted by two
+    /// tangents.
     #[inline(always)]
-    pub fn tilted_direction(&self, sign: f64, [x, y]: [f64; 2]) -> Vec3 {
-        let share = 1.0 / (1.0 + x * x + y * y).sqrt();
-        (self.normal * sign + (self.axes[0] * x + self.axes[1] * y)) * share
+    pub fn tilted_direction(&self, sign: f64, tilt: Vec2) -> Vec3 {
+        let share = 1.0 / (1.0 + tilt.norm_squared()).sqrt();
+        (self.normal * sign + (self.axes[0] * tilt.x + self.axes[1] * tilt.y)) * share
     }
 
     /// Returns how far a point is from the origin along each axis and along the normal.
