@@ -48,7 +48,7 @@
 use crate::contact::Penetration;
 use crate::contact::feature::{Fan, FeatureQuery, MAX_KNOWN, area2};
 use crate::contact::frame::ContactFrame;
-use crate::contact::polygon::Vec2;
+use crate::contact::polygon::{Vec2, way};
 use crate::math::{Vec3, larger};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::VertexSet;
@@ -80,13 +80,13 @@ pub fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
     let query = FeatureQuery::new(md, set, &mut known, frame, centers, [hit.depth, depth]);
     let mut sum = PressureSum::new(depth, query.margin);
     let is_patch = integrate(&query, &mut sum)?;
-    let [x, y] = sum.center().into();
+    let center = sum.center();
     // Negated for NaN: where nothing is shared.
-    if !(is_patch && x * x + y * y < f64::MAX) {
+    if !(is_patch && center.norm_squared() < f64::MAX) {
         return Ok(hit.middle());
     }
     let side = if query.smaller == 0 { 1.0 } else { -1.0 };
-    Ok(query.frame.point(x * side, y * side))
+    Ok(query.frame.point(center * side))
 }
 
 /// Integrates the pressure of a contact, in the frame of the object that reaches less far. Returns false
@@ -232,14 +232,13 @@ impl PressureSum {
     /// Adds the triangle from the deepest point to a side of the outline, and the flank beyond that.
     #[inline(always)]
     fn add(&mut self, v: &Vec3, w: &Vec3) {
-        let (x, y) = (w.x - v.x, w.y - v.y);
-        let length2 = x * x + y * y;
+        let length2 = way(v, w).norm_squared();
         if length2 < self.min_side2 {
             return;
         }
         let length = length2.sqrt();
         let (a, b) = (v.z, w.z);
-        let area = v.x * w.y - v.y * w.x;
+        let area = area2(v, w);
         let k = self.flank * length;
         let both = area + (area + k * (a + b)) * (a + b);
         let one = both + (area + 2.0 * k * a) * a;

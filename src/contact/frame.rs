@@ -84,10 +84,10 @@ impl ContactFrame {
         Ok(Vec3::new(e1.dot(&p), e2.dot(&p), self.normal.dot(&p)))
     }
 
-    /// Returns the point `x` and `y` from the origin along the axes.
+    /// Returns the point that is so far from the origin along the axes.
     #[inline(always)]
-    pub fn point(&self, x: f64, y: f64) -> Vec3 {
-        self.origin + self.axes[0] * x + self.axes[1] * y
+    pub fn point(&self, at: Vec2) -> Vec3 {
+        self.origin + self.axes[0] * at.x + self.axes[1] * at.y
     }
 }
 

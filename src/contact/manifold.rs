@@ -90,8 +90,8 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
         }
         stored_ids.push((at, id));
         manifold.push(Contact {
-            point1: frame.point(at1.x, at1.y) + frame.normal * height1,
-            point2: frame.point(at2.x, at2.y) - frame.normal * height2,
+            point1: frame.point(at1.xy()) + frame.normal * height1,
+            point2: frame.point(at2.xy()) - frame.normal * height2,
             depth: height1 + height2,
             id: if out_cache.is_some() { id } else { 0 },
         });
