@@ -22,7 +22,7 @@ use crate::contact::center_of_pressure::center_of_pressure;
 use crate::contact::{Penetration, Settings, Status};
 use crate::epa::penetration::{Arena, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
 use crate::epa::{self, expand::EpaLimits};
-use crate::gjk::intersect::{contains_origin, intersect};
+use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
@@ -32,9 +32,6 @@ use crate::minkowski::vertex_set::VertexSet;
 use crate::mpr::gao::{self, Until};
 use crate::mpr::{directional, local};
 use warm_start::{WarmKind, WarmStart};
-
-/// The vertices of the proof of an overlap.
-const PROOF_VERTICES: usize = 16;
 
 /// A pair and what the caller knows of it besides the state.
 pub struct Pair<A, B> {
@@ -91,7 +88,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     fn prove(
         &self,
         hit: &mut Penetration,
-        set: &mut VertexSet<PROOF_VERTICES>,
+        set: &mut VertexSet<CAPACITY>,
         settings: &Settings,
         is_planar: bool,
     ) -> Result<(), Stop> {

@@ -28,7 +28,7 @@ use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, exit_face, expand};
 use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
-use crate::gjk::intersect::contains_origin;
+use crate::gjk::intersect::{CAPACITY, contains_origin};
 use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
 use crate::minkowski::round_fit::SphereFit;
@@ -570,7 +570,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
     ) -> Result<Option<Start>, Stop> {
-        let mut known = VertexSet::<16>::EMPTY;
+        let mut known = VertexSet::<CAPACITY>::EMPTY;
         let dir = self.query.upper.dir;
         let found = contains_origin(self.query, &mut known, None, &dir, false)?;
         // The points may be no support points: they have no direction.

@@ -18,7 +18,7 @@
 //! [`End::Inside`]: the origin is in the simplex, and the points meet.
 
 use crate::gjk::barycentric;
-use crate::gjk::intersect::Enclosing;
+use crate::gjk::intersect::{CAPACITY, Enclosing};
 use crate::gjk::simplex::{MAX_STALLS, Simplex, compact};
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
@@ -27,8 +27,6 @@ use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS};
 
-/// The number of support calls before the vertex set is compacted.
-const CAPACITY: usize = 24;
 /// The largest tangent of the angle between a query and the normal of the best plane. Measured on nine sets of
 /// pairs: without, 12 % more support points; insensitive from 0.5 to 0.8.
 const MAX_TILT: f64 = 0.6;
@@ -228,9 +226,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
     fn has_predicted(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
         if self.set.is_full() {
             compact(self.query, &mut self.set, self.simplex.slots());
-            let is_confirmed = self.fit.is_confirmed;
-            *self.fit = SphereFit::from_radius(self.fit.radius);
-            self.fit.is_confirmed = is_confirmed;
+            self.fit.restart();
         }
         let bound = self.query.upper;
         self.fit.update(&self.set, bound.index);

@@ -130,6 +130,11 @@ impl SphereFit {
         }
     }
 
+    /// Compares with all entries anew: their indices have changed.
+    pub fn restart(&mut self) {
+        (self.compared, self.misses) = (0, 0);
+    }
+
     /// Returns a fit that has compared nothing yet, with radii of an earlier one, metres.
     pub fn from_radius(radius: [f64; 2]) -> Self {
         Self {

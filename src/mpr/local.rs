@@ -317,7 +317,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             let height_eps = self.query.scale.height_eps();
             let mut w = self.set.farthest_vertex(&face.normal);
             let height = face.normal.dot(&w.w) - face.offset;
-            // A corner is above by rounding.
+            // A corner is above by rounding: a face that took it again would end at the cap of steps.
             let is_corner = portal.iter().any(|v| v.pair == w.pair);
             if is_corner || !(height > KNOWN_LEVEL * tolerance + height_eps) {
                 let is_inside = face.offset > 0.0 && face.has_foot(4.0 * height_eps);
