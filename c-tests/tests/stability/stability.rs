@@ -16,7 +16,7 @@ use harness::Precision;
 use programs::alone;
 #[cfg(not(feature = "single"))]
 use programs::pair_sets;
-use programs::{program, wide};
+use programs::program;
 
 /// The judge itself.
 #[test]
@@ -92,7 +92,7 @@ fn categories_of_the_local_query() {
 #[test]
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 fn judged_in_128_bits() {
-    wide().run([harness::rounds(60)]);
+    programs::wide().run([harness::rounds(60)]);
 }
 
 /// Sliding, rolling, rocking: directions, depths and contact positions.
