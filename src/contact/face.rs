@@ -162,7 +162,7 @@ struct FaceSearch<'a, S> {
     query_count: u32,
     /// The vertex on the support plane.
     first: FaceSample,
-    /// What is known of it.
+    /// The face, as far as it is found.
     face: Face,
 }
 

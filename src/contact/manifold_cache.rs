@@ -62,8 +62,8 @@ pub struct ManifoldCache {
     axes: [[f32; 3]; 2],
     /// The slop in force when the faces were found.
     slop: f32,
-    /// That which looks along the cross product of the axes, and the other one; of a pair that is being queried those
-    /// of obj1 and obj2.
+    /// The face whose outward normal is along the cross product of the axes, and the opposite one. While a pair is
+    /// queried: those of obj1 and obj2.
     pub faces: [CachedFace; 2],
     points: [[f32; 2]; MAX_IDS],
     /// 0 for none.

@@ -659,6 +659,17 @@ mod tests {
 
     type Walked = Result<(Penetration, Status), Stop>;
 
+    /// Returns a ball about `at` and a tip above it.
+    fn drop(radius: f64, tip: Vec3, at: Vec3) -> impl Fn(&Vec3) -> Vec3 {
+        move |n: &Vec3| {
+            at + if n.dot(&tip) > radius {
+                tip
+            } else {
+                n * radius
+            }
+        }
+    }
+
     /// Returns the answer and the number of support points.
     fn walk<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
@@ -837,11 +848,7 @@ mod tests {
         for _ in 0..200 {
             let turn = r.rotation();
             let tip = turn * Vec3::z() * r.within(0.8, 1.5);
-            let drop = move |n: &Vec3| {
-                let on_ball = n * 0.5;
-                if n.dot(&tip) > 0.5 { tip } else { on_ball }
-            };
-            let md = difference(drop, ball(tip * 0.3, 0.1));
+            let md = difference(drop(0.5, tip, Vec3::zeros()), ball(tip * 0.3, 0.1));
             let start = (tip.normalize() + r.vector(0.2)).normalize();
             if let (Ok((hit, Status::Converged)), _) =
                 walk(&md, Some(tip * -0.3), &start, &SETTINGS)
@@ -858,15 +865,6 @@ mod tests {
         let mut r = Random::new(29);
         let mut converged = 0;
         for round in 0..1000 {
-            let drop = |radius: f64, tip: Vec3, at: Vec3| {
-                move |n: &Vec3| {
-                    at + if n.dot(&tip) > radius {
-                        tip
-                    } else {
-                        n * radius
-                    }
-                }
-            };
             let tips = [r.direction() * 0.77, r.direction() * 0.32];
             let at = r.vector(0.005);
             let md = difference(drop(0.3, tips[0], Vec3::zeros()), drop(0.09, tips[1], at));
@@ -887,15 +885,6 @@ mod tests {
     /// The foot is in the known face of two drops' tips and balls, and a lower support value is known beside it.
     #[test]
     fn a_face_above_the_least_support_value_is_no_minimum() {
-        let drop = |radius: f64, tip: Vec3, at: Vec3| {
-            move |n: &Vec3| {
-                at + if n.dot(&tip) > radius {
-                    tip
-                } else {
-                    n * radius
-                }
-            }
-        };
         let axes = [
             Vec3::new(-0.932_477_614_117, -0.171_060_354_810, 0.318_156_964_693),
             Vec3::new(0.556_685_227_222, 0.630_027_878_454, -0.541_448_454_236),

@@ -113,6 +113,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     // SAFETY: [inputs]; every bit pattern is a ManifoldCache, which is all but the checksum.
     let mut known = unsafe { memory.as_ref() }.map(|memory| {
         if memory.checksum == memory.sum() {
+            // SAFETY: [inputs]; the cache is the first part of what was read.
             unsafe { *(&raw const *memory).cast::<ManifoldCache>() }
         } else {
             ManifoldCache::default()
