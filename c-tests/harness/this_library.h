@@ -39,14 +39,14 @@ OTHER_CALLS(DECLARE)
 
 /* The calls by number. */
 enum {
-#define CALL_NUMBER(name, word, kind, traits) ASK_##word,
+#define CALL_NUMBER(name, word, kind, traits) CALL_##word,
     PAIR_CALLS(CALL_NUMBER)
 #undef CALL_NUMBER
-        ASKS
+        PAIR_CALL_COUNT
 };
 enum {
 #define COUNT_CALL(name, word, kind, traits) + 1
-    LIBCCD_ASKS = 0 LIBCCD_CALLS(COUNT_CALL) /* the first of them are libccd's */
+    LIBCCD_CALL_COUNT = 0 LIBCCD_CALLS(COUNT_CALL) /* the first of them are libccd's */
 #undef COUNT_CALL
 };
 
@@ -69,7 +69,7 @@ typedef struct {
 } call_t;
 
 static const call_t call_table[] = {
-#define CALL_ROW(name, word, kind, traits) {#name, ASK_##word, KIND_##kind, traits, HIT_##kind, MISS_##kind, BAD_##kind},
+#define CALL_ROW(name, word, kind, traits) {#name, CALL_##word, KIND_##kind, traits, HIT_##kind, MISS_##kind, BAD_##kind},
     PAIR_CALLS(CALL_ROW)
 #undef CALL_ROW
 };
@@ -103,7 +103,7 @@ static inline int call_by_number(int number, const void *a, const void *b, const
 {
     switch (number) {
 #define CALL_CASE(name, word, kind, traits) \
-    case ASK_##word: return PASS_##kind(OURS(name));
+    case CALL_##word: return PASS_##kind(OURS(name));
         PAIR_CALLS(CALL_CASE)
 #undef CALL_CASE
     default: return CCD_BAD_INPUT;

@@ -53,7 +53,7 @@ static int ask(const call_t *entry, shape_t *a, shape_t *b, const ccd_t *ccd, do
         CHECK(out.depth >= 0 && out.depth <= CCD_REAL_MAX, "%s, %s: depth %g", entry->name, what, (double)out.depth);
         for (int i = 0; i < 3; i++)
             CHECK(fabs((double)out.pos.v[i]) <= (double)CCD_REAL_MAX, "%s, %s: pos", entry->name, what);
-        if (entry->number == ASK_ALONG)
+        if (entry->number == CALL_ALONG)
             CHECK(value_along(a, b, &out.normal) <= (double)(out.depth * ccdVec3Dot(&out.dir, &out.normal)) + 64 * (double)CCD_EPS * size,
                   "%s, %s: depth %g", entry->name, what, (double)out.depth);
         else
@@ -114,9 +114,9 @@ static void degenerate(const call_t *entry)
                     ccd_t ccd = shape_query();
                     ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)(1e-4 * sizes[size]);
                     int code = ask(entry, &s[0], &s[1], &ccd, 10 * sizes[size], "a degenerate pair");
-                    if (at == 2 && entry->number != ASK_PLANAR)
+                    if (at == 2 && entry->number != CALL_PLANAR)
                         CHECK(code == entry->miss, "%s: shapes %d and %d apart, size %g: %d", entry->name, i, k, sizes[size], code);
-                    if (at == 0 && (i >= 7 || k >= 7) && entry->number != ASK_PLANAR)
+                    if (at == 0 && (i >= 7 || k >= 7) && entry->number != CALL_PLANAR)
                         CHECK(code == entry->hit, "%s: a solid in %d and %d in one place, size %g: %d", entry->name, i, k,
                               sizes[size], code);
                 }
@@ -146,9 +146,9 @@ static void other_fields(const call_t *entry)
             garbage.center1 = ccd.center1;
             garbage.center2 = ccd.center2;
         }
-        if (entry->traits & FROM_FIRST_DIR || entry->number == ASK_PROVEN)
+        if (entry->traits & FROM_FIRST_DIR || entry->number == CALL_PROVEN)
             garbage.epa_tolerance = ccd.epa_tolerance;
-        else if (entry->number == ASK_DISTANCE)
+        else if (entry->number == CALL_DISTANCE)
             garbage.dist_tolerance = ccd.dist_tolerance;
         else
             garbage.mpr_tolerance = ccd.mpr_tolerance;
@@ -165,14 +165,14 @@ static void other_fields(const call_t *entry)
 static void null_outputs(void)
 {
     for (int round = 0; round < 2 * share; round++) {
-        static const int numbers[] = {ASK_MPR, ASK_GJK};
+        static const int numbers[] = {CALL_MPR, CALL_GJK};
         const int expected = round % 2 - 1;
         ccd_real_t depth[2];
         ccd_vec3_t dir[2], pos[2], sep;
         call_rest_t rest = {.depth = &depth[0], .dir = &dir[0], .pos = &pos[0]};
         shape_t a, b;
         ccd_t ccd;
-        random_pair(&call_table[ASK_GJK], round % 2, &a, &b, &ccd);
+        random_pair(&call_table[CALL_GJK], round % 2, &a, &b, &ccd);
         ccd.center1 = ccd.center2 = shape_center;
         for (int i = 0; i < 2; i++)
             for (int skip = 0; skip < 8; skip++) {
@@ -196,7 +196,7 @@ static void null_outputs(void)
 int main(int argc, char **argv)
 {
     share = argc > 1 ? atoi(argv[1]) : share;
-    for (int i = 0; i < ASKS; i++) {
+    for (int i = 0; i < PAIR_CALL_COUNT; i++) {
         other_fields(&call_table[i]);
         iterations(&call_table[i]);
         degenerate(&call_table[i]);

@@ -84,7 +84,7 @@ static void trusting_ball(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *ou
 
 int main(void)
 {
-    for (int i = 0; i < ASKS; i++) {
+    for (int i = 0; i < PAIR_CALL_COUNT; i++) {
         for (int round = 0; round < 400; round++) {
             const double length[] = {1, 1e-300, 1e300, 1e-30, 30};
             shape_t a, b;
@@ -92,7 +92,7 @@ int main(void)
             outputs_t out;
             int code, hit = round % 2;
             /* Each way as often hit or missed, and with every length. */
-            const int want = round / 2 % 2 ? CCD_WANT_ALL : call_table[i].number == ASK_DISTANCE ? 0 : CCD_WANT_POINTS;
+            const int want = round / 2 % 2 ? CCD_WANT_ALL : call_table[i].number == CALL_DISTANCE ? 0 : CCD_WANT_POINTS;
             random_pair(&call_table[i], hit, &a, &b, &ccd);
             if (round % 5 == 0) {
                 /* Centers in one place leave no first ray to start from. */

@@ -19,7 +19,7 @@ typedef struct {
 } outputs_t;
 
 /* __ccdSupport as an entry like the others. */
-static const call_t support_entry = {"__ccdSupport", ASKS, 0, 0, 0, 0, 0};
+static const call_t support_entry = {"__ccdSupport", PAIR_CALL_COUNT, 0, 0, 0, 0, 0};
 
 static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
 {
@@ -59,14 +59,14 @@ static inline int run_wanting(int want, const call_t *entry, const void *a, cons
     ccd_warm_t warm;
     call_rest_t rest;
     int number = entry->number, code;
-    if (number == ASKS) {
+    if (number == PAIR_CALL_COUNT) {
         __ccdSupport(a, b, &up, ccd, &out->support);
         return 0;
     }
     memset(&warm, 0, sizeof warm);
     memset(&rest, 0, sizeof rest);
     rest.warm = &warm;
-    rest.along = number == ASK_PLANAR ? &plane : &along;
+    rest.along = number == CALL_PLANAR ? &plane : &along;
     rest.max_distance = INFINITY;
     rest.slop = CCD_REAL(0.01);
     rest.want = want;
@@ -76,12 +76,12 @@ static inline int run_wanting(int want, const call_t *entry, const void *a, cons
     memset(&memory, 0, sizeof memory);
     rest.memory = &memory;
     rest.contacts = contacts;
-    if (number == ASK_CONTACTS) {
+    if (number == CALL_CONTACTS) {
         code = call_by_number(number, a, b, ccd, &rest);
         if (code < 1)
             return code;
         /* Contacts whatever the pose is; what it returns is whether the pair overlaps. */
-        number = ASK_LOCAL;
+        number = CALL_LOCAL;
     }
     if (entry->traits & EXTENSION)
         call_by_number(number, a, b, ccd, &rest);
@@ -89,10 +89,10 @@ static inline int run_wanting(int want, const call_t *entry, const void *a, cons
     rest.dir = &out->dir;
     rest.pos = want & CCD_WANT_POS ? &out->pos : NULL;
     code = call_by_number(number, a, b, ccd, &rest);
-    if (number == ASK_DISTANCE)
+    if (number == CALL_DISTANCE)
         return stored_distance(code, &distance, out);
     /* The others of the extension fill a struct, and libccd's the outputs themselves. */
-    return (entry->traits & EXTENSION) && (entry->traits & STORES) && number != ASK_MPR_WARM ? stored(code, &full, out) : code;
+    return (entry->traits & EXTENSION) && (entry->traits & STORES) && number != CALL_MPR_WARM ? stored(code, &full, out) : code;
 }
 
 /* The same for everything. */
@@ -130,7 +130,7 @@ static inline shape_t random_polygon(void)
  * entry does not use is NULL. */
 static inline void random_pair(const call_t *entry, int overlapping, shape_t *a, shape_t *b, ccd_t *ccd)
 {
-    const int planar = entry->number == ASK_PLANAR;
+    const int planar = entry->number == CALL_PLANAR;
     double angle = uniform(0, 6.28), z = planar ? 0 : uniform(-1, 1), across = sqrt(1 - z * z);
     double distance = overlapping ? uniform(0, 0.1) : uniform(4, 6);
     *a = planar ? random_polygon() : random_shape();

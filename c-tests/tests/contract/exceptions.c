@@ -114,7 +114,7 @@ static void test(const call_t *entry, int rounds)
 int main(int argc, char **argv)
 {
     const int rounds = argc > 1 ? atoi(argv[1]) : 20;
-    for (int i = 0; i < ASKS; i++)
+    for (int i = 0; i < PAIR_CALL_COUNT; i++)
         test(&call_table[i], rounds);
     test(&support_entry, rounds);
     return checks_end();

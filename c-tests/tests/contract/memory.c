@@ -169,7 +169,7 @@ static void check_nodes(void)
 
 static void check_queries(void)
 {
-    for (int i = 0; i < ASKS; i++) {
+    for (int i = 0; i < PAIR_CALL_COUNT; i++) {
         const call_t *entry = &call_table[i];
         for (int round = 0; round < 100; round++) {
             const int overlapping = round % 4 != 0;
@@ -183,7 +183,7 @@ static void check_queries(void)
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s returned %d", entry->name, code);
             CHECK(live_count == 0, "%s left %d blocks behind", entry->name, live_count);
             /* A distance takes none while the objects are apart. */
-            if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->number == ASK_DISTANCE))
+            if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->number == CALL_DISTANCE))
                 CHECK(taken == 0, "%s took %lu blocks", entry->name, taken);
             for (unsigned long fail = 1; fail <= (taken < 40 ? taken : 40); fail++) {
                 const unsigned long needed = taken;

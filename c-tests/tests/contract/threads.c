@@ -9,7 +9,7 @@
 
 enum { PAIRS = 60, THREADS = 8, ROUNDS = 5 };
 
-static struct { shape_t a, b; ccd_t ccd; int code; outputs_t out; } queries[ASKS][PAIRS];
+static struct { shape_t a, b; ccd_t ccd; int code; outputs_t out; } queries[PAIR_CALL_COUNT][PAIRS];
 static unsigned long different[THREADS];
 
 static void *ask_all(void *arg)
@@ -17,9 +17,9 @@ static void *ask_all(void *arg)
     const int me = (int)((unsigned long *)arg - different);
     int i;
     for (int round = 0; round < ROUNDS; round++)
-        for (int k = 0; k < ASKS * PAIRS; k++) {
+        for (int k = 0; k < PAIR_CALL_COUNT * PAIRS; k++) {
             /* Each thread in an order of its own. */
-            const int place = (k * 7 + me * 131) % (ASKS * PAIRS);
+            const int place = (k * 7 + me * 131) % (PAIR_CALL_COUNT * PAIRS);
             outputs_t out;
             i = place / PAIRS;
             shape_t a = queries[i][place % PAIRS].a;
@@ -35,7 +35,7 @@ static void *ask_all(void *arg)
 int main(void)
 {
     pthread_t thread[THREADS];
-    for (int i = 0; i < ASKS; i++)
+    for (int i = 0; i < PAIR_CALL_COUNT; i++)
         for (int k = 0; k < PAIRS; k++) {
             random_pair(&call_table[i], k % 2, &queries[i][k].a, &queries[i][k].b, &queries[i][k].ccd);
             shape_t a = queries[i][k].a;

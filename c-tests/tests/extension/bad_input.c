@@ -10,7 +10,7 @@
 #include "harness/shapes.h"
 
 /* Of all calls those for a penetration. */
-static const int queries[] = {ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_ALONG, ASK_PLANAR};
+static const int queries[] = {CALL_PENETRATION, CALL_LOCAL, CALL_INCREMENTAL, CALL_PROVEN, CALL_ALONG, CALL_PLANAR};
 enum { ALONG = 4, QUERIES = 6 };
 
 static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}}, across = {{2, 0, 0}};
@@ -22,7 +22,7 @@ static int same_answer(const ccd_penetration_t *a, const ccd_penetration_t *b)
     return same_bits(a, b, reals) && a->support_calls == b->support_calls && a->iterations == b->iterations;
 }
 
-static const ccd_vec3_t *dir_of(int call) { return call == ASK_PLANAR ? &up : &way; }
+static const ccd_vec3_t *dir_of(int call) { return call == CALL_PLANAR ? &up : &way; }
 
 /* Two square slabs that overlap by 0.25 along x; flat squares would only touch. */
 static const ccd_real_t slab[24] = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1,
@@ -309,7 +309,7 @@ static void lies(const call_t *call, const call_rest_t *rest)
         asked = nonsense = 0;
         int code = ask_number(number, &ccd, rest, random_below(4) ? &warm : NULL, &out);
         CHECK(asked < 40000, "%s: %d calls", call->name, asked);
-        if (number == ASK_CONTACTS) {
+        if (number == CALL_CONTACTS) {
             CHECK(code == CCD_BAD_INPUT || (code >= 1 && code <= 4), "%s: %d", call->name, code);
             for (int i = 0; i < code; i++)
                 CHECK(isfinite(out.contact[i].depth), "%s: a contact of no depth", call->name);
@@ -319,14 +319,14 @@ static void lies(const call_t *call, const call_rest_t *rest)
                      : code >= CCD_BAD_INPUT && code <= CCD_LIMIT, "%s of lies: %d", call->name, code);
         CHECK(!nonsense || code == call->bad, "%s: %d from no numbers", call->name, code);
         int hit = code == call->hit || (!libccd && code == CCD_LIMIT);
-        if (number == ASK_DISTANCE) {
+        if (number == CALL_DISTANCE) {
             CHECK(!(hit || code == CCD_MISS)
                       || (isfinite(out.distance.distance) && isfinite(out.distance.distance_upper)
                           && out.distance.distance <= out.distance.distance_upper), "distance of lies: %g", (double)out.distance.distance);
             CHECK(code != CCD_HIT || out.distance.distance < 0, "a hit at %g", (double)out.distance.distance);
         } else if (!hit) {
             CHECK(same_bits(&out, &before, sizeof out), "%s of lies: written", call->name);
-        } else if (number == ASK_MPR || number == ASK_GJK || number == ASK_MPR_WARM || !libccd) {
+        } else if (number == CALL_MPR || number == CALL_GJK || number == CALL_MPR_WARM || !libccd) {
             const int full = !libccd;
             const ccd_real_t depth = full ? out.penetration.depth : out.depth;
             const ccd_vec3_t *dir = full ? &out.penetration.dir : &out.dir;
@@ -341,8 +341,8 @@ static void bad_input(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2, strange[3] = {inf - inf, inf, -inf};
     call_rest_t rest = {.max_distance = inf, .slop = CCD_REAL(1e-3), .want = CCD_WANT_ALL, .max = 4};
-    for (const call_t *call = call_table; call < call_table + ASKS; call++) {
-        rest.along = call->number == ASK_ALONG ? &way : call->number == ASK_PLANAR ? &up : &across;
+    for (const call_t *call = call_table; call < call_table + PAIR_CALL_COUNT; call++) {
+        rest.along = call->number == CALL_ALONG ? &way : call->number == CALL_PLANAR ? &up : &across;
         expect(call, &good, &rest, good_answer(call), "the good question");
         bad_objects(call, &rest, strange);
         bad_tolerances(call, &rest, inf);

@@ -77,7 +77,7 @@ static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, c
     ccd.max_iterations = 500;
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-7);
     int code = call_by_number(call, a, b, &ccd, &x);
-    if (code >= 0 && call != ASK_MPR && call != ASK_GJK && call != ASK_MPR_WARM) {
+    if (code >= 0 && call != CALL_MPR && call != CALL_GJK && call != CALL_MPR_WARM) {
         *dir = p.dir;
         *pos = p.pos;
     }
@@ -101,7 +101,7 @@ static double apart(const double p[3], const double q[3])
     return sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
 }
 
-static const int CALLS[] = {ASK_MPR, ASK_MPR_WARM, ASK_GJK, ASK_PENETRATION, ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN};
+static const int CALLS[] = {CALL_MPR, CALL_MPR_WARM, CALL_GJK, CALL_PENETRATION, CALL_LOCAL, CALL_INCREMENTAL, CALL_PROVEN};
 enum { CALL_COUNT = sizeof CALLS / sizeof *CALLS };
 
 /* The angles: fine ones around the special place, then coarse ones. */
@@ -164,7 +164,7 @@ static errors_t sweep(const sweep_t *s, double depth, int call, const double wor
             continue;
         shape_turn_by(&a, world, 0, 0, 0);
         shape_turn_by(&b, world, 0, 0, 0);
-        int code = ask(call, &a, &b, call == ASK_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
+        int code = ask(call, &a, &b, call == CALL_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
         if (code != 0 && code != CCD_LIMIT) {
             CHECK(0, "%s, pose %d: code %d", s->name, k, code);
             continue;

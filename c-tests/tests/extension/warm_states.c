@@ -16,8 +16,8 @@ enum { PAIRS = 400 };
 static int pairs = PAIRS;
 
 /* Every call that takes a state, but ccdIntersect, which is one of them. */
-static const int asks[] = {ASK_LOCAL, ASK_INCREMENTAL, ASK_PROVEN, ASK_PENETRATION, ASK_ALONG, ASK_PLANAR, ASK_MPR_WARM,
-                           ASK_MPR_INTERSECT_WARM, ASK_DISTANCE};
+static const int asks[] = {CALL_LOCAL, CALL_INCREMENTAL, CALL_PROVEN, CALL_PENETRATION, CALL_ALONG, CALL_PLANAR, CALL_MPR_WARM,
+                           CALL_MPR_INTERSECT_WARM, CALL_DISTANCE};
 
 typedef struct {
     entry_t call;
@@ -48,7 +48,7 @@ static answer_t answer(case_t *c, int swap, ccd_warm_t *warm, const char *state)
     CHECK(!faults, "%s from %s", c->call.name, state);
     if (faults)
         print_wrong(&c->call, &x, faults, &c->question.truth);
-    CHECK(c->call.ask != ASK_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_ulp(), "planar: %g out of the plane", across);
+    CHECK(c->call.ask != CALL_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_ulp(), "planar: %g out of the plane", across);
     c->limited |= x.code == CCD_LIMIT;
     return x;
 }
@@ -107,12 +107,12 @@ static void make(case_t *c, int call, int i)
     c->call.ask = call;
     c->limited = 0;
     dice_unit(&d, c->dir);
-    if (call == ASK_PLANAR)
+    if (call == CALL_PLANAR)
         make_planar(c, &d);
     else
         category_pair(categories[i % 4], (uint64_t)i, SHAPE_TIE_SIGN, &c->pair);
     c->question = question(&c->pair.a, &c->pair.b, sizeof(ccd_real_t) == 8 ? 1e-6 : 1e-4, &c->pair.truth);
-    if (call == ASK_ALONG && c->pair.truth.lower > 0)
+    if (call == CALL_ALONG && c->pair.truth.lower > 0)
         c->question.truth = truth_along(&c->pair.a, &c->pair.b, c->dir);
 }
 
@@ -154,7 +154,7 @@ static void every_state(case_t *c, ccd_warm_t *other, count_t *n)
     x = answer(c, 1, NULL, "no state, swapped");
     copy = warm;
     answer_t y = ask_pair(c, 1, &copy);
-    if (c->call.ask == ASK_LOCAL && x.code == CCD_HIT)
+    if (c->call.ask == CALL_LOCAL && x.code == CCD_HIT)
         CHECK(y.code == CCD_HIT && y.depth - x.depth <= c->question.tol, "unflipped: %g, cold %g", y.depth, x.depth);
     if (cold.code == CCD_HIT && c->question.truth.lower > 0) {
         n->hits++;
@@ -201,15 +201,15 @@ static void from_states(int ask)
     if (pairs < PAIRS)
         return; /* few pairs tell no costs */
     /* Of a distance another of two ties is asked first: 5 % more. In single precision more are ties. */
-    CHECK(100 * n.flipped <= (ask == ASK_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103) * n.own, "%s: a flipped state is worth less", call_table[ask].name);
+    CHECK(100 * n.flipped <= (ask == CALL_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103) * n.own, "%s: a flipped state is worth less", call_table[ask].name);
     /* A portal's first directions are turned the same way round in the mirror: few walks differ. */
-    if (ask == ASK_LOCAL || ask == ASK_PLANAR)
+    if (ask == CALL_LOCAL || ask == CALL_PLANAR)
         CHECK(n.apart <= PAIRS / 20, "%s: %d differ", call_table[ask].name, n.apart);
     /* A state is one direction: a depth along another gains nothing by it. */
-    if (ask == ASK_LOCAL)
+    if (ask == CALL_LOCAL)
         CHECK(10 * n.again <= 7 * n.first, "%s: asked again", call_table[ask].name);
     /* The paper's method halves its way to round minima: it says so where others are long done. */
-    CHECK(n.limited <= (ask == ASK_INCREMENTAL ? PAIRS / 16 : PAIRS / 200), "%s: %d pairs at the cap", call_table[ask].name, n.limited);
+    CHECK(n.limited <= (ask == CALL_INCREMENTAL ? PAIRS / 16 : PAIRS / 200), "%s: %d pairs at the cap", call_table[ask].name, n.limited);
     CHECK(n.hits > PAIRS / 4, "%s: %d hits", call_table[ask].name, n.hits);
 }
 

@@ -111,12 +111,12 @@ static int print_rates(int pairs, int tie)
     for (int category = 0; category < CATEGORY_COUNT; category++)
         for (int k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
-            int rated = e->ask == ASK_MPR || e->ask == ASK_GJK || (e->ask == ASK_PROVEN && e->state == STATE_NONE);
+            int rated = e->ask == CALL_MPR || e->ask == CALL_GJK || (e->ask == CALL_PROVEN && e->state == STATE_NONE);
             if (!rated || !table[tie][k][category].asked)
                 continue;
-            report(e->system ? e->name : e->ask == ASK_MPR ? "**our MPR**" : e->ask == ASK_GJK ? "**our GJK**" : "**minimum**",
+            report(e->system ? e->name : e->ask == CALL_MPR ? "**our MPR**" : e->ask == CALL_GJK ? "**our GJK**" : "**minimum**",
                    category_text(category), &table[tie][k][category]);
-            if (!e->system && e->ask == ASK_MPR)
+            if (!e->system && e->ask == CALL_MPR)
                 report("**our MPR, fine**", category_text(category), &fine[tie][k][category]);
             rows++;
         }

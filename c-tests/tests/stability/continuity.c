@@ -90,15 +90,15 @@ int main(void)
     const int MOTIONS = (int)(sizeof motions / sizeof motions[0]);
     static const entry_t methods[] = {
 #ifndef OURS_ALONE
-        {"libccd MPR", 1, ASK_MPR, STATE_NONE},
-        {"libccd GJK", 1, ASK_GJK, STATE_NONE},
+        {"libccd MPR", 1, CALL_MPR, STATE_NONE},
+        {"libccd GJK", 1, CALL_GJK, STATE_NONE},
 #endif
-        {"MPR", 0, ASK_MPR, STATE_NONE},
-        {"MPR, warm", 0, ASK_MPR_WARM, STATE_ZERO},
-        {"local, warm", 0, ASK_LOCAL, STATE_ZERO},
-        {"GJK", 0, ASK_GJK, STATE_NONE},
-        {"minimum", 0, ASK_PROVEN, STATE_NONE},
-        {"minimum, warm", 0, ASK_PROVEN, STATE_ZERO},
+        {"MPR", 0, CALL_MPR, STATE_NONE},
+        {"MPR, warm", 0, CALL_MPR_WARM, STATE_ZERO},
+        {"local, warm", 0, CALL_LOCAL, STATE_ZERO},
+        {"GJK", 0, CALL_GJK, STATE_NONE},
+        {"minimum", 0, CALL_PROVEN, STATE_NONE},
+        {"minimum, warm", 0, CALL_PROVEN, STATE_ZERO},
     };
     /* where the first method, a cold one, has the contact in each frame */
     static double place[FRAMES][3];
@@ -158,7 +158,7 @@ int main(void)
             }
             printf("%-28s %-14s jumps %3d  pos step %.3g  off %.2g\n", motions[m].name, e->name, jumps, pos_step, pos_off);
             if (!e->system
-                && ((jumps > 0 && (e->ask != ASK_LOCAL || motions[m].face)) || wrong > 0
+                && ((jumps > 0 && (e->ask != CALL_LOCAL || motions[m].face)) || wrong > 0
                     || (motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
                 printf("FAILED the line above\n");
                 failed++;

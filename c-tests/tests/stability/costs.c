@@ -88,7 +88,7 @@ static int having_been_apart(int what)
 static int asked_once(int which)
 {
     const double gap = which % 2 ? 3 : .05;
-    const int what = which < 2 ? ASK_LOCAL : ASK_MPR_WARM;
+    const int what = which < 2 ? CALL_LOCAL : CALL_MPR_WARM;
     unsigned long warm = 0, cold = 0;
     int i;
     for (i = 0; i < 200; i++) {
@@ -98,7 +98,7 @@ static int asked_once(int which)
         double axis[3], rot[9], n[3];
         overlapping(&d, &p, any_kind, 7, 1e-2);
         shape_shift(&p.b, gap * pair_size(&p.a, &p.b), p.truth.n);
-        if (what == ASK_LOCAL) {
+        if (what == CALL_LOCAL) {
             /* a guess ten degrees off */
             ccd_vec3_t guess;
             dice_unit(&d, axis);
@@ -153,7 +153,7 @@ static int unchanged(int which)
             overlapping(&d, &p, round_kind, 3, which == UNCHANGED_ROUND ? dice_log(&d, 1e-5, 1e-2) : .1);
         for (int k = 0; k < 3; k++) {
             judge_want = which == UNCHANGED_FACES_UNREAD ? 0 : CCD_WANT_ALL;
-            n = supports(ASK_MPR_WARM, &p.a, &p.b, &warm);
+            n = supports(CALL_MPR_WARM, &p.a, &p.b, &warm);
             cold += k ? 0 : n;
         }
         again += n;
@@ -248,12 +248,12 @@ static int distances(int of_cores)
         overlapping(&d, &p, of_cores ? round_kind : any_kind, of_cores ? 2 : 7, 1e-2);
         shape_shift(&p.b, dice_log(&d, 2e-2, 1) * pair_size(&p.a, &p.b), p.truth.n);
         judge_size = pair_size(&p.a, &p.b);
-        supports(ASK_DISTANCE, &p.a, &p.b, &warm);
-        cold += supports(ASK_DISTANCE, &p.a, &p.b, NULL);
-        near += supports_as(ASK_DISTANCE, STATE_NEAR, &p.a, &p.b, NULL);
+        supports(CALL_DISTANCE, &p.a, &p.b, &warm);
+        cold += supports(CALL_DISTANCE, &p.a, &p.b, NULL);
+        near += supports_as(CALL_DISTANCE, STATE_NEAR, &p.a, &p.b, NULL);
         if (of_cores)
             p.a.p[0] = p.b.p[0] = 0;
-        other += of_cores ? supports_as(ASK_DISTANCE, STATE_MARGINS, &p.a, &p.b, NULL) : supports(ASK_DISTANCE, &p.a, &p.b, &warm);
+        other += of_cores ? supports_as(CALL_DISTANCE, STATE_MARGINS, &p.a, &p.b, NULL) : supports(CALL_DISTANCE, &p.a, &p.b, &warm);
     }
     printf("%.2f supports cold, %.2f %s, %.2f if near", (double)cold / i, (double)other / i, of_cores ? "as cores" : "again", (double)near / i);
     return 3 * near <= 2 * cold && (double)other <= (of_cores ? 2.5 : 3) * i && (double)cold <= 10 * i;
@@ -313,7 +313,7 @@ static int stack_asks(int class, const entry_t *e)
 {
     switch (class) {
     case STACK_ANY: return 1;
-    case STACK_FEW: return entry_is_mpr(e) || e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_PROVEN;
+    case STACK_FEW: return entry_is_mpr(e) || e->ask == CALL_GJK || e->ask == CALL_SEPARATE || e->ask == CALL_PROVEN;
     default: return entry_is_verdict(e);
     }
 }
@@ -321,7 +321,7 @@ static int stack_asks(int class, const entry_t *e)
 /* The deepest of a class. */
 static int stack_of(int class)
 {
-    static const entry_t refused = {"", 0, ASK_ALONG, STATE_NONE};
+    static const entry_t refused = {"", 0, CALL_ALONG, STATE_NONE};
     static pair_t p;
     size_t empty, most[ENTRIES] = {0}, limit = stack_limits[class] * 1024, deepest = 0;
     int i;
@@ -378,18 +378,18 @@ int main(int argc, char **argv)
         {"U03", "stack of any call", stack_of, STACK_ANY, HOLDS},
         {"U03", "stack of a depth by up to 22 support points", stack_of, STACK_FEW, BROKEN},
         {"U03", "stack of yes or no", stack_of, STACK_VERDICT, HOLDS},
-        {"U07", "yes or no after having been apart", having_been_apart, ASK_MPR_INTERSECT_WARM, HOLDS},
-        {"U07", "MPR after having been apart", having_been_apart, ASK_MPR_WARM, HOLDS},
+        {"U07", "yes or no after having been apart", having_been_apart, CALL_MPR_INTERSECT_WARM, HOLDS},
+        {"U07", "MPR after having been apart", having_been_apart, CALL_MPR_WARM, HOLDS},
         {"U08", "local with a guess, a little apart", asked_once, 0, HOLDS},
         {"U08", "local with a guess, far apart", asked_once, 1, HOLDS},
         {"U08", "MPR with a fresh state, a little apart", asked_once, 2, HOLDS},
         {"U08", "MPR with a fresh state, far apart", asked_once, 3, HOLDS},
         {"U11", "a face that rests on a face", unchanged, UNCHANGED_FACES, BROKEN},
         {"U11", "the same, its position not read", unchanged, UNCHANGED_FACES_UNREAD, HOLDS},
-        {"V11", "faces that slide", sliding, ASK_MPR_WARM, BROKEN},
-        {"V11", "faces that slide, by ccdPenetration", sliding, ASK_PENETRATION, BROKEN},
-        {"U14", "yes or no, staying apart", staying_apart, ASK_MPR_INTERSECT_WARM, HOLDS},
-        {"U14", "MPR, staying apart", staying_apart, ASK_MPR_WARM, HOLDS},
+        {"V11", "faces that slide", sliding, CALL_MPR_WARM, BROKEN},
+        {"V11", "faces that slide, by ccdPenetration", sliding, CALL_PENETRATION, BROKEN},
+        {"U14", "yes or no, staying apart", staying_apart, CALL_MPR_INTERSECT_WARM, HOLDS},
+        {"U14", "MPR, staying apart", staying_apart, CALL_MPR_WARM, HOLDS},
         {"U15", "distances", distances, 0, BROKEN},
         {"U15", "distances of cores with margins", distances, 1, HOLDS},
         {"U11", "shallow polytopes, unchanged", unchanged, UNCHANGED_FLAT, BROKEN},

@@ -30,7 +30,7 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
     shape_t a = p->a, b = p->b;
     ccd_t ccd = shape_query();
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
-    for (int k = 0; k < ASKS; k++) {
+    for (int k = 0; k < PAIR_CALL_COUNT; k++) {
         struct {
             ccd_real_t depth;
             ccd_vec3_t dir, pos;

@@ -55,39 +55,39 @@ typedef struct {
 
 static const entry_t entries[] = {
 #ifndef OURS_ALONE
-    {"libccd MPR", 1, ASK_MPR, STATE_NONE},
-    {"libccd GJK", 1, ASK_GJK, STATE_NONE},
+    {"libccd MPR", 1, CALL_MPR, STATE_NONE},
+    {"libccd GJK", 1, CALL_GJK, STATE_NONE},
 #endif
-    {"MPR", 0, ASK_MPR, STATE_NONE},
-    {"GJK", 0, ASK_GJK, STATE_NONE},
-    {"separate", 0, ASK_SEPARATE, STATE_NONE},
-    {"MPR intersect", 0, ASK_MPR_INTERSECT, STATE_NONE},
-    {"GJK intersect", 0, ASK_GJK_INTERSECT, STATE_NONE},
-    {"intersect", 0, ASK_INTERSECT, STATE_NONE},
-    {"penetration", 0, ASK_PENETRATION, STATE_NONE},
-    {"local", 0, ASK_LOCAL, STATE_NONE},
-    {"minimum", 0, ASK_PROVEN, STATE_NONE},
-    {"along", 0, ASK_ALONG, STATE_NONE},
-    {"MPR, zero state", 0, ASK_MPR_WARM, STATE_ZERO},
-    {"MPR, again", 0, ASK_MPR_WARM, STATE_AGAIN},
-    {"MPR, swapped state", 0, ASK_MPR_WARM, STATE_SWAPPED},
-    {"MPR, wrong guess", 0, ASK_MPR_WARM, STATE_AGAINST},
-    {"MPR, guess beside", 0, ASK_MPR_WARM, STATE_BESIDE},
-    {"MPR intersect, again", 0, ASK_MPR_INTERSECT_WARM, STATE_AGAIN},
-    {"penetration, again", 0, ASK_PENETRATION, STATE_AGAIN},
-    {"local, again", 0, ASK_LOCAL, STATE_AGAIN},
-    {"local, swapped state", 0, ASK_LOCAL, STATE_SWAPPED},
-    {"local, wrong guess", 0, ASK_LOCAL, STATE_AGAINST},
-    {"local, guess beside", 0, ASK_LOCAL, STATE_BESIDE},
-    {"minimum, again", 0, ASK_PROVEN, STATE_AGAIN},
-    {"minimum, wrong guess", 0, ASK_PROVEN, STATE_AGAINST},
-    {"minimum, guess beside", 0, ASK_PROVEN, STATE_BESIDE},
-    {"along, again", 0, ASK_ALONG, STATE_AGAIN},
-    {"distance", 0, ASK_DISTANCE, STATE_NONE},
-    {"distance, again", 0, ASK_DISTANCE, STATE_AGAIN},
-    {"distance, wrong guess", 0, ASK_DISTANCE, STATE_AGAINST},
-    {"distance, margins", 0, ASK_DISTANCE, STATE_MARGINS},
-    {"distance, if near", 0, ASK_DISTANCE, STATE_NEAR},
+    {"MPR", 0, CALL_MPR, STATE_NONE},
+    {"GJK", 0, CALL_GJK, STATE_NONE},
+    {"separate", 0, CALL_SEPARATE, STATE_NONE},
+    {"MPR intersect", 0, CALL_MPR_INTERSECT, STATE_NONE},
+    {"GJK intersect", 0, CALL_GJK_INTERSECT, STATE_NONE},
+    {"intersect", 0, CALL_INTERSECT, STATE_NONE},
+    {"penetration", 0, CALL_PENETRATION, STATE_NONE},
+    {"local", 0, CALL_LOCAL, STATE_NONE},
+    {"minimum", 0, CALL_PROVEN, STATE_NONE},
+    {"along", 0, CALL_ALONG, STATE_NONE},
+    {"MPR, zero state", 0, CALL_MPR_WARM, STATE_ZERO},
+    {"MPR, again", 0, CALL_MPR_WARM, STATE_AGAIN},
+    {"MPR, swapped state", 0, CALL_MPR_WARM, STATE_SWAPPED},
+    {"MPR, wrong guess", 0, CALL_MPR_WARM, STATE_AGAINST},
+    {"MPR, guess beside", 0, CALL_MPR_WARM, STATE_BESIDE},
+    {"MPR intersect, again", 0, CALL_MPR_INTERSECT_WARM, STATE_AGAIN},
+    {"penetration, again", 0, CALL_PENETRATION, STATE_AGAIN},
+    {"local, again", 0, CALL_LOCAL, STATE_AGAIN},
+    {"local, swapped state", 0, CALL_LOCAL, STATE_SWAPPED},
+    {"local, wrong guess", 0, CALL_LOCAL, STATE_AGAINST},
+    {"local, guess beside", 0, CALL_LOCAL, STATE_BESIDE},
+    {"minimum, again", 0, CALL_PROVEN, STATE_AGAIN},
+    {"minimum, wrong guess", 0, CALL_PROVEN, STATE_AGAINST},
+    {"minimum, guess beside", 0, CALL_PROVEN, STATE_BESIDE},
+    {"along, again", 0, CALL_ALONG, STATE_AGAIN},
+    {"distance", 0, CALL_DISTANCE, STATE_NONE},
+    {"distance, again", 0, CALL_DISTANCE, STATE_AGAIN},
+    {"distance, wrong guess", 0, CALL_DISTANCE, STATE_AGAINST},
+    {"distance, margins", 0, CALL_DISTANCE, STATE_MARGINS},
+    {"distance, if near", 0, CALL_DISTANCE, STATE_NEAR},
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
@@ -95,32 +95,32 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
  * the extension's own "local", or "proven", which have a lower bound that closes? NULL: any. */
 static inline int entry_in(const entry_t *e, const char *group)
 {
-    int local = e->ask == ASK_LOCAL, proven = e->ask == ASK_PROVEN || e->ask == ASK_ALONG || e->ask == ASK_DISTANCE;
+    int local = e->ask == CALL_LOCAL, proven = e->ask == CALL_PROVEN || e->ask == CALL_ALONG || e->ask == CALL_DISTANCE;
     return !group || strcmp(group, local ? "local" : proven ? "proven" : "compatible") == 0;
 }
 
 /* Whether the answer claims to be the global minimum within the tolerance. */
 static inline int entry_is_minimum(const entry_t *e)
 {
-    return !e->system && (e->ask == ASK_GJK || e->ask == ASK_SEPARATE || e->ask == ASK_PROVEN);
+    return !e->system && (e->ask == CALL_GJK || e->ask == CALL_SEPARATE || e->ask == CALL_PROVEN);
 }
 
 /* Whether it promises the global minimum within the larger of the tolerance and 0.1 % of the depth. */
 static inline int entry_is_mpr(const entry_t *e)
 {
-    return e->ask == ASK_MPR || e->ask == ASK_MPR_WARM || e->ask == ASK_PENETRATION;
+    return e->ask == CALL_MPR || e->ask == CALL_MPR_WARM || e->ask == CALL_PENETRATION;
 }
 
 static inline int entry_is_verdict(const entry_t *e)
 {
-    return e->ask == ASK_MPR_INTERSECT || e->ask == ASK_GJK_INTERSECT || e->ask == ASK_MPR_INTERSECT_WARM || e->ask == ASK_INTERSECT;
+    return e->ask == CALL_MPR_INTERSECT || e->ask == CALL_GJK_INTERSECT || e->ask == CALL_MPR_INTERSECT_WARM || e->ask == CALL_INTERSECT;
 }
 
 /* From so many calls of both support functions on it counts as looping: no query is slower. */
 static inline unsigned long most_calls(const entry_t *e)
 {
     if (e->system)
-        return e->ask == ASK_MPR ? 40000 : 4000;
+        return e->ask == CALL_MPR ? 40000 : 4000;
     return entry_is_mpr(e) ? 2 * 400 : 2 * 1500;
 }
 
@@ -184,7 +184,7 @@ static inline int judge_libccd(const entry_t *e, const void *a, const void *b, c
 #ifdef OURS_ALONE
     return call_by_number(e->ask, a, b, ccd, x); /* no entry asks for it */
 #else
-    return e->ask == ASK_MPR ? ccdMPRPenetration(a, b, ccd, x->depth, x->dir, x->pos)
+    return e->ask == CALL_MPR ? ccdMPRPenetration(a, b, ccd, x->depth, x->dir, x->pos)
                              : ccdGJKPenetration(a, b, ccd, x->depth, x->dir, x->pos);
 #endif
 }
@@ -219,7 +219,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     const call_rest_t rest = {.warm = warm, .along = along, .want = judge_want, .depth = &depth, .dir = &dir,
                               .pos = judge_want & CCD_WANT_POS ? &pos : NULL, .full = &p, .margin1 = margin, .margin2 = margin / 3,
                               .max_distance = (ccd_real_t)(e->state == STATE_NEAR ? .1 * judge_size : HUGE_VAL), .distance = &distance};
-    const int full = e->ask >= ASK_PENETRATION;
+    const int full = e->ask >= CALL_PENETRATION;
     memset(&p, judge_blank, sizeof p);
     memset(&depth, judge_blank, sizeof depth);
     memset(&dir, judge_blank, sizeof dir);
@@ -227,7 +227,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     int code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
     if (entry_is_verdict(e))
         code = code ? CCD_HIT : CCD_MISS;
-    if (e->ask == ASK_SEPARATE && code == 0) {
+    if (e->ask == CALL_SEPARATE && code == 0) {
         /* a zero vector keeps no direction: give it the answer's own */
         double v[3], l;
         judge_vec(&dir, v);
@@ -237,7 +237,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
             dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
     }
     out->code = code;
-    if (e->ask == ASK_DISTANCE) {
+    if (e->ask == CALL_DISTANCE) {
         judge_distance(&distance, &rest, out);
         return;
     }
@@ -247,7 +247,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
         return;
     }
     out->has_proof = full;
-    out->has_pos = full || e->ask == ASK_MPR || e->ask == ASK_GJK || e->ask == ASK_MPR_WARM;
+    out->has_pos = full || e->ask == CALL_MPR || e->ask == CALL_GJK || e->ask == CALL_MPR_WARM;
     if (full) {
         depth = p.depth;
         dir = p.dir;
@@ -432,7 +432,7 @@ static inline double judge_reach(const shape_t *s, const double origin[3], const
 static inline double judge_bound(const entry_t *e, const answer_t *x, const question_t *q)
 {
     const double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) : q->tol;
-    const double reached = x->code == CCD_LIMIT || e->ask == ASK_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
+    const double reached = x->code == CCD_LIMIT || e->ask == CALL_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
     return reached + q->noise + tolerance(TOL_INSIDE) * q->size;
 }
 
@@ -470,7 +470,7 @@ static inline int judge_position(const entry_t *e, const answer_t *x, const shap
 static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
 {
     double bound = judge_bound(e, x, q), origin[3], d[3], m[3], p1[3], p2[3], value, l2;
-    const int has_centre = x->code == CCD_HIT && e->ask != ASK_ALONG && e->ask != ASK_PLANAR;
+    const int has_centre = x->code == CCD_HIT && e->ask != CALL_ALONG && e->ask != CALL_PLANAR;
     int faults = 0, i;
     for (i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
@@ -568,7 +568,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         return FAULT_LOOP;
     if (x->code == ANSWER_CRASH)
         return FAULT_CRASH;
-    if (e->ask == ASK_DISTANCE)
+    if (e->ask == CALL_DISTANCE)
         return judge_signed(e, x, a, b, q);
     if (x->touched)
         faults |= FAULT_TOUCHED;
@@ -586,13 +586,13 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (x->code == CCD_LIMIT && !x->has_proof)
         faults |= FAULT_CODE;
     /* ccdPenetration gives up after 160 support points */
-    if (x->code == CCD_LIMIT && !q->surface && !(e->ask == ASK_PENETRATION && x->calls >= 2 * MPR_POINTS))
+    if (x->code == CCD_LIMIT && !q->surface && !(e->ask == CALL_PENETRATION && x->calls >= 2 * MPR_POINTS))
         faults |= FAULT_LIMIT;
     if (t->depth < -q->noise && !q->touching)
         return faults | FAULT_FALSE_HIT;
     if (entry_is_verdict(e))
         return faults;
-    if (e->ask == ASK_SEPARATE && x->depth == 0)
+    if (e->ask == CALL_SEPARATE && x->depth == 0)
         return faults | (t->depth > q->tol + q->noise ? FAULT_ZERO | FAULT_UNSOUND : 0);
 
     finite = isfinite(x->depth);
@@ -603,7 +603,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     l2 = truth_dot3(x->dir, x->dir);
     if (l2 == 0)
         return faults | FAULT_DIR0;
-    if (!(fabs(sqrt(l2) - 1) <= tolerance(TOL_UNIT)) && e->ask != ASK_SEPARATE)
+    if (!(fabs(sqrt(l2) - 1) <= tolerance(TOL_UNIT)) && e->ask != CALL_SEPARATE)
         faults |= FAULT_NOT_UNIT;
 
     /* the rate table's verdicts; along a direction that is not the normal the plane is farther */
@@ -627,7 +627,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         double along = truth_dot3(x->dir, x->normal), n2 = truth_dot3(x->normal, x->normal);
         if (!(fabs(sqrt(n2) - 1) <= tolerance(TOL_UNIT)) || !(along > 0))
             faults |= FAULT_NOT_UNIT;
-        if (e->ask != ASK_ALONG && memcmp(x->dir, x->normal, sizeof x->dir) != 0)
+        if (e->ask != CALL_ALONG && memcmp(x->dir, x->normal, sizeof x->dir) != 0)
             faults |= FAULT_NOT_NORMAL;
         faults |= judge_witness(e, x, a, b, q);
         if (!(x->lower >= 0 && x->lower <= x->depth) || x->lower > t->depth + q->noise + gap)
@@ -648,16 +648,16 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         const double within = q->surface == ALL_AROUND || at_limit ? fmax(q->tol, tolerance(TOL_PROMISED) * t->depth) : q->tol;
         if (!(x->depth <= fmax(t->depth, 0) + within + gap + 2 * q->noise))
             faults |= FAULT_NOT_MINIMUM;
-        if (e->ask == ASK_PROVEN && x->code == CCD_HIT
+        if (e->ask == CALL_PROVEN && x->code == CCD_HIT
             && !(x->depth - x->lower <= q->tol + tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b) + 2 * q->noise))
             faults |= FAULT_NO_PROOF;
     }
-    if (e->ask == ASK_PENETRATION && x->code == CCD_HIT
+    if (e->ask == CALL_PENETRATION && x->code == CCD_HIT
         && !(x->depth - x->lower <= fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) + 2 * q->noise))
         faults |= FAULT_NO_PROOF;
     if (entry_is_mpr(e) && !mpr_within(x->depth, t->depth, q->tol, gap + 2 * q->noise, x->calls / 2))
         faults |= FAULT_NOT_PROMISED;
-    if (e->ask == ASK_ALONG && x->depth > fmax(t->depth, 0) + q->tol + gap + 2 * q->noise)
+    if (e->ask == CALL_ALONG && x->depth > fmax(t->depth, 0) + q->tol + gap + 2 * q->noise)
         faults |= FAULT_NOT_MINIMUM; /* asked along the true normal */
     return faults;
 }

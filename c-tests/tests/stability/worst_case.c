@@ -92,7 +92,7 @@ static void query(const method_t *m, const shape_t *a, const shape_t *b, const c
     rest.max_distance = (ccd_real_t)HUGE_VAL;
     rest.pos = m->has_pos ? &pos : NULL;
     rest.want = m->has_pos ? CCD_WANT_ALL : CCD_WANT_POINTS;
-    if (m->call == ASK_DISTANCE)
+    if (m->call == CALL_DISTANCE)
         rest.want = CCD_WANT_POINTS;
     rest.warm = m->is_warm ? warm : NULL;
     call_by_number(m->call, a, b, ccd, &rest);
@@ -144,18 +144,18 @@ int main(int argc, char **argv)
         {"libccd `ccdMPRPenetration`", -1, 1, 0, NULL, NULL, 0},
         {"libccd `ccdGJKPenetration`", -2, 1, 0, NULL, NULL, 0},
 #endif
-        {"`ccdMPRPenetration`", ASK_MPR, 1, 0, NULL, NULL, 0},
-        {"`ccdMPRPenetration`, `pos` NULL", ASK_MPR, 0, 0, NULL, NULL, 0},
-        {"`ccdPenetration`, warm, no `pos`", ASK_PENETRATION, 0, 1, NULL, NULL, 0},
-        {"`ccdGJKPenetration`", ASK_GJK, 1, 0, NULL, NULL, 0},
-        {"`ccdPenetrationLocal`, no `pos`", ASK_LOCAL, 0, 0, NULL, NULL, 0},
-        {"`ccdSignedDistance`", ASK_DISTANCE, 0, 0, NULL, NULL, 0},
-        {"`ccdIntersect`", ASK_INTERSECT, 0, 0, NULL, NULL, 0},
+        {"`ccdMPRPenetration`", CALL_MPR, 1, 0, NULL, NULL, 0},
+        {"`ccdMPRPenetration`, `pos` NULL", CALL_MPR, 0, 0, NULL, NULL, 0},
+        {"`ccdPenetration`, warm, no `pos`", CALL_PENETRATION, 0, 1, NULL, NULL, 0},
+        {"`ccdGJKPenetration`", CALL_GJK, 1, 0, NULL, NULL, 0},
+        {"`ccdPenetrationLocal`, no `pos`", CALL_LOCAL, 0, 0, NULL, NULL, 0},
+        {"`ccdSignedDistance`", CALL_DISTANCE, 0, 0, NULL, NULL, 0},
+        {"`ccdIntersect`", CALL_INTERSECT, 0, 0, NULL, NULL, 0},
     };
     enum { METHODS = sizeof methods / sizeof methods[0] };
     static ccd_real_t corners[2][3 * CORNERS];
     const long n = argc > 1 ? atol(argv[1]) : 0;
-    const method_t leave_state = {"", ASK_PENETRATION, 0, 1, NULL, NULL, 0};
+    const method_t leave_state = {"", CALL_PENETRATION, 0, 1, NULL, NULL, 0};
     if (n < 1000) {
         fprintf(stderr, "usage: worst_case QUERIES [SEED], at least 1000\n");
         return 2;

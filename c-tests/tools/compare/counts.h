@@ -54,7 +54,7 @@ typedef struct {
     char program[256]; /* of the first */
     char theirs[512], ours[512]; /* which libraries */
     uint64_t base;               /* whose answers the program goes on with */
-    compare_call_t call[LIBCCD_ASKS];
+    compare_call_t call[LIBCCD_CALL_COUNT];
     uint64_t raw_supports; /* __ccdSupport, which FCL's own GJK calls */
     uint64_t callback_pairs, callback_nanoseconds; /* support1 and support2 alone */
     uint64_t process_nanoseconds, watch_nanoseconds; /* processor time of all, and of it the tool's */

@@ -30,7 +30,7 @@ static inline unsigned long compare_queries(void)
     unsigned long n = 0;
     if (!compare_counts)
         return 0;
-    for (int i = 0; i < LIBCCD_ASKS; i++)
+    for (int i = 0; i < LIBCCD_CALL_COUNT; i++)
         n += (unsigned long)compare_counts()->call[i].queries;
     return n;
 }

@@ -143,7 +143,7 @@ verdict_t sample_verdict(const query_t *q, const answer_t *answer, const verdict
 {
     verdict_answer_t a = { answer->hit, 1, (double)answer->depth, (double)ccdVec3Len2(&answer->dir) };
     a.has_depth = !is_verdict(q->call);
-    if (q->call == ASK_SEPARATE && answer->depth == 0)
+    if (q->call == CALL_SEPARATE && answer->depth == 0)
         a.length2 = 1; /* a vector of no length has no direction */
     return verdict(&a, truth);
 }

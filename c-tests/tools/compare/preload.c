@@ -176,7 +176,7 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
     answer_t own;
     count_add(&c->returned, 1);
     count_add(&c->hits, (uint64_t)hit);
-    if (hit && q->call != ASK_SEPARATE)
+    if (hit && q->call != CALL_SEPARATE)
         count_broken(c, depth, dir);
     if (answered)
         answered(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
@@ -184,7 +184,7 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
         return;
     uint64_t start = clock_now(CLOCK_THREAD_CPUTIME_ID);
     read_outputs(q, code, depth, dir, &own);
-    if (q->call == ASK_SEPARATE && own.hit && dir)
+    if (q->call == CALL_SEPARATE && own.hit && dir)
         answer_by_length(&own);
     sample_query(&compare, q, &own);
     count_process_time();
@@ -200,7 +200,7 @@ static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, 
     ask_watched(base, q, &asked, &answer);
     if (!is_hit(q->call, answer.code))
         return answer.code;
-    if (q->call == ASK_SEPARATE)
+    if (q->call == CALL_SEPARATE)
         ccdVec3Scale(&answer.dir, answer.depth);
     if (depth)
         *depth = answer.depth;
@@ -231,27 +231,27 @@ static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd,
 
 EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    return query(ASK_MPR, obj1, obj2, ccd, depth, dir, pos);
+    return query(CALL_MPR, obj1, obj2, ccd, depth, dir, pos);
 }
 
 EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    return query(ASK_GJK, obj1, obj2, ccd, depth, dir, pos);
+    return query(CALL_GJK, obj1, obj2, ccd, depth, dir, pos);
 }
 
 EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_vec3_t *sep)
 {
-    return query(ASK_SEPARATE, obj1, obj2, ccd, NULL, sep, NULL);
+    return query(CALL_SEPARATE, obj1, obj2, ccd, NULL, sep, NULL);
 }
 
 EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
 {
-    return query(ASK_MPR_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
+    return query(CALL_MPR_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
 }
 
 EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
 {
-    return query(ASK_GJK_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
+    return query(CALL_GJK_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
 }
 
 EXPORT void __ccdSupport(const void *obj1, const void *obj2, const ccd_vec3_t *dir, const ccd_t *ccd, ccd_support_t *supp)

@@ -32,7 +32,7 @@ int library_open(library_t *library, const char *path, int ours)
         return -1;
     }
     int missing = symbol_of(handle, "__ccdSupport", &library->raw_support);
-    for (int call = 0; call < LIBCCD_ASKS; call++)
+    for (int call = 0; call < LIBCCD_CALL_COUNT; call++)
         missing |= symbol_of(handle, call_table[call].name, &library->call[call]);
     if (missing) {
         fprintf(stderr, "compare: %s is no libccd\n", path);
@@ -56,7 +56,7 @@ int ask_call(const library_t *library, int call, const void *a, const void *b, c
 {
     switch (call) {
 #define CALL_CASE(name, word, kind, traits) \
-    case ASK_##word: return PASS_##kind(((__typeof__(&name))library->call[ASK_##word]));
+    case CALL_##word: return PASS_##kind(((__typeof__(&name))library->call[CALL_##word]));
         LIBCCD_CALLS(CALL_CASE)
 #undef CALL_CASE
     default: return CCD_BAD_INPUT;
@@ -69,7 +69,7 @@ static void ask(const library_t *library, int call, const void *obj1, const void
     memset(out, 0, sizeof *out);
     out->code = ask_call(library, call, obj1, obj2, ccd, &rest);
     out->hit = is_hit(call, out->code);
-    if (call == ASK_SEPARATE)
+    if (call == CALL_SEPARATE)
         answer_by_length(out);
 }
 

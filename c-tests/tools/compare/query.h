@@ -31,7 +31,7 @@ typedef void (*raw_support_fn)(const void *, const void *, const ccd_vec3_t *, c
 typedef int (*minimum_fn)(const void *, const void *, const ccd_t *, ccd_warm_t *, unsigned, ccd_penetration_t *);
 
 typedef struct {
-    void (*call[LIBCCD_ASKS])(void); /* by number, each of its own type */
+    void (*call[LIBCCD_CALL_COUNT])(void); /* by number, each of its own type */
     raw_support_fn raw_support;
     minimum_fn minimum; /* NULL in libccd */
 } library_t;

@@ -50,7 +50,7 @@ static const char *thousands(uint64_t n)
 static void print_calls(compare_call_t *sum)
 {
     printf("%-20s %12s %8s %12s %10s\n", "call", "queries", "hits", "judged", "overlaps");
-    for (int i = 0; i < LIBCCD_ASKS; i++) {
+    for (int i = 0; i < LIBCCD_CALL_COUNT; i++) {
         const compare_call_t *c = &all.call[i];
         if (!c->queries)
             continue;
@@ -196,7 +196,7 @@ static void print_screen(const char *every, const char *code)
         printf("; %d processes", (int)all.processes);
     printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);
     print_calls(&sum);
-    for (int i = 0; i < LIBCCD_ASKS; i++)
+    for (int i = 0; i < LIBCCD_CALL_COUNT; i++)
         if (all.call[i].judged)
             print_wrong(&all.call[i], call_table[i].name);
     printf("\n");
@@ -222,7 +222,7 @@ static void print_fields(void)
 {
     static compare_call_t sum;
     static const char *const name[COMPARE_SIDES] = { "theirs_", "ours_" };
-    for (int i = 0; i < LIBCCD_ASKS; i++)
+    for (int i = 0; i < LIBCCD_CALL_COUNT; i++)
         add_call(&sum, &all.call[i]);
     printf("watched");
     print_numbers("", "queries returned hits zero not_finite not_unit sampled judged overlaps timed threw endless memory no_shape contradicted",

@@ -32,7 +32,7 @@ static int asked(const recording_query_t *q, const void *how, recording_answer_t
     rest.warm = h->warm ? &state[q->pair] : NULL;
     rest.pos = h->pos ? &out->pos : NULL;
     int code = call_by_number(h->ask, q->obj1, q->obj2, q->ccd, &rest);
-    if (h->ask == ASK_MPR || h->ask == ASK_MPR_WARM || (code != CCD_HIT && code != CCD_LIMIT))
+    if (h->ask == CALL_MPR || h->ask == CALL_MPR_WARM || (code != CCD_HIT && code != CCD_LIMIT))
         return code;
     out->depth = p.depth;
     out->dir = p.dir;
@@ -43,8 +43,8 @@ static int asked(const recording_query_t *q, const void *how, recording_answer_t
 int main(int argc, char **argv)
 {
     /* without pos: for who moves bodies apart, or asks ccdContacts */
-    static const how_t how[] = {{ASK_MPR, 0, 1}, {ASK_MPR_WARM, 1, 1}, {ASK_MPR, 0, 0}, {ASK_MPR_WARM, 1, 0},
-                                {ASK_LOCAL, 0, 1}, {ASK_LOCAL, 1, 1}, {ASK_PROVEN, 0, 1}, {ASK_PROVEN, 1, 1}};
+    static const how_t how[] = {{CALL_MPR, 0, 1}, {CALL_MPR_WARM, 1, 1}, {CALL_MPR, 0, 0}, {CALL_MPR_WARM, 1, 0},
+                                {CALL_LOCAL, 0, 1}, {CALL_LOCAL, 1, 1}, {CALL_PROVEN, 0, 1}, {CALL_PROVEN, 1, 1}};
     static tally_t tally[] = {
         {"MPR, cold", asked, &how[0]}, {"MPR, warm", asked, &how[1]}, {"no pos, cold", asked, &how[2]},
         {"no pos, warm", asked, &how[3]}, {"local, cold", asked, &how[4]}, {"local, warm", asked, &how[5]},

@@ -22,21 +22,21 @@ static const struct {
     entry_t entry;
     int bare; /* without centres */
 } calls[] = {
-    {{"MPR", 0, ASK_MPR, STATE_AGAIN}, 0},
-    {{"MPR warm", 0, ASK_MPR_WARM, STATE_AGAIN}, 0},
-    {{"GJK", 0, ASK_GJK, STATE_AGAIN}, 0},
-    {{"GJK separate", 0, ASK_SEPARATE, STATE_AGAIN}, 0},
-    {{"MPR yes or no", 0, ASK_MPR_INTERSECT, STATE_AGAIN}, 0},
-    {{"GJK yes or no", 0, ASK_GJK_INTERSECT, STATE_AGAIN}, 0},
-    {{"penetration", 0, ASK_PENETRATION, STATE_AGAIN}, 0},
-    {{"penetration, no centres", 0, ASK_PENETRATION, STATE_AGAIN}, 1},
-    {{"proven", 0, ASK_PROVEN, STATE_AGAIN}, 0},
-    {{"proven, no centres", 0, ASK_PROVEN, STATE_AGAIN}, 1},
-    {{"local", 0, ASK_LOCAL, STATE_AGAIN}, 0},
-    {{"local, no centres", 0, ASK_LOCAL, STATE_AGAIN}, 1},
-    {{"incremental", 0, ASK_INCREMENTAL, STATE_AGAIN}, 0},
-    {{"along", 0, ASK_ALONG, STATE_AGAIN}, 0},
-    {{"distance", 0, ASK_DISTANCE, STATE_AGAIN}, 0},
+    {{"MPR", 0, CALL_MPR, STATE_AGAIN}, 0},
+    {{"MPR warm", 0, CALL_MPR_WARM, STATE_AGAIN}, 0},
+    {{"GJK", 0, CALL_GJK, STATE_AGAIN}, 0},
+    {{"GJK separate", 0, CALL_SEPARATE, STATE_AGAIN}, 0},
+    {{"MPR yes or no", 0, CALL_MPR_INTERSECT, STATE_AGAIN}, 0},
+    {{"GJK yes or no", 0, CALL_GJK_INTERSECT, STATE_AGAIN}, 0},
+    {{"penetration", 0, CALL_PENETRATION, STATE_AGAIN}, 0},
+    {{"penetration, no centres", 0, CALL_PENETRATION, STATE_AGAIN}, 1},
+    {{"proven", 0, CALL_PROVEN, STATE_AGAIN}, 0},
+    {{"proven, no centres", 0, CALL_PROVEN, STATE_AGAIN}, 1},
+    {{"local", 0, CALL_LOCAL, STATE_AGAIN}, 0},
+    {{"local, no centres", 0, CALL_LOCAL, STATE_AGAIN}, 1},
+    {{"incremental", 0, CALL_INCREMENTAL, STATE_AGAIN}, 0},
+    {{"along", 0, CALL_ALONG, STATE_AGAIN}, 0},
+    {{"distance", 0, CALL_DISTANCE, STATE_AGAIN}, 0},
 };
 enum { CALLS = sizeof calls / sizeof calls[0] };
 
@@ -163,7 +163,7 @@ static int judge_points(const said_t *x, const wide_pair_t *p, double within, di
     for (int k = 0; k < 2; k++)
         if (is_outside(&p->body[k], k ? x->a.point2 : x->a.point1, bound))
             return FAULT_WITNESS_INSIDE;
-    if (x->ask == ASK_LOCAL && x->a.code == CCD_HIT && fall(p, x->a.dir, d) > 2 * within + bound)
+    if (x->ask == CALL_LOCAL && x->a.code == CCD_HIT && fall(p, x->a.dir, d) > 2 * within + bound)
         return FAULT_NOT_MINIMUM;
     return 0;
 }
@@ -186,11 +186,11 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
         return faults | FAULT_MISSED;
     if (x->code == CCD_HIT && apart)
         return faults | FAULT_FALSE_HIT;
-    if (x->code == CCD_LIMIT && apart && said->ask != ASK_DISTANCE)
+    if (x->code == CCD_LIMIT && apart && said->ask != CALL_DISTANCE)
         return faults | FAULT_FALSE_HIT;
-    if ((x->code == CCD_MISS && said->ask != ASK_DISTANCE) || entry_is_verdict(e))
+    if ((x->code == CCD_MISS && said->ask != CALL_DISTANCE) || entry_is_verdict(e))
         return faults;
-    if (said->ask == ASK_SEPARATE && x->depth == 0)
+    if (said->ask == CALL_SEPARATE && x->depth == 0)
         return faults;
     for (int i = 0; i < 3; i++)
         if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->has_proof && !(isfinite(x->point1[i]) && isfinite(x->point2[i]))))
@@ -202,12 +202,12 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
     if (x->depth * along < h - c->noise)
         faults |= FAULT_UNSOUND;
     /* along a direction of the caller's the least depth is greater, and so may its bound be */
-    if (said->ask != ASK_ALONG && x->lower > c->least + c->noise)
+    if (said->ask != CALL_ALONG && x->lower > c->least + c->noise)
         faults |= FAULT_FALSE_PROOF;
-    if ((said->ask == ASK_PROVEN || said->ask == ASK_DISTANCE) && x->code != CCD_LIMIT
+    if ((said->ask == CALL_PROVEN || said->ask == CALL_DISTANCE) && x->code != CCD_LIMIT
         && x->depth - x->lower > within)
         faults |= FAULT_NO_PROOF;
-    if ((entry_is_minimum(e) || said->ask == ASK_DISTANCE) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
+    if ((entry_is_minimum(e) || said->ask == CALL_DISTANCE) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
         && x->code == CCD_HIT)
         faults |= FAULT_OVER;
     if (entry_is_mpr(e) && x->code == CCD_HIT && said->supports < MPR_POINTS
@@ -238,7 +238,7 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
     int new = 0;
     judged++;
     limits_of[x->call] += x->a.code == CCD_LIMIT;
-    if (x->ask == ASK_PROVEN && !calls[x->call].bare) {
+    if (x->ask == CALL_PROVEN && !calls[x->call].bare) {
         minima[row] += x->a.code == CCD_HIT || x->a.code == CCD_LIMIT;
         limits[row] += x->a.code == CCD_LIMIT;
         limits_at[t] += x->a.code == CCD_LIMIT;
@@ -271,7 +271,7 @@ static case_t known(const wide_pair_t *p, const said_t *said, int count)
     for (int i = 0; i < count; i++) {
         if (said[i].a.normal[0] != 0 || said[i].a.normal[1] != 0 || said[i].a.normal[2] != 0)
             c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].a.normal));
-        if (said[i].ask == ASK_PROVEN && calls[said[i].call].bare && said[i].a.code == CCD_LIMIT)
+        if (said[i].ask == CALL_PROVEN && calls[said[i].call].bare && said[i].a.code == CCD_LIMIT)
             c.may_be_deep[i / CALLS % TOLERANCES] = 1;
     }
     return c;
@@ -309,7 +309,7 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
             said[k] = say(k, &p, shares[kept] * p.size, along, &warm[k]);
             said[k].moved = 1;
             /* GJK is asked without a state: it proves what a cold minimum proves */
-            if (calls[k].entry.ask == ASK_PROVEN && calls[k].bare) {
+            if (calls[k].entry.ask == CALL_PROVEN && calls[k].bare) {
                 memset(&cold, 0, sizeof cold);
                 open = say(k, &p, shares[kept] * p.size, along, &cold).a.code == CCD_LIMIT;
             }
