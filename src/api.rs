@@ -531,8 +531,8 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
 /// metres: how far below its support plane a corner may lie and still belong to the face; a
 /// thousandth of the shapes' size is good for contacts that rest. It is at least 1 % of the depth
 /// along `normal`, which a normal that is good to 0.1 % of the depth needs, and 32 ulps of the
-/// largest coordinate. With a memory a shape that has the same face as the last time is asked half
-/// as often. Allocates nothing.
+/// largest coordinate. With a memory a shape whose face is that of the last call takes half the
+/// support points. Allocates nothing.
 ///
 /// ```
 /// use ccd::{Contact, Real};

@@ -41,7 +41,7 @@ pub struct Pair<A, B> {
     pub center: Option<SupportPoint>,
     /// The caller's first direction, where it gives one.
     pub first_dir: Option<Vec3>,
-    /// Whether the caller keeps the state.
+    /// The caller keeps the state.
     pub keeps_state: bool,
 }
 
@@ -79,8 +79,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// Proves the overlap of a solver's `hit` from known vertices, and queries where they leave a side open.
-    /// Where a touch, within the tolerance, has witness points that do not meet, the points that meet at the
-    /// origin take their place. `is_planar`: D is in a plane.
+    /// Replaces the witness points of a touch, within the tolerance, that do not meet by those that meet at the
+    /// origin. `is_planar`: D is in a plane.
     ///
     /// # Errors
     /// [`Stop::Apart`]: a queried direction separates. [`Fault::NonFinite`].
@@ -378,7 +378,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         center_of_pressure(&self.md, set, hit, self.center.as_ref(), tolerance)
     }
 
-    /// How far obj2 must move along the unit direction `dir`.
+    /// Computes how far obj2 must move along the unit direction `dir` to be separated.
     pub fn along(
         &self,
         dir: Vec3,
@@ -417,7 +417,7 @@ mod tests {
     };
 
     /// Returns the support points, the depth and the state of a query from this state.
-    fn ask<A: SupportMap, B: SupportMap>(
+    fn local_query<A: SupportMap, B: SupportMap>(
         a: A,
         b: B,
         mut state: WarmStart,
@@ -446,11 +446,11 @@ mod tests {
             let (p, q) = (r.vector(0.5), r.vector(0.5));
             let (cube, rod) = (|| hull(&points), || capsule(p, q, 0.3));
             let start = WarmStart::guess(&r.direction());
-            let (_, _, after) = ask(cube(), rod(), start);
-            let (supports, depth, _) = ask(cube(), rod(), after);
+            let (_, _, after) = local_query(cube(), rod(), start);
+            let (supports, depth, _) = local_query(cube(), rod(), after);
             let mut flipped = after;
             flipped.flip();
-            let (swapped_supports, swapped_depth, _) = ask(rod(), cube(), flipped);
+            let (swapped_supports, swapped_depth, _) = local_query(rod(), cube(), flipped);
             assert!(
                 swapped_supports <= supports + 2,
                 "{swapped_supports} {supports}"

@@ -17,7 +17,7 @@
  *     if (auto hit = ccd::penetration(box, ball, {1e-6}, &warm))
  *         push_apart(hit.depth, hit.dir);           // moving ball by depth * dir separates
  *
- * An exception thrown by a shape leaves through the query that asked it. Queries on different
+ * An exception thrown by a shape passes through the query that called it. Queries on different
  * threads do not disturb each other. */
 
 #ifndef __CCD_CCD_HPP__
@@ -64,23 +64,23 @@ struct Vec3 {
     constexpr operator ccd_vec3_t() const { return ccd_vec3_t{{x, y, z}}; }
 };
 
-/** What came of a query. */
+/** Result of a query. */
 enum class Status : int {
     hit = CCD_HIT,             /**< overlap: every field is valid */
-    limit = CCD_LIMIT,         /**< less exact than asked for: max_iterations or the library's cap came first */
+    limit = CCD_LIMIT,         /**< less exact than the tolerance: max_iterations or the library's cap came first */
     miss = CCD_MISS,           /**< apart */
     no_memory = CCD_NO_MEMORY, /**< memory was needed and not to be had */
     bad_input = CCD_BAD_INPUT  /**< a tolerance, a direction or a shape's answer is no number */
 };
 
-/** What is wanted of an answer: depths, bounds and directions always, and any of these together. */
+/** Optional outputs, combined by `|`. Depth, bounds and directions are always written. */
 enum Want : unsigned {
     want_pos = CCD_WANT_POS,       /**< pos: costs 2 to 4 calls of support(), 8 at most */
     want_points = CCD_WANT_POINTS, /**< point1 and point2: cost nothing */
     want_all = CCD_WANT_ALL        /**< everything */
 };
 
-/** How exact, with how much work, and what. */
+/** Tolerance, iteration limit and optional outputs of a query. */
 struct Settings {
     Real tolerance = CCD_REAL(1e-4);                               /**< largest error of the depth, metres */
     unsigned long max_iterations = static_cast<unsigned long>(-1); /**< cap on every loop */
@@ -112,7 +112,7 @@ struct Contact {
     unsigned id = 0; /**< its name, not 0, while it moves with either shape; 0 without a memory */
 };
 
-/** How far apart, or how deep. Zero but for the status where that is bad_input or no_memory. */
+/** Result of signed_distance. All fields but the status are zero where that is bad_input or no_memory. */
 struct Distance {
     Status status = Status::bad_input; /**< hit, miss and limit: there is an answer */
     Real distance = 0;            /**< metres: the gap along normal, or minus the depth; never above the truth */
@@ -123,18 +123,18 @@ struct Distance {
     unsigned long support_calls = 0; /**< of each shape */
     unsigned long iterations = 0;    /**< of the solver */
 
-    /** Is there an answer? */
+    /** Returns whether the other fields are valid. */
     explicit operator bool() const { return status != Status::bad_input && status != Status::no_memory; }
 };
 
-/** What signed_distance takes besides the shapes, metres. */
+/** Parameters of signed_distance, metres. */
 struct DistanceOptions {
     Real margin1 = 0; /**< radius of a ball added all around the first shape */
     Real margin2 = 0; /**< and around the second */
     Real max_distance = std::numeric_limits<Real>::infinity(); /**< what is farther is not refined */
 };
 
-/** What gjk_separate answers. Zero but for the status unless that is hit. */
+/** Result of gjk_separate. `sep` is zero unless the status is hit. */
 struct Separation {
     Status status = Status::miss; /**< hit: there is an answer */
     Vec3 sep;                     /**< metres: moving the second shape by it separates them */
@@ -143,7 +143,7 @@ struct Separation {
     explicit operator bool() const { return status == Status::hit; }
 };
 
-/** What one query of a pair leaves for the next: a value, cold at first, copied freely. */
+/** Warm-start state of one pair. A value: cold when constructed, may be copied. */
 class Warm {
 public:
     /** Cold. */
@@ -169,25 +169,25 @@ private:
     ccd_warm_t state_{};
 };
 
-/** What contacts of a pair leave for the next: a value, cold at first, for either order of the pair. */
+/** Contact cache of one pair, in either order. A value: empty when value-initialised, may be copied. */
 using Manifold = ccd_manifold_t;
 
-/** What check found wrong with a shape. Lengths are metres. */
+/** Result of check. Lengths are metres. */
 struct Check {
     unsigned faults = 0;     /**< CCD_CHECK_ flags of warm.h; 0: nothing */
     Real size = 0;           /**< the greatest width of the shape, about */
     Real noise = 0;          /**< how far a point lies beyond another's support plane, at most */
-    Real change = 0;         /**< how far an answer moved when asked for again, at most */
+    Real change = 0;         /**< how far a support point moved when queried again, at most */
     Real center_outside = 0; /**< how far the center lies outside; negative: how deep inside */
     Vec3 dir;                /**< unit: the direction in which the worst was found */
 
-    /** Was a fault found? */
+    /** Returns whether a fault was found. */
     explicit operator bool() const { return faults != 0; }
 };
 
 namespace detail {
 
-/** center() and centre() are one to the library; a shape that has both is asked the first. */
+/** A shape may name its center() centre() as well; where it has both, center() is called. */
 template <class S, class = void>
 struct has_center : std::false_type {};
 template <class S>
@@ -294,8 +294,8 @@ bool intersect(const A &a, const B &b, Warm *warm = nullptr)
     return ccdIntersect(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
 }
 
-/** How far apart, or how deep, one continuous function through the touch: ccdSignedDistance. The
- * shapes are meant with a ball of their margin added all around. */
+/** Computes the signed distance: positive apart, negative overlapping, continuous through the touch
+ * (ccdSignedDistance). Each shape is inflated by its margin. */
 template <class A, class B>
 Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, const DistanceOptions &options = {},
                          Warm *warm = nullptr)
@@ -318,9 +318,9 @@ Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, 
     return d;
 }
 
-/** Where the shapes touch: up to N points of the region in which the faces that look along normal
- * lie over each other, the deepest first; the number of them, or Status::bad_input's. With a
- * memory (Manifold memory{}) points keep their ids, and cost half: ccdContacts. */
+/** Computes up to N contacts of the faces along normal, the deepest first (ccdContacts). Returns their
+ * number, or the value of Status::bad_input. With a cache (Manifold memory{}) contacts keep their ids and
+ * take half the support points. */
 template <std::size_t N, class A, class B>
 int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<Contact, N> &out,
              Manifold *memory = nullptr)
@@ -363,7 +363,7 @@ Penetration penetration_proven(const A &a, const B &b, const Settings &settings 
     return detail::penetration(code, out);
 }
 
-/** How far b must move along dir (of any length): ccdPenetrationAlong. */
+/** Computes how far b must move along dir (of any length) to be separated (ccdPenetrationAlong). */
 template <class A, class B>
 Penetration penetration_along(const A &a, const B &b, const Vec3 &dir, const Settings &settings = {},
                               Warm *warm = nullptr)
@@ -452,8 +452,8 @@ bool gjk_intersect(const A &a, const B &b)
     return ccdGJKIntersect(std::addressof(a), std::addressof(b), &c) == 1;
 }
 
-/** What is wrong with a shape, as far as 192 directions tell, each asked twice: for when an answer is
- * odd, and for tests. A shape without center() is no fault. ccdCheck. */
+/** Checks a shape's support function along 192 directions, each queried twice (ccdCheck). For tests, and
+ * where an answer looks wrong. A shape without center() is no fault. */
 template <class S>
 Check check(const S &shape)
 {

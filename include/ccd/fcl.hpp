@@ -77,7 +77,7 @@ public:
         return entry.value;
     }
 
-    /* Drops the pairs of an object, or with NULL those that were not asked for in the frame. */
+    /* Drops the pairs of an object, or with NULL those not used in the frame. */
     void drop(const void *object, unsigned long frame)
     {
         const auto is_dropped = [=](const Entry &e) {
@@ -98,11 +98,11 @@ private:
     struct Entry {
         bool is_of(const void *first, const void *second) const { return low == first && high == second; }
         const void *low, *high;
-        unsigned long frame; /* when it was asked for last */
+        unsigned long frame; /* the last one that used it */
         Value value;
     };
 
-    /* Where the search for a pair starts. (The multiplier is the golden ratio's.) */
+    /* Returns the slot where the search for a pair starts (Fibonacci hashing). */
     std::size_t place(const void *low, const void *high) const
     {
         const std::uint64_t ratio = 0x9E3779B97F4A7C15u;
@@ -133,9 +133,9 @@ private:
 } // namespace detail
 /** @endcond */
 
-/** What each pair of objects leaves for its next query, found in either order. Not for two
- * threads at once. A state is never wrong, only useless: objects may be moved, changed and
- * destroyed, and others made in their place. */
+/** Warm-start states and contact caches of pairs of objects, found in either order. Not for two
+ * threads at once. Objects may be moved, changed, destroyed and replaced: an outdated state costs
+ * time, never a wrong answer. */
 class PairCache {
 public:
     /** The state of (first, second), cold at first; good until the next call of this object. */
@@ -149,15 +149,15 @@ public:
         return &state.warm;
     }
 
-    /** The memory of the pair's contacts, for ccdContacts, made where it is asked for; the same. */
+    /** The memory of the pair's contacts, for ccdContacts, made at the first call for the pair; for either order. */
     ccd_manifold_t *contacts(const void *first, const void *second)
     {
         const bool ordered = std::less<const void *>()(first, second);
         return ordered ? &contacts_.at(first, second, frame_) : &contacts_.at(second, first, frame_);
     }
 
-    /** Drops the pairs that were not asked for since the last call: once a frame, and what
-     * belongs to objects that are gone goes by itself. */
+    /** Drops the pairs not used since the last call. Called once a frame, it also drops
+     * the pairs of objects that no longer exist. */
     void next_frame()
     {
         states_.drop(nullptr, frame_);
@@ -179,7 +179,7 @@ public:
         contacts_.clear();
     }
 
-    /** How many pairs there are. */
+    /** Returns the number of pairs. */
     std::size_t size() const { return states_.size(); }
 
 private:
@@ -193,7 +193,7 @@ private:
     unsigned long frame_ = 0;
 };
 
-/** How many contacts, and of what. */
+/** Settings of collide. */
 struct Settings {
     /** Most contacts of one pair where the request has room for more than one; 1: the middle
      * of the overlap alone. */
@@ -390,8 +390,8 @@ int distance_of(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, ccd_re
     return code;
 }
 
-/* Whether they overlap, and with `contact` how deep and where, the margins counted in: the global
- * minimum within the larger of the tolerance and a thousandth of the depth. */
+/* Returns whether the objects overlap, margins included. With `contact` writes the depth, the global minimum
+ * within the larger of the tolerance and a thousandth of the depth, and the position. */
 template <typename S>
 bool overlap(const Placed<S> &a, const Placed<S> &b, ccd_t &ccd, bool contact, ccd_warm_t *warm, ccd_penetration_t *hit)
 {
@@ -444,10 +444,10 @@ public:
     void add(std::size_t room, const Settings &settings, Memory memory)
     {
         const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
-        const std::size_t asked = std::min(std::min(room, settings.contacts_per_pair), MOST);
+        const std::size_t wanted = std::min(std::min(room, settings.contacts_per_pair), MOST);
         ccd_contact_t found[MOST];
-        const int count = asked > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.dir, slop_of(a_, b_, settings), memory(), found,
-                                                  static_cast<int>(asked))
+        const int count = wanted > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.dir, slop_of(a_, b_, settings), memory(), found,
+                                                  static_cast<int>(wanted))
                                     : 0;
         must_be_answered(count);
         const S depth = static_cast<S>(hit_.depth), least = depth - std::max(static_cast<S>(ccd_.mpr_tolerance), depth / 1000);
@@ -456,7 +456,7 @@ public:
             put(to_fcl<S>(hit_.pos), depth);
             added++;
         }
-        for (int i = 0; i < count && added < asked; i++) {
+        for (int i = 0; i < count && added < wanted; i++) {
             if (!(depth_of(found[i]) >= 0))
                 continue;
             const fcl::Vector3<S> middle = (to_fcl<S>(found[i].point1) + to_fcl<S>(found[i].point2)) / S(2);
@@ -485,7 +485,7 @@ private:
     fcl::CollisionResult<S> &result_;
 };
 
-/* Does this library answer for the pair and the request? */
+/* Returns whether this library handles the pair and the request. */
 template <typename S>
 bool is_ours(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest<S> &request)
 {
@@ -531,7 +531,7 @@ S distance(const Placed<S> &a, const Placed<S> &b, const fcl::DistanceRequest<S>
 } // namespace detail
 /** @endcond */
 
-/** Does this library answer for the pair, rather than FCL? */
+/** Returns whether this library handles the pair, rather than FCL. */
 template <typename S>
 bool is_ours(const fcl::CollisionGeometry<S> *a, const fcl::CollisionGeometry<S> *b)
 {
@@ -593,7 +593,7 @@ S distance(const fcl::CollisionObject<S> *o1, const fcl::CollisionObject<S> *o2,
 }
 
 /** For the collide() of a broad phase manager; data is a CollisionData<S>. As
- * fcl::DefaultCollisionFunction: true, and no more pairs are asked, once the request is full. */
+ * fcl::DefaultCollisionFunction: returns true, which ends the manager's traversal, once the request is full. */
 template <typename S>
 bool CollisionFunction(fcl::CollisionObject<S> *o1, fcl::CollisionObject<S> *o2, void *data)
 {

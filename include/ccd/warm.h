@@ -301,7 +301,7 @@ int ccdSignedDistance(const void *obj1,
 /* Contacts: where two objects touch. */
 
 /**
- * How many numbers a ccd_manifold_t holds.
+ * Number of reals in a ccd_manifold_t.
  */
 #define CCD_MANIFOLD_REALS 139
 
@@ -350,9 +350,9 @@ typedef struct ccd_contact_t {
 } ccd_contact_t;
 
 /**
- * Where two objects touch, not only how deep: the region in which the faces that look along
- * `normal` lie over each other, reduced to at most `max` points: the deepest first, the
- * others in order around the normal, spread to the largest area.
+ * Computes the contact manifold: the overlap of the two faces along `normal`, projected along it
+ * and reduced to at most `max` contacts, the deepest first, the others in order around the normal,
+ * chosen for the largest area.
  *
  * `normal`: of an answer for this pose (dir where there is no other), not necessarily unit.
  * `slop`, metres, >= 0: how far below its support plane a corner may lie and still belong to
@@ -368,8 +368,8 @@ typedef struct ccd_contact_t {
  * one point, the nearest of each. The region moves as the objects do. For objects that are
  * meant with margins, move the points by them along the normal.
  *
- * `memory`: NULL, or the pair's: an object that has the same face as the last time is asked
- * half as often, and points keep their ids, so that a solver can begin with the impulses of
+ * `memory`: NULL, or the pair's: an object whose face is that of the last call takes half the
+ * support points, and contacts keep their ids, so that a solver can begin with the impulses of
  * the last frame. Which points are left where there are more than `max` then changes less.
  *
  * Reads no tolerance, center or max_iterations; at most 24 support points of each object, 12

@@ -55,8 +55,8 @@ use crate::minkowski::vertex_set::VertexSet;
 
 /// The slope of flanks that nothing is known of. Insensitive: 2 to 8 tried.
 const FLANK_SLOPE: f64 = 4.0;
-/// How low a known vertex may be that is taken to be in the support plane, in depths. It turns that plane
-/// by so little that c moves by a third of this share of the half width. Insensitive: 0.01 to 0.05 tried.
+/// Largest distance below the support plane of a vertex that counts as in it, in depths. The plane then
+/// turns so little that c moves by a third of this share of the half width. Insensitive: 0.01 to 0.05 tried.
 const LEVEL_TOL: f64 = 0.01;
 /// Sides of the outline shorter than this many margins are skipped.
 const MIN_SIDE: f64 = 6.0;

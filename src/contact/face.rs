@@ -38,7 +38,7 @@ pub const MAX_CORNERS: usize = 9;
 const WIDE_TILT: f64 = 0.25;
 /// Points closer than this many slops may be one round corner: those of a ball are 8 apart.
 const ROUND_CORNER_SLOPS: f64 = 16.0;
-/// How far a direction across a side leans to its second corner, in tilts. A corner beyond the side by less
+/// Lean of a direction across a side towards its second corner, in tilts. A corner beyond the side by less
 /// than this angle may be missed: 0.01 % of the square of the side.
 const SIDE_LEAN: f64 = 1.0 / 4096.0;
 /// The first directions: their tilts, over the tilt.
@@ -65,11 +65,11 @@ pub struct FaceSample {
     pub found: Vec3,
     /// The corner without roundness, once it is settled.
     pub corner: Vec3,
-    /// How much it moves for each tilt, metres.
+    /// Motion of the sample for each tilt, metres.
     radius: f64,
-    /// Whether roundness is removed, or there is none.
+    /// Roundness is removed, or there is none.
     is_settled: bool,
-    /// Whether no corner is beyond the side to the next sample, or no query is left to find one.
+    /// No corner is beyond the side to the next sample, or no query is left to find one.
     is_closed: bool,
 }
 
@@ -99,15 +99,15 @@ pub struct Face {
     pub slop: f64,
     /// The rounding of a coordinate, metres.
     pub rounding: f64,
-    /// How far beside its corners the surface is the slop low; of a segment beside the less round end.
+    /// Distance beside the corners at which the surface is the slop low; of a segment at the less round end.
     pub round: f64,
     /// The samples that found the corners, in their order.
     pub samples: FixedVec<FaceSample, MAX_CORNERS>,
     /// The tilt that finds corners.
     pub tilt_size: f64,
-    /// Whether all corners are known, all of them sharp.
+    /// All corners are known, and all are sharp.
     pub is_complete: bool,
-    /// How it moved, where it was cached.
+    /// Motion since the last query, where the face was cached.
     pub motion: Option<Motion>,
 }
 

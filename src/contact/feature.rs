@@ -43,27 +43,27 @@ const MIN_COVER: f64 = 0.6;
 /// The cosine between the normal and a known direction that tells of a feature: others look at the object from
 /// the side or from behind.
 const MIN_COSINE: f64 = 0.1;
-/// How far the sum of two opposite vertices that are symmetric may be from zero, as a share of the extent.
+/// Largest sum of two opposite vertices that count as symmetric, as a share of the extent.
 const SYMMETRY_REL_TOL: f64 = 0.004;
 /// A feature that ends within this share of the extent is a point: the center of pressure is within a
 /// quarter of that.
 const POINT_REL: f64 = 0.016;
 /// Vertices closer than this share of the extent are one.
 const SAME_REL: f64 = 1e-7;
-/// How much lower than the plane of three corners a fourth of the same face may be, in depths: else the
-/// surface before it is not as low as a line to it. Insensitive: 0.1 to 1 tried.
+/// Largest distance of a fourth corner of the same face below the plane of three, in depths. Beyond it the
+/// surface between is not as low as a line to the corner. Insensitive: 0.1 to 1 tried.
 const SAME_FACE: f64 = 0.1;
 /// The deepest point is beyond a side, and three corners are no line, by this share. Insensitive: 0.005 to
 /// 0.08 tried.
 const NARROW_REL: f64 = 0.02;
-/// How far a point of a rim may be beside it, as a share of the radius: ten times what callbacks in single
-/// precision round by.
+/// Largest distance of a rim's point from the rim, as a share of the radius: ten times the rounding of
+/// callbacks in single precision.
 const RIM_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
 /// The part of what all vertices are lower by that is taken off: a round surface of radius R is lower by
 /// R T²/2 all around. Measured: 0 lets a lying capsule step by 5 mm; 1, right for spheres, leaves it 7 mm off.
 const LEVEL: f64 = 0.75;
-/// How far vertices are moved outwards, in depths, so that an edge has an area and the deepest point is
-/// inside. Small beside the flank of an edge.
+/// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest
+/// point is inside. Small beside the flank of an edge.
 const MARGIN: f64 = 1.0 / 512.0;
 /// Twice the area of a triangle that has none, as a share of the square of the margin.
 const MIN_AREA_REL: f64 = f64::EPSILON;
@@ -102,12 +102,12 @@ struct Feature {
     vertices: [Vec3; 4],
     /// The way outwards of each, unit.
     ways: [Vec2; 4],
-    /// How far each is along its tilted normal, over T.
+    /// Position of each along its tilted normal, over T.
     scores: [f64; 4],
-    /// How far towards the way a known direction that found it is tilted.
+    /// Tilt, towards that way, of a known direction that found the vertex.
     cover: [f64; 4],
-    /// Whether they are vertices of a polytope, as two known directions that found one of them show; else each tilt
-    /// found another vertex.
+    /// They are vertices of a polytope: two known directions found the same one. Else each tilt found another
+    /// vertex.
     is_polytope: bool,
 }
 
@@ -141,17 +141,17 @@ pub struct FeatureQuery<'q, A, B, const N: usize> {
     centers: [[f64; 2]; 2],
     /// The object that is known to reach less far from the contact, 0 or 1.
     pub smaller: usize,
-    /// How far it does, metres.
+    /// Length of that extent, metres.
     extent: f64,
     /// The unit of lows, metres.
     pub depth: f64,
-    /// How far the support planes are from the frame's origin, metres.
+    /// Distance of the support planes from the frame's origin, metres.
     half: f64,
     /// T, a tangent.
     tilt: f64,
     /// Depth over T, metres.
     fall: f64,
-    /// How far vertices are moved outwards, metres.
+    /// Distance by which vertices are moved outwards, metres.
     pub margin: f64,
 }
 

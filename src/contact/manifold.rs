@@ -30,7 +30,7 @@ pub struct Contact {
     pub point1: Vec3,
     /// On obj2: `point1 - depth * normal`, unless the faces share nothing.
     pub point2: Vec3,
-    /// How deep the objects overlap there, metres; negative where they are apart.
+    /// Depth of the overlap at the contact, metres; negative where the objects are apart.
     pub depth: f64,
     /// The contact id, not 0, while it moves with either object; 0 without a cache.
     pub id: u32,

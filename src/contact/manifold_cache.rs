@@ -23,7 +23,7 @@ use nalgebra::UnitComplex;
 
 /// Contacts whose ids are stored.
 const MAX_IDS: usize = 8;
-/// How far a direction across a side leans to its second corner, in tilts: 3.6°, by which the face may turn about
+/// Lean of a direction across a side towards its second corner, in tilts: 3.6°, by which the face may turn about
 /// the normal. Insensitive: 1/64 to 1/8 tried.
 const CACHED_LEAN: f64 = 1.0 / 16.0;
 /// Vertices are stored as `f32`: their error, as a share of the size of the face.
@@ -46,7 +46,7 @@ pub struct CachedFace {
     samples: [CachedSample; MAX_CORNERS],
 }
 
-/// How a face moved in the frame from one query to the next.
+/// Motion of a face in the frame from one query to the next.
 #[derive(Clone, Copy)]
 pub struct Motion {
     pub turn: UnitComplex<f64>,

@@ -40,7 +40,7 @@ const EXACT_PLANES_REL: f64 = 1e-11;
 /// The limits of a query.
 #[derive(Clone, Copy, Debug)]
 pub struct EpaLimits {
-    /// How far apart the bounds may be.
+    /// Largest gap between the bounds.
     pub gap: GapLimit,
     /// Support calls.
     pub max_samples: u64,
@@ -115,7 +115,7 @@ impl<const C: usize> EpaCorners<C> {
     }
 }
 
-/// How an expansion ended.
+/// Reason why an expansion ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExpandEnd {
     /// The bounds met.

@@ -113,7 +113,7 @@ pub struct EpaRequest<'a> {
     pub ray: Vec3,
     /// The state of the last query; not that of a pair that was apart.
     pub warm: WarmStart,
-    /// How far to go.
+    /// Limits of the expansion.
     pub limits: EpaLimits,
 }
 
@@ -132,7 +132,7 @@ impl EpaRequest<'_> {
 /// A tetrahedron to start the polytope from.
 type Start = [Vertex; 4];
 
-/// How a polytope ended.
+/// Reason why a polytope ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Expanded {
     /// The origin is shown inside, and the answer is written.
@@ -152,7 +152,7 @@ struct Solver<'q, 'm, A, B> {
     fit: SphereFit,
     /// Support calls of the polytopes.
     iterations: u64,
-    /// How far the answer in `hit` is from its lower bound, metres; infinite before the first.
+    /// Gap between the depth in `hit` and its lower bound, metres; infinite before the first answer.
     gap: f64,
     hit: &'q mut Penetration,
 }

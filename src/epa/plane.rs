@@ -128,7 +128,7 @@ impl Plane {
 pub struct Tetrahedron {
     /// The planes of the faces (0 2 1), (0 1 3), (1 2 3), (2 0 3), of unit normals that look outwards.
     pub planes: [Plane; 4],
-    /// Whether the points 1 and 2 have changed places, so that the faces look outwards.
+    /// The points 1 and 2 have changed places, so that the normals point outwards.
     pub is_flipped: bool,
     /// The middle of the four points: below every plane by at least `margin`.
     pub middle: Vec3,

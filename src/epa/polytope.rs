@@ -345,8 +345,8 @@ impl<const F: usize> EpaPolytope<F> {
     /// `level`, metres; `corner` returns the points by their indices. `false`: there is no room for its
     /// faces, and nothing has changed.
     ///
-    /// Where the visible faces are no disc, only those count as visible that the point is eight times as
-    /// high above, and so on, down to `first` alone.
+    /// Where the visible faces are no disc, the height that makes a face visible is raised eightfold, and again,
+    /// until `first` alone is left.
     #[inline(always)]
     pub fn insert(
         &mut self,
@@ -582,7 +582,7 @@ impl<const F: usize> EpaPolytope<F> {
     }
 }
 
-/// How a walk over the visible faces ended.
+/// Result of a walk over the visible faces.
 #[derive(PartialEq, Eq)]
 enum Insertion {
     Done,

@@ -18,7 +18,7 @@ use crate::minkowski::support::SupportPoint;
 /// The point of a simplex of `N` corners that is nearest to a given one.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearest<const N: usize> {
-    /// Where it is.
+    /// The closest point.
     pub point: Vec3,
     /// The square of its distance from the given point, m²; NaN where that holds a
     /// NaN.
@@ -255,7 +255,7 @@ mod tests {
         c.map(|p| rotation * p)
     }
 
-    /// How far the corners lie from `p` at least, by planes between: across the normals of
+    /// Returns a lower bound of the distance of the corners from `p`, by planes between: across the normals of
     /// faces, and across the way to edges and corners, made exact where rounding turns it.
     fn least(p: &Vec3, corners: &[&Vec3]) -> f64 {
         let c: Vec<Vec3> = corners.iter().map(|c| *c - p).collect();

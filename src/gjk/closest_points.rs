@@ -31,7 +31,7 @@ use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS};
 /// pairs: without, 12 % more support points; insensitive from 0.5 to 0.8.
 const MAX_TILT: f64 = 0.6;
 
-/// How close the bounds are to come.
+/// Stop criterion of the bounds.
 pub struct Goal {
     /// Of the gap between them, metres.
     pub tolerance: f64,
@@ -119,7 +119,7 @@ struct Search<'s, 'q, A, B> {
     to_origin: Vec3,
     /// The distance of the simplex, metres.
     upper: f64,
-    /// Whether the last query was a prediction that missed: the next one is none.
+    /// The last query was a prediction that missed, so the next one is none.
     has_missed: bool,
 }
 

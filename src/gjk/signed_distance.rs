@@ -42,7 +42,7 @@ impl Wanted {
     }
 }
 
-/// How far apart, or how deep.
+/// A signed distance with its bounds: positive apart, negative overlapping.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
     /// −h(normal), metres: proven, apart and overlapping.

@@ -100,7 +100,7 @@ pub struct SupportQuery<'q, A, B> {
     pub upper: UpperBound,
     /// The difference of the callers' centers, while no plane contradicts it.
     pub interior: Option<Vec3>,
-    /// Whether a callback contradicted itself: directions are evaluated twice.
+    /// A callback contradicted itself, so directions are evaluated twice.
     pub is_inconsistent: bool,
 }
 

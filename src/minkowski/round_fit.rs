@@ -95,9 +95,9 @@ struct Aim {
 pub struct SphereFit {
     /// The radii of obj1 and obj2, metres; 0 without a fit.
     pub radius: [f64; 2],
-    /// Whether the last prediction came true.
+    /// The last prediction was confirmed.
     pub is_confirmed: bool,
-    /// Whether two samples must fit one sphere but for rounding: a prediction may then be an answer.
+    /// Two samples must fit one sphere but for rounding; a prediction may then be an answer.
     is_exact: bool,
     /// The number of entries that were compared.
     compared: usize,

@@ -108,7 +108,7 @@ impl Scale {
     }
 }
 
-/// How far apart the bounds of a query may be when it stops.
+/// Largest gap between the bounds at which a query stops.
 #[derive(Clone, Copy, Debug)]
 pub struct GapLimit {
     /// Metres, as the caller wants it.

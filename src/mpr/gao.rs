@@ -236,7 +236,7 @@ impl Portal {
         self.planes[replaced] = w;
     }
 
-    /// Where along the ray the triangle is: |p|, negative behind the origin. A mean of
+    /// Returns the position of the triangle along the ray: |p|, negative behind the origin. A mean of
     /// the vertices with weights T, which rounding does not move out of the triangle.
     pub fn reach(&self) -> f64 {
         let t = self.weights();
@@ -268,7 +268,7 @@ pub fn rounding(size: f64) -> f64 {
     8.0 * EPSILON * size
 }
 
-/// How the search along a ray ended.
+/// Reason why the search along a ray ended.
 pub enum RayEnd {
     /// The ray leaves D between the portal and this support plane, which are no
     /// farther apart than the tolerance.
@@ -285,7 +285,7 @@ pub enum RayEnd {
     Limit(Option<Portal>),
 }
 
-/// Where portal refinement ends.
+/// Stop criterion of portal refinement.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Until {
     /// The bounds meet along the normal (Algorithm 1).
@@ -300,9 +300,9 @@ pub enum Until {
 pub struct RaySearch<'q, A, B> {
     /// The Minkowski difference.
     pub md: &'q MinkowskiDifference<A, B>,
-    /// How far apart the bounds may be, metres.
+    /// Largest gap between the bounds, metres.
     pub tolerance: f64,
-    /// Where the bounds are to meet.
+    /// The bounds that must meet.
     pub until: Until,
     /// The normal of the plane that D is in, if it is in one.
     pub flat: Option<Vec3>,
@@ -347,8 +347,8 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     }
 
     /// Finds a portal of the ray along `first.normal` (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
-    /// Game Programming Gems 7). `Err`: there is none. For the interior point stands `v0 = -d`, scaled to the
-    /// portal's size.
+    /// Game Programming Gems 7). `Err`: there is none. `v0 = -d`, scaled to the portal's size, takes the place of
+    /// the interior point.
     fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<Portal, RayEnd>, Stop> {
         let d = first.normal;
         if first.depth < 0.0 {
@@ -506,7 +506,7 @@ mod tests {
             unit(&(v - self.center).component_div(&r2)).unwrap()
         }
 
-        /// Where the ray from the origin along `d` leaves: the root t > 0 of g(t d).
+        /// Returns the point where the ray from the origin along `d` leaves: the root t > 0 of g(t d).
         fn exit(&self, d: &Vec3) -> Vec3 {
             let d_ = d.component_div(&self.radii);
             let c = self.center.component_div(&self.radii);
@@ -691,9 +691,9 @@ mod tests {
         }
     }
 
-    /// The cap on iterations: a sound answer whatever it is, and it is told.
+    /// Checks that every iteration limit gives a sound answer and is reported.
     #[test]
-    fn the_cap_is_told() {
+    fn the_iteration_limit_is_reported() {
         let mut r = Random::new(6);
         for max_iterations in 0..30 {
             let center = r.vector(0.3);
@@ -751,7 +751,7 @@ mod portal_tests {
             .all(|(x, y)| triple(&p.ray, x, y) >= -ULPS)
     }
 
-    /// Where the ray crosses the plane of the portal, and where the support plane.
+    /// Returns where the ray crosses the plane of the portal, and where the support plane.
     fn reaches(p: &Portal, plane: &SupportPlane) -> (f64, f64) {
         let along = plane.normal.dot(&p.ray);
         (
@@ -859,7 +859,7 @@ mod portal_tests {
         }
     }
 
-    /// A budget that is too small is told, and none is exceeded.
+    /// Checks that a budget that is too small is reported, and that none is exceeded.
     #[test]
     fn budget() {
         let mut r = Random::new(4);

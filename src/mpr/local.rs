@@ -174,7 +174,7 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     settings: &'w Settings,
     /// The centers' difference, else the middle of the support points along the start and against it.
     interior: Vec3,
-    /// Whether the interior point is the centers' difference.
+    /// The interior point is the centers' difference.
     is_centered: bool,
     iterations: u64,
     sphere_misses: u32,

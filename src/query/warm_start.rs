@@ -8,7 +8,7 @@
 use crate::gjk::separating_axis::SeparatingAxis;
 use crate::math::{EPSILON, Vec3, ZERO, unit};
 
-/// How the last query ended.
+/// Result of the last query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WarmKind {
     /// Nothing is known.
@@ -31,7 +31,7 @@ pub struct WarmStart {
     pub depth: f64,
     /// The radii of obj1 and obj2 where a prediction of the sphere fits came true, metres; else 0.
     pub radius: [f64; 2],
-    /// How the last query ended.
+    /// Result of the last query.
     pub kind: WarmKind,
     /// The direction of the difference of the centers, packed; 0 where they are not given.
     facing: u32,
