@@ -2,12 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# The main job: one unmodified C program over a recorded contact sequence, on the
-# system's libccd where there is one, and on this library; and the same pairs through
-# this library's extension, cold and warm. They take turns, a process a turn, and time is
-# that of the process. Of each frame the best pass of a turn counts, and of each method the best
-# turn. The last lines are the verdict. Sets itself up.
-#   main.sh readme   writes the table of README.md too
+# The main job: one unmodified C program over a recorded contact sequence, on the system's libccd, if there is one, and on
+# this library; and the same pairs through this library's extension, cold and warm. Each run is a process, the runs take
+# turns, and time is processor time: the best of each frame's passes and of each method's turns. The last lines are the
+# verdict. Sets itself up.
+#   main.sh readme   also writes the table of README.md
 
 set -eu
 cd "$(dirname "$0")/.."
@@ -24,51 +23,59 @@ mkdir -p "$work"
 # LD_LIBRARY_PATH needs the file under the name that programs ask for.
 ln -sf "$release/libccd.so" "$work/libccd.so.2"
 
+# compile PROGRAM [FLAG...]
 compile() {
-    cc -std=c99 -O2 -Iinclude -Ic-tests -DOURS_ALONE "c-tests/tools/record/$1.c" -o "$work/$1" \
-        "$work/libccd.so.2" -lm
+    program=$1
+    shift
+    cc -std=c99 -O2 -Iinclude -Ic-tests "$@" c-tests/tools/record/replay.c -o "$work/$program" "$work/libccd.so.2" -lm
 }
 
-# The libccd.so.2 that the dynamic linker gives the program.
+# libccd_of PROGRAM: prints the libccd.so.2 that the dynamic linker gives the program
 libccd_of() {
     ldd "$1" | sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p'
 }
 
-# turn PROGRAM TABLE [LIBRARY]: some passes, of which the table keeps the best times: the last two
-# columns. Its lines are otherwise the same in every turn.
+# turn PROGRAM TABLE [LIBRARY]: appends a run to the table's file
 turn() {
-    LD_LIBRARY_PATH=${3:-} "$work/$1" "$recording" "$passes" >"$work/pass.txt"
-    touch "$work/$2"
-    awk '
-        function time() { return $NF == "ns" ? $(NF - 1) : $NF }
-        FILENAME !~ /pass.txt$/ { line[FNR] = $0; least[FNR] = time(); hits[FNR] = NF > 1 ? $(NF - 1) : 0; next }
-        !(FNR in line) { line[FNR] = $0; next }
-        # A method is one line of 11 columns, its name of one to three words besides.
-        NF >= 11 && $NF ~ /^[0-9]+$/ {
-            if (hits[FNR] + 0 < $(NF - 1) + 0) $(NF - 1) = hits[FNR]
-            if (least[FNR] + 0 < $NF + 0) $NF = least[FNR]
-            name = $1
-            for (i = 2; i <= NF - 10; i++) name = name " " $i
-            line[FNR] = sprintf("%-13s %6s %5s %6s %5s %7s %7s %6s %8s %5s %5s", name, $(NF - 9), $(NF - 8), $(NF - 7),
-                                $(NF - 6), $(NF - 5), $(NF - 4), $(NF - 3), $(NF - 2), $(NF - 1), $NF)
-            next
-        }
-        time() + 0 < least[FNR] + 0 { line[FNR] = $0 }
-        END { for (i = 1; i in line; i++) print line[i] }' "$work/$2" "$work/pass.txt" >"$work/best.txt"
-    mv "$work/best.txt" "$work/$2"
+    LD_LIBRARY_PATH=${3:-} "$work/$1" "$recording" "$passes" >>"$work/$2"
 }
+
+# Reads tables: figures by file and method, with the best times of all turns; line holds the last table with these times.
+figures='
+    function least(of, key, time) {
+        if (!(key in of) || time + 0 < of[key] + 0) of[key] = time
+        return of[key]
+    }
+    / of them overlap/ { pairs = $5; overlaps = $7; lines = 0 }
+    /^a support point alone/ { $5 = least(price, FILENAME, $5) }
+    NF > 10 && $NF ~ /^[0-9]+$/ { # a method: a name of 17 columns, then 10 figures
+        name = substr($0, 1, 17)
+        sub(/ +$/, "", name)
+        n = FILENAME SUBSEP name
+        wrong[n] = $(NF - 9) + $(NF - 8) + $(NF - 7) + $(NF - 6) + $(NF - 5)
+        supports[n] = $(NF - 2)
+        $0 = sprintf("%s %5s %5s", substr($0, 1, length($0) - 12), least(hit, n, $(NF - 1)), least(ns, n, $NF))
+    }
+    { line[++lines] = $0 }
+    # Returns the price of a support point (a call of both support functions) above which a method is faster than one
+    # that needs more of them: its additional time over the support points that it saves.
+    function breakeven(n, base) {
+        if (ns[n] <= ns[base]) return "always"
+        if (supports[base] <= supports[n]) return "never"
+        return sprintf("%.2f us", (price[ARGV[1]] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
+    }'
 
 # show TITLE TABLE
 show() {
     printf '\n== %s\n' "$1"
-    cat "$work/$2"
+    awk "$figures"' END { for (i = 1; i <= lines; i++) print line[i] }' "$work/$2"
 }
 
 # A missing function would show at the start.
 export LD_BIND_NOW=1
 unset LD_LIBRARY_PATH
 compile replay
-compile replay_extension
+compile replay_extension -DOURS_ALONE
 rm -f "$work"/*.txt
 for program in replay replay_extension; do
     if [ "$(LD_LIBRARY_PATH=$work libccd_of "$work/$program")" != "$work/libccd.so.2" ]; then
@@ -77,7 +84,6 @@ for program in replay replay_extension; do
     fi
 done
 system=$(libccd_of "$work/replay")
-# This library, where it is installed before libccd, is nothing to compare with.
 if [ -n "$system" ] && grep -q ccdImplementation "$system"; then
     printf '\n== %s is this library, installed: no libccd to compare with\n' "$system"
     system=
@@ -89,7 +95,6 @@ for _ in $(seq "$turns"); do
     turn replay ours.txt "$work"
     turn replay_extension warm.txt "$work"
 done
-# The release and the processor, for whoever quotes a time.
 # shellcheck source=/dev/null
 machine=$(. /etc/os-release 2>/dev/null && echo "${NAME%% *} ${VERSION_ID:-}")
 machine="$machine, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
@@ -99,43 +104,22 @@ show "This library under the same program" ours.txt
 show "Its extension, without and with the state of the pair from the frame before" warm.txt
 cat <<'END'
 
-missed    overlaps that are not seen        deep      more than 1 % too deep
-false     overlaps that are none            unsound   the move does not separate
+missed    overlaps that are not found       deep      more than 1 % too deep
+false     pairs apart that are hits         unsound   the move does not separate
 broken    NaN or a direction of no length   mean max  errors of the depth
 supports  support points a query: one call of both support functions each
 hit ns    nanoseconds a query of the pairs that overlap, and of all; best of turns
 
 END
 
-# The figures of all tables, by file and method; a method's name may have blanks.
-figures='
-    / of them overlap/ { pairs = $5; overlaps = $7 }
-    NF >= 11 && $(NF - 9) ~ /^[0-9]+$/ {
-        name = $1
-        for (i = 2; i <= NF - 10; i++) name = name " " $i
-        n = FILENAME SUBSEP name
-        deep[n] = $(NF - 6)
-        wrong[n] = $(NF - 9) + $(NF - 8) + $(NF - 7) + deep[n] + $(NF - 5)
-        supports[n] = $(NF - 2); hit[n] = $(NF - 1); ns[n] = $NF
-    }
-    /^a support point alone/ { price[FILENAME] = $5 }
-    # The price of a support point, one call of both support functions, above which a method is
-    # faster than another that needs more of them: what its own arithmetic takes longer over the
-    # support points that it saves.
-    function breakeven(n, base) {
-        if (ns[n] <= ns[base]) return "always"
-        if (supports[base] <= supports[n]) return "never"
-        return sprintf("%.2f us", (price[ARGV[1]] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
-    }'
-
-# The last lines: what the same program gets from either library.
+# Prints the last lines: the results of the same program on either library.
 verdict() {
     awk "$figures"'
         function ratio(a, b) { return sprintf("%.2f", a / b) }
         END {
             theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
             mpr = ours SUBSEP "MPR"; gjk = ours SUBSEP "GJK + EPA"
-            lean = warm SUBSEP "no pos, cold"
+            lean = warm SUBSEP "MPR, no pos"
             base = theirs SUBSEP "MPR"; epa = theirs SUBSEP "GJK + EPA"
             printf "%d recorded pairs, %d of them overlap; libccd, this library, this library without pos:\n", pairs, overlaps
             row = "  %-38s %9s %9s %9s\n"
@@ -145,13 +129,13 @@ verdict() {
             printf row, "time, all pairs", "1.00", ratio(ns[mpr], ns[base]), ratio(ns[lean], ns[base])
             printf row, "time, pairs that overlap", "1.00", ratio(hit[mpr], hit[base]), ratio(hit[lean], hit[base])
             printf row, "faster if a support point costs above", "", breakeven(mpr, base), breakeven(lean, base)
-            printf "Wrong answers of ccdMPRPenetration: %d on libccd, %d here. Here it is the faster one if a support point", wrong[base], wrong[mpr]
-            printf " (a call of both support functions) costs above %s, without pos above %s; in this program it costs %.3f us.\n", \
-                   breakeven(mpr, base), breakeven(lean, base), price[theirs] / 1000
+            printf "Wrong answers of ccdMPRPenetration: %d on libccd, %d here. ", wrong[base], wrong[mpr]
+            printf "Here it is the faster one if a support point (a call of both support functions) costs above %s,", breakeven(mpr, base)
+            printf " without pos above %s; in this program it costs %.3f us.\n", breakeven(lean, base), price[theirs] / 1000
         }' "$@"
 }
 
-# The table of README.md.
+# Prints the table of README.md.
 readme_table() {
     awk "$figures"'
         function row(call, file, name, proven) {
@@ -169,9 +153,9 @@ readme_table() {
             row("libccd `ccdMPRPenetration`", theirs, "MPR", "no bound")
             row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "no bound")
             row("`ccdMPRPenetration`", ours, "MPR", "0.1 %")
-            row("`ccdMPRPenetration`, `pos` NULL", warm, "no pos, cold", "0.1 %")
+            row("`ccdMPRPenetration`, `pos` NULL", warm, "MPR, no pos", "0.1 %")
             row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
-            row("`ccdMPRPenetrationWarm`, `pos` NULL", warm, "no pos, warm", "0.1 %")
+            row("`ccdMPRPenetrationWarm`, `pos` NULL", warm, "MPR, warm, no pos", "0.1 %")
             row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
         }' theirs.txt ours.txt warm.txt
 }
@@ -180,7 +164,6 @@ cd "$work"
 if [ "${1:-}" = readme ] && [ -e theirs.txt ]; then
     readme_table >table.md
     printf '\n%s.\n' "$machine" >>table.md
-    # Between the two marks stands what this command says.
     awk '/^<!-- main.sh readme -->/ { print; while ((getline line < "table.md") > 0) print line; skip = 1 }
         /^<!-- end -->/ { skip = 0 }
         !skip' "$OLDPWD/README.md" >README.new

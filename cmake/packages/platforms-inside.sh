@@ -142,7 +142,6 @@ try tests/stability/configurations.c compatible
 try tests/stability/configurations.c proven
 try tests/stability/configurations.c local
 try tools/record/replay.c contacts.bin
-try tools/record/replay_extension.c contacts.bin
 
 echo "== other targets"
 for target in x86_64-pc-windows-msvc aarch64-apple-darwin x86_64-apple-darwin; do

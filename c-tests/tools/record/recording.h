@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Reader of the recorded contact sequence (format: README.md here). */
+/* Reads the recorded contact sequence (format: README.md). */
 
 #ifndef RECORD_RECORDING_H
 #define RECORD_RECORDING_H
@@ -11,16 +11,16 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { RECORDING_TRUTH = 2 }; /* doubles a pair: lower and upper bound */
+enum { POSE_BYTES = 28, PAIR_BYTES = 4, BOUNDS_BYTES = 16 }; /* in the file */
 
 typedef struct {
     uint32_t shapes, bodies, frames, pairs;
     shape_t *shape;          /* in their own frames */
     uint32_t *shape_of;      /* by body */
-    unsigned char **frame;   /* where each frame's poses begin; its pairs follow */
+    unsigned char **frame;   /* poses of each frame, then its pairs */
     uint32_t *frame_pairs;
     unsigned char *bytes;    /* the whole file */
-    size_t size, truth_at;   /* of the file; where the truth begins */
+    size_t size, truth_at;   /* of the file; offset of the truth */
     ccd_real_t *vertices;
 } recording_t;
 
@@ -35,8 +35,8 @@ static inline void recording_free(recording_t *r)
     memset(r, 0, sizeof *r);
 }
 
-/* The next bytes of the file; returns 0, or -1 where it has not so many. */
-static inline int recording_take(const recording_t *r, size_t *at, void *to, size_t bytes)
+/* Copies the next bytes of the file. Returns 0, or -1 if fewer are left. */
+static inline int recording_copy(const recording_t *r, size_t *at, void *to, size_t bytes)
 {
     if (r->size - *at < bytes)
         return -1;
@@ -50,7 +50,8 @@ static inline int recording_parse(recording_t *r)
     size_t at = 0, vertices = 0;
     char magic[8];
     uint32_t head[4], i, j, total = 0;
-    if (recording_take(r, &at, magic, sizeof magic) || memcmp(magic, "CCDREC01", 8) != 0 || recording_take(r, &at, head, sizeof head))
+    if (recording_copy(r, &at, magic, sizeof magic) || memcmp(magic, "CCDREC01", 8) != 0 ||
+        recording_copy(r, &at, head, sizeof head))
         return -1;
     r->shapes = head[0];
     r->bodies = head[1];
@@ -68,9 +69,10 @@ static inline int recording_parse(recording_t *r)
     for (i = 0; i < r->shapes; i++) {
         uint32_t kind[2];
         double p[3], x;
-        if (recording_take(r, &at, kind, sizeof kind) || recording_take(r, &at, p, sizeof p) || kind[0] > SHAPE_POLYTOPE || kind[1] > 100000)
+        if (recording_copy(r, &at, kind, sizeof kind) || recording_copy(r, &at, p, sizeof p) || kind[0] > SHAPE_POLYTOPE ||
+            kind[1] > 100000)
             return -1;
-        for (j = 0; j < 3 * kind[1] && !recording_take(r, &at, &x, sizeof x); j++)
+        for (j = 0; j < 3 * kind[1] && !recording_copy(r, &at, &x, sizeof x); j++)
             r->vertices[vertices + j] = (ccd_real_t)x;
         if (j < 3 * kind[1])
             return -1;
@@ -79,21 +81,22 @@ static inline int recording_parse(recording_t *r)
         vertices += j;
     }
     for (i = 0; i < r->bodies; i++)
-        if (recording_take(r, &at, &r->shape_of[i], 4) || r->shape_of[i] >= r->shapes)
+        if (recording_copy(r, &at, &r->shape_of[i], 4) || r->shape_of[i] >= r->shapes)
             return -1;
     for (i = 0; i < r->frames; i++) {
-        const size_t poses = 28 * (size_t)r->bodies;
-        if (recording_take(r, &at, &r->frame_pairs[i], 4) || (r->size - at) / 4 < poses / 4 + r->frame_pairs[i])
+        const size_t poses = POSE_BYTES * (size_t)r->bodies;
+        if (recording_copy(r, &at, &r->frame_pairs[i], 4) ||
+            (r->size - at) / PAIR_BYTES < poses / PAIR_BYTES + r->frame_pairs[i])
             return -1;
         r->frame[i] = r->bytes + at;
-        at += poses + 4 * (size_t)r->frame_pairs[i];
+        at += poses + PAIR_BYTES * (size_t)r->frame_pairs[i];
         total += r->frame_pairs[i];
     }
     r->truth_at = at;
-    return total == r->pairs && r->size - at == 8 * RECORDING_TRUTH * (size_t)r->pairs ? 0 : -1;
+    return total == r->pairs && r->size - at == BOUNDS_BYTES * (size_t)r->pairs ? 0 : -1;
 }
 
-/* Returns 0, or -1 when the file is not a whole recording; free either way. */
+/* Returns 0, or -1 if the file is not a whole recording; recording_free it either way. */
 static inline int recording_read(const char *path, recording_t *r)
 {
     FILE *file = fopen(path, "rb");
@@ -111,13 +114,13 @@ static inline int recording_read(const char *path, recording_t *r)
     return bad ? -1 : 0;
 }
 
-/* The bodies of frame f, placed. */
+/* Places the bodies of frame f. */
 static inline void recording_place(const recording_t *r, uint32_t f, shape_t *body)
 {
     for (uint32_t i = 0; i < r->bodies; i++) {
         float pose[7];
         double rot[9];
-        memcpy(pose, r->frame[f] + 28 * (size_t)i, sizeof pose);
+        memcpy(pose, r->frame[f] + POSE_BYTES * (size_t)i, sizeof pose);
         body[i] = r->shape[r->shape_of[i]];
         rotation_quaternion((double)pose[6], (double)pose[3], (double)pose[4], (double)pose[5], rot);
         shape_move(&body[i], (double)pose[0], (double)pose[1], (double)pose[2]);
@@ -125,20 +128,20 @@ static inline void recording_place(const recording_t *r, uint32_t f, shape_t *bo
     }
 }
 
-/* The two bodies of pair i of frame f. */
+/* Returns the two bodies of pair i of frame f. */
 static inline void recording_pair(const recording_t *r, uint32_t f, uint32_t i, unsigned *a, unsigned *b)
 {
     uint16_t pair[2];
-    memcpy(pair, r->frame[f] + 28 * (size_t)r->bodies + 4 * (size_t)i, sizeof pair);
+    memcpy(pair, r->frame[f] + POSE_BYTES * (size_t)r->bodies + PAIR_BYTES * (size_t)i, sizeof pair);
     *a = pair[0];
     *b = pair[1];
 }
 
-/* Bounds on the signed depth of the k-th pair of the whole recording: positive
- * is penetration, negative the distance apart. */
+/* Returns bounds on the signed depth of the k-th pair of the whole recording: positive is penetration, negative the
+ * distance apart. */
 static inline void recording_truth(const recording_t *r, size_t k, double *lower, double *upper)
 {
-    double bounds[RECORDING_TRUTH];
+    double bounds[2];
     memcpy(bounds, r->bytes + r->truth_at + sizeof bounds * k, sizeof bounds);
     *lower = bounds[0];
     *upper = bounds[1];
