@@ -10,7 +10,7 @@
  * usage: dart_pile SEED STEPS BODIES fcl|ode */
 
 #include "engines/pile.h"
-#include "harness/uniform.h"
+#include "harness/random.h"
 #include "harness/identity.h"
 
 #include <dart/collision/fcl/FCLCollisionDetector.hpp>
@@ -59,7 +59,7 @@ int main(int argc, char **argv)
     const int bodies = atoi(argv[3]);
     const std::string scene = argv[4];
     const double half_width = 0.55;
-    tell_library();
+    print_library();
     auto world = simulation::World::create();
     world->setTimeStep(0.002);
     if (scene == "ode") {

@@ -87,7 +87,7 @@ static double outside(const shape_t &s, const fcl::Vector3d &p)
             n[k] = i < 6 ? (k == i / 2) * (i % 2 ? 1. : -1.) : n[k] / length;
         if (i == 6 && !(length > 0))
             continue;
-        truth_point(&s, origin, n, q);
+        truth_support(&s, origin, n, q);
         most = fmax(most, n[0] * (p[0] - q[0]) + n[1] * (p[1] - q[1]) + n[2] * (p[2] - q[2]));
     }
     return most;
@@ -178,7 +178,7 @@ static void query_all(long pairs)
 {
     uniform_seed(45);
     progress->current = 0;
-    configurations_all(query_configuration);
+    for_each_configuration(query_configuration);
     progress->current = 1;
     query_kissing(pairs);
     progress->current = 2;
@@ -223,7 +223,7 @@ int main(int argc, char **argv)
         return 2;
     progress = (progress_t *)memory;
     setvbuf(stdout, NULL, _IOLBF, 0);
-    tell_library();
+    print_library();
     printf("function %s\n", function && dladdr(function, &from) ? strrchr(from.dli_fname, '/') + 1 : "none");
     const long pairs = atol(argv[1]);
     if (pairs == 0)

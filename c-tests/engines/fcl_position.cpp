@@ -83,7 +83,7 @@ int main(int argc, char **argv)
     };
     if (argc != 3)
         return 2;
-    tell_library();
+    print_library();
     uniform_seed((unsigned long)atol(argv[1]));
     for (const lying_t &lying : all)
         judge(lying, atoi(argv[2]));

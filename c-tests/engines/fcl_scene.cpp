@@ -283,7 +283,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: fcl_scene FRAMES BODIES EXACT CONTACTS [mixed|round|hulls]\n");
         return 2;
     }
-    tell_library();
+    print_library();
 #ifdef BY_HEADER
     settings.contacts_per_pair = (size_t)atol(argv[4]);
 #endif

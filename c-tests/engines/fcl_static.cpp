@@ -94,7 +94,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < KINDS; i++)
         kinds[i] = i;
     signal(SIGABRT, on_abort);
-    tell_library();
+    print_library();
     uniform_seed(strtoull(argv[1], NULL, 10));
     pose_all(kinds, KINDS, atol(argv[2]), &a, &b, make, ask);
     return 0;

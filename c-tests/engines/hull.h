@@ -6,7 +6,7 @@
 #ifndef ENGINES_HULL_H
 #define ENGINES_HULL_H
 
-#include "harness/uniform.h"
+#include "harness/random.h"
 
 #include <ccd/vec3.h>
 #include <stdio.h>

@@ -10,7 +10,7 @@
  *   multi: MuJoCo's multi-point convex collision; field: on a height field */
 
 #include "engines/pile.h"
-#include "harness/uniform.h"
+#include "harness/random.h"
 #include "harness/identity.h"
 
 #include <mujoco/mujoco.h>
@@ -100,7 +100,7 @@ int main(int argc, char **argv)
     pile_t pile = pile_of(steps);
     int multi = !strcmp(argv[4], "multi");
     int field = !strcmp(argv[4], "field");
-    tell_library();
+    print_library();
     uniform_seed(5);
     put_model(atoi(argv[3]), multi, field);
     mj_defaultVFS(&vfs);

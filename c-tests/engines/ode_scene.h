@@ -338,7 +338,7 @@ static inline void run_scene(scene_t *scene, const char *name, int bodies, unsig
 static inline void run(scene_t *scene, char **argv)
 {
     const long steps = atol(argv[2]);
-    tell_library();
+    print_library();
     run_scene(scene, argv[4], atoi(argv[3]), strtoul(argv[1], NULL, 10), steps);
     for (long step = 0; step < steps; step++) {
         double height, moving;

@@ -149,7 +149,7 @@ int main(int argc, char **argv)
     corrected = !strcmp(argv[3], "corrected");
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
-    tell_library();
+    print_library();
     uniform_seed(strtoull(argv[1], NULL, 10));
     pose_all(kinds, sizeof kinds / sizeof kinds[0], atol(argv[2]), &a.body, &b.body, make, ask);
     dCloseODE();

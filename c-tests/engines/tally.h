@@ -41,7 +41,7 @@ static inline verdict_t tally_add(tally_t *t, const verdict_truth_t *truth, int 
 static inline void tally_print(const char *what, const tally_t *t)
 {
     printf("%s queries %ld hits %ld missed %ld spurious %ld broken %ld deep %ld unsound %ld lost %.9g excess %.9g\n", what,
-           t->queries, t->hits, t->wrong[VERDICT_MISSED], t->wrong[VERDICT_SPURIOUS], t->wrong[VERDICT_BROKEN],
+           t->queries, t->hits, t->wrong[VERDICT_MISSED], t->wrong[VERDICT_SPURIOUS], t->wrong[VERDICT_INVALID],
            t->wrong[VERDICT_DEEP], t->wrong[VERDICT_UNSOUND], t->lost, t->excess);
 }
 
@@ -50,7 +50,7 @@ static inline double right_point(const shape_t *s, const ccd_vec3_t *dir, const 
 {
     static const double origin[3] = { 0, 0, 0 };
     const double n[3] = { dir->v[0], dir->v[1], dir->v[2] };
-    truth_point(s, origin, n, point);
+    truth_support(s, origin, n, point);
     return fabs(n[0] * (v->v[0] - point[0]) + n[1] * (v->v[1] - point[1]) + n[2] * (v->v[2] - point[2]));
 }
 

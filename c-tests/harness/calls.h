@@ -1,49 +1,49 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The one table of what this library exports, but for the polytope functions, which no header
- * declares. Every test and measuring program in C asks by it, through this_library.h; the contract test
- * holds it against the library's symbols, the extension's interfaces and the Rust tests. */
+/* The one table of what this library exports, except the polytope functions, which no header
+ * declares. Every test and measuring program in C calls through it, by this_library.h; the contract test
+ * compares it with the library's symbols, the extension's interfaces and the Rust tests. */
 
 #ifndef TESTS_CALLS_H
 #define TESTS_CALLS_H
 
-/* Kinds of calls: what their arguments behind (obj1, obj2, ccd) are, and what they return of an overlap, of a
- * miss and of what they cannot work with. ccdContacts' is how many. */
+/* Kinds of calls: what they return for an overlap, for a miss and for bad input (ccdContacts returns a count),
+ * and their arguments after (obj1, obj2, ccd). */
 #define CALL_KINDS(X) \
-    X(YES, 1, 0, 0)                                      /* none */ \
-    X(YES_WARM, 1, 0, 0)                                 /* warm */ \
-    X(SEPARATION, 0, -1, -1)                             /* sep */ \
-    X(DEPTH, 0, -1, -1)                                  /* depth, dir, pos */ \
-    X(DEPTH_WARM, 0, -1, -1)                             /* warm, depth, dir, pos */ \
-    X(FULL, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)            /* warm, want, out */ \
-    X(FULL_ALONG, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)      /* vector, warm, want, out */ \
-    X(MANIFOLD, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)        /* ccdContacts' own */ \
-    X(DISTANCE, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)        /* ccdSignedDistance's own */
+    X(BOOLEAN, 1, 0, 0)                                         /* none */ \
+    X(BOOLEAN_WARM, 1, 0, 0)                                    /* warm */ \
+    X(SEPARATION, 0, -1, -1)                                    /* sep */ \
+    X(DEPTH, 0, -1, -1)                                         /* depth, dir, pos */ \
+    X(DEPTH_WARM, 0, -1, -1)                                    /* warm, depth, dir, pos */ \
+    X(PENETRATION, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)            /* warm, want, out */ \
+    X(PENETRATION_ALONG, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)      /* vector, warm, want, out */ \
+    X(MANIFOLD, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)               /* ccdContacts' own */ \
+    X(DISTANCE, CCD_HIT, CCD_MISS, CCD_BAD_INPUT)               /* ccdSignedDistance's own */
 
-/* The tolerance that a call reads, where it starts, what it writes and does besides. */
+/* Traits: the tolerance that a call reads, its first direction, and what else it does. */
 enum { MPR_TOLERANCE = 1, EPA_TOLERANCE = 2, DIST_TOLERANCE = 4, FROM_FIRST_DIR = 8, FROM_CENTERS = 16, STORES = 32,
-       MAY_ALLOCATE = 64, EXTENSION = 128, ONE_BY_ONE = 256 /* asks the objects one by one */ };
+       MAY_ALLOCATE = 64, EXTENSION = 128, ONE_BY_ONE = 256 /* queries one object at a time */ };
 
-/* Name, the word that the judges have for it, kind, traits. */
+/* Name, suffix of its CALL_ constant, kind, traits. */
 #define LIBCCD_CALLS(X) \
     X(ccdMPRPenetration, MPR, DEPTH, FROM_CENTERS | MPR_TOLERANCE | STORES) \
-    X(ccdMPRIntersect, MPR_INTERSECT, YES, FROM_CENTERS) \
+    X(ccdMPRIntersect, MPR_INTERSECT, BOOLEAN, FROM_CENTERS) \
     X(ccdGJKPenetration, GJK, DEPTH, FROM_FIRST_DIR | EPA_TOLERANCE | STORES | MAY_ALLOCATE) \
     X(ccdGJKSeparate, SEPARATE, SEPARATION, FROM_FIRST_DIR | EPA_TOLERANCE | MAY_ALLOCATE) \
-    X(ccdGJKIntersect, GJK_INTERSECT, YES, FROM_FIRST_DIR)
+    X(ccdGJKIntersect, GJK_INTERSECT, BOOLEAN, FROM_FIRST_DIR)
 
 #define EXTENSION_CALLS(X) \
     X(ccdMPRPenetrationWarm, MPR_WARM, DEPTH_WARM, FROM_CENTERS | MPR_TOLERANCE | STORES | EXTENSION) \
-    X(ccdMPRIntersectWarm, MPR_INTERSECT_WARM, YES_WARM, FROM_CENTERS | EXTENSION) \
-    X(ccdIntersect, INTERSECT, YES_WARM, EXTENSION) \
-    X(ccdPenetration, PENETRATION, FULL, MPR_TOLERANCE | STORES | EXTENSION) \
-    X(ccdPenetrationLocal, LOCAL, FULL, MPR_TOLERANCE | STORES | EXTENSION) \
-    X(ccdPenetrationIncremental, INCREMENTAL, FULL, MPR_TOLERANCE | STORES | EXTENSION) \
-    X(ccdPenetrationProven, PROVEN, FULL, EPA_TOLERANCE | STORES | MAY_ALLOCATE | EXTENSION) \
-    X(ccdPenetrationAlong, ALONG, FULL_ALONG, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdMPRIntersectWarm, MPR_INTERSECT_WARM, BOOLEAN_WARM, FROM_CENTERS | EXTENSION) \
+    X(ccdIntersect, INTERSECT, BOOLEAN_WARM, EXTENSION) \
+    X(ccdPenetration, PENETRATION, PENETRATION, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdPenetrationLocal, LOCAL, PENETRATION, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdPenetrationIncremental, INCREMENTAL, PENETRATION, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdPenetrationProven, PROVEN, PENETRATION, EPA_TOLERANCE | STORES | MAY_ALLOCATE | EXTENSION) \
+    X(ccdPenetrationAlong, ALONG, PENETRATION_ALONG, MPR_TOLERANCE | STORES | EXTENSION) \
     X(ccdContacts, CONTACTS, MANIFOLD, STORES | EXTENSION | ONE_BY_ONE) \
-    X(ccdPenetrationPlanar, PLANAR, FULL_ALONG, MPR_TOLERANCE | STORES | EXTENSION) \
+    X(ccdPenetrationPlanar, PLANAR, PENETRATION_ALONG, MPR_TOLERANCE | STORES | EXTENSION) \
     X(ccdSignedDistance, DISTANCE, DISTANCE, DIST_TOLERANCE | STORES | MAY_ALLOCATE | EXTENSION)
 
 #define PAIR_CALLS(X) LIBCCD_CALLS(X) EXTENSION_CALLS(X)

@@ -22,7 +22,7 @@ static inline const char *running_ccd(void)
 }
 
 /* A program's first line, by which its driver knows what it ran on. */
-static inline void tell_library(void)
+static inline void print_library(void)
 {
     const char *name = running_ccd();
     printf("library %s\n", name ? name : "libccd");

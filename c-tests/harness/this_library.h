@@ -63,7 +63,7 @@ enum {
 
 typedef struct {
     const char *name;
-    int number; /* of call_by_number */
+    int number; /* of call_library */
     int kind, traits;
     int hit, miss, bad; /* what it returns */
 } call_t;
@@ -83,23 +83,23 @@ typedef struct {
     int max;
     ccd_real_t *depth;
     ccd_vec3_t *dir, *pos; /* dir: of ccdGJKSeparate too */
-    ccd_penetration_t *full;
+    ccd_penetration_t *penetration;
     ccd_distance_t *distance;
-    ccd_manifold_t *memory; /* ccdContacts' */
+    ccd_manifold_t *manifold;
     ccd_contact_t *contacts;
-} call_rest_t;
+} call_args_t;
 
-#define PASS_YES(f) f(a, b, ccd)
-#define PASS_YES_WARM(f) f(a, b, ccd, x->warm)
+#define PASS_BOOLEAN(f) f(a, b, ccd)
+#define PASS_BOOLEAN_WARM(f) f(a, b, ccd, x->warm)
 #define PASS_SEPARATION(f) f(a, b, ccd, x->dir)
 #define PASS_DEPTH(f) f(a, b, ccd, x->depth, x->dir, x->pos)
 #define PASS_DEPTH_WARM(f) f(a, b, ccd, x->warm, x->depth, x->dir, x->pos)
-#define PASS_FULL(f) f(a, b, ccd, x->warm, x->want, x->full)
-#define PASS_FULL_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->full)
-#define PASS_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->memory, x->contacts, x->max)
+#define PASS_PENETRATION(f) f(a, b, ccd, x->warm, x->want, x->penetration)
+#define PASS_PENETRATION_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->penetration)
+#define PASS_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->manifold, x->contacts, x->max)
 #define PASS_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
 
-static inline int call_by_number(int number, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
+static inline int call_library(int number, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x)
 {
     switch (number) {
 #define CALL_CASE(name, word, kind, traits) \

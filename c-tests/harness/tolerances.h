@@ -14,14 +14,14 @@
     X(ULPS, 16, 16, \
       "ulps of the largest coordinate: a callback rounds a rotated vertex and adds a " \
       "position, the difference of two such points is dotted with a rounded unit vector") \
-    X(UNIT, 4e-16, 2.5e-7, \
+    X(UNIT_LENGTH, 4e-16, 2.5e-7, \
       "|dir| - 1: normalising a vector rounds three coordinates, one length, one division") \
     X(TIGHT, 1e-9, 256 * FLT_EPSILON, \
       "tolerance of a tight query relative to the size: a thousandth of the 1e-6 that " \
       "configurations are judged to; in single what eight bits above rounding leave") \
-    X(PROMISED, 1e-3, 1e-3, \
+    X(MPR, 1e-3, 1e-3, \
       "part of its depth by which an answer of MPR may be above the least: its promise") \
-    X(LATE, 1e-2, 1e-2, \
+    X(MPR_CAPPED, 1e-2, 1e-2, \
       "the same where MPR's support points were used up: nearly concentric round objects") \
     X(TABLE, 1e-2, 1e-2, \
       "the rate table's verdict: 1 % of the depth and two tolerances, for libccd's sake") \
@@ -29,7 +29,7 @@
       "the rate table's verdict is never wider than this part of the size") \
     X(DEEP, 1e-2, 1e-2, \
       "part of the size above which a missed overlap counts as a deep one") \
-    X(INSIDE, 1e-12, 1e-5, \
+    X(WITNESS, 1e-12, 1e-5, \
       "witness points against supporting planes, beside the query's own tolerance: they " \
       "are convex combinations of support points and carry the rounding of three weights") \
     X(PROOF_FLOOR, 2e-14, 1e-5, \
@@ -54,12 +54,12 @@ static inline double tolerance(int name)
 }
 
 /* Distance from 1 to the next ccd_real_t. */
-static inline double real_ulp(void) { return sizeof(ccd_real_t) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON; }
+static inline double real_eps(void) { return sizeof(ccd_real_t) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON; }
 
 /* Effect of rounding alone on a depth between these shapes, metres. */
 static inline double pair_noise(const shape_t *a, const shape_t *b)
 {
-    return tolerance(TOL_ULPS) * real_ulp() * pair_largest(a, b);
+    return tolerance(TOL_ULPS) * real_eps() * largest_coordinate(a, b);
 }
 
 #endif

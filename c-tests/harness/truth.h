@@ -56,7 +56,7 @@ static inline void truth_cross3(const double a[3], const double b[3], double out
 /* --- support in full precision ---------------------------------------------- */
 
 /* Support point of one shape in double, relative to origin, for unit w. */
-static inline void truth_point(const shape_t *s, const double origin[3], const double w[3], double out[3])
+static inline void truth_support(const shape_t *s, const double origin[3], const double w[3], double out[3])
 {
     double d[3], v[3] = {0, 0, 0}, p[3], l;
     for (int i = 0; i < 3; i++) {
@@ -120,26 +120,26 @@ static inline void truth_point(const shape_t *s, const double origin[3], const d
 }
 
 /* Support point of D = A - B in unit direction n. */
-static inline void truth_difference(const shape_t *a, const shape_t *b, const double n[3], double out[3])
+static inline void truth_difference_support(const shape_t *a, const shape_t *b, const double n[3], double out[3])
 {
     double origin[3], m[3], x[3], y[3];
     for (int i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
         m[i] = -n[i];
     }
-    truth_point(a, origin, n, x);
-    truth_point(b, origin, m, y);
+    truth_support(a, origin, n, x);
+    truth_support(b, origin, m, y);
     for (int i = 0; i < 3; i++)
         out[i] = x[i] - y[i];
 }
 
 /* h(n) for a direction of any length but zero, per unit length. */
-static inline double truth_value(const shape_t *a, const shape_t *b, const double dir[3])
+static inline double truth_support_value(const shape_t *a, const shape_t *b, const double dir[3])
 {
     double n[3], s[3], l = sqrt(truth_dot3(dir, dir));
     for (int i = 0; i < 3; i++)
         n[i] = dir[i] / l;
-    truth_difference(a, b, n, s);
+    truth_difference_support(a, b, n, s);
     return truth_dot3(n, s);
 }
 
@@ -172,7 +172,7 @@ static inline double shape_reach(const shape_t *s)
 static inline double pair_size(const shape_t *a, const shape_t *b) { return shape_reach(a) + shape_reach(b); }
 
 /* The largest coordinate that a callback computes with: what one ulp refers to. */
-static inline double pair_largest(const shape_t *a, const shape_t *b)
+static inline double largest_coordinate(const shape_t *a, const shape_t *b)
 {
     double most = 0;
     for (int i = 0; i < 3; i++)
@@ -575,7 +575,7 @@ static inline void truth_sample(const shape_t *a, const shape_t *b, truth_t *out
     double l = sqrt(truth_dot3(n, n)), h;
     for (int i = 0; i < 3; i++)
         n[i] /= l;
-    truth_difference(a, b, n, s);
+    truth_difference_support(a, b, n, s);
     h = truth_dot3(n, s);
     if (h < out->depth) {
         out->depth = h;

@@ -13,7 +13,7 @@ typedef enum {
     VERDICT_RIGHT,
     VERDICT_MISSED,   /* they overlap, the answer is no */
     VERDICT_SPURIOUS, /* they are apart, the answer is yes */
-    VERDICT_BROKEN,   /* a direction that is not unit, a depth that is negative or no number */
+    VERDICT_INVALID,   /* a direction that is not unit, a depth that is negative or no number */
     VERDICT_DEEP,     /* more than 1 % and two tolerances deeper than the least depth */
     VERDICT_UNSOUND,  /* moving obj2 by depth * dir leaves them overlapping */
     VERDICTS
@@ -28,7 +28,7 @@ VERDICT_UNUSED static const char *const VERDICT_NAME[VERDICTS] = { "right", "ove
 typedef struct {
     double lower, upper;
     double tolerance; /* of the query */
-    double touch;     /* depths and gaps within this are neither hit nor miss */
+    double contact_eps; /* depths and gaps within this are neither hit nor miss */
 } verdict_truth_t;
 
 /* An answer; those of yes or no have neither depth nor direction. */
@@ -40,14 +40,14 @@ typedef struct {
 VERDICT_UNUSED static inline verdict_t verdict(const verdict_answer_t *answer, const verdict_truth_t *truth)
 {
     if (!answer->hit)
-        return truth->lower > truth->touch ? VERDICT_MISSED : VERDICT_RIGHT;
-    if (truth->upper < -truth->touch)
+        return truth->lower > truth->contact_eps ? VERDICT_MISSED : VERDICT_RIGHT;
+    if (truth->upper < -truth->contact_eps)
         return VERDICT_SPURIOUS;
     if (!answer->has_depth)
         return VERDICT_RIGHT;
     /* negated: NaN is broken */
     if (!(fabs(answer->length2 - 1) < 1e-6) || !(answer->depth >= 0 && answer->depth < HUGE_VAL))
-        return VERDICT_BROKEN;
+        return VERDICT_INVALID;
     if (answer->depth > 1.01 * truth->upper + 2 * truth->tolerance)
         return VERDICT_DEEP;
     return answer->depth < truth->lower - 2 * truth->tolerance ? VERDICT_UNSOUND : VERDICT_RIGHT;
@@ -56,7 +56,7 @@ VERDICT_UNUSED static inline verdict_t verdict(const verdict_answer_t *answer, c
 /* Whether the depth can be held against the truth: a hit that is one, and a number. */
 VERDICT_UNUSED static inline int verdict_has_error(const verdict_answer_t *answer, verdict_t v)
 {
-    return answer->hit && answer->has_depth && v != VERDICT_SPURIOUS && v != VERDICT_BROKEN;
+    return answer->hit && answer->has_depth && v != VERDICT_SPURIOUS && v != VERDICT_INVALID;
 }
 
 /* How far the depth is off the bounds, metres. */

@@ -169,20 +169,20 @@ static void null_outputs(void)
         const int expected = round % 2 - 1;
         ccd_real_t depth[2];
         ccd_vec3_t dir[2], pos[2], sep;
-        call_rest_t rest = {.depth = &depth[0], .dir = &dir[0], .pos = &pos[0]};
+        call_args_t rest = {.depth = &depth[0], .dir = &dir[0], .pos = &pos[0]};
         shape_t a, b;
         ccd_t ccd;
         random_pair(&call_table[CALL_GJK], round % 2, &a, &b, &ccd);
         ccd.center1 = ccd.center2 = shape_center;
         for (int i = 0; i < 2; i++)
             for (int skip = 0; skip < 8; skip++) {
-                const call_rest_t some = {.depth = skip & 1 ? NULL : &depth[1], .dir = skip & 2 ? NULL : &dir[1],
+                const call_args_t some = {.depth = skip & 1 ? NULL : &depth[1], .dir = skip & 2 ? NULL : &dir[1],
                                           .pos = skip & 4 ? NULL : &pos[1]};
                 memset(depth, 0x5a, sizeof depth);
                 memset(dir, 0x5a, sizeof dir);
                 memset(pos, 0x5a, sizeof pos);
-                CHECK(call_by_number(numbers[i], &a, &b, &ccd, &rest) == expected, "all outputs");
-                CHECK(call_by_number(numbers[i], &a, &b, &ccd, &some) == expected, "NULL outputs");
+                CHECK(call_library(numbers[i], &a, &b, &ccd, &rest) == expected, "all outputs");
+                CHECK(call_library(numbers[i], &a, &b, &ccd, &some) == expected, "NULL outputs");
                 CHECK((skip & 1) || same_bits(&depth[0], &depth[1], sizeof depth[0]), "depth");
                 CHECK((skip & 2) || same_bits(&dir[0], &dir[1], sizeof dir[0]), "dir");
                 CHECK((skip & 4) || same_bits(&pos[0], &pos[1], sizeof pos[0]), "pos");

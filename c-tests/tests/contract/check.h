@@ -6,7 +6,7 @@
 #ifndef TESTS_CHECK_H
 #define TESTS_CHECK_H
 
-#include "harness/uniform.h"
+#include "harness/random.h"
 
 #include <ccd/vec3.h>
 #include <stdint.h>

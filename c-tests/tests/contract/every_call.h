@@ -57,7 +57,7 @@ static inline int run_wanting(int want, const call_t *entry, const void *a, cons
     ccd_penetration_t full;
     ccd_distance_t distance;
     ccd_warm_t warm;
-    call_rest_t rest;
+    call_args_t rest;
     int number = entry->number, code;
     if (number == PAIR_CALL_COUNT) {
         __ccdSupport(a, b, &up, ccd, &out->support);
@@ -71,24 +71,24 @@ static inline int run_wanting(int want, const call_t *entry, const void *a, cons
     rest.slop = CCD_REAL(0.01);
     rest.want = want;
     rest.max = 4;
-    rest.full = &full;
+    rest.penetration = &full;
     rest.distance = &distance;
     memset(&memory, 0, sizeof memory);
-    rest.memory = &memory;
+    rest.manifold = &memory;
     rest.contacts = contacts;
     if (number == CALL_CONTACTS) {
-        code = call_by_number(number, a, b, ccd, &rest);
+        code = call_library(number, a, b, ccd, &rest);
         if (code < 1)
             return code;
         /* Contacts whatever the pose is; what it returns is whether the pair overlaps. */
         number = CALL_LOCAL;
     }
     if (entry->traits & EXTENSION)
-        call_by_number(number, a, b, ccd, &rest);
+        call_library(number, a, b, ccd, &rest);
     rest.depth = &out->depth;
     rest.dir = &out->dir;
     rest.pos = want & CCD_WANT_POS ? &out->pos : NULL;
-    code = call_by_number(number, a, b, ccd, &rest);
+    code = call_library(number, a, b, ccd, &rest);
     if (number == CALL_DISTANCE)
         return stored_distance(code, &distance, out);
     /* The others of the extension fill a struct, and libccd's the outputs themselves. */

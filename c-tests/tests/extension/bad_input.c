@@ -51,8 +51,8 @@ typedef struct {
 
 /* What calls of a kind take besides, and look at. */
 enum { TAKES_DIR = 1, TAKES_WANT = 2, NEEDS_OUT = 4, TAKES_MARGINS = 8, TAKES_SLOP = 16 };
-static const int taken[] = {[KIND_FULL] = TAKES_WANT | NEEDS_OUT,
-                            [KIND_FULL_ALONG] = TAKES_WANT | NEEDS_OUT | TAKES_DIR,
+static const int taken[] = {[KIND_PENETRATION] = TAKES_WANT | NEEDS_OUT,
+                            [KIND_PENETRATION_ALONG] = TAKES_WANT | NEEDS_OUT | TAKES_DIR,
                             [KIND_MANIFOLD] = NEEDS_OUT | TAKES_DIR | TAKES_SLOP,
                             [KIND_DISTANCE] = TAKES_WANT | NEEDS_OUT | TAKES_MARGINS};
 
@@ -60,32 +60,32 @@ static const int taken[] = {[KIND_FULL] = TAKES_WANT | NEEDS_OUT,
 static int good_answer(const call_t *call) { return call->kind == KIND_MANIFOLD ? 4 : call->hit; }
 
 /* With these outputs; NULL: with none. */
-static int ask_number(int number, const ccd_t *ccd, const call_rest_t *rest, ccd_warm_t *warm, outputs_t *out)
+static int ask_number(int number, const ccd_t *ccd, const call_args_t *rest, ccd_warm_t *warm, outputs_t *out)
 {
-    call_rest_t x = *rest;
+    call_args_t x = *rest;
     x.warm = warm;
     if (out) {
         x.depth = &out->depth;
         x.dir = &out->dir;
         x.pos = &out->pos;
-        x.full = &out->penetration;
+        x.penetration = &out->penetration;
         x.distance = &out->distance;
         x.contacts = out->contact;
     }
-    return call_by_number(number, &one, &other, ccd, &x);
+    return call_library(number, &one, &other, ccd, &x);
 }
 
 static int ask(int query, const void *a, const void *b, const ccd_t *ccd, const ccd_vec3_t *dir, ccd_warm_t *warm, unsigned want,
                ccd_penetration_t *out)
 {
-    const call_rest_t rest = {.warm = warm, .along = dir, .want = want, .full = out};
-    return call_by_number(query, a, b, ccd, &rest);
+    const call_args_t rest = {.warm = warm, .along = dir, .want = want, .penetration = out};
+    return call_library(query, a, b, ccd, &rest);
 }
 
 static int no_out;
 
 /* Asks, with a state and without: the code, and nothing written where that is the bad one. */
-static void expect(const call_t *call, const ccd_t *ccd, const call_rest_t *rest, int code, const char *why)
+static void expect(const call_t *call, const ccd_t *ccd, const call_args_t *rest, int code, const char *why)
 {
     static outputs_t out, before; /* static: no padding differs */
     ccd_warm_t warm, warm_before;
@@ -121,7 +121,7 @@ static void bad_center(const void *obj, ccd_vec3_t *out)
 }
 
 /* Points of obj1 or of obj2 that are no number: from the first call on, from the second on, ... */
-static void bad_points(const call_t *call, const call_rest_t *rest, int of_obj2)
+static void bad_points(const call_t *call, const call_args_t *rest, int of_obj2)
 {
     static outputs_t out, before;
     ccd_warm_t warm, good_state;
@@ -146,7 +146,7 @@ static void bad_points(const call_t *call, const call_rest_t *rest, int of_obj2)
     CHECK(0, "%s: no end", call->name);
 }
 
-static void bad_objects(const call_t *call, const call_rest_t *rest, const ccd_real_t strange[3])
+static void bad_objects(const call_t *call, const call_args_t *rest, const ccd_real_t strange[3])
 {
     const int good_code = good_answer(call), bad = call->bad;
     ccd_t ccd;
@@ -176,7 +176,7 @@ static void bad_objects(const call_t *call, const call_rest_t *rest, const ccd_r
         }
 }
 
-static void bad_tolerances(const call_t *call, const call_rest_t *rest, ccd_real_t inf)
+static void bad_tolerances(const call_t *call, const call_args_t *rest, ccd_real_t inf)
 {
     const ccd_real_t none[3] = {inf - inf, CCD_REAL(-1e-9), -inf};
     const int checks = taken[call->kind] & TAKES_WANT;
@@ -195,17 +195,17 @@ static void bad_tolerances(const call_t *call, const call_rest_t *rest, ccd_real
     }
 }
 
-static void bad_arguments(const call_t *call, const call_rest_t *good_rest, const ccd_real_t strange[3])
+static void bad_arguments(const call_t *call, const call_args_t *good_rest, const ccd_real_t strange[3])
 {
     static const struct { size_t at; int taken_by; const char *why; } lengths[] = {
-        {offsetof(call_rest_t, margin1), TAKES_MARGINS, "margin1 that is none"},
-        {offsetof(call_rest_t, margin2), TAKES_MARGINS, "margin2 that is none"},
-        {offsetof(call_rest_t, max_distance), TAKES_MARGINS, "max_distance that is none"},
-        {offsetof(call_rest_t, slop), TAKES_SLOP, "slop that is none"},
+        {offsetof(call_args_t, margin1), TAKES_MARGINS, "margin1 that is none"},
+        {offsetof(call_args_t, margin2), TAKES_MARGINS, "margin2 that is none"},
+        {offsetof(call_args_t, max_distance), TAKES_MARGINS, "max_distance that is none"},
+        {offsetof(call_args_t, slop), TAKES_SLOP, "slop that is none"},
     };
     const ccd_real_t no_length[] = {strange[0], CCD_REAL(-1e-9), strange[2]};
     const int good_code = good_answer(call), bad = call->bad, takes = taken[call->kind];
-    call_rest_t rest = *good_rest;
+    call_args_t rest = *good_rest;
     ccd_vec3_t dir = {{0, 0, 0}};
     no_out = 1;
     expect(call, &good, &rest, takes & NEEDS_OUT ? bad : good_code, "no out");
@@ -289,7 +289,7 @@ static void draw_lie(void)
 
 /* Objects that answer anything, from any state: each call ends, with a code of its own; what it
  * claims is finite; there is no answer from points that are none, and nothing written without one. */
-static void lies(const call_t *call, const call_rest_t *rest)
+static void lies(const call_t *call, const call_args_t *rest)
 {
     const int libccd = call->bad != CCD_BAD_INPUT, number = call->number;
     for (int round = 0; round < 3000; round++) {
@@ -340,7 +340,7 @@ static void lies(const call_t *call, const call_rest_t *rest)
 static void bad_input(void)
 {
     const ccd_real_t inf = CCD_REAL_MAX * 2, strange[3] = {inf - inf, inf, -inf};
-    call_rest_t rest = {.max_distance = inf, .slop = CCD_REAL(1e-3), .want = CCD_WANT_ALL, .max = 4};
+    call_args_t rest = {.max_distance = inf, .slop = CCD_REAL(1e-3), .want = CCD_WANT_ALL, .max = 4};
     for (const call_t *call = call_table; call < call_table + PAIR_CALL_COUNT; call++) {
         rest.along = call->number == CALL_ALONG ? &way : call->number == CALL_PLANAR ? &up : &across;
         expect(call, &good, &rest, good_answer(call), "the good question");

@@ -37,7 +37,7 @@ static double along(const double a[3], const ccd_vec3_t *b)
 }
 
 /* What rounding does to a coordinate. */
-static double noise_of(const scene_t *s) { return 4 * real_ulp() * pair_largest(&s->a, &s->b); }
+static double noise_of(const scene_t *s) { return 4 * real_eps() * largest_coordinate(&s->a, &s->b); }
 
 /* The height along n of a shape's support plane in the direction sign * n. */
 static double reach(const shape_t *shape, const double n[3], int sign)
@@ -787,7 +787,7 @@ static void tipping(void)
     static const double up[3] = {0, 0, 1};
     for (int i = 0; i < 400 / share; i++) {
         static ccd_manifold_t memory;
-        const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_ulp());
+        const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_eps());
         const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
         memset(&memory, 0, sizeof memory);
         memory_in_use = &memory;

@@ -65,7 +65,7 @@ static void judge_contact(const shape_t &a, const shape_t &b, const collision &r
     CHECK(r.numContacts() == 1, SAID "%zu contacts", CONTEXT(c), r.numContacts());
     CHECK(std::fabs(contact.normal.norm() - 1) < (SINGLE ? 1e-5 : 1e-12), SAID "normal", CONTEXT(c));
     CHECK(depth >= known.lower - error && depth <= known.upper * 1.001 + error, SAID "depth %g", CONTEXT(c), depth);
-    CHECK(truth_value(&a, &b, n) <= depth + error, SAID "the second is not out by %g along the normal", CONTEXT(c), depth);
+    CHECK(truth_support_value(&a, &b, n) <= depth + error, SAID "the second is not out by %g along the normal", CONTEXT(c), depth);
     /* pos is in the overlap, or as near to it as the overlap is thin. */
     for (const shape_t *shape : {&a, &b})
         CHECK(!outside(*shape, contact.pos, depth + 10 * error, 0.01 * (depth + error)), SAID "pos outside", CONTEXT(c));

@@ -72,11 +72,11 @@ static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, c
 {
     ccd_real_t depth;
     ccd_penetration_t p;
-    const call_rest_t x = {.warm = warm, .want = CCD_WANT_POS, .depth = &depth, .dir = dir, .pos = pos, .full = &p};
+    const call_args_t x = {.warm = warm, .want = CCD_WANT_POS, .depth = &depth, .dir = dir, .pos = pos, .penetration = &p};
     ccd_t ccd = shape_query();
     ccd.max_iterations = 500;
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)(single ? 1e-5 : 1e-7);
-    int code = call_by_number(call, a, b, &ccd, &x);
+    int code = call_library(call, a, b, &ccd, &x);
     if (code >= 0 && call != CALL_MPR && call != CALL_GJK && call != CALL_MPR_WARM) {
         *dir = p.dir;
         *pos = p.pos;

@@ -23,7 +23,7 @@ typedef struct {
     entry_t call;
     pair_t pair;
     double dir[3]; /* along, or normal of the plane */
-    question_t question;
+    criteria_t criteria;
     int limited; /* stopped at the cap from some state */
 } case_t;
 
@@ -31,24 +31,24 @@ typedef struct {
 static answer_t ask_pair(case_t *c, int swap, ccd_warm_t *warm)
 {
     shape_t a = swap ? c->pair.b : c->pair.a, b = swap ? c->pair.a : c->pair.b;
-    const ccd_t ccd = judge_query(c->question.tol);
+    const ccd_t ccd = counting_query(c->criteria.tol);
     ccd_vec3_t dir;
     for (int k = 0; k < 3; k++)
         dir.v[k] = (ccd_real_t)(swap ? -c->dir[k] : c->dir[k]);
-    return ask_guarded(&c->call, &a, &b, &ccd, warm, &dir, most_calls(&c->call));
+    return call_guarded(&c->call, &a, &b, &ccd, warm, &dir, call_limit(&c->call));
 }
 
 /* The same, judged. */
 static answer_t answer(case_t *c, int swap, ccd_warm_t *warm, const char *state)
 {
     const answer_t x = ask_pair(c, swap, warm);
-    const int faults = judge(&c->call, &x, swap ? &c->pair.b : &c->pair.a, swap ? &c->pair.a : &c->pair.b, &c->question)
-        & FAULTS_NEVER & ~FAULT_LIMIT;
+    const int faults = judge(&c->call, &x, swap ? &c->pair.b : &c->pair.a, swap ? &c->pair.a : &c->pair.b, &c->criteria)
+        & FAULTS_FORBIDDEN & ~FAULT_LIMIT;
     double across = truth_dot3(x.dir, c->dir);
     CHECK(!faults, "%s from %s", c->call.name, state);
     if (faults)
-        print_wrong(&c->call, &x, faults, &c->question.truth);
-    CHECK(c->call.ask != CALL_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_ulp(), "planar: %g out of the plane", across);
+        print_faulty_answer(&c->call, &x, faults, &c->criteria.truth);
+    CHECK(c->call.call != CALL_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_eps(), "planar: %g out of the plane", across);
     c->limited |= x.code == CCD_LIMIT;
     return x;
 }
@@ -64,9 +64,9 @@ static int same(const answer_t *x, const answer_t *y)
 static unsigned long cost(case_t *c, int swap, const ccd_warm_t *warm)
 {
     ccd_warm_t copy = *warm;
-    judge_want = CCD_WANT_POINTS;
+    wanted_outputs = CCD_WANT_POINTS;
     answer_t x = ask_pair(c, swap, &copy);
-    judge_want = CCD_WANT_ALL;
+    wanted_outputs = CCD_WANT_ALL;
     return x.calls;
 }
 
@@ -74,16 +74,16 @@ static unsigned long cost(case_t *c, int swap, const ccd_warm_t *warm)
 
 /* Two polygons in any plane, which may overlap. Their depth is that of prisms on them, so high that the
  * least is in the plane. */
-static void make_planar(case_t *c, dice_t *d)
+static void make_planar(case_t *c, rng_t *d)
 {
-    double rot[9], spin[9], all[9], at[3] = {dice_in(d, -1, 1), dice_in(d, -1, 1), dice_in(d, -1, 1)};
+    double rot[9], spin[9], all[9], at[3] = {rng_uniform(d, -1, 1), rng_uniform(d, -1, 1), rng_uniform(d, -1, 1)};
     ccd_real_t high[2][3 * 16];
     shape_t prism[2];
-    dice_rotation(d, rot);
+    rng_rotation(d, rot);
     for (int k = 0; k < 2; k++) {
         shape_t *s = k ? &c->pair.b : &c->pair.a;
-        *s = pair_polygon(d, c->pair.verts[k], 1);
-        rotation_about(0, 0, 1, dice_in(d, 0, 6), spin);
+        *s = random_polygon(d, c->pair.verts[k], 1);
+        rotation_about(0, 0, 1, rng_uniform(d, 0, 6), spin);
         rotation_times(rot, spin, all);
         shape_turn(s, all);
         shape_move(s, rot[2] * at[2] + k * (rot[0] * at[0] + rot[1] * at[1]), rot[5] * at[2] + k * (rot[3] * at[0] + rot[4] * at[1]),
@@ -102,18 +102,18 @@ static void make_planar(case_t *c, dice_t *d)
 static void make(case_t *c, int call, int i)
 {
     static const int categories[] = {CATEGORY_GENERIC, CATEGORY_SHALLOW3, CATEGORY_GENERIC, CATEGORY_APART};
-    dice_t d = dice(5000, (uint64_t)i);
+    rng_t d = rng(5000, (uint64_t)i);
     c->call.name = call_table[call].name;
-    c->call.ask = call;
+    c->call.call = call;
     c->limited = 0;
-    dice_unit(&d, c->dir);
+    rng_unit_vector(&d, c->dir);
     if (call == CALL_PLANAR)
         make_planar(c, &d);
     else
         category_pair(categories[i % 4], (uint64_t)i, SHAPE_TIE_SIGN, &c->pair);
-    c->question = question(&c->pair.a, &c->pair.b, sizeof(ccd_real_t) == 8 ? 1e-6 : 1e-4, &c->pair.truth);
+    c->criteria = criteria_of(&c->pair.a, &c->pair.b, sizeof(ccd_real_t) == 8 ? 1e-6 : 1e-4, &c->pair.truth);
     if (call == CALL_ALONG && c->pair.truth.lower > 0)
-        c->question.truth = truth_along(&c->pair.a, &c->pair.b, c->dir);
+        c->criteria.truth = truth_along(&c->pair.a, &c->pair.b, c->dir);
 }
 
 /* A state that no query of this pair left: bytes; numbers of every size, or of ordinary size, and
@@ -154,9 +154,9 @@ static void every_state(case_t *c, ccd_warm_t *other, count_t *n)
     x = answer(c, 1, NULL, "no state, swapped");
     copy = warm;
     answer_t y = ask_pair(c, 1, &copy);
-    if (c->call.ask == CALL_LOCAL && x.code == CCD_HIT)
-        CHECK(y.code == CCD_HIT && y.depth - x.depth <= c->question.tol, "unflipped: %g, cold %g", y.depth, x.depth);
-    if (cold.code == CCD_HIT && c->question.truth.lower > 0) {
+    if (c->call.call == CALL_LOCAL && x.code == CCD_HIT)
+        CHECK(y.code == CCD_HIT && y.depth - x.depth <= c->criteria.tol, "unflipped: %g, cold %g", y.depth, x.depth);
+    if (cold.code == CCD_HIT && c->criteria.truth.lower > 0) {
         n->hits++;
         n->first += cost(c, 0, &none);
         n->again += cost(c, 0, &warm);
@@ -173,7 +173,7 @@ static void every_state(case_t *c, ccd_warm_t *other, count_t *n)
     y = answer(c, 1, &copy, "a flipped state");
     n->own += own;
     n->flipped += flipped;
-    n->apart += own != flipped || fabs(x.depth - y.depth) > 64 * real_ulp() * pair_largest(&c->pair.a, &c->pair.b);
+    n->apart += own != flipped || fabs(x.depth - y.depth) > 64 * real_eps() * largest_coordinate(&c->pair.a, &c->pair.b);
     answer(c, 0, other, "a foreign state");
     *other = warm;
     for (int k = 0; k < 6; k++) {
@@ -251,7 +251,7 @@ static void sides(void)
 int main(int argc, char **argv)
 {
     pairs = argc > 1 ? atoi(argv[1]) : pairs;
-    judge_begin();
+    catch_crashes();
     sides();
     for (size_t i = 0; i < sizeof asks / sizeof *asks; i++)
         from_states(asks[i]);

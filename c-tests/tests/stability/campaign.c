@@ -84,15 +84,15 @@ static void ask_pair(int category, int i, const pair_t *p, int k)
     const double tols[2] = {1e-4, tolerance(TOL_TIGHT) * pair_size(&p->a, &p->b)};
     const int tie = p->a.tie;
     for (int t = 0; t < (e->system ? 1 : 2); t++) {
-        question_t q = question(&p->a, &p->b, tols[t], &p->truth);
-        answer_t x = ask(e, &p->a, &p->b, tols[t], p->truth.n, most_calls(e));
+        criteria_t q = criteria_of(&p->a, &p->b, tols[t], &p->truth);
+        answer_t x = ask(e, &p->a, &p->b, tols[t], p->truth.n, call_limit(e));
         q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_stop(p, tols[t]);
         int faults = judge(e, &x, &p->a, &p->b, &q);
         tally(t ? &fine[tie][k][category] : &table[tie][k][category], &x, faults);
-        if (!e->system && faults & FAULTS_NEVER & ~shown[tie][k]) {
+        if (!e->system && faults & FAULTS_FORBIDDEN & ~shown[tie][k]) {
             shown[tie][k] |= faults;
             printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t], q.surface ? ", surface" : "");
-            print_wrong(e, &x, faults & FAULTS_NEVER, &p->truth);
+            print_faulty_answer(e, &x, faults & FAULTS_FORBIDDEN, &p->truth);
             print_shape(stdout, "  a", &p->a);
             print_shape(stdout, "  b", &p->b);
         }
@@ -111,12 +111,12 @@ static int print_rates(int pairs, int tie)
     for (int category = 0; category < CATEGORY_COUNT; category++)
         for (int k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
-            int rated = e->ask == CALL_MPR || e->ask == CALL_GJK || (e->ask == CALL_PROVEN && e->state == STATE_NONE);
+            int rated = e->call == CALL_MPR || e->call == CALL_GJK || (e->call == CALL_PROVEN && e->state == STATE_NONE);
             if (!rated || !table[tie][k][category].asked)
                 continue;
-            report(e->system ? e->name : e->ask == CALL_MPR ? "**our MPR**" : e->ask == CALL_GJK ? "**our GJK**" : "**minimum**",
+            report(e->system ? e->name : e->call == CALL_MPR ? "**our MPR**" : e->call == CALL_GJK ? "**our GJK**" : "**minimum**",
                    category_text(category), &table[tie][k][category]);
-            if (!e->system && e->ask == CALL_MPR)
+            if (!e->system && e->call == CALL_MPR)
                 report("**our MPR, fine**", category_text(category), &fine[tie][k][category]);
             rows++;
         }
@@ -137,7 +137,7 @@ static int print_broken(int pairs, int tie)
         for (int k = 0; k < (int)ENTRIES; k++)
             for (int i = 0; i < FAULT_BIT_COUNT && !entries[k].system; i++) {
                 int n = table[tie][k][category].count[i], m = fine[tie][k][category].count[i];
-                if (!(FAULTS_NEVER >> i & 1) || n + m == 0)
+                if (!(FAULTS_FORBIDDEN >> i & 1) || n + m == 0)
                     continue;
                 if (is_known(category_text(category), entries[k].name, fault_text(i), n, m)) {
                     printf("broken, as known: %s, %s: %s\n", category_text(category), entries[k].name, fault_text(i));
@@ -160,7 +160,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: campaign [pairs a category [category [group]]]\n");
         return 2;
     }
-    judge_begin();
+    catch_crashes();
     for (int category = 0; category < CATEGORY_COUNT; category++) {
         if (only >= 0 && category != only)
             continue;

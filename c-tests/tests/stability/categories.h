@@ -9,7 +9,7 @@
 
 #include "judge.h"
 
-#include "splitmix.h"
+#include "harness/random.h"
 
 /* --- pairs ---------------------------------------------------------------------- */
 
@@ -28,22 +28,22 @@ static inline shape_t *pair_side(pair_t *p, int k) { return k ? &p->b : &p->a; }
 /* b to so far along n. */
 static inline void pair_place(pair_t *p, double at, const double n[3]) { shape_move(&p->b, at * n[0], at * n[1], at * n[2]); }
 
-static inline void pair_turn(dice_t *d, shape_t *s)
+static inline void pair_turn(rng_t *d, shape_t *s)
 {
     double r[9];
-    dice_rotation(d, r);
+    rng_rotation(d, r);
     shape_turn(s, r);
 }
 
 /* A hull of 4 to PAIR_VERTICES points on an ellipsoid of the given size. */
-static inline shape_t pair_hull(dice_t *d, ccd_real_t *verts, double size)
+static inline shape_t random_hull(rng_t *d, ccd_real_t *verts, double size)
 {
-    int i, k, n = 4 + dice_below(d, PAIR_VERTICES - 3);
+    int i, k, n = 4 + rng_below(d, PAIR_VERTICES - 3);
     double axis[3], p[3];
     for (k = 0; k < 3; k++)
-        axis[k] = size * dice_in(d, .3, 1);
+        axis[k] = size * rng_uniform(d, .3, 1);
     for (i = 0; i < n; i++) {
-        dice_unit(d, p);
+        rng_unit_vector(d, p);
         for (k = 0; k < 3; k++)
             verts[3 * i + k] = (ccd_real_t)(axis[k] * p[k]);
     }
@@ -51,12 +51,12 @@ static inline shape_t pair_hull(dice_t *d, ccd_real_t *verts, double size)
 }
 
 /* A convex polygon of 3 to 8 corners in the plane z = 0. */
-static inline shape_t pair_polygon(dice_t *d, ccd_real_t *verts, double size)
+static inline shape_t random_polygon(rng_t *d, ccd_real_t *verts, double size)
 {
-    int i, n = 3 + dice_below(d, 6);
-    double turn = dice_in(d, 0, 6), stretch = dice_in(d, .2, 1);
+    int i, n = 3 + rng_below(d, 6);
+    double turn = rng_uniform(d, 0, 6), stretch = rng_uniform(d, .2, 1);
     for (i = 0; i < n; i++) {
-        double angle = turn + 6.283185307179586 * (i + dice_in(d, 0, .7)) / n;
+        double angle = turn + 6.283185307179586 * (i + rng_uniform(d, 0, .7)) / n;
         verts[3 * i] = (ccd_real_t)(size * cos(angle));
         verts[3 * i + 1] = (ccd_real_t)(size * stretch * sin(angle));
         verts[3 * i + 2] = 0;
@@ -64,22 +64,22 @@ static inline shape_t pair_polygon(dice_t *d, ccd_real_t *verts, double size)
     return shape_polytope(verts, n);
 }
 
-static inline shape_t pair_shape(dice_t *d, ccd_real_t *verts, shape_type_t type, double low, double high)
+static inline shape_t random_shape_of(rng_t *d, ccd_real_t *verts, shape_type_t type, double low, double high)
 {
-    double x = dice_in(d, low, high), y = dice_in(d, low, high), z = dice_in(d, low, high);
-    return type == SHAPE_POLYTOPE ? pair_hull(d, verts, x) : shape_make(type, x, y, z);
+    double x = rng_uniform(d, low, high), y = rng_uniform(d, low, high), z = rng_uniform(d, low, high);
+    return type == SHAPE_POLYTOPE ? random_hull(d, verts, x) : shape_make(type, x, y, z);
 }
 
 static const int any_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
 
 /* One of these kinds. */
-static inline void pair_one(dice_t *d, pair_t *p, int side, const int *kinds, int n, double low, double high)
+static inline void pair_one(rng_t *d, pair_t *p, int side, const int *kinds, int n, double low, double high)
 {
-    *pair_side(p, side) = pair_shape(d, p->verts[side], (shape_type_t)kinds[dice_below(d, n)], low, high);
+    *pair_side(p, side) = random_shape_of(d, p->verts[side], (shape_type_t)kinds[rng_below(d, n)], low, high);
 }
 
 /* Two of these kinds, turned. */
-static inline void pair_of(dice_t *d, pair_t *p, const int *kinds, int n)
+static inline void pair_of(rng_t *d, pair_t *p, const int *kinds, int n)
 {
     for (int k = 0; k < 2; k++)
         pair_one(d, p, k, kinds, n, .1, 1);
@@ -89,12 +89,12 @@ static inline void pair_of(dice_t *d, pair_t *p, const int *kinds, int n)
 
 /* Moves b by up to part of both reaches, until they overlap by more than depth; negative: until they are farther
  * apart than that. */
-static inline void pair_scatter(dice_t *d, pair_t *p, double part, double depth)
+static inline void pair_scatter(rng_t *d, pair_t *p, double part, double depth)
 {
     for (int tries = 0; tries < 60; tries++) {
         double u[3];
-        const double at = part * pair_size(&p->a, &p->b) * dice_in(d, 0, 1);
-        dice_unit(d, u);
+        const double at = part * pair_size(&p->a, &p->b) * rng_uniform(d, 0, 1);
+        rng_unit_vector(d, u);
         pair_place(p, at, u);
         truth_t t = truth_depth(&p->a, &p->b);
         if (depth < 0 ? t.depth < depth : t.lower > depth)
@@ -124,7 +124,7 @@ static inline double pair_around(const pair_t *p, const double u[3], const doubl
     double m[3];
     for (int k = 0; k < 3; k++)
         m[k] = p->truth.n[k] + angle * (cos(psi) * u[k] + sin(psi) * v[k]);
-    return truth_value(&p->a, &p->b, m);
+    return truth_support_value(&p->a, &p->b, m);
 }
 
 /* How h grows from the true normal: the way along which it grows least, and across. */
@@ -221,17 +221,17 @@ static inline const char *category_text(int category)
 
 /* Two shapes that touch with their support points in a random direction, pushed into each other by
  * at most a thousandth of the size: corners and rims meet. */
-static inline void pair_corners(dice_t *d, pair_t *p)
+static inline void pair_corners(rng_t *d, pair_t *p)
 {
     static const int kinds[] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE};
-    double part = dice_log(d, 1e-5, 1e-3), deep;
+    double part = rng_log_uniform(d, 1e-5, 1e-3), deep;
     pair_of(d, p, kinds, 4);
     do {
         double u[3], s[3];
         deep = part * pair_size(&p->a, &p->b);
-        dice_unit(d, u);
+        rng_unit_vector(d, u);
         shape_move(&p->b, 0, 0, 0);
-        truth_difference(&p->a, &p->b, u, s);
+        truth_difference_support(&p->a, &p->b, u, s);
         pair_place(p, 1, s);
         shape_shift(&p->b, -deep, u);
         part *= 1.01; /* a thin edge may be thinner than that */
@@ -240,36 +240,36 @@ static inline void pair_corners(dice_t *d, pair_t *p)
 
 /* Where minima lie all around: spheres, nearly round ellipsoids, a short capsule and a sphere,
  * cylinders on one axis. */
-static inline void pair_concentric(dice_t *d, pair_t *p)
+static inline void pair_concentric(rng_t *d, pair_t *p)
 {
-    const double r = dice_in(d, .1, 1), s = dice_in(d, .1, 1), at = dice_log(d, 1e-12, .1) * (r + s);
+    const double r = rng_uniform(d, .1, 1), s = rng_uniform(d, .1, 1), at = rng_log_uniform(d, 1e-12, .1) * (r + s);
     double u[3];
-    const int which = dice_below(d, 4);
+    const int which = rng_below(d, 4);
     p->a = which == 0 ? shape_sphere(r)
-        : which == 1 ? shape_ellipsoid(r, r * dice_in(d, .98, 1), r * dice_in(d, .98, 1))
-        : which == 2 ? shape_capsule(r, r * dice_log(d, 1e-4, .1))
+        : which == 1 ? shape_ellipsoid(r, r * rng_uniform(d, .98, 1), r * rng_uniform(d, .98, 1))
+        : which == 2 ? shape_capsule(r, r * rng_log_uniform(d, 1e-4, .1))
                      : shape_cylinder(r, s);
-    p->b = which == 1 ? shape_ellipsoid(s, s * dice_in(d, .98, 1), s * dice_in(d, .98, 1))
+    p->b = which == 1 ? shape_ellipsoid(s, s * rng_uniform(d, .98, 1), s * rng_uniform(d, .98, 1))
         : which == 3 ? shape_cylinder(s, r)
                      : shape_sphere(s);
     pair_turn(d, &p->a);
     if (which == 3)
         memcpy(p->b.rot, p->a.rot, sizeof p->b.rot);
-    dice_unit(d, u);
+    rng_unit_vector(d, u);
     pair_place(p, at, u);
 }
 
 /* Any two shapes, 1e-6 to 1e6 m large: apart to deep, on a shared axis, about one centre. */
-static inline void pair_scaled(dice_t *d, pair_t *p)
+static inline void pair_scaled(rng_t *d, pair_t *p)
 {
     enum { SCATTERED, DEEP, SHALLOW, ON_AXIS, NEARLY_CENTRED, CENTRED, PLACES };
-    const double scale = pow(10, 3 * (dice_below(d, 5) - 2));
-    const int place = dice_below(d, PLACES);
+    const double scale = pow(10, 3 * (rng_below(d, 5) - 2));
+    const int place = rng_below(d, PLACES);
     double u[3], x;
     int k;
     for (k = 0; k < 2; k++)
         pair_one(d, p, k, any_kind, SHAPE_TYPES, .1 * scale, scale);
-    if (place != ON_AXIS || dice_below(d, 2))
+    if (place != ON_AXIS || rng_below(d, 2))
         pair_turn(d, &p->a);
     if (place == ON_AXIS)
         memcpy(p->b.rot, p->a.rot, sizeof p->b.rot);
@@ -280,19 +280,19 @@ static inline void pair_scaled(dice_t *d, pair_t *p)
     case SHALLOW:
         pair_scatter(d, p, 1, 1e-3 * scale);
         if (place == SHALLOW)
-            pair_pull_out(p, pair_size(&p->a, &p->b) * dice_log(d, 1e-8, 1e-2));
+            pair_pull_out(p, pair_size(&p->a, &p->b) * rng_log_uniform(d, 1e-8, 1e-2));
         break;
     case DEEP:
         pair_scatter(d, p, .2, 1e-3 * scale);
         break;
     case ON_AXIS:
-        x = dice_in(d, 0, .3) * scale;
-        k = dice_below(d, 3);
+        x = rng_uniform(d, 0, .3) * scale;
+        k = rng_below(d, 3);
         shape_move(&p->b, x * (double)p->a.rot[k], x * (double)p->a.rot[3 + k], x * (double)p->a.rot[6 + k]);
         break;
     case NEARLY_CENTRED:
-        dice_unit(d, u);
-        pair_place(p, scale * dice_log(d, 1e-18, 1e-4), u);
+        rng_unit_vector(d, u);
+        pair_place(p, scale * rng_log_uniform(d, 1e-18, 1e-4), u);
         break;
     default:
         break;
@@ -300,39 +300,39 @@ static inline void pair_scaled(dice_t *d, pair_t *p)
 }
 
 /* Two capsules: parallel, coaxial, crossing or nearly. */
-static inline void pair_capsules(dice_t *d, pair_t *p)
+static inline void pair_capsules(rng_t *d, pair_t *p)
 {
     double x, r[9];
-    p->a = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
-    p->b = shape_capsule(dice_in(d, .1, .5), dice_in(d, .1, 1));
+    p->a = shape_capsule(rng_uniform(d, .1, .5), rng_uniform(d, .1, 1));
+    p->b = shape_capsule(rng_uniform(d, .1, .5), rng_uniform(d, .1, 1));
     x = (double)p->a.p[0] + (double)p->b.p[0];
-    switch (dice_below(d, 3)) {
+    switch (rng_below(d, 3)) {
     case 0:
-        shape_move(&p->b, dice_in(d, .1, .9) * x, 0, dice_in(d, -.3, .3));
+        shape_move(&p->b, rng_uniform(d, .1, .9) * x, 0, rng_uniform(d, -.3, .3));
         break;
     case 1:
-        shape_move(&p->b, 0, 0, dice_in(d, 0, (double)p->a.p[1]));
+        shape_move(&p->b, 0, 0, rng_uniform(d, 0, (double)p->a.p[1]));
         break;
     default:
-        rotation_about(1, 0, 0, dice_in(d, .1, 1.5707963267949), r);
+        rotation_about(1, 0, 0, rng_uniform(d, .1, 1.5707963267949), r);
         shape_turn(&p->b, r);
-        shape_move(&p->b, dice_below(d, 2) ? 0 : dice_in(d, 0, .9) * x, 0, 0);
+        shape_move(&p->b, rng_below(d, 2) ? 0 : rng_uniform(d, 0, .9) * x, 0, 0);
         break;
     }
 }
 
 /* A length of the grid. */
-static inline double pair_eighths(dice_t *d, int least, int n) { return (least + dice_below(d, n)) / 8.; }
+static inline double pair_eighths(rng_t *d, int least, int n) { return (least + rng_below(d, n)) / 8.; }
 
 /* On or off the middle of what it stands on. */
-static inline double pair_aside(dice_t *d, double by) { return dice_below(d, 2) ? 0 : dice_in(d, -by, by); }
+static inline double pair_aside(rng_t *d, double by) { return rng_below(d, 2) ? 0 : rng_uniform(d, -by, by); }
 
 /* Pair number index of a category, with its truth. */
 static inline void category_pair(int category, uint64_t index, int tie, pair_t *p)
 {
     static const int solid[] = {SHAPE_CYLINDER, SHAPE_POLYTOPE, SHAPE_BOX};
     static const double pi = 3.14159265358979323846;
-    dice_t dd = dice((uint64_t)category + 1, index), *d = &dd;
+    rng_t dd = rng((uint64_t)category + 1, index), *d = &dd;
     double u[3], r[9], x, y, z;
     int k;
     memset(p, 0, sizeof *p);
@@ -348,14 +348,14 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         pair_of(d, p, any_kind, SHAPE_TYPES);
         pair_scatter(d, p, 1, 1e-3);
         x = pair_size(&p->a, &p->b);
-        pair_pull_out(p, category == CATEGORY_SHALLOW3 ? 1e-3 * x : category == CATEGORY_SHALLOW5 ? 1e-5 * x : dice_sign(d) * 1e-12);
+        pair_pull_out(p, category == CATEGORY_SHALLOW3 ? 1e-3 * x : category == CATEGORY_SHALLOW5 ? 1e-5 * x : rng_sign(d) * 1e-12);
         break;
     case CATEGORY_COINCIDENT:
     case CATEGORY_NEAR_COINCIDENT:
         pair_of(d, p, any_kind, SHAPE_TYPES);
         if (category == CATEGORY_NEAR_COINCIDENT) {
-            dice_unit(d, u);
-            pair_place(p, dice_log(d, 1e-18, 1e-8), u);
+            rng_unit_vector(d, u);
+            pair_place(p, rng_log_uniform(d, 1e-18, 1e-8), u);
         }
         break;
     case CATEGORY_GRID:
@@ -364,10 +364,10 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         shape_move(&p->b, pair_eighths(d, -4, 9), pair_eighths(d, -4, 9), pair_eighths(d, -4, 9));
         break;
     case CATEGORY_KISSING: {
-        const double gap = dice_sign(d) * dice_log(d, 1e-15, 1e-6);
-        const int axis = dice_below(d, 3);
-        dice_rotation(d, r);
-        p->a = pair_shape(d, NULL, SHAPE_BOX, .1, 1);
+        const double gap = rng_sign(d) * rng_log_uniform(d, 1e-15, 1e-6);
+        const int axis = rng_below(d, 3);
+        rng_rotation(d, r);
+        p->a = random_shape_of(d, NULL, SHAPE_BOX, .1, 1);
         shape_turn(&p->a, r);
         p->b = p->a;
         for (k = 0; k < 3; k++)
@@ -376,20 +376,20 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     }
     case CATEGORY_AXIS: {
-        const int kind = dice_below(d, SHAPE_POLYTOPE); /* all types before it: no hull */
-        p->a = pair_shape(d, NULL, kind, .1, 1);
-        p->b = pair_shape(d, NULL, dice_below(d, 2) ? kind : dice_below(d, SHAPE_POLYTOPE), .1, 1);
-        x = dice_in(d, 0, .9) * .3;
-        p->b.pos[dice_below(d, 3)] = (ccd_real_t)x;
+        const int kind = rng_below(d, SHAPE_POLYTOPE); /* all types before it: no hull */
+        p->a = random_shape_of(d, NULL, kind, .1, 1);
+        p->b = random_shape_of(d, NULL, rng_below(d, 2) ? kind : rng_below(d, SHAPE_POLYTOPE), .1, 1);
+        x = rng_uniform(d, 0, .9) * .3;
+        p->b.pos[rng_below(d, 3)] = (ccd_real_t)x;
         break;
     }
     case CATEGORY_TIES:
-        x = dice_in(d, .3, 1);
-        y = x * dice_in(d, .1, 1);
+        x = rng_uniform(d, .3, 1);
+        y = x * rng_uniform(d, .1, 1);
         p->a = shape_box(x, x, x);
-        p->b = dice_below(d, 3) ? shape_box(y, y, y) : shape_sphere(y);
-        z = dice_in(d, 0, x);
-        k = dice_below(d, 3);
+        p->b = rng_below(d, 3) ? shape_box(y, y, y) : shape_sphere(y);
+        z = rng_uniform(d, 0, x);
+        k = rng_below(d, 3);
         shape_move(&p->b, z, k < 2 ? z : 0, k < 1 ? z : 0);
         break;
     case CATEGORY_INSIDE:
@@ -401,28 +401,28 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_THIN_BOXES:
         for (k = 0; k < 2; k++) {
-            x = dice_log(d, 1e2, 1e6);
-            *pair_side(p, k) = dice_below(d, 2) ? shape_box(1, dice_in(d, .3, 1), 1 / x) : shape_box(1, 1 / x, dice_in(d, .5, 2) / x);
+            x = rng_log_uniform(d, 1e2, 1e6);
+            *pair_side(p, k) = rng_below(d, 2) ? shape_box(1, rng_uniform(d, .3, 1), 1 / x) : shape_box(1, 1 / x, rng_uniform(d, .5, 2) / x);
             pair_turn(d, pair_side(p, k));
         }
         pair_scatter(d, p, .1, 0);
         break;
     case CATEGORY_THIN_CAPSULES:
-        x = dice_log(d, 1e2, 1e5);
+        x = rng_log_uniform(d, 1e2, 1e5);
         p->a = shape_capsule(1 / x, 1);
-        p->b = shape_capsule(dice_in(d, .5, 2) / x, dice_in(d, .5, 1));
+        p->b = shape_capsule(rng_uniform(d, .5, 2) / x, rng_uniform(d, .5, 1));
         pair_turn(d, &p->a);
         pair_turn(d, &p->b);
-        dice_unit(d, u);
+        rng_unit_vector(d, u);
         /* their axes pass at this or less; then slid along a's axis */
-        pair_place(p, dice_in(d, 0, 1) / x, u);
+        pair_place(p, rng_uniform(d, 0, 1) / x, u);
         for (k = 0; k < 3; k++)
             u[k] = (double)p->a.rot[3 * k + 2];
-        shape_shift(&p->b, dice_in(d, -.5, .5), u);
+        shape_shift(&p->b, rng_uniform(d, -.5, .5), u);
         break;
     case CATEGORY_FLAT:
     case CATEGORY_FLAT_CENTRED:
-        p->a = pair_polygon(d, p->verts[0], dice_in(d, .1, 1));
+        p->a = random_polygon(d, p->verts[0], rng_uniform(d, .1, 1));
         pair_turn(d, &p->a);
         pair_one(d, p, 1, any_kind, SHAPE_TYPES, .1, 1);
         pair_turn(d, &p->b);
@@ -436,7 +436,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         }
         break;
     case CATEGORY_SEGMENT:
-        x = dice_below(d, 2) ? dice_in(d, .1, 1) : 0;
+        x = rng_below(d, 2) ? rng_uniform(d, .1, 1) : 0;
         p->verts[0][2] = (ccd_real_t)-x;
         p->verts[0][5] = (ccd_real_t)x;
         p->a = shape_polytope(p->verts[0], x > 0 ? 2 : 1);
@@ -449,36 +449,36 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         pair_capsules(d, p);
         break;
     case CATEGORY_CAPS:
-        p->a = shape_cylinder(dice_in(d, .2, 1), dice_in(d, .1, 1));
-        p->b = shape_cylinder(dice_in(d, .2, 1), dice_in(d, .1, 1));
-        x = dice_log(d, 1e-4, .05);
+        p->a = shape_cylinder(rng_uniform(d, .2, 1), rng_uniform(d, .1, 1));
+        p->b = shape_cylinder(rng_uniform(d, .2, 1), rng_uniform(d, .1, 1));
+        x = rng_log_uniform(d, 1e-4, .05);
         shape_move(&p->b, pair_aside(d, .1), pair_aside(d, .1), (double)p->a.p[1] + (double)p->b.p[1] - x);
         break;
     case CATEGORY_APEX:
-        p->a = dice_below(d, 2) ? shape_box(dice_in(d, .3, 1), dice_in(d, .3, 1), dice_in(d, .1, 1))
-                                : shape_cylinder(dice_in(d, .3, 1), dice_in(d, .1, 1));
-        p->b = shape_cone(dice_in(d, .1, 1), dice_in(d, .1, 1));
+        p->a = rng_below(d, 2) ? shape_box(rng_uniform(d, .3, 1), rng_uniform(d, .3, 1), rng_uniform(d, .1, 1))
+                                : shape_cylinder(rng_uniform(d, .3, 1), rng_uniform(d, .1, 1));
+        p->b = shape_cone(rng_uniform(d, .1, 1), rng_uniform(d, .1, 1));
         rotation_about(1, 0, 0, pi, r);
         shape_turn(&p->b, r);
-        x = dice_log(d, 1e-6, .3);
+        x = rng_log_uniform(d, 1e-6, .3);
         z = (double)p->a.p[p->a.type == SHAPE_BOX ? 2 : 1];
         shape_move(&p->b, pair_aside(d, .2), pair_aside(d, .2), z + (double)p->b.p[1] - x);
         break;
     case CATEGORY_EDGES:
-        x = dice_in(d, .2, 1);
-        y = dice_in(d, .2, 1);
-        p->a = shape_box(x, x, dice_in(d, .5, 1));
-        p->b = shape_box(y, dice_in(d, .5, 1), y);
+        x = rng_uniform(d, .2, 1);
+        y = rng_uniform(d, .2, 1);
+        p->a = shape_box(x, x, rng_uniform(d, .5, 1));
+        p->b = shape_box(y, rng_uniform(d, .5, 1), y);
         for (k = 0; k < 2; k++) {
             rotation_about(0, k, !k, pi / 4, r);
             shape_turn(pair_side(p, k), r);
         }
-        shape_move(&p->b, (x + y) * sqrt(2) - dice_log(d, 1e-6, .1), dice_in(d, -.2, .2), dice_in(d, -.2, .2));
+        shape_move(&p->b, (x + y) * sqrt(2) - rng_log_uniform(d, 1e-6, .1), rng_uniform(d, -.2, .2), rng_uniform(d, -.2, .2));
         break;
     case CATEGORY_ELLIPSOIDS:
         for (k = 0; k < 2; k++) {
-            x = dice_in(d, .3, 1);
-            *pair_side(p, k) = shape_ellipsoid(x, x / dice_log(d, 1, 20), x / dice_log(d, 1, 20));
+            x = rng_uniform(d, .3, 1);
+            *pair_side(p, k) = shape_ellipsoid(x, x / rng_log_uniform(d, 1, 20), x / rng_log_uniform(d, 1, 20));
             pair_turn(d, pair_side(p, k));
         }
         pair_scatter(d, p, .7, 1e-4);
@@ -488,13 +488,13 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_DISCS:
         for (k = 0; k < 2; k++)
-            *pair_side(p, k) = (dice_below(d, 2) ? shape_cylinder : shape_cone)(dice_in(d, .1, 1), dice_in(d, .1, 1));
-        x = dice_in(d, 0, 6.28);
-        y = dice_in(d, 0, (double)p->a.p[0]);
+            *pair_side(p, k) = (rng_below(d, 2) ? shape_cylinder : shape_cone)(rng_uniform(d, .1, 1), rng_uniform(d, .1, 1));
+        x = rng_uniform(d, 0, 6.28);
+        y = rng_uniform(d, 0, (double)p->a.p[0]);
         u[0] = y * cos(x);
         u[1] = y * sin(x);
-        u[2] = (double)p->a.p[1] + (double)p->b.p[1] - dice_sign(d) * dice_log(d, 1e-12, 1e-2);
-        dice_rotation(d, r);
+        u[2] = (double)p->a.p[1] + (double)p->b.p[1] - rng_sign(d) * rng_log_uniform(d, 1e-12, 1e-2);
+        rng_rotation(d, r);
         shape_turn(&p->a, r);
         shape_turn(&p->b, r);
         shape_move(&p->b, truth_dot3(r, u), truth_dot3(r + 3, u), truth_dot3(r + 6, u));
@@ -502,9 +502,9 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     case CATEGORY_CENTRED_SPHERE:
         pair_one(d, p, 0, solid, 3, .1, 1);
         pair_turn(d, &p->a);
-        p->b = shape_sphere(dice_in(d, .1, 1));
-        dice_unit(d, u);
-        pair_place(p, dice_log(d, 1e-3, .3) * shape_reach(&p->a), u);
+        p->b = shape_sphere(rng_uniform(d, .1, 1));
+        rng_unit_vector(d, u);
+        pair_place(p, rng_log_uniform(d, 1e-3, .3) * shape_reach(&p->a), u);
         break;
     case CATEGORY_SCALED:
         pair_scaled(d, p);
@@ -513,7 +513,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     case CATEGORY_FAR_8:
         pair_of(d, p, any_kind, SHAPE_TYPES);
         pair_scatter(d, p, 1, 1e-3);
-        dice_unit(d, u);
+        rng_unit_vector(d, u);
         for (k = 0; k < 2; k++)
             shape_shift(pair_side(p, k), category == CATEGORY_FAR_6 ? 1e6 : 1e8, u);
         break;

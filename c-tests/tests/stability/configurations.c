@@ -41,7 +41,7 @@ static void check(const configuration_t *c)
     int bad = 0, theirs = 0;
     if (c->not_single && in_single())
         return;
-    question_t q = question(&c->a, &c->b, tol, &truth);
+    criteria_t q = criteria_of(&c->a, &c->b, tol, &truth);
     q.surface = c->surface;
     q.touching = q.touching || c->touching;
     checked++;
@@ -54,7 +54,7 @@ static void check(const configuration_t *c)
         if (!e->system && !entry_in(e, group))
             continue;
         /* libccd is asked as its users do: with its default tolerance */
-        answer_t x = ask(e, &c->a, &c->b, e->system ? 1e-4 : tol, truth.n, most_calls(e));
+        answer_t x = ask(e, &c->a, &c->b, e->system ? 1e-4 : tol, truth.n, call_limit(e));
         int faults = judge(e, &x, &c->a, &c->b, &q);
         if (c->missed && x.code != CCD_MISS && e->state != STATE_MARGINS)
             faults |= FAULT_FALSE_HIT;
@@ -63,11 +63,11 @@ static void check(const configuration_t *c)
             theirs |= faults & ~(FAULT_MISS_SHALLOW | FAULT_MISSED);
             continue;
         }
-        faults &= FAULTS_NEVER;
+        faults &= FAULTS_FORBIDDEN;
         bad += faults != 0;
         if (faults && !ledger) {
             printf("FAILED %s, ", c->id);
-            print_wrong(e, &x, faults, &truth);
+            print_faulty_answer(e, &x, faults, &truth);
         }
     }
     failed += bad > 0;
@@ -79,10 +79,10 @@ int main(int argc, char **argv)
 {
     ledger = argc > 1 && strcmp(argv[1], "--ledger") == 0;
     group = argc > 1 && !ledger ? argv[1] : NULL;
-    judge_begin();
+    catch_crashes();
     if (ledger)
         printf("| configuration | true depth | libccd MPR | libccd GJK | our MPR | our GJK |\n|---|---|---|---|---|---|\n");
-    configurations_all(check);
+    for_each_configuration(check);
     if (!ledger)
         printf("%d configurations, %d failed\n", checked, failed);
     return !ledger && failed > 0;

@@ -333,7 +333,7 @@ static inline void visit_row(configuration_visit_t *visit, const configuration_r
         if (i > 0) {
             moved.within += pair_noise(&moved.a, &moved.b);
             /* the roundings of the positions themselves */
-            moved.within += 4 * real_ulp() * offsets[i];
+            moved.within += 4 * real_eps() * offsets[i];
         }
         visit(&moved);
     }
@@ -368,13 +368,13 @@ static inline void visit_kissing(configuration_visit_t *visit, const double fram
             b = a;
             shape_move(&b, frame[1] * at, frame[4] * at, frame[7] * at);
             configuration_t c = configuration(id, "kissing cubes", a, b, -gap, (1e-15 + in_single() * 1e-6) * dim);
-            c.touching = fabs(gap) < 10 * real_ulp() * dim;
+            c.touching = fabs(gap) < 10 * real_eps() * dim;
             c.not_single = fabs(gaps[k]) > 1e-9;
             visit(&c);
         }
 }
 
-static inline void configurations_all(configuration_visit_t *visit)
+static inline void for_each_configuration(configuration_visit_t *visit)
 {
     static const double gaps[] = {0, 1e-16, 2.5e-16, 1e-15, -1e-16, -2.5e-16, -1e-15, -1e-6};
     double frame[9];

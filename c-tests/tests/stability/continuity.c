@@ -44,7 +44,7 @@ static void pose(const motion_t *m, int frame, shape_t *a, shape_t *b)
     rotation_about(m->axis[0], m->axis[1], m->axis[2], angle, then);
     rotation_times(then, first, all);
     shape_turn(b, all);
-    truth_point(b, at, down, low);
+    truth_support(b, at, down, low);
     shape_move(b, m->from[0] + (m->to[0] - m->from[0]) * t, m->from[1] + (m->to[1] - m->from[1]) * t,
                .2 - low[2] - m->depth[0] - (m->depth[1] - m->depth[0]) * t);
 }
@@ -64,9 +64,9 @@ static double angle_between(const double a[3], const double b[3])
 int main(void)
 {
     static ccd_real_t hulls[2][3 * PAIR_VERTICES];
-    dice_t d = dice(3000, 1);
+    rng_t d = rng(3000, 1);
     const shape_t plate = shape_box(1, 1, .2), wide = shape_box(2, 1, .2), block = shape_box(.2, .3, .2);
-    const shape_t large = pair_hull(&d, hulls[0], 1), small = pair_hull(&d, hulls[1], .5);
+    const shape_t large = random_hull(&d, hulls[0], 1), small = random_hull(&d, hulls[1], .5);
 #define X {1, 0, 0}
 #define Y {0, 1, 0}
 #define Z {0, 0, 1}
@@ -103,7 +103,7 @@ int main(void)
     /* where the first method, a cold one, has the contact in each frame */
     static double place[FRAMES][3];
     int failed = 0;
-    judge_begin();
+    catch_crashes();
     for (int m = 0; m < MOTIONS; m++)
         for (int k = 0; k < (int)(sizeof methods / sizeof methods[0]); k++) {
             const entry_t *e = &methods[k];
@@ -121,17 +121,17 @@ int main(void)
                 pose(&motions[m], f, &a, &b);
                 double tol = e->system ? 1e-6 : tolerance(TOL_TIGHT) * pair_size(&a, &b);
                 truth_t t = truth_depth(&a, &b);
-                question_t q = question(&a, &b, tol, &t);
+                criteria_t q = criteria_of(&a, &b, tol, &t);
                 memset(&unused, 0, sizeof unused);
-                ccd_t ccd = judge_query(tol);
-                answer_t x = ask_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
+                ccd_t ccd = counting_query(tol);
+                answer_t x = call_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
                 if (!e->system) {
                     int faults = judge(e, &x, &a, &b, &q);
                     /* the bare local method may be in another valley, and leave it */
-                    faults &= FAULTS_NEVER;
+                    faults &= FAULTS_FORBIDDEN;
                     if (faults && wrong++ < 3) {
                         printf("FAILED %s, frame %d, ", motions[m].name, f);
-                        print_wrong(e, &x, faults, &t);
+                        print_faulty_answer(e, &x, faults, &t);
                     }
                 }
                 if (f > 0) {
@@ -139,11 +139,11 @@ int main(void)
                     /* the truth turns, or the old direction ties with the new one: as far as
                      * the method tells minima apart */
                     int mpr = entry_is_mpr(e);
-                    double tie = mpr ? tolerance(TOL_PROMISED) * t.depth : 0;
+                    double tie = mpr ? tolerance(TOL_MPR) * t.depth : 0;
                     /* nor can MPR keep a near tie that is none any more */
                     int true_turn = angle_between(t.n, before.n) > 1
                         || (mpr && (angle_between(last.dir, before.n) > 1 || angle_between(x.dir, t.n) > 1))
-                        || truth_value(&a, &b, last.dir) <= t.depth + tie + 2 * (tol + q.noise) + 1e-6 * q.size;
+                        || truth_support_value(&a, &b, last.dir) <= t.depth + tie + 2 * (tol + q.noise) + 1e-6 * q.size;
                     jumps += !(turn <= 1) && !true_turn;
                     for (int i = 0; i < 3; i++)
                         step += (x.pos[i] - last.pos[i]) * (x.pos[i] - last.pos[i]);
@@ -158,7 +158,7 @@ int main(void)
             }
             printf("%-28s %-14s jumps %3d  pos step %.3g  off %.2g\n", motions[m].name, e->name, jumps, pos_step, pos_off);
             if (!e->system
-                && ((jumps > 0 && (e->ask != CALL_LOCAL || motions[m].face)) || wrong > 0
+                && ((jumps > 0 && (e->call != CALL_LOCAL || motions[m].face)) || wrong > 0
                     || (motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
                 printf("FAILED the line above\n");
                 failed++;

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Tests promises about the cost of a query: support points, bytes of stack. (How many
- * support points the slowest may ask for is most_calls in judge.h.) A promise that is broken and
+ * support points the slowest may ask for is call_limit in judge.h.) A promise that is broken and
  * not marked so fails the test; one that is marked and holds fails it too, so that the mark goes
  * when the fault does.
  *
@@ -28,8 +28,8 @@ static unsigned long supports_as(int what, int state, const shape_t *a, const sh
 {
     const entry_t e = {"", 0, what, state};
     shape_t sa = *a, sb = *b;
-    const ccd_t ccd = judge_query(tol);
-    answer_t x = ask_guarded(&e, &sa, &sb, &ccd, warm, NULL, no_end);
+    const ccd_t ccd = counting_query(tol);
+    answer_t x = call_guarded(&e, &sa, &sb, &ccd, warm, NULL, no_end);
     return x.calls / 2;
 }
 
@@ -46,7 +46,7 @@ static ccd_warm_t fresh(void)
 }
 
 /* Two shapes of these kinds that overlap by this part of the size. */
-static void overlapping(dice_t *d, pair_t *p, const int *kinds, int n, double part)
+static void overlapping(rng_t *d, pair_t *p, const int *kinds, int n, double part)
 {
     do {
         pair_of(d, p, kinds, n);
@@ -67,7 +67,7 @@ static int having_been_apart(int what)
     int i;
     for (i = 0; i < 200; i++) {
         static pair_t p;
-        dice_t d = dice(4000, (uint64_t)i);
+        rng_t d = rng(4000, (uint64_t)i);
         ccd_warm_t first = fresh(), second = fresh();
         overlapping(&d, &p, any_kind, 7, 1e-2);
         shape_t away = p.b;
@@ -93,7 +93,7 @@ static int asked_once(int which)
     int i;
     for (i = 0; i < 200; i++) {
         static pair_t p;
-        dice_t d = dice(4100, (uint64_t)i);
+        rng_t d = rng(4100, (uint64_t)i);
         ccd_warm_t state = fresh();
         double axis[3], rot[9], n[3];
         overlapping(&d, &p, any_kind, 7, 1e-2);
@@ -101,7 +101,7 @@ static int asked_once(int which)
         if (what == CALL_LOCAL) {
             /* a guess ten degrees off */
             ccd_vec3_t guess;
-            dice_unit(&d, axis);
+            rng_unit_vector(&d, axis);
             truth_cross3(axis, p.truth.n, n);
             rotation_about(n[0], n[1], n[2], 3.14159265358979323846 / 18, rot);
             for (int k = 0; k < 3; k++)
@@ -118,17 +118,17 @@ static int asked_once(int which)
 /* --- U11: contacts that do not change ------------------------------------------------------------ */
 
 /* A box that rests on a box, turned about the vertical: faces over each other. */
-static void resting_boxes(dice_t *d, pair_t *p)
+static void resting_boxes(rng_t *d, pair_t *p)
 {
     double rot[9], turned[9], about[9], v[3];
-    p->a = pair_shape(d, p->verts[0], SHAPE_BOX, .3, 1);
-    p->b = pair_shape(d, p->verts[1], SHAPE_BOX, .1, .3);
-    dice_rotation(d, rot);
-    rotation_about(0, 0, 1, dice_in(d, .1, 1.4), about);
+    p->a = random_shape_of(d, p->verts[0], SHAPE_BOX, .3, 1);
+    p->b = random_shape_of(d, p->verts[1], SHAPE_BOX, .1, .3);
+    rng_rotation(d, rot);
+    rotation_about(0, 0, 1, rng_uniform(d, .1, 1.4), about);
     rotation_times(rot, about, turned);
-    v[0] = dice_in(d, -.5, .5) * (double)p->a.p[0];
-    v[1] = dice_in(d, -.5, .5) * (double)p->a.p[1];
-    v[2] = (double)p->a.p[2] + (double)p->b.p[2] - dice_log(d, 1e-5, 1e-3);
+    v[0] = rng_uniform(d, -.5, .5) * (double)p->a.p[0];
+    v[1] = rng_uniform(d, -.5, .5) * (double)p->a.p[1];
+    v[2] = (double)p->a.p[2] + (double)p->b.p[2] - rng_log_uniform(d, 1e-5, 1e-3);
     shape_turn(&p->a, rot);
     shape_turn(&p->b, turned);
     shape_move(&p->b, truth_dot3(rot, v), truth_dot3(rot + 3, v), truth_dot3(rot + 6, v));
@@ -142,23 +142,23 @@ static int unchanged(int which)
     int i;
     for (i = 0; i < 200; i++) {
         static pair_t p;
-        dice_t d = dice(4200 + (uint64_t)which, (uint64_t)i);
+        rng_t d = rng(4200 + (uint64_t)which, (uint64_t)i);
         ccd_warm_t warm = fresh();
         unsigned long n = 0;
         if (which <= UNCHANGED_FACES_UNREAD)
             resting_boxes(&d, &p);
         else if (which == UNCHANGED_FLAT)
-            overlapping(&d, &p, flat_kind, 2, dice_log(&d, 1e-5, 1e-2));
+            overlapping(&d, &p, flat_kind, 2, rng_log_uniform(&d, 1e-5, 1e-2));
         else
-            overlapping(&d, &p, round_kind, 3, which == UNCHANGED_ROUND ? dice_log(&d, 1e-5, 1e-2) : .1);
+            overlapping(&d, &p, round_kind, 3, which == UNCHANGED_ROUND ? rng_log_uniform(&d, 1e-5, 1e-2) : .1);
         for (int k = 0; k < 3; k++) {
-            judge_want = which == UNCHANGED_FACES_UNREAD ? 0 : CCD_WANT_ALL;
+            wanted_outputs = which == UNCHANGED_FACES_UNREAD ? 0 : CCD_WANT_ALL;
             n = supports(CALL_MPR_WARM, &p.a, &p.b, &warm);
             cold += k ? 0 : n;
         }
         again += n;
     }
-    judge_want = CCD_WANT_ALL;
+    wanted_outputs = CCD_WANT_ALL;
     printf("%.2f supports asked again, cold %.2f", (double)again / i, (double)cold / i);
     return which < UNCHANGED_ROUND ? (double)again <= 4.5 * i : (double)again <= .7 * (double)cold;
 }
@@ -171,10 +171,10 @@ static int sliding(int what)
     int frames = 0;
     for (int i = 0; i < 200; i++) {
         static pair_t p;
-        dice_t d = dice(4300, (uint64_t)i);
+        rng_t d = rng(4300, (uint64_t)i);
         ccd_warm_t warm = fresh();
         resting_boxes(&d, &p);
-        double way = dice_in(&d, 0, 6.28);
+        double way = rng_uniform(&d, 0, 6.28);
         for (int k = 0; k < 50; k++) {
             const unsigned long n = supports(what, &p.a, &p.b, &warm);
             double pos[3];
@@ -201,19 +201,19 @@ static int staying_apart(int what)
     int frames = 0;
     for (int i = 0; i < 200; i++) {
         static pair_t p;
-        dice_t d = dice(4400, (uint64_t)i);
+        rng_t d = rng(4400, (uint64_t)i);
         ccd_warm_t warm = fresh();
         double way[3], about[3], at[3], gap, rot[9];
         overlapping(&d, &p, any_kind, 7, 1e-2);
         gap = 2 * (1e-4 + turn * shape_reach(&p.b));
-        shape_shift(&p.b, 1e-2 * pair_size(&p.a, &p.b) + gap * dice_in(&d, 1, 10), p.truth.n);
-        dice_unit(&d, way);
-        dice_unit(&d, about);
+        shape_shift(&p.b, 1e-2 * pair_size(&p.a, &p.b) + gap * rng_uniform(&d, 1, 10), p.truth.n);
+        rng_unit_vector(&d, way);
+        rng_unit_vector(&d, about);
         for (int k = 0; k < 50; k++, frames++) {
             const unsigned long n = supports(what, &p.a, &p.b, &warm), cold = k ? 0 : supports(what, &p.a, &p.b, NULL);
             double aside[3];
             all += n > cold ? n - cold : 0;
-            dice_unit(&d, aside);
+            rng_unit_vector(&d, aside);
             for (int m = 0; m < 3; m++) {
                 way[m] += .3 * aside[m];
                 about[m] += .3 * aside[(m + 1) % 3];
@@ -243,10 +243,10 @@ static int distances(int of_cores)
     int i;
     for (i = 0; i < 300; i++) {
         static pair_t p;
-        dice_t d = dice(4500, (uint64_t)i);
+        rng_t d = rng(4500, (uint64_t)i);
         ccd_warm_t warm = fresh();
         overlapping(&d, &p, of_cores ? round_kind : any_kind, of_cores ? 2 : 7, 1e-2);
-        shape_shift(&p.b, dice_log(&d, 2e-2, 1) * pair_size(&p.a, &p.b), p.truth.n);
+        shape_shift(&p.b, rng_log_uniform(&d, 2e-2, 1) * pair_size(&p.a, &p.b), p.truth.n);
         judge_size = pair_size(&p.a, &p.b);
         supports(CALL_DISTANCE, &p.a, &p.b, &warm);
         cold += supports(CALL_DISTANCE, &p.a, &p.b, NULL);
@@ -313,7 +313,7 @@ static int stack_asks(int class, const entry_t *e)
 {
     switch (class) {
     case STACK_ANY: return 1;
-    case STACK_FEW: return entry_is_mpr(e) || e->ask == CALL_GJK || e->ask == CALL_SEPARATE || e->ask == CALL_PROVEN;
+    case STACK_FEW: return entry_is_mpr(e) || e->call == CALL_GJK || e->call == CALL_SEPARATE || e->call == CALL_PROVEN;
     default: return entry_is_verdict(e);
     }
 }
@@ -325,7 +325,7 @@ static int stack_of(int class)
     static pair_t p;
     size_t empty, most[ENTRIES] = {0}, limit = stack_limits[class] * 1024, deepest = 0;
     int i;
-    stack_query = judge_query(tol);
+    stack_query = counting_query(tol);
     if (!stack_floor)
         stack_floor = (uint64_t *)malloc(STACK_WORDS * sizeof *stack_floor);
     if (!stack_floor)
@@ -398,7 +398,7 @@ int main(int argc, char **argv)
     };
     const int n = (int)(sizeof listed / sizeof listed[0]);
     int broken = 0, surprises = 0;
-    judge_begin();
+    catch_crashes();
     for (int i = 0; i < n; i++) {
         const promise_t *p = &listed[i];
         if (argc > 1 && strncmp(p->id, argv[1], strlen(argv[1])) != 0)

@@ -38,14 +38,14 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         ccd_contact_t contact[4];
         ccd_penetration_t full;
         ccd_distance_t distance;
-        const call_rest_t x = {.warm = warm, .along = &along, .margin1 = (ccd_real_t).01, .max_distance = (ccd_real_t)INFINITY,
+        const call_args_t x = {.warm = warm, .along = &along, .margin1 = (ccd_real_t).01, .max_distance = (ccd_real_t)INFINITY,
                                .slop = (ccd_real_t)1e-3, .want = CCD_WANT_ALL, .max = 4, .depth = &plain.depth, .dir = &plain.dir,
-                               .pos = &plain.pos, .contacts = contact, .full = &full, .distance = &distance};
+                               .pos = &plain.pos, .contacts = contact, .penetration = &full, .distance = &distance};
         memset(&plain, 0, sizeof plain);
         memset(contact, 0, sizeof contact);
         memset(&full, 0, sizeof full);
         memset(&distance, 0, sizeof distance);
-        int code = call_by_number(k, &a, &b, &ccd, &x);
+        int code = call_library(k, &a, &b, &ccd, &x);
         digest_bytes(digest, &code, sizeof code);
         digest_bytes(digest, &plain, sizeof plain);
         for (int i = 0; i < 4; i++)

@@ -36,7 +36,7 @@ enum { /* what the warm state holds, or how else a distance is asked */
 typedef struct {
     const char *name;
     int system; /* libccd's, else ours */
-    int ask, state; /* which call, of this_library.h */
+    int call, state; /* call: CALL_ of this_library.h */
 } entry_t;
 
 /* codes beside those of the libraries */
@@ -95,37 +95,37 @@ enum { ENTRIES = sizeof entries / sizeof entries[0] };
  * the extension's own "local", or "proven", which have a lower bound that closes? NULL: any. */
 static inline int entry_in(const entry_t *e, const char *group)
 {
-    int local = e->ask == CALL_LOCAL, proven = e->ask == CALL_PROVEN || e->ask == CALL_ALONG || e->ask == CALL_DISTANCE;
+    int local = e->call == CALL_LOCAL, proven = e->call == CALL_PROVEN || e->call == CALL_ALONG || e->call == CALL_DISTANCE;
     return !group || strcmp(group, local ? "local" : proven ? "proven" : "compatible") == 0;
 }
 
 /* Whether the answer claims to be the global minimum within the tolerance. */
 static inline int entry_is_minimum(const entry_t *e)
 {
-    return !e->system && (e->ask == CALL_GJK || e->ask == CALL_SEPARATE || e->ask == CALL_PROVEN);
+    return !e->system && (e->call == CALL_GJK || e->call == CALL_SEPARATE || e->call == CALL_PROVEN);
 }
 
 /* Whether it promises the global minimum within the larger of the tolerance and 0.1 % of the depth. */
 static inline int entry_is_mpr(const entry_t *e)
 {
-    return e->ask == CALL_MPR || e->ask == CALL_MPR_WARM || e->ask == CALL_PENETRATION;
+    return e->call == CALL_MPR || e->call == CALL_MPR_WARM || e->call == CALL_PENETRATION;
 }
 
 static inline int entry_is_verdict(const entry_t *e)
 {
-    return e->ask == CALL_MPR_INTERSECT || e->ask == CALL_GJK_INTERSECT || e->ask == CALL_MPR_INTERSECT_WARM || e->ask == CALL_INTERSECT;
+    return e->call == CALL_MPR_INTERSECT || e->call == CALL_GJK_INTERSECT || e->call == CALL_MPR_INTERSECT_WARM || e->call == CALL_INTERSECT;
 }
 
 /* From so many calls of both support functions on it counts as looping: no query is slower. */
-static inline unsigned long most_calls(const entry_t *e)
+static inline unsigned long call_limit(const entry_t *e)
 {
     if (e->system)
-        return e->ask == CALL_MPR ? 40000 : 4000;
+        return e->call == CALL_MPR ? 40000 : 4000;
     return entry_is_mpr(e) ? 2 * 400 : 2 * 1500;
 }
 
 /* What of an answer is wanted: CCD_WANT_ flags; and the size of the pair, metres. */
-static unsigned judge_want = CCD_WANT_ALL;
+static unsigned wanted_outputs = CCD_WANT_ALL;
 static double judge_size = 1;
 
 static sigjmp_buf judge_back;
@@ -150,7 +150,7 @@ static void judge_signal(int number)
 
 /* Crashes and endless loops become answers from here on. A loop without support
  * calls is ended by an alarm. */
-static inline void judge_begin(void)
+static inline void catch_crashes(void)
 {
     static const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
     struct sigaction action;
@@ -179,18 +179,18 @@ static inline void judge_vec(const ccd_vec3_t *v, double out[3])
         out[i] = (double)v->v[i];
 }
 
-static inline int judge_libccd(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
+static inline int judge_libccd(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x)
 {
 #ifdef OURS_ALONE
-    return call_by_number(e->ask, a, b, ccd, x); /* no entry asks for it */
+    return call_library(e->call, a, b, ccd, x); /* no entry asks for it */
 #else
-    return e->ask == CALL_MPR ? ccdMPRPenetration(a, b, ccd, x->depth, x->dir, x->pos)
+    return e->call == CALL_MPR ? ccdMPRPenetration(a, b, ccd, x->depth, x->dir, x->pos)
                              : ccdGJKPenetration(a, b, ccd, x->depth, x->dir, x->pos);
 #endif
 }
 
 /* A signed distance, as a depth: its upper and lower bound change places with the sign. */
-static inline void judge_distance(const ccd_distance_t *d, const call_rest_t *x, answer_t *out)
+static inline void judge_distance(const ccd_distance_t *d, const call_args_t *x, answer_t *out)
 {
     out->has_proof = out->code == CCD_HIT || out->code == CCD_MISS || out->code == CCD_LIMIT;
     if (!out->has_proof)
@@ -216,18 +216,18 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
     const ccd_real_t margin = (ccd_real_t)(e->state == STATE_MARGINS ? .1 * judge_size : 0);
-    const call_rest_t rest = {.warm = warm, .along = along, .want = judge_want, .depth = &depth, .dir = &dir,
-                              .pos = judge_want & CCD_WANT_POS ? &pos : NULL, .full = &p, .margin1 = margin, .margin2 = margin / 3,
+    const call_args_t rest = {.warm = warm, .along = along, .want = wanted_outputs, .depth = &depth, .dir = &dir,
+                              .pos = wanted_outputs & CCD_WANT_POS ? &pos : NULL, .penetration = &p, .margin1 = margin, .margin2 = margin / 3,
                               .max_distance = (ccd_real_t)(e->state == STATE_NEAR ? .1 * judge_size : HUGE_VAL), .distance = &distance};
-    const int full = e->ask >= CALL_PENETRATION;
+    const int full = e->call >= CALL_PENETRATION;
     memset(&p, judge_blank, sizeof p);
     memset(&depth, judge_blank, sizeof depth);
     memset(&dir, judge_blank, sizeof dir);
     memset(&pos, judge_blank, sizeof pos);
-    int code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_by_number(e->ask, a, b, ccd, &rest);
+    int code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_library(e->call, a, b, ccd, &rest);
     if (entry_is_verdict(e))
         code = code ? CCD_HIT : CCD_MISS;
-    if (e->ask == CALL_SEPARATE && code == 0) {
+    if (e->call == CALL_SEPARATE && code == 0) {
         /* a zero vector keeps no direction: give it the answer's own */
         double v[3], l;
         judge_vec(&dir, v);
@@ -237,7 +237,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
             dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
     }
     out->code = code;
-    if (e->ask == CALL_DISTANCE) {
+    if (e->call == CALL_DISTANCE) {
         judge_distance(&distance, &rest, out);
         return;
     }
@@ -247,7 +247,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
         return;
     }
     out->has_proof = full;
-    out->has_pos = full || e->ask == CALL_MPR || e->ask == CALL_GJK || e->ask == CALL_MPR_WARM;
+    out->has_pos = full || e->call == CALL_MPR || e->call == CALL_GJK || e->call == CALL_MPR_WARM;
     if (full) {
         depth = p.depth;
         dir = p.dir;
@@ -265,7 +265,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
 
 /* One call that comes back whatever happens in it. Support functions count by
  * judge_count; more calls than limit are a loop. */
-static inline answer_t ask_guarded(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
+static inline answer_t call_guarded(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
                                    const ccd_vec3_t *along, unsigned long limit)
 {
     static answer_t out; /* static: kept over a siglongjmp */
@@ -304,14 +304,14 @@ static inline answer_t ask_objects(const entry_t *e, const void *a, const void *
     if (e->state == STATE_AGAINST || e->state == STATE_BESIDE)
         OURS(ccdWarmGuess)(&warm, &guess);
     if (e->state == STATE_AGAIN)
-        ask_guarded(e, a, b, ccd, &warm, &along, limit);
+        call_guarded(e, a, b, ccd, &warm, &along, limit);
     if (e->state == STATE_SWAPPED)
-        ask_guarded(e, b, a, &swapped, &warm, &along, limit);
-    return ask_guarded(e, a, b, ccd, e->state == STATE_NONE || e->state >= STATE_MARGINS ? NULL : &warm, &along, limit);
+        call_guarded(e, b, a, &swapped, &warm, &along, limit);
+    return call_guarded(e, a, b, ccd, e->state == STATE_NONE || e->state >= STATE_MARGINS ? NULL : &warm, &along, limit);
 }
 
 /* Of shapes, whose support points are counted, to one tolerance for every call. */
-static inline ccd_t judge_query(double tol)
+static inline ccd_t counting_query(double tol)
 {
     ccd_t ccd = shape_query();
     ccd.support1 = ccd.support2 = judge_support;
@@ -323,7 +323,7 @@ static inline ccd_t judge_query(double tol)
 static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
                            const double normal[3], unsigned long limit)
 {
-    const ccd_t ccd = judge_query(tol);
+    const ccd_t ccd = counting_query(tol);
     shape_t sa = *a, sb = *b;
     judge_size = pair_size(a, b);
     return ask_objects(e, &sa, &sb, &ccd, normal, limit);
@@ -390,7 +390,7 @@ static inline const char *fault_text(int bit)
 
 /* Faults that this library never has, whatever the entry point. */
 enum {
-    FAULTS_NEVER = FAULT_LOOP | FAULT_CRASH | FAULT_NAN | FAULT_DIR0 | FAULT_MISS_DEEP | FAULT_FALSE_HIT
+    FAULTS_FORBIDDEN = FAULT_LOOP | FAULT_CRASH | FAULT_NAN | FAULT_DIR0 | FAULT_MISS_DEEP | FAULT_FALSE_HIT
         | FAULT_UNSOUND | FAULT_CODE | FAULT_MISSED | FAULT_NOT_UNIT | FAULT_NOT_NORMAL | FAULT_NOT_SUPPORT | FAULT_NOT_MINIMUM | FAULT_NOT_PROMISED
         | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS_DEPTH
         | FAULT_WITNESS_PLANE | FAULT_WITNESS_INSIDE | FAULT_WITNESS_ACROSS | FAULT_POSITION | FAULT_MISCOUNTED | FAULT_TOUCHED
@@ -405,11 +405,11 @@ typedef struct {
     truth_t truth;
     int surface;        /* minima form a curve or surface: CCD_LIMIT is an answer */
     int touching;       /* within rounding of touching: hit or miss */
-} question_t;
+} criteria_t;
 
-static inline question_t question(const shape_t *a, const shape_t *b, double tol, const truth_t *truth)
+static inline criteria_t criteria_of(const shape_t *a, const shape_t *b, double tol, const truth_t *truth)
 {
-    question_t q;
+    criteria_t q;
     q.size = pair_size(a, b);
     q.noise = pair_noise(a, b);
     q.tol = tol;
@@ -423,17 +423,17 @@ static inline question_t question(const shape_t *a, const shape_t *b, double tol
 static inline double judge_reach(const shape_t *s, const double origin[3], const double n[3])
 {
     double p[3];
-    truth_point(s, origin, n, p);
+    truth_support(s, origin, n, p);
     return truth_dot3(p, n);
 }
 
 /* How far an answer's points may be off: as far as the depth may be, and where a bound is given, and
  * the cap or rounding, by no more than FAULT_NO_PROOF allows, left it open, by that. */
-static inline double judge_bound(const entry_t *e, const answer_t *x, const question_t *q)
+static inline double judge_bound(const entry_t *e, const answer_t *x, const criteria_t *q)
 {
-    const double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) : q->tol;
-    const double reached = x->code == CCD_LIMIT || e->ask == CALL_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
-    return reached + q->noise + tolerance(TOL_INSIDE) * q->size;
+    const double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_MPR) * x->depth) : q->tol;
+    const double reached = x->code == CCD_LIMIT || e->call == CALL_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
+    return reached + q->noise + tolerance(TOL_WITNESS) * q->size;
 }
 
 /* Is a point, told relative to origin, farther than this outside of the shape? By 26 planes. */
@@ -454,7 +454,7 @@ static inline int judge_outside(const shape_t *s, const double origin[3], const 
 
 /* pos is within half the depth of both shapes; deeper than an object is thick the middle of the chord
  * is beyond it. And a hair. */
-static inline int judge_position(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+static inline int judge_position(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
     const double inside = judge_bound(e, x, q) + (0.5 + 1.0 / 256) * x->depth;
     double origin[3], p[3];
@@ -467,10 +467,10 @@ static inline int judge_position(const entry_t *e, const answer_t *x, const shap
 
 /* Witness points: each in its shape and at its supporting plane, their difference
  * the depth; pos their middle where no centre of pressure is promised. */
-static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
     double bound = judge_bound(e, x, q), origin[3], d[3], m[3], p1[3], p2[3], value, l2;
-    const int has_centre = x->code == CCD_HIT && e->ask != CALL_ALONG && e->ask != CALL_PLANAR;
+    const int has_centre = x->code == CCD_HIT && e->call != CALL_ALONG && e->call != CALL_PLANAR;
     int faults = 0, i;
     for (i = 0; i < 3; i++) {
         origin[i] = (double)a->pos[i];
@@ -511,19 +511,19 @@ enum { MINIMUM_POINTS = 340 };
 static inline int mpr_within(double depth, double least, double tol, double noise, unsigned long supports)
 {
     least = fmax(least, 0);
-    return depth <= least + fmax(tol, tolerance(TOL_PROMISED) * least) + noise
-        || (supports >= MPR_POINTS && depth <= least + fmax(tol, tolerance(TOL_LATE) * least) + noise);
+    return depth <= least + fmax(tol, tolerance(TOL_MPR) * least) + noise
+        || (supports >= MPR_POINTS && depth <= least + fmax(tol, tolerance(TOL_MPR_CAPPED) * least) + noise);
 }
 
 /* A signed distance, overlapping or not: the sign is the code's, the plane is as far as it says, the
  * bounds close about the truth, but of what is too far, and the points are in the objects, of a gap as
  * far apart as its upper bound; at the cap, where minima form a surface, the distance is right all the
  * same. */
-static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
     const truth_t *t = &q->truth;
-    const double rounding = 2 * q->noise + t->depth - t->lower, floor = tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b);
-    const double within = x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_PROMISED) * fabs(t->depth)) : q->tol;
+    const double rounding = 2 * q->noise + t->depth - t->lower, floor = tolerance(TOL_PROOF_FLOOR) * largest_coordinate(a, b);
+    const double within = x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_MPR) * fabs(t->depth)) : q->tol;
     const double bound = judge_bound(e, x, q) + x->margins;
     double origin[3], p[2][3], apart = 0;
     int faults = 0;
@@ -533,11 +533,11 @@ static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_
         faults |= FAULT_LIMIT;
     if (!isfinite(x->depth) || !isfinite(x->lower) || !isfinite(truth_dot3(x->normal, x->normal)))
         return faults | FAULT_NAN;
-    if (!(fabs(sqrt(truth_dot3(x->normal, x->normal)) - 1) <= tolerance(TOL_UNIT)))
+    if (!(fabs(sqrt(truth_dot3(x->normal, x->normal)) - 1) <= tolerance(TOL_UNIT_LENGTH)))
         faults |= FAULT_NOT_UNIT;
     if ((x->code != CCD_LIMIT && (x->code == CCD_HIT) != (x->distance < 0)) || (x->distance == 0 && signbit(x->distance)))
         faults |= FAULT_CODE;
-    if (x->depth < truth_value(a, b, x->normal) - 2 * q->noise)
+    if (x->depth < truth_support_value(a, b, x->normal) - 2 * q->noise)
         faults |= FAULT_UNSOUND;
     if (x->lower > x->depth || x->lower > t->depth + rounding)
         faults |= FAULT_FALSE_PROOF;
@@ -553,13 +553,13 @@ static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_
     }
     if (judge_outside(a, origin, p[0], bound) || judge_outside(b, origin, p[1], bound))
         faults |= FAULT_WITNESS_INSIDE;
-    if (x->distance > 0 && !(fabs(sqrt(apart) + x->lower + x->margins) <= 2 * q->noise + tolerance(TOL_INSIDE) * q->size))
+    if (x->distance > 0 && !(fabs(sqrt(apart) + x->lower + x->margins) <= 2 * q->noise + tolerance(TOL_WITNESS) * q->size))
         faults |= FAULT_WITNESS_DEPTH;
     return faults;
 }
 
 /* All that is wrong with the answer. */
-static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const question_t *q)
+static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
     const truth_t *t = &q->truth;
     double gap = t->depth - t->lower, value, table, l2;
@@ -568,7 +568,7 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         return FAULT_LOOP;
     if (x->code == ANSWER_CRASH)
         return FAULT_CRASH;
-    if (e->ask == CALL_DISTANCE)
+    if (e->call == CALL_DISTANCE)
         return judge_signed(e, x, a, b, q);
     if (x->touched)
         faults |= FAULT_TOUCHED;
@@ -586,13 +586,13 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (x->code == CCD_LIMIT && !x->has_proof)
         faults |= FAULT_CODE;
     /* ccdPenetration gives up after 160 support points */
-    if (x->code == CCD_LIMIT && !q->surface && !(e->ask == CALL_PENETRATION && x->calls >= 2 * MPR_POINTS))
+    if (x->code == CCD_LIMIT && !q->surface && !(e->call == CALL_PENETRATION && x->calls >= 2 * MPR_POINTS))
         faults |= FAULT_LIMIT;
     if (t->depth < -q->noise && !q->touching)
         return faults | FAULT_FALSE_HIT;
     if (entry_is_verdict(e))
         return faults;
-    if (e->ask == CALL_SEPARATE && x->depth == 0)
+    if (e->call == CALL_SEPARATE && x->depth == 0)
         return faults | (t->depth > q->tol + q->noise ? FAULT_ZERO | FAULT_UNSOUND : 0);
 
     finite = isfinite(x->depth);
@@ -603,11 +603,11 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     l2 = truth_dot3(x->dir, x->dir);
     if (l2 == 0)
         return faults | FAULT_DIR0;
-    if (!(fabs(sqrt(l2) - 1) <= tolerance(TOL_UNIT)) && e->ask != CALL_SEPARATE)
+    if (!(fabs(sqrt(l2) - 1) <= tolerance(TOL_UNIT_LENGTH)) && e->call != CALL_SEPARATE)
         faults |= FAULT_NOT_UNIT;
 
     /* the rate table's verdicts; along a direction that is not the normal the plane is farther */
-    value = x->has_proof ? truth_value(a, b, x->normal) / truth_dot3(x->dir, x->normal) : truth_value(a, b, x->dir);
+    value = x->has_proof ? truth_support_value(a, b, x->normal) / truth_dot3(x->dir, x->normal) : truth_support_value(a, b, x->dir);
     table = fmin(tolerance(TOL_TABLE) * fmax(t->depth, 0) + 2 * q->tol, tolerance(TOL_TABLE_CAP) * q->size) + q->noise;
     if (x->depth > t->depth + table)
         faults |= FAULT_OVER;
@@ -625,9 +625,9 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     /* the promises */
     if (x->has_proof) {
         double along = truth_dot3(x->dir, x->normal), n2 = truth_dot3(x->normal, x->normal);
-        if (!(fabs(sqrt(n2) - 1) <= tolerance(TOL_UNIT)) || !(along > 0))
+        if (!(fabs(sqrt(n2) - 1) <= tolerance(TOL_UNIT_LENGTH)) || !(along > 0))
             faults |= FAULT_NOT_UNIT;
-        if (e->ask != CALL_ALONG && memcmp(x->dir, x->normal, sizeof x->dir) != 0)
+        if (e->call != CALL_ALONG && memcmp(x->dir, x->normal, sizeof x->dir) != 0)
             faults |= FAULT_NOT_NORMAL;
         faults |= judge_witness(e, x, a, b, q);
         if (!(x->lower >= 0 && x->lower <= x->depth) || x->lower > t->depth + q->noise + gap)
@@ -645,19 +645,19 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
         if (faults & (FAULT_OVER | FAULT_UNDER))
             faults |= FAULT_NOT_MINIMUM;
         const int at_limit = x->code == CCD_LIMIT || (!x->has_proof && x->calls / 2 >= MINIMUM_POINTS);
-        const double within = q->surface == ALL_AROUND || at_limit ? fmax(q->tol, tolerance(TOL_PROMISED) * t->depth) : q->tol;
+        const double within = q->surface == ALL_AROUND || at_limit ? fmax(q->tol, tolerance(TOL_MPR) * t->depth) : q->tol;
         if (!(x->depth <= fmax(t->depth, 0) + within + gap + 2 * q->noise))
             faults |= FAULT_NOT_MINIMUM;
-        if (e->ask == CALL_PROVEN && x->code == CCD_HIT
-            && !(x->depth - x->lower <= q->tol + tolerance(TOL_PROOF_FLOOR) * pair_largest(a, b) + 2 * q->noise))
+        if (e->call == CALL_PROVEN && x->code == CCD_HIT
+            && !(x->depth - x->lower <= q->tol + tolerance(TOL_PROOF_FLOOR) * largest_coordinate(a, b) + 2 * q->noise))
             faults |= FAULT_NO_PROOF;
     }
-    if (e->ask == CALL_PENETRATION && x->code == CCD_HIT
-        && !(x->depth - x->lower <= fmax(q->tol, tolerance(TOL_PROMISED) * x->depth) + 2 * q->noise))
+    if (e->call == CALL_PENETRATION && x->code == CCD_HIT
+        && !(x->depth - x->lower <= fmax(q->tol, tolerance(TOL_MPR) * x->depth) + 2 * q->noise))
         faults |= FAULT_NO_PROOF;
     if (entry_is_mpr(e) && !mpr_within(x->depth, t->depth, q->tol, gap + 2 * q->noise, x->calls / 2))
         faults |= FAULT_NOT_PROMISED;
-    if (e->ask == CALL_ALONG && x->depth > fmax(t->depth, 0) + q->tol + gap + 2 * q->noise)
+    if (e->call == CALL_ALONG && x->depth > fmax(t->depth, 0) + q->tol + gap + 2 * q->noise)
         faults |= FAULT_NOT_MINIMUM; /* asked along the true normal */
     return faults;
 }
@@ -683,7 +683,7 @@ static inline void print_answer(FILE *file, const answer_t *x)
 }
 
 /* An answer that is wrong, on one line. */
-static inline void print_wrong(const entry_t *e, const answer_t *x, int faults, const truth_t *truth)
+static inline void print_faulty_answer(const entry_t *e, const answer_t *x, int faults, const truth_t *truth)
 {
     printf("%s: ", e->name);
     print_faults(stdout, faults);

@@ -29,26 +29,26 @@ static void methods_agree(int pairs)
     for (int i = 0; i < pairs; i++) {
         static const int kinds[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_TYPES};
         static pair_t p;
-        dice_t d = dice(1000, (uint64_t)i);
+        rng_t d = rng(1000, (uint64_t)i);
         double u[3], at, eps;
         for (int k = 0; k < 2; k++) {
-            int kind = kinds[dice_below(&d, 5)];
-            *(k ? &p.b : &p.a) = kind == SHAPE_TYPES ? pair_polygon(&d, p.verts[k], 1) : pair_shape(&d, p.verts[k], kind, .1, 1);
+            int kind = kinds[rng_below(&d, 5)];
+            *(k ? &p.b : &p.a) = kind == SHAPE_TYPES ? random_polygon(&d, p.verts[k], 1) : random_shape_of(&d, p.verts[k], kind, .1, 1);
             pair_turn(&d, k ? &p.b : &p.a);
         }
-        dice_unit(&d, u);
-        at = dice_in(&d, 0, 1) * pair_size(&p.a, &p.b);
+        rng_unit_vector(&d, u);
+        at = rng_uniform(&d, 0, 1) * pair_size(&p.a, &p.b);
         shape_move(&p.b, at * u[0], at * u[1], at * u[2]);
         truth_t t = truth_depth(&p.a, &p.b);
         truth_t s = truth_branch(&p.a, &p.b, 1e-9, 40000);
-        eps = 64 * real_ulp() * pair_size(&p.a, &p.b);
+        eps = 64 * real_eps() * pair_size(&p.a, &p.b);
         compared += t.enumerated;
         if (!t.enumerated)
             fail("not enumerated", &p.a, &p.b, 0, 1, 1);
         if (!(t.depth >= s.lower - eps && t.depth <= s.depth + eps))
             fail("enumeration outside the search's bounds", &p.a, &p.b, t.depth, s.lower, s.depth);
-        if (!(fabs(truth_value(&p.a, &p.b, t.n) - t.depth) <= eps))
-            fail("depth is not the support value of its direction", &p.a, &p.b, truth_value(&p.a, &p.b, t.n), t.depth, t.depth);
+        if (!(fabs(truth_support_value(&p.a, &p.b, t.n) - t.depth) <= eps))
+            fail("depth is not the support value of its direction", &p.a, &p.b, truth_support_value(&p.a, &p.b, t.n), t.depth, t.depth);
         if (t.depth > 0) {
             shape_t moved = p.b;
             shape_move(&moved, (double)p.b.pos[0] + t.depth * t.n[0], (double)p.b.pos[1] + t.depth * t.n[1],
@@ -57,7 +57,7 @@ static void methods_agree(int pairs)
             if (!(fabs(s.depth) <= eps))
                 fail("not touching after the move", &p.a, &moved, s.depth, 0, 0);
             /* along a random direction: touching after that move too */
-            dice_unit(&d, u);
+            rng_unit_vector(&d, u);
             t = truth_along(&p.a, &p.b, u);
             shape_move(&moved, (double)p.b.pos[0] + t.depth * u[0], (double)p.b.pos[1] + t.depth * u[1],
                        (double)p.b.pos[2] + t.depth * u[2]);

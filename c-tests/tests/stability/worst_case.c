@@ -13,7 +13,7 @@
 #define _POSIX_C_SOURCE 199309L
 #include "harness/this_library.h"
 #include "harness/shapes.h"
-#include "harness/uniform.h"
+#include "harness/random.h"
 
 #include <stdio.h>
 #include <time.h>
@@ -23,7 +23,7 @@ static const double AGAIN = 20; /* microseconds */
 
 typedef struct {
     const char *name;
-    int call;     /* of call_by_number; -1 libccd's MPR, -2 its GJK */
+    int call;     /* of call_library; -1 libccd's MPR, -2 its GJK */
     int has_pos, is_warm;
     unsigned short *calls;
     float *micros;
@@ -82,7 +82,7 @@ static void query(const method_t *m, const shape_t *a, const shape_t *b, const c
     ccd_vec3_t dir, pos;
     ccd_penetration_t full;
     ccd_distance_t distance;
-    call_rest_t rest = {.depth = &depth, .dir = &dir, .full = &full, .distance = &distance};
+    call_args_t rest = {.depth = &depth, .dir = &dir, .penetration = &full, .distance = &distance};
 #ifndef OURS_ALONE
     if (m->call < 0) {
         (m->call == -1 ? ccdMPRPenetration : ccdGJKPenetration)(a, b, ccd, &depth, &dir, &pos);
@@ -95,7 +95,7 @@ static void query(const method_t *m, const shape_t *a, const shape_t *b, const c
     if (m->call == CALL_DISTANCE)
         rest.want = CCD_WANT_POINTS;
     rest.warm = m->is_warm ? warm : NULL;
-    call_by_number(m->call, a, b, ccd, &rest);
+    call_library(m->call, a, b, ccd, &rest);
 }
 
 static void measure(method_t *m, long k, const shape_t *a, const shape_t *b, const ccd_t *ccd, const ccd_warm_t *state)

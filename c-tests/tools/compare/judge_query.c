@@ -130,7 +130,7 @@ int sample_truth(const library_t *ours, const query_t *q, seen_t *seen, sample_t
     size[1] = extent(seen, 1, &largest);
     s->size = fmin(size[0], size[1]) > 0 ? fmin(size[0], size[1]) : fmax(size[0], size[1]);
     s->truth.tolerance = query_tolerance(q);
-    s->truth.touch = 1e-9 * fmax(size[0], size[1]) + 16 * DBL_EPSILON * largest;
+    s->truth.contact_eps = 1e-9 * fmax(size[0], size[1]) + 16 * DBL_EPSILON * largest;
     s->truth.lower = w.code == CCD_HIT || w.code == CCD_LIMIT ? (double)w.least.depth_lower : -HUGE_VAL;
     s->truth.upper = seen->least;
     s->truth_dir = seen->least_dir;
@@ -182,7 +182,7 @@ enum { CHECKED = 64, ALL = SEEN };
 /* Whether the callbacks describe convex shapes: what is within the tolerance changes no verdict. */
 static int is_shape(const sample_t *s, int most)
 {
-    return inconsistency(s->seen, most) <= fmax(s->truth.tolerance, 10 * s->truth.touch);
+    return inconsistency(s->seen, most) <= fmax(s->truth.tolerance, 10 * s->truth.contact_eps);
 }
 
 static int same_answer(int call, const answer_t *a, const answer_t *b)
@@ -211,14 +211,14 @@ static void check_move(const compare_t *compare, sample_t *s, int side)
     ccd_vec3_t shift = a->dir;
     asked_t asked = asked_for(s->seen);
     work_t w = work_on(&compare->library[COMPARE_OURS], s->q, &asked, a);
-    if (guard_run(work_value, &w) != GUARD_RETURNED || (double)a->depth >= w.value - t->tolerance - t->touch)
+    if (guard_run(work_value, &w) != GUARD_RETURNED || (double)a->depth >= w.value - t->tolerance - t->contact_eps)
         return;
     s->slanted[side] = 1;
     ccdVec3Scale(&shift, a->depth);
     asked.seen = NULL; /* of another pose */
     asked.shift = &shift;
     if (guard_run(work_minimum, &w) == GUARD_RETURNED && (w.code == CCD_HIT || w.code == CCD_LIMIT)
-        && (double)w.least.depth_lower > 2 * t->tolerance + t->touch) {
+        && (double)w.least.depth_lower > 2 * t->tolerance + t->contact_eps) {
         s->aside[side] = 1;
         s->verdict[side] = VERDICT_UNSOUND;
     }
@@ -359,8 +359,8 @@ static int ask_all(const compare_t *compare, sample_t *s, const answer_t *own)
         count_add(&c->no_shape, 1);
         return -1;
     }
-    if (s->truth.lower > s->truth.upper + s->truth.touch) {
-        if (s->truth.lower > s->truth.upper + s->truth.touch + 2 * inconsistency(s->seen, ALL)) {
+    if (s->truth.lower > s->truth.upper + s->truth.contact_eps) {
+        if (s->truth.lower > s->truth.upper + s->truth.contact_eps + 2 * inconsistency(s->seen, ALL)) {
             count_add(&c->contradicted, 1);
             s->truth.lower = -HUGE_VAL; /* what rests on the upper bound alone is judged all the same */
         } else
@@ -401,7 +401,7 @@ void sample_query(const compare_t *compare, const query_t *q, const answer_t *ow
     if (ask_all(compare, &s, own) == 0 && judge(compare, &s) == 0) {
         count_add(&c->judged, 1);
         count_add(&c->minimum_calls, s.minimum_calls);
-        count_add(&c->overlaps, s.truth.lower > s.truth.touch);
+        count_add(&c->overlaps, s.truth.lower > s.truth.contact_eps);
         for (int side = 0; side < COMPARE_SIDES; side++)
             count_side(&c->side[side], &s, side);
         count_change(c, &s);

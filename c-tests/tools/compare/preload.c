@@ -213,7 +213,7 @@ static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, 
 
 static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    const call_rest_t rest = {.depth = depth, .dir = dir, .pos = pos};
+    const call_args_t rest = {.depth = depth, .dir = dir, .pos = pos};
     query_t q;
     pthread_once(&once, start);
     q.call = call;

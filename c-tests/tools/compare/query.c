@@ -52,7 +52,7 @@ double query_tolerance(const query_t *q)
     return t >= 0 && t < HUGE_VAL ? t : 1e-4;
 }
 
-int ask_call(const library_t *library, int call, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x)
+int ask_call(const library_t *library, int call, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x)
 {
     switch (call) {
 #define CALL_CASE(name, word, kind, traits) \
@@ -65,7 +65,7 @@ int ask_call(const library_t *library, int call, const void *a, const void *b, c
 
 static void ask(const library_t *library, int call, const void *obj1, const void *obj2, const ccd_t *ccd, answer_t *out)
 {
-    const call_rest_t rest = {.depth = &out->depth, .dir = &out->dir, .pos = &out->pos};
+    const call_args_t rest = {.depth = &out->depth, .dir = &out->dir, .pos = &out->pos};
     memset(out, 0, sizeof *out);
     out->code = ask_call(library, call, obj1, obj2, ccd, &rest);
     out->hit = is_hit(call, out->code);

@@ -69,10 +69,10 @@ int library_open(library_t *library, const char *path, int ours);
 static inline int is_hit(int call, int code) { return code == call_table[call].hit; }
 
 /* Whether the call answers yes or no alone. */
-static inline int is_verdict(int call) { return call_table[call].kind == KIND_YES; }
+static inline int is_verdict(int call) { return call_table[call].kind == KIND_BOOLEAN; }
 
 /* By its number. */
-int ask_call(const library_t *library, int call, const void *a, const void *b, const ccd_t *ccd, const call_rest_t *x);
+int ask_call(const library_t *library, int call, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x);
 
 /* Makes depth and direction of the vector that ccdGJKSeparate answers. */
 void answer_by_length(answer_t *out);

@@ -96,7 +96,7 @@ static void break_even(const compare_call_t *c, char *out, size_t size)
 static void print_side(const char *name, const compare_side_t *s, const compare_call_t *c)
 {
     printf("%-20s %7s %6s %7s %7s %8s %8.3g %8.3g %9.2f %7.0f", name, thousands(s->verdict[VERDICT_MISSED]),
-           thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_BROKEN]), thousands(s->verdict[VERDICT_DEEP]),
+           thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_INVALID]), thousands(s->verdict[VERDICT_DEEP]),
            thousands(s->verdict[VERDICT_UNSOUND]), 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
            0.5 * part(s->calls, c->judged), part(s->nanoseconds, c->timed));
 }
@@ -165,9 +165,9 @@ static void print_change(const compare_call_t *sum)
         printf("; of %s common hits %.1f %% of libccd's depths\n  are more than 1 %% deeper, %.1f %% of the directions differ by more than 10 degrees",
                thousands(sum->both), 100 * part(sum->deeper, sum->both), 100 * part(sum->turned, sum->both));
     printf(".\n");
-    if (theirs->verdict[VERDICT_BROKEN])
+    if (theirs->verdict[VERDICT_INVALID])
         printf("  %s hits of libccd have no direction (a touch); here they are misses, or hits with one.\n",
-               thousands(theirs->verdict[VERDICT_BROKEN]));
+               thousands(theirs->verdict[VERDICT_INVALID]));
 }
 
 static void print_kept(const char *dir)

@@ -147,7 +147,7 @@ static void put_case(FILE *f, const case_t *c)
     fputs(", ", f);
     put_row(f, &c->truth.tolerance, 1);
     fputs(", ", f);
-    put_row(f, &c->truth.touch, 1);
+    put_row(f, &c->truth.contact_eps, 1);
     fputs("},\n    {", f);
     put_row(f, c->truth_dir, 3);
     fputs("},\n};\n\nint main(void) { return case_run(&the_case); }\n", f);

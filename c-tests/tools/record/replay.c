@@ -79,10 +79,10 @@ static ccd_warm_t *state; /* of each pair of bodies */
 static int evaluate_extension(const method_t *m, const query_t *q, result_t *out)
 {
     ccd_penetration_t full;
-    call_rest_t rest = {.want = CCD_WANT_ALL, .depth = &out->depth, .dir = &out->dir, .full = &full};
+    call_args_t rest = {.want = CCD_WANT_ALL, .depth = &out->depth, .dir = &out->dir, .penetration = &full};
     rest.warm = m->is_warm ? &state[q->pair] : NULL;
     rest.pos = m->has_pos ? &out->pos : NULL;
-    int code = call_by_number(m->call, q->obj1, q->obj2, q->ccd, &rest);
+    int code = call_library(m->call, q->obj1, q->obj2, q->ccd, &rest);
     if (m->call == CALL_MPR || m->call == CALL_MPR_WARM || (code != CCD_HIT && code != CCD_LIMIT))
         return code;
     out->depth = full.depth;
@@ -195,7 +195,7 @@ static void print_table(const recording_t *r)
         const double hits = total_time(m, r->frames, 1), misses = total_time(m, r->frames, 0);
         /* a support point of the difference takes a call of each shape */
         printf("%-17s %6lu %5lu %6lu %5lu %7lu %7.3g %6.0f %8.2f %5.0f %5.0f\n", m->name, m->verdicts[VERDICT_MISSED],
-               m->verdicts[VERDICT_SPURIOUS], m->verdicts[VERDICT_BROKEN], m->verdicts[VERDICT_DEEP],
+               m->verdicts[VERDICT_SPURIOUS], m->verdicts[VERDICT_INVALID], m->verdicts[VERDICT_DEEP],
                m->verdicts[VERDICT_UNSOUND], 1e6 * m->error_sum / fmax(1, (double)m->judged), 1e6 * m->error_max,
                (double)m->supports / 2 / queries, hits / overlaps, (hits + misses) / queries);
     }

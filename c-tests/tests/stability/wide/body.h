@@ -7,7 +7,7 @@
 #ifndef STABILITY_WIDE_BODY_H
 #define STABILITY_WIDE_BODY_H
 
-#include "tests/stability/splitmix.h"
+#include "harness/random.h"
 
 /* 113 bits on every platform of the tests; x86's long double has 64. */
 __extension__ typedef __float128 quad_t;

@@ -21,7 +21,7 @@ typedef struct {
 
 /* --- shapes, about 1 large ---------------------------------------------------------- */
 
-typedef void make_t(dice_t *d, body_t *s, double *points);
+typedef void make_t(rng_t *d, body_t *s, double *points);
 #pragma GCC diagnostic ignored "-Wunused-parameter" /* few have points of their own */
 
 static void set_part(part_t *s, part_kind_t kind, double p0, double p1, double p2, double p3)
@@ -40,12 +40,12 @@ static void set_points(body_t *s, const double *points, int n)
     s->part.count = n;
 }
 
-static double some(dice_t *d) { return dice_in(d, .1, 1); }
+static double some(rng_t *d) { return rng_uniform(d, .1, 1); }
 
-static void make_thin(dice_t *d, body_t *s, double aspect, int needle)
+static void make_thin(rng_t *d, body_t *s, double aspect, int needle)
 {
     const double x = 1 / aspect, y = needle ? x * some(d) : some(d);
-    switch (dice_below(d, 3)) {
+    switch (rng_below(d, 3)) {
     case 0:
         set_part(&s->part, PART_BOX, x, y, 1, 0);
         break;
@@ -63,38 +63,38 @@ static void make_thin(dice_t *d, body_t *s, double aspect, int needle)
     }
 }
 
-static void make_needle(dice_t *d, body_t *s, double *points)
+static void make_needle(rng_t *d, body_t *s, double *points)
 {
-    make_thin(d, s, dice_log(d, 1e2, 1e4), 1);
+    make_thin(d, s, rng_log_uniform(d, 1e2, 1e4), 1);
 }
 
-static void make_fine_needle(dice_t *d, body_t *s, double *points)
+static void make_fine_needle(rng_t *d, body_t *s, double *points)
 {
-    make_thin(d, s, dice_log(d, 1e4, 1e6), 1);
+    make_thin(d, s, rng_log_uniform(d, 1e4, 1e6), 1);
 }
 
-static void make_plate(dice_t *d, body_t *s, double *points)
+static void make_plate(rng_t *d, body_t *s, double *points)
 {
-    make_thin(d, s, dice_log(d, 1e2, 1e6), 0);
+    make_thin(d, s, rng_log_uniform(d, 1e2, 1e6), 0);
 }
 
-static void make_frustum_plate(dice_t *d, body_t *s, double *points)
+static void make_frustum_plate(rng_t *d, body_t *s, double *points)
 {
-    const double x = dice_log(d, 1e-5, 1e-2);
+    const double x = rng_log_uniform(d, 1e-5, 1e-2);
     set_part(&s->part, PART_FRUSTUM, some(d), -x, some(d), x);
 }
 
-static void make_frustum(dice_t *d, body_t *s, double *points)
+static void make_frustum(rng_t *d, body_t *s, double *points)
 {
     const double x = some(d);
-    set_part(&s->part, PART_FRUSTUM, some(d), -x, dice_below(d, 4) ? some(d) : 0, x);
+    set_part(&s->part, PART_FRUSTUM, some(d), -x, rng_below(d, 4) ? some(d) : 0, x);
 }
 
 /* A star, and a smaller one turned by some angle above it. */
-static void make_star(dice_t *d, body_t *s, double *points)
+static void make_star(rng_t *d, body_t *s, double *points)
 {
-    const int arms = 3 + dice_below(d, 10);
-    const double inner = dice_in(d, .2, .9), top = some(d), turn = dice_in(d, 0, 1), high = dice_log(d, 1e-3, 1);
+    const int arms = 3 + rng_below(d, 10);
+    const double inner = rng_uniform(d, .2, .9), top = some(d), turn = rng_uniform(d, 0, 1), high = rng_log_uniform(d, 1e-3, 1);
     set_points(s, points, 4 * arms);
     for (int i = 0; i < 4 * arms; i++) {
         const int up = i >= 2 * arms;
@@ -105,97 +105,97 @@ static void make_star(dice_t *d, body_t *s, double *points)
     }
 }
 
-static void make_teardrop(dice_t *d, body_t *s, double *points)
+static void make_teardrop(rng_t *d, body_t *s, double *points)
 {
-    const double r = dice_in(d, .1, .7);
-    set_part(&s->part, PART_TEARDROP, r, r * dice_in(d, 1.1, 4), 0, 0);
-    s->centre[2] = dice_in(d, 0, .2) * r;
+    const double r = rng_uniform(d, .1, .7);
+    set_part(&s->part, PART_TEARDROP, r, r * rng_uniform(d, 1.1, 4), 0, 0);
+    s->centre[2] = rng_uniform(d, 0, .2) * r;
 }
 
-static void make_half_disc(dice_t *d, body_t *s, double *points)
+static void make_half_disc(rng_t *d, body_t *s, double *points)
 {
     const double r = some(d);
     set_part(&s->part, PART_HALF_DISC, r, 0, 0, 0);
     s->centre[1] = .3 * r;
 }
 
-static void make_half_ball(dice_t *d, body_t *s, double *points)
+static void make_half_ball(rng_t *d, body_t *s, double *points)
 {
     const double r = some(d);
-    set_part(&s->part, PART_HALF_BALL, r, dice_below(d, 2) ? r * dice_in(d, .1, 2) : 0, 0, 0);
+    set_part(&s->part, PART_HALF_BALL, r, rng_below(d, 2) ? r * rng_uniform(d, .1, 2) : 0, 0, 0);
     s->centre[2] = -.3 * r;
 }
 
-static void make_cut_ball(dice_t *d, body_t *s, double *points)
+static void make_cut_ball(rng_t *d, body_t *s, double *points)
 {
     const double r = some(d);
-    set_part(&s->part, PART_CUT_BALL, r, r * (1 - dice_log(d, 1e-3, .1)), 0, 0);
+    set_part(&s->part, PART_CUT_BALL, r, r * (1 - rng_log_uniform(d, 1e-3, .1)), 0, 0);
 }
 
-static void make_superellipsoid(dice_t *d, body_t *s, double *points)
+static void make_superellipsoid(rng_t *d, body_t *s, double *points)
 {
-    set_part(&s->part, PART_SUPERELLIPSOID, some(d), some(d), some(d), dice_log(d, 1.05, 8));
+    set_part(&s->part, PART_SUPERELLIPSOID, some(d), some(d), some(d), rng_log_uniform(d, 1.05, 8));
 }
 
-static void make_rounded_box(dice_t *d, body_t *s, double *points)
+static void make_rounded_box(rng_t *d, body_t *s, double *points)
 {
     set_part(&s->part, PART_BOX, some(d), some(d), some(d), 0);
-    s->margin = dice_log(d, 1e-6, .5);
+    s->margin = rng_log_uniform(d, 1e-6, .5);
 }
 
-static void make_ball(dice_t *d, body_t *s, double *points)
+static void make_ball(rng_t *d, body_t *s, double *points)
 {
     s->margin = some(d);
 }
 
-static void make_ellipsoid(dice_t *d, body_t *s, double *points)
+static void make_ellipsoid(rng_t *d, body_t *s, double *points)
 {
     set_part(&s->part, PART_ELLIPSOID, some(d), some(d), some(d), 0);
 }
 
-static void make_box(dice_t *d, body_t *s, double *points)
+static void make_box(rng_t *d, body_t *s, double *points)
 {
     set_part(&s->part, PART_BOX, some(d), some(d), some(d), 0);
 }
 
-static void make_capsule(dice_t *d, body_t *s, double *points)
+static void make_capsule(rng_t *d, body_t *s, double *points)
 {
     set_part(&s->part, PART_SEGMENT, some(d), 0, 0, 0);
     s->margin = some(d);
 }
 
-static void make_sum(dice_t *d, body_t *s, double *points)
+static void make_sum(rng_t *d, body_t *s, double *points)
 {
-    (dice_below(d, 2) ? make_box : make_frustum)(d, s, points);
-    switch (dice_below(d, 3)) {
-    case 0: set_part(&s->child, PART_DISC, dice_log(d, 1e-3, 1), 0, 0, 0); break;
-    case 1: set_part(&s->child, PART_SEGMENT, dice_log(d, 1e-3, 1), 0, 0, 0); break;
-    default: set_part(&s->child, PART_ELLIPSOID, some(d), dice_log(d, 1e-3, 1), some(d), 0); break;
+    (rng_below(d, 2) ? make_box : make_frustum)(d, s, points);
+    switch (rng_below(d, 3)) {
+    case 0: set_part(&s->child, PART_DISC, rng_log_uniform(d, 1e-3, 1), 0, 0, 0); break;
+    case 1: set_part(&s->child, PART_SEGMENT, rng_log_uniform(d, 1e-3, 1), 0, 0, 0); break;
+    default: set_part(&s->child, PART_ELLIPSOID, some(d), rng_log_uniform(d, 1e-3, 1), some(d), 0); break;
     }
-    if (dice_below(d, 3) == 0)
-        s->margin = dice_log(d, 1e-3, .3);
+    if (rng_below(d, 3) == 0)
+        s->margin = rng_log_uniform(d, 1e-3, .3);
 }
 
 /* Thousands of vertices on a face that is hardly bent. */
-static void make_bent(dice_t *d, body_t *s, double *points)
+static void make_bent(rng_t *d, body_t *s, double *points)
 {
-    const int n = (int)dice_log(d, 100, BODY_POINTS);
-    const double bend = dice_log(d, 1e-12, 1e-2);
+    const int n = (int)rng_log_uniform(d, 100, BODY_POINTS);
+    const double bend = rng_log_uniform(d, 1e-12, 1e-2);
     set_points(s, points, n);
     for (int i = 0; i < n; i++, points += 3) {
-        points[0] = dice_in(d, -1, 1);
-        points[1] = dice_in(d, -1, 1);
+        points[0] = rng_uniform(d, -1, 1);
+        points[1] = rng_uniform(d, -1, 1);
         points[2] = i < n / 4 ? -.5 : .5 - bend * (points[0] * points[0] + points[1] * points[1]);
     }
 }
 
-static void make_hull(dice_t *d, body_t *s, double *points)
+static void make_hull(rng_t *d, body_t *s, double *points)
 {
-    const int n = 5 + dice_below(d, 60);
+    const int n = 5 + rng_below(d, 60);
     const double x = some(d), y = some(d), z = some(d);
     set_points(s, points, n);
     for (int i = 0; i < n; i++, points += 3) {
-        dice_unit(d, points);
+        rng_unit_vector(d, points);
         points[0] *= x;
         points[1] *= y;
         points[2] *= z;
@@ -205,22 +205,22 @@ static void make_hull(dice_t *d, body_t *s, double *points)
 }
 
 /* A coordinate where ties, coincidences and tiny differences are common. */
-static double on_grid(dice_t *d)
+static double on_grid(rng_t *d)
 {
-    const double x = (dice_below(d, 5) - 2) / 2.;
-    switch (dice_below(d, 10)) {
-    case 0: return 8 * x * real_ulp();
-    case 1: return x + dice_in(d, -1e-6, 1e-6);
-    default: return dice_below(d, 2) ? x : dice_in(d, -1, 1);
+    const double x = (rng_below(d, 5) - 2) / 2.;
+    switch (rng_below(d, 10)) {
+    case 0: return 8 * x * real_eps();
+    case 1: return x + rng_uniform(d, -1e-6, 1e-6);
+    default: return rng_below(d, 2) ? x : rng_uniform(d, -1, 1);
     }
 }
 
 /* The hull of a few points on a grid, perhaps inflated. */
-static void make_grid(dice_t *d, body_t *s, double *points)
+static void make_grid(rng_t *d, body_t *s, double *points)
 {
-    const int n = 2 + dice_below(d, 8);
+    const int n = 2 + rng_below(d, 8);
     set_points(s, points, n);
-    s->margin = dice_below(d, 2) ? dice_in(d, 0, 1) : 0;
+    s->margin = rng_below(d, 2) ? rng_uniform(d, 0, 1) : 0;
     for (int i = 0; i < 3 * n; i++) {
         points[i] = on_grid(d);
         s->centre[i % 3] += points[i] / n;
@@ -230,11 +230,11 @@ static void make_grid(dice_t *d, body_t *s, double *points)
 static make_t *const plain[] = {make_box, make_ball, make_capsule, make_frustum, make_ellipsoid, make_hull};
 static make_t *const odd[] = {make_star, make_teardrop, make_half_ball, make_superellipsoid, make_rounded_box, make_sum};
 
-static void make_plain(dice_t *d, body_t *s, double *points) { plain[dice_below(d, 6)](d, s, points); }
+static void make_plain(rng_t *d, body_t *s, double *points) { plain[rng_below(d, 6)](d, s, points); }
 
-static void make_any(dice_t *d, body_t *s, double *points)
+static void make_any(rng_t *d, body_t *s, double *points)
 {
-    const int i = dice_below(d, 12);
+    const int i = rng_below(d, 12);
     (i < 6 ? plain[i] : odd[i - 6])(d, s, points);
 }
 
@@ -250,11 +250,11 @@ enum {
 };
 
 /* The orientation of a, and a small turn. */
-static void place_alike(dice_t *d, const body_t *a, body_t *b, double least, double most)
+static void place_alike(rng_t *d, const body_t *a, body_t *b, double least, double most)
 {
     double u[3], r[9];
-    dice_unit(d, u);
-    rotation_about(u[0], u[1], u[2], dice_log(d, least, most), r);
+    rng_unit_vector(d, u);
+    rotation_about(u[0], u[1], u[2], rng_log_uniform(d, least, most), r);
     rotation_times(r, a->m, b->m);
 }
 
@@ -267,33 +267,33 @@ static void place_at_depth(wide_pair_t *p, double depth)
         p->body[1].at[i] += by * t.n[i];
 }
 
-static void place(dice_t *d, wide_pair_t *p, int placement)
+static void place(rng_t *d, wide_pair_t *p, int placement)
 {
     body_t *const a = &p->body[0], *const b = &p->body[1];
     const double small = fmin(body_reach(a), body_reach(b)), size = body_reach(a) + body_reach(b);
     double u[3], far;
     p->size = size;
     if (placement == PLACE_GRID) {
-        for (int i = 0; i < 3 && dice_below(d, 4); i++)
+        for (int i = 0; i < 3 && rng_below(d, 4); i++)
             b->at[i] = on_grid(d);
         return;
     }
-    dice_rotation(d, a->m);
-    dice_rotation(d, b->m);
-    if (placement == PLACE_PARALLEL || (placement == PLACE_TOUCHING && dice_below(d, 2)))
+    rng_rotation(d, a->m);
+    rng_rotation(d, b->m);
+    if (placement == PLACE_PARALLEL || (placement == PLACE_TOUCHING && rng_below(d, 2)))
         place_alike(d, a, b, 1e-12, 1e-2);
-    dice_unit(d, u);
-    far = dice_below(d, 2) ? dice_log(d, 1e-4, 1) : dice_in(d, 0, 1);
+    rng_unit_vector(d, u);
+    far = rng_below(d, 2) ? rng_log_uniform(d, 1e-4, 1) : rng_uniform(d, 0, 1);
     if (placement == PLACE_COINCIDENT) {
         place_alike(d, a, b, 1e-16, 1e-2);
-        far = dice_below(d, 4) ? dice_log(d, 1e-16, 1e-2) : 0;
+        far = rng_below(d, 4) ? rng_log_uniform(d, 1e-16, 1e-2) : 0;
     }
     for (int i = 0; i < 3; i++)
         b->at[i] = .6 * far * size * u[i];
     if (placement == PLACE_NEAR || placement == PLACE_PARALLEL)
-        place_at_depth(p, (dice_below(d, 3) ? 1 : -1) * small * dice_log(d, 1e-12, .1));
+        place_at_depth(p, (rng_below(d, 3) ? 1 : -1) * small * rng_log_uniform(d, 1e-12, .1));
     for (int once = 0; placement == PLACE_TOUCHING && once < 2; once++)
-        place_at_depth(p, dice_in(d, -1e-14, 1e-14) * size);
+        place_at_depth(p, rng_uniform(d, -1e-14, 1e-14) * size);
 }
 
 /* --- rows --------------------------------------------------------------------------- */
@@ -346,7 +346,7 @@ static void scale_part(part_t *s, double k)
 static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
 {
     const row_t *const r = &rows[row];
-    dice_t dd = dice(7000 + (uint64_t)row + 100 * seed, index), *d = &dd;
+    rng_t dd = rng(7000 + (uint64_t)row + 100 * seed, index), *d = &dd;
     double u[3];
     memset(p->body, 0, sizeof p->body);
     for (int k = 0; k < 2; k++) {
@@ -356,7 +356,7 @@ static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
     if (r->placement == PLACE_COINCIDENT) {
         p->body[1] = p->body[0];
     } else if (r->placement != PLACE_GRID) {
-        const double ratio = dice_log(d, r->ratio, fmin(10 * r->ratio, 1)), by = ratio * body_reach(&p->body[0]) / body_reach(&p->body[1]);
+        const double ratio = rng_log_uniform(d, r->ratio, fmin(10 * r->ratio, 1)), by = ratio * body_reach(&p->body[0]) / body_reach(&p->body[1]);
         body_t *const b = &p->body[1];
         scale_part(&b->part, by);
         scale_part(&b->child, by);
@@ -366,13 +366,13 @@ static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
         for (int i = 0; i < 3 * b->part.count; i++)
             p->points[1][i] *= by;
     }
-    if (r->placement != PLACE_COINCIDENT && dice_below(d, 2)) { /* either may be obj1 */
+    if (r->placement != PLACE_COINCIDENT && rng_below(d, 2)) { /* either may be obj1 */
         const body_t a = p->body[0];
         p->body[0] = p->body[1];
         p->body[1] = a;
     }
     place(d, p, r->placement);
-    dice_unit(d, u);
+    rng_unit_vector(d, u);
     for (int k = 0; k < 2 && r->far > 0; k++)
         for (int i = 0; i < 3; i++)
             p->body[k].at[i] += r->far * u[i];
@@ -380,17 +380,17 @@ static void wide_pair(int row, uint64_t seed, uint64_t index, wide_pair_t *p)
 }
 
 /* The pair a frame later: b turned by up to so many rad and moved by as much of the size. */
-static void wide_move(dice_t *d, wide_pair_t *p, double by)
+static void wide_move(rng_t *d, wide_pair_t *p, double by)
 {
     body_t *const b = &p->body[1];
     double u[3], r[9], m[9];
-    dice_unit(d, u);
-    rotation_about(u[0], u[1], u[2], by * dice_in(d, 0, 1), r);
+    rng_unit_vector(d, u);
+    rotation_about(u[0], u[1], u[2], by * rng_uniform(d, 0, 1), r);
     rotation_times(r, b->m, m);
     memcpy(b->m, m, sizeof m);
-    dice_unit(d, u);
+    rng_unit_vector(d, u);
     for (int i = 0; i < 3; i++)
-        b->at[i] += by * p->size * dice_in(d, 0, 1) * u[i];
+        b->at[i] += by * p->size * rng_uniform(d, 0, 1) * u[i];
 }
 
 #endif

@@ -62,7 +62,7 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
     for (int i = 0; i < 3; i++)
         way.v[i] = (ccd_real_t)along[i];
     x.call = call;
-    x.ask = calls[call].entry.ask;
+    x.call = calls[call].entry.call;
     x.tol = tol;
     body_calls = 0;
     body_stack_lowest = (const char *)__builtin_frame_address(0);
@@ -92,7 +92,7 @@ enum { TOLERANCES = 5, DEFAULT_TOLERANCE = 1 };
 
 /* What rounding may do to a support value of such bodies, metres: some ulps of the largest
  * coordinate, in the callbacks and in the difference of two points. */
-static double wide_noise(const wide_pair_t *p) { return tolerance(TOL_ULPS) * real_ulp() * p->largest; }
+static double wide_noise(const wide_pair_t *p) { return tolerance(TOL_ULPS) * real_eps() * p->largest; }
 
 /* Whether the point is outside the body by more than the bound, metres. */
 static int is_outside(const body_t *s, const double at[3], double bound)
@@ -120,7 +120,7 @@ static double beside(const wide_pair_t *p, const double n[3], const double step[
  * rad: each is taken at random, longer after one that went down, up to a tenth of that, and shorter
  * after each that did not. They begin short: what lies behind a ridge is another minimum, be the
  * ridge ever so narrow. */
-static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
+static double fall(const wide_pair_t *p, const double n[3], rng_t *d)
 {
     const double reach = .02;
     const double first = wide_value(&p->body[0], &p->body[1], n);
@@ -129,7 +129,7 @@ static double fall(const wide_pair_t *p, const double n[3], dice_t *d)
     for (int i = 0; i < 200; i++) {
         double by[3], m[3], between[3], far = 0, before = least, h;
         for (int k = 0; k < 3; k++)
-            by[k] = step * dice_in(d, -1, 1);
+            by[k] = step * rng_uniform(d, -1, 1);
         h = beside(p, best, by, 1, m);
         for (int k = 0; k < 3; k++)
             far += (m[k] - n[k]) * (m[k] - n[k]);
@@ -157,18 +157,18 @@ typedef struct {
     int may_be_deep[TOLERANCES]; /* at this tolerance the minimum said CCD_LIMIT */
 } case_t;
 
-static int judge_points(const said_t *x, const wide_pair_t *p, double within, dice_t *d)
+static int judge_points(const said_t *x, const wide_pair_t *p, double within, rng_t *d)
 {
-    const double bound = fmax(within, tolerance(TOL_INSIDE) * p->size) + tolerance(TOL_ULPS) * real_ulp() * p->largest;
+    const double bound = fmax(within, tolerance(TOL_WITNESS) * p->size) + tolerance(TOL_ULPS) * real_eps() * p->largest;
     for (int k = 0; k < 2; k++)
         if (is_outside(&p->body[k], k ? x->a.point2 : x->a.point1, bound))
             return FAULT_WITNESS_INSIDE;
-    if (x->ask == CALL_LOCAL && x->a.code == CCD_HIT && fall(p, x->a.dir, d) > 2 * within + bound)
+    if (x->call == CALL_LOCAL && x->a.code == CCD_HIT && fall(p, x->a.dir, d) > 2 * within + bound)
         return FAULT_NOT_MINIMUM;
     return 0;
 }
 
-static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c, int t, dice_t *d)
+static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c, int t, rng_t *d)
 {
     const double floor = tolerance(TOL_PROOF_FLOOR) * p->largest, within = said->tol + floor;
     const int overlap = c->truth.lower > c->noise, apart = c->least < -c->noise;
@@ -186,34 +186,34 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
         return faults | FAULT_MISSED;
     if (x->code == CCD_HIT && apart)
         return faults | FAULT_FALSE_HIT;
-    if (x->code == CCD_LIMIT && apart && said->ask != CALL_DISTANCE)
+    if (x->code == CCD_LIMIT && apart && said->call != CALL_DISTANCE)
         return faults | FAULT_FALSE_HIT;
-    if ((x->code == CCD_MISS && said->ask != CALL_DISTANCE) || entry_is_verdict(e))
+    if ((x->code == CCD_MISS && said->call != CALL_DISTANCE) || entry_is_verdict(e))
         return faults;
-    if (said->ask == CALL_SEPARATE && x->depth == 0)
+    if (said->call == CALL_SEPARATE && x->depth == 0)
         return faults;
     for (int i = 0; i < 3; i++)
         if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->has_proof && !(isfinite(x->point1[i]) && isfinite(x->point2[i]))))
             return faults | FAULT_NAN;
     double along = truth_dot3(x->dir, n);
-    if (!(fabs(sqrt(truth_dot3(n, n)) - 1) <= tolerance(TOL_UNIT) * 4) || !(along > 0) || !isfinite(x->depth) || !isfinite(x->lower))
+    if (!(fabs(sqrt(truth_dot3(n, n)) - 1) <= tolerance(TOL_UNIT_LENGTH) * 4) || !(along > 0) || !isfinite(x->depth) || !isfinite(x->lower))
         return faults | FAULT_NAN;
     double h = wide_value(&p->body[0], &p->body[1], n);
     if (x->depth * along < h - c->noise)
         faults |= FAULT_UNSOUND;
     /* along a direction of the caller's the least depth is greater, and so may its bound be */
-    if (said->ask != CALL_ALONG && x->lower > c->least + c->noise)
+    if (said->call != CALL_ALONG && x->lower > c->least + c->noise)
         faults |= FAULT_FALSE_PROOF;
-    if ((said->ask == CALL_PROVEN || said->ask == CALL_DISTANCE) && x->code != CCD_LIMIT
+    if ((said->call == CALL_PROVEN || said->call == CALL_DISTANCE) && x->code != CCD_LIMIT
         && x->depth - x->lower > within)
         faults |= FAULT_NO_PROOF;
-    if ((entry_is_minimum(e) || said->ask == CALL_DISTANCE) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
+    if ((entry_is_minimum(e) || said->call == CALL_DISTANCE) && x->code != CCD_LIMIT && !c->may_be_deep[t] && x->depth > fmax(c->least, 0) + within + c->noise
         && x->code == CCD_HIT)
         faults |= FAULT_OVER;
     if (entry_is_mpr(e) && x->code == CCD_HIT && said->supports < MPR_POINTS
-        && x->depth > fmax(c->least, 0) + fmax(within, tolerance(TOL_PROMISED) * c->least) + c->noise)
+        && x->depth > fmax(c->least, 0) + fmax(within, tolerance(TOL_MPR) * c->least) + c->noise)
         faults |= FAULT_OVER;
-    if (x->has_proof && dice_below(d, 8) == 0)
+    if (x->has_proof && rng_below(d, 8) == 0)
         faults |= judge_points(said, p, within + (x->code == CCD_LIMIT ? fmax(x->depth - x->lower, 0) : 0), d);
     return faults;
 }
@@ -238,7 +238,7 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
     int new = 0;
     judged++;
     limits_of[x->call] += x->a.code == CCD_LIMIT;
-    if (x->ask == CALL_PROVEN && !calls[x->call].bare) {
+    if (x->call == CALL_PROVEN && !calls[x->call].bare) {
         minima[row] += x->a.code == CCD_HIT || x->a.code == CCD_LIMIT;
         limits[row] += x->a.code == CCD_LIMIT;
         limits_at[t] += x->a.code == CCD_LIMIT;
@@ -271,7 +271,7 @@ static case_t known(const wide_pair_t *p, const said_t *said, int count)
     for (int i = 0; i < count; i++) {
         if (said[i].a.normal[0] != 0 || said[i].a.normal[1] != 0 || said[i].a.normal[2] != 0)
             c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].a.normal));
-        if (said[i].ask == CALL_PROVEN && calls[said[i].call].bare && said[i].a.code == CCD_LIMIT)
+        if (said[i].call == CALL_PROVEN && calls[said[i].call].bare && said[i].a.code == CCD_LIMIT)
             c.may_be_deep[i / CALLS % TOLERANCES] = 1;
     }
     return c;
@@ -282,12 +282,12 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
     static wide_pair_t p;
     static said_t said[TOLERANCES * CALLS];
     ccd_warm_t warm[CALLS], cold;
-    dice_t d = dice(9000 + (uint64_t)row + 100 * seed, index);
+    rng_t d = rng(9000 + (uint64_t)row + 100 * seed, index);
     const int kept = (int)(index % TOLERANCES);
     double along[3];
     int open = 0;
     wide_pair(row, seed, index, &p);
-    dice_unit(&d, along);
+    rng_unit_vector(&d, along);
     pairs_of[row]++;
     for (int t = 0; t < TOLERANCES; t++)
         for (int k = 0; k < CALLS; k++) {
@@ -304,12 +304,12 @@ static void judge_pair(int row, uint64_t seed, uint64_t index)
         for (int k = 0; k < CALLS; k++)
             tally(row, index, &p, &c, &said[t * CALLS + k], t, judge_said(&said[t * CALLS + k], &p, &c, t, &d));
     for (int frame = 0; frame < 2; frame++) {
-        wide_move(&d, &p, dice_log(&d, 1e-9, 1e-2));
+        wide_move(&d, &p, rng_log_uniform(&d, 1e-9, 1e-2));
         for (int k = 0; k < CALLS; k++) {
             said[k] = say(k, &p, shares[kept] * p.size, along, &warm[k]);
             said[k].moved = 1;
             /* GJK is asked without a state: it proves what a cold minimum proves */
-            if (calls[k].entry.ask == CALL_PROVEN && calls[k].bare) {
+            if (calls[k].entry.call == CALL_PROVEN && calls[k].bare) {
                 memset(&cold, 0, sizeof cold);
                 open = say(k, &p, shares[kept] * p.size, along, &cold).a.code == CCD_LIMIT;
             }
