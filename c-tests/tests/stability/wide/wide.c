@@ -41,7 +41,7 @@ static const struct {
 enum { CALLS = sizeof calls / sizeof calls[0] };
 
 typedef struct {
-    int call, ask;
+    int entry, call; /* of calls; of this_library.h */
     answer_t a; /* normal: dir, where none is given */
     double tol;
     unsigned long supports, stack;
@@ -61,7 +61,7 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
     ccd.max_iterations = (unsigned long)-1;
     for (int i = 0; i < 3; i++)
         way.v[i] = (ccd_real_t)along[i];
-    x.call = call;
+    x.entry = call;
     x.call = calls[call].entry.call;
     x.tol = tol;
     body_calls = 0;
@@ -172,7 +172,7 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
 {
     const double floor = tolerance(TOL_PROOF_FLOOR) * p->largest, within = said->tol + floor;
     const int overlap = c->truth.lower > c->noise, apart = c->least < -c->noise;
-    const entry_t *e = &calls[said->call].entry;
+    const entry_t *e = &calls[said->entry].entry;
     const answer_t *x = &said->a;
     const double *n = x->normal;
     int faults = 0;
@@ -237,18 +237,18 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
 {
     int new = 0;
     judged++;
-    limits_of[x->call] += x->a.code == CCD_LIMIT;
-    if (x->call == CALL_PROVEN && !calls[x->call].bare) {
+    limits_of[x->entry] += x->a.code == CCD_LIMIT;
+    if (x->call == CALL_PROVEN && !calls[x->entry].bare) {
         minima[row] += x->a.code == CCD_HIT || x->a.code == CCD_LIMIT;
         limits[row] += x->a.code == CCD_LIMIT;
         limits_at[t] += x->a.code == CCD_LIMIT;
     }
     for (int bit = 0; bit < FAULT_BIT_COUNT; bit++)
         if (faults >> bit & 1)
-            new |= wrong[row][x->call][bit]++ == 0;
+            new |= wrong[row][x->entry][bit]++ == 0;
     if (new) {
         printf("first seen in row %d (%s), pair %lu%s, tolerance %g, %s:", row, rows[row].name, (unsigned long)index,
-               x->moved ? ", moved" : "", x->tol, calls[x->call].entry.name);
+               x->moved ? ", moved" : "", x->tol, calls[x->entry].entry.name);
         printf(" ");
         print_faults(stdout, faults);
         printf("\n  ");
@@ -271,7 +271,7 @@ static case_t known(const wide_pair_t *p, const said_t *said, int count)
     for (int i = 0; i < count; i++) {
         if (said[i].a.normal[0] != 0 || said[i].a.normal[1] != 0 || said[i].a.normal[2] != 0)
             c.least = fmin(c.least, wide_value(&p->body[0], &p->body[1], said[i].a.normal));
-        if (said[i].call == CALL_PROVEN && calls[said[i].call].bare && said[i].a.code == CCD_LIMIT)
+        if (said[i].call == CALL_PROVEN && calls[said[i].entry].bare && said[i].a.code == CCD_LIMIT)
             c.may_be_deep[i / CALLS % TOLERANCES] = 1;
     }
     return c;
