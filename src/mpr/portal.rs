@@ -24,7 +24,7 @@
 //! direction is a separating axis; that is the separation test.
 
 use crate::math::{Vec3, lesser, normalised, perpendicular};
-use crate::minkowski::query::{Stop, SupportQuery};
+use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
 use crate::minkowski::round_fit::{Choice, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::GapLimit;
@@ -96,22 +96,8 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
             if set.is_full() {
                 return Ok(None);
             }
-            let width = across.norm();
-            let off = -height / width;
-            let mut tilt = f64::INFINITY;
-            if failures < MAX_TILTS {
-                let edge = b.map_or(0.0, |b| TILT_WIDTH_EDGE * (b.w - a.w).norm());
-                let widest = (TILT_WIDTH_OFF * off).max(edge) / length;
-                tilt = lesser(TILT_GROWTH * query.upper.depth / off, widest);
-                for _ in 0..failures {
-                    tilt *= TILT_GROWTH;
-                }
-            }
-            let n = if tilt > 0.0 && tilt < f64::INFINITY {
-                query.upper.dir + across * (tilt / width)
-            } else {
-                across
-            };
+            let edge = b.map_or(0.0, |b| (b.w - a.w).norm());
+            let n = discovery_dir(&query.upper, &across, height, edge, length, failures);
             let Some(n) = normalised(&n) else {
                 return Ok(None);
             };
@@ -153,6 +139,35 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
         }
     }
     Ok(None)
+}
+
+/// Returns the next direction of the discovery, of any length: the one of the least support value, tilted towards
+/// `across`; or `across` itself after [`MAX_TILTS`] failures. `height`: of the corners along `across`, m². `edge`:
+/// the distance of the two corners, 0 for one, and `length`: of the ray in D, about, metres.
+#[inline(always)]
+fn discovery_dir(
+    upper: &UpperBound,
+    across: &Vec3,
+    height: f64,
+    edge: f64,
+    length: f64,
+    failures: u32,
+) -> Vec3 {
+    let width = across.norm();
+    let off = -height / width;
+    let mut tilt = f64::INFINITY;
+    if failures < MAX_TILTS {
+        let widest = (TILT_WIDTH_OFF * off).max(TILT_WIDTH_EDGE * edge) / length;
+        tilt = lesser(TILT_GROWTH * upper.depth / off, widest);
+        for _ in 0..failures {
+            tilt *= TILT_GROWTH;
+        }
+    }
+    if tilt > 0.0 && tilt < f64::INFINITY {
+        upper.dir + across * (tilt / width)
+    } else {
+        *across
+    }
 }
 
 /// Queries three directions around a ray that passes through its own support vertex, tilted by the tangent `tilt`. The
