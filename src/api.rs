@@ -11,7 +11,7 @@ use core::fmt;
 
 use crate::contact;
 use crate::contact::manifold;
-use crate::contact::manifold_cache::ManifoldCache;
+use crate::contact::manifold_cache;
 use crate::ffi::arena::Heap;
 use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::Wanted;
@@ -204,7 +204,7 @@ impl Warm {
 /// Contact manifold of one pair between calls of [`contacts`], in either order: a plain value; the
 /// default is cold. A stale, foreign or random one costs time alone.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Manifold(ManifoldCache);
+pub struct ManifoldCache(manifold_cache::ManifoldCache);
 
 /// Result of a penetration query: an overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -231,7 +231,7 @@ pub struct Penetration {
     pub point2: [Real; 3],
     /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
     /// rounded up.
-    pub support_calls: u64,
+    pub support_points: u64,
     /// Number of iterations of the solver.
     pub iterations: u64,
     /// The result is sound, but less exact than requested: `max_iterations`, the library's limit of
@@ -279,7 +279,7 @@ pub struct Distance {
     pub point2: [Real; 3],
     /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
     /// rounded up.
-    pub support_calls: u64,
+    pub support_points: u64,
     /// Number of iterations of the solver.
     pub iterations: u64,
     /// The bounds have not met: `max_iterations`, the library's limit of support points or rounding
@@ -296,7 +296,7 @@ pub struct Contact {
     pub point2: [Real; 3],
     /// Metres; negative where the shapes are apart.
     pub depth: Real,
-    /// Contact id, not 0, constant while the contact moves with either shape; 0 without a memory.
+    /// Contact id, not 0, constant while the contact moves with either shape; 0 without a cache.
     pub id: u32,
 }
 
@@ -380,7 +380,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
         pos: point_if(want.pos, hit.pos),
         point1: point_if(want.points, hit.point1),
         point2: point_if(want.points, hit.point2),
-        support_calls: pair.md.supports(),
+        support_points: pair.md.supports(),
         iterations: hit.iterations,
         limit: hit.limit,
     }))
@@ -517,7 +517,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         normal: to_real(&d.normal),
         point1: point_if_wanted(d.point1),
         point2: point_if_wanted(d.point2),
-        support_calls: pair.md.supports(),
+        support_points: pair.md.supports(),
         iterations: d.iterations,
         limit: d.is_limited,
     })
@@ -531,7 +531,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
 /// metres: how far below its support plane a corner may lie and still belong to the face; a
 /// thousandth of the shapes' size is good for contacts that rest. It is at least 1 % of the depth
 /// along `normal`, which a normal that is good to 0.1 % of the depth needs, and 32 ulps of the
-/// largest coordinate. With a memory a shape whose face is that of the last call takes half the
+/// largest coordinate. With a cache a shape whose face is that of the last call takes half the
 /// support points. Allocates nothing.
 ///
 /// ```
@@ -556,7 +556,7 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     normal: [Real; 3],
     slop: Real,
-    memory: Option<&mut Manifold>,
+    cache: Option<&mut ManifoldCache>,
     room: &'r mut [Contact],
 ) -> Result<&'r [Contact], Error> {
     let normal = direction(normal)?;
@@ -565,8 +565,8 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
         return Err(Error::BadInput("no room for a contact"));
     }
     let max = room.len().min(manifold::MAX_CONTACTS);
-    let memory = memory.map(|memory| &mut memory.0);
-    let manifold = manifold::contacts(&SupportOf(a), &SupportOf(b), &normal, slop, memory, max)?;
+    let cache = cache.map(|cache| &mut cache.0);
+    let manifold = manifold::contacts(&SupportOf(a), &SupportOf(b), &normal, slop, cache, max)?;
     let mut count = 0;
     for (out, contact) in room.iter_mut().zip(manifold.iter()) {
         *out = Contact {

@@ -69,8 +69,8 @@ mod query;
 mod shapes;
 
 pub use api::{
-    Check, Contact, Distance, DistanceOptions, Error, Manifold, Penetration, Real, Settings, Shape,
-    Want, Warm, check, contacts, implementation, intersect, penetration, penetration_along,
+    Check, Contact, Distance, DistanceOptions, Error, ManifoldCache, Penetration, Real, Settings,
+    Shape, Want, Warm, check, contacts, implementation, intersect, penetration, penetration_along,
     penetration_incremental, penetration_local, penetration_planar, penetration_proven,
     signed_distance,
 };

@@ -14,7 +14,7 @@
 static scene_t scene;
 static int convex;                 /* the class */
 static ccd_warm_t warm[SCENE_BODIES][SCENE_BODIES];
-static ccd_manifold_t memory[SCENE_BODIES][SCENE_BODIES];
+static ccd_manifold_cache_t memory[SCENE_BODIES][SCENE_BODIES];
 static int most = 1;               /* contacts of a pair */
 static unsigned long queries, supports, limits;
 

@@ -32,7 +32,7 @@ int main(void)
         { .pos = {{1, 0, 2}}, .half = {0, CCD_REAL(0.5), 0}, .radius = CCD_REAL(0.25) },
         { .pos = {{1, 2, 3}}, .points = 5, .point = {{{1, 0, 0}}, {{0, 1, 0}}, {{-1, 0, 0}}, {{0, -1, 0}}, {{0, 0, 1}}} }};
     static ccd_warm_t warm[BODIES][BODIES]; /* all zeros: cold */
-    static ccd_manifold_t memory[BODIES][BODIES]; /* the same for contacts */
+    static ccd_manifold_cache_t memory[BODIES][BODIES]; /* the same for contacts */
     ccd_contact_t contact[4];
     ccd_distance_t d;
     ccd_t ccd;

@@ -35,7 +35,7 @@ int main()
                            {{1, 0, 2}, {0, h, 0}, q},
                            {{1, 2, 3}, {}, 0, 0, {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}};
     std::vector<ccd::Warm> warm(body.size() * body.size());
-    std::vector<ccd::Manifold> memory(body.size() * body.size());
+    std::vector<ccd::ManifoldCache> memory(body.size() * body.size());
     for (int frame = 0; frame < 60; frame++) {
         int contacts = 0;
         Real nearest = std::numeric_limits<Real>::infinity();

@@ -3,7 +3,7 @@
 
 //! A small world: a box, a capsule and a pyramid fall on a table. One warm state for each pair.
 
-use ccd::{Contact, DistanceOptions, Manifold, Real, Settings, Shape, Warm};
+use ccd::{Contact, DistanceOptions, ManifoldCache, Real, Settings, Shape, Warm};
 
 /// Points, swept along x, y, z by `half`: the core; and a ball of `radius` all around it.
 struct Body {
@@ -42,7 +42,7 @@ fn main() -> Result<(), ccd::Error> {
         Body::new([1.0, 0.0, 2.0], [0.0, 0.5, 0.0], 0.25, &core),
         Body::new([1.0, 2.0, 3.0], [0.0; 3], 0.0, &pyramid),
     ];
-    let mut states = [[(Warm::default(), Manifold::default()); 4]; 4];
+    let mut states = [[(Warm::default(), ManifoldCache::default()); 4]; 4];
     for frame in 0..60 {
         let (mut count, mut nearest) = (0, Real::INFINITY);
         for body in &mut bodies[1..] {

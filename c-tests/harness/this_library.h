@@ -85,7 +85,7 @@ typedef struct {
     ccd_vec3_t *dir, *pos; /* dir: of ccdGJKSeparate too */
     ccd_penetration_t *penetration;
     ccd_distance_t *distance;
-    ccd_manifold_t *manifold;
+    ccd_manifold_cache_t *cache;
     ccd_contact_t *contacts;
 } call_args_t;
 
@@ -96,7 +96,7 @@ typedef struct {
 #define PASS_DEPTH_WARM(f) f(a, b, ccd, x->warm, x->depth, x->dir, x->pos)
 #define PASS_PENETRATION(f) f(a, b, ccd, x->warm, x->want, x->penetration)
 #define PASS_PENETRATION_ALONG(f) f(a, b, ccd, x->along, x->warm, x->want, x->penetration)
-#define PASS_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->manifold, x->contacts, x->max)
+#define PASS_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->cache, x->contacts, x->max)
 #define PASS_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
 
 static inline int call_library(int number, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x)

@@ -69,7 +69,7 @@ enum class Status : int {
     hit = CCD_HIT,             /**< overlap: every field is valid */
     limit = CCD_LIMIT,         /**< less exact than the tolerance: max_iterations or the library's cap came first */
     miss = CCD_MISS,           /**< apart */
-    no_memory = CCD_NO_MEMORY, /**< memory was needed and not to be had */
+    no_memory = CCD_NO_MEMORY, /**< an allocation failed */
     bad_input = CCD_BAD_INPUT  /**< a tolerance, a direction or a shape's answer is no number */
 };
 
@@ -97,7 +97,7 @@ struct Penetration {
     Vec3 pos;                     /**< contact position */
     Vec3 point1;                  /**< witness point of the first shape */
     Vec3 point2;                  /**< witness point of the second shape */
-    unsigned long support_calls = 0; /**< of each shape */
+    unsigned long support_points = 0; /**< half of the calls of both support functions */
     unsigned long iterations = 0;    /**< of the solver */
 
     /** Do they overlap? */
@@ -109,7 +109,7 @@ struct Contact {
     Vec3 point1;    /**< of the first shape */
     Vec3 point2;    /**< of the second shape: point1 - depth * normal */
     Real depth = 0; /**< metres; negative where the shapes are apart */
-    unsigned id = 0; /**< its name, not 0, while it moves with either shape; 0 without a memory */
+    unsigned id = 0; /**< contact id: the same while the contact moves with either shape, never 0; 0 without a cache */
 };
 
 /** Result of signed_distance. All fields but the status are zero where that is bad_input or no_memory. */
@@ -120,7 +120,7 @@ struct Distance {
     Vec3 normal;                  /**< unit; from the first shape to the second */
     Vec3 point1;                  /**< witness point of the first shape, on its surface with its margin */
     Vec3 point2;                  /**< of the second shape */
-    unsigned long support_calls = 0; /**< of each shape */
+    unsigned long support_points = 0; /**< half of the calls of both support functions */
     unsigned long iterations = 0;    /**< of the solver */
 
     /** Returns whether the other fields are valid. */
@@ -170,7 +170,7 @@ private:
 };
 
 /** Contact cache of one pair, in either order. A value: empty when value-initialised, may be copied. */
-using Manifold = ccd_manifold_t;
+using ManifoldCache = ccd_manifold_cache_t;
 
 /** Result of check. Lengths are metres. */
 struct Check {
@@ -255,7 +255,7 @@ inline Penetration penetration(int code, const ccd_penetration_t &out)
         p.pos = out.pos;
         p.point1 = out.point1;
         p.point2 = out.point2;
-        p.support_calls = out.support_calls;
+        p.support_points = out.support_points;
         p.iterations = out.iterations;
     }
     return p;
@@ -312,24 +312,24 @@ Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, 
         d.normal = out.normal;
         d.point1 = out.point1;
         d.point2 = out.point2;
-        d.support_calls = out.support_calls;
+        d.support_points = out.support_points;
         d.iterations = out.iterations;
     }
     return d;
 }
 
 /** Computes up to N contacts of the faces along normal, the deepest first (ccdContacts). Returns their
- * number, or the value of Status::bad_input. With a cache (Manifold memory{}) contacts keep their ids and
+ * number, or the value of Status::bad_input. With a cache contacts keep their ids and
  * take half the support points. */
 template <std::size_t N, class A, class B>
 int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<Contact, N> &out,
-             Manifold *memory = nullptr)
+             ManifoldCache *cache = nullptr)
 {
     const ccd_t c = detail::query<A, B>({});
     const ccd_vec3_t n = normal;
     ccd_contact_t found[N > 0 ? N : 1];
     const int count =
-        ccdContacts(std::addressof(a), std::addressof(b), &c, &n, slop, memory, found, static_cast<int>(N));
+        ccdContacts(std::addressof(a), std::addressof(b), &c, &n, slop, cache, found, static_cast<int>(N));
     for (int i = 0; i < count; i++) {
         Contact &point = out[static_cast<std::size_t>(i)];
         point.point1 = found[i].point1;

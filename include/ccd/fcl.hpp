@@ -149,8 +149,8 @@ public:
         return &state.warm;
     }
 
-    /** The memory of the pair's contacts, for ccdContacts, made at the first call for the pair; for either order. */
-    ccd_manifold_t *contacts(const void *first, const void *second)
+    /** The pair's cache for ccdContacts, for either order, made at the first call. */
+    ccd_manifold_cache_t *contacts(const void *first, const void *second)
     {
         const bool ordered = std::less<const void *>()(first, second);
         return ordered ? &contacts_.at(first, second, frame_) : &contacts_.at(second, first, frame_);
@@ -189,7 +189,7 @@ private:
     };
 
     detail::PairTable<State> states_;
-    detail::PairTable<ccd_manifold_t> contacts_;
+    detail::PairTable<ccd_manifold_cache_t> contacts_;
     unsigned long frame_ = 0;
 };
 
@@ -440,13 +440,13 @@ public:
     /* The points where the faces lie over each other, the deepest first; without those at
      * which the objects are apart. The first has the depth of the objects: where none of the
      * points is as deep to a thousandth, it is the middle of the overlap. */
-    template <typename Memory>
-    void add(std::size_t room, const Settings &settings, Memory memory)
+    template <typename Cache>
+    void add(std::size_t room, const Settings &settings, Cache cache)
     {
         const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
         const std::size_t wanted = std::min(std::min(room, settings.contacts_per_pair), MOST);
         ccd_contact_t found[MOST];
-        const int count = wanted > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.dir, slop_of(a_, b_, settings), memory(), found,
+        const int count = wanted > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.dir, slop_of(a_, b_, settings), cache(), found,
                                                   static_cast<int>(wanted))
                                     : 0;
         must_be_answered(count);
@@ -492,10 +492,10 @@ bool is_ours(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest
     return a.is_ours && b.is_ours && !request.enable_cost && request.num_max_contacts > 0;
 }
 
-/* Of two geometries that this library answers for. `memory` gives that of their contacts. */
-template <typename S, typename Memory>
+/* Of two geometries that this library answers for. `cache` returns that of their contacts. */
+template <typename S, typename Cache>
 std::size_t collide(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest<S> &request,
-                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings, Memory memory)
+                    fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings, Cache cache)
 {
     const std::size_t before = result.numContacts();
     if (before >= request.num_max_contacts)
@@ -505,7 +505,7 @@ std::size_t collide(const Placed<S> &a, const Placed<S> &b, const fcl::Collision
     if (!overlap(a, b, ccd, request.enable_contact, warm, &hit))
         return before;
     if (request.enable_contact)
-        Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - before, settings, memory);
+        Contacts<S>(a, b, ccd, hit, result).add(request.num_max_contacts - before, settings, cache);
     else
         result.addContact(fcl::Contact<S>(a.geometry, b.geometry, fcl::Contact<S>::NONE, fcl::Contact<S>::NONE));
     return result.numContacts();
@@ -550,7 +550,7 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
     const detail::Placed<S> a(g1, tf1), b(g2, tf2);
     if (!detail::is_ours(a, b, request))
         return fcl::collide(g1, tf1, g2, tf2, request, result);
-    return detail::collide(a, b, request, result, warm, settings, [] { return static_cast<ccd_manifold_t *>(nullptr); });
+    return detail::collide(a, b, request, result, warm, settings, [] { return static_cast<ccd_manifold_cache_t *>(nullptr); });
 }
 
 /** fcl::collide of two objects, with their state. */

@@ -186,7 +186,7 @@ typedef struct ccd_penetration_t {
   /**
    * Number of support points: half of the calls of support1 and support2 together, rounded up.
    */
-  unsigned long support_calls;
+  unsigned long support_points;
   /**
    * Number of iterations of the solver.
    */
@@ -263,7 +263,7 @@ typedef struct ccd_distance_t {
   /**
    * Number of support points: half of the calls of support1 and support2 together, rounded up.
    */
-  unsigned long support_calls;
+  unsigned long support_points;
   /**
    * Number of iterations of the solver.
    */
@@ -301,20 +301,19 @@ int ccdSignedDistance(const void *obj1,
 /* Contacts: where two objects touch. */
 
 /**
- * Number of reals in a ccd_manifold_t.
+ * Number of reals in a ccd_manifold_cache_t.
  */
-#define CCD_MANIFOLD_REALS 139
+#define CCD_MANIFOLD_CACHE_REALS 139
 
 /**
- * The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the
- * others. All bytes zero is cold; plain data, to be copied and stored freely. It serves either
- * order of the pair. A stale, foreign or random one costs time alone.
+ * Warm-start data of ccdContacts for one pair, in either order. All bytes zero: empty. Plain
+ * data: it may be copied and stored. Stale or random contents only cost time.
  */
-typedef struct ccd_manifold_t {
+typedef struct ccd_manifold_cache_t {
   /**
    * Private.
    */
-  float reals[CCD_MANIFOLD_REALS];
+  float reals[CCD_MANIFOLD_CACHE_REALS];
   /**
    * Private.
    */
@@ -323,7 +322,7 @@ typedef struct ccd_manifold_t {
    * Private.
    */
   unsigned int checksum;
-} ccd_manifold_t;
+} ccd_manifold_cache_t;
 
 /**
  * One point of a contact manifold.
@@ -344,7 +343,7 @@ typedef struct ccd_contact_t {
    */
   ccd_real_t depth;
   /**
-   * Its name, not 0, while it moves with obj1 or with obj2; 0 without a memory.
+   * Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache.
    */
   unsigned int id;
 } ccd_contact_t;
@@ -385,7 +384,7 @@ int ccdContacts(const void *obj1,
                 const ccd_t *ccd,
                 const ccd_vec3_t *normal,
                 ccd_real_t slop,
-                ccd_manifold_t *memory,
+                ccd_manifold_cache_t *cache,
                 ccd_contact_t *contacts,
                 int max);
 

@@ -53,7 +53,7 @@ static inline int run_wanting(int want, const call_t *entry, const void *a, cons
 {
     const ccd_vec3_t along = {{1, 2, -2}}, plane = {{0, 0, 3}}, up = {{0, 1, 0}};
     ccd_contact_t contacts[4];
-    ccd_manifold_t memory;
+    ccd_manifold_cache_t cache;
     ccd_penetration_t full;
     ccd_distance_t distance;
     ccd_warm_t warm;
@@ -73,8 +73,8 @@ static inline int run_wanting(int want, const call_t *entry, const void *a, cons
     rest.max = 4;
     rest.penetration = &full;
     rest.distance = &distance;
-    memset(&memory, 0, sizeof memory);
-    rest.manifold = &memory;
+    memset(&cache, 0, sizeof cache);
+    rest.cache = &cache;
     rest.contacts = contacts;
     if (number == CALL_CONTACTS) {
         code = call_library(number, a, b, ccd, &rest);

@@ -149,7 +149,7 @@ fn same(rust: Result<Option<Penetration>, Error>, (code, c): (c_int, ccd_penetra
     assert_eq!((hit.depth, hit.depth_lower), (c.depth, c.depth_lower));
     assert_eq!((hit.dir, hit.normal), (c.dir.v, c.normal.v));
     assert_eq!([hit.pos, hit.point1, hit.point2], [c.pos.v, c.point1.v, c.point2.v]);
-    assert_eq!(hit.support_calls as c_ulong, c.support_calls);
+    assert_eq!(hit.support_points as c_ulong, c.support_points);
     assert_eq!(hit.iterations as c_ulong, c.iterations);
 }
 
@@ -221,17 +221,17 @@ fn yes_or_no_and_distance(
     assert_eq!(d.limit, code == CCD_LIMIT);
     assert_eq!((d.distance, d.distance_upper), (out.distance, out.distance_upper));
     assert_eq!([d.normal, d.point1, d.point2], [out.normal.v, out.point1.v, out.point2.v]);
-    assert_eq!(d.support_calls as c_ulong, out.support_calls);
+    assert_eq!(d.support_points as c_ulong, out.support_points);
 }
 
 fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
     let mut room = [Contact::default(); 4];
-    let mut memory = ccd::Manifold::default();
+    let mut memory = ccd::ManifoldCache::default();
     let bodies: [Body; 2] = [a, b];
     let found = ccd::contacts(bodies[0], bodies[1], DIR, 0.01, Some(&mut memory), &mut room).expect("good input");
     let (a, b) = (object(a), object(b));
     let mut out = [const { MaybeUninit::<ccd_contact_t>::uninit() }; 4];
-    let mut manifold = MaybeUninit::<ccd_manifold_t>::zeroed();
+    let mut manifold = MaybeUninit::<ccd_manifold_cache_t>::zeroed();
     // SAFETY: live objects of their types, room for four.
     let count = unsafe {
         let (memory, room) = (manifold.as_mut_ptr(), out.as_mut_ptr().cast());
@@ -489,7 +489,7 @@ fn memory_from_malloc() {
     let ccd = in_c(&Settings::default(), true);
     let (code, out) = in_c_of(&CALLS[2], &a, &b, &ccd, null_mut(), CCD_WANT_ALL);
     assert_eq!(code, CCD_LIMIT);
-    assert!((out.depth - 1.5).abs() < 1e-4 && out.support_calls > 162);
+    assert!((out.depth - 1.5).abs() < 1e-4 && out.support_points > 162);
 }
 
 /// What asks one object or none.

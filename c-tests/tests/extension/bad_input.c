@@ -19,7 +19,7 @@ static const ccd_vec3_t way = {{1, 2, -2}}, up = {{0, 0, 3}}, across = {{2, 0, 0
 static int same_answer(const ccd_penetration_t *a, const ccd_penetration_t *b)
 {
     size_t reals = offsetof(ccd_penetration_t, point2) + sizeof a->point2;
-    return same_bits(a, b, reals) && a->support_calls == b->support_calls && a->iterations == b->iterations;
+    return same_bits(a, b, reals) && a->support_points == b->support_points && a->iterations == b->iterations;
 }
 
 static const ccd_vec3_t *dir_of(int call) { return call == CALL_PLANAR ? &up : &way; }
@@ -370,7 +370,7 @@ static void wanted(void)
                 shape_move(&other, 1.75, 0.25 + 0.002 * frame, 0.001 * frame);
                 CHECK(ask(query, &one, &other, &ccd, NULL, &warm[0], CCD_WANT_ALL, &all) == CCD_HIT, "%s", call_table[query].name);
                 CHECK(ask(query, &one, &other, &ccd, NULL, &warm[1], want, &out) == CCD_HIT, "%s", call_table[query].name);
-                cost[want] += frame ? out.support_calls : 0;
+                cost[want] += frame ? out.support_points : 0;
                 CHECK(fabs((double)(out.depth - all.depth)) <= 1e-6, "%s: depth %g", call_table[query].name, (double)out.depth);
                 for (int k = 0; k < 3; k++) {
                     const ccd_vec3_t *points[3] = {&out.pos, &out.point1, &out.point2};

@@ -19,7 +19,7 @@ static int share = 1; /* one scene in so many is made */
 static const int single = sizeof(ccd_real_t) == sizeof(float);
 static const double pi = 3.14159265358979323846;
 
-static ccd_manifold_t *memory_in_use; /* NULL: none */
+static ccd_manifold_cache_t *memory_in_use; /* NULL: none */
 
 typedef struct {
     shape_t a, b;
@@ -717,7 +717,7 @@ static void remembered(const char *what, shape_t table, shape_t body, int moves)
 {
     for (int run = 0; run < 2 * moves; run++) {
         const int move = run % moves, swaps = run >= moves;
-        static ccd_manifold_t memory;
+        static ccd_manifold_cache_t memory;
         motion_t m = {.by = {move == SLIDING ? 2e-3 : 0, move == SLIDING ? 1e-3 : move == ROLLING ? 2e-3 : 0, 0},
                       .drift = move == REST ? 0 : 0.05};
         scene_t start = {.a = table, .b = body, .slop = 1e-3};
@@ -786,7 +786,7 @@ static void tipping(void)
     static const double tilts[] = {0.3, 0.1, 0.02, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 5e-5, 0, 0, 1e-5, 1e-4, 1e-3, 5e-3, 0.1};
     static const double up[3] = {0, 0, 1};
     for (int i = 0; i < 400 / share; i++) {
-        static ccd_manifold_t memory;
+        static ccd_manifold_cache_t memory;
         const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_eps());
         const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
         memset(&memory, 0, sizeof memory);
@@ -805,7 +805,7 @@ static void tipping(void)
 static void garbage(void)
 {
     for (int i = 0; i < 20000 / share; i++) {
-        static ccd_manifold_t memory, good;
+        static ccd_manifold_cache_t memory, good;
         unsigned char *bytes = (unsigned char *)&memory;
         scene_t s;
         memory = good;
@@ -829,7 +829,7 @@ static void garbage(void)
                 bytes[random_below((int)sizeof memory)] ^= (unsigned char)(1 + random_below(255));
             break;
         case 2: /* no numbers */
-            for (int j = 0; j < CCD_MANIFOLD_REALS; j++)
+            for (int j = 0; j < CCD_MANIFOLD_CACHE_REALS; j++)
                 if (random_below(4) == 0)
                     memory.reals[j] = j % 3 ? (float)NAN : j % 2 ? (float)INFINITY : -1e30f;
             break;
@@ -873,7 +873,7 @@ static void fewer(void)
 
 int main(int argc, char **argv)
 {
-    static ccd_manifold_t memory;
+    static ccd_manifold_cache_t memory;
     share = argc > 1 ? atoi(argv[1]) : share;
     for (int round = 0; round < 3; round++) {
         /* The same scenes without a memory, with that of the last pair, with the pair's own. */

@@ -82,7 +82,7 @@ static void check_same(const char *name, const ccd::Penetration &p, int code, co
         return;
     CHECK(p.depth == out.depth && p.depth_lower == out.depth_lower && same(p.dir, out.dir) &&
               same(p.normal, out.normal) && same(p.pos, out.pos) && same(p.point1, out.point1) &&
-              same(p.point2, out.point2) && p.support_calls == out.support_calls && p.iterations == out.iterations,
+              same(p.point2, out.point2) && p.support_points == out.support_points && p.iterations == out.iterations,
           "%s", name);
 }
 
@@ -134,7 +134,7 @@ static void same_as_c()
             CHECK(int(distance.status) == code && distance, "distance");
             CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&
                       same(distance.normal, away.normal) && same(distance.point1, away.point1) &&
-                      same(distance.point2, away.point2) && distance.support_calls == away.support_calls &&
+                      same(distance.point2, away.point2) && distance.support_points == away.support_points &&
                       distance.iterations == away.iterations,
                   "distance");
 
@@ -149,8 +149,8 @@ static void same_as_c()
 
         ccd_contact_t c_contacts[4];
         std::array<ccd::Contact, 4> contacts;
-        ccd::Manifold memory{};
-        ccd_manifold_t c_memory{};
+        ccd::ManifoldCache memory{};
+        ccd_manifold_cache_t c_memory{};
         const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts, &memory);
         CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), &c_memory, c_contacts, 4) && count >= 1, "contacts");
         for (int k = 0; k < count; k++) {

@@ -52,9 +52,9 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
             digest_bytes(digest, &contact[i], offsetof(ccd_contact_t, id) + sizeof contact[i].id);
         digest_bytes(digest, &full, offsetof(ccd_penetration_t, point2) + sizeof full.point2);
         digest_bytes(digest, &distance, offsetof(ccd_distance_t, point2) + sizeof distance.point2);
-        digest_count(digest, distance.support_calls);
+        digest_count(digest, distance.support_points);
         digest_count(digest, distance.iterations);
-        digest_count(digest, full.support_calls);
+        digest_count(digest, full.support_points);
         digest_count(digest, full.iterations);
     }
     digest_count(digest, (uint64_t)a.calls);

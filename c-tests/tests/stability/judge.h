@@ -198,7 +198,7 @@ static inline void judge_distance(const ccd_distance_t *d, const call_args_t *x,
     out->distance = (double)d->distance;
     out->margins = (double)x->margin1 + (double)x->margin2;
     out->near = (double)x->max_distance;
-    out->supports = d->support_calls;
+    out->supports = d->support_points;
     out->depth = -(double)d->distance - out->margins;
     out->lower = -(double)d->distance_upper - out->margins;
     judge_vec(&d->normal, out->dir);
@@ -253,7 +253,7 @@ static inline void ask_once(const entry_t *e, const void *a, const void *b, cons
         dir = p.dir;
         pos = p.pos;
         out->lower = (double)p.depth_lower;
-        out->supports = p.support_calls;
+        out->supports = p.support_points;
         judge_vec(&p.normal, out->normal);
         judge_vec(&p.point1, out->point1);
         judge_vec(&p.point2, out->point2);

@@ -25,21 +25,20 @@ pub struct ccd_contact_t {
     /// Metres: at least the support value of normal less 2 slops in force; negative where the
     /// objects are apart.
     pub depth: Real,
-    /// Its name, not 0, while it moves with obj1 or with obj2; 0 without a memory.
+    /// Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache.
     pub id: c_uint,
 }
 
-/// Number of reals in a ccd_manifold_t.
-pub const CCD_MANIFOLD_REALS: usize = 139;
+/// Number of reals in a ccd_manifold_cache_t.
+pub const CCD_MANIFOLD_CACHE_REALS: usize = 139;
 
-/// The contacts of one pair between queries: for ccdContacts what a ccd_warm_t is for the
-/// others. All bytes zero is cold; plain data, to be copied and stored freely. It serves either
-/// order of the pair. A stale, foreign or random one costs time alone.
+/// Warm-start data of ccdContacts for one pair, in either order. All bytes zero: empty. Plain
+/// data: it may be copied and stored. Stale or random contents only cost time.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct ccd_manifold_t {
+pub struct ccd_manifold_cache_t {
     /// Private.
-    pub reals: [f32; CCD_MANIFOLD_REALS],
+    pub reals: [f32; CCD_MANIFOLD_CACHE_REALS],
     /// Private.
     pub words: [c_uint; 9],
     /// Private.
@@ -47,11 +46,11 @@ pub struct ccd_manifold_t {
 }
 
 const _: () = {
-    assert!(size_of::<ccd_manifold_t>() == size_of::<ManifoldCache>() + size_of::<c_uint>());
-    assert!(align_of::<ccd_manifold_t>() == align_of::<ManifoldCache>());
+    assert!(size_of::<ccd_manifold_cache_t>() == size_of::<ManifoldCache>() + size_of::<c_uint>());
+    assert!(align_of::<ccd_manifold_cache_t>() == align_of::<ManifoldCache>());
 };
 
-impl ccd_manifold_t {
+impl ccd_manifold_cache_t {
     /// Returns the checksum of all numbers; 0 where all are zero.
     fn sum(&self) -> c_uint {
         let bits = self.reals.iter().map(|x| x.to_bits());
@@ -97,7 +96,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     ccd: *const ccd_t,
     normal: *const ccd_vec3_t,
     slop: Real,
-    memory: *mut ccd_manifold_t,
+    cache: *mut ccd_manifold_cache_t,
     contacts: *mut ccd_contact_t,
     max: c_int,
 ) -> c_int {
@@ -111,27 +110,27 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     };
     let max = (max as usize).min(manifold::MAX_CONTACTS);
     // SAFETY: [inputs]; every bit pattern is a ManifoldCache, which is all but the checksum.
-    let mut known = unsafe { memory.as_ref() }.map(|memory| {
-        if memory.checksum == memory.sum() {
+    let mut updated = unsafe { cache.as_ref() }.map(|cache| {
+        if cache.checksum == cache.sum() {
             // SAFETY: [inputs]; the cache is the first part of what was read.
-            unsafe { *(&raw const *memory).cast::<ManifoldCache>() }
+            unsafe { *(&raw const *cache).cast::<ManifoldCache>() }
         } else {
             ManifoldCache::default()
         }
     });
-    let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop.into(), known.as_mut(), max)
+    let Ok(manifold) = manifold::contacts(&one, &two, &normal, slop.into(), updated.as_mut(), max)
     else {
         return CCD_BAD_INPUT;
     };
-    if let Some(known) = known {
+    if let Some(updated) = updated {
         // SAFETY: [outputs].
         unsafe {
-            *memory.cast::<ManifoldCache>() = known;
-            (*memory).checksum = (*memory).sum();
+            *cache.cast::<ManifoldCache>() = updated;
+            (*cache).checksum = (*cache).sum();
         }
     }
     for (i, contact) in manifold.iter().enumerate() {
-        // SAFETY: [outputs]; `contacts` has room for `max`. What is between the fields stays.
+        // SAFETY: [outputs]; `contacts` has room for `max`. Padding is left unchanged.
         unsafe {
             let out = contacts.add(i);
             (&raw mut (*out).point1).write(contact.point1.into());

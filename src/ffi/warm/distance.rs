@@ -34,7 +34,7 @@ pub struct ccd_distance_t {
     /// Witness point on the surface of obj2 with its margin, CCD_WANT_POINTS.
     pub point2: ccd_vec3_t,
     /// Number of support points: half of the calls of support1 and support2 together, rounded up.
-    pub support_calls: c_ulong,
+    pub support_points: c_ulong,
     /// Number of iterations of the solver.
     pub iterations: c_ulong,
 }
@@ -47,7 +47,7 @@ impl ccd_distance_t {
             normal: distance.normal.into(),
             point1: point_if(want & CCD_WANT_POINTS, &distance.point1),
             point2: point_if(want & CCD_WANT_POINTS, &distance.point2),
-            support_calls: supports as c_ulong,
+            support_points: supports as c_ulong,
             iterations: distance.iterations as c_ulong,
         }
     }

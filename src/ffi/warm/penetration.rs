@@ -51,7 +51,7 @@ pub struct ccd_penetration_t {
     /// Witness point of obj2, CCD_WANT_POINTS: as point1.
     pub point2: ccd_vec3_t,
     /// Number of support points: half of the calls of support1 and support2 together, rounded up.
-    pub support_calls: c_ulong,
+    pub support_points: c_ulong,
     /// Number of iterations of the solver.
     pub iterations: c_ulong,
 }
@@ -74,7 +74,7 @@ impl ccd_penetration_t {
             pos: point_if(want & CCD_WANT_POS, &hit.pos),
             point1: point_if(want & CCD_WANT_POINTS, &hit.point1),
             point2: point_if(want & CCD_WANT_POINTS, &hit.point2),
-            support_calls: supports as c_ulong,
+            support_points: supports as c_ulong,
             iterations: hit.iterations as c_ulong,
         }
     }
