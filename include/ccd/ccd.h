@@ -36,7 +36,7 @@ typedef struct _ccd_t {
     ccd_support_fn support2;      /**< support function of obj2 */
     ccd_center_fn center1;        /**< center of obj1, for the MPR queries */
     ccd_center_fn center2;        /**< center of obj2, for the MPR queries */
-    unsigned long max_iterations; /**< limit on the iterations of every loop */
+    unsigned long max_iterations; /**< limit on the support points of a query after its first tetrahedron */
     ccd_real_t epa_tolerance;     /**< largest error of a GJK query's depth, metres */
     ccd_real_t mpr_tolerance;     /**< largest error of an MPR query's depth, metres */
     ccd_real_t dist_tolerance;    /**< largest error of ccdSignedDistance, metres */
@@ -61,8 +61,8 @@ CCD_EXPORT void ccdFirstDirDefault(const void *o1, const void *o2, ccd_vec3_t *d
     } while (0)
 
 /** Reports whether the objects overlap, by GJK. Calls first_dir, no center. Reads no tolerance.
- * Allocates nothing. Returns 1 when they overlap; 0 when they are apart or touch within rounding,
- * when a required callback is NULL or a point is not finite. */
+ * Allocates nothing. Returns 1 if they overlap; 0 if they are apart or touch within rounding,
+ * if a required callback is NULL or a point is not finite. */
 CCD_EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
 /** Computes the shortest translation of obj2 that separates the objects: sep = depth * dir, metres;
@@ -70,12 +70,13 @@ CCD_EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *
 CCD_EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *ccd,
                               ccd_vec3_t *sep);
 
-/** Computes the globally least penetration depth. Calls first_dir, no center.
+/** Computes the penetration depth, the least translation that separates the objects, proven within
+ * epa_tolerance. Calls first_dir, no center.
  *
  * depth: metres. dir: unit. pos: the contact position, the center of pressure. Each may be NULL.
  * Reads epa_tolerance; after 320 support points or max_iterations iterations depth is a sound
- * upper bound. Allocates, and frees before it returns, only where the minima (nearly) form a curve
- * or a surface.
+ * upper bound. Allocates, and frees before it returns, only if the minimum is (nearly) not
+ * unique, as for coaxial cylinders and concentric spheres.
  * Returns  0 when the objects overlap;
  *         -1 when they are apart or touch within rounding, when a required callback is NULL or a
  *            point is not finite; -2 when malloc fails. The outputs are unchanged then. */
@@ -86,15 +87,15 @@ CCD_EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t
  * first_dir. Reads no tolerance. Allocates nothing. Returns the values of ccdGJKIntersect. */
 CCD_EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
-/** Computes the penetration depth. Calls the centers, which must lie in their objects, not
- * first_dir; a center outside makes the result wrong.
+/** Computes the penetration depth, the least translation that separates the objects. Calls the
+ * centers, which must lie in their objects, not first_dir; a center outside makes the result wrong.
  *
  * depth, dir, pos: as of ccdGJKPenetration.
  * Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
- * depth, the larger of the two. After 160 support points or max_iterations iterations (one for
- * each support point after the first tetrahedron), as of nearly concentric round objects, depth is
- * a sound upper bound; ccdPenetration reports this case. Allocates nothing; uses at most 44 KB of
- * stack on x86-64.
+ * depth, the larger of the two. If 160 support points or max_iterations are used up first, as for
+ * nearly concentric round objects, a local search follows and depth is an upper bound of the least
+ * depth; ccdPenetration reports this case. Allocates nothing; uses at most 44 KB of stack on
+ * x86-64.
  * Returns 0 or -1, as ccdGJKPenetration does. */
 CCD_EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd,
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);

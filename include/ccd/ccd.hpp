@@ -10,7 +10,7 @@
  *     V center() const;                        a point inside it, the deeper the better; or centre()
  *
  * where V is ccd::Vec3, ccd_vec3_t or anything with v[0], v[1], v[2] (std::array, the vectors
- * of the usual libraries). center() may be missing, but for what has MPR in its name; where both
+ * of the usual libraries). center() is optional, except for mpr_penetration and mpr_intersect; if both
  * shapes have it, it saves calls of support().
  *
  *     ccd::Warm warm;                               // one for each pair, kept between frames
@@ -70,7 +70,7 @@ enum class Status : int {
     limit = CCD_LIMIT,         /**< less exact than the tolerance: max_iterations or the library's cap came first */
     miss = CCD_MISS,           /**< apart */
     no_memory = CCD_NO_MEMORY, /**< an allocation failed */
-    bad_input = CCD_BAD_INPUT  /**< a tolerance, a direction or a shape's answer is no number */
+    bad_input = CCD_BAD_INPUT  /**< a tolerance, a direction or a point is NaN or infinite */
 };
 
 /** Optional outputs, combined by `|`. Depth, bounds and directions are always written. */
@@ -83,24 +83,24 @@ enum Want : unsigned {
 /** Tolerance, iteration limit and optional outputs of a query. */
 struct Settings {
     Real tolerance = CCD_REAL(1e-4);                               /**< largest error of the depth, metres */
-    unsigned long max_iterations = static_cast<unsigned long>(-1); /**< cap on every loop */
-    unsigned want = want_all;                                      /**< what is not wanted is zero */
+    unsigned long max_iterations = static_cast<unsigned long>(-1); /**< as in ccd_t */
+    unsigned want = want_all;                                      /**< optional outputs; the others are zero */
 };
 
-/** An overlap. Zero but for the status unless that is hit or limit. */
+/** Result of a penetration query. All fields except the status are zero unless that is hit or limit. */
 struct Penetration {
     Status status = Status::miss; /**< hit and limit: there is an answer */
     Real depth = 0;               /**< metres, >= 0: moving the second shape by depth * dir separates them */
-    Real depth_lower = 0;         /**< proven lower bound on the least depth, 0 where there is none */
-    Vec3 dir;                     /**< unit; the way the second shape moves */
-    Vec3 normal;                  /**< unit; of the separating plane; dir but in penetration_along */
+    Real depth_lower = 0;         /**< lower bound of the least depth, 0 if there is none */
+    Vec3 dir;                     /**< unit; moving the second shape along it separates the shapes */
+    Vec3 normal;                  /**< unit; of the separating plane; equal to dir except in penetration_along */
     Vec3 pos;                     /**< contact position */
     Vec3 point1;                  /**< witness point of the first shape */
     Vec3 point2;                  /**< witness point of the second shape */
     unsigned long support_points = 0; /**< half of the calls of both support functions */
     unsigned long iterations = 0;    /**< of the solver */
 
-    /** Do they overlap? */
+    /** Returns whether the shapes overlap. */
     explicit operator bool() const { return status == Status::hit || status == Status::limit; }
 };
 
@@ -131,7 +131,7 @@ struct Distance {
 struct DistanceOptions {
     Real margin1 = 0; /**< radius of a ball added all around the first shape */
     Real margin2 = 0; /**< and around the second */
-    Real max_distance = std::numeric_limits<Real>::infinity(); /**< what is farther is not refined */
+    Real max_distance = std::numeric_limits<Real>::infinity(); /**< greater distances are not refined */
 };
 
 /** Result of gjk_separate. `sep` is zero unless the status is hit. */
@@ -139,7 +139,7 @@ struct Separation {
     Status status = Status::miss; /**< hit: there is an answer */
     Vec3 sep;                     /**< metres: moving the second shape by it separates them */
 
-    /** Do they overlap? */
+    /** Returns whether the shapes overlap. */
     explicit operator bool() const { return status == Status::hit; }
 };
 
@@ -149,8 +149,8 @@ public:
     /** Cold. */
     Warm() = default;
 
-    /** A fresh state that starts from dir, a guess of the way the second shape leaves: of any
-     * length; zero or no number is cold. */
+    /** A new state that starts from dir, a guess of the direction in which the second shape separates, of
+     * any length; zero or not finite: cold. */
     static Warm guess(const Vec3 &dir)
     {
         Warm warm;
@@ -175,7 +175,7 @@ using ManifoldCache = ccd_manifold_cache_t;
 /** Result of check. Lengths are metres. */
 struct Check {
     unsigned faults = 0;     /**< CCD_CHECK_ flags of warm.h; 0: nothing */
-    Real size = 0;           /**< the greatest width of the shape, about */
+    Real size = 0;           /**< approximate greatest width of the shape */
     Real noise = 0;          /**< how far a point lies beyond another's support plane, at most */
     Real change = 0;         /**< how far a support point moved when queried again, at most */
     Real center_outside = 0; /**< how far the center lies outside; negative: how deep inside */
@@ -222,7 +222,7 @@ constexpr ccd_center_fn centre_of()
 }
 
 template <class A, class B>
-ccd_t query(const Settings &settings)
+ccd_t make_ccd(const Settings &settings)
 {
     ccd_t c;
     CCD_INIT(&c);
@@ -236,7 +236,7 @@ ccd_t query(const Settings &settings)
 }
 
 template <class A, class B>
-constexpr void needs_centres()
+constexpr void require_centers()
 {
     static_assert(has_centre<A>::value && has_centre<B>::value, "MPR needs the center() of both shapes");
 }
@@ -261,9 +261,9 @@ inline Penetration penetration(int code, const ccd_penetration_t &out)
     return p;
 }
 
-/* libccd's three outputs; pos where it is wanted. */
+/* Calls a query with libccd's three outputs; pos only if it is requested. */
 template <class Query>
-Penetration libccd(const Settings &settings, Query query)
+Penetration call_libccd(const Settings &settings, Query query)
 {
     ccd_penetration_t out{};
     const int code = query(&out.depth, &out.dir, settings.want & want_pos ? &out.pos : nullptr);
@@ -273,34 +273,34 @@ Penetration libccd(const Settings &settings, Query query)
 
 } // namespace detail
 
-/** The penetration depth, the least within the larger of the tolerance and 0.1 % of it: the call
- * to take unless one below says what is wanted better. ccdPenetration. */
+/** Computes the penetration depth within the larger of the tolerance and 0.1 % (ccdPenetration). The
+ * default query. */
 template <class A, class B>
 Penetration penetration(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     ccd_penetration_t out{};
     const int code =
         ccdPenetration(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
     return detail::penetration(code, out);
 }
 
-/** Do the shapes overlap? (A touch is none.) ccdIntersect. A pair that stays apart costs one call of
- * each support() while its last separating direction still separates. */
+/** Returns whether the shapes overlap; touching shapes do not (ccdIntersect). With a state a separated pair
+ * costs one call of each support() while its last separating axis still separates. */
 template <class A, class B>
 bool intersect(const A &a, const B &b, Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>({});
+    const ccd_t c = detail::make_ccd<A, B>({});
     return ccdIntersect(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
 }
 
-/** Computes the signed distance: positive apart, negative overlapping, continuous through the touch
+/** Computes the signed distance: positive apart, negative overlapping, continuous at contact
  * (ccdSignedDistance). Each shape is inflated by its margin. */
 template <class A, class B>
 Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, const DistanceOptions &options = {},
                          Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     ccd_distance_t out{};
     Distance d;
     d.status = static_cast<Status>(ccdSignedDistance(std::addressof(a), std::addressof(b), &c, options.margin1,
@@ -319,13 +319,13 @@ Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, 
 }
 
 /** Computes up to N contacts of the faces along normal, the deepest first (ccdContacts). Returns their
- * number, or the value of Status::bad_input. With a cache contacts keep their ids and
- * take half the support points. */
+ * number, or the value of Status::bad_input. With a cache contacts keep their ids
+ * and take half the support calls. */
 template <std::size_t N, class A, class B>
 int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<Contact, N> &out,
              ManifoldCache *cache = nullptr)
 {
-    const ccd_t c = detail::query<A, B>({});
+    const ccd_t c = detail::make_ccd<A, B>({});
     const ccd_vec3_t n = normal;
     ccd_contact_t found[N > 0 ? N : 1];
     const int count =
@@ -340,23 +340,22 @@ int contacts(const A &a, const B &b, const Vec3 &normal, Real slop, std::array<C
     return count;
 }
 
-/** A local minimum of the depth, from the state, else from the centres, by a walk on known
- * vertices: ccdPenetrationLocal. */
+/** Computes a local minimum of the depth, from the state, else from the centers (ccdPenetrationLocal). */
 template <class A, class B>
 Penetration penetration_local(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     ccd_penetration_t out{};
     const int code =
         ccdPenetrationLocal(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
     return detail::penetration(code, out);
 }
 
-/** The least depth with its proof, depth - depth_lower <= tolerance: ccdPenetrationProven. */
+/** Computes the least depth, proven: depth - depth_lower <= tolerance (ccdPenetrationProven). */
 template <class A, class B>
 Penetration penetration_proven(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     ccd_penetration_t out{};
     const int code =
         ccdPenetrationProven(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
@@ -368,7 +367,7 @@ template <class A, class B>
 Penetration penetration_along(const A &a, const B &b, const Vec3 &dir, const Settings &settings = {},
                               Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     const ccd_vec3_t d = dir;
     ccd_penetration_t out{};
     const int code =
@@ -376,13 +375,13 @@ Penetration penetration_along(const A &a, const B &b, const Vec3 &dir, const Set
     return detail::penetration(code, out);
 }
 
-/** For shapes in a common plane with this normal (of any length), an answer in that plane:
- * ccdPenetrationPlanar. */
+/** Computes a local minimum of the depth over the directions in a plane with this normal, of any length, for
+ * shapes that lie in such a plane (ccdPenetrationPlanar). */
 template <class A, class B>
 Penetration penetration_planar(const A &a, const B &b, const Vec3 &plane_normal, const Settings &settings = {},
                                Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     const ccd_vec3_t n = plane_normal;
     ccd_penetration_t out{};
     const int code =
@@ -390,52 +389,52 @@ Penetration penetration_planar(const A &a, const B &b, const Vec3 &plane_normal,
     return detail::penetration(code, out);
 }
 
-/** A local minimum by the paper's method as published: ccdPenetrationIncremental of paper.h. */
+/** Computes a local minimum by the paper's method as published (ccdPenetrationIncremental). */
 template <class A, class B>
 Penetration penetration_incremental(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     ccd_penetration_t out{};
     const int code =
         ccdPenetrationIncremental(std::addressof(a), std::addressof(b), &c, detail::state(warm), settings.want, &out);
     return detail::penetration(code, out);
 }
 
-/** libccd's MPR, with a state: ccdMPRPenetrationWarm, which answers depth, dir and pos. */
+/** Computes depth, dir and pos as libccd's call ccdMPRPenetration, with a state (ccdMPRPenetrationWarm). */
 template <class A, class B>
 Penetration mpr_penetration(const A &a, const B &b, const Settings &settings = {}, Warm *warm = nullptr)
 {
-    detail::needs_centres<A, B>();
-    const ccd_t c = detail::query<A, B>(settings);
-    return detail::libccd(settings, [&](Real *depth, ccd_vec3_t *dir, ccd_vec3_t *pos) {
+    detail::require_centers<A, B>();
+    const ccd_t c = detail::make_ccd<A, B>(settings);
+    return detail::call_libccd(settings, [&](Real *depth, ccd_vec3_t *dir, ccd_vec3_t *pos) {
         return ccdMPRPenetrationWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm), depth, dir, pos);
     });
 }
 
-/** libccd's yes or no by MPR, with a state: ccdMPRIntersectWarm. */
+/** Returns whether the shapes overlap, as libccd's call ccdMPRIntersect, with a state (ccdMPRIntersectWarm). */
 template <class A, class B>
 bool mpr_intersect(const A &a, const B &b, Warm *warm = nullptr)
 {
-    detail::needs_centres<A, B>();
-    const ccd_t c = detail::query<A, B>({});
+    detail::require_centers<A, B>();
+    const ccd_t c = detail::make_ccd<A, B>({});
     return ccdMPRIntersectWarm(std::addressof(a), std::addressof(b), &c, detail::state(warm)) == 1;
 }
 
-/** libccd's GJK and EPA, without centres: ccdGJKPenetration, which answers depth, dir and pos. */
+/** Computes depth, dir and pos without centers (ccdGJKPenetration). */
 template <class A, class B>
 Penetration gjk_penetration(const A &a, const B &b, const Settings &settings = {})
 {
-    const ccd_t c = detail::query<A, B>(settings);
-    return detail::libccd(settings, [&](Real *depth, ccd_vec3_t *dir, ccd_vec3_t *pos) {
+    const ccd_t c = detail::make_ccd<A, B>(settings);
+    return detail::call_libccd(settings, [&](Real *depth, ccd_vec3_t *dir, ccd_vec3_t *pos) {
         return ccdGJKPenetration(std::addressof(a), std::addressof(b), &c, depth, dir, pos);
     });
 }
 
-/** The shortest translation of b that separates the shapes, without centres: ccdGJKSeparate. */
+/** Computes the shortest translation of b that separates the shapes, without centers (ccdGJKSeparate). */
 template <class A, class B>
 Separation gjk_separate(const A &a, const B &b, const Settings &settings = {})
 {
-    const ccd_t c = detail::query<A, B>(settings);
+    const ccd_t c = detail::make_ccd<A, B>(settings);
     ccd_vec3_t sep{};
     Separation s;
     s.status = static_cast<Status>(ccdGJKSeparate(std::addressof(a), std::addressof(b), &c, &sep));
@@ -444,11 +443,11 @@ Separation gjk_separate(const A &a, const B &b, const Settings &settings = {})
     return s;
 }
 
-/** libccd's yes or no by GJK, without centres: ccdGJKIntersect. */
+/** Returns whether the shapes overlap, without centers (ccdGJKIntersect). */
 template <class A, class B>
 bool gjk_intersect(const A &a, const B &b)
 {
-    const ccd_t c = detail::query<A, B>({});
+    const ccd_t c = detail::make_ccd<A, B>({});
     return ccdGJKIntersect(std::addressof(a), std::addressof(b), &c) == 1;
 }
 

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The queries of warm.h for programs on FCL 0.7, with a state for each pair of objects: header
- * only, C++11, with FCL of double or float over this library of double or float (the answers
- * are as exact as the coarser of the two).
+ * only, C++11, for FCL in double or float on this library in double or float (results are
+ * as exact as the coarser of the two).
  *
  *     ccd_fcl::PairCache cache;                      // kept between frames, one for each thread
  *     ...
@@ -11,13 +11,13 @@
  *     data.request.enable_contact = true;
  *     data.request.num_max_contacts = 1000;
  *     manager.collide(&data, ccd_fcl::CollisionFunction<double>);
- *     cache.next_frame();                            // lets go of pairs no longer met
+ *     cache.next_frame();                            // drops the pairs not used in this frame
  *
- * Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder, Convex and TriangleP are put to this
- * library; spheres and capsules as a point and a segment with a margin, which is exact and the
- * cheapest. Every other geometry (meshes, octrees, planes, half spaces), costs, and geometries
- * that are not marked as occupied go to fcl::collide and fcl::distance, as ever. Of a request
- * its solver and its cached guess are not read: a state takes their place.
+ * Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder, Convex and TriangleP are handled by
+ * this library; spheres and capsules as a point and a segment with a margin, which is exact and
+ * fastest. All other geometries (meshes, octrees, planes, half spaces), cost queries, and
+ * geometries that are not marked as occupied are passed to fcl::collide and fcl::distance. The
+ * solver type and the cached guess of a request are ignored: the pair's state replaces them.
  *
  * Signs and order are FCL's: a contact's normal points from the first object to the second,
  * penetration_depth is positive, pos lies midway between the two surfaces; nearest_points are
@@ -55,12 +55,12 @@ namespace ccd_fcl {
 /** @cond the header's own */
 namespace detail {
 
-/* A value for each pair of objects, in the order in which the pairs were first met, which is
- * about the order in which they are met again. */
+/* Hash map from a pair of objects to a value. Entries are stored in order of insertion, which is
+ * about the order of the next frame's queries. */
 template <typename Value>
 class PairTable {
 public:
-    /* The pair's value, made where there is none; good until the next call of this object. */
+    /* Returns the pair's value, made if there is none; valid until the next call of this object. */
     Value &at(const void *low, const void *high, unsigned long frame)
     {
         if (2 * (entries_.size() + 1) > index_.size())
@@ -195,11 +195,11 @@ private:
 
 /** Settings of collide. */
 struct Settings {
-    /** Most contacts of one pair where the request has room for more than one; 1: the middle
-     * of the overlap alone. */
+    /** Largest number of contacts of one pair, if the request has room for more than one; 1: only
+     * the middle of the overlap. */
     std::size_t contacts_per_pair = 8;
-    /** Metres: how far below its face a corner may lie and still carry (ccdContacts);
-     * negative: a thousandth of the smaller object's radius. */
+    /** Metres: largest distance of a corner below its support plane at which it still belongs to the
+     * contact face (ccdContacts); negative: a thousandth of the smaller aabb_radius. */
     double slop = -1;
 };
 
@@ -223,9 +223,9 @@ struct DistanceData : fcl::DefaultDistanceData<S> {
 /** @cond the header's own */
 namespace detail {
 
-/* Up to this many vertices are looked through here; FCL climbs over the edges of more, but
- * takes memory for each support point. */
-const std::size_t SCANNED = 128;
+/* Largest number of vertices for a linear search. Above it FCL's hill climbing is used, which
+ * allocates in every call. */
+const std::size_t MAX_LINEAR_SEARCH = 128;
 
 const unsigned long CONVEX_TYPES = 1ul << fcl::GEOM_BOX | 1ul << fcl::GEOM_SPHERE | 1ul << fcl::GEOM_ELLIPSOID
                                    | 1ul << fcl::GEOM_CAPSULE | 1ul << fcl::GEOM_CONE | 1ul << fcl::GEOM_CYLINDER
@@ -239,13 +239,13 @@ struct Placed {
     Placed(const fcl::CollisionGeometry<S> *shape, const fcl::Transform3<S> &at)
         : geometry(shape), pose(&at), type(shape->getNodeType())
     {
-        is_ours = shape->isOccupied() && (CONVEX_TYPES >> type & 1) != 0;
+        is_supported = shape->isOccupied() && (CONVEX_TYPES >> type & 1) != 0;
         if (type == fcl::GEOM_SPHERE)
             margin = as<fcl::Sphere<S>>().radius;
         else if (type == fcl::GEOM_CAPSULE)
             margin = as<fcl::Capsule<S>>().radius;
         else if (type == fcl::GEOM_CONVEX && as<fcl::Convex<S>>().getVertices().empty())
-            is_ours = false;
+            is_supported = false;
     }
 
     template <typename Shape>
@@ -303,7 +303,7 @@ struct Placed {
         }
         case fcl::GEOM_CONVEX: {
             const auto &vertices = as<fcl::Convex<S>>().getVertices();
-            return vertices.size() <= SCANNED ? farthest(vertices.data(), vertices.size(), d)
+            return vertices.size() <= MAX_LINEAR_SEARCH ? farthest(vertices.data(), vertices.size(), d)
                                               : as<fcl::Convex<S>>().findExtremeVertex(d);
         }
         case fcl::GEOM_TRIANGLE: {
@@ -329,7 +329,7 @@ struct Placed {
     const fcl::CollisionGeometry<S> *geometry;
     const fcl::Transform3<S> *pose;
     fcl::NODE_TYPE type;
-    bool is_ours; /* whether this library answers for the geometry */
+    bool is_supported; /* whether this library handles the geometry */
     S margin = 0;
 };
 
@@ -372,12 +372,12 @@ ccd_t query(S tolerance)
     return c;
 }
 
-inline void must_be_answered(int code)
+inline void throw_on_error(int code)
 {
     if (code == CCD_NO_MEMORY)
         throw std::bad_alloc();
     if (code == CCD_BAD_INPUT)
-        throw std::invalid_argument("ccd/fcl.hpp: a pose, a shape or a tolerance is no number");
+        throw std::invalid_argument("ccd/fcl.hpp: a pose, a shape or a tolerance is NaN or infinite");
 }
 
 template <typename S>
@@ -386,7 +386,7 @@ int distance_of(const Placed<S> &a, const Placed<S> &b, const ccd_t &ccd, ccd_re
 {
     const int code = ccdSignedDistance(&a, &b, &ccd, static_cast<ccd_real_t>(a.margin), static_cast<ccd_real_t>(b.margin),
                                        farthest, warm, want, d);
-    must_be_answered(code);
+    throw_on_error(code);
     return code;
 }
 
@@ -397,11 +397,11 @@ bool overlap(const Placed<S> &a, const Placed<S> &b, ccd_t &ccd, bool contact, c
 {
     if (!(a.margin > 0 || b.margin > 0)) {
         const int code = contact ? ccdPenetration(&a, &b, &ccd, warm, CCD_WANT_POS, hit) : ccdIntersect(&a, &b, &ccd, warm);
-        must_be_answered(code);
+        throw_on_error(code);
         return contact ? code >= 0 : code == 1;
     }
-    /* A thousandth of both margins is enough for cores that overlap, which are deeper than that. Of
-     * others the bounds tell whether it was. */
+    /* First with a tolerance of a thousandth of the margins, which is exact enough if the cores overlap,
+     * because the depth exceeds the margins. */
     const ccd_real_t tolerance = ccd.dist_tolerance;
     const unsigned want = contact ? CCD_WANT_POINTS : 0;
     ccd_distance_t d;
@@ -437,19 +437,19 @@ public:
     {
     }
 
-    /* The points where the faces lie over each other, the deepest first; without those at
-     * which the objects are apart. The first has the depth of the objects: where none of the
-     * points is as deep to a thousandth, it is the middle of the overlap. */
+    /* Adds the contacts of the overlapping faces, the deepest first, without those at which the
+     * objects are apart. The first has the depth of the objects: if no contact is as deep to a
+     * thousandth, it is the middle of the overlap. */
     template <typename Cache>
     void add(std::size_t room, const Settings &settings, Cache cache)
     {
-        const std::size_t MOST = 16; /* twice the corners of the largest face that is not inscribed */
-        const std::size_t wanted = std::min(std::min(room, settings.contacts_per_pair), MOST);
-        ccd_contact_t found[MOST];
+        const std::size_t MAX_CONTACTS = 16; /* two octagons, clipped */
+        const std::size_t wanted = std::min(std::min(room, settings.contacts_per_pair), MAX_CONTACTS);
+        ccd_contact_t found[MAX_CONTACTS];
         const int count = wanted > 1 ? ccdContacts(&a_, &b_, &ccd_, &hit_.dir, slop_of(a_, b_, settings), cache(), found,
                                                   static_cast<int>(wanted))
                                     : 0;
-        must_be_answered(count);
+        throw_on_error(count);
         const S depth = static_cast<S>(hit_.depth), least = depth - std::max(static_cast<S>(ccd_.mpr_tolerance), depth / 1000);
         std::size_t added = 0;
         if (count == 0 || !(depth_of(found[0]) >= least)) {
@@ -487,12 +487,12 @@ private:
 
 /* Returns whether this library handles the pair and the request. */
 template <typename S>
-bool is_ours(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest<S> &request)
+bool is_supported(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest<S> &request)
 {
-    return a.is_ours && b.is_ours && !request.enable_cost && request.num_max_contacts > 0;
+    return a.is_supported && b.is_supported && !request.enable_cost && request.num_max_contacts > 0;
 }
 
-/* Of two geometries that this library answers for. `cache` returns that of their contacts. */
+/* Collides two supported geometries. `cache` returns their contact cache. */
 template <typename S, typename Cache>
 std::size_t collide(const Placed<S> &a, const Placed<S> &b, const fcl::CollisionRequest<S> &request,
                     fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings, Cache cache)
@@ -511,7 +511,7 @@ std::size_t collide(const Placed<S> &a, const Placed<S> &b, const fcl::Collision
     return result.numContacts();
 }
 
-/* Of two geometries that this library answers for. */
+/* Computes the distance of two supported geometries. */
 template <typename S>
 S distance(const Placed<S> &a, const Placed<S> &b, const fcl::DistanceRequest<S> &request, fcl::DistanceResult<S> &result,
            ccd_warm_t *warm)
@@ -533,10 +533,10 @@ S distance(const Placed<S> &a, const Placed<S> &b, const fcl::DistanceRequest<S>
 
 /** Returns whether this library handles the pair, rather than FCL. */
 template <typename S>
-bool is_ours(const fcl::CollisionGeometry<S> *a, const fcl::CollisionGeometry<S> *b)
+bool is_supported(const fcl::CollisionGeometry<S> *a, const fcl::CollisionGeometry<S> *b)
 {
     const fcl::Transform3<S> anywhere = fcl::Transform3<S>::Identity();
-    return detail::Placed<S>(a, anywhere).is_ours && detail::Placed<S>(b, anywhere).is_ours;
+    return detail::Placed<S>(a, anywhere).is_supported && detail::Placed<S>(b, anywhere).is_supported;
 }
 
 /** fcl::collide of two geometries in their poses, with a state (NULL: cold). Depths within the
@@ -548,7 +548,7 @@ std::size_t collide(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S
                     fcl::CollisionResult<S> &result, ccd_warm_t *warm, const Settings &settings = Settings())
 {
     const detail::Placed<S> a(g1, tf1), b(g2, tf2);
-    if (!detail::is_ours(a, b, request))
+    if (!detail::is_supported(a, b, request))
         return fcl::collide(g1, tf1, g2, tf2, request, result);
     return detail::collide(a, b, request, result, warm, settings, [] { return static_cast<ccd_manifold_cache_t *>(nullptr); });
 }
@@ -561,7 +561,7 @@ std::size_t collide(const fcl::CollisionObject<S> *o1, const fcl::CollisionObjec
 {
     const detail::Placed<S> a(o1->collisionGeometry().get(), o1->getTransform());
     const detail::Placed<S> b(o2->collisionGeometry().get(), o2->getTransform());
-    if (!detail::is_ours(a, b, request))
+    if (!detail::is_supported(a, b, request))
         return fcl::collide(a.geometry, *a.pose, b.geometry, *b.pose, request, result);
     return detail::collide(a, b, request, result, cache.state(o1, o2), settings, [&] { return cache.contacts(o1, o2); });
 }
@@ -577,7 +577,7 @@ S distance(const fcl::CollisionGeometry<S> *g1, const fcl::Transform3<S> &tf1, c
            ccd_warm_t *warm)
 {
     const detail::Placed<S> a(g1, tf1), b(g2, tf2);
-    return a.is_ours && b.is_ours ? detail::distance(a, b, request, result, warm)
+    return a.is_supported && b.is_supported ? detail::distance(a, b, request, result, warm)
                                   : fcl::distance(g1, tf1, g2, tf2, request, result);
 }
 
@@ -588,7 +588,7 @@ S distance(const fcl::CollisionObject<S> *o1, const fcl::CollisionObject<S> *o2,
 {
     const detail::Placed<S> a(o1->collisionGeometry().get(), o1->getTransform());
     const detail::Placed<S> b(o2->collisionGeometry().get(), o2->getTransform());
-    return a.is_ours && b.is_ours ? detail::distance(a, b, request, result, cache.state(o1, o2))
+    return a.is_supported && b.is_supported ? detail::distance(a, b, request, result, cache.state(o1, o2))
                                   : fcl::distance(a.geometry, *a.pose, b.geometry, *b.pose, request, result);
 }
 

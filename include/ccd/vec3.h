@@ -54,7 +54,7 @@ typedef struct _ccd_vec3_t {
     ccd_real_t v[3]; /**< x, y, z */
 } ccd_vec3_t;
 
-/** An initialiser, and the definition of an initialised variable. */
+/** Initialiser of a ccd_vec3_t, and definition of a variable with it. */
 #define CCD_VEC3_STATIC(x, y, z) {{(x), (y), (z)}}
 #define CCD_VEC3(name, x, y, z) ccd_vec3_t name = CCD_VEC3_STATIC((x), (y), (z))
 

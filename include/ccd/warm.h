@@ -18,16 +18,23 @@
  *   check        ccdCheck: tests a support function
  *   identity     ccdImplementation
  *
- * A support point is a boundary point of the Minkowski difference obj1 - obj2: one call of support1
- * along a direction and one of support2 along its opposite. A cold start begins along the line of
- * the centers where both are given, else along first_dir, else along (1, 0, 0): in this header
+ * A support point is a boundary point of the Minkowski difference D = obj1 - obj2: one call of
+ * support1 along a direction and one of support2 along its opposite. A depth is sound if moving obj2
+ * by depth * dir separates the objects; it may exceed the least depth. A cold start begins along the
+ * line of the centers if both are given, else along first_dir, else along (1, 0, 0): in this header
  * center1, center2 and first_dir may be NULL except where stated. A center that is given must lie
  * in its object.
  *
- * Lengths and tolerances are metres. Tolerances are floored at a few ulps of the objects' size, so
- * 0 requests the best result of the precision. A call reads only the tolerance that it names.
- * Object pointers are passed to the callbacks and never dereferenced. Queries are re-entrant and
- * keep no data but the caller's state. */
+ * Lengths and tolerances are metres. Tolerances are raised to a few units in the last place of the
+ * coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D. A call reads only
+ * the tolerance that it names. max_iterations limits the support points of a query after the first
+ * tetrahedron, all stages together; the library's own limit is 380, and no query takes more than 400
+ * support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
+ * re-entrant and keep no data except the caller's state.
+ *
+ * All statements assume convex objects and support functions that return a farthest point. If points
+ * of a support function contradict each other, a call may return CCD_LIMIT, and depth is sound only
+ * for the points that it returned; ccdCheck finds such faults. */
 
 #ifndef __CCD_WARM_H__
 #define __CCD_WARM_H__
@@ -56,7 +63,7 @@ extern "C" {
 /**
  * The result is sound, but less exact than requested: max_iterations, the library's limit of
  * support points or rounding ended the search. All bounds hold. A penetration query has found an
- * overlap; the bounds of ccdSignedDistance may include 0.
+ * overlap; for ccdSignedDistance the overlap may be undecided (distance < 0 < distance_upper).
  */
 #define CCD_LIMIT 1
 
@@ -90,7 +97,7 @@ extern "C" {
  *
  * A state belongs to one pair in one order: ccdWarmFlip converts the state of (a, b) to one of
  * (b, a). Every call accepts the state that any other call has written. Two threads must not use
- * one state at once. NULL in place of a state is a cold start and saves the cost of writing one.
+ * one state at once. NULL in place of a state is a cold start; nothing is stored.
  *
  * A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to another
  * local minimum; every result stays sound. The fields are private.
@@ -126,9 +133,8 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
- * Requests pos. Costs 2 to 4 support points, at most 8 where a face has more than four corners,
- * none where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). Evaluates
- * the two support functions separately.
+ * Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
+ * Evaluates the two support functions separately.
  */
 #define CCD_WANT_POS 1
 
@@ -152,8 +158,9 @@ typedef struct ccd_penetration_t {
    */
   ccd_real_t depth;
   /**
-   * Proven lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along
-   * dir), metres; 0 where none was proven.
+   * Lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along dir),
+   * metres; 0 if there is none. Proven if the centers lie in their objects; ccdPenetrationProven
+   * and ccdPenetrationAlong do not rely on them.
    */
   ccd_real_t depth_lower;
   /**
@@ -166,17 +173,18 @@ typedef struct ccd_penetration_t {
    */
   ccd_vec3_t normal;
   /**
-   * Contact position, CCD_WANT_POS: the center of pressure, which is the centroid of the common
-   * volume except for its coordinate along normal. Continuous in the pose. Error, root mean
-   * square, for objects of a quarter metre and depths up to a millimetre: at most 3 mm (boxes) to
-   * 7 mm (round objects), 15 mm for a cone on its side; for greater depths 3 % of the smaller
-   * object's size where the depth is 3 % of it, 6 % at 10 %, 20 % at 30 %. With CCD_LIMIT, in
-   * ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
+   * Contact position, CCD_WANT_POS: the center of pressure, an estimate of the centroid of the
+   * overlap volume, projected along normal to the plane midway between the two support planes.
+   * Continuous in the pose. Root mean square error for objects of a quarter metre and depths up
+   * to a millimetre: 3 mm for boxes, 7 mm for round objects, 15 mm for a cone on its side; for
+   * greater depths 3 % of the smaller object's size at a depth of 3 % of it, 6 % at 10 %, 20 %
+   * at 30 %. With CCD_LIMIT, in ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the
+   * witness points.
    */
   ccd_vec3_t pos;
   /**
-   * Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the error
-   * of depth or 1e-12 of the size (1e-5 in single precision).
+   * Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the larger
+   * of the error of depth and 1e-12 of the size (1e-5 in single precision).
    */
   ccd_vec3_t point1;
   /**
@@ -198,8 +206,8 @@ typedef struct ccd_penetration_t {
  * objects. The default call.
  *
  * `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
- * point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for depth, bound and
- * directions alone. Centers save support points; depth_lower relies on them too.
+ * point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for only depth, bound
+ * and directions. Centers save support points; depth_lower relies on them too.
  *
  * Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
  * depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.
@@ -225,7 +233,7 @@ int ccdPenetration(const void *obj1,
  *
  * Reads no tolerance and no max_iterations. Allocates nothing.
  *
- * Returns 1 when they overlap; 0 when they are apart or touch within rounding, when support1 or
+ * Returns 1 if they overlap; 0 if they are apart or touch within rounding, when support1 or
  * support2 is NULL, or when a center or a point is not finite.
  */
 CCD_EXPORT int ccdIntersect(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_warm_t *warm);
@@ -272,7 +280,7 @@ typedef struct ccd_distance_t {
 
 /**
  * Computes the signed distance: the gap of objects that are apart, minus the penetration depth of
- * objects that overlap; continuous through the touch.
+ * objects that overlap; continuous at contact.
  *
  * `margin1`, `margin2`: metres, >= 0; radii of balls added all around the objects, whose support
  * functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
@@ -280,8 +288,8 @@ typedef struct ccd_distance_t {
  * metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
  * `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0.
  *
- * Reads dist_tolerance. Allocates only where the cores overlap and their minima (nearly) form a
- * curve or a surface.
+ * Reads dist_tolerance. Allocates only if the cores overlap and their least depth is (nearly) not
+ * unique, as for concentric spheres.
  *
  * Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding with distance 0; *out is
  * filled), CCD_LIMIT (the bounds have not met), CCD_BAD_INPUT or CCD_NO_MEMORY.
@@ -329,17 +337,17 @@ typedef struct ccd_manifold_cache_t {
  */
 typedef struct ccd_contact_t {
   /**
-   * Within the slop in force of the surface of obj1.
+   * Within the slop of the surface of obj1.
    */
   ccd_vec3_t point1;
   /**
-   * point1 - depth * normal; within the slop of the surface of obj2. Of faces that do not lie
-   * over each other, the closest point of obj2's face: beside that.
+   * point1 - depth * normal; within the slop of the surface of obj2. If the faces do not overlap in
+   * projection, the closest point of obj2's face instead.
    */
   ccd_vec3_t point2;
   /**
-   * Metres: at least the support value of normal less 2 slops in force; negative where the
-   * objects are apart.
+   * Metres, at least the support value of normal minus twice the slop; negative if the objects are
+   * apart there.
    */
   ccd_real_t depth;
   /**
@@ -353,30 +361,31 @@ typedef struct ccd_contact_t {
  * and reduced to at most `max` contacts, the deepest first, the others in order around the normal,
  * chosen for the largest area.
  *
- * `normal`: of an answer for this pose (dir where there is no other), not necessarily unit.
- * `slop`, metres, >= 0: how far below its support plane a corner may lie and still belong to
- * the face; a thousandth of the objects' size is good for contacts that rest. Corners
- * between half the slop and the slop may be either. A normal that is off by an angle needs that
- * angle times the extent of the face: with less, a corner or an edge is found in place of the
- * face. The normals of this library's answers are good to 0.1 % of the depth, for which 1 % of
- * the depth is enough. So the slop in force is at least 1 % of the depth along `normal`, and 32
- * ulps of the largest coordinate; and no more than the size of the face.
+ * `normal`: of a result for this pose (`dir` of calls that have no normal), of any length.
+ * `slop`, metres, >= 0: largest distance of a corner below its support plane at which it still
+ * belongs to the face; a thousandth of the objects' size is good for resting contacts. Corners
+ * between half the slop and the slop may be found or not. If `normal` is off by an angle, the
+ * slop must be at least that angle times the extent of the face, or only an edge or a corner is
+ * found. For normals of this library 1 % of the depth is enough. The slop is therefore raised to
+ * 1 % of the depth along `normal` and to 32 ulps of the largest coordinate; it is at most the
+ * size of the face.
  *
- * Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
- * Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
- * one point, the nearest of each. The region moves as the objects do. For objects that are
- * meant with margins, move the points by them along the normal.
+ * Rounded edges and corners are reduced to their core: a sphere gives one contact, a lying capsule
+ * or cylinder two. A face of more than 8 corners is replaced by an inscribed octagon. If the faces
+ * do not overlap in projection, there is one contact, with the closest point of each face. The
+ * overlap moves continuously with the objects. For objects with margins, the caller moves the
+ * points by the margins along the normal.
  *
- * `memory`: NULL, or the pair's: an object whose face is that of the last call takes half the
- * support points, and contacts keep their ids, so that a solver can begin with the impulses of
- * the last frame. Which points are left where there are more than `max` then changes less.
+ * `cache`: NULL, or the pair's. An object whose face is that of the last call then takes half the
+ * support calls, and contacts keep their ids, with which a solver can reuse the last impulses. If
+ * there are more than `max` contacts, the cache also makes the choice of those kept steadier.
  *
- * Reads no tolerance, center or max_iterations; at most 24 support points of each object, 12
- * of a box; up to 10 more where a memory no longer fits. Allocates nothing.
+ * Reads no tolerance, center or max_iterations. At most 24 support calls for each object, 12 for a
+ * box, and 10 more if the cache is out of date. Allocates nothing.
  *
- * Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
- * that is zero, not finite or NULL, a slop that is negative or NaN, max < 1, no contacts, a
- * callback's point that is not finite), and nothing is written.
+ * Returns the number of contacts written, at least 1. Returns CCD_BAD_INPUT, and writes nothing, if
+ * `normal` is zero, not finite or NULL, `slop` negative or NaN, `max` < 1, `contacts` NULL, or a
+ * point of a callback not finite.
  */
 CCD_EXPORT
 int ccdContacts(const void *obj1,
@@ -392,9 +401,9 @@ int ccdContacts(const void *obj1,
 /* Special penetration queries: local minimum, proven minimum, along a direction, in a plane. */
 
 /**
- * Computes a local minimum of the penetration depth by a walk on known vertices. Faster than
- * ccdPenetration from a state or a guess that is roughly right; from a distant one it may find
- * another minimum. Where the walk finds none, the global search follows.
+ * Computes a local minimum of the penetration depth by a local search from the state's direction.
+ * Faster than ccdPenetration if that direction is roughly right; from a distant one it may find
+ * another minimum. If the search does not converge, ccdPenetration's search follows.
  *
  * `warm`: may be NULL. `want`: CCD_WANT_ flags.
  *
@@ -416,8 +425,8 @@ int ccdPenetrationLocal(const void *obj1,
  *
  * `warm`: may be NULL. `want`: CCD_WANT_ flags.
  *
- * Reads epa_tolerance. Allocates only where the minima (nearly) form a curve or a surface; there
- * the bounds may not meet: CCD_LIMIT.
+ * Reads epa_tolerance. Allocates only if the minimum is (nearly) not unique, as for coaxial
+ * cylinders and concentric spheres; the bounds may then not meet, and CCD_LIMIT is returned.
  *
  * Returns CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY.
  */
@@ -522,10 +531,10 @@ int ccdMPRIntersectWarm(const void *obj1,
 #define CCD_CHECK_OPPOSITE 2
 
 /**
- * A point is beyond the support plane of another direction by `noise`, more than rounding. Of
- * the order of single precision: choose tolerances of several times the noise or more. Greater: a
- * wrong frame (the direction must be rotated to the body's frame, the point back), points of
- * another object, or a search over the vertices that stops too early.
+ * A point is beyond the support plane of another direction by `noise`, more than rounding. If the
+ * noise is of the order of single precision, use tolerances of several times the noise or more. A
+ * greater noise shows a wrong frame (the direction must be rotated to the body's frame, the point
+ * back), points of another object, or a search over the vertices that stops too early.
  */
 #define CCD_CHECK_CONTRADICTS 4
 
@@ -562,8 +571,8 @@ typedef struct ccd_check_t {
    */
   ccd_real_t change;
   /**
-   * Distance of the center from the object; negative inside, the less the better. 0 without a
-   * center.
+   * Distance of the center from the object; negative inside, more negative if deeper. 0 without
+   * a center.
    */
   ccd_real_t center_outside;
   /**

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Provides the method of W. Gao, Efficient Incremental Penetration Depth Estimation between Convex
-//! Geometries (2023), as published, for comparisons. ccdPenetrationLocal of warm.h computes the same
-//! in fewer support points, and ccdPenetration computes the global minimum. Made by cbindgen from
+//! Geometries (2023), as published, for comparisons. ccdPenetrationLocal of warm.h also
+//! computes a local minimum, with fewer support points, and ccdPenetration the global one. Made by cbindgen from
 //! src/ffi/paper.rs; edit there.
 
 use core::ffi::{c_int, c_uint, c_void};
@@ -15,8 +15,9 @@ use super::warm::state::ccd_warm_t;
 use crate::contact::Settings;
 use crate::query::{Pair, warm_start::WarmStart};
 
-/// Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
-/// shortcut. The result is sound: depth is the least support value evaluated, and an overlap is
+/// Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with its
+/// shortcut: the next ray starts as soon as a support value is below the portal's distance. The
+/// result is sound: depth is the least support value evaluated, and an overlap is
 /// proven.
 ///
 /// `warm`: may be NULL. `want`: CCD_WANT_ flags.

@@ -18,16 +18,23 @@
 //!   check        ccdCheck: tests a support function
 //!   identity     ccdImplementation
 //!
-//! A support point is a boundary point of the Minkowski difference obj1 - obj2: one call of support1
-//! along a direction and one of support2 along its opposite. A cold start begins along the line of
-//! the centers where both are given, else along first_dir, else along (1, 0, 0): in this header
+//! A support point is a boundary point of the Minkowski difference D = obj1 - obj2: one call of
+//! support1 along a direction and one of support2 along its opposite. A depth is sound if moving obj2
+//! by depth * dir separates the objects; it may exceed the least depth. A cold start begins along the
+//! line of the centers if both are given, else along first_dir, else along (1, 0, 0): in this header
 //! center1, center2 and first_dir may be NULL except where stated. A center that is given must lie
 //! in its object.
 //!
-//! Lengths and tolerances are metres. Tolerances are floored at a few ulps of the objects' size, so
-//! 0 requests the best result of the precision. A call reads only the tolerance that it names.
-//! Object pointers are passed to the callbacks and never dereferenced. Queries are re-entrant and
-//! keep no data but the caller's state.
+//! Lengths and tolerances are metres. Tolerances are raised to a few units in the last place of the
+//! coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D. A call reads only
+//! the tolerance that it names. max_iterations limits the support points of a query after the first
+//! tetrahedron, all stages together; the library's own limit is 380, and no query takes more than 400
+//! support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
+//! re-entrant and keep no data except the caller's state.
+//!
+//! All statements assume convex objects and support functions that return a farthest point. If points
+//! of a support function contradict each other, a call may return CCD_LIMIT, and depth is sound only
+//! for the points that it returned; ccdCheck finds such faults.
 
 use super::types::ccd_vec3_t;
 use crate::math::{Vec3, unit};

@@ -132,7 +132,7 @@ static void certified(int poses)
                 pose_overlapping(&a, &b, &known);
                 const geometry ga = fcl_geometry(a, TRIANGLE_SHAPE), gb = fcl_geometry(b, TRIANGLE_SHAPE);
                 object oa(ga, fcl_pose(a.shape)), ob(gb, fcl_pose(b.shape));
-                CHECK(ccd_fcl::is_ours(ga.get(), gb.get()), "%s %s", KIND_NAME[i], KIND_NAME[j]);
+                CHECK(ccd_fcl::is_supported(ga.get(), gb.get()), "%s %s", KIND_NAME[i], KIND_NAME[j]);
                 one_pose(a, b, oa, ob, known, cache, context{KIND_NAME[i], KIND_NAME[j], k, known.upper});
                 for (double depth : depths) {
                     if (depth * known.size >= known.upper)
@@ -321,7 +321,7 @@ static void left_to_fcl(void)
         const object other = placed(kind, vec(0, 0, S(0.05)));
         ccd_fcl::PairCache cache;
         collision r, theirs;
-        CHECK(!ccd_fcl::is_ours(ball.collisionGeometry().get(), kind.get()), "ours?");
+        CHECK(!ccd_fcl::is_supported(ball.collisionGeometry().get(), kind.get()), "ours?");
         if (SINGLE && kind == mesh)
             continue;
         ccd_fcl::collide(&ball, &other, contacts(10), r, cache);

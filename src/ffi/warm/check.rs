@@ -15,10 +15,10 @@ use crate::minkowski::validate::check;
 pub const CCD_CHECK_NOT_FINITE: c_int = 1;
 /// The points are the farthest *against* the direction: a sign is wrong.
 pub const CCD_CHECK_OPPOSITE: c_int = 2;
-/// A point is beyond the support plane of another direction by `noise`, more than rounding. Of
-/// the order of single precision: choose tolerances of several times the noise or more. Greater: a
-/// wrong frame (the direction must be rotated to the body's frame, the point back), points of
-/// another object, or a search over the vertices that stops too early.
+/// A point is beyond the support plane of another direction by `noise`, more than rounding. If the
+/// noise is of the order of single precision, use tolerances of several times the noise or more. A
+/// greater noise shows a wrong frame (the direction must be rotated to the body's frame, the point
+/// back), points of another object, or a search over the vertices that stops too early.
 pub const CCD_CHECK_CONTRADICTS: c_int = 4;
 /// The same direction returns another point later: the point depends on earlier calls.
 pub const CCD_CHECK_CHANGES: c_int = 8;
@@ -38,8 +38,8 @@ pub struct ccd_check_t {
     pub noise: Real,
     /// Greatest change of a support value in the repeated calls.
     pub change: Real,
-    /// Distance of the center from the object; negative inside, the less the better. 0 without a
-    /// center.
+    /// Distance of the center from the object; negative inside, more negative if deeper. 0 without
+    /// a center.
     pub center_outside: Real,
     /// Direction of the worst fault, unit; meaningless where there is none.
     pub dir: ccd_vec3_t,

@@ -16,7 +16,7 @@ use core::ffi::c_int;
 pub const CCD_HIT: c_int = 0;
 /// The result is sound, but less exact than requested: max_iterations, the library's limit of
 /// support points or rounding ended the search. All bounds hold. A penetration query has found an
-/// overlap; the bounds of ccdSignedDistance may include 0.
+/// overlap; for ccdSignedDistance the overlap may be undecided (distance < 0 < distance_upper).
 pub const CCD_LIMIT: c_int = 1;
 /// The objects are apart, or touch within rounding.
 pub const CCD_MISS: c_int = -1;

@@ -17,13 +17,13 @@ use crate::math::Real;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct ccd_contact_t {
-    /// Within the slop in force of the surface of obj1.
+    /// Within the slop of the surface of obj1.
     pub point1: ccd_vec3_t,
-    /// point1 - depth * normal; within the slop of the surface of obj2. Of faces that do not lie
-    /// over each other, the closest point of obj2's face: beside that.
+    /// point1 - depth * normal; within the slop of the surface of obj2. If the faces do not overlap in
+    /// projection, the closest point of obj2's face instead.
     pub point2: ccd_vec3_t,
-    /// Metres: at least the support value of normal less 2 slops in force; negative where the
-    /// objects are apart.
+    /// Metres, at least the support value of normal minus twice the slop; negative if the objects are
+    /// apart there.
     pub depth: Real,
     /// Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache.
     pub id: c_uint,
@@ -65,30 +65,31 @@ impl ccd_manifold_cache_t {
 /// and reduced to at most `max` contacts, the deepest first, the others in order around the normal,
 /// chosen for the largest area.
 ///
-/// `normal`: of an answer for this pose (dir where there is no other), not necessarily unit.
-/// `slop`, metres, >= 0: how far below its support plane a corner may lie and still belong to
-/// the face; a thousandth of the objects' size is good for contacts that rest. Corners
-/// between half the slop and the slop may be either. A normal that is off by an angle needs that
-/// angle times the extent of the face: with less, a corner or an edge is found in place of the
-/// face. The normals of this library's answers are good to 0.1 % of the depth, for which 1 % of
-/// the depth is enough. So the slop in force is at least 1 % of the depth along `normal`, and 32
-/// ulps of the largest coordinate; and no more than the size of the face.
+/// `normal`: of a result for this pose (`dir` of calls that have no normal), of any length.
+/// `slop`, metres, >= 0: largest distance of a corner below its support plane at which it still
+/// belongs to the face; a thousandth of the objects' size is good for resting contacts. Corners
+/// between half the slop and the slop may be found or not. If `normal` is off by an angle, the
+/// slop must be at least that angle times the extent of the face, or only an edge or a corner is
+/// found. For normals of this library 1 % of the depth is enough. The slop is therefore raised to
+/// 1 % of the depth along `normal` and to 32 ulps of the largest coordinate; it is at most the
+/// size of the face.
 ///
-/// Roundness is taken off: a sphere gives one point, a lying capsule or cylinder its two ends.
-/// Faces of more than 8 corners are inscribed. Where the faces do not lie over each other:
-/// one point, the nearest of each. The region moves as the objects do. For objects that are
-/// meant with margins, move the points by them along the normal.
+/// Rounded edges and corners are reduced to their core: a sphere gives one contact, a lying capsule
+/// or cylinder two. A face of more than 8 corners is replaced by an inscribed octagon. If the faces
+/// do not overlap in projection, there is one contact, with the closest point of each face. The
+/// overlap moves continuously with the objects. For objects with margins, the caller moves the
+/// points by the margins along the normal.
 ///
-/// `memory`: NULL, or the pair's: an object whose face is that of the last call takes half the
-/// support points, and contacts keep their ids, so that a solver can begin with the impulses of
-/// the last frame. Which points are left where there are more than `max` then changes less.
+/// `cache`: NULL, or the pair's. An object whose face is that of the last call then takes half the
+/// support calls, and contacts keep their ids, with which a solver can reuse the last impulses. If
+/// there are more than `max` contacts, the cache also makes the choice of those kept steadier.
 ///
-/// Reads no tolerance, center or max_iterations; at most 24 support points of each object, 12
-/// of a box; up to 10 more where a memory no longer fits. Allocates nothing.
+/// Reads no tolerance, center or max_iterations. At most 24 support calls for each object, 12 for a
+/// box, and 10 more if the cache is out of date. Allocates nothing.
 ///
-/// Returns how many points were written to `contacts`, at least 1; or CCD_BAD_INPUT (a normal
-/// that is zero, not finite or NULL, a slop that is negative or NaN, max < 1, no contacts, a
-/// callback's point that is not finite), and nothing is written.
+/// Returns the number of contacts written, at least 1. Returns CCD_BAD_INPUT, and writes nothing, if
+/// `normal` is zero, not finite or NULL, `slop` negative or NaN, `max` < 1, `contacts` NULL, or a
+/// point of a callback not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdContacts(
     obj1: *const c_void,

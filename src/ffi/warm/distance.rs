@@ -54,7 +54,7 @@ impl ccd_distance_t {
 }
 
 /// Computes the signed distance: the gap of objects that are apart, minus the penetration depth of
-/// objects that overlap; continuous through the touch.
+/// objects that overlap; continuous at contact.
 ///
 /// `margin1`, `margin2`: metres, >= 0; radii of balls added all around the objects, whose support
 /// functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
@@ -62,8 +62,8 @@ impl ccd_distance_t {
 /// metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
 /// `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0.
 ///
-/// Reads dist_tolerance. Allocates only where the cores overlap and their minima (nearly) form a
-/// curve or a surface.
+/// Reads dist_tolerance. Allocates only if the cores overlap and their least depth is (nearly) not
+/// unique, as for concentric spheres.
 ///
 /// Returns CCD_HIT (overlap), CCD_MISS (apart, or a touch within rounding with distance 0; *out is
 /// filled), CCD_LIMIT (the bounds have not met), CCD_BAD_INPUT or CCD_NO_MEMORY.

@@ -40,7 +40,7 @@ pub(in crate::ffi) unsafe fn intersect(
 ///
 /// Reads no tolerance and no max_iterations. Allocates nothing.
 ///
-/// Returns 1 when they overlap; 0 when they are apart or touch within rounding, when support1 or
+/// Returns 1 if they overlap; 0 if they are apart or touch within rounding, when support1 or
 /// support2 is NULL, or when a center or a point is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdIntersect(

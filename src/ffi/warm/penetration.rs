@@ -14,9 +14,8 @@ use crate::math::{Real, Vec3, lower_to_real};
 use crate::minkowski::query::{Stop, if_overlapping};
 use crate::query::{Pair, warm_start::WarmStart};
 
-/// Requests pos. Costs 2 to 4 support points, at most 8 where a face has more than four corners,
-/// none where a state shows that nothing has moved (ccdPenetration, ccdPenetrationProven). Evaluates
-/// the two support functions separately.
+/// Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
+/// Evaluates the two support functions separately.
 pub const CCD_WANT_POS: c_uint = 1;
 /// Requests point1 and point2, at no cost.
 pub const CCD_WANT_POINTS: c_uint = 2;
@@ -30,23 +29,25 @@ pub struct ccd_penetration_t {
     /// Penetration depth, metres, >= 0: moving obj2 by depth * dir separates the objects. The
     /// support value of normal, divided by dir . normal.
     pub depth: Real,
-    /// Proven lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along
-    /// dir), metres; 0 where none was proven.
+    /// Lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along dir),
+    /// metres; 0 if there is none. Proven if the centers lie in their objects; ccdPenetrationProven
+    /// and ccdPenetrationAlong do not rely on them.
     pub depth_lower: Real,
     /// Penetration direction, unit: obj2 moves along it.
     pub dir: ccd_vec3_t,
     /// Contact normal, unit: normal of the separating plane. Equal to dir except in
     /// ccdPenetrationAlong.
     pub normal: ccd_vec3_t,
-    /// Contact position, CCD_WANT_POS: the center of pressure, which is the centroid of the common
-    /// volume except for its coordinate along normal. Continuous in the pose. Error, root mean
-    /// square, for objects of a quarter metre and depths up to a millimetre: at most 3 mm (boxes) to
-    /// 7 mm (round objects), 15 mm for a cone on its side; for greater depths 3 % of the smaller
-    /// object's size where the depth is 3 % of it, 6 % at 10 %, 20 % at 30 %. With CCD_LIMIT, in
-    /// ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
+    /// Contact position, CCD_WANT_POS: the center of pressure, an estimate of the centroid of the
+    /// overlap volume, projected along normal to the plane midway between the two support planes.
+    /// Continuous in the pose. Root mean square error for objects of a quarter metre and depths up
+    /// to a millimetre: 3 mm for boxes, 7 mm for round objects, 15 mm for a cone on its side; for
+    /// greater depths 3 % of the smaller object's size at a depth of 3 % of it, 6 % at 10 %, 20 %
+    /// at 30 %. With CCD_LIMIT, in ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the
+    /// witness points.
     pub pos: ccd_vec3_t,
-    /// Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the error
-    /// of depth or 1e-12 of the size (1e-5 in single precision).
+    /// Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the larger
+    /// of the error of depth and 1e-12 of the size (1e-5 in single precision).
     pub point1: ccd_vec3_t,
     /// Witness point of obj2, CCD_WANT_POINTS: as point1.
     pub point2: ccd_vec3_t,
@@ -153,8 +154,8 @@ pub(in crate::ffi) unsafe fn fill(
 /// objects. The default call.
 ///
 /// `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
-/// point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for depth, bound and
-/// directions alone. Centers save support points; depth_lower relies on them too.
+/// point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for only depth, bound
+/// and directions. Centers save support points; depth_lower relies on them too.
 ///
 /// Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
 /// depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.

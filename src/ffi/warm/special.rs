@@ -15,9 +15,9 @@ use super::unit_of;
 use crate::contact::Settings;
 use crate::query::{Pair, warm_start::WarmStart};
 
-/// Computes a local minimum of the penetration depth by a walk on known vertices. Faster than
-/// ccdPenetration from a state or a guess that is roughly right; from a distant one it may find
-/// another minimum. Where the walk finds none, the global search follows.
+/// Computes a local minimum of the penetration depth by a local search from the state's direction.
+/// Faster than ccdPenetration if that direction is roughly right; from a distant one it may find
+/// another minimum. If the search does not converge, ccdPenetration's search follows.
 ///
 /// `warm`: may be NULL. `want`: CCD_WANT_ flags.
 ///
@@ -43,8 +43,8 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
 ///
 /// `warm`: may be NULL. `want`: CCD_WANT_ flags.
 ///
-/// Reads epa_tolerance. Allocates only where the minima (nearly) form a curve or a surface; there
-/// the bounds may not meet: CCD_LIMIT.
+/// Reads epa_tolerance. Allocates only if the minimum is (nearly) not unique, as for coaxial
+/// cylinders and concentric spheres; the bounds may then not meet, and CCD_LIMIT is returned.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY.
 #[unsafe(no_mangle)]

@@ -18,7 +18,7 @@ pub const CCD_WARM_REALS: usize = 6;
 ///
 /// A state belongs to one pair in one order: ccdWarmFlip converts the state of (a, b) to one of
 /// (b, a). Every call accepts the state that any other call has written. Two threads must not use
-/// one state at once. NULL in place of a state is a cold start and saves the cost of writing one.
+/// one state at once. NULL in place of a state is a cold start; nothing is stored.
 ///
 /// A stale, foreign or random state may cost time and may lead ccdPenetrationLocal to another
 /// local minimum; every result stays sound. The fields are private.
