@@ -50,12 +50,12 @@ pub fn lower_to_real(x: f64) -> Real {
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
     // Squares of tiny and huge vectors under- or overflow; 0/0 and ∞/∞ are NaN.
-    normalised(v).or_else(|| normalised(&(v / largest(v))))
+    normalise_unscaled(v).or_else(|| normalise_unscaled(&(v / max_abs(v))))
 }
 
 /// Returns `v / |v|`, or `None` when |v|² under- or overflows.
 #[inline(always)]
-pub fn normalised(v: &Vec3) -> Option<Vec3> {
+pub fn normalise_unscaled(v: &Vec3) -> Option<Vec3> {
     let n2 = v.norm_squared();
     (n2 > f64::MIN_POSITIVE && n2 < f64::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
@@ -75,7 +75,7 @@ pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
 
 /// Returns the largest absolute coordinate.
 #[inline(always)]
-pub fn largest(v: &Vec3) -> f64 {
+pub fn max_abs(v: &Vec3) -> f64 {
     larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
 }
 

@@ -20,7 +20,7 @@ pub mod warm_start;
 
 use crate::contact::center_of_pressure::center_of_pressure;
 use crate::contact::{Penetration, Settings, Status};
-use crate::epa::penetration::{Arena, EpaRequest, MAX_PROVEN_SAMPLES, MAX_SAMPLES};
+use crate::epa::penetration::{Arena, EpaRequest, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
 use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
@@ -59,11 +59,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             aim = axis.aim;
             if let Some(n) = found {
                 *state = WarmStart::apart(axis.dir, aim, state.radius);
-                return Err(Stop::Apart(n));
+                return Err(Stop::Separated(n));
             }
         }
         let found = solve(state);
-        if let Err(Stop::Apart(n)) = &found {
+        if let Err(Stop::Separated(n)) = &found {
             *state = WarmStart::apart(*n, aim, state.radius);
         }
         found
@@ -83,7 +83,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// origin. `is_planar`: D is in a plane.
     ///
     /// # Errors
-    /// [`Stop::Apart`]: a queried direction separates. [`Fault::NonFinite`].
+    /// [`Stop::Separated`]: a queried direction separates. [`Fault::NonFinite`].
     #[inline(never)]
     fn prove(
         &self,
@@ -101,7 +101,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         query.scale.note(&met);
         // A touch within rounding is a miss, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > query.scale.contact_eps()) {
-            return Err(Stop::Apart(hit.normal));
+            return Err(Stop::Separated(hit.normal));
         }
         if set.len() == 0 {
             // No support call returned it.
@@ -130,7 +130,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state
     }
 
-    /// Queries whether the objects overlap, from a state or cold. [`Stop::Apart`] where they do not.
+    /// Queries whether the objects overlap, from a state or cold. [`Stop::Separated`] where they do not.
     #[inline]
     pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
         let Some(state) = state else {
@@ -178,7 +178,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Ok(());
         }
         let walked = hit.iterations;
-        let mut limits = EpaLimits::new(settings, 0.0, MAX_SAMPLES);
+        let mut limits = EpaLimits::new(settings, 0.0, MAX_DEFAULT_POINTS);
         limits.max_iterations -= walked;
         let is_minimum = self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
         // No proof is wanted: a walk that ends at its direction is the answer.
@@ -206,7 +206,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             }
             let start = state.direction().unwrap_or_else(|| self.cold_start());
             let mut query = SupportQuery::new(&self.md, self.center.as_ref());
-            let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
+            let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
             let (found, status) = local::penetration(&mut query, &mut set, &start, settings)?;
             *hit = found;
             *state = self.facing(WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false));
@@ -229,7 +229,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_iterations: limits.max_iterations.saturating_sub(hit.iterations),
         };
         let mut query = SupportQuery::new(&self.md, self.center.as_ref());
-        let mut set = VertexSet::<{ local::MAX_SAMPLES }>::EMPTY;
+        let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         let start = hit.normal;
         let found = local::penetration(&mut query, &mut set, &start, &settings);
         let Some((found, Status::Converged)) = if_overlapping(found)? else {
@@ -274,7 +274,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// Finds the minimum of the depth at MPR's price: within the tolerance or a thousandth of the depth, in at
-    /// most [`MAX_SAMPLES`] support points; where these do not do, a walk lowers the depth. Trusts the center.
+    /// most [`MAX_DEFAULT_POINTS`] support points; where these do not do, a walk lowers the depth. Trusts the center.
     pub fn mpr(
         &self,
         state: &mut WarmStart,
@@ -282,7 +282,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let limits = EpaLimits::new(settings, GAP_REL, MAX_SAMPLES);
+        let limits = EpaLimits::new(settings, GAP_REL, MAX_DEFAULT_POINTS);
         self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
         Ok(())
     }
@@ -297,7 +297,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let limits = EpaLimits::new(settings, 0.0, MAX_PROVEN_SAMPLES);
+        let limits = EpaLimits::new(settings, 0.0, MAX_PROVEN_POINTS);
         self.global(None, state, &limits, Some(arena), wants_pos, hit)?;
         Ok(())
     }
@@ -388,7 +388,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<(), Stop> {
         self.with_separating_axis(state, |state| {
             let capped = Settings {
-                max_iterations: settings.max_iterations.min(MAX_PROVEN_SAMPLES),
+                max_iterations: settings.max_iterations.min(MAX_PROVEN_POINTS),
                 ..*settings
             };
             let (found, portal) = directional::along(&self.md, &dir, &capped)?;

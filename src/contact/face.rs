@@ -25,7 +25,7 @@ use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
 use crate::contact::polygon::{Polygon, Vec2, way};
-use crate::math::{EPSILON, Vec3, larger, largest, lesser};
+use crate::math::{EPSILON, Vec3, larger, lesser, max_abs};
 use crate::minkowski::support::{Fault, SupportMap};
 use core::mem::swap;
 
@@ -182,7 +182,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let dir = self.frame.tilted_direction(self.sign, tilt);
         let p = self.object.support(&dir);
         self.query_count += 1;
-        self.face.rounding = larger(self.face.rounding, 8.0 * EPSILON * largest(&p));
+        self.face.rounding = larger(self.face.rounding, 8.0 * EPSILON * max_abs(&p));
         let mut found = self.frame.project(&p)?;
         found.z = self.face.top - self.sign * found.z;
         Ok(FaceSample::new(tilt, found))

@@ -226,7 +226,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     fn query(&self, object: usize, tilt: Vec2) -> Result<Vec3, Fault> {
         let dir = self.frame.tilted_direction(1.0, tilt);
         let side = if object == 0 { 1.0 } else { -1.0 };
-        let p = self.frame.project(&self.md.point_of(object, &dir))? * side;
+        let p = self
+            .frame
+            .project(&self.md.support_of_object(object, &dir))?
+            * side;
         let low = larger((self.half - p.z) / self.depth, 0.0);
         Ok(Vec3::new(p.x, p.y, low))
     }

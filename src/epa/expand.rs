@@ -24,7 +24,7 @@ use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric::triangle;
 use crate::math::{Vec3, lesser};
 use crate::minkowski::query::{Stop, SupportQuery};
-use crate::minkowski::round_fit::{Choice, SphereFit, evaluate_beyond};
+use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::{GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
@@ -43,18 +43,18 @@ pub struct EpaLimits {
     /// Largest gap between the bounds.
     pub gap: GapLimit,
     /// Support calls.
-    pub max_samples: u64,
+    pub max_points: u64,
     /// Support calls after the first tetrahedron.
     pub max_iterations: u64,
 }
 
 impl EpaLimits {
     /// Returns the limits of a query that may be off by the tolerance, or by this share of the depth.
-    pub fn new(settings: &Settings, share: f64, max_samples: u64) -> Self {
+    pub fn new(settings: &Settings, share: f64, max_points: u64) -> Self {
         let tolerance = settings.tolerance;
         Self {
             gap: GapLimit { tolerance, share },
-            max_samples,
+            max_points,
             max_iterations: settings.max_iterations,
         }
     }
@@ -120,7 +120,7 @@ impl<const C: usize> EpaCorners<C> {
 pub enum ExpandEnd {
     /// The bounds met.
     Converged,
-    /// [`EpaLimits::max_samples`].
+    /// [`EpaLimits::max_points`].
     SupportLimit,
     /// [`EpaLimits::max_iterations`].
     IterationLimit,
@@ -163,7 +163,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let target_key = target * target.abs();
         let is_inside = closest.key >= 0.0;
         if is_inside && closest.key >= target_key {
-            if polytope.has_closer(target_key) {
+            if polytope.refresh_keys(target_key) {
                 continue;
             }
             return Ok(ExpandEnd::Converged);
@@ -173,7 +173,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         if is_inside && *iterations >= limits.max_iterations {
             return Ok(ExpandEnd::IterationLimit);
         }
-        if is_inside && query.sample_count() >= limits.max_samples {
+        if is_inside && query.support_points() >= limits.max_points {
             return Ok(ExpandEnd::SupportLimit);
         }
         if set.is_full() || corners.is_full() {
@@ -197,17 +197,17 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         // Of the largest buffers the queries that are left have theirs.
         let has_room = has_larger || C - corners.len > N - set.len();
         if !(height > level && is_gain && has_room) {
-            let is_plain = !is_inside || closest.key == last_failed_key;
+            let along_normal = !is_inside || closest.key == last_failed_key;
             let vertices = polytope
                 .corners(face)
                 .map(|id| corners.vertex(set, interior, id));
             let (sample, choice) =
-                evaluate_beyond(query, set, fit, &vertices, &normal, allowed, is_plain)?;
+                evaluate_beyond(query, set, fit, &vertices, &normal, allowed, along_normal)?;
             *iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
             if queried_height > queried_level {
                 w = sample.vertex();
-            } else if choice != Choice::Normal {
+            } else if choice != DirectionSource::Normal {
                 last_failed_key = closest.key;
                 continue;
             } else if query.upper.depth < upper {

@@ -29,7 +29,7 @@ use crate::epa::plane::Tetrahedron;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::{CAPACITY, contains_origin};
-use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
+use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
@@ -38,10 +38,10 @@ use crate::mpr::portal::{discover, refine};
 use crate::query::warm_start::{WarmKind, WarmStart};
 
 /// The support calls of a default query, at most.
-pub const MAX_SAMPLES: u64 = 160;
+pub const MAX_DEFAULT_POINTS: u64 = 160;
 /// The support calls of a query that proves the tolerance, at most. Derived: no call takes more than 400,
 /// and what comes before and after takes up to 80 on nearly coincident bodies (`campaigns -- wide`).
-pub const MAX_PROVEN_SAMPLES: u64 = 320;
+pub const MAX_PROVEN_POINTS: u64 = 320;
 
 /// The vertices of the small buffers, 6 KB on the stack with their corners and faces: enough for shallow
 /// contacts and most polytopes. Less than 2 KB is zeroed by stores, more byte by byte.
@@ -49,13 +49,13 @@ pub const SMALL_VERTICES: usize = 24;
 const SMALL_CORNERS: usize = 32;
 const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
 /// The vertices of the large buffers, on the stack.
-const LARGE_VERTICES: usize = MAX_SAMPLES as usize + SPARE_VERTICES;
+const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + SPARE_VERTICES;
 const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
 const LARGE_FACES: usize = max_faces(LARGE_CORNERS);
 /// The vertices of the buffers that the caller lends.
-const LENT_VERTICES: usize = MAX_PROVEN_SAMPLES as usize + SPARE_VERTICES;
-const LENT_CORNERS: usize = 2 * LENT_VERTICES;
-const LENT_FACES: usize = max_faces(LENT_CORNERS);
+const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + SPARE_VERTICES;
+const ARENA_CORNERS: usize = 2 * ARENA_VERTICES;
+const ARENA_FACES: usize = max_faces(ARENA_CORNERS);
 /// Room for support calls beyond the limit, which holds only while the origin is inside.
 const SPARE_VERTICES: usize = 8;
 /// The entries that a first tetrahedron may add, for which there must be room.
@@ -73,8 +73,8 @@ const fn max_faces(corners: usize) -> usize {
     (2 * corners).next_multiple_of(8)
 }
 
-const _: () = assert!(LENT_CORNERS < 32768 && LENT_FACES <= crate::epa::polytope::MAX_FACES);
-const _: () = assert!(LENT_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
+const _: () = assert!(ARENA_CORNERS < 32768 && ARENA_FACES <= crate::epa::polytope::MAX_FACES);
+const _: () = assert!(ARENA_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
 
 /// The gap beyond the tolerance that still counts as converged where rounding ended the search, in support
 /// epsilons. Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
@@ -86,13 +86,13 @@ const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
 /// corners, or with any, more proofs end at the support limit (`campaign` in single precision, `wide` at tolerance 0).
 const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The support calls of a polytope after which D counts as round there.
-const MAX_PLAIN_ITERATIONS: u64 = 3;
+const MAX_POLYTOPE_ITERATIONS: u64 = 3;
 
 /// Memory for the largest polytopes. All bytes zero is a valid value.
 pub struct EpaBuffers {
-    set: VertexSet<LENT_VERTICES>,
-    corners: EpaCorners<LENT_CORNERS>,
-    polytope: EpaPolytope<LENT_FACES>,
+    set: VertexSet<ARENA_VERTICES>,
+    corners: EpaCorners<ARENA_CORNERS>,
+    polytope: EpaPolytope<ARENA_FACES>,
 }
 
 /// A source of [`EpaBuffers`], used once and only if a query needs them.
@@ -134,7 +134,7 @@ type Start = [Vertex; 4];
 
 /// Reason why a polytope ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Expanded {
+enum PolytopeEnd {
     /// The origin is shown inside, and the answer is written.
     Inside(Status),
     /// The origin is not shown inside.
@@ -164,7 +164,7 @@ struct Solver<'q, 'm, A, B> {
 /// vertices of the first support calls, for the contact position.
 ///
 /// # Errors
-/// [`Stop::Apart`]: apart, or touching within rounding. [`Fault::NonFinite`]; [`Fault::NoMemory`].
+/// [`Stop::Separated`]: apart, or touching within rounding. [`Fault::NonFinite`]; [`Fault::NoMemory`].
 #[inline(always)]
 pub fn penetration<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
@@ -216,7 +216,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     }
     let UpperBound { dir, depth, .. } = solver.query.upper;
     let radius = solver.fit.confirmed_radius();
-    let is_round = solver.iterations > MAX_PLAIN_ITERATIONS;
+    let is_round = solver.iterations > MAX_POLYTOPE_ITERATIONS;
     Ok((status, WarmStart::hit(dir, depth, radius, is_round)))
 }
 
@@ -262,7 +262,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         set: &mut VertexSet<N>,
         ray: &mut Vec3,
     ) -> Result<(Vec3, SupportPoint), Stop> {
-        let newest = set.point(VertexSet::<N>::sample(set.len().saturating_sub(1)));
+        let newest = set.point(VertexSet::<N>::pair_of_entry(set.len().saturating_sub(1)));
         let sample = self.query.evaluate(set, &-*ray)?;
         let index = usize::from(sample.pair.a);
         let opposite = (set.dir(index), set.point(sample.pair));
@@ -271,7 +271,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             self.query.upper.index = 0;
         }
         self.interior = newest.towards(&opposite.1, 0.5);
-        if let Some(n) = normalised(&-self.interior.v) {
+        if let Some(n) = normalise_unscaled(&-self.interior.v) {
             let turn2 = (n - *ray).norm_squared();
             *ray = n;
             if turn2 > 0.3 {
@@ -338,16 +338,16 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
         if is_warm && self.query.upper.depth - lower > tolerance {
             let normal = (b - a).cross(&(c - a));
-            self.polish(set, portal, &normal)?;
+            self.refine_direction(set, portal, &normal)?;
         }
-        self.write_answer(set, *portal, lower, allowed);
+        self.write_result_on_face(set, *portal, lower, allowed);
         Ok(true)
     }
 
     /// Evaluates one more direction where a warm start has ended within the gap but not within the
     /// tolerance, so that directions of moving pairs follow them: the prediction of the sphere fits where
     /// they are confirmed, else the normal of the closest face.
-    fn polish<const N: usize>(
+    fn refine_direction<const N: usize>(
         &mut self,
         set: &mut VertexSet<N>,
         corners: &[Vertex; 3],
@@ -356,7 +356,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let upper = self.query.upper;
         let predicted = match self.fit.is_confirmed {
             true => self.fit.predict(set, corners, &upper.dir),
-            false => normalised(normal).map(|n| (n, 0.0)),
+            false => normalise_unscaled(normal).map(|n| (n, 0.0)),
         };
         match predicted {
             Some((n, value)) if value < upper.depth && !set.is_full() => {
@@ -388,16 +388,16 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             };
             let Some(start) = start else { continue };
             let mut found = self.expand_small(set, &start, is_warm)?;
-            if found == Expanded::NoRoom {
+            if found == PolytopeEnd::NoRoom {
                 // From the same tetrahedron: the known vertices rebuild the polytope without a callback.
                 let mut buffers = None;
                 found = self.expand_large(set, &start, arena, &mut buffers)?;
                 if let Some(buffers) = buffers {
-                    found = self.expand_lent(&start, buffers)?;
+                    found = self.expand_in_arena(&start, buffers)?;
                 }
             }
             // From another tetrahedron rounding may end the search later.
-            if let Expanded::Inside(found) = found {
+            if let PolytopeEnd::Inside(found) = found {
                 status = found;
                 if status != Status::Rounding {
                     return Ok(status);
@@ -405,7 +405,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             }
         }
         if self.gap == f64::INFINITY {
-            self.write_upper(set);
+            self.write_upper_bound(set);
             status = Status::Rounding;
         }
         Ok(status)
@@ -418,7 +418,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         set: &mut VertexSet<SMALL_VERTICES>,
         start: &Start,
         is_warm: bool,
-    ) -> Result<Expanded, Stop> {
+    ) -> Result<PolytopeEnd, Stop> {
         let mut corners = EpaCorners::<SMALL_CORNERS>::EMPTY;
         let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
         self.expand_in(set, &mut corners, &mut polytope, start, is_warm, true)
@@ -434,7 +434,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         start: &Start,
         arena: &mut Option<&'m mut dyn Arena>,
         buffers: &mut Option<&'m mut EpaBuffers>,
-    ) -> Result<Expanded, Stop> {
+    ) -> Result<PolytopeEnd, Stop> {
         let mut set = VertexSet::<LARGE_VERTICES>::EMPTY;
         let mut corners = EpaCorners::<LARGE_CORNERS>::EMPTY;
         let mut polytope = EpaPolytope::<LARGE_FACES>::BLANK;
@@ -448,10 +448,10 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             false,
             has_larger,
         )?;
-        if let (Expanded::NoRoom, Some(arena)) = (found, arena.take()) {
-            let lent = arena.buffers()?;
-            lent.set.copy_from(&set);
-            *buffers = Some(lent);
+        if let (PolytopeEnd::NoRoom, Some(arena)) = (found, arena.take()) {
+            let large = arena.buffers()?;
+            large.set.copy_from(&set);
+            *buffers = Some(large);
         }
         Ok(found)
     }
@@ -459,7 +459,11 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     /// Expands a polytope in the buffers of an arena, which hold the vertices.
     #[cold]
     #[inline(never)]
-    fn expand_lent(&mut self, start: &Start, buffers: &mut EpaBuffers) -> Result<Expanded, Stop> {
+    fn expand_in_arena(
+        &mut self,
+        start: &Start,
+        buffers: &mut EpaBuffers,
+    ) -> Result<PolytopeEnd, Stop> {
         let EpaBuffers {
             set,
             corners,
@@ -479,10 +483,10 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         start: &Start,
         is_warm: bool,
         has_larger: bool,
-    ) -> Result<Expanded, Stop> {
+    ) -> Result<PolytopeEnd, Stop> {
         let ulp = f64::EPSILON * self.query.scale.size();
         let Some(tetrahedron) = Tetrahedron::new(start.map(|v| v.w), ulp) else {
-            return Ok(Expanded::Outside);
+            return Ok(PolytopeEnd::Outside);
         };
         let is_exact = self.limits.needs_exact_planes(&self.query.scale);
         polytope.start(&tetrahedron, is_exact);
@@ -499,9 +503,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             has_larger,
         )?;
         if end == ExpandEnd::NoRoom && has_larger {
-            return Ok(Expanded::NoRoom);
+            return Ok(PolytopeEnd::NoRoom);
         }
-        self.conclude(set, corners, polytope, end, is_warm)
+        self.compute_result(set, corners, polytope, end, is_warm)
     }
 
     /// Returns the interior point and the points farthest from it, from a line and from a plane, known or
@@ -531,7 +535,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             // Known differences first; then queries along the axes, the second only where the first finds
             // nothing.
             for pass in 0..3 {
-                let Some(n) = normalised(&axes[usize::from(pass > 1)]) else {
+                let Some(n) = normalise_unscaled(&axes[usize::from(pass > 1)]) else {
                     continue;
                 };
                 for m in [n, -n] {
@@ -575,21 +579,21 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let found = contains_origin(self.query, &mut known, None, &dir, false)?;
         // The points may be no support points: they have no direction.
         Ok(Some(found.corners.map(|point| {
-            let pair = VertexSet::<N>::sample(set.push(&Vec3::zeros(), &point));
+            let pair = VertexSet::<N>::pair_of_entry(set.push(&Vec3::zeros(), &point));
             Vertex { w: point.v, pair }
         })))
     }
 
     /// Writes the answer of an expansion, unless an earlier one is as close to its lower bound.
     #[inline(never)]
-    fn conclude<const N: usize, const C: usize, const F: usize>(
+    fn compute_result<const N: usize, const C: usize, const F: usize>(
         &mut self,
         set: &mut VertexSet<N>,
         corners: &EpaCorners<C>,
         polytope: &EpaPolytope<F>,
         end: ExpandEnd,
         is_warm: bool,
-    ) -> Result<Expanded, Stop> {
+    ) -> Result<PolytopeEnd, Stop> {
         let closest = polytope.closest_face();
         let support_eps = self.query.scale.support_eps();
         let tolerance = self.query.scale.tolerance(self.limits.gap.tolerance);
@@ -607,7 +611,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         };
         if is_warm && end == ExpandEnd::Converged && self.query.upper.depth - lower > tolerance {
             let face = vertices(closest.face);
-            self.polish(set, &face, &polytope.normal(closest.face))?;
+            self.refine_direction(set, &face, &polytope.normal(closest.face))?;
         }
         let upper = self.query.upper;
         if self.gap == f64::INFINITY || upper.depth - lower < self.gap {
@@ -617,7 +621,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             let face = polytope
                 .corners(face)
                 .map(|id| corners.vertex(set, &interior, id));
-            self.write_answer(set, face, lower, tolerance);
+            self.write_result_on_face(set, face, lower, tolerance);
         }
         // The bound as it is rounded down must be within the gap, whatever ended the search.
         let tolerance = larger(self.limits.gap.tolerance, tolerance);
@@ -632,9 +636,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             ExpandEnd::IterationLimit => Status::IterationLimit,
         };
         Ok(if is_inside {
-            Expanded::Inside(status)
+            PolytopeEnd::Inside(status)
         } else {
-            Expanded::Outside
+            PolytopeEnd::Outside
         })
     }
 
@@ -644,7 +648,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     /// of the direction or the interior point. (The ball of the lower bound is in the hull of these: a point
     /// of the ray between the bounds is.)
     #[inline(always)]
-    fn write_answer<const N: usize>(
+    fn write_result_on_face<const N: usize>(
         &mut self,
         set: &VertexSet<N>,
         mut face: [Vertex; 3],
@@ -657,7 +661,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let closest = |[a, b, c]: &[Vertex; 3]| barycentric::triangle(&foot, &a.w, &b.w, &c.w);
         let mut best = closest(&face);
         if best.distance2 > gap * lesser(gap, upper.depth) {
-            let pair = VertexSet::<N>::sample(upper.index);
+            let pair = VertexSet::<N>::pair_of_entry(upper.index);
             let support = Vertex {
                 w: set.difference(pair),
                 pair,
@@ -685,17 +689,17 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             points[0] += point.v1 * *weight;
             points[1] += point.v2 * *weight;
         }
-        self.write(lower, points);
+        self.write_result(lower, points);
     }
 
     /// Writes the answer where nothing is known but the upper bound.
-    fn write_upper<const N: usize>(&mut self, set: &VertexSet<N>) {
-        let point = set.point(VertexSet::<N>::sample(self.query.upper.index));
-        self.write(0.0, [point.v1, point.v2]);
+    fn write_upper_bound<const N: usize>(&mut self, set: &VertexSet<N>) {
+        let point = set.point(VertexSet::<N>::pair_of_entry(self.query.upper.index));
+        self.write_result(0.0, [point.v1, point.v2]);
     }
 
     #[inline(always)]
-    fn write(&mut self, lower: f64, [point1, point2]: [Vec3; 2]) {
+    fn write_result(&mut self, lower: f64, [point1, point2]: [Vec3; 2]) {
         let upper = self.query.upper;
         let lower = lower.min(upper.depth);
         self.gap = upper.depth - lower;

@@ -130,10 +130,10 @@ pub struct Tetrahedron {
     pub planes: [Plane; 4],
     /// The points 1 and 2 have changed places, so that the normals point outwards.
     pub is_flipped: bool,
-    /// The middle of the four points: below every plane by at least `margin`.
+    /// The middle of the four points: below every plane by at least `interior_clearance`.
     pub middle: Vec3,
     /// Metres.
-    pub margin: f64,
+    pub interior_clearance: f64,
     /// The error of the planes, metres.
     pub error: f64,
 }
@@ -177,12 +177,12 @@ impl Tetrahedron {
         }
         let error = PLANE_ERROR_ULPS * ulp;
         // The middle is a quarter of the opposite corner's height below a face.
-        let margin = 0.25 * volume.abs() / widest2.sqrt();
-        (margin >= error).then_some(Self {
+        let interior_clearance = 0.25 * volume.abs() / widest2.sqrt();
+        (interior_clearance >= error).then_some(Self {
             planes,
             is_flipped,
             middle: (o + a + b + c) * 0.25,
-            margin,
+            interior_clearance,
             error,
         })
     }
@@ -229,7 +229,7 @@ mod tests {
             assert!(
                 made.planes
                     .iter()
-                    .all(|p| p.offset() - p.normal().dot(&made.middle) >= made.margin)
+                    .all(|p| p.offset() - p.normal().dot(&made.middle) >= made.interior_clearance)
             );
         }
     }

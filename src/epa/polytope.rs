@@ -17,7 +17,7 @@
 //! not amplified, and a sliver's plane is between two good ones. A point below both F and G is below F′:
 //!
 //! - the *interior point*, the middle of the first tetrahedron, stays below every plane, by the least
-//!   *margin* of the planes that were computed from corners, and
+//!   *interior_clearance* of the planes that were computed from corners, and
 //! - an origin below every plane (d > 0) stays there.
 //!
 //! A point hardly above G counts as on it (g is taken as 0, w = 1): the new face has G's plane.
@@ -30,7 +30,7 @@
 //! triangle meets the segment from it to the origin either, both ends being below the plane and the
 //! corners not; so the surface winds around the origin once, and around every point nearer than its closest
 //! triangle. That ball is in the hull of the corners. The surface need not be convex for this: convexity
-//! decides how fast the bound grows. Where the margin is no more than the error
+//! decides how fast the bound grows. Where the interior_clearance is no more than the error
 //! ([`EpaPolytope::encloses_interior_point`]) nothing is proven.
 //!
 //! # Repairs, all under that invariant
@@ -68,9 +68,9 @@ const KEY_ERROR_REL: f64 = 1e-12;
 pub const MAX_FACES: usize = 4096;
 /// |N|² below which a plane has lost a digit to interpolation and is computed from its corners. Derived:
 /// the error stays within ten times that of its parents.
-const CANCELLED_N2: f64 = 0.01;
+const MIN_INTERPOLATED_N2: f64 = 0.01;
 /// |N|² below which nothing of an interpolated plane is left: two digits more.
-const VANISHED_N2: f64 = 1e-6;
+const MIN_USABLE_N2: f64 = 1e-6;
 /// The largest error that normalising a plane may lead to, in ulps of the size. Insensitive, 1e4 to 1e6 on
 /// the recorded contacts: far below the tolerances that interpolated planes serve.
 const MAX_SCALED_ERROR_ULPS: f64 = 1e5;
@@ -99,11 +99,11 @@ pub struct EpaPolytope<const F: usize> {
     used: usize,
     interior: Vec3,
     /// The least distance of the interior point from a plane, in units of its |N|, metres.
-    margin: f64,
+    interior_clearance: f64,
     error: f64,
     /// |N|² below which planes are computed from their corners.
     cancelled: f64,
-    /// [`KEY_ERROR_REL`], or 0 where keys are made exact ([`EpaPolytope::has_closer`]).
+    /// [`KEY_ERROR_REL`], or 0 where keys are made exact ([`EpaPolytope::refresh_keys`]).
     key_error: f64,
 }
 
@@ -128,7 +128,7 @@ impl<const F: usize> EpaPolytope<F> {
         free: 0,
         used: 0,
         interior: Vec3::new(0.0, 0.0, 0.0),
-        margin: 0.0,
+        interior_clearance: 0.0,
         error: 0.0,
         cancelled: 0.0,
         key_error: 0.0,
@@ -260,13 +260,13 @@ impl<const F: usize> EpaPolytope<F> {
         }
         (self.used, self.free) = (4, 4);
         self.interior = tetrahedron.middle;
-        self.margin = tetrahedron.margin;
+        self.interior_clearance = tetrahedron.interior_clearance;
         self.error = tetrahedron.error;
         self.ulp = tetrahedron.error / PLANE_ERROR_ULPS;
         (self.cancelled, self.key_error) = if is_exact {
             (f64::INFINITY, 0.0)
         } else {
-            (CANCELLED_N2, KEY_ERROR_REL)
+            (MIN_INTERPOLATED_N2, KEY_ERROR_REL)
         };
     }
 
@@ -274,7 +274,7 @@ impl<const F: usize> EpaPolytope<F> {
     /// it; `false` for NaN.
     #[inline(always)]
     pub fn encloses_interior_point(&self) -> bool {
-        self.margin >= self.error
+        self.interior_clearance >= self.error
     }
 
     /// Returns what a face at this distance may be farther away than the closest, metres, because their
@@ -323,22 +323,22 @@ impl<const F: usize> EpaPolytope<F> {
     /// Returns whether a face is closer than this key, where tolerances are finer than keys tell. Such a
     /// face gets a key that says so.
     #[inline(always)]
-    pub fn has_closer(&mut self, key: f64) -> bool {
+    pub fn refresh_keys(&mut self, key: f64) -> bool {
         !(self.key_error > 0.0) && self.sharpen_keys(key)
     }
 
     #[cold]
     #[inline(never)]
     fn sharpen_keys(&mut self, key: f64) -> bool {
-        let mut has_closer = false;
+        let mut refresh_keys = false;
         for f in 0..self.used.min(F) {
             let (square, _) = self.plane(f).signed_square();
             if self.keys[f] < f64::INFINITY && square < key {
                 self.keys[f] = Self::key(f, square * (1.0 - KEY_ERROR_REL));
-                has_closer = true;
+                refresh_keys = true;
             }
         }
-        has_closer
+        refresh_keys
     }
 
     /// Makes a point the corner with index `id`. `first` is a face that it is above by more than
@@ -360,7 +360,7 @@ impl<const F: usize> EpaPolytope<F> {
         // Terminates: `first` alone is a disc.
         loop {
             match self.walk_visible(first, id, p, above, corner) {
-                Insertion::NoDisc if above < f64::INFINITY => {
+                Insertion::HorizonNotSimple if above < f64::INFINITY => {
                     let height = self.plane(first).height(&Plane::point(p));
                     above = if 8.0 * above < height {
                         8.0 * above
@@ -433,7 +433,7 @@ impl<const F: usize> EpaPolytope<F> {
         // Also where no face was hidden.
         if begin == 4 * free || met_again && !self.is_horizon_closed(begin, previous) {
             self.revert(first, tail, free);
-            return Insertion::NoDisc;
+            return Insertion::HorizonNotSimple;
         }
         self.set_twin(begin | 2, previous | 1);
         self.set_twin(previous | 1, begin | 2);
@@ -531,18 +531,18 @@ impl<const F: usize> EpaPolytope<F> {
         let (old, parent) = (self.plane(f), self.plane(parent));
         let (square, n2) = old.signed_square();
         // Of a vanished plane neither side nor sign is known: its parent's sign counts.
-        let is_sided = n2 > VANISHED_N2;
-        let ancestor = if is_sided { &old } else { &parent };
-        let plane = match self.plane_through_corners(f, ancestor, is_sided, corner) {
-            Some((plane, margin)) => {
-                self.margin = lesser(margin, self.margin);
+        let is_side_known = n2 > MIN_USABLE_N2;
+        let ancestor = if is_side_known { &old } else { &parent };
+        let plane = match self.plane_through_corners(f, ancestor, is_side_known, corner) {
+            Some((plane, interior_clearance)) => {
+                self.interior_clearance = lesser(interior_clearance, self.interior_clearance);
                 plane
             }
-            None if n2 >= CANCELLED_N2 => {
+            None if n2 >= MIN_INTERPOLATED_N2 => {
                 self.error += INSERTION_ERROR_ULPS * self.ulp;
                 return square;
             }
-            None if is_sided && self.error <= MAX_SCALED_ERROR_ULPS * self.ulp * n2.sqrt() => {
+            None if is_side_known && self.error <= MAX_SCALED_ERROR_ULPS * self.ulp * n2.sqrt() => {
                 let k = 1.0 / n2.sqrt();
                 self.error *= k;
                 old.scaled(k)
@@ -561,7 +561,7 @@ impl<const F: usize> EpaPolytope<F> {
         &self,
         f: usize,
         old: &Plane,
-        is_sided: bool,
+        is_side_known: bool,
         corner: &impl Fn(usize) -> Vec3,
     ) -> Option<(Plane, f64)> {
         let [a, b, p] = self.corners(f).map(corner);
@@ -574,11 +574,11 @@ impl<const F: usize> EpaPolytope<F> {
         }
         let n = n / n2.sqrt();
         let d = lesser(lesser(n.dot(&a), n.dot(&b)), n.dot(&p));
-        let margin = d - n.dot(&self.interior);
-        let inherits = (!is_sided || n.dot(&old.normal()) > 0.0)
-            && margin >= larger(PLANE_ERROR_ULPS * self.ulp, self.error)
+        let interior_clearance = d - n.dot(&self.interior);
+        let inherits = (!is_side_known || n.dot(&old.normal()) > 0.0)
+            && interior_clearance >= larger(PLANE_ERROR_ULPS * self.ulp, self.error)
             && (d > 0.0 || !(old.offset() > 0.0));
-        inherits.then(|| (Plane::new(&n, d), margin))
+        inherits.then(|| (Plane::new(&n, d), interior_clearance))
     }
 }
 
@@ -587,7 +587,7 @@ impl<const F: usize> EpaPolytope<F> {
 enum Insertion {
     Done,
     NoRoom,
-    NoDisc,
+    HorizonNotSimple,
 }
 
 #[cfg(test)]

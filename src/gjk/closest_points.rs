@@ -22,7 +22,7 @@ use crate::gjk::intersect::{CAPACITY, Enclosing};
 use crate::gjk::simplex::{MAX_STALLS, Simplex, compact};
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
-use crate::minkowski::round_fit::{MAX_MISS, MIN_GAIN, SphereFit};
+use crate::minkowski::round_fit::{MIN_GAIN, PREDICTION_REL_TOL, SphereFit};
 use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS};
@@ -93,10 +93,10 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         upper: f64::INFINITY,
         has_missed: false,
     };
-    let before = search.query.sample_count();
+    let before = search.query.support_points();
     let end = search.run(goal, start)?;
     let (point1, point2) = search.points(end);
-    let iterations = search.query.sample_count() - before;
+    let iterations = search.query.support_points() - before;
     let bound = search.query.upper;
     Ok(ClosestPoints {
         lower: -bound.depth,
@@ -241,7 +241,7 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
             return Ok(false);
         };
         let sample = self.query.evaluate_signed(&mut self.set, &n)?;
-        self.has_missed = !(sample.h <= value + MAX_MISS * (bound.depth - value));
+        self.has_missed = !(sample.h <= value + PREDICTION_REL_TOL * (bound.depth - value));
         self.fit.is_confirmed = !self.has_missed;
         Ok(true)
     }

@@ -16,7 +16,7 @@
 //! simplex starts from the interior point where there is one. A touch within the contact epsilon is no
 //! intersection: the origin must be inside by more, and a D without volume has no inside.
 //!
-//! Outputs: `Err(Stop::Apart(n))`: n is a separating axis, or D reaches no farther along it than the
+//! Outputs: `Err(Stop::Separated(n))`: n is a separating axis, or D reaches no farther along it than the
 //! contact epsilon. `Ok`: D contains the origin, or no queried direction separates.
 
 use crate::gjk::barycentric;
@@ -67,7 +67,7 @@ impl Enclosing {
 /// Returns the direction of the least support value met, from which the next query of the pair starts.
 ///
 /// # Errors
-/// [`Stop::Apart`]; [`Stop::Fault`] for a point that is not finite.
+/// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
 #[inline]
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
@@ -397,7 +397,7 @@ mod tests {
         };
         let first = at.normalize();
         let found = intersect(&md, Some(&c), &first);
-        assert!(matches!(found, Err(Stop::Apart(_))), "{found:?}");
+        assert!(matches!(found, Err(Stop::Separated(_))), "{found:?}");
     }
 
     /// A cube turned anyhow and the same over it, aside, with this gap (less than zero: the depth).
@@ -424,7 +424,7 @@ mod tests {
             let md = difference(hull(&a), hull(&b));
             let one = test_cold(&md, &dir);
             assert_eq!(one.is_ok(), gap < 0.0, "{gap}");
-            if let Err(Stop::Apart(n)) = one {
+            if let Err(Stop::Separated(n)) = one {
                 assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
             }
@@ -530,7 +530,7 @@ mod tests {
             query.interior = None;
             let mut set = VertexSet::<16>::EMPTY;
             let found = contains_origin(&mut query, &mut set, Some(&center), &r.direction(), false);
-            assert!(matches!(found, Err(Stop::Apart(_))));
+            assert!(matches!(found, Err(Stop::Separated(_))));
         }
     }
 }

@@ -341,7 +341,10 @@ pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
         if let Some(new) = olds.iter().position(|o| *o == old) {
             return new;
         }
-        let new = kept.push(&set.dir(old), &set.point(VertexSet::<N>::sample(old)));
+        let new = kept.push(
+            &set.dir(old),
+            &set.point(VertexSet::<N>::pair_of_entry(old)),
+        );
         if let Some(slot) = olds.get_mut(new) {
             *slot = old;
         }

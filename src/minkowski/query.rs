@@ -6,7 +6,7 @@
 //! h(n), the support value of a unit direction n, is a sound depth: moving obj2 by h(n) n separates
 //! the objects. The least one met is the upper bound of the penetration depth. A support value that is
 //! no greater than the contact epsilon proves that the objects are apart, and ends a query of overlaps
-//! ([`Stop::Apart`]).
+//! ([`Stop::Separated`]).
 //!
 //! # Inconsistent support functions
 //!
@@ -36,7 +36,7 @@ const REQUERY_ANGLE_RAD: f64 = 0.002;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
     /// The objects are apart, or touch within rounding: the unit vector is a separating axis.
-    Apart(Vec3),
+    Separated(Vec3),
     /// A callback returned a point that no query can work with, or there is no memory.
     Fault(Fault),
 }
@@ -52,7 +52,7 @@ impl From<Fault> for Stop {
 pub fn if_overlapping<T>(found: Result<T, Stop>) -> Result<Option<T>, Fault> {
     match found {
         Ok(found) => Ok(Some(found)),
-        Err(Stop::Apart(_)) => Ok(None),
+        Err(Stop::Separated(_)) => Ok(None),
         Err(Stop::Fault(fault)) => Err(fault),
     }
 }
@@ -127,7 +127,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
 
     /// Returns the number of support calls so far.
     #[inline(always)]
-    pub fn sample_count(&self) -> u64 {
+    pub fn support_points(&self) -> u64 {
         self.md.supports()
     }
 
@@ -147,7 +147,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     /// the point to the set as entry 0.
     ///
     /// # Errors
-    /// [`Stop::Apart`], [`Fault::NonFinite`].
+    /// [`Stop::Separated`], [`Fault::NonFinite`].
     #[inline(always)]
     pub fn evaluate_first(&mut self, dir: &Vec3) -> Result<SupportPoint, Stop> {
         let dir = representable(dir);
@@ -155,7 +155,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         let h = dir.dot(&point.v);
         // Negated for NaN.
         if !self.scale.is_depth(h) {
-            return Err(Stop::Apart(dir));
+            return Err(Stop::Separated(dir));
         }
         self.store_upper(&dir, h, 0);
         Ok(point)
@@ -164,7 +164,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     /// Evaluates unit `dir` and adds the sample to the set, which must have room.
     ///
     /// # Errors
-    /// [`Stop::Apart`], [`Fault::NonFinite`].
+    /// [`Stop::Separated`], [`Fault::NonFinite`].
     #[inline(always)]
     pub fn evaluate<const N: usize>(
         &mut self,
@@ -217,7 +217,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         SupportSample {
             w: point.v,
             h,
-            pair: VertexSet::<N>::sample(index),
+            pair: VertexSet::<N>::pair_of_entry(index),
         }
     }
 
@@ -250,7 +250,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     /// Evaluates again where `answer` separates but known vertices lie beyond it: one of them is wrong.
     ///
     /// # Errors
-    /// [`Stop::Apart`]: the axis separates. [`Fault::NonFinite`].
+    /// [`Stop::Separated`]: the axis separates. [`Fault::NonFinite`].
     #[cold]
     #[inline(never)]
     fn confirm_separation<const N: usize>(
@@ -266,14 +266,14 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         let known = larger(dir.dot(&set.vertex1(a.into())), dir.dot(&answer.v1))
             + larger(-dir.dot(&set.vertex2(b.into())), -dir.dot(&answer.v2));
         if self.is_inconsistent || set.len() == 0 || !(known > least) {
-            return Err(Stop::Apart(*dir));
+            return Err(Stop::Separated(*dir));
         }
         self.is_inconsistent = true;
         let point = self.evaluate_twice(dir, answer)?;
         if dir.dot(&point.v) > least {
             Ok(point)
         } else {
-            Err(Stop::Apart(*dir))
+            Err(Stop::Separated(*dir))
         }
     }
 
@@ -285,15 +285,15 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     #[cold]
     #[inline(never)]
     fn evaluate_twice(&mut self, dir: &Vec3, answer: &SupportPoint) -> Result<SupportPoint, Fault> {
-        let beside = beside(dir);
-        let near = self.evaluate_point(&beside)?;
+        let perturbed_dir = perturbed(dir);
+        let near = self.evaluate_point(&perturbed_dir)?;
         let eps = self.scale.support_eps();
         let choose = |n: &Vec3, m: &Vec3, p: &Vec3, q: &Vec3| {
             let is_wrong = n.dot(q) > n.dot(p) + eps || m.dot(p) > m.dot(q) + eps;
             if is_wrong { *q } else { *p }
         };
-        let v1 = choose(dir, &beside, &answer.v1, &near.v1);
-        let v2 = choose(&-dir, &-beside, &answer.v2, &near.v2);
+        let v1 = choose(dir, &perturbed_dir, &answer.v1, &near.v1);
+        let v2 = choose(&-dir, &-perturbed_dir, &answer.v2, &near.v2);
         Ok(SupportPoint { v: v1 - v2, v1, v2 })
     }
 
@@ -312,7 +312,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
 }
 
 /// Returns the unit vector [`REQUERY_ANGLE_RAD`] beside unit `n`.
-fn beside(n: &Vec3) -> Vec3 {
+fn perturbed(n: &Vec3) -> Vec3 {
     let tilted = n + perpendicular(n) * REQUERY_ANGLE_RAD;
     tilted / tilted.norm()
 }
@@ -341,7 +341,7 @@ mod tests {
         assert_eq!(second.w, Vec3::x() * 0.5);
         let UpperBound { depth, dir, index } = query.upper;
         assert_eq!((depth, dir, index), (0.5, Vec3::x(), 1));
-        assert_eq!(query.sample_count(), 2);
+        assert_eq!(query.support_points(), 2);
     }
 
     #[test]
@@ -352,9 +352,9 @@ mod tests {
             let mut set = VertexSet::<4>::EMPTY;
             let mut query = SupportQuery::new(&md, None);
             let stop = query.evaluate(&mut set, &Vec3::x()).unwrap_err();
-            assert_eq!(stop, Stop::Apart(Vec3::x()));
+            assert_eq!(stop, Stop::Separated(Vec3::x()));
             let stop = query.evaluate_first(&Vec3::x()).unwrap_err();
-            assert_eq!(stop, Stop::Apart(Vec3::x()));
+            assert_eq!(stop, Stop::Separated(Vec3::x()));
         }
     }
 
@@ -384,7 +384,7 @@ mod tests {
         let mut set = VertexSet::<4>::EMPTY;
         query.evaluate(&mut set, &Vec3::new(0.8, 0.6, 0.0)).unwrap();
         let stop = query.evaluate(&mut set, &Vec3::x()).unwrap_err();
-        assert_eq!(stop, Stop::Apart(Vec3::x()));
+        assert_eq!(stop, Stop::Separated(Vec3::x()));
     }
 
     /// A disc whose vertices are 5 cm too high within 1e-3 of its axis: a second evaluation takes the

@@ -10,12 +10,12 @@
 //!    foot w of the origin on their triangle predicts the least support value ρ − |w| along −w / |w|, or
 //!    ρ + |w| along w where the origin is on the inner side.
 //! 3. *Confirmation.* A prediction that comes true confirms the fit; one that misses resets the radii, and
-//!    after [`MAX_MISSES`] of them the fit is not used any more.
+//!    after [`MAX_FAILED_PREDICTIONS`] of them the fit is not used any more.
 //! 4. *Beside.* Where the fit is confirmed, the least direction tilted towards a face finds a corner as far
 //!    from it as a face may lie within the gap.
 
 use crate::gjk::barycentric;
-use crate::math::{Vec3, lesser, normalised};
+use crate::math::{Vec3, lesser, normalise_unscaled};
 use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
@@ -58,10 +58,10 @@ const MIN_SAMPLES: usize = 4;
 /// support points of proofs.
 pub const MIN_GAIN: f64 = 0.3;
 /// The share of a prediction's gain that may be missed. Insensitive: 0.2 to 0.5.
-pub const MAX_MISS: f64 = 0.2;
+pub const PREDICTION_REL_TOL: f64 = 0.2;
 /// The predictions of a model that miss before it is not used any more. Without a limit some walks take 60 support
 /// points more, and a proof of `campaign` ("centre offset along a shared axis") ends at the support limit.
-pub const MAX_MISSES: u32 = 5;
+pub const MAX_FAILED_PREDICTIONS: u32 = 5;
 /// The k below which a second ring is no wider than EPA's own; without it proofs of the same category end at the
 /// support limit. Insensitive: 0.33 to 0.6.
 const MIN_RING_K: f64 = 0.5;
@@ -71,21 +71,21 @@ const MAX_RING_RATIO: f64 = 100.0;
 
 /// The source of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Choice {
+pub enum DirectionSource {
     /// The normal of the face.
     Normal,
     /// The prediction of the sphere fit.
     Prediction,
     /// The least direction, tilted towards the face.
-    Beside,
+    Tilted,
 }
 
 /// A direction to evaluate.
 #[derive(Clone, Copy, Debug)]
-struct Aim {
+struct QueryDirection {
     /// Unit.
     dir: Vec3,
-    choice: Choice,
+    choice: DirectionSource,
     /// The support value that a prediction tells, metres.
     value: f64,
 }
@@ -209,7 +209,7 @@ impl SphereFit {
     /// On a sphere of radius ρ, with the origin at e = ρ − upper from its center, a chord between the
     /// angles α and γ from the least direction is as far from the origin as the upper bound where
     /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ.
-    pub fn beside<const N: usize>(
+    pub fn tilted_from_lowest<const N: usize>(
         &self,
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
@@ -255,9 +255,9 @@ impl SphereFit {
         normal: &Vec3,
         upper: &UpperBound,
         gap: f64,
-    ) -> Aim {
+    ) -> QueryDirection {
         self.update(set, upper.index);
-        let is_used = self.misses < MAX_MISSES;
+        let is_used = self.misses < MAX_FAILED_PREDICTIONS;
         let predicted = is_used.then(|| self.predict(set, corners, normal));
         if let Some((dir, value)) = predicted.flatten() {
             if (value - upper.depth).abs() <= MIN_GAIN * gap {
@@ -265,21 +265,21 @@ impl SphereFit {
                 self.is_confirmed = true;
             }
             if value < upper.depth - MIN_GAIN * gap {
-                let choice = Choice::Prediction;
-                return Aim { dir, choice, value };
+                let choice = DirectionSource::Prediction;
+                return QueryDirection { dir, choice, value };
             }
         }
-        let beside = if self.is_confirmed && self.sum() > 0.0 {
-            self.beside(set, corners, &upper.dir, upper.depth, normal, gap)
+        let tilted = if self.is_confirmed && self.sum() > 0.0 {
+            self.tilted_from_lowest(set, corners, &upper.dir, upper.depth, normal, gap)
         } else {
             None
         };
-        let (dir, choice) = match beside {
-            Some(dir) => (dir, Choice::Beside),
-            None => (*normal, Choice::Normal),
+        let (dir, choice) = match tilted {
+            Some(dir) => (dir, DirectionSource::Tilted),
+            None => (*normal, DirectionSource::Normal),
         };
         let value = upper.depth;
-        Aim { dir, choice, value }
+        QueryDirection { dir, choice, value }
     }
 }
 
@@ -289,7 +289,7 @@ impl SphereFit {
     /// Returns whether the centers of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
     /// directions each, as far apart as `tolerance`, metres, at most. The tip of a drop looks like the center of a
     /// sphere from one direction, and the rim of a thin disc nearly so from several.
-    pub fn is_found_twice<const N: usize>(
+    pub fn is_confirmed_twice<const N: usize>(
         &self,
         set: &VertexSet<N>,
         pair: VertexPair,
@@ -312,7 +312,7 @@ impl SphereFit {
 
     /// Returns whether the spheres that carry an answer were found twice: that of the upper bound's entry, and those of
     /// the corners that share in the witness points.
-    pub fn has_real_spheres<const N: usize>(
+    pub fn are_spheres_confirmed<const N: usize>(
         &self,
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
@@ -320,9 +320,10 @@ impl SphereFit {
         tolerance: f64,
     ) -> bool {
         let weights = self.weights(set, corners);
-        self.is_found_twice(set, VertexSet::<N>::sample(upper.index), tolerance)
-            && (weights.iter().zip(corners))
-                .all(|(weight, v)| !(*weight > 0.0) || self.is_found_twice(set, v.pair, tolerance))
+        self.is_confirmed_twice(set, VertexSet::<N>::pair_of_entry(upper.index), tolerance)
+            && (weights.iter().zip(corners)).all(|(weight, v)| {
+                !(*weight > 0.0) || self.is_confirmed_twice(set, v.pair, tolerance)
+            })
     }
 
     /// Returns the shares of the corners' spheres in the point of their core that is closest to the origin.
@@ -390,7 +391,7 @@ fn fit_radii<const N: usize>(
 
 /// Evaluates the support function for a face with these corners and this normal, which need not be unit:
 /// where the fit predicts the least support value, else beside the least direction, else along the normal.
-/// `is_plain`: along the normal. `gap` is what the bounds may be apart, metres.
+/// `along_normal`: along the normal. `gap` is what the bounds may be apart, metres.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -402,27 +403,28 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     corners: &[Vertex; 3],
     normal: &Vec3,
     gap: f64,
-    is_plain: bool,
-) -> Result<(SupportSample, Choice), Stop> {
-    let unit_normal = normalised(normal).unwrap_or(query.upper.dir);
+    along_normal: bool,
+) -> Result<(SupportSample, DirectionSource), Stop> {
+    let unit_normal = normalise_unscaled(normal).unwrap_or(query.upper.dir);
     let has_samples = set.len() >= MIN_SAMPLES || fit.is_confirmed;
-    if is_plain || !has_samples || corners.iter().any(|v| v.pair.is_interior()) {
-        return Ok((query.evaluate(set, &unit_normal)?, Choice::Normal));
+    if along_normal || !has_samples || corners.iter().any(|v| v.pair.is_interior()) {
+        return Ok((query.evaluate(set, &unit_normal)?, DirectionSource::Normal));
     }
     let upper = query.upper;
     let aim = fit.choose(set, corners, &unit_normal, &upper, gap);
     let sample = query.evaluate(set, &aim.dir)?;
     match aim.choice {
-        Choice::Normal => {}
-        Choice::Prediction => {
-            fit.is_confirmed = sample.h < aim.value + MAX_MISS * (upper.depth - aim.value);
+        DirectionSource::Normal => {}
+        DirectionSource::Prediction => {
+            fit.is_confirmed =
+                sample.h < aim.value + PREDICTION_REL_TOL * (upper.depth - aim.value);
             if !fit.is_confirmed {
                 fit.misses += 1;
                 fit.radius = [0.0; 2];
             }
         }
         // On a sphere the least direction was the least one.
-        Choice::Beside => fit.is_confirmed = !(sample.h < upper.depth),
+        DirectionSource::Tilted => fit.is_confirmed = !(sample.h < upper.depth),
     }
     Ok((sample, aim.choice))
 }

@@ -6,7 +6,7 @@
 
 use core::cell::Cell;
 
-use crate::math::{Vec3, larger, largest};
+use crate::math::{Vec3, larger, max_abs};
 
 /// A convex object, given by its support function.
 pub trait SupportMap {
@@ -38,7 +38,7 @@ impl SupportPoint {
     /// is proportional to it.
     #[inline]
     pub fn magnitude(&self) -> f64 {
-        larger(largest(&self.v1), largest(&self.v2))
+        larger(max_abs(&self.v1), max_abs(&self.v2))
     }
 
     /// Returns the point at `share` (0 to 1) of the segment to `other`.
@@ -103,7 +103,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
     /// Returns the support point of object 0 or 1 along direction `dir` of D (of obj2 along `-dir`); it
     /// may be not finite.
     #[inline]
-    pub fn point_of(&self, object: usize, dir: &Vec3) -> Vec3 {
+    pub fn support_of_object(&self, object: usize, dir: &Vec3) -> Vec3 {
         self.calls.set(self.calls.get() + 1);
         match object {
             0 => self.obj1.support(dir),

@@ -26,7 +26,7 @@ pub const TRIPLE_PRODUCT_ULPS: f64 = if EPSILON < 1e-10 { 256.0 } else { 8.0 };
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Scale {
     size2: f64,
-    reach2: f64,
+    world_extent2: f64,
 }
 
 impl Scale {
@@ -35,8 +35,8 @@ impl Scale {
     pub fn note(&mut self, point: &SupportPoint) {
         // `larger` returns its second number where the first is NaN.
         self.size2 = larger(point.v.norm_squared(), self.size2);
-        let reach2 = larger(point.v1.norm_squared(), point.v2.norm_squared());
-        self.reach2 = larger(reach2, self.reach2);
+        let world_extent2 = larger(point.v1.norm_squared(), point.v2.norm_squared());
+        self.world_extent2 = larger(world_extent2, self.world_extent2);
     }
 
     /// Returns the square of [`Scale::size`], m².
@@ -53,15 +53,15 @@ impl Scale {
 
     /// Returns the largest distance of a vertex from the world's origin, metres.
     #[inline(always)]
-    pub fn reach(&self) -> f64 {
-        self.reach2.sqrt()
+    pub fn world_extent(&self) -> f64 {
+        self.world_extent2.sqrt()
     }
 
     /// Returns the support epsilon, metres: what a point of D is uncertain by. Derived: half an ulp for
     /// each coordinate of each vertex as the callback rounds it, and of their difference.
     #[inline(always)]
     pub fn support_eps(&self) -> f64 {
-        2.0 * EPSILON * self.reach()
+        2.0 * EPSILON * self.world_extent()
     }
 
     /// Returns the rounding of a unit vector times a point of D, metres. Derived: three products, two
@@ -95,7 +95,7 @@ impl Scale {
     #[inline(always)]
     pub fn is_depth(&self, h: f64) -> bool {
         const CONTACT: f64 = 8.0 * EPSILON;
-        h > 0.0 && h * h > CONTACT * CONTACT * self.reach2
+        h > 0.0 && h * h > CONTACT * CONTACT * self.world_extent2
     }
 
     /// Returns the tolerance in force where `requested` is wanted, metres: no finer than the contact
@@ -140,7 +140,7 @@ mod tests {
         let mut scale = Scale::default();
         scale.note(&point(Vec3::new(3.0, 4.0, 0.0), Vec3::zeros()));
         scale.note(&point(Vec3::x() * 100.0, Vec3::x() * 99.0));
-        assert_eq!((scale.size(), scale.reach()), (5.0, 100.0));
+        assert_eq!((scale.size(), scale.world_extent()), (5.0, 100.0));
         assert_eq!(scale.tolerance(0.0), scale.contact_eps());
         assert_eq!(scale.tolerance(1.0), 2.5e-4 * 5.0);
         assert_eq!(scale.tolerance(1e-3), 1e-3);

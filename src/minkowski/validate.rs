@@ -10,7 +10,7 @@
 //! 2. Repetition: the same directions in the opposite order must return the same support values.
 //! 3. Center: it must not lie beyond any support plane.
 
-use crate::math::{EPSILON, Vec3, larger, largest, perpendicular};
+use crate::math::{EPSILON, Vec3, larger, max_abs, perpendicular};
 use crate::minkowski::support::SupportMap;
 
 /// The directions: those of a hemisphere, their opposites, and the former tilted.
@@ -109,7 +109,7 @@ fn golden_rotation(i: usize) -> (f64, f64) {
 pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
     let mut points = [Vec3::zeros(); NUM_DIRECTIONS];
     let mut report = Check::default();
-    let mut reach = center.map_or(0.0, largest);
+    let mut max_coordinate = center.map_or(0.0, max_abs);
     for (i, point) in points.iter_mut().enumerate() {
         *point = object.support(&direction(i));
         // A finite sum has finite terms.
@@ -118,13 +118,13 @@ pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
             report.dir = direction(i).into();
             return report;
         }
-        reach = larger(largest(point), reach);
+        max_coordinate = larger(max_abs(point), max_coordinate);
     }
     if !center.is_none_or(|c| c.sum().is_finite()) {
         report.not_finite = true;
         return report;
     }
-    let rounding = ROUNDING_ULPS * EPSILON * reach;
+    let rounding = ROUNDING_ULPS * EPSILON * max_coordinate;
     check_planes(&points, &mut report, rounding);
     check_repetition(object, &points, &mut report, rounding);
     if let Some(center) = center.filter(|_| !report.opposite) {

@@ -180,7 +180,7 @@ impl<const N: usize> VertexSet<N> {
 
     /// Returns the known difference that is the support point of entry `i`.
     #[inline(always)]
-    pub fn sample(i: usize) -> VertexPair {
+    pub fn pair_of_entry(i: usize) -> VertexPair {
         VertexPair {
             a: i as u16,
             b: i as u16,
@@ -292,11 +292,11 @@ mod tests {
         let mut r = Random::new(2);
         let mut set = random_set::<4>(&mut r, 4);
         assert!(set.is_full());
-        let last = (set.point(VertexSet::<4>::sample(3)), set.dir(3));
+        let last = (set.point(VertexSet::<4>::pair_of_entry(3)), set.dir(3));
         assert_eq!(last.0.v, last.0.v1 - last.0.v2);
         let mut large = VertexSet::<9>::EMPTY;
         large.copy_from(&set);
-        assert_eq!(large.point(VertexSet::<9>::sample(3)), last.0);
+        assert_eq!(large.point(VertexSet::<9>::pair_of_entry(3)), last.0);
         set.truncate(2);
         set.push(&last.1, &last.0);
         assert_eq!((set.len(), set.dir(2)), (3, last.1));

@@ -21,7 +21,7 @@ use crate::mpr::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, answer, ro
 /// answer with its lower bound, and the last portal, where there was one.
 ///
 /// # Errors
-/// [`Stop::Apart`]; a callback's answer that is not finite.
+/// [`Stop::Separated`]; a callback's answer that is not finite.
 pub fn along<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     dir: &Vec3,
@@ -33,7 +33,7 @@ pub fn along<A: SupportMap, B: SupportMap>(
         md,
         tolerance: settings.tolerance,
         until: Until::Ray,
-        flat: None,
+        plane_normal: None,
         budget,
         best: first,
     };
@@ -72,10 +72,10 @@ const FLOOR_ROUNDINGS: f64 = 8.0;
 
 /// Returns the support plane that the ray meets first, of `plane` and those of the portal: all are sound.
 fn first_met(dir: &Vec3, plane: SupportPlane, portal: Option<&Portal>) -> SupportPlane {
-    let reach = |p: &SupportPlane| p.depth / dir.dot(&p.normal);
+    let ray_parameter = |p: &SupportPlane| p.depth / dir.dot(&p.normal);
     let mut best = plane;
     for p in portal.iter().flat_map(|p| &p.planes) {
-        if dir.dot(&p.normal) > 0.0 && reach(p) < reach(&best) {
+        if dir.dot(&p.normal) > 0.0 && ray_parameter(p) < ray_parameter(&best) {
             best = *p;
         }
     }
@@ -85,9 +85,9 @@ fn first_met(dir: &Vec3, plane: SupportPlane, portal: Option<&Portal>) -> Suppor
 /// Returns where the ray crosses the portal, less the rounding, metres.
 fn inscribed(dir: &Vec3, portal: &Portal) -> f64 {
     let size = (portal.planes.iter()).fold(0.0, |m: f64, plane| m.max(plane.point.magnitude()));
-    portal
-        .normal()
-        .map_or(0.0, |n| portal.reach() - rounding(size) / n.dot(dir))
+    portal.normal().map_or(0.0, |n| {
+        portal.ray_parameter() - rounding(size) / n.dot(dir)
+    })
 }
 
 #[cfg(test)]

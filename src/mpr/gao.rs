@@ -28,29 +28,29 @@
 
 use crate::contact::{Penetration, Settings};
 use crate::gjk::barycentric;
-use crate::math::{self, EPSILON, Vec3, larger, largest, perpendicular, unit};
+use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
 use crate::minkowski::query::Stop;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
 /// The turn aside from a stationary direction, as a tangent: 6 degrees, which stays in the valley and finds a
 /// slope. The two parts have no simple ratio, so that no symmetry of a shape hides the slope.
-const ASIDE_TAN: (f64, f64) = (0.093, 0.041);
+const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 
 /// Finds a local minimum of the penetration depth from the unit direction `start`: Algorithm 3, or with
-/// [`Until::Shortcut`] Algorithms 4 and 5. `flat`: the unit normal of the plane that D lies in, where there is one;
+/// [`Until::Shortcut`] Algorithms 4 and 5. `plane_normal`: the unit normal of the plane that D lies in, where there is one;
 /// the search then starts along the part of `start` in it. `switched` gets |z| at each switch of the ray.
 ///
 /// # Errors
-/// `Stop::Apart`; a callback's answer that is not finite.
+/// `Stop::Separated`; a callback's answer that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,
-    flat: Option<Vec3>,
+    plane_normal: Option<Vec3>,
     until: Until,
     settings: &Settings,
     switched: impl FnMut(f64),
 ) -> Result<Penetration, Stop> {
-    let start = match flat {
+    let start = match plane_normal {
         Some(m) => unit(&(start - m * m.dot(&start))).unwrap_or_else(|| perpendicular(&m)),
         None => start,
     };
@@ -59,7 +59,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         md,
         tolerance: settings.tolerance,
         until,
-        flat,
+        plane_normal,
         budget: settings.max_iterations,
         best: ray,
     };
@@ -78,20 +78,20 @@ fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
     mut switched: impl FnMut(f64),
 ) -> Result<Option<Penetration>, Stop> {
     // The ray that was stepped aside from: stationary, its depth and witnesses exact.
-    let mut aside: Option<SupportPlane> = None;
+    let mut perturbed_from: Option<SupportPlane> = None;
     loop {
         let next = match search.follow(&ray)? {
             RayEnd::Touch => return Ok(Some(answer(&search.best, None))),
             RayEnd::Limit(_) => return Ok(None),
             RayEnd::Shortcut(plane) => plane,
-            RayEnd::Vertex => match aside {
+            RayEnd::Vertex => match perturbed_from {
                 None => {
-                    aside = Some(ray);
-                    let across = match search.flat {
-                        Some(m) => m.cross(&ray.normal) * ASIDE_TAN.0,
+                    perturbed_from = Some(ray);
+                    let across = match search.plane_normal {
+                        Some(m) => m.cross(&ray.normal) * PERTURBATION_TAN.0,
                         None => {
                             let e1 = perpendicular(&ray.normal);
-                            e1 * ASIDE_TAN.0 + ray.normal.cross(&e1) * ASIDE_TAN.1
+                            e1 * PERTURBATION_TAN.0 + ray.normal.cross(&e1) * PERTURBATION_TAN.1
                         }
                     };
                     let n = ray.normal + across;
@@ -115,7 +115,7 @@ fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
                 let stationary = plane.depth / along - plane.depth <= floor;
                 let lower_elsewhere = search.best.depth < plane.depth - floor;
                 if stationary && !lower_elsewhere {
-                    let hit = match &aside {
+                    let hit = match &perturbed_from {
                         Some(first) if first.depth <= plane.depth => answer(first, None),
                         _ => answer(&plane, Some(&last)),
                     };
@@ -238,7 +238,7 @@ impl Portal {
 
     /// Returns the position of the triangle along the ray: |p|, negative behind the origin. A mean of
     /// the vertices with weights T, which rounding does not move out of the triangle.
-    pub fn reach(&self) -> f64 {
+    pub fn ray_parameter(&self) -> f64 {
         let t = self.weights();
         let at = self.planes.each_ref().map(|p| self.ray.dot(&p.point.v));
         (t[0] * at[0] + t[1] * at[1] + t[2] * at[2]) / (t[0] + t[1] + t[2])
@@ -296,7 +296,7 @@ pub enum Until {
     Ray,
 }
 
-/// A query on its way from ray to ray; a separating direction ends it: [`Stop::Apart`].
+/// A query on its way from ray to ray; a separating direction ends it: [`Stop::Separated`].
 pub struct RaySearch<'q, A, B> {
     /// The Minkowski difference.
     pub md: &'q MinkowskiDifference<A, B>,
@@ -305,7 +305,7 @@ pub struct RaySearch<'q, A, B> {
     /// The bounds that must meet.
     pub until: Until,
     /// The normal of the plane that D is in, if it is in one.
-    pub flat: Option<Vec3>,
+    pub plane_normal: Option<Vec3>,
     /// The iterations left.
     pub budget: u64,
     /// The lowest support plane met, one that separates included.
@@ -328,7 +328,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
             self.best = plane;
         }
         if plane.depth < 0.0 {
-            return Err(Stop::Apart(n));
+            return Err(Stop::Separated(n));
         }
         Ok(plane)
     }
@@ -336,7 +336,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     /// Follows the origin ray along `first.normal` to the boundary of D: Algorithm 1,
     /// or Algorithm 5 of the paper.
     pub fn follow(&mut self, first: &SupportPlane) -> Result<RayEnd, Stop> {
-        let found = match self.flat {
+        let found = match self.plane_normal {
             Some(m) => self.find_segment(first, &m)?,
             None => self.find_portal(first)?,
         };
@@ -352,7 +352,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<Portal, RayEnd>, Stop> {
         let d = first.normal;
         if first.depth < 0.0 {
-            return Err(Stop::Apart(d));
+            return Err(Stop::Separated(d));
         }
         let size = first.point.magnitude();
         let side = first.point.v.cross(&d);
@@ -373,7 +373,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         };
         while self.take_iteration() {
             let [a, b, _] = portal.planes.each_ref().map(|p| p.point.v);
-            let v0 = -d * larger(largest(&a), largest(&b));
+            let v0 = -d * larger(max_abs(&a), max_abs(&b));
             let Some(n) = unit(&(a - v0).cross(&(b - v0))) else {
                 return Ok(Err(RayEnd::Touch));
             };
@@ -399,7 +399,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         m: &Vec3,
     ) -> Result<Result<Portal, RayEnd>, Stop> {
         if first.depth < 0.0 {
-            return Err(Stop::Apart(first.normal));
+            return Err(Stop::Separated(first.normal));
         }
         let side = m.cross(&first.normal);
         let off = side.dot(&first.point.v);
@@ -429,7 +429,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
             let floor = rounding(size);
             let plane = match self.plane(n) {
                 // D holds the portal: a callback that answers less than it is wrong.
-                Err(Stop::Apart(_)) if inner > floor => SupportPlane {
+                Err(Stop::Separated(_)) if inner > floor => SupportPlane {
                     normal: n,
                     point: portal.planes[0].point,
                     depth: inner,
@@ -454,7 +454,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
             if self.until == Until::Shortcut && plane.depth * along <= inner {
                 return Ok(RayEnd::Shortcut(plane));
             }
-            match &self.flat {
+            match &self.plane_normal {
                 None => portal.update(plane),
                 Some(m) => {
                     let [left, right, _] = portal.planes;
@@ -570,7 +570,7 @@ mod tests {
                     md: &md,
                     tolerance,
                     until: Until::Normal,
-                    flat: None,
+                    plane_normal: None,
                     budget: 2000,
                     best: ray,
                 };
@@ -737,7 +737,7 @@ mod portal_tests {
             md,
             tolerance,
             until,
-            flat: None,
+            plane_normal: None,
             budget,
             best,
         }
@@ -851,7 +851,7 @@ mod portal_tests {
             // From the center through the origin, as from the centers of two objects.
             let first = SupportPlane::of(&md, -way).unwrap();
             match search(&md, first, 1e-6, Until::Normal, 1000).follow(&first) {
-                Err(Stop::Apart(n)) => {
+                Err(Stop::Separated(n)) => {
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
                 _ => panic!("the origin is outside"),
@@ -1025,7 +1025,7 @@ mod planar_tests {
             let angle = r.within(0.0, TAU);
             let start = x * angle.cos() + y * angle.sin();
             match penetration(&md, &m, start, &SETTINGS) {
-                Err(Stop::Apart(n)) => {
+                Err(Stop::Separated(n)) => {
                     assert!(n.dot(&m).abs() < 100.0 * EPSILON);
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }

@@ -34,10 +34,10 @@ use crate::contact::{Penetration, Settings, Status};
 use crate::epa::plane::Tetrahedron;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::contains_origin;
-use crate::math::{Vec3, larger, lesser, normalised, perpendicular};
+use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
 use crate::minkowski::round_fit::{
-    MAX_MISS, MAX_MISSES, MIN_CORE_DISTANCE_REL, MIN_GAIN, SphereFit,
+    MAX_FAILED_PREDICTIONS, MIN_CORE_DISTANCE_REL, MIN_GAIN, PREDICTION_REL_TOL, SphereFit,
 };
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
@@ -45,7 +45,7 @@ use crate::mpr::newton::newton_step;
 use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS, discover, replace_corner};
 
 /// The support calls of a walk, at most. Measured: 12 of 12,000 walks on the pair sets end without a minimum.
-pub const MAX_SAMPLES: usize = 60;
+pub const MAX_WALK_POINTS: usize = 60;
 /// The tilt of the queries that confirm a minimum, radians: as far beside a stationary direction it must not
 /// be lower. Also the width below which a face is narrow.
 const TILT_RAD: f64 = 0.015;
@@ -70,7 +70,7 @@ impl Face {
     /// Returns the face of three corners; `None` where they lie on a line.
     fn new(corners: &[Vertex; 3]) -> Option<Self> {
         let [a, b, c] = corners.each_ref().map(|v| v.w);
-        let normal = normalised(&(b - a).cross(&(c - a)))?;
+        let normal = normalise_unscaled(&(b - a).cross(&(c - a)))?;
         Some(Self {
             corners: *corners,
             normal,
@@ -115,12 +115,13 @@ impl Face {
                 longest = self.edge(i);
             }
         }
-        normalised(&self.normal.cross(&longest)).unwrap_or_else(|| perpendicular(&self.normal))
+        normalise_unscaled(&self.normal.cross(&longest))
+            .unwrap_or_else(|| perpendicular(&self.normal))
     }
 }
 
 /// The result of a portal.
-enum Step {
+enum WalkStep {
     /// The walk goes on with the ray along this unit vector.
     Ray(Vec3),
     /// The foot is in the face, and this support plane is at its distance.
@@ -148,12 +149,12 @@ struct Prediction {
 }
 
 /// Why a walk ends without a minimum.
-enum Halt {
+enum WalkEnd {
     Stop(Stop),
     Status(Status),
 }
 
-impl From<Stop> for Halt {
+impl From<Stop> for WalkEnd {
     fn from(stop: Stop) -> Self {
         Self::Stop(stop)
     }
@@ -192,7 +193,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     start: &Vec3,
     settings: &Settings,
 ) -> Result<(Penetration, Status), Stop> {
-    const { assert!(N >= MAX_SAMPLES) };
+    const { assert!(N >= MAX_WALK_POINTS) };
     let mut walk = Walk {
         interior: query.interior.unwrap_or_default(),
         is_centered: query.interior.is_some(),
@@ -206,8 +207,8 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     };
     let (minimum, mut status) = match walk.run(start) {
         Ok(minimum) => (minimum, Status::Converged),
-        Err(Halt::Stop(stop)) => return Err(stop),
-        Err(Halt::Status(status)) => (walk.lowest(), status),
+        Err(WalkEnd::Stop(stop)) => return Err(stop),
+        Err(WalkEnd::Status(status)) => (walk.lowest(), status),
     };
     let [point1, point2] = minimum.points;
     let hit = Penetration {
@@ -229,7 +230,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
-    fn run(&mut self, start: &Vec3) -> Result<Minimum, Halt> {
+    fn run(&mut self, start: &Vec3) -> Result<Minimum, WalkEnd> {
         let ahead = self.query.evaluate(self.set, start)?;
         let has_center = self.query.interior.is_some();
         if !has_center {
@@ -242,7 +243,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 .map_err(Stop::from)?;
             self.interior = (ahead.w + behind.v) * 0.5;
         }
-        let to_origin = normalised(&-self.interior).unwrap_or(*start);
+        let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
         // A start that leads to the far side, and any without a center: the way from the interior point as well.
         if !has_center || to_origin.dot(start) < 0.0 {
             self.query.evaluate(self.set, &to_origin)?;
@@ -262,17 +263,17 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 tolerance,
                 0.5 * TILT_RAD,
             )?;
-            let mut portal = portal.ok_or(Halt::Status(Status::Rounding))?;
+            let mut portal = portal.ok_or(WalkEnd::Status(Status::Rounding))?;
             let (step, face) = self.refine(&ray, &mut portal, tolerance)?;
             ray = match step {
-                Step::Ray(next) => next,
+                WalkStep::Ray(next) => next,
                 _ => match self.confirm(&step, &face, tolerance)? {
-                    true => return self.conclude(&step, &face),
+                    true => return self.compute_result(&step, &face),
                     false => self.query.upper.dir,
                 },
             };
         }
-        Err(Halt::Status(Status::Rounding))
+        Err(WalkEnd::Status(Status::Rounding))
     }
 
     fn tolerance(&self) -> f64 {
@@ -288,18 +289,18 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Evaluates unit `dir`, within the limits.
-    fn evaluate(&mut self, dir: &Vec3) -> Result<SupportSample, Halt> {
+    fn evaluate(&mut self, dir: &Vec3) -> Result<SupportSample, WalkEnd> {
         self.check_limits()?;
         self.iterations += 1;
         Ok(self.query.evaluate(self.set, dir)?)
     }
 
-    fn check_limits(&self) -> Result<(), Halt> {
+    fn check_limits(&self) -> Result<(), WalkEnd> {
         if self.iterations >= self.settings.max_iterations {
-            return Err(Halt::Status(Status::IterationLimit));
+            return Err(WalkEnd::Status(Status::IterationLimit));
         }
-        if self.set.len() >= MAX_SAMPLES {
-            return Err(Halt::Status(Status::SupportLimit));
+        if self.set.len() >= MAX_WALK_POINTS {
+            return Err(WalkEnd::Status(Status::SupportLimit));
         }
         Ok(())
     }
@@ -310,10 +311,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         ray: &Vec3,
         portal: &mut [Vertex; 3],
         tolerance: f64,
-    ) -> Result<(Step, Face), Halt> {
-        let mut is_plain = false;
+    ) -> Result<(WalkStep, Face), WalkEnd> {
+        let mut along_normal = false;
         for _ in 0..MAX_STEPS {
-            let face = Face::new(portal).ok_or(Halt::Status(Status::Rounding))?;
+            let face = Face::new(portal).ok_or(WalkEnd::Status(Status::Rounding))?;
             let height_eps = self.query.scale.height_eps();
             let mut w = self.set.farthest_vertex(&face.normal);
             let height = face.normal.dot(&w.w) - face.offset;
@@ -325,10 +326,14 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     return Ok((step, face));
                 }
                 self.fit.update(self.set, self.query.upper.index);
-                let mut prediction = if is_plain { None } else { self.predict(&face) };
+                let mut prediction = if along_normal {
+                    None
+                } else {
+                    self.predict(&face)
+                };
                 if let Some(p) = prediction.take_if(|p| !self.has_gain(p, tolerance)) {
                     if self.is_met(&p, tolerance) {
-                        return Ok((Step::Fit(p.model), face));
+                        return Ok((WalkStep::Fit(p.model), face));
                     }
                     // The least support value is not in the predicted direction, but as far.
                     prediction = Some(p).filter(|p| self.is_level(p.value, tolerance));
@@ -338,8 +343,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     && face.offset > 0.0
                     && face.normal.dot(&self.query.upper.dir) > SAME_VALLEY_COS
                     && face.normal.dot(ray) < 1.0 - 1e-14;
-                if is_beside && prediction.is_none() && !is_plain {
-                    return Ok((Step::Ray(face.normal), face));
+                if is_beside && prediction.is_none() && !along_normal {
+                    return Ok((WalkStep::Ray(face.normal), face));
                 }
                 let dir = prediction.as_ref().map_or(face.normal, |p| p.dir);
                 let before = self.query.upper.depth;
@@ -352,30 +357,30 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 }
                 let height = face.normal.dot(&sample.w) - face.offset;
                 if !(height > KNOWN_LEVEL * tolerance + height_eps) {
-                    is_plain = prediction.is_some();
-                    if is_plain {
+                    along_normal = prediction.is_some();
+                    if along_normal {
                         continue;
                     }
                     let step = if is_inside {
                         // As the callbacks saw it.
                         let dir = self.set.dir(sample.pair.a.into());
                         let depth = sample.h;
-                        Step::Face { dir, depth }
+                        WalkStep::Face { dir, depth }
                     } else {
-                        Step::Ray(face.normal)
+                        WalkStep::Ray(face.normal)
                     };
                     return Ok((step, face));
                 }
                 w = sample.vertex();
             }
-            is_plain = false;
+            along_normal = false;
             replace_corner(portal, ray, w);
         }
-        Err(Halt::Status(Status::Rounding))
+        Err(WalkEnd::Status(Status::Rounding))
     }
 
     /// Returns the next step from a face above which no known difference lies, if none needs a query.
-    fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<Step> {
+    fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<WalkStep> {
         let UpperBound { depth, dir, .. } = self.query.upper;
         let cosine = face.normal.dot(&dir);
         let angle2 = 2.0 * (1.0 - cosine);
@@ -390,12 +395,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 0.25 * cone * cone
             };
             if angle2 <= allowed2 {
-                return Some(Step::Face { dir, depth });
+                return Some(WalkStep::Face { dir, depth });
             }
         }
         // This valley is higher.
         if face.offset > depth + tolerance && angle2 > 1e-12 {
-            return Some(Step::Ray(dir));
+            return Some(WalkStep::Ray(dir));
         }
         None
     }
@@ -415,7 +420,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             value,
         });
         let smooth = || {
-            let is_used = self.newton_misses < MAX_MISSES;
+            let is_used = self.newton_misses < MAX_FAILED_PREDICTIONS;
             let step = is_used.then(|| newton_step(self.set, &self.query.upper))??;
             Some(Prediction {
                 model: Model::Smooth(step.flattest),
@@ -424,7 +429,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             })
         };
         sphere
-            .filter(|p| self.sphere_misses < MAX_MISSES && self.is_new(&p.dir))
+            .filter(|p| self.sphere_misses < MAX_FAILED_PREDICTIONS && self.is_new(&p.dir))
             .or_else(|| smooth().filter(|p| self.is_new(&p.dir)))
     }
 
@@ -462,7 +467,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Returns whether the vertices of the least support value meet when one is moved along its direction.
     fn has_meeting_vertices(&self, tolerance: f64) -> bool {
         let UpperBound { depth, dir, index } = self.query.upper;
-        let w = self.set.difference(VertexSet::<N>::sample(index));
+        let w = self.set.difference(VertexSet::<N>::pair_of_entry(index));
         (w - dir * depth).norm_squared() <= depth * tolerance
     }
 
@@ -473,9 +478,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         h: f64,
         before: f64,
         tolerance: f64,
-    ) -> Option<Step> {
+    ) -> Option<WalkStep> {
         let value = prediction.value;
-        let slack = larger(MAX_MISS * (before - value), KNOWN_LEVEL * tolerance);
+        let slack = larger(
+            PREDICTION_REL_TOL * (before - value),
+            KNOWN_LEVEL * tolerance,
+        );
         let is_true = h < value + slack;
         let has_meeting = match prediction.model {
             Model::Sphere => true,
@@ -490,41 +498,47 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
         let is_minimum = (h - value).abs() <= 0.5 * tolerance && has_meeting;
         Some(if is_minimum {
-            Step::Fit(prediction.model)
+            WalkStep::Fit(prediction.model)
         } else {
-            Step::Ray(prediction.dir)
+            WalkStep::Ray(prediction.dir)
         })
     }
 
     /// Returns whether a stationary direction is a minimum: no direction beside it is lower.
-    fn confirm(&mut self, step: &Step, face: &Face, tolerance: f64) -> Result<bool, Halt> {
+    fn confirm(&mut self, step: &WalkStep, face: &Face, tolerance: f64) -> Result<bool, WalkEnd> {
         let upper = self.query.upper.dir;
         match step {
-            Step::Ray(_) => Ok(false),
-            Step::Face { dir, depth } => {
+            WalkStep::Ray(_) => Ok(false),
+            WalkStep::Face { dir, depth } => {
                 // A lower support value is known: the walk goes on from there.
                 if *depth > self.query.upper.depth + KNOWN_LEVEL * tolerance {
                     return Ok(false);
                 }
                 let is_narrow = 2.0 * (face.inset() / face.offset).atan() < TILT_RAD;
                 let across = face.across();
-                Ok(!is_narrow || self.is_least_beside(step, dir, &[across, -across], tolerance)?)
+                Ok(!is_narrow
+                    || self.test_tilted_directions(step, dir, &[across, -across], tolerance)?)
             }
-            Step::Fit(Model::Smooth(flattest)) => {
-                self.is_least_beside(step, &upper, &[*flattest, -flattest], tolerance)
+            WalkStep::Fit(Model::Smooth(flattest)) => {
+                self.test_tilted_directions(step, &upper, &[*flattest, -flattest], tolerance)
             }
-            Step::Fit(Model::Sphere) => {
+            WalkStep::Fit(Model::Sphere) => {
                 let e1 = perpendicular(&upper);
                 let e2 = upper.cross(&e1) * 0.75_f64.sqrt();
                 let ring = [e1, e2 - e1 * 0.5, -e2 - e1 * 0.5];
-                if !self.is_least_beside(step, &upper, &ring, tolerance)? {
+                if !self.test_tilted_directions(step, &upper, &ring, tolerance)? {
                     return Ok(false);
                 }
-                let apart = self.center_tolerance(tolerance);
+                let center_tolerance = self.center_tolerance(tolerance);
                 let upper = &self.query.upper;
-                let is_real = (self.fit).has_real_spheres(self.set, &face.corners, upper, apart);
+                let is_real = (self.fit).are_spheres_confirmed(
+                    self.set,
+                    &face.corners,
+                    upper,
+                    center_tolerance,
+                );
                 if !is_real {
-                    self.sphere_misses = MAX_MISSES;
+                    self.sphere_misses = MAX_FAILED_PREDICTIONS;
                 }
                 Ok(is_real)
             }
@@ -538,17 +552,17 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Queries beside unit `n`, tilted towards each of the unit vectors `ways` across it, unless a direction
     /// near there was queried. Returns whether none is lower, and all fit what the step assumes.
-    fn is_least_beside(
+    fn test_tilted_directions(
         &mut self,
-        step: &Step,
+        step: &WalkStep,
         n: &Vec3,
         ways: &[Vec3],
         tolerance: f64,
-    ) -> Result<bool, Halt> {
+    ) -> Result<bool, WalkEnd> {
         let (before, before_len) = (self.query.upper.depth, self.set.len());
-        let apart = self.center_tolerance(tolerance);
+        let center_tolerance = self.center_tolerance(tolerance);
         let narrow = 2.5 * TILT_RAD;
-        let is_sphere = matches!(step, Step::Fit(Model::Sphere));
+        let is_sphere = matches!(step, WalkStep::Fit(Model::Sphere));
         let far = if is_sphere { 0.6 } else { narrow };
         for way in ways {
             let is_near = |walk: &Self, k: usize| {
@@ -566,9 +580,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     && across.dot(way) > cosine * sine
                     && (!is_sphere
                         || k >= before_len
-                        || walk
-                            .fit
-                            .is_found_twice(walk.set, VertexSet::<N>::sample(k), apart))
+                        || walk.fit.is_confirmed_twice(
+                            walk.set,
+                            VertexSet::<N>::pair_of_entry(k),
+                            center_tolerance,
+                        ))
             };
             if (0..self.set.len()).any(|k| is_near(self, k)) {
                 continue;
@@ -583,10 +599,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Returns a confirmed minimum with its witness points, after the overlap is proven.
-    fn conclude(&mut self, step: &Step, face: &Face) -> Result<Minimum, Halt> {
+    fn compute_result(&mut self, step: &WalkStep, face: &Face) -> Result<Minimum, WalkEnd> {
         let mut minimum = self.lowest();
         match step {
-            Step::Face { dir, depth } => {
+            WalkStep::Face { dir, depth } => {
                 (minimum.dir, minimum.depth) = (*dir, *depth);
                 let [a, b, c] = face.corners.each_ref().map(|v| v.w);
                 let weights = barycentric::triangle(&(dir * *depth), &a, &b, &c).weights;
@@ -594,15 +610,15 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let (point1, point2) = barycentric::witnesses(&weights, corners.each_ref());
                 minimum.points = [point1, point2];
             }
-            Step::Fit(Model::Sphere) => {
+            WalkStep::Fit(Model::Sphere) => {
                 minimum.points = self
                     .fit
                     .witnesses(self.set, &face.corners, &self.query.upper.dir);
             }
-            Step::Fit(Model::Smooth(_)) | Step::Ray(_) => {}
+            WalkStep::Fit(Model::Smooth(_)) | WalkStep::Ray(_) => {}
         }
         if self.query.has_contradiction(self.set) {
-            return Err(Halt::Status(Status::InconsistentSupport));
+            return Err(WalkEnd::Status(Status::InconsistentSupport));
         }
         self.prove_overlap(face)?;
         Ok(minimum)
@@ -611,7 +627,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Returns the least support value, whose witness points are its vertices.
     fn lowest(&self) -> Minimum {
         let UpperBound { depth, dir, index } = self.query.upper;
-        let point = self.set.point(VertexSet::<N>::sample(index));
+        let point = self.set.point(VertexSet::<N>::pair_of_entry(index));
         Minimum {
             dir,
             depth,
@@ -620,10 +636,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Proves that the origin is in D: in the tetrahedron of the interior point and the face, else by GJK on the known vertices.
-    fn prove_overlap(&mut self, face: &Face) -> Result<(), Halt> {
+    fn prove_overlap(&mut self, face: &Face) -> Result<(), WalkEnd> {
         let is_trusted = self.query.interior.is_some();
         if self.is_centered && !is_trusted {
-            return Err(Halt::Status(Status::InconsistentSupport));
+            return Err(WalkEnd::Status(Status::InconsistentSupport));
         }
         let [a, b, c] = face.corners.map(|v| v.w);
         let ulp = f64::EPSILON * self.query.scale.size();
@@ -684,7 +700,7 @@ mod tests {
         });
         let before = md.supports();
         let mut query = SupportQuery::new(md, center.as_ref());
-        let mut set = VertexSet::<MAX_SAMPLES>::EMPTY;
+        let mut set = VertexSet::<MAX_WALK_POINTS>::EMPTY;
         let found = penetration(&mut query, &mut set, start, settings);
         (found, md.supports() - before)
     }
@@ -699,13 +715,13 @@ mod tests {
         let tolerance = SETTINGS.tolerance;
         let h = |n: &Vec3| n.dot(&md.support(n).unwrap().v);
         assert!((h(&hit.dir) - hit.depth).abs() <= 64.0 * EPSILON);
-        let apart = hit.point1 - hit.point2;
-        let along = apart.dot(&hit.dir);
+        let difference_of_points = hit.point1 - hit.point2;
+        let along = difference_of_points.dot(&hit.dir);
         assert!(
             (along - hit.depth).abs() <= 1.5 * tolerance,
             "{along} {hit:?}"
         );
-        let across = (apart - hit.dir * along).norm();
+        let across = (difference_of_points - hit.dir * along).norm();
         let most = (2.0 * hit.depth * tolerance).sqrt() + tolerance;
         assert!(across <= 1.5 * most, "{across} {most} {hit:?}");
         for step in [1e-3, 0.01, 0.02, 1.0] {
@@ -734,14 +750,16 @@ mod tests {
             let center = (round % 2 == 0).then_some(-at);
             let start = r.direction();
             let (found, count) = walk(&md, center, &start, &SETTINGS);
-            assert!(count <= MAX_SAMPLES as u64 + 30, "{count}");
+            assert!(count <= MAX_WALK_POINTS as u64 + 30, "{count}");
             match found {
                 Ok((hit, Status::Converged)) => {
                     converged += 1;
                     check(&md, &hit, r);
                 }
                 Ok(_) => {}
-                Err(Stop::Apart(n)) => assert!(n.dot(&md.support(&n).unwrap().v) <= 64.0 * EPSILON),
+                Err(Stop::Separated(n)) => {
+                    assert!(n.dot(&md.support(&n).unwrap().v) <= 64.0 * EPSILON)
+                }
                 Err(Stop::Fault(fault)) => panic!("{fault:?}"),
             }
         }
@@ -935,7 +953,7 @@ mod tests {
             let md = difference(hull(&plate), ball(at, 0.1));
             for center in [None, Some(-at)] {
                 let (found, _) = walk(&md, center, &-Vec3::z(), &SETTINGS);
-                let Err(Stop::Apart(n)) = found else {
+                let Err(Stop::Separated(n)) = found else {
                     panic!("{found:?}");
                 };
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
@@ -985,7 +1003,7 @@ mod tests {
         let md = difference(rough, ball(Vec3::x() * 0.5, 1.0));
         for _ in 0..200 {
             let (_, count) = walk(&md, None, &r.direction(), &SETTINGS);
-            assert!(count <= 2 * MAX_SAMPLES as u64, "{count}");
+            assert!(count <= 2 * MAX_WALK_POINTS as u64, "{count}");
         }
     }
 }

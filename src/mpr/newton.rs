@@ -15,7 +15,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::math::{Vec3, normalised, perpendicular};
+use crate::math::{Vec3, normalise_unscaled, perpendicular};
 use crate::minkowski::query::UpperBound;
 use crate::minkowski::round_fit::MIN_ANGLE2;
 use crate::minkowski::vertex_set::VertexSet;
@@ -43,16 +43,16 @@ pub struct NewtonStep {
 /// across n and R its derivative; divided by the length of n + x it has the gradient g + (R − h) x.
 pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<NewtonStep> {
     let n = upper.dir;
-    let at = set.difference(VertexSet::<N>::sample(upper.index));
-    let first = nearest(set, upper, |_| true)?;
+    let at = set.difference(VertexSet::<N>::pair_of_entry(upper.index));
+    let first = closest_entry(set, upper, |_| true)?;
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);
     let tangent = |v: &Vec3| Vector2::new(v.dot(&e1), v.dot(&e2));
     let turn = |k: usize| tangent(&set.dir(k)) / set.dir(k).dot(&n);
-    let moved = |k: usize| tangent(&(set.difference(VertexSet::<N>::sample(k)) - at));
+    let moved = |k: usize| tangent(&(set.difference(VertexSet::<N>::pair_of_entry(k)) - at));
     let x1 = turn(first);
     // Not on a line with the first.
-    let second = nearest(set, upper, |k| {
+    let second = closest_entry(set, upper, |k| {
         let x = turn(k);
         x1.perp(&x).powi(2) > 0.1 * x.norm_squared() * x1.norm_squared()
     })?;
@@ -74,7 +74,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Op
         return None;
     }
     let value = (h + g.dot(&x) + 0.5 * x.dot(&(curvature * x))) / (1.0 + x2).sqrt();
-    let dir = normalised(&(n + e1 * x.x + e2 * x.y))?;
+    let dir = normalise_unscaled(&(n + e1 * x.x + e2 * x.y))?;
     let v = flattest_axis(&curvature);
     Some(NewtonStep {
         dir,
@@ -85,7 +85,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Op
 
 /// Returns the entry nearest in direction to that of the least support value, of those that are accepted, not the
 /// same direction, and on the same smooth part of D.
-fn nearest<const N: usize>(
+fn closest_entry<const N: usize>(
     set: &VertexSet<N>,
     upper: &UpperBound,
     is_accepted: impl Fn(usize) -> bool,
@@ -94,7 +94,7 @@ fn nearest<const N: usize>(
     for k in 0..set.len() {
         let cosine = set.dir(k).dot(&upper.dir);
         let is_near = cosine > best.1 && cosine < 1.0 - 0.5 * MIN_ANGLE2;
-        if is_near && k != upper.index && is_alike(set, upper.index, k) && is_accepted(k) {
+        if is_near && k != upper.index && is_smooth_between(set, upper.index, k) && is_accepted(k) {
             best = (Some(k), cosine);
         }
     }
@@ -103,8 +103,9 @@ fn nearest<const N: usize>(
 
 /// Returns whether two entries lie beyond each other's planes alike, as those of a smooth D do: by e and f, up to
 /// [`SMOOTH_REL_TOL`].
-fn is_alike<const N: usize>(set: &VertexSet<N>, i: usize, k: usize) -> bool {
-    let d = set.difference(VertexSet::<N>::sample(k)) - set.difference(VertexSet::<N>::sample(i));
+fn is_smooth_between<const N: usize>(set: &VertexSet<N>, i: usize, k: usize) -> bool {
+    let d = set.difference(VertexSet::<N>::pair_of_entry(k))
+        - set.difference(VertexSet::<N>::pair_of_entry(i));
     let (e, f) = (set.dir(k).dot(&d), -set.dir(i).dot(&d));
     e + f > 0.0 && (e - f).abs() <= SMOOTH_REL_TOL * (e + f)
 }

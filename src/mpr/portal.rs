@@ -20,12 +20,12 @@
 //! tilted directions.
 //!
 //! Outputs: `Ok(None)` of [`discover`]: D is flat or the vertices tie; use the initial simplex of the
-//! polytope. [`refine`] leaves a valid portal in place, whatever ended it. `Stop::Apart`: a queried
+//! polytope. [`refine`] leaves a valid portal in place, whatever ended it. `Stop::Separated`: a queried
 //! direction is a separating axis; that is the separation test.
 
-use crate::math::{Vec3, lesser, normalised, perpendicular};
+use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
-use crate::minkowski::round_fit::{Choice, SphereFit, evaluate_beyond};
+use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
@@ -98,7 +98,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
             }
             let edge = b.map_or(0.0, |b| (b.w - a.w).norm());
             let n = discovery_dir(&query.upper, &across, height, edge, length, failures);
-            let Some(n) = normalised(&n) else {
+            let Some(n) = normalise_unscaled(&n) else {
                 return Ok(None);
             };
             let sample = query.evaluate(set, &n)?;
@@ -243,7 +243,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
     limit: &GapLimit,
 ) -> Result<(), Stop> {
     let tolerance = query.scale.tolerance(limit.tolerance);
-    let mut is_plain = false;
+    let mut along_normal = false;
     for _ in 0..MAX_STEPS {
         let normal = (portal[1].w - portal[0].w).cross(&(portal[2].w - portal[0].w));
         let n2 = normal.norm_squared();
@@ -259,19 +259,20 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
                 return Ok(());
             }
-            let plain = is_plain || offset < 0.0;
-            let (sample, choice) = evaluate_beyond(query, set, fit, portal, &normal, gap, plain)?;
+            let is_along_normal = along_normal || offset < 0.0;
+            let (sample, choice) =
+                evaluate_beyond(query, set, fit, portal, &normal, gap, is_along_normal)?;
             w = sample.vertex();
             let is_above = normal.dot(&w.w) - offset > query.scale.height_eps() * length;
             if !is_above {
-                if choice == Choice::Normal {
+                if choice == DirectionSource::Normal {
                     return Ok(());
                 }
-                is_plain = true;
+                along_normal = true;
                 continue;
             }
         }
-        is_plain = false;
+        along_normal = false;
         replace_corner(portal, ray, w);
     }
     Ok(())
