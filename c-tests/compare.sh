@@ -2,17 +2,17 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Try it on your own program: runs it unchanged, puts a share of its libccd queries to libccd,
-# to this library and to the proven minimum, and ends with one screen, on stderr.
+# Runs a program unchanged, puts a share of its libccd queries to libccd,
+# to this library and to the proven minimum, and prints one screen on stderr.
 #   compare.sh [OPTION...] PROGRAM [ARGUMENT...]
-#     --every N    judge one query in N (default 10; 0: count them alone, ask nothing)
-#     --swap       let the program go on with this library's answers, not libccd's
+#     --every N    judge one query in N (default 10; 0: only count them)
+#     --swap       give the program this library's answers, not libccd's
 #     --keep DIR   write the worst wrong answers there, as C files for replay.sh
-#     --no-times   take no times: less is asked of the callbacks
-#     --libccd F   the libccd to compare with (default: the one that the program gets)
-#     --library F  a libccd.so of this library's that is built already (default: built now)
+#     --no-times   measure no times: fewer calls of the callbacks
+#     --libccd F   the libccd to compare with (default: the one that the program loads)
+#     --library F  a built libccd.so of this library (default: built now)
 # The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART. Its exit code is
-# this command's; 125: nothing could be run. Sets itself up.
+# this command's; 125: the program could not be run. Runs setup.sh itself.
 
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -30,8 +30,8 @@ usage() {
 every=10
 base=theirs
 keep=
-theirs=
-ours=
+libccd=
+library=
 fields=
 times=1
 while [ $# -gt 0 ]; do
@@ -41,12 +41,7 @@ while [ $# -gt 0 ]; do
     --fields) fields=1 ;; # for the tables of engines/: one line on stdout
     --every | --keep | --libccd | --library)
         [ $# -ge 2 ] || usage
-        case $1 in
-        --every) every=$2 ;;
-        --keep) keep=$2 ;;
-        --libccd) theirs=$2 ;;
-        --library) ours=$2 ;;
-        esac
+        eval "${1#--}=\$2"
         shift
         ;;
     --)
@@ -66,49 +61,43 @@ esac
 program=$(command -v -- "$1") || fail "$1: no such program"
 case $program in
 */*) ;;
-*) fail "$1: a command of the shell's own, no program" ;;
+*) fail "$1: a builtin of the shell, no program" ;;
 esac
 [ -f "$program" ] || fail "$1: no file"
 
-# A script runs on its interpreter's libraries, which the file does not tell.
+# A script has its interpreter's libraries, which the file does not name.
 linked=unknown
 if [ "$(head -c 2 "$program" | tr -d '\0')" != '#!' ]; then
     libraries=$(ldd "$program" 2>&1) || libraries="not a dynamic executable"
     case $libraries in
     *"not a dynamic executable"* | *"statically linked"*)
-        fail "$1: not a dynamically linked program of this machine's; libccd within it cannot be watched" ;;
+        fail "$1: not a dynamically linked program of this machine's; its libccd cannot be replaced" ;;
     *libasan.so* | *libtsan.so* | *libmsan.so*)
-        fail "$1: compiled with a sanitizer, which forbids to keep two libraries of one name apart" ;;
+        fail "$1: compiled with a sanitizer, which does not allow two libraries of one name" ;;
     *libccd.so.2*"not found"*) fail "$1: its libccd.so.2 is not found; is libccd2 installed?" ;;
     *libccd.so.2*) linked=yes ;;
     *) linked=no ;;
     esac
 fi
 
-# --- what is built ---------------------------------------------------------------------
+# --- build -----------------------------------------------------------------------------
 
 target=${CARGO_TARGET_DIR:-$here/../target}
-if [ -z "$ours" ]; then
+if [ -z "$library" ]; then
     sh "$here/setup.sh" main >&2
     cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
-    ours=$target/release/libccd.so
+    library=$target/release/libccd.so
 fi
-[ -r "$ours" ] || fail "$ours: no file"
+[ -r "$library" ] || fail "$library: no file"
 mkdir -p "$target/compare"
 work=$(cd "$target/compare" && pwd)
 
-# newest OUT IN...: whether OUT is there and no IN is newer
-newest() {
-    out=$1
-    shift
-    [ -e "$out" ] && [ -z "$(find "$@" -newer "$out")" ]
-}
-
-# build OUT FLAG...: by a name of its own first, for others may be running the old one
+# build OUT FLAG...: unless OUT is newer than all sources; under a name of its own first, for others may be running
+# the old one
 build() {
-    newest "$work/$1" "$here/tools/compare" "$here/harness" "$here/../include" && return
     out=$1
     shift
+    [ -e "$work/$out" ] && [ -z "$(find "$here/tools/compare" "$here/harness" "$here/../include" -newer "$work/$out")" ] && return
     cc -O2 -Wall -Wextra -I"$here" -I"$here/../include" "$@" -o "$work/$out.$$" -lm -ldl -lpthread
     mv "$work/$out.$$" "$work/$out"
 }
@@ -121,24 +110,24 @@ build() {
 
 # --- the two libraries -----------------------------------------------------------------
 
-# The libccd.so.2 that a program gets, by what the dynamic linker says.
+# Reads the libccd.so.2 of a program from the dynamic linker's list.
 libccd_of() {
     sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p' | head -n 1
 }
 
-if [ -z "$theirs" ]; then
-    [ $linked != yes ] || theirs=$(printf '%s\n' "$libraries" | libccd_of)
-    # Where the program will find it if it asks for it later.
-    [ -n "$theirs" ] || theirs=$(LD_PRELOAD=libccd.so.2 LD_TRACE_LOADED_OBJECTS=1 "$(command -v cat)" 2>/dev/null | libccd_of)
+if [ -z "$libccd" ]; then
+    [ $linked != yes ] || libccd=$(printf '%s\n' "$libraries" | libccd_of)
+    # The one that the program finds if it loads it later.
+    [ -n "$libccd" ] || libccd=$(LD_PRELOAD=libccd.so.2 LD_TRACE_LOADED_OBJECTS=1 "$(command -v cat)" 2>/dev/null | libccd_of)
 fi
-[ -n "$theirs" ] && [ -r "$theirs" ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
-! grep -q ccdImplementation "$theirs" || fail "$theirs is this library, installed: name a libccd with --libccd FILE"
+[ -n "$libccd" ] && [ -r "$libccd" ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
+! grep -q ccdImplementation "$libccd" || fail "$libccd is this library, installed: name a libccd with --libccd FILE"
 
-# Not in /tmp, where nothing may be allowed to run.
+# Not in /tmp, which may be mounted noexec.
 counts=$(mktemp -d "$work/run.XXXXXX")
 trap 'rm -rf "$counts"' EXIT
-cp -L "$theirs" "$counts/theirs.so"
-cp -L "$ours" "$counts/ours.so"
+cp -L "$libccd" "$counts/theirs.so"
+cp -L "$library" "$counts/ours.so"
 cp "$counts/ours.so" "$counts/libccd.so.2" # for the program itself
 if [ -n "$keep" ]; then
     mkdir -p "$keep"
@@ -153,13 +142,13 @@ links=$(mktemp -d)
 trap 'rm -rf "$counts" "$links"' EXIT
 ln -s "$work/compare.so" "$counts/libccd.so.2" "$links"
 preload=$links/compare.so
-# Its name is libccd.so.2: the program gets it for its own.
+# Under its name libccd.so.2 it replaces the program's own.
 [ "$base" = theirs ] || preload="$preload $links/libccd.so.2"
 shift
 code=0
-# Interrupted, the program ends and the screen comes.
+# An interrupt ends the program, not this script, which prints the screen.
 trap : INT
-env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$theirs" CCD_COMPARE_OURS="$counts/ours.so" \
+env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$libccd" CCD_COMPARE_OURS="$counts/ours.so" \
     CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" CCD_COMPARE_KEEP="$keep" CCD_COMPARE_CASE="$here" \
     LD_PRELOAD="$preload${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@" || code=$?
 trap - INT
@@ -168,8 +157,8 @@ if [ -n "$fields" ]; then
     "$work/screen" "$counts" fields || true
 elif ! "$work/screen" "$counts" "$every" "$code" "$keep" >&2; then
     case $linked in
-    no) echo "compare.sh: $program asked libccd nothing: it is not linked to libccd.so.2 and did not load it" >&2 ;;
-    *) echo "compare.sh: $program asked libccd nothing in this run" >&2 ;;
+    no) echo "compare.sh: $program did not query libccd: it is not linked to libccd.so.2 and did not load it" >&2 ;;
+    *) echo "compare.sh: $program did not query libccd in this run" >&2 ;;
     esac
 fi
 exit "$code"

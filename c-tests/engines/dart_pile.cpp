@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A pile in DART falls on a plate with walls. Prints what the second half of the
- * run looked like. Scenes:
+/* A pile in DART falls on a plate with walls. Scenes:
  *
  *   fcl  FCL's detector: boxes, spheres, ellipsoids
  *   ode  ODE's detector: cylinders, capsules, boxes
@@ -10,8 +9,6 @@
  * usage: dart_pile SEED STEPS BODIES fcl|ode */
 
 #include "engines/pile.h"
-#include "harness/random.h"
-#include "harness/identity.h"
 
 #include <dart/collision/fcl/FCLCollisionDetector.hpp>
 #include <dart/config.hpp>
@@ -51,19 +48,13 @@ static void add_wall(dynamics::BodyNode *pen, const Eigen::Vector3d &size, const
 
 int main(int argc, char **argv)
 {
-    if (argc != 5) {
-        fprintf(stderr, "usage: dart_pile SEED STEPS BODIES fcl|ode\n");
-        return 2;
-    }
-    const long steps = atol(argv[2]);
-    const int bodies = atoi(argv[3]);
-    const std::string scene = argv[4];
+    pile_t pile = pile_start(argc, argv, "fcl|ode");
+    const std::string scene = pile.scene;
     const double half_width = 0.55;
-    print_library();
     auto world = simulation::World::create();
     world->setTimeStep(0.002);
     if (scene == "ode") {
-        /* the library makes its detector known when it is loaded; its header would need one more package */
+        /* the library registers its detector when it is loaded; its header would need one more package */
         auto *factory = collision::CollisionDetector::getFactory();
         const std::string detector = "libdart-collision-ode.so." + std::to_string(DART_MAJOR_VERSION) + "." + std::to_string(DART_MINOR_VERSION);
         if (!dlopen(detector.c_str(), RTLD_NOW | RTLD_GLOBAL) || !factory->canCreate("ode")) {
@@ -71,8 +62,7 @@ int main(int argc, char **argv)
             return 2;
         }
         world->getConstraintSolver()->setCollisionDetector(factory->create("ode"));
-    }
-    else {
+    } else {
         auto fcl = collision::FCLCollisionDetector::create();
         fcl->setPrimitiveShapeType(collision::FCLCollisionDetector::PRIMITIVE);
         fcl->setContactPointComputationMethod(collision::FCLCollisionDetector::FCL);
@@ -91,31 +81,30 @@ int main(int argc, char **argv)
     world->addSkeleton(pen);
     std::vector<dynamics::BodyNode *> falling;
     uniform_seed(3);
-    for (int i = 0; i < bodies; i++) {
+    for (int i = 0; i < pile.bodies; i++) {
         auto skeleton = dynamics::Skeleton::create("body" + std::to_string(i));
         auto pair = skeleton->createJointAndBodyNodePair<dynamics::FreeJoint>();
         auto shape = shape_of(i, scene);
-        double q[4];
+        double q[4], at[3];
         pair.second->createShapeNodeWith<dynamics::CollisionAspect, dynamics::DynamicsAspect>(shape);
         const double mass = 1000 * shape->getVolume();
         pair.second->setInertia(dynamics::Inertia(mass, Eigen::Vector3d::Zero(), shape->computeInertia(mass)));
         uniform_rotation(q);
+        pile_place(i, 0.25, at);
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
-        pose.translation() = Eigen::Vector3d(0.34 * (i % 3 - 1) + uniform(-.02, .02), 0.34 * (i / 3 % 3 - 1) + uniform(-.02, .02), 0.25 + 0.33 * (i / 9));
+        pose.translation() = Eigen::Vector3d(at[0], at[1], at[2]);
         pair.first->setPositions(dynamics::FreeJoint::convertToPositions(pose));
         world->addSkeleton(skeleton);
         falling.push_back(pair.second);
     }
-    uniform_seed(strtoull(argv[1], NULL, 10));
+    uniform_seed(pile.seed);
     for (auto *body : falling) {
         auto *joint = body->getParentJoint();
         for (int j = 3; j < 6; j++)
             joint->setPosition(j, joint->getPosition(j) + uniform(-1e-3, 1e-3));
     }
-
-    pile_t pile = pile_of(steps);
-    for (; pile.step < steps; pile.step++) {
+    for (; pile.step < pile.steps; pile.step++) {
         try {
             world->step();
         } catch (const std::exception &e) {
@@ -123,20 +112,17 @@ int main(int argc, char **argv)
             pile.bad++;
             break;
         }
-        double moving = 0, height = 0;
+        double kinetic = 0, potential = 0;
         for (auto *body : falling) {
             const Eigen::Vector3d p = body->getTransform().translation();
-            pile.escaped |= !(fabs(p[0]) < half_width && fabs(p[1]) < half_width && p[2] > 0 && p[2] < 20);
-            moving += body->computeKineticEnergy();
-            height += 9.81 * body->getMass() * p[2];
+            pile_body(&pile, p.data(), half_width, 0);
+            kinetic += body->computeKineticEnergy();
+            potential += 9.81 * body->getMass() * p[2];
         }
-        pile_energy(&pile, moving, height);
-        for (const auto &contact : world->getLastCollisionResult().getContacts()) {
-            const bool somewhere = contact.point.norm() < 1e6;
-            pile_contact(&pile, somewhere ? contact.normal.squaredNorm() : NAN, contact.penetrationDepth);
-        }
+        pile_energy(&pile, kinetic, potential);
+        for (const auto &contact : world->getLastCollisionResult().getContacts())
+            pile_contact(&pile, contact.point.norm() < 1e6 ? contact.normal.squaredNorm() : NAN, contact.penetrationDepth);
     }
     pile_report(&pile);
-    printf("\n");
     return 0;
 }

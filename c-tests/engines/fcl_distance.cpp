@@ -3,16 +3,16 @@
 
 /* FCL's signed distance of every configuration of tests/stability/configurations.h, of pairs of equal
  * boxes that touch face on face, and of random pairs, judged by exact truth. Prints the wrong
- * answers, the file that GJKSignedDistance is taken from, and a line for each set:
+ * results, the file that GJKSignedDistance is taken from, and a line for each set:
  *
- *   SET queries N threw N endless N wrong N outside N nanoseconds N
+ *   SET queries N threw N endless N wrong N outside N error_sum METRES nanoseconds N
  *
  * `threw`: an exception, a crash, or one of the assertions that Debian's FCL is built with;
- * `endless`: no answer in a second, without part in the mean time; `wrong`: off by
+ * `endless`: no result in a second, left out of the mean time; `wrong`: off by
  * more than TOLERANCE and 0.1 % of the truth, or the sign; `outside`: a witness point that lies
  * off its object by more than that.
  *
- * usage: fcl_distance PAIRS   (kissing pairs; a third as many random ones; 0: the file alone) */
+ * usage: fcl_distance PAIRS   (kissing pairs; a fifth as many random ones in five poses) */
 
 #include "engines/fcl_shapes.h" /* first: configurations.h has a macro that FCL uses as a name */
 #include "tests/stability/configurations.h"
@@ -28,28 +28,19 @@ static const double TOLERANCE = 1e-6; /* FCL's */
 
 typedef struct {
     long queries, threw, endless, wrong, outside;
-    double nanoseconds;
+    double error_sum, nanoseconds;
 } set_t;
 static const char *const SET_NAMES[] = {"configurations", "kissing", "random"};
 
 /* The queries run in a child process. A failed assertion, a crash and a query of more than a second end it,
- * and the next child goes on behind that query: what such a query leaves in memory spoils no other. */
+ * and the next child continues behind that query: what such a query leaves in memory spoils no other. */
 typedef struct {
     set_t sets[3];
     int current; /* set */
-    long done;   /* queries, the one that runs included */
+    long done;   /* queries, the current one included */
     char name[64];
 } progress_t;
 static progress_t *progress; /* shared with the child */
-
-static void print_sets()
-{
-    for (int i = 0; i < 3; i++) {
-        const set_t &set = progress->sets[i];
-        printf("%s queries %ld threw %ld endless %ld wrong %ld outside %ld nanoseconds %.0f\n", SET_NAMES[i], set.queries,
-               set.threw, set.endless, set.wrong, set.outside, set.nanoseconds / (double)(set.queries - set.endless));
-    }
-}
 
 static double now()
 {
@@ -60,22 +51,20 @@ static double now()
 
 static geometry fcl_shape(const shape_t &s)
 {
-    body_t body = body_t();
-    body.kind = s.type;
-    body.shape = s;
-    if (s.type != SHAPE_POLYTOPE)
+    if (s.type != SHAPE_POLYTOPE) {
+        body_t body = body_t();
+        body.kind = s.type;
+        body.shape = s;
         return fcl_geometry(body);
-    auto vertices = std::make_shared<std::vector<vec>>();
-    for (int i = 0; i < s.nverts; i++)
-        vertices->emplace_back(s.verts[3 * i], s.verts[3 * i + 1], s.verts[3 * i + 2]);
-    /* one face of all vertices: what FCL reads of it is its edges */
+    }
+    /* one face of all vertices: FCL reads its edges */
     auto face = std::make_shared<std::vector<int>>(1, s.nverts);
     for (int i = 0; i < s.nverts; i++)
         face->push_back(i);
-    return std::make_shared<fcl::Convex<double>>(vertices, 1, face);
+    return std::make_shared<fcl::Convex<double>>(fcl_vertices(s), 1, face);
 }
 
-/* How far a point lies outside an object, at most: over the axes and the way to its centre. */
+/* Returns a lower bound of the distance of a point from an object: over the axes and the direction to its centre. */
 static double outside(const shape_t &s, const fcl::Vector3d &p)
 {
     static const double origin[3] = {0, 0, 0};
@@ -95,7 +84,7 @@ static double outside(const shape_t &s, const fcl::Vector3d &p)
 
 static void query(const char *name, const shape_t &a, const shape_t &b, double lower, double upper)
 {
-    static long index;
+    static long index; /* of this query */
     if (index++ < progress->done)
         return;
     set_t &set = progress->sets[progress->current];
@@ -103,7 +92,7 @@ static void query(const char *name, const shape_t &a, const shape_t &b, double l
     snprintf(progress->name, sizeof progress->name, "%s", name);
     set.queries++;
     double value = 0;
-    bool answered = false;
+    bool returned = false;
     fcl::DistanceResultd result;
     fcl::DistanceRequestd request(true, true, 0, 0, TOLERANCE, fcl::GST_LIBCCD);
     fcl::CollisionObjectd first(fcl_shape(a), fcl_pose(a)), second(fcl_shape(b), fcl_pose(b));
@@ -111,18 +100,18 @@ static void query(const char *name, const shape_t &a, const shape_t &b, double l
     alarm(1);
     try {
         value = fcl::distance(&first, &second, request, result);
-        answered = true;
+        returned = true;
     } catch (const std::exception &) {
     }
     alarm(0);
     set.nanoseconds += now() - start;
-    set.threw += !answered;
-    if (!answered) {
+    set.threw += !returned;
+    if (!returned) {
         printf("threw: %s\n", name);
         return;
     }
     const double size = pair_size(&a, &b), allowed = TOLERANCE + 1e-3 * fabs(upper) + 1e-9 * size + pair_noise(&a, &b);
-    /* a depth's bounds are upside down in a distance */
+    set.error_sum += fmax(fmax(-upper - value, value + lower), 0);
     if (!(value >= -upper - allowed && value <= -lower + allowed)) {
         set.wrong++;
         printf("wrong: %s: %.9g, truth %.9g to %.9g\n", name, value, -upper, -lower);
@@ -158,18 +147,18 @@ static void query_kissing(long pairs)
 
 static void query_random(long pairs)
 {
-    static const int kinds[] = {SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_CAPSULE};
+    static const int kinds[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE, KIND_PLATE};
     static body_t a, b;
     for (long i = 0; i < pairs; i++) {
-        known_t known;
-        body_random(&a, kinds[i % 5]);
-        body_random(&b, kinds[i / 5 % 5]);
-        pose_overlapping(&a, &b, &known);
-        for (double depth : {known.upper, 1e-3, -0.1}) {
-            if (depth > known.upper)
+        pose_truth_t pose;
+        body_random(&a, kinds[i % 8]);
+        body_random(&b, kinds[i / 8 % 8]);
+        pose_overlapping(&a, &b, &pose);
+        for (double depth : {pose.upper, 1e-3, 1e-6, -1e-6, -0.1}) {
+            if (depth > pose.upper)
                 continue;
-            pose_at_depth(&b, &known, depth);
-            query("random pair", a.shape, b.shape, known.lower, known.upper);
+            pose_at_depth(&b, &pose, depth);
+            query("random pair", a.shape, b.shape, pose.lower, pose.upper);
         }
     }
 }
@@ -182,11 +171,11 @@ static void query_all(long pairs)
     progress->current = 1;
     query_kissing(pairs);
     progress->current = 2;
-    query_random(pairs / 3);
+    query_random(pairs / 5);
 }
 
-/* Runs the queries that are left in a child. Whether all are done. */
-static bool child_ends(long pairs)
+/* Runs the remaining queries in a child; returns whether all are done. */
+static bool run_child(long pairs)
 {
     int status;
     fflush(stdout);
@@ -225,11 +214,12 @@ int main(int argc, char **argv)
     setvbuf(stdout, NULL, _IOLBF, 0);
     print_library();
     printf("function %s\n", function && dladdr(function, &from) ? strrchr(from.dli_fname, '/') + 1 : "none");
-    const long pairs = atol(argv[1]);
-    if (pairs == 0)
-        return 0;
-    while (!child_ends(pairs))
+    while (!run_child(atol(argv[1])))
         ;
-    print_sets();
+    for (int i = 0; i < 3; i++) {
+        const set_t &set = progress->sets[i];
+        printf("%s queries %ld threw %ld endless %ld wrong %ld outside %ld error_sum %.9g nanoseconds %.0f\n", SET_NAMES[i], set.queries,
+               set.threw, set.endless, set.wrong, set.outside, set.error_sum, set.nanoseconds / (double)(set.queries - set.endless));
+    }
     return 0;
 }

@@ -2,52 +2,39 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* A moving scene through FCL's DynamicAABBTreeCollisionManager: bodies of every convex kind
- * drift and turn in a closed room, through each other. Their poses depend on no answer.
+ * drift and turn in a closed room, through each other. Their poses depend on no result.
  *
- * Compiled plain, the narrow phase is FCL's own on whichever libccd is loaded; with BY_HEADER,
- * that of <ccd/fcl.hpp>. With TIMED nothing stands between: the processor time of the
- * collisions. Else every pair is judged by the proven minimum of this library, and every
- * EXACTth by truth.h as well. Prints one of
+ * Compiled plain, the narrow phase is FCL's own on the loaded libccd; with BY_HEADER,
+ * that of <ccd/fcl.hpp>. With TIMED the collisions are timed: processor time. Else every pair is judged
+ * by the proven minimum of this library, and every EXACTth by truth.h as well: those that libccd or this
+ * library was queried for in the line `put`, those with a closed form of FCL's in `closed_form`.
  *
- *   timed pairs N contacts N nanoseconds N
- *   judged pairs N hits N contacts N missed N spurious N off N error M own_missed N
- *          own_spurious N own_off N own_error M exact N   (and with BY_HEADER a "watched" line, as compare.sh adds one else)
- *
- * `missed`, `spurious`, `off` (beyond the promised depth) and `error` (largest, metres) are
- * those of pairs put to libccd or this library, `own_` of pairs that FCL has closed forms for.
- *
- * usage: fcl_scene FRAMES BODIES EXACT CONTACTS [mixed|round|hulls]   (CONTACTS: of a pair, with
- * BY_HEADER; round: spheres and capsules) */
+ * usage: fcl_scene CONTACTS FRAMES BODIES EXACT [mixed|round|hulls]   (CONTACTS: at most so many of a pair,
+ * with BY_HEADER; round: spheres and capsules) */
 
 #include "engines/fcl_shapes.h"
 #include "harness/identity.h"
-#ifndef TIMED
 #include "harness/this_library.h"
-#ifndef BY_HEADER
 #include "tools/compare/hooks.h"
-#endif
-#endif
 #if defined(BY_HEADER) && !defined(TIMED)
-/* The calls of the header are the extension's, which compare.sh does not know: counted here. */
-static struct {
-    unsigned long queries, supports;
-} asked;
+/* compare.sh does not count the header's calls, which are the extension's. */
+static unsigned long query_count, support_count;
+static ccd_support_fn counted_support1;
 
-static ccd_support_fn asked_support1;
-static void asked_count(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
+static void count_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *v)
 {
-    asked.supports++;
-    asked_support1(obj, dir, v);
+    support_count++;
+    counted_support1(obj, dir, v);
 }
 
 template <typename Call, typename... Rest>
 static int counted(Call *call, unsigned long queries, const void *a, const void *b, const ccd_t *ccd, Rest... rest)
 {
-    ccd_t behind = *ccd;
-    asked.queries += queries;
-    asked_support1 = ccd->support1;
-    behind.support1 = asked_count;
-    return call(a, b, &behind, rest...);
+    ccd_t settings = *ccd;
+    query_count += queries;
+    counted_support1 = ccd->support1;
+    settings.support1 = count_support;
+    return call(a, b, &settings, rest...);
 }
 #define ccdPenetration(...) counted(ccdPenetration, 1, __VA_ARGS__)
 #define ccdSignedDistance(...) counted(ccdSignedDistance, 1, __VA_ARGS__)
@@ -86,7 +73,7 @@ struct scene_t {
             kinds = {SHAPE_SPHERE, SHAPE_CAPSULE};
         else if (which == "hulls")
             kinds = {SHAPE_POLYTOPE};
-        half_width = 0.55 * cbrt((double)n); /* a third of the bodies overlap another, whatever their number */
+        half_width = 0.55 * cbrt((double)n); /* a third of the bodies overlap another, for any number */
         uniform_seed(14);
         objects.reserve(bodies.size());
         for (moving_t &m : bodies) {
@@ -136,15 +123,32 @@ struct scene_t {
 
 /* --- the two narrow phases ---------------------------------------------------------- */
 
-static fcl::CollisionRequestd request(size_t most)
+static fcl::CollisionRequestd request()
 {
-    return fcl::CollisionRequestd(most, true, 1, false, true, fcl::GST_LIBCCD, TOLERANCE);
+    return fcl::CollisionRequestd(1000000, true, 1, false, true, fcl::GST_LIBCCD, TOLERANCE);
 }
 
-static const size_t ALL = 1000000;
 #ifdef BY_HEADER
 static ccd_fcl::PairCache cache;
 static ccd_fcl::Settings settings;
+
+static size_t collide_all(scene_t &scene)
+{
+    ccd_fcl::CollisionData<double> data(cache);
+    data.request = request();
+    data.settings = settings;
+    scene.manager.collide(&data, ccd_fcl::CollisionFunction<double>);
+    cache.next_frame();
+    return data.result.numContacts();
+}
+#else
+static size_t collide_all(scene_t &scene)
+{
+    fcl::DefaultCollisionData<double> data;
+    data.request = request();
+    scene.manager.collide(&data, fcl::DefaultCollisionFunction<double>);
+    return data.result.numContacts();
+}
 #endif
 
 #ifdef TIMED
@@ -169,75 +173,47 @@ static void run(scene_t &scene, long frames, long)
     size_t contacts = 0;
     for (long frame = 0; frame < frames; frame++) {
         const double start = now();
-#ifdef BY_HEADER
-        ccd_fcl::CollisionData<double> data(cache);
-        data.request = request(ALL);
-        data.settings = settings;
-        scene.manager.collide(&data, ccd_fcl::CollisionFunction<double>);
-        cache.next_frame();
-#else
-        fcl::DefaultCollisionData<double> data;
-        data.request = request(ALL);
-        scene.manager.collide(&data, fcl::DefaultCollisionFunction<double>);
-#endif
+        contacts += collide_all(scene);
         nanoseconds += now() - start;
-        contacts += data.result.numContacts();
         scene.manager.collide(&pairs, count_pair);
         scene.step(1.0 / 60);
     }
     printf("timed pairs %ld contacts %zu nanoseconds %.0f\n", pairs, contacts, nanoseconds);
+    printf("processor seconds %.6f\n", (double)clock() / CLOCKS_PER_SEC);
 }
 
 #else
 
+/* Collides a pair; returns whether libccd or this library was queried. */
+static bool collide(object *o1, object *o2, fcl::CollisionResultd &result)
+{
 #ifdef BY_HEADER
-static unsigned long put_so_far() { return asked.queries; }
+    const unsigned long before = query_count;
+    ccd_fcl::collide(o1, o2, request(), result, cache, settings);
+    return query_count != before;
 #else
-static unsigned long put_so_far() { return compare_queries(); }
+    const unsigned long before = compare_queries();
+    fcl::collide(o1, o2, request(), result);
+    return compare_queries() != before;
 #endif
-
-/* Counts of wrong answers for a part of the pairs. */
-struct part_t {
-    long missed, spurious, off;
-    double error;
-};
+}
 
 static struct {
     long pairs, hits, contacts, exact, every;
-    part_t put, own; /* to libccd or this library; by closed forms of FCL's */
+    tally_t put, closed_form;
 } judged;
-
-/* The depth of a pair, NaN for none, against bounds of the truth; a gap has a negative depth. */
-static void judge(part_t *part, double depth, double lower, double upper, double size)
-{
-    const double nothing = 1e-9 * size;
-    if (isnan(depth)) {
-        part->missed += lower > nothing;
-        return;
-    }
-    part->spurious += upper < -nothing;
-    const double above = depth - fmax(upper, 0), below = lower - depth;
-    part->error = fmax(part->error, fmax(above, below));
-    part->off += !(above <= fmax(TOLERANCE, 1e-3 * upper) + nothing && below <= TOLERANCE + nothing);
-}
 
 static bool judge_pair(object *o1, object *o2, void *)
 {
     body_t &a = *(body_t *)o1->getUserData(), &b = *(body_t *)o2->getUserData();
     const double size = pair_size(&a.shape, &b.shape);
-    const unsigned long before = put_so_far();
     fcl::CollisionResultd result;
-#ifdef BY_HEADER
-    ccd_fcl::collide(o1, o2, request(ALL), result, cache, settings);
-#else
-    fcl::collide(o1, o2, request(ALL), result);
-#endif
+    tally_t *counts = collide(o1, o2, result) ? &judged.put : &judged.closed_form;
     double depth = NAN;
     for (size_t i = 0; i < result.numContacts(); i++)
         depth = fmax(depth, result.getContact(i).penetration_depth);
     judged.contacts += (long)result.numContacts();
     judged.hits += result.isCollision();
-    part_t *part = put_so_far() == before ? &judged.own : &judged.put;
 
     ccd_penetration_t least;
     ccd_t ccd = shape_query();
@@ -245,11 +221,17 @@ static bool judge_pair(object *o1, object *o2, void *)
     ccd.epa_tolerance = 1e-10;
     ccd.max_iterations = 5000;
     const int code = OURS(ccdPenetrationProven)(&a.shape, &b.shape, &ccd, NULL, CCD_WANT_ALL, &least);
-    const bool overlap = code == CCD_HIT || code == CCD_LIMIT;
-    judge(part, depth, overlap ? least.depth_lower : -HUGE_VAL, overlap ? least.depth : 0, size);
+    verdict_truth_t truth = {-HUGE_VAL, 0, TOLERANCE, 1e-9 * size};
+    if (code == CCD_HIT || code == CCD_LIMIT) {
+        truth.lower = least.depth_lower;
+        truth.upper = least.depth;
+    }
+    tally_add(counts, &truth, !std::isnan(depth), depth, 1);
     if (judged.pairs++ % judged.every == 0) {
         const truth_t t = truth_depth_within(&a.shape, &b.shape, 1e-8 * size);
-        judge(part, depth, t.lower, t.depth, size);
+        truth.lower = t.lower;
+        truth.upper = t.depth;
+        tally_add(counts, &truth, !std::isnan(depth), depth, 1);
         judged.exact++;
     }
     return false;
@@ -265,12 +247,11 @@ static void run(scene_t &scene, long frames, long every)
 #endif
         scene.step(1.0 / 60);
     }
-    printf("judged pairs %ld hits %ld contacts %ld missed %ld spurious %ld off %ld error %.9g own_missed %ld own_spurious %ld "
-           "own_off %ld own_error %.9g exact %ld\n",
-           judged.pairs, judged.hits, judged.contacts, judged.put.missed, judged.put.spurious, judged.put.off, judged.put.error,
-           judged.own.missed, judged.own.spurious, judged.own.off, judged.own.error, judged.exact);
+    printf("judged pairs %ld hits %ld contacts %ld exact %ld\n", judged.pairs, judged.hits, judged.contacts, judged.exact);
+    tally_print("put", &judged.put);
+    tally_print("closed_form", &judged.closed_form);
 #ifdef BY_HEADER
-    printf("watched queries %lu supports %lu\n", asked.queries, asked.supports);
+    printf("own queries %lu supports %lu\n", query_count, support_count);
 #endif
 }
 
@@ -280,14 +261,14 @@ int main(int argc, char **argv)
 {
     const std::string which = argc > 5 ? argv[5] : "mixed";
     if (argc < 5 || (which != "mixed" && which != "round" && which != "hulls")) {
-        fprintf(stderr, "usage: fcl_scene FRAMES BODIES EXACT CONTACTS [mixed|round|hulls]\n");
+        fprintf(stderr, "usage: fcl_scene CONTACTS FRAMES BODIES EXACT [mixed|round|hulls]\n");
         return 2;
     }
     print_library();
 #ifdef BY_HEADER
-    settings.contacts_per_pair = (size_t)atol(argv[4]);
+    settings.contacts_per_pair = (size_t)atol(argv[1]);
 #endif
-    scene_t scene(atoi(argv[2]), which);
-    run(scene, atol(argv[1]), atol(argv[3]));
+    scene_t scene(atoi(argv[3]), which);
+    run(scene, atol(argv[2]), atol(argv[4]));
     return 0;
 }

@@ -13,8 +13,16 @@
 typedef fcl::Vector3<ccd_real_t> vec;
 typedef std::shared_ptr<fcl::CollisionGeometry<ccd_real_t>> geometry;
 
-/* What FCL can do with a single triangle: a mesh of one, or TriangleP. */
+/* FCL's types for a single triangle: a mesh of one, or TriangleP. */
 enum triangle_t { TRIANGLE_MESH, TRIANGLE_SHAPE };
+
+static inline std::shared_ptr<std::vector<vec>> fcl_vertices(const shape_t &s)
+{
+    auto vertices = std::make_shared<std::vector<vec>>();
+    for (int i = 0; i < s.nverts; i++)
+        vertices->emplace_back(s.verts[3 * i], s.verts[3 * i + 1], s.verts[3 * i + 2]);
+    return vertices;
+}
 
 static inline geometry fcl_geometry(const body_t &b, triangle_t triangle = TRIANGLE_MESH)
 {
@@ -30,9 +38,7 @@ static inline geometry fcl_geometry(const body_t &b, triangle_t triangle = TRIAN
     case SHAPE_ELLIPSOID: return std::make_shared<fcl::Ellipsoid<S>>(p[0], p[1], p[2]);
     default: break;
     }
-    auto vertices = std::make_shared<std::vector<vec>>();
-    for (int i = 0; i < b.hull.vertices; i++)
-        vertices->emplace_back(b.hull.vertex[3 * i], b.hull.vertex[3 * i + 1], b.hull.vertex[3 * i + 2]);
+    auto vertices = fcl_vertices(b.shape);
     if (b.kind == KIND_TRIANGLE && triangle == TRIANGLE_SHAPE)
         return std::make_shared<fcl::TriangleP<S>>((*vertices)[0], (*vertices)[1], (*vertices)[2]);
     if (b.kind == KIND_TRIANGLE) {

@@ -1,91 +1,122 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* FCL's collide over random pairs of every convex kind, held against their truth (pose_all of
- * poses.h), and its signed distance, of which there is a line for each:
+/* FCL's collide over random pairs of every convex kind, judged by their certified depth (pose_all of
+ * poses.h), and its contact positions, a millimetre deep, against the centroid of the volume that the
+ * bodies share: bodies of a quarter metre that stand, lie and rock on a cylinder a metre wide. Prints
+ * their root mean square error, metres, of each kind of body, after `position`.
  *
- *   distance VALUE TRUTH   VALUE: nan where FCL threw, or where one of the assertions failed that
- *                          Debian's FCL is built with
- *
- * usage: fcl_static SEED POSES   (POSES placed pairs of each two kinds) */
+ * usage: fcl_static SEED POSES   (POSES placed pairs of each two kinds; ten times as many positions) */
 
 #include "engines/fcl_shapes.h"
+#include "tests/extension/pressure.h"
 #include "tools/compare/hooks.h"
 #include "harness/identity.h"
-
-#include <setjmp.h>
-#include <signal.h>
-
-/* A failed assertion comes back here; what FCL held is lost. */
-static sigjmp_buf after_abort;
-static void on_abort(int)
-{
-    siglongjmp(after_abort, 1);
-}
-
-/* Runs one query of FCL's; whether it answered. */
-template <typename Query> static bool answers(Query query)
-{
-    if (sigsetjmp(after_abort, 1))
-        return false;
-    try {
-        query();
-    } catch (const std::exception &) {
-        return false;
-    }
-    return true;
-}
 
 static body_t a, b;
 static std::unique_ptr<fcl::CollisionObjectd> object_a, object_b;
 
-static void make()
+static std::unique_ptr<fcl::CollisionObjectd> make_object(const body_t &body)
 {
-    object_a.reset(new fcl::CollisionObjectd(fcl_geometry(a), fcl_pose(a.shape)));
-    object_b.reset(new fcl::CollisionObjectd(fcl_geometry(b), fcl_pose(b.shape)));
+    return std::make_unique<fcl::CollisionObjectd>(fcl_geometry(body), fcl_pose(body.shape));
 }
 
-static void collide(const known_t &known)
+static void make()
+{
+    object_a = make_object(a);
+    object_b = make_object(b);
+}
+
+static fcl::CollisionResultd collide()
 {
     fcl::CollisionRequestd request(1, true);
     fcl::CollisionResultd result;
-    const unsigned long before = compare_queries();
     request.gjk_solver_type = fcl::GST_LIBCCD;
-    const bool answered = answers([&] { fcl::collide(object_a.get(), object_b.get(), request, result); });
-    if (compare_queries() == before)
-        return; /* FCL has a closed form for these two, or its boxes excluded them */
-    if (!answered)
-        threw++;
-    else if (result.numContacts() == 0)
-        pose_judge(&a, &b, &known, 0, 0, 0, 0);
-    else
-        pose_judge(&a, &b, &known, 0, 1, result.getContact(0).penetration_depth, result.getContact(0).normal.norm());
+    fcl::collide(object_a.get(), object_b.get(), request, result);
+    return result;
 }
 
-/* By FCL's own EPA on libccd's polytope functions. */
-static void distance(const known_t &known)
-{
-    fcl::DistanceRequestd request(true, true);
-    fcl::DistanceResultd result;
-    const unsigned long before = compare_supports();
-    static double value;
-    request.gjk_solver_type = fcl::GST_LIBCCD;
-    const bool answered = answers([&] { value = fcl::distance(object_a.get(), object_b.get(), request, result); });
-    if (compare_supports() != before)
-        printf("distance %.17g %.17g\n", answered ? value : NAN, -0.5 * (known.lower + known.upper));
-}
-
-static void ask(const known_t *known)
+static void query(const pose_truth_t *pose)
 {
     object_b->setTransform(fcl_pose(b.shape));
     object_b->computeAABB();
-    collide(*known);
-    if (a.kind != KIND_TRIANGLE && b.kind != KIND_TRIANGLE)
-        distance(*known);
+    const unsigned long before = compare_queries();
+    try {
+        const fcl::CollisionResultd result = collide();
+        if (compare_queries() == before)
+            return; /* FCL has a closed form for these two, or its boxes excluded them */
+        if (result.numContacts() == 0)
+            pose_judge(&a, &b, pose, 0, 0, 0, 0);
+        else
+            pose_judge(&a, &b, pose, 0, 1, result.getContact(0).penetration_depth, result.getContact(0).normal.norm());
+    } catch (const std::exception &) {
+        threw++;
+    }
+}
+
+/* --- positions ---------------------------------------------------------------------- */
+
+typedef struct {
+    const char *name;
+    shape_t shape;
+    double axis[3], angle; /* how it lies, before it rocks */
+} lying_t;
+
+/* The deepest point of the body. */
+static ccd_vec3_t lowest(const shape_t &s)
+{
+    const ccd_vec3_t down = {{0, 0, -1}};
+    ccd_vec3_t p;
+    shape_support(&s, &down, &p);
+    return p;
+}
+
+static double position_error(const lying_t &lying, int poses)
+{
+    double square = 0;
+    int judged = 0;
+    b.kind = SHAPE_CYLINDER;
+    b.shape = shape_cylinder(0.5, 0.1);
+    shape_move(&b.shape, 0, 0, -0.1);
+    for (int i = 0; i < poses; i++) {
+        const double depth = 1e-3, tilt = uniform(-0.02, 0.02), turn = uniform(0, 6.28);
+        double first[9], second[9], third[9], both[9], all[9], truth[3];
+        rotation_about(lying.axis[0], lying.axis[1], lying.axis[2], lying.angle, first);
+        rotation_about(cos(turn), sin(turn), 0, tilt, second);
+        rotation_about(0, 0, 1, uniform(0, 6.28), third);
+        rotation_times(third, first, both);
+        rotation_times(second, both, all);
+        a.kind = lying.shape.type;
+        a.shape = lying.shape;
+        shape_turn(&a.shape, all);
+        shape_move(&a.shape, uniform(-0.1, 0.1), uniform(-0.1, 0.1), 0);
+        shape_move(&a.shape, a.shape.pos[0], a.shape.pos[1], -depth - lowest(a.shape).v[2]);
+        make();
+        const fcl::CollisionResultd result = collide();
+        if (result.numContacts() == 0)
+            continue;
+        const fcl::Vector3d pos = result.getContact(0).pos;
+        const ccd_vec3_t below = lowest(a.shape);
+        const double up[3] = {0, 0, 1}, within[3] = {below.v[0], below.v[1], -depth / 2};
+        if (!(pressure_centre(&a.shape, &b.shape, up, within, truth) > 0))
+            continue;
+        square += (pos[0] - truth[0]) * (pos[0] - truth[0]) + (pos[1] - truth[1]) * (pos[1] - truth[1]);
+        judged++;
+    }
+    return sqrt(square / judged); /* NaN where no pose was judged */
 }
 
 int main(int argc, char **argv)
 {
+    const double quarter = 1.5707963267948966;
+    const lying_t all[] = {
+        {"box", shape_box(0.125, 0.1, 0.08), {0, 0, 1}, 0},
+        {"standing-cylinder", shape_cylinder(0.1, 0.125), {0, 0, 1}, 0},
+        {"lying-cylinder", shape_cylinder(0.1, 0.125), {0, 1, 0}, quarter},
+        {"lying-capsule", shape_capsule(0.1, 0.125), {0, 1, 0}, quarter},
+        {"standing-cone", shape_cone(0.125, 0.125), {0, 0, 1}, 0},
+        {"ellipsoid", shape_ellipsoid(0.125, 0.1, 0.06), {0, 0, 1}, 0},
+    };
     int kinds[KINDS];
     if (argc != 3) {
         fprintf(stderr, "usage: fcl_static SEED POSES\n");
@@ -93,9 +124,13 @@ int main(int argc, char **argv)
     }
     for (int i = 0; i < KINDS; i++)
         kinds[i] = i;
-    signal(SIGABRT, on_abort);
     print_library();
     uniform_seed(strtoull(argv[1], NULL, 10));
-    pose_all(kinds, KINDS, atol(argv[2]), &a, &b, make, ask);
+    pose_all(kinds, KINDS, atol(argv[2]), &a, &b, make, query);
+    uniform_seed(strtoull(argv[1], NULL, 10));
+    printf("position");
+    for (const lying_t &lying : all)
+        printf(" %s %.6g", lying.name, position_error(lying, 10 * atoi(argv[2])));
+    printf("\n");
     return 0;
 }

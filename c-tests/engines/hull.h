@@ -6,11 +6,10 @@
 #ifndef ENGINES_HULL_H
 #define ENGINES_HULL_H
 
+#include "harness/truth.h"
 #include "harness/random.h"
 
-#include <ccd/vec3.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { HULL_VERTICES = 16, HULL_FACES = 2 * HULL_VERTICES - 4 };
 
@@ -18,8 +17,21 @@ typedef struct {
     int vertices, faces;
     ccd_real_t vertex[3 * HULL_VERTICES];
     double plane[4 * HULL_FACES];     /* outward unit normal, offset */
-    unsigned polygon[4 * HULL_FACES]; /* face by face: how many vertices, then they, counterclockwise from outside */
+    unsigned polygon[4 * HULL_FACES]; /* of each face: number of vertices, their indices counterclockwise from outside */
 } hull_t;
+
+/* Computes unit normal and offset of the plane through three vertices; returns twice their triangle's area. */
+static inline double hull_plane(const hull_t *s, int i, int j, int k, double plane[4])
+{
+    const ccd_real_t *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
+    const double p[3] = { a[0], a[1], a[2] }, u[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] }, v[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
+    truth_cross3(u, v, plane);
+    const double length = sqrt(truth_dot3(plane, plane));
+    for (int l = 0; l < 3; l++)
+        plane[l] /= length;
+    plane[3] = truth_dot3(plane, p);
+    return length;
+}
 
 /* Every triple of points, in general position, that has all others on one side
  * is a face: n^4 steps, for a dozen points. */
@@ -30,28 +42,14 @@ static inline void hull_make_faces(hull_t *s)
     for (int i = 0; i < n; i++)
         for (int j = i + 1; j < n; j++)
             for (int k = j + 1; k < n; k++) {
-                const ccd_real_t *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
-                double u[3], v[3], m[3], d, length, sign, *plane;
+                double plane[4];
                 int above = 0, below = 0;
-                for (int l = 0; l < 3; l++) {
-                    u[l] = b[l] - a[l];
-                    v[l] = c[l] - a[l];
-                }
-                m[0] = u[1] * v[2] - u[2] * v[1];
-                m[1] = u[2] * v[0] - u[0] * v[2];
-                m[2] = u[0] * v[1] - u[1] * v[0];
-                length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-                for (int l = 0; l < 3; l++)
-                    m[l] /= length;
-                d = m[0] * a[0] + m[1] * a[1] + m[2] * a[2];
+                hull_plane(s, i, j, k, plane);
                 for (int l = 0; l < n; l++) {
                     const ccd_real_t *x = s->vertex + 3 * l;
-                    if (l == i || l == j || l == k)
-                        continue;
-                    if (m[0] * x[0] + m[1] * x[1] + m[2] * x[2] > d)
-                        above++;
-                    else
-                        below++;
+                    const int is_above = plane[0] * x[0] + plane[1] * x[1] + plane[2] * x[2] > plane[3];
+                    if (l != i && l != j && l != k)
+                        *(is_above ? &above : &below) += 1;
                 }
                 if (above && below)
                     continue;
@@ -59,21 +57,17 @@ static inline void hull_make_faces(hull_t *s)
                     fprintf(stderr, "hull: points not in general position\n");
                     exit(2);
                 }
-                sign = above ? -1 : 1;
-                plane = s->plane + 4 * s->faces;
-                unsigned *polygon = s->polygon + 4 * s->faces;
-                for (int l = 0; l < 3; l++)
-                    plane[l] = sign * m[l];
-                plane[3] = sign * d;
+                for (int l = 0; l < 4; l++)
+                    s->plane[4 * s->faces + l] = above ? -plane[l] : plane[l];
+                unsigned *polygon = s->polygon + 4 * s->faces++;
                 polygon[0] = 3;
                 polygon[1] = (unsigned)i;
                 polygon[2] = (unsigned)(above ? k : j);
                 polygon[3] = (unsigned)(above ? j : k);
-                s->faces++;
             }
 }
 
-/* The distance of the origin from the nearest face plane, negative outside. */
+/* Returns the distance of the origin from the nearest face plane, negative outside. */
 static inline double hull_inradius(const hull_t *s)
 {
     double least = HUGE_VAL;
@@ -82,8 +76,8 @@ static inline double hull_inradius(const hull_t *s)
     return least;
 }
 
-/* Random points on an ellipsoid with these radii, not too close to each other:
- * equal ones make needle faces. Rounded to float. */
+/* Makes random points on an ellipsoid with these radii, rounded to float, not too close to each other:
+ * equal ones make needle faces. */
 static inline void hull_make_vertices(hull_t *s, const double r[3])
 {
     int j;
@@ -92,11 +86,11 @@ static inline void hull_make_vertices(hull_t *s, const double r[3])
         do {
             for (j = 0; j < 3; j++)
                 v[j] = uniform(-1, 1);
-            length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+            length = sqrt(truth_dot3(v, v));
             for (j = 0, nearest = 4; j < i && length > 0; j++) {
                 const ccd_real_t *w = s->vertex + 3 * j;
-                double x = v[0] / length - w[0] / r[0], y = v[1] / length - w[1] / r[1], z = v[2] / length - w[2] / r[2];
-                nearest = fmin(nearest, x * x + y * y + z * z);
+                const double d[3] = { v[0] / length - w[0] / r[0], v[1] / length - w[1] / r[1], v[2] / length - w[2] / r[2] };
+                nearest = fmin(nearest, truth_dot3(d, d));
             }
         } while (length > 1 || length < 0.01 || nearest < 0.15);
         for (j = 0; j < 3; j++)
@@ -104,13 +98,10 @@ static inline void hull_make_vertices(hull_t *s, const double r[3])
     }
 }
 
-/* A random hull that has the origin well inside, as ODE wants it. */
+/* Makes a random hull that has the origin well inside, as ODE wants it. */
 static inline void hull_random(hull_t *s, int vertices, double rx, double ry, double rz)
 {
-    double r[3];
-    r[0] = rx;
-    r[1] = ry;
-    r[2] = rz;
+    const double r[3] = { rx, ry, rz };
     s->vertices = vertices;
     do {
         hull_make_vertices(s, r);
@@ -118,7 +109,7 @@ static inline void hull_random(hull_t *s, int vertices, double rx, double ry, do
     } while (hull_inradius(s) < 0.2 * fmin(rx, fmin(ry, rz)));
 }
 
-/* A box with these half extents, as a hull of eight vertices and six faces. */
+/* Makes a box with these half extents, of eight vertices and six faces. */
 static inline void hull_box(hull_t *s, double x, double y, double z)
 {
     const double half[3] = { x, y, z };
@@ -131,15 +122,11 @@ static inline void hull_box(hull_t *s, double x, double y, double z)
         /* the face across axis k, on its upper side for even i */
         const int k = i / 2, u = (k + 1) % 3, v = (k + 2) % 3, up = i % 2 == 0;
         const unsigned base = up ? 1u << k : 0, pu = 1u << u, pv = 1u << v;
-        unsigned *polygon = s->polygon + 5 * i;
+        const unsigned polygon[5] = { 4, base, base | (up ? pu : pv), base | pu | pv, base | (up ? pv : pu) };
+        memcpy(s->polygon + 5 * i, polygon, sizeof polygon);
         for (int j = 0; j < 3; j++)
             s->plane[4 * i + j] = j == k ? (up ? 1 : -1) : 0;
         s->plane[4 * i + 3] = half[k];
-        polygon[0] = 4;
-        polygon[1] = base;
-        polygon[2] = base | (up ? pu : pv);
-        polygon[3] = base | pu | pv;
-        polygon[4] = base | (up ? pv : pu);
     }
 }
 

@@ -2,16 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* A pile in MuJoCo: ellipsoids, cylinders, capsules, boxes and meshes fall into
- * a pen of planes and come to rest, from a start that is moved by up to 1e-3 m
- * a coordinate, by a stream named SEED. Prints what the second half of the run
- * looked like.
+ * a pen of planes and come to rest, from a start that the random stream SEED moves by
+ * up to 1e-3 m a coordinate.
  *
  * usage: mujoco_pile SEED STEPS BODIES pile|multi|field
  *   multi: MuJoCo's multi-point convex collision; field: on a height field */
 
 #include "engines/pile.h"
-#include "harness/random.h"
-#include "harness/identity.h"
 
 #include <mujoco/mujoco.h>
 #include <stdarg.h>
@@ -22,7 +19,7 @@ static const double HALF_WIDTH = 0.55;
 static char xml[1 << 17];
 static size_t xml_length;
 
-static void put(const char *format, ...)
+static void write_xml(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -34,75 +31,60 @@ static void put(const char *format, ...)
     }
 }
 
-static void put_model(int bodies, int multi, int field)
+static void write_sizes(const char *type, double x, double y, double z)
 {
-    double q[4];
-    put("<mujoco><compiler angle=\"radian\"/><option timestep=\"0.004\"><flag energy=\"enable\"%s/></option>"
-        "<size nconmax=\"600\" njmax=\"2400\"/><asset>", multi ? " multiccd=\"enable\"" : "");
-    for (int i = 0; i < MESHES; i++) {
-        put("<mesh name=\"m%d\" vertex=\"", i);
-        for (int j = 0; j < MESH_VERTICES; j++) {
-            uniform_rotation(q);
-            {
-                const double l = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) + 1e-3;
-                put("%.5f %.5f %.5f ", 0.1 * q[1] / l, 0.08 * q[2] / l, 0.12 * q[3] / l);
-            }
-        }
-        put("\"/>");
-    }
-    if (field)
-        put("<hfield name=\"f\" nrow=\"%d\" ncol=\"%d\" size=\"%g %g 0.15 0.3\"/>", FIELD, FIELD, HALF_WIDTH + 0.1, HALF_WIDTH + 0.1);
-    put("</asset><worldbody>");
-    if (field)
-        put("<geom type=\"hfield\" hfield=\"f\"/>");
-    else
-        put("<geom type=\"plane\" size=\"2 2 0.1\"/>");
-    put("<geom type=\"plane\" size=\"2 2 .1\" pos=\"-%g 0 0\" zaxis=\"1 0 0\"/><geom type=\"plane\" size=\"2 2 .1\" pos=\"%g 0 0\" zaxis=\"-1 0 0\"/>"
-        "<geom type=\"plane\" size=\"2 2 .1\" pos=\"0 -%g 0\" zaxis=\"0 1 0\"/><geom type=\"plane\" size=\"2 2 .1\" pos=\"0 %g 0\" zaxis=\"0 -1 0\"/>",
-        HALF_WIDTH, HALF_WIDTH, HALF_WIDTH, HALF_WIDTH);
-    for (int i = 0; i < bodies; i++) {
-        uniform_rotation(q);
-        put("<body pos=\"%.5f %.5f %.5f\" quat=\"%.6f %.6f %.6f %.6f\"><freejoint/>", 0.34 * (i % 3 - 1) + uniform(-.02, .02),
-            0.34 * (i / 3 % 3 - 1) + uniform(-.02, .02), 0.4 + 0.33 * (i / 9), q[0], q[1], q[2], q[3]);
-        switch (i % 5) {
-        case 0: put("<geom type=\"ellipsoid\" size=\"%.4f %.4f %.4f\"/>", uniform(.05, .13), uniform(.05, .13), uniform(.05, .13)); break;
-        case 1: put("<geom type=\"cylinder\" size=\"%.4f %.4f\"/>", uniform(.05, .12), uniform(.05, .12)); break;
-        case 2: put("<geom type=\"capsule\" size=\"%.4f %.4f\"/>", uniform(.04, .09), uniform(.04, .1)); break;
-        case 3: put("<geom type=\"mesh\" mesh=\"m%d\"/>", i / 5 % MESHES); break;
-        default: put("<geom type=\"box\" size=\"%.4f %.4f %.4f\"/>", uniform(.05, .12), uniform(.05, .12), uniform(.05, .12)); break;
-        }
-        put("</body>");
-    }
-    put("</worldbody></mujoco>");
+    write_xml("<geom type=\"%s\" size=\"%.4f %.4f %.4f\"/>", type, x, y, z);
 }
 
-/* Positions that left the pen or are not numbers. */
-static int escaped(const mjModel *m, const mjData *d)
+static void write_model(int bodies, int multi, int field)
 {
-    int out = 0;
-    for (int i = 0; i < m->njnt; i++) {
-        const mjtNum *p = d->qpos + m->jnt_qposadr[i];
-        /* the origin of a mesh may lie on its surface */
-        out += !(fabs(p[0]) < HALF_WIDTH + 0.1 && fabs(p[1]) < HALF_WIDTH + 0.1 && p[2] > -0.1 && p[2] < 20);
+    double q[4], at[3];
+    write_xml("<mujoco><compiler angle=\"radian\"/><option timestep=\"0.004\"><flag energy=\"enable\"%s/></option>"
+              "<size nconmax=\"600\" njmax=\"2400\"/><asset>", multi ? " multiccd=\"enable\"" : "");
+    for (int i = 0; i < MESHES; i++) {
+        write_xml("<mesh name=\"m%d\" vertex=\"", i);
+        for (int j = 0; j < MESH_VERTICES; j++) {
+            uniform_rotation(q);
+            const double l = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) + 1e-3;
+            write_xml("%.5f %.5f %.5f ", 0.1 * q[1] / l, 0.08 * q[2] / l, 0.12 * q[3] / l);
+        }
+        write_xml("\"/>");
     }
-    return out;
+    if (field)
+        write_xml("<hfield name=\"f\" nrow=\"%d\" ncol=\"%d\" size=\"%g %g 0.15 0.3\"/>", FIELD, FIELD, HALF_WIDTH + 0.1,
+                  HALF_WIDTH + 0.1);
+    write_xml("</asset><worldbody>");
+    if (field)
+        write_xml("<geom type=\"hfield\" hfield=\"f\"/>");
+    else
+        write_xml("<geom type=\"plane\" size=\"2 2 0.1\"/>");
+    for (int i = 0; i < 4; i++) {
+        const int sign = i % 2 ? 1 : -1, x = i < 2 ? sign : 0, y = i < 2 ? 0 : sign;
+        write_xml("<geom type=\"plane\" size=\"2 2 .1\" pos=\"%g %g 0\" zaxis=\"%d %d 0\"/>", x * HALF_WIDTH, y * HALF_WIDTH, -x, -y);
+    }
+    for (int i = 0; i < bodies; i++) {
+        uniform_rotation(q);
+        pile_place(i, 0.4, at);
+        write_xml("<body pos=\"%.5f %.5f %.5f\" quat=\"%.6f %.6f %.6f %.6f\"><freejoint/>", at[0], at[1], at[2], q[0], q[1], q[2], q[3]);
+        switch (i % 5) {
+        case 0: write_sizes("ellipsoid", uniform(.05, .13), uniform(.05, .13), uniform(.05, .13)); break;
+        case 1: write_sizes("cylinder", uniform(.05, .12), uniform(.05, .12), 0); break;
+        case 2: write_sizes("capsule", uniform(.04, .09), uniform(.04, .1), 0); break;
+        case 3: write_xml("<geom type=\"mesh\" mesh=\"m%d\"/>", i / 5 % MESHES); break;
+        default: write_sizes("box", uniform(.05, .12), uniform(.05, .12), uniform(.05, .12)); break;
+        }
+        write_xml("</body>");
+    }
+    write_xml("</worldbody></mujoco>");
 }
 
 int main(int argc, char **argv)
 {
     static mjVFS vfs;
     char error[1000] = "";
-    if (argc != 5) {
-        fprintf(stderr, "usage: mujoco_pile SEED STEPS BODIES pile|multi|field\n");
-        return 2;
-    }
-    long steps = atol(argv[2]);
-    pile_t pile = pile_of(steps);
-    int multi = !strcmp(argv[4], "multi");
-    int field = !strcmp(argv[4], "field");
-    print_library();
+    pile_t pile = pile_start(argc, argv, "pile|multi|field");
     uniform_seed(5);
-    put_model(atoi(argv[3]), multi, field);
+    write_model(pile.bodies, !strcmp(pile.scene, "multi"), !strcmp(pile.scene, "field"));
     mj_defaultVFS(&vfs);
     if (mj_makeEmptyFileVFS(&vfs, "pile.xml", (int)xml_length) != 0)
         return 2;
@@ -115,17 +97,14 @@ int main(int argc, char **argv)
     for (int i = 0; i < m->nhfielddata; i++)
         m->hfield_data[i] = (float)(0.5 + 0.5 * sin(0.9 * (i % FIELD)) * cos(0.7 * (i / FIELD)));
     mjData *d = mj_makeData(m);
-    uniform_seed(strtoull(argv[1], NULL, 10));
-    for (int i = 0; i < m->njnt; i++) {
-        mjtNum *p = d->qpos + m->jnt_qposadr[i];
-        p[0] += uniform(-1e-3, 1e-3);
-        p[1] += uniform(-1e-3, 1e-3);
-        p[2] += uniform(-1e-3, 1e-3);
-    }
-    for (long step = 0; step < steps; step++) {
-        pile.step = step;
+    uniform_seed(pile.seed);
+    for (int i = 0; i < m->njnt; i++)
+        for (int k = 0; k < 3; k++)
+            d->qpos[m->jnt_qposadr[i] + k] += uniform(-1e-3, 1e-3);
+    for (; pile.step < pile.steps; pile.step++) {
         mj_step(m, d);
-        pile.escaped |= escaped(m, d);
+        for (int i = 0; i < m->njnt; i++) /* the origin of a mesh may lie on its surface */
+            pile_body(&pile, d->qpos + m->jnt_qposadr[i], HALF_WIDTH + 0.1, -0.1);
         /* not while bodies fall: what an impact stores in its contact counts as lost, and comes back */
         if (pile_is_late(&pile))
             pile_energy(&pile, d->energy[1], d->energy[0]);
@@ -142,7 +121,6 @@ int main(int argc, char **argv)
     for (int i = 0; i < mjNWARNING; i++)
         pile.bad += d->warning[i].number;
     pile_report(&pile);
-    printf("\n");
     mj_deleteData(d);
     mj_deleteModel(m);
     mj_deleteVFS(&vfs);

@@ -1,35 +1,24 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A simulation in ODE, from a start that is moved by up to 1e-3 m a coordinate, by
- * a stream named SEED. Prints what the second half of the run looked like and,
- * of every 20th step, what ODE made of its pairs against the truth: under compare.sh, which
- * counts its queries. Without it no pair is judged. Scenes:
+/* A simulation in ODE. Under compare.sh, which counts its queries, ODE's contacts of every 20th step are
+ * judged by exact truth; without it no pair is.
  *
- *   pile   boxes, cylinders, capsules and hulls fall into a pen and come to rest
- *   hulls  convex hulls alone
- *   stack  towers of flat boxes, ODE's own and hulls by turns
- *   roll   cylinders roll to and fro on the floor
- *   tower  one tower of flat hulls, stacked exactly; not moved
- *
- * usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower */
+ * usage: ode_pile SEED STEPS BODIES SCENE   (scene_run of ode_scene.h) */
 
 #include "engines/ode_scene.h"
-#include "engines/tally.h"
-
 #include "tools/compare/hooks.h"
 
 static scene_t scene;
-static unsigned long queries;  /* watched so far */
-static int astray;             /* a callback was wrong in the query that is judged next */
-static tally_t tally[2];       /* the second: of those; only pairs that ODE put to libccd */
+static unsigned long queries;  /* counted so far */
+static int invalid_support;    /* a callback was wrong in the query that is judged next */
 
-/* A depth or gap below this is neither: ten times ODE's tolerance. */
-static const double LOST = 1e-5;
+/* A depth or gap below this is neither hit nor miss: ten times ODE's tolerance. */
+static const double TOUCH = 1e-5;
 
-static shape_t shape_of(int i) { return scene_shape_of(&scene.shape[scene.shape_of[i]], scene.geom[i]); }
+static shape_t shape_of(int i) { return ode_shape(&scene.shape[i], scene.geom[i]); }
 
-/* The object's centre tells which body it is. */
+/* Finds the body by the object's centre. */
 void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *v)
 {
     ccd_vec3_t centre;
@@ -41,44 +30,36 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
         if (p[0] == centre.v[0] && p[1] == centre.v[1] && p[2] == centre.v[2]) {
             const shape_t s = shape_of(i);
             double point[3];
-            astray |= !(right_point(&s, dir, v, point) < 1e-10 * scene.half_width);
+            invalid_support |= !(support_error(&s, dir, v, point) < 1e-10 * scene.half_width);
             return;
         }
     }
 }
 
+/* Judges pairs that ODE queried libccd for. */
 static void judge(int a, int b, const dContact *contact, int contacts)
 {
-    verdict_truth_t truth = { 0, 0, 1e-6, LOST };
     double deepest = 0;
     if (compare_queries() == queries)
         return;
     queries = compare_queries();
     if (scene.pile.step % 20)
         return;
-    shape_t sa = shape_of(a);
-    shape_t sb = shape_of(b);
-    truth_t t = truth_depth_within(&sa, &sb, 1e-7);
-    truth.lower = t.lower;
-    truth.upper = t.depth;
+    const shape_t sa = shape_of(a), sb = shape_of(b);
+    const truth_t t = truth_depth_within(&sa, &sb, 1e-7);
+    const verdict_truth_t truth = { t.lower, t.depth, 1e-6, TOUCH };
     for (int i = 0; i < contacts; i++)
         deepest = fmax(deepest, contact[i].geom.depth);
-    tally_add(&tally[astray], &truth, contacts > 0, deepest, 1);
-    astray = 0;
+    tally_add(&tally[invalid_support], &truth, contacts > 0, deepest, 1);
+    invalid_support = 0;
 }
 
 int main(int argc, char **argv)
 {
-    if (argc != 5) {
-        fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower\n");
-        return 2;
-    }
     dInitODE2(0);
     scene_on_pair = judge;
-    run(&scene, argv);
-    printf("\n");
-    tally_print("right", &tally[0]);
-    tally_print("astray", &tally[1]);
+    scene_run(&scene, argc, argv);
+    tally_report();
     dCloseODE();
     return 0;
 }

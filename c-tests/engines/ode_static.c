@@ -1,43 +1,38 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* ODE's dCollide over random pairs of every kind of geometry that it hands to libccd, held
- * against their truth (pose_all of poses.h): apart where ODE's own callback gave a point that is
- * not a support point.
+/* ODE's dCollide over random pairs of every kind of geometry that it queries libccd for, judged by
+ * their certified depth (pose_all of poses.h).
  *
  * usage: ode_static SEED POSES asis|corrected   (POSES placed pairs of each two kinds)
- *   corrected: such points are replaced by the right ones */
+ *   corrected: wrong support points of ODE's callbacks are replaced by right ones */
 
-#include "engines/poses.h"
-
+#include "engines/ode_shapes.h"
 #include "tools/compare/hooks.h"
 #include "harness/identity.h"
 
-#include <ode/ode.h>
-
-/* Where ODE keeps looking while a geometry lives. */
+/* ODE refers to all of it while the geometry lives. */
 typedef struct {
     body_t body;
     dGeomID geom;
     dTriMeshDataID mesh;
-    double vertex[9];
     dTriIndex index[6];
 } placed_t;
 
 static placed_t a, b;
 
-static int corrected, callback_wrong;
+static int corrected, invalid_support;
 
-/* The first query that one dCollide makes. */
+/* The first query of a dCollide. */
 static struct {
-    int answered, hit;
+    int queries, hit;
     double depth, length;
 } first;
 
-void compare_answered(int call, int hit, double depth, double length)
+void compare_queried(int call, int hit, double depth, double length)
 {
     (void)call;
-    if (first.answered++)
+    if (first.queries++)
         return;
     first.hit = hit;
     first.depth = depth;
@@ -50,93 +45,70 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
     const placed_t *p;
     const double *at;
     double point[3];
-    if (first.answered)
+    if (first.queries)
         return;
     center(obj, &centre);
     /* a's centre is where a is; that of a triangle is where ODE puts it */
     at = a.body.shape.pos;
     p = hypot(hypot(at[0] - centre.v[0], at[1] - centre.v[1]), at[2] - centre.v[2]) < 1e-12 ? &a : &b;
-    if (right_point(&p->body.shape, dir, v, point) < 1e-10 * pair_size(&a.body.shape, &b.body.shape))
+    if (support_error(&p->body.shape, dir, v, point) < 1e-10 * pair_size(&a.body.shape, &b.body.shape))
         return;
     if (corrected)
         ccdVec3Set(v, point[0], point[1], point[2]);
     else
-        callback_wrong = 1;
+        invalid_support = 1;
 }
 
 static void geom_make(placed_t *p)
-{
-    const body_t *b = &p->body;
-    const double *s = b->shape.p;
-    p->mesh = NULL;
-    switch (b->kind) {
-    case SHAPE_SPHERE: p->geom = dCreateSphere(NULL, s[0]); break;
-    case SHAPE_CAPSULE: p->geom = dCreateCapsule(NULL, s[0], 2 * s[1]); break;
-    case SHAPE_BOX:
-    case KIND_PLATE: p->geom = dCreateBox(NULL, 2 * s[0], 2 * s[1], 2 * s[2]); break;
-    case SHAPE_CYLINDER: p->geom = dCreateCylinder(NULL, s[0], 2 * s[1]); break;
-    case SHAPE_POLYTOPE:
-        p->geom = dCreateConvex(NULL, b->hull.plane, (unsigned)b->hull.faces, b->hull.vertex, (unsigned)b->hull.vertices, b->hull.polygon);
-        break;
-    default:
-        /* ODE cannot have a mesh of one triangle: the other is its back */
-        memcpy(p->vertex, b->hull.vertex, 9 * sizeof(double));
-        for (int i = 0; i < 6; i++)
-            p->index[i] = (dTriIndex)(i < 3 ? i : 5 - i);
-        p->mesh = dGeomTriMeshDataCreate();
-        dGeomTriMeshDataBuildDouble(p->mesh, p->vertex, 3 * sizeof(double), 3, p->index, 6, 3 * sizeof(dTriIndex));
-        dGeomTriMeshDataPreprocess2(p->mesh, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, NULL);
-        p->geom = dCreateTriMesh(NULL, p->mesh, NULL, NULL, NULL);
-        break;
-    }
-}
-
-static void geom_place(placed_t *p)
-{
-    const double *r = p->body.shape.rot;
-    dMatrix3 m;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-            m[4 * i + j] = r[3 * i + j];
-        m[4 * i + 3] = 0;
-    }
-    dGeomSetRotation(p->geom, m);
-    dGeomSetPosition(p->geom, p->body.shape.pos[0], p->body.shape.pos[1], p->body.shape.pos[2]);
-}
-
-static void geom_free(placed_t *p)
 {
     if (p->geom)
         dGeomDestroy(p->geom);
     if (p->mesh)
         dGeomTriMeshDataDestroy(p->mesh);
+    p->mesh = NULL;
+    if (p->body.kind != KIND_TRIANGLE) {
+        p->geom = ode_geometry(NULL, &p->body);
+        return;
+    }
+    /* ODE cannot have a mesh of one triangle: the other is its back */
+    for (int i = 0; i < 6; i++)
+        p->index[i] = (dTriIndex)(i < 3 ? i : 5 - i);
+    p->mesh = dGeomTriMeshDataCreate();
+    dGeomTriMeshDataBuildDouble(p->mesh, p->body.hull.vertex, 3 * sizeof(double), 3, p->index, 6, 3 * sizeof(dTriIndex));
+    dGeomTriMeshDataPreprocess2(p->mesh, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, NULL);
+    p->geom = dCreateTriMesh(NULL, p->mesh, NULL, NULL, NULL);
+}
+
+static void geom_place(placed_t *p)
+{
+    const double *r = p->body.shape.rot, *at = p->body.shape.pos;
+    const dMatrix3 rotation = { r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0 };
+    dGeomSetRotation(p->geom, rotation);
+    dGeomSetPosition(p->geom, at[0], at[1], at[2]);
 }
 
 static void make(void)
 {
-    geom_free(&a);
-    geom_free(&b);
     geom_make(&a);
     geom_make(&b);
 }
 
-static void ask(const known_t *known)
+static void query(const pose_truth_t *pose)
 {
     dContactGeom contact;
     geom_place(&a);
     geom_place(&b);
-    callback_wrong = 0;
-    first.answered = 0;
+    invalid_support = 0;
+    first.queries = 0;
     int hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
-    if (!first.answered)
+    if (!first.queries)
         return; /* not libccd's */
-    /* A triangle that touches is turned a little and asked about again, four times: the
-     * first answer is the one about this pose. */
+    /* ODE turns a triangle that touches a little and queries it again, four times: the
+     * first result is that of this pose. */
     if (b.body.kind == KIND_TRIANGLE)
-        pose_judge(&a.body, &b.body, known, callback_wrong, first.hit, first.depth, first.length);
+        pose_judge(&a.body, &b.body, pose, invalid_support, first.hit, first.depth, first.length);
     else
-        pose_judge(&a.body, &b.body, known, callback_wrong, hit, hit ? contact.depth : 0,
-                   hit ? dCalcVectorLength3(contact.normal) : 0);
+        pose_judge(&a.body, &b.body, pose, invalid_support, hit, hit ? contact.depth : 0, hit ? dCalcVectorLength3(contact.normal) : 0);
 }
 
 int main(int argc, char **argv)
@@ -151,7 +123,7 @@ int main(int argc, char **argv)
     dAllocateODEDataForThread(dAllocateMaskAll);
     print_library();
     uniform_seed(strtoull(argv[1], NULL, 10));
-    pose_all(kinds, sizeof kinds / sizeof kinds[0], atol(argv[2]), &a.body, &b.body, make, ask);
+    pose_all(kinds, sizeof kinds / sizeof kinds[0], atol(argv[2]), &a.body, &b.body, make, query);
     dCloseODE();
     return 0;
 }

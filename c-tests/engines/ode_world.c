@@ -1,11 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* An ODE world whose geoms this library collides: a class of ODE's dCreateGeomClass, with a
- * state for each pair, and one contact a pair or those of ccdContacts. Scenes and starts are
- * those of ode_pile.c; prints the same about energy and depth.
+/* An ODE world whose geometries this library collides: a class of dCreateGeomClass, with a
+ * state for each pair, and one contact a pair or those of ccdContacts.
  *
- * usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many */
+ * usage: ode_world one|many SEED STEPS BODIES SCENE   (scene_run of ode_scene.h) */
 
 #include "engines/ode_scene.h"
 
@@ -18,13 +17,15 @@ static ccd_manifold_cache_t memory[SCENE_BODIES][SCENE_BODIES];
 static int most = 1;               /* contacts of a pair */
 static unsigned long queries, supports, limits;
 
-/* How far below its face a corner may be and still carry: the layer that ODE lets contacts
+/* Distance of a corner from its face that still is a contact: the layer that ODE lets contacts
  * sink into. */
 static const double SLOP = 1e-3;
 
+static shape_t shape_of(dGeomID geom) { return ode_shape(*(const body_t **)dGeomGetClassData(geom), geom); }
+
 static void aabb(dGeomID geom, dReal box[6])
 {
-    const shape_t s = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(geom), geom);
+    const shape_t s = shape_of(geom);
     for (int k = 0; k < 3; k++)
         for (int side = 0; side < 2; side++) {
             ccd_vec3_t dir = {{0, 0, 0}}, v;
@@ -34,19 +35,18 @@ static void aabb(dGeomID geom, dReal box[6])
         }
 }
 
-/* ODE's normal is the way the first body leaves. */
+/* The first body leaves along ODE's normal. */
 static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int skip)
 {
     const int i = (int)(intptr_t)dGeomGetData(o1), j = (int)(intptr_t)dGeomGetData(o2);
     const int room = flags & 0xffff, max = room < most ? room : most;
-    shape_t a = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(o1), o1);
-    shape_t b = scene_shape_of(*(const scene_shape_t **)dGeomGetClassData(o2), o2);
+    shape_t a = shape_of(o1), b = shape_of(o2);
     ccd_contact_t contact[8];
     ccd_penetration_t hit;
     int n, written = 0, code;
     ccd_t ccd = shape_query();
     ccd.mpr_tolerance = 1e-6; /* as ODE's */
-    /* The pair's state, whichever order the broad phase hands the two over in. */
+    /* One state for both orders of the pair. */
     if (i > j)
         ccdWarmFlip(&warm[j][i]);
     code = ccdPenetrationLocal(&a, &b, &ccd, i < j ? &warm[i][j] : &warm[j][i],
@@ -80,27 +80,26 @@ static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int ski
 
 static dColliderFn *collider(int other) { return other == convex ? collide : NULL; }
 
-static dGeomID make(const scene_shape_t *s)
+static dGeomID make(const body_t *s)
 {
     const dGeomID geom = dCreateGeom(convex);
-    *(const scene_shape_t **)dGeomGetClassData(geom) = s;
+    *(const body_t **)dGeomGetClassData(geom) = s;
     return geom;
 }
 
 int main(int argc, char **argv)
 {
-    dGeomClass class = { sizeof(const scene_shape_t *), collider, aabb, NULL, NULL };
+    dGeomClass class = { sizeof(const body_t *), collider, aabb, NULL, NULL };
     if (argc != 6) {
-        fprintf(stderr, "usage: ode_world SEED STEPS BODIES pile|hulls|stack|roll one|many\n");
+        fprintf(stderr, "usage: ode_world one|many SEED STEPS BODIES SCENE\n");
         return 2;
     }
-    most = strcmp(argv[5], "many") ? 1 : 8;
+    most = strcmp(argv[1], "many") ? 1 : 8;
     dInitODE2(0);
     convex = dCreateGeomClass(&class);
     scene_make_geom = make;
-    run(&scene, argv);
-    printf(" limits %lu\n", limits);
-    printf("watched queries %lu supports %lu\n", queries, supports);
+    scene_run(&scene, argc - 1, argv + 1);
+    printf("own queries %lu supports %lu limits %lu\n", queries, supports, limits);
     dCloseODE();
     return 0;
 }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Pairs of convex shapes in poses of known signed depth, for the static queries
- * put to FCL and ODE.
+/* Pairs of random convex bodies in poses of certified signed depth, and counts of what is wrong with
+ * an engine's results for them.
  *
  * A pair is first placed at random so that the shapes overlap, by a depth s with
  * normal n that truth.h certifies. Then the second shape is moved along n until
@@ -14,9 +14,12 @@
 #define ENGINES_POSES_H
 
 #include "engines/hull.h"
-#include "engines/tally.h"
+#include "harness/truth.h"
+#include "harness/verdict.h"
 
-/* Kinds of shape; those of shapes.h first, then special sizes of them. */
+#include <stdio.h>
+
+/* Kinds of bodies: those of shapes.h first, then special sizes of them. */
 enum {
     KIND_TRIANGLE = SHAPE_POLYTOPE + 1, /* one flat triangle */
     KIND_PLATE,                         /* a box 1/200 as thick as wide */
@@ -31,35 +34,27 @@ typedef struct {
     hull_t hull; /* of a convex; a triangle's three vertices */
 } body_t;
 
-/* A shape of this kind, 0.1 to 1 across, about its own origin. The body is where its vertices live. */
+/* Makes the body of its hull; it must stay where it is. */
+static inline void body_set_hull(body_t *b) { b->shape = shape_polytope(b->hull.vertex, b->hull.vertices); }
+
+/* Makes a body of this kind, 0.1 to 1 across, about its own origin; it must stay where it is. */
 static inline void body_random(body_t *b, int kind)
 {
     const double x = uniform(0.05, 0.5), y = uniform(0.05, 0.5), z = uniform(0.05, 0.5);
     b->kind = kind;
-    switch (kind) {
-    case KIND_PLATE: b->shape = shape_box(x, y, 0.005 * x); break;
-    case SHAPE_POLYTOPE:
+    if (kind == SHAPE_POLYTOPE) {
         hull_random(&b->hull, 6 + (int)uniform(0, 7), x, y, z);
-        b->shape = shape_polytope(b->hull.vertex, b->hull.vertices);
-        break;
-    case KIND_TRIANGLE: {
-        double area;
+        body_set_hull(b);
+    } else if (kind == KIND_TRIANGLE) {
+        double plane[4];
+        b->hull.vertices = 3;
         do {
             for (int i = 0; i < 9; i++)
                 b->hull.vertex[i] = (float)uniform(-0.5, 0.5); /* ODE keeps floats */
-            {
-                const ccd_real_t *v = b->hull.vertex;
-                const double p[3] = { v[3] - v[0], v[4] - v[1], v[5] - v[2] }, q[3] = { v[6] - v[0], v[7] - v[1], v[8] - v[2] };
-                const double c[3] = { p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0] };
-                area = 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
-            }
-        } while (area < 0.02);
-        b->hull.vertices = 3;
-        b->shape = shape_polytope(b->hull.vertex, 3);
-        break;
-    }
-    default: b->shape = shape_make(kind, x, y, z); break;
-    }
+        } while (hull_plane(&b->hull, 0, 1, 2, plane) < 0.04);
+        body_set_hull(b);
+    } else
+        b->shape = kind == KIND_PLATE ? shape_box(x, y, 0.005 * x) : shape_make(kind, x, y, z);
 }
 
 static inline void body_turn(body_t *b)
@@ -72,12 +67,12 @@ static inline void body_turn(body_t *b)
 
 typedef struct {
     double size;         /* unit of relative tolerances */
-    double lower, upper; /* of the signed depth */
-    double n[3];         /* the way b leaves */
-} known_t;
+    double lower, upper; /* bounds of the signed depth */
+    double n[3];         /* the direction in which b leaves */
+} pose_truth_t;
 
 /* Places a at the origin and b at random so that they overlap. */
-static inline void pose_overlapping(body_t *a, body_t *b, known_t *known)
+static inline void pose_overlapping(body_t *a, body_t *b, pose_truth_t *truth)
 {
     truth_t t;
     do {
@@ -89,80 +84,136 @@ static inline void pose_overlapping(body_t *a, body_t *b, known_t *known)
         for (int i = 0; i < 3; i++)
             at[i] = uniform(-0.7, 0.7) * reach;
         shape_move(&b->shape, at[0], at[1], at[2]);
-        /* the loose bounds tell overlap; what is overlapping is then measured */
+        /* loose bounds find the overlap, which is then measured */
         t = truth_depth_within(&a->shape, &b->shape, 1e-3 * reach);
         if (t.lower > 1e-3 * reach)
             t = truth_depth_within(&a->shape, &b->shape, 1e-11 * reach);
         else
             t.lower = -1;
     } while (!(t.lower > 1e-3 * pair_size(&a->shape, &b->shape) && t.depth - t.lower < 1e-10));
-    known->size = pair_size(&a->shape, &b->shape);
-    known->lower = t.lower;
-    known->upper = t.depth;
-    memcpy(known->n, t.n, sizeof known->n);
+    truth->size = pair_size(&a->shape, &b->shape);
+    truth->lower = t.lower;
+    truth->upper = t.depth;
+    memcpy(truth->n, t.n, sizeof truth->n);
 }
 
-/* From an overlapping pose: the same moved until the signed depth is `depth`, no deeper than it was. */
-static inline void pose_at_depth(body_t *b, known_t *known, double depth)
+/* From an overlapping pose: moves b until the signed depth is `depth`, no deeper than it was. */
+static inline void pose_at_depth(body_t *b, pose_truth_t *truth, double depth)
 {
-    const double by = known->upper - depth;
-    shape_move(&b->shape, b->shape.pos[0] + by * known->n[0], b->shape.pos[1] + by * known->n[1], b->shape.pos[2] + by * known->n[2]);
-    known->lower -= by;
-    known->upper = depth;
+    const double by = truth->upper - depth, *n = truth->n;
+    shape_move(&b->shape, b->shape.pos[0] + by * n[0], b->shape.pos[1] + by * n[1], b->shape.pos[2] + by * n[2]);
+    truth->lower -= by;
+    truth->upper = depth;
 }
 
-/* Depths put to every placed pair, in sizes; the pose as it fell is asked first. */
-static const double DEPTHS[] = { 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 2e-9, -2e-9, -1e-8, -1e-7, -1e-6, -3e-6, -1e-5, -1e-3, -1e-1 };
-enum { DEPTH_COUNT = sizeof DEPTHS / sizeof DEPTHS[0] };
+/* --- counts of results --------------------------------------------------------------- */
 
-/* --- answers held against that --------------------------------------------------------- */
+typedef struct {
+    long queries, hits, wrong[VERDICTS];
+    long off;            /* hits beyond what ccdMPRPenetration guarantees: 0.1 % and a tolerance */
+    double deepest_miss; /* overlap */
+    double excess;       /* largest part of the true depth beyond it and two tolerances */
+    double error;        /* largest, metres */
+} tally_t;
+
+static inline verdict_t tally_add(tally_t *t, const verdict_truth_t *truth, int hit, double depth, double length)
+{
+    const verdict_answer_t answer = { hit, 1, depth, length * length };
+    const verdict_t v = verdict(&answer, truth);
+    const double above = depth - fmax(truth->upper, 0), below = truth->lower - depth;
+    t->queries++;
+    t->hits += hit;
+    t->wrong[v]++;
+    if (v == VERDICT_MISSED)
+        t->deepest_miss = fmax(t->deepest_miss, truth->lower);
+    if (!hit)
+        return v;
+    if (truth->upper > 0)
+        t->excess = fmax(t->excess, (above - 2 * truth->tolerance) / truth->upper);
+    t->error = fmax(t->error, fmax(above, below));
+    t->off += !(above <= fmax(truth->tolerance, 1e-3 * truth->upper) + truth->contact_eps && below <= truth->tolerance + truth->contact_eps);
+    return v;
+}
+
+static inline void tally_print(const char *line, const tally_t *t)
+{
+    printf("%s queries %ld hits %ld missed %ld spurious %ld broken %ld deep %ld unsound %ld off %ld deepest_miss %.9g excess %.9g "
+           "error %.9g\n", line, t->queries, t->hits, t->wrong[VERDICT_MISSED], t->wrong[VERDICT_SPURIOUS], t->wrong[VERDICT_INVALID],
+           t->wrong[VERDICT_DEEP], t->wrong[VERDICT_UNSOUND], t->off, t->deepest_miss, t->excess, t->error);
+}
+
+/* ODE's cylinder callback is wrong for directions within about 1e-15 of the axis: it normalises
+ * what rounding leaves across the axis, and returns a point up to a radius off. Queries with such a
+ * point are about no convex shape, and counted apart: by the second tally. */
+static tally_t tally[2];
+
+/* Computes the support point along dir; returns by how much the support value of v is off it. */
+static inline double support_error(const shape_t *s, const ccd_vec3_t *dir, const ccd_vec3_t *v, double point[3])
+{
+    static const double origin[3] = { 0, 0, 0 };
+    const double n[3] = { dir->v[0], dir->v[1], dir->v[2] };
+    truth_support(s, origin, n, point);
+    const double off[3] = { v->v[0] - point[0], v->v[1] - point[1], v->v[2] - point[2] };
+    return fabs(truth_dot3(n, off));
+}
+
+static inline void tally_report(void)
+{
+    tally_print("collide", &tally[0]);
+    tally_print("invalid_support", &tally[1]);
+}
+
+/* --- single queries of every pair of kinds -------------------------------------------- */
+
+/* Signed depths of every placed pair, in sizes, after that of the random pose. */
+static const double DEPTHS[] = { 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8, 2e-9,
+                                 -2e-9, -1e-8, -1e-7, -1e-6, -3e-6, -1e-5, -1e-3, -1e-1 };
+enum { DEPTH_COUNT = sizeof DEPTHS / sizeof DEPTHS[0] };
 
 /* FCL's and ODE's, metres. */
 static const double POSE_TOLERANCE = 1e-6;
 
-/* The second: where a callback was wrong. There is no right answer then, and what is within two
- * tolerances of the meant one will do. */
-static tally_t tally[2];
-static long threw; /* queries in which FCL did */
+static long threw; /* queries in which FCL threw */
 
-static inline void pose_judge(const body_t *a, const body_t *b, const known_t *known, int astray, int hit, double depth,
+/* Counts a result. Where a callback was wrong, none is right, and what is within two tolerances of the
+ * true depth will do. */
+static inline void pose_judge(const body_t *a, const body_t *b, const pose_truth_t *pose, int invalid_support, int hit, double depth,
                               double length)
 {
-    const double touch = astray ? 2 * POSE_TOLERANCE : 1e-9 * known->size;
-    const verdict_truth_t truth = { known->lower, known->upper, POSE_TOLERANCE, touch };
-    const verdict_t v = tally_add(&tally[astray], &truth, hit, depth, length);
-    if (v != VERDICT_RIGHT && !astray)
-        printf("wrong: %s %s %s, signed depth %.9g to %.9g, answered %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], VERDICT_NAME[v],
-               known->lower, known->upper, depth);
+    const double touch = invalid_support ? 2 * POSE_TOLERANCE : 1e-9 * pose->size;
+    const verdict_truth_t truth = { pose->lower, pose->upper, POSE_TOLERANCE, touch };
+    const verdict_t v = tally_add(&tally[invalid_support], &truth, hit, depth, length);
+    if (v != VERDICT_RIGHT && !invalid_support)
+        printf("wrong: %s %s %s, signed depth %.9g to %.9g, returned %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], VERDICT_NAME[v],
+               pose->lower, pose->upper, depth);
 }
 
-/* Asks about every pose of `poses` pairs of each two kinds; `make` is told of a new pair. Then the
- * counts, in a line each. */
+/* Calls `query` for every pose of `poses` pairs of each two kinds, and `make` for every new pair; prints the
+ * counts. */
 static inline void pose_all(const int *kinds, int count, long poses, body_t *a, body_t *b, void (*make)(void),
-                            void (*ask)(const known_t *known))
+                            void (*query)(const pose_truth_t *pose))
 {
-    long k, asked = 0; /* pairs of kinds */
+    long queried = 0; /* pairs of kinds */
     for (int i = 0; i < count; i++)
         for (int j = i; j < count; j++) {
             const long before = tally[0].queries + tally[1].queries;
-            for (k = 0; k < poses && (kinds[i] != KIND_TRIANGLE || kinds[j] != KIND_TRIANGLE); k++) {
-                known_t known;
+            for (long k = 0; k < poses && (kinds[i] != KIND_TRIANGLE || kinds[j] != KIND_TRIANGLE); k++) {
+                pose_truth_t pose;
                 body_random(a, kinds[i]);
                 body_random(b, kinds[j]);
-                pose_overlapping(a, b, &known);
+                pose_overlapping(a, b, &pose);
                 make();
-                ask(&known);
+                query(&pose);
                 for (int d = 0; d < DEPTH_COUNT; d++)
-                    if (DEPTHS[d] * known.size < known.upper) {
-                        pose_at_depth(b, &known, DEPTHS[d] * known.size);
-                        ask(&known);
+                    if (DEPTHS[d] * pose.size < pose.upper) {
+                        pose_at_depth(b, &pose, DEPTHS[d] * pose.size);
+                        query(&pose);
                     }
             }
-            asked += tally[0].queries + tally[1].queries > before;
+            queried += tally[0].queries + tally[1].queries > before;
         }
-    printf("asked kinds %ld threw %ld\n", asked, threw);
-    tally_print("collide", &tally[0]);
-    tally_print("astray", &tally[1]);
+    printf("poses kinds %ld threw %ld\n", queried, threw);
+    tally_report();
 }
 
 #endif

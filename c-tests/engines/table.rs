@@ -1,116 +1,95 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Prints the swap table, Debian's FCL, ODE, MuJoCo and DART on libccd and on this
-//! library, as markdown; progress goes to stderr.
+//! Prints the swap tables, Debian's FCL, ODE, MuJoCo and DART on libccd and on this
+//! library, as Markdown; progress goes to stderr.
 //!
-//! `cargo run --example swap` the static queries of the test run, on more poses (a minute)
+//! `cargo run --example swap` the single queries of the test, in more poses (a minute)
 //! `cargo run --example swap -- world` ODE worlds collided by this library alone (3 minutes)
 //! `cargo run --example swap -- scene` a scene through FCL's broad phase (half a minute)
 //! `cargo run --example swap -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
 //! `cargo run --example swap -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --release --example swap -- steps` a step of whole programs on both libraries (2 minutes)
-//! `cargo run --example swap -- long` whole simulations, longer and nastier (3 minutes)
+//! `cargo run --example swap -- long` whole simulations, longer and harder (3 minutes)
 
 #[path = "../harness/mod.rs"]
 mod harness;
 
-#[path = "checks.rs"]
-mod checks;
+#[path = "programs.rs"]
+mod programs;
 
-#[path = "fcl_scene.rs"]
-mod fcl_scene;
+#[path = "results.rs"]
+mod results;
 
-#[path = "fcl_distance.rs"]
-mod fcl_distance;
+use harness::write_between_marks;
+use programs::{CONSUMERS, compared, program, run_all};
+use results::{Simulation, swapped};
 
-use checks::{Piles, Swapped, piles};
-
-fn table() {
-    eprintln!("FCL and ODE: static queries");
-    let fcl = checks::fcl_static().run("2 60");
-    let ode = |callbacks: &str| checks::ode_static().run(&format!("2 200 {callbacks}"));
+fn single_queries() {
+    let ode = compared(program("ode_static.c"), "0");
     let rows = [
-        checks::judge_collide("FCL collide", &fcl),
-        checks::judge_collide("ODE collide", &ode("asis")),
-        checks::judge_collide("ODE collide, its cylinder corrected", &ode("corrected")),
+        ("FCL collide", run_all(&compared(program("fcl_static.cpp"), "0"), "2 60")),
+        ("ODE collide", run_all(&ode, "2 200 asis")),
+        ("ODE collide, its cylinder corrected", run_all(&ode, "2 200 corrected")),
     ];
-    let (distances, differ, threw, wrong) = checks::judge_distances(&fcl);
-    for line in &wrong {
-        eprintln!("{line}");
+    for (title, outputs) in rows {
+        println!("{}{}", results::collide_table(title, &outputs), results::collide_failures(&outputs).join("\n"));
     }
-    println!("Static queries, on libccd, on this library:\n");
-    for row in rows {
-        println!("{row:?}\n");
-    }
-    println!("FCL's signed distance: {distances} queries, {differ} differ; FCL threw in {threw:?}");
 }
 
 fn long() {
-    let ode = checks::ode_pile();
-    let (mujoco, dart) = (checks::mujoco_pile(), checks::dart_pile());
-    let towers = "towers of boxes and hulls";
-    let rows: [(&Swapped, &'static str, usize, usize, &str); 10] = [
-        (&ode, "pile", 8, 5000, "32 pile"),
-        (&ode, "convex hulls", 8, 5000, "32 hulls"),
-        (&ode, towers, 8, 10_000, "20 stack"),
-        (&ode, "a tower that touches", 1, 3000, "6 tower"),
-        (&ode, "rolling cylinders", 8, 5000, "12 roll"),
-        (&mujoco, "pile", 8, 3000, "30 pile"),
-        (&mujoco, "pile, several contacts a pair", 2, 5000, "30 multi"),
-        (&mujoco, "on a height field", 8, 3000, "20 field"),
-        (&dart, "over FCL", 8, 3000, "15 fcl"),
-        (&dart, "over ODE", 8, 3000, "15 ode"),
+    let [ode, mujoco, dart] = ["ode_pile.c", "mujoco_pile.c", "dart_pile.cpp"].map(|file| compared(program(file), "1"));
+    let rows = [
+        swapped("ODE, pile", &ode, 8, 5000, "32 pile"),
+        swapped("ODE, convex hulls", &ode, 8, 5000, "32 hulls"),
+        swapped("ODE, towers of boxes and hulls", &ode, 8, 10_000, "20 stack"),
+        swapped("ODE, a tower that touches", &ode, 1, 3000, "6 tower"),
+        swapped("ODE, rolling cylinders", &ode, 8, 5000, "12 roll"),
+        swapped("MuJoCo, pile", &mujoco, 8, 3000, "30 pile"),
+        swapped("MuJoCo, pile, several contacts a pair", &mujoco, 2, 5000, "30 multi"),
+        swapped("MuJoCo, on a height field", &mujoco, 8, 3000, "20 field"),
+        swapped("DART over FCL", &dart, 8, 3000, "15 fcl"),
+        swapped("DART over ODE", &dart, 8, 3000, "15 ode"),
     ];
-    let row = |(program, scene, starts, steps, after)| piles(program, scene, starts, steps, after);
-    let rows: Vec<Piles> = rows.into_iter().map(row).collect();
-    println!("{}", checks::pile_table(&rows));
+    println!("{}", results::simulation_table(&rows));
 }
 
 /// Prints the screens, and writes the first into this folder's page.
 fn screens() {
-    let screens = checks::screens();
+    let screens = CONSUMERS.map(|(_, file, arguments, _)| programs::screen(file, arguments));
     println!("{}", screens.join("\n\n"));
     let first = format!("\n```text\n{}\n```\n", screens[0]);
-    harness::write_between_marks("c-tests/engines/README.md", "screens", &first);
+    write_between_marks("c-tests/engines/README.md", "screens", &first);
 }
 
 /// Prints the processor time of a step on both libraries, which take turns, and writes it into the
 /// front page.
 fn steps() {
-    let table = checks::step_table(5);
-    let table = format!("{table}\n{}.\n", harness::machine());
+    let table = format!("{}\n{}.\n", results::step_table(5), harness::machine());
     println!("{table}");
-    harness::write_between_marks("README.md", "steps", &table);
+    write_between_marks("README.md", "steps", &table);
 }
 
 fn world() {
-    let rows = [("stack", 20), ("hulls", 32), ("roll", 12)].map(|(scene, bodies)| {
-        let steps = if scene == "stack" { 10_000 } else { 3000 };
-        let row = checks::worlds(checks::ode_pile(), scene, 10, steps, bodies);
-        for line in &row.against {
-            eprintln!("{scene}: {line}");
-        }
-        row
-    });
-    println!("{}", checks::pile_table(&rows));
+    let rows: [Simulation; 3] =
+        [("stack", 20, 10_000), ("hulls", 32, 3000), ("roll", 12, 3000)].map(|(scene, bodies, steps)| {
+            let [libccd, _] = compared(program("ode_pile.c"), "1");
+            results::world(libccd, scene, 10, steps, bodies)
+        });
+    println!("{}", results::simulation_table(&rows));
 }
 
 fn scene() {
-    let scenes = fcl_scene::scenes(300, 200, 100, 7);
-    for line in scenes.iter().flat_map(fcl_scene::Scene::against) {
-        eprintln!("{line}");
-    }
-    println!("{}", fcl_scene::table(&scenes));
-    println!("{}", fcl_scene::header_table(&fcl_scene::header_costs(7)));
+    println!("{}", results::scene_table(&results::scenes(300, 100, 7)));
+    println!("{}", results::header_table(&results::header_costs(7)));
 }
 
 fn main() {
     eprintln!("On {}", harness::machine());
     match std::env::args().nth(1).as_deref() {
-        None => table(),
+        None => single_queries(),
         Some("long") => long(),
-        Some("distance") => println!("{}", fcl_distance::table(&fcl_distance::distances(10_000))),
+        Some("distance") => println!("{}", results::distance_table(&programs::fcl_distance().map(|m| m.run("10000")))),
         Some("scene") => scene(),
         Some("screens") => screens(),
         Some("steps") => steps(),

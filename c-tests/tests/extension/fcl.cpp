@@ -57,7 +57,7 @@ static bool outside(const shape_t &shape, const vec &p, double bound, double wid
 }
 
 /* One contact of the first with the second, the deepest there is. */
-static void judge_contact(const shape_t &a, const shape_t &b, const collision &r, const known_t &known, const context &c)
+static void judge_contact(const shape_t &a, const shape_t &b, const collision &r, const pose_truth_t &known, const context &c)
 {
     const fcl::Contact<S> &contact = r.getContact(0);
     const double n[3] = {double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])};
@@ -71,7 +71,7 @@ static void judge_contact(const shape_t &a, const shape_t &b, const collision &r
         CHECK(!outside(*shape, contact.pos, depth + 10 * error, 0.01 * (depth + error)), SAID "pos outside", CONTEXT(c));
 }
 
-static void judge_distance(const shape_t &a, const shape_t &b, const nearest &r, const known_t &known, const context &c)
+static void judge_distance(const shape_t &a, const shape_t &b, const nearest &r, const pose_truth_t &known, const context &c)
 {
     const double error = TOLERANCE + ROUNDING * known.size, d = double(r.min_distance);
     CHECK(d <= -known.lower + error && d >= -known.upper - error, SAID "distance %g", CONTEXT(c), d);
@@ -84,7 +84,7 @@ static void judge_distance(const shape_t &a, const shape_t &b, const nearest &r,
 
 /* Cold, warm, and with the state of the other order; yes or no, and a distance without its points, are
  * the same, their sign too. */
-static void one_pose(const body_t &a, const body_t &b, const object &oa, const object &ob, const known_t &known,
+static void one_pose(const body_t &a, const body_t &b, const object &oa, const object &ob, const pose_truth_t &known,
                      ccd_fcl::PairCache &cache, const context &c)
 {
     const double error = TOLERANCE + ROUNDING * known.size;
@@ -124,7 +124,7 @@ static void certified(int poses)
         for (int j = 0; j < KINDS; j++)
             for (long k = 0; k < poses; k++) {
                 static body_t a, b;
-                known_t known;
+                pose_truth_t known;
                 if (i == KIND_TRIANGLE && j == KIND_TRIANGLE)
                     continue; /* never overlap */
                 body_random(&a, i);

@@ -1,29 +1,30 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* A program whose callbacks do what callbacks do in the field, to be watched by compare.sh.
- * Prints `key value ...` of what it saw itself: the same as when nobody watches.
+/* A program for compare.sh whose callbacks do what callbacks may do.
+ * Prints its own results as `results key value ...`: they are the same without the tool.
  *
- * usage: callbacks WAY
- *   plain     500 queries of all calls
- *   throw     the callbacks throw at their n-th call of a query, n from 1 to 40
- *   later     they throw at a call that only the tool's own questions come to
- *   jump      as throw, by longjmp
- *   jump-later as later, by longjmp
- *   within    the callbacks jump and throw within themselves
- *   lie       one answers with points that are not the farthest
- *   seldom    one does so in few directions, on a pair that takes many
- *   drift     one object moves a little with every call
- *   threads   four threads, 500 queries each
- *   nested    the callbacks make queries themselves
- *   fork      a child makes half of the queries
- *   nothing   no query
- *   exit      exits with 7 after its queries
- *   abort     aborts after its queries
- *   _exit     leaves with 3, without any clearing up */
+ * usage: callbacks MODE
+ *   plain        500 queries of all calls
+ *   throw        the callbacks throw at their n-th call of a query, n from 1 to 40
+ *   later        they throw at a call that only the tool's own queries reach
+ *   jump         as throw, by longjmp
+ *   jump-later   as later, by longjmp
+ *   within       the callbacks jump and throw within themselves
+ *   wrong        one returns points that are not the farthest
+ *   rarely-wrong one does so in few directions, on a pair that takes many
+ *   memory       one object moves a little with every call
+ *   threads      four threads, 500 queries each
+ *   nested       the callbacks make queries themselves
+ *   fork         a child makes the same queries again
+ *   nothing      no query
+ *   exit         exits with 7 after its queries
+ *   abort        aborts after its queries
+ *   _exit        exits with 3, without any clearing up */
 
 #include "harness/identity.h"
 #include "harness/shapes.h"
+#include "harness/this_library.h"
 
 #include <pthread.h>
 #include <setjmp.h>
@@ -35,19 +36,19 @@
 
 enum { QUERIES = 500 };
 
-static std::string way;
+static std::string mode;
 static thread_local long calls_left = -1; /* until a callback leaves; negative: never */
 static thread_local jmp_buf outside;
 static long destroyed;
 
-struct Watcher {
-    ~Watcher() { destroyed++; }
+struct Destroyed {
+    ~Destroyed() { destroyed++; }
 };
 
 static void leave()
 {
-    Watcher watcher;
-    if (way == "jump" || way == "jump-later")
+    Destroyed object;
+    if (mode == "jump" || mode == "jump-later")
         longjmp(outside, 1);
     throw std::runtime_error("out of here");
 }
@@ -63,10 +64,10 @@ static void leave_and_stay()
     }
 }
 
-static void ask(const shape_t *a, const shape_t *b, int call, int *hit, double *depth);
+static void query_pair(const shape_t *a, const shape_t *b, int call, int *hit, double *depth);
 
-/* One direction in some fifty, by its digits, is answered by a point 4 cm below the farthest. */
-static void seldom_lie(const ccd_vec3_t *dir, ccd_vec3_t *out)
+/* Moves the point 4 cm back for one direction in some fifty, by its digits. */
+static void wrong_rarely(const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     if (sin(1e5 * (double)dir->v[0]) > 0.998)
         for (int k = 0; k < 3; k++)
@@ -79,52 +80,53 @@ static void support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
     if (calls_left > 0 && --calls_left == 0)
         leave();
     shape_support(s, dir, out);
-    if (way == "within")
+    if (mode == "within")
         leave_and_stay();
-    if (way == "lie" && s->type == SHAPE_BOX && dir->v[0] > 0.3)
+    if (mode == "wrong" && s->type == SHAPE_BOX && dir->v[0] > 0.3)
         out->v[0] -= (ccd_real_t)0.2;
-    if (way == "seldom" && s->type == SHAPE_ELLIPSOID)
-        seldom_lie(dir, out);
-    if (way == "drift" && s->type == SHAPE_BOX)
+    if (mode == "rarely-wrong" && s->type == SHAPE_ELLIPSOID)
+        wrong_rarely(dir, out);
+    if (mode == "memory" && s->type == SHAPE_BOX)
         s->pos[0] += (ccd_real_t)1e-4;
-    if (way == "nested" && s->type == SHAPE_BOX) {
+    if (mode == "nested" && s->type == SHAPE_BOX) {
         static thread_local int inside;
         shape_t a = shape_sphere(1), b = shape_sphere(1);
         int hit;
         double depth;
         if (inside++ == 0)
-            ask(&a, &b, 0, &hit, &depth);
+            query_pair(&a, &b, 0, &hit, &depth);
         inside--;
     }
 }
 
-static void ask(const shape_t *a, const shape_t *b, int call, int *hit, double *depth)
+static void query_pair(const shape_t *a, const shape_t *b, int call, int *hit, double *depth)
 {
     ccd_real_t d = 0;
     ccd_vec3_t dir, pos;
-    ccd_t ccd = shape_query();
-    ccd.support1 = ccd.support2 = support;
-    ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)1e-6;
-    ccd.max_iterations = 500;
+    ccd_t settings = shape_query(), *ccd = &settings;
+    call_args_t rest = call_args_t(), *x = &rest;
+    int code = 0;
+    settings.support1 = settings.support2 = support;
+    settings.mpr_tolerance = settings.epa_tolerance = (ccd_real_t)1e-6;
+    settings.max_iterations = 500;
+    rest.depth = &d;
+    rest.dir = &dir;
+    rest.pos = &pos;
     switch (call) {
-    case 0: *hit = ccdMPRPenetration(a, b, &ccd, &d, &dir, &pos) == 0; break;
-    case 1: *hit = ccdMPRIntersect(a, b, &ccd); break;
-    case 2: *hit = ccdGJKPenetration(a, b, &ccd, &d, &dir, &pos) == 0; break;
-    case 3:
-        *hit = ccdGJKSeparate(a, b, &ccd, &dir) == 0;
-        d = *hit ? (ccd_real_t)sqrt((double)ccdVec3Len2(&dir)) : 0;
-        break;
-    default: *hit = ccdGJKIntersect(a, b, &ccd); break;
+#define CALL_CASE(name, word, kind, traits) \
+    case CALL_##word: code = PASS_##kind(name); break;
+        LIBCCD_CALLS(CALL_CASE)
     }
-    *depth = (double)d;
+    *hit = code == call_table[call].hit;
+    *depth = (double)(*hit && call == CALL_SEPARATE ? (ccd_real_t)sqrt((double)ccdVec3Len2(&dir)) : d);
 }
 
-/* A box, or where many directions are wanted an ellipsoid, and a capsule in pose number k, of
- * which two in three overlap. */
+/* A box, or an ellipsoid, which takes more directions, and a capsule in pose k; two
+ * in three overlap. */
 static void pair(int k, shape_t *a, shape_t *b)
 {
     double rot[9];
-    *a = way == "seldom" ? shape_ellipsoid(0.5, 0.4, 0.3) : shape_box(0.5, 0.4, 0.3);
+    *a = mode == "rarely-wrong" ? shape_ellipsoid(0.5, 0.4, 0.3) : shape_box(0.5, 0.4, 0.3);
     *b = shape_capsule(0.2, 0.3);
     rotation_about(1 + k % 3, k % 7 - 3, k % 5, 0.7 * k, rot);
     shape_turn(b, rot);
@@ -134,25 +136,25 @@ static void pair(int k, shape_t *a, shape_t *b)
 typedef struct {
     long hits, left;
     double depth;
-} seen_by_program;
+} results_t;
 
-static void query(int k, int calls, seen_by_program *out)
+static void query(int k, int calls, results_t *out)
 {
     shape_t a, b;
     int hit = 0;
     double depth = 0;
     pair(k, &a, &b);
-    if (way == "throw" || way == "jump")
+    if (mode == "throw" || mode == "jump")
         calls_left = 1 + k % 40;
-    /* a query of MPR's needs less than this; four of them, which the tool asks, more */
-    if (way == "later" || way == "jump-later")
+    /* one query of MPR needs less than this; the four queries of the tool more */
+    if (mode == "later" || mode == "jump-later")
         calls_left = 70;
-    ask(&a, &b, k % calls, &hit, &depth);
+    query_pair(&a, &b, k % calls, &hit, &depth);
     out->hits += hit;
     out->depth += depth;
 }
 
-static void queries(seen_by_program *out, int calls)
+static void queries(results_t *out, int calls)
 {
     volatile int k;
     for (k = 0; k < QUERIES; k++) {
@@ -170,22 +172,22 @@ static void queries(seen_by_program *out, int calls)
 
 static void *thread(void *out)
 {
-    queries((seen_by_program *)out, 5);
+    queries((results_t *)out, 5);
     return NULL;
 }
 
 int main(int argc, char **argv)
 {
-    seen_by_program of[4] = {};
-    way = argc == 2 ? argv[1] : "";
-    printf("library %s\n", running_ccd() ? running_ccd() : "libccd");
-    if (way == "threads") {
+    results_t of[4] = {};
+    mode = argc == 2 ? argv[1] : "";
+    print_library();
+    if (mode == "threads") {
         pthread_t id[4];
         for (int i = 0; i < 4; i++)
             pthread_create(&id[i], NULL, thread, &of[i]);
         for (int i = 0; i < 4; i++)
             pthread_join(id[i], NULL);
-    } else if (way == "fork") {
+    } else if (mode == "fork") {
         fflush(stdout);
         const pid_t child = fork();
         queries(&of[0], 5);
@@ -195,19 +197,19 @@ int main(int argc, char **argv)
         waitpid(child, &status, 0);
         if (status != 0)
             return 1;
-    } else if (way != "nothing")
-        /* where callbacks leave, libccd's other calls would lose memory */
-        queries(&of[0], way == "throw" || way == "jump" || way == "later" || way == "jump-later" ? 2 : 5);
+    } else if (mode != "nothing")
+        /* libccd's other calls leak memory where callbacks do not return */
+        queries(&of[0], mode == "throw" || mode == "jump" || mode == "later" || mode == "jump-later" ? 2 : 5);
     for (int i = 1; i < 4; i++) {
         of[0].hits += of[i].hits;
         of[0].depth += of[i].depth;
     }
-    printf("seen hits %ld left %ld depth %.9g destroyed %ld uncaught %d\n", of[0].hits, of[0].left, of[0].depth, destroyed,
+    printf("results hits %ld left %ld depth %.9g destroyed %ld uncaught %d\n", of[0].hits, of[0].left, of[0].depth, destroyed,
            std::uncaught_exceptions());
     fflush(stdout);
-    if (way == "abort")
+    if (mode == "abort")
         abort();
-    if (way == "_exit")
+    if (mode == "_exit")
         _exit(3);
-    return way == "exit" ? 7 : 0;
+    return mode == "exit" ? 7 : 0;
 }

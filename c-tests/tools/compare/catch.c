@@ -1,13 +1,13 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* An exception is caught as C++ catches it, with C alone: the compiler names the personality
- * routine __gcc_personality_v0 for a frame with a cleanup, and this object has its own. It
- * tells the unwinder's first pass that the frame handles what comes, and jumps out of the
+/* Catches an exception as C++ does, with C alone: for a frame with a cleanup the compiler names the
+ * personality routine __gcc_personality_v0, and this object has its own. It
+ * reports to the unwinder's first pass that the frame handles the exception, and jumps out of the
  * second once the frames within have been left, their destructors run.
  *
- * A jump is caught at longjmp, which this object defines. Jumps that stay within the work
- * (Lua's, in a callback) are told by where their buffer is: on the stack, below the guard. */
+ * A jump is caught at longjmp, which this object defines. The buffer of a jump that stays within the work
+ * (Lua's, in a callback) lies on the stack below the guard. */
 
 #define _GNU_SOURCE
 #include "tools/compare/catch.h"
@@ -58,17 +58,14 @@ int guard_active(void) { return innermost != NULL; }
 static void swallow(_Unwind_Exception_Class class, struct _Unwind_Exception *exception)
 {
     static const char vendor[] = "GNUCC++";
-    void *begin_symbol = dlsym(RTLD_DEFAULT, "__cxa_begin_catch"), *end_symbol = dlsym(RTLD_DEFAULT, "__cxa_end_catch");
-    void *library = begin_symbol ? NULL : dlopen("libstdc++.so.6", RTLD_NOW | RTLD_NOLOAD); /* loaded for a plugin alone */
+    /* not in the global scope if only a plugin has loaded it */
+    void *library = dlopen("libstdc++.so.6", RTLD_NOW | RTLD_NOLOAD), *scope = library ? library : RTLD_DEFAULT;
+    void *begin_symbol = dlsym(scope, "__cxa_begin_catch"), *end_symbol = dlsym(scope, "__cxa_end_catch");
     void *(*begin)(void *);
     void (*end)(void);
     uint64_t name = 0;
     for (size_t i = 0; i + 1 < sizeof vendor; i++)
         name = name << 8 | (unsigned char)vendor[i];
-    if (library) {
-        begin_symbol = dlsym(library, "__cxa_begin_catch");
-        end_symbol = dlsym(library, "__cxa_end_catch");
-    }
     if ((uint64_t)class >> 8 != name || !begin_symbol || !end_symbol) {
         _Unwind_DeleteException(exception);
         return;
@@ -79,7 +76,7 @@ static void swallow(_Unwind_Exception_Class class, struct _Unwind_Exception *exc
     end();
 }
 
-/* Of `shielded` alone: no other function here has a cleanup. */
+/* `shielded` alone has a cleanup here. */
 _Unwind_Reason_Code __gcc_personality_v0(int version, _Unwind_Action actions, _Unwind_Exception_Class class,
                                          struct _Unwind_Exception *exception, struct _Unwind_Context *context);
 _Unwind_Reason_Code __gcc_personality_v0(int version, _Unwind_Action actions, _Unwind_Exception_Class class,
@@ -123,7 +120,7 @@ guard_t guard_run(void (*work)(void *), void *argument)
 
 /* --- jumps ------------------------------------------------------------------------ */
 
-/* Whether the buffer was filled by a frame that the guard called. */
+/* Whether a frame within the guard filled the buffer. */
 static int stays_within(const void *buffer)
 {
     const char *const here = (const char *)__builtin_frame_address(0);

@@ -1,15 +1,15 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Runs what may throw or jump out of itself, and comes back. The questions that the tool asks
- * beside the program's own must not leave into the program. */
+/* Runs a function that may throw or jump out of itself, and returns. The tool's own queries must not
+ * leave into the program. */
 
 #ifndef COMPARE_CATCH_H
 #define COMPARE_CATCH_H
 
 typedef enum {
     GUARD_RETURNED,
-    GUARD_THREW,  /* an exception left it; it is gone, destructors have run */
+    GUARD_THREW,  /* an exception left it, and is destroyed; destructors have run */
     GUARD_JUMPED, /* longjmp or siglongjmp to a place outside */
     GUARD_ENDED   /* guard_end */
 } guard_t;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! compare.sh under programs whose callbacks throw, jump, lie, remember, and ask from many
-//! threads: the program sees what it sees unwatched, and the counts are those known otherwise.
+//! compare.sh on programs whose callbacks throw, jump, return wrong points, have memory, and query from many
+//! threads: the program's results are those without the tool, and the counts are those known by other means.
 
 // Debian's libccd is double, and the tool compares with it.
 #![cfg(not(feature = "single"))]
@@ -15,36 +15,38 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// For libccd, to be watched.
-fn watchable(program: Program) -> Executable {
+fn on_libccd(program: Program) -> Executable {
     program.link_system().without_tools().build().quiet()
 }
 
 fn callbacks() -> Executable {
     let program = Program::cpp("callbacks").source("tools/compare/callbacks.cpp");
-    watchable(program.flag("-pthread"))
+    on_libccd(program.flag("-pthread"))
 }
 
-/// What the program itself saw, and what the tool counted, with every query judged.
-struct Watched {
+/// The results of the program itself, without and with the tool, and the tool's counts.
+struct Compared {
     alone: BTreeMap<String, f64>,
-    seen: BTreeMap<String, f64>,
+    with: BTreeMap<String, f64>,
     counted: BTreeMap<String, f64>,
 }
 
-impl Watched {
-    fn run(way: &str, options: &[&str]) -> Watched {
+impl Compared {
+    fn run(mode: &str, options: &[&str]) -> Compared {
         let program = callbacks();
-        let alone = program.run([way]).stdout;
-        let with = program.compared(options).run([way]).stdout;
-        Watched { alone: fields(&alone, "seen"), seen: fields(&with, "seen"), counted: fields(&with, "watched") }
+        let alone = program.run([mode]).stdout;
+        let with = program.compared(options).run([mode]).stdout;
+        let [alone, with_tool] = [&alone, &with].map(|stdout| fields(stdout, "results"));
+        Compared { alone, with: with_tool, counted: fields(&with, "counted") }
     }
 
-    /// The program went on as if nobody watched.
-    fn assert_unchanged(&self) {
+    /// Runs with every query judged; the program's results must be those without the tool.
+    fn unchanged(mode: &str) -> Compared {
+        let compared = Compared::run(mode, EVERY);
         for key in ["hits", "left", "depth", "uncaught"] {
-            assert_eq!(self.alone[key], self.seen[key], "{key}");
+            assert_eq!(compared.alone[key], compared.with[key], "{mode}: {key}");
         }
+        compared
     }
 
     fn assert(&self, expected: &[(&str, f64)]) {
@@ -53,7 +55,7 @@ impl Watched {
         }
     }
 
-    /// No query was judged wrong that is this library's.
+    /// No answer of this library was judged wrong.
     fn assert_ours_right(&self) {
         let judged = self.counted["judged"];
         assert!(judged > 0.0);
@@ -65,120 +67,111 @@ const EVERY: &[&str] = &["--every", "1"];
 
 #[test]
 fn all_calls_are_counted_and_judged() {
-    let w = Watched::run("plain", EVERY);
-    w.assert_unchanged();
+    let w = Compared::unchanged("plain");
     w.assert(&[("queries", 500.0), ("returned", 500.0), ("judged", 500.0)]);
     w.assert(&[("memory", 0.0), ("no_shape", 0.0), ("threw", 0.0)]);
-    assert_eq!(w.counted["hits"], w.seen["hits"]);
+    assert_eq!(w.counted["hits"], w.with["hits"]);
     w.assert_ours_right();
     assert!(w.counted["theirs_deep"] > 10.0, "{:?}", w.counted);
 }
 
-/// The share is one in so many, and without one nothing is asked beside the program.
+/// Judges one query in so many; with 0 the tool makes no call of its own.
 #[test]
 fn a_share_is_judged() {
-    let w = Watched::run("plain", &["--every", "10"]);
+    let w = Compared::run("plain", &["--every", "10"]);
     let judged = w.counted["judged"];
     assert!((25.0..=100.0).contains(&judged), "{judged}");
     w.assert(&[("queries", 500.0), ("sampled", judged)]);
-    Watched::run("plain", &["--every", "0"]).assert(&[("queries", 500.0), ("sampled", 0.0)]);
+    Compared::run("plain", &["--every", "0"]).assert(&[("queries", 500.0), ("sampled", 0.0)]);
 }
 
-/// The whole process is on this library then, as its first line says.
+/// The whole process uses this library then, as its first line says.
 #[test]
-fn swapped_the_program_goes_on_with_this_library() {
-    let told = callbacks().compared(&["--swap"]).run(["plain"]).stdout;
-    assert!(told.starts_with("library warmccd "), "{told}");
-    let w = Watched::run("plain", EVERY);
-    let swapped = Watched::run("plain", &["--swap", "--every", "1"]);
-    assert!(swapped.seen["depth"] < w.seen["depth"]);
+fn swapped_program_gets_the_answers_of_this_library() {
+    let stdout = callbacks().compared(&["--swap"]).run(["plain"]).stdout;
+    assert!(stdout.starts_with("library warmccd "), "{stdout}");
+    let w = Compared::run("plain", EVERY);
+    let swapped = Compared::run("plain", &["--swap", "--every", "1"]);
+    assert!(swapped.with["depth"] < w.with["depth"]);
     assert_eq!(swapped.counted["theirs_deep"], w.counted["theirs_deep"]);
 }
 
 #[test]
 fn exceptions_and_jumps_pass_through() {
-    for way in ["throw", "jump"] {
-        let w = Watched::run(way, EVERY);
-        w.assert_unchanged();
-        assert!(w.seen["left"] > 100.0);
-        w.assert(&[("queries", 500.0), ("returned", 500.0 - w.seen["left"])]);
+    for mode in ["throw", "jump"] {
+        let w = Compared::unchanged(mode);
+        assert!(w.with["left"] > 100.0);
+        w.assert(&[("queries", 500.0), ("returned", 500.0 - w.with["left"])]);
         w.assert_ours_right();
     }
 }
 
-/// What leaves a question of the tool's own stays with the tool.
+/// Exceptions and jumps out of the tool's own calls do not reach the program.
 #[test]
-fn what_leaves_the_tools_own_questions_stays_there() {
-    for way in ["later", "jump-later"] {
-        let w = Watched::run(way, EVERY);
-        w.assert_unchanged();
-        assert_eq!(w.seen["left"], 0.0);
+fn exceptions_and_jumps_out_of_the_tools_calls_are_caught() {
+    for mode in ["later", "jump-later"] {
+        let w = Compared::unchanged(mode);
+        assert_eq!(w.with["left"], 0.0);
         assert!(w.counted["threw"] > 10.0, "{:?}", w.counted);
         w.assert(&[("queries", 500.0), ("returned", 500.0)]);
     }
-    let within = Watched::run("within", EVERY);
-    within.assert_unchanged();
+    let within = Compared::unchanged("within");
     within.assert(&[("judged", 500.0), ("threw", 0.0)]);
 }
 
 #[test]
-fn a_callback_that_lies_is_noticed() {
-    let w = Watched::run("lie", EVERY);
-    w.assert_unchanged();
+fn wrong_support_points_are_counted() {
+    let w = Compared::unchanged("wrong");
     assert!(w.counted["no_shape"] > 100.0, "{:?}", w.counted);
     assert_eq!(w.counted["no_shape"] + w.counted["judged"], 500.0);
     w.assert_ours_right();
 }
 
-/// In few directions, which give the upper bound: no library is accused of what the callback does.
+/// In few directions, which give the upper bound: no library is blamed for the callback.
 #[test]
-fn a_callback_that_lies_in_few_directions_is_noticed() {
-    let w = Watched::run("seldom", EVERY);
-    w.assert_unchanged();
+fn wrong_support_points_in_few_directions_are_counted() {
+    let w = Compared::unchanged("rarely-wrong");
     assert!(w.counted["no_shape"] > 50.0, "{:?}", w.counted);
     assert!(w.counted["judged"] > 50.0, "{:?}", w.counted);
     w.assert_ours_right();
 }
 
 #[test]
-fn a_callback_with_memory_is_noticed_and_said() {
-    let w = Watched::run("drift", EVERY);
-    w.assert_unchanged();
+fn callbacks_with_memory_are_reported() {
+    let w = Compared::unchanged("memory");
     assert!(w.counted["memory"] > 100.0, "{:?}", w.counted);
-    let screen = screen("drift", &["--every", "1"]).1;
+    let screen = screen("memory", &["--every", "1"]).1;
     assert!(screen.contains("callbacks with memory"), "{screen}");
 }
 
 #[test]
-fn threads_children_and_nested_queries() {
-    for (way, queries) in [("threads", 2000.0), ("fork", 1000.0)] {
-        let w = Watched::run(way, EVERY);
-        w.assert_unchanged();
+fn threads_children_and_nested_queries_are_counted() {
+    for (mode, queries) in [("threads", 2000.0), ("fork", 1000.0)] {
+        let w = Compared::unchanged(mode);
         w.assert(&["queries", "returned", "judged"].map(|key| (key, queries)));
         w.assert_ours_right();
     }
-    let nested = Watched::run("nested", EVERY);
-    nested.assert_unchanged();
+    let nested = Compared::unchanged("nested");
     assert!(nested.counted["queries"] > 1000.0);
     nested.assert_ours_right();
 }
 
-/// Exit code, or 128 and the signal as shells say, and what the tool wrote.
+/// Returns the exit code, or 128 and the signal as in a shell, and the tool's output.
 fn screen_of(program: &Path, args: &[&str], options: &[&str]) -> (i32, String) {
     let (status, written) =
         Executable::made_elsewhere("compared", program).quiet().compared(options).with_screen().run_to_end(args);
     (status.code().expect("a code"), written.stderr)
 }
 
-fn screen(way: &str, options: &[&str]) -> (i32, String) {
-    screen_of(&callbacks().path, &[way], options)
+fn screen(mode: &str, options: &[&str]) -> (i32, String) {
+    screen_of(&callbacks().path, &[mode], options)
 }
 
 #[test]
-fn exit_codes_are_handed_on_and_the_screen_comes() {
-    for (way, code) in [("plain", 0), ("exit", 7), ("_exit", 3), ("abort", 134)] {
-        let (given, screen) = screen(way, &[]);
-        assert_eq!(given, code, "{way}\n{screen}");
+fn exit_codes_are_passed_on_and_the_screen_is_printed() {
+    for (mode, code) in [("plain", 0), ("exit", 7), ("_exit", 3), ("abort", 134)] {
+        let (status, screen) = screen(mode, &[]);
+        assert_eq!(status, code, "{mode}\n{screen}");
         for part in [
             &format!("exit code {code}"),
             "ccdMPRPenetration",
@@ -186,13 +179,13 @@ fn exit_codes_are_handed_on_and_the_screen_comes() {
             "A support point of both your objects costs",
             "What the swap changes",
         ] {
-            assert!(screen.contains(part), "{way}: no `{part}`\n{screen}");
+            assert!(screen.contains(part), "{mode}: no `{part}`\n{screen}");
         }
     }
 }
 
 #[test]
-fn what_cannot_be_watched_is_said_in_one_line() {
+fn programs_that_cannot_be_compared_get_one_line() {
     let dir = tempfile::tempdir().expect("a directory");
     let [file, statically] = ["static.c", "static"].map(|name| dir.path().join(name));
     std::fs::write(&file, "int main(void) { return 0; }").expect("a file");
@@ -200,52 +193,44 @@ fn what_cannot_be_watched_is_said_in_one_line() {
     compile.arg("-static").arg(&file).arg("-o").arg(&statically);
     harness::must_succeed(&mut compile, "the compiler");
     let of = |program: &str| screen_of(Path::new(program), &[], &[]);
-    for ((code, told), expected, part) in [
-        (screen("nothing", &[]), 0, "asked libccd nothing"),
+    for ((code, stderr), expected, part) in [
+        (screen("nothing", &[]), 0, "did not query libccd"),
         (of("/bin/true"), 0, "is not linked to libccd"),
         (of("/nowhere/at/all"), 125, "no such program"),
         (of(statically.to_str().expect("a path")), 125, "not a dynamically linked"),
     ] {
-        assert_eq!((code, told.trim_end().lines().count()), (expected, 1), "{told}");
-        assert!(told.contains(part), "{told}");
+        assert_eq!((code, stderr.trim_end().lines().count()), (expected, 1), "{stderr}");
+        assert!(stderr.contains(part), "{stderr}");
     }
 }
 
-/// The recorded contacts: the tool counts what the benchmark counts, by truth that neither
+/// The tool's counts of the recorded contacts are those of the benchmark, by a truth that neither
 /// library made.
 #[test]
-fn the_recorded_contacts_are_counted_as_the_benchmark_counts_them() {
-    let replay = watchable(Program::c("replay").source("tools/record/replay.c"));
+fn recorded_contacts_are_counted_as_by_the_benchmark() {
+    let replay = on_libccd(Program::c("replay").source("tools/record/replay.c"));
     let recording = root().join("c-tests/tools/record/contacts.bin");
     let theirs = replay.run([&recording]).stdout;
     let ours = replay.swapped().run([&recording]).stdout;
-    let told = replay.compared(EVERY).run([&recording]).stdout;
-    let counted = fields(&told, "watched");
-    // missed, false, broken, deep, unsound, mean and largest error, supports of both methods
-    let column = |text: &str, column: usize| -> Vec<f64> {
-        let rows = text.lines().filter(|l| l.starts_with("MPR") || l.starts_with("GJK"));
-        rows.map(|row| {
-            let words: Vec<&str> = row.split_whitespace().rev().collect();
-            words[column].parse().expect("a number")
-        })
-        .collect()
-    };
+    let counted = fields(&replay.compared(EVERY).run([&recording]).stdout, "counted");
     for (side, text) in [("theirs", &theirs), ("ours", &ours)] {
-        let sum = |c: usize| column(text, c).iter().sum::<f64>();
-        let of = |key: &str| counted[&format!("{side}_{key}")];
-        assert_eq!(of("missed"), sum(9), "{side}");
-        assert_eq!(of("spurious"), sum(8), "{side}");
-        assert_eq!(of("broken"), sum(7), "{side}");
-        assert_eq!(of("deep"), sum(6), "{side}");
+        // missed, false, broken, deep, unsound, mean and largest error, supports of both methods; from the end
+        let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().rev().collect()).collect();
+        let rows = rows.iter().filter(|row| row.last().is_some_and(|method| ["MPR", "GJK"].contains(method)));
+        let column = |c: usize| rows.clone().map(move |row| row[c].parse::<f64>().expect("a number"));
+        let sum = |c: usize| column(c).sum::<f64>();
+        let count = |key: &str| counted[&format!("{side}_{key}")];
+        for (key, c) in [("missed", 9), ("spurious", 8), ("broken", 7), ("deep", 6)] {
+            assert_eq!(count(key), sum(c), "{side} {key}");
+        }
         // The tool also counts moves of the right length in another direction.
-        // And it knows the truth by a proof to the tolerance alone: one move may be just within that.
-        let unsound = of("unsound") - of("aside") - sum(5);
+        // And it proves its truth to the tolerance alone: one move may be just within that.
+        let unsound = count("unsound") - count("aside") - sum(5);
         assert!(unsound.abs() <= 1e-4 * sum(5), "{side}: {unsound}");
-        let supports = of("supports") / counted["judged"];
+        let supports = count("supports") / counted["judged"];
         assert!((supports - sum(2) / 2.0).abs() < 0.01, "{side}: {supports}");
-        let largest = 1e6 * of("error_max");
-        let told = column(text, 3).into_iter().fold(0.0, f64::max);
-        assert!((largest - told).abs() < 0.51, "{side}: {largest} {told}");
+        let (largest, expected) = (1e6 * count("error_max"), column(3).fold(0.0, f64::max));
+        assert!((largest - expected).abs() < 0.51, "{side}: {largest} {expected}");
     }
     assert_eq!(counted["judged"], 2.0 * 37458.0);
     assert_eq!(counted["overlaps"], 2.0 * 23004.0);
@@ -254,9 +239,9 @@ fn the_recorded_contacts_are_counted_as_the_benchmark_counts_them() {
     }
 }
 
-/// A kept case compiles by itself, shows libccd's fault again, and is answered right here.
+/// A case compiles by itself, shows libccd's fault again, and is answered right by this library.
 #[test]
-fn kept_cases_replay() {
+fn written_cases_replay() {
     let dir = tempfile::tempdir().expect("a directory");
     let keep = dir.path().to_str().expect("a path");
     let (_, screen) = screen("plain", &["--every", "1", "--keep", keep]);
@@ -266,9 +251,9 @@ fn kept_cases_replay() {
     assert_eq!(left, kept.len(), "nothing else is left there");
     for path in &kept {
         assert!(screen.contains(path.to_str().expect("a path")), "{screen}");
-        // libccd's header alone, and its own compiler's strictest words
+        // with libccd's header alone and the compiler's strictest warnings
         let case = Program::c("case").source(path).system_headers();
-        let case = watchable(case.flag("-pedantic").flag("-Werror"));
+        let case = on_libccd(case.flag("-pedantic").flag("-Werror"));
         assert_eq!(case.run_to_end([""; 0]).0.code(), Some(1), "{path:?}");
         let right = case.swapped().run([""; 0]).stdout;
         assert!(right.contains(": right"), "{right}");
@@ -277,6 +262,6 @@ fn kept_cases_replay() {
     let mut replay = Command::new("sh");
     replay.arg(root().join("c-tests/replay.sh"));
     replay.arg("--library").arg(library.dir.join("libccd.so"));
-    let said = harness::must_succeed(replay.arg(&kept[0]), "replay.sh").stdout;
-    assert!(said.contains("== libccd: ") && said.contains("== this library"), "{said}");
+    let stdout = harness::must_succeed(replay.arg(&kept[0]), "replay.sh").stdout;
+    assert!(stdout.contains("== libccd: ") && stdout.contains("== this library"), "{stdout}");
 }

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Counters of the watched processes of a run. They lie in a file that each maps, so that they are
- * there whichever way they end; every field is counted by atomic additions, so that threads,
+/* Counters of all processes of a run. They lie in a file that each maps, so that they survive
+ * any end of a process; every field is counted by atomic additions, so that threads,
  * children and other programs may count at once. Lengths are in picometres, times in
- * nanoseconds: whole numbers, which add up in any order. */
+ * nanoseconds: whole numbers, whose sum depends on no order. */
 
 #ifndef COMPARE_COUNTS_H
 #define COMPARE_COUNTS_H
@@ -20,19 +20,19 @@ enum { COMPARE_THEIRS, COMPARE_OURS, COMPARE_SIDES };
 typedef struct {
     uint64_t verdict[VERDICTS];
     uint64_t hits, calls; /* of support functions: two are a support point */
-    uint64_t slanted; /* hits whose direction is not the normal of a plane that depth brings apart */
-    uint64_t aside;   /* of these, counted as unsound: the depth would do, along another direction */
+    uint64_t slanted; /* hits whose direction is not the normal of a plane that separates the objects after the move */
+    uint64_t aside;   /* of these, counted as unsound: the depth would be enough along another direction */
     uint64_t nanoseconds; /* of `timed` queries */
     uint64_t with_error, error_sum, error_max;
 } compare_side_t;
 
 typedef struct {
-    uint64_t queries, returned, hits; /* of the program; what did not return was left by an exception or a jump */
-    uint64_t zero, not_finite, not_unit; /* hits of the program with such a direction or depth */
+    uint64_t queries, returned, hits; /* of the program; an exception or a jump left the others */
+    uint64_t broken; /* hits of the program with a direction that is not unit, or a number that is not finite */
     uint64_t sampled, judged, overlaps, timed;
-    /* why sampled queries were not judged */
+    /* reasons why sampled queries were not judged; memory: answered differently when repeated */
     uint64_t threw, endless, memory, no_shape;
-    uint64_t contradicted; /* a proven lower bound above a depth that was seen: this library's fault */
+    uint64_t contradicted; /* a proven lower bound above a support value: this library's fault */
     compare_side_t side[COMPARE_SIDES];
     uint64_t minimum_calls, minimum_nanoseconds;
     /* the swap: hits of one library alone, and of both: libccd's depth more than 1 % deeper, its direction 10 degrees off */
@@ -41,24 +41,24 @@ typedef struct {
 
 static const char *const COMPARE_SIDE_NAME[COMPARE_SIDES] = { "libccd", "warmccd" };
 
-/* Kept cases, of each library: SIDE-NUMBER.c. */
+/* Cases written, of each library: SIDE-NUMBER.c. */
 enum { COMPARE_KEPT = 5 };
 typedef struct {
     uint64_t used, verdict;
-    double score; /* how wrong: metres a metre of the smaller object */
+    double score; /* the error, metres a metre of the smaller object */
     char title[192];
 } compare_kept_t;
 
 typedef struct {
     uint64_t processes;
     char program[256]; /* of the first */
-    char theirs[512], ours[512]; /* which libraries */
+    char theirs[512], ours[512]; /* the libraries */
     uint64_t base;               /* whose answers the program goes on with */
     compare_call_t call[LIBCCD_CALL_COUNT];
     uint64_t raw_supports; /* __ccdSupport, which FCL's own GJK calls */
     uint64_t callback_pairs, callback_nanoseconds; /* support1 and support2 alone */
-    uint64_t process_nanoseconds, watch_nanoseconds; /* processor time of all, and of it the tool's */
-    uint64_t keeping; /* someone is at it */
+    uint64_t process_nanoseconds, judge_nanoseconds; /* processor time of all, and of it the tool's */
+    uint64_t keeping; /* a lock */
     compare_kept_t kept[COMPARE_SIDES][COMPARE_KEPT];
 } compare_counts_t;
 

@@ -3,23 +3,23 @@
 
 /* Loaded before a program (LD_PRELOAD), this object stands between it and libccd: the dynamic
  * linker binds the program's queries, and those of FCL, ODE, MuJoCo and DART, to the functions
- * here. Each is answered by the library that the program is to go on with, on the program's own
+ * here. Each is passed to the library whose answers the program is to get, with the program's own
  * objects and callbacks; then a share of them is put to both libraries and judged (judge_query.c).
  *
- * Nothing is kept over a callback but what lies on the stack, so that exceptions and longjmp
- * pass through. compare.sh says in the environment what is wanted:
+ * While a callback runs, all state lies on the stack, so that exceptions and longjmp
+ * pass through. compare.sh sets the environment:
  *
- *   CCD_COMPARE_DIR     where to count; without it nothing is watched
+ *   CCD_COMPARE_DIR     folder of the counts
  *   CCD_COMPARE_THEIRS, CCD_COMPARE_OURS   private copies of the two libraries
- *   CCD_COMPARE_BASE    theirs or ours: whose answers the program goes on with
+ *   CCD_COMPARE_NAME    path of libccd, for the screen
+ *   CCD_COMPARE_BASE    theirs or ours: whose answers the program gets
  *   CCD_COMPARE_EVERY   one query in so many is judged; 0: none
- *   CCD_COMPARE_TIMES   0: no times are taken
- *   CCD_COMPARE_KEEP, CCD_COMPARE_CASE   where wrong answers go, and what their files end with */
+ *   CCD_COMPARE_TIMES   0: no times are measured
+ *   CCD_COMPARE_KEEP, CCD_COMPARE_CASE   folder of wrong answers, and of the headers that their files end with */
 
 #define _GNU_SOURCE
-#include "tools/compare/catch.h"
+#include "tools/compare/compare.h"
 #include "tools/compare/hooks.h"
-#include "tools/compare/judge_query.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -37,9 +37,9 @@ static compare_t compare;
 static uint64_t every;
 static const library_t *base;
 static pthread_once_t once = PTHREAD_ONCE_INIT;
-static void (*answered)(int call, int hit, double depth, double length);
+static void (*queried)(int call, int hit, double depth, double length);
 
-static const char *wanted(const char *name, const char *otherwise)
+static const char *setting(const char *name, const char *otherwise)
 {
     const char *value = getenv(name);
     return value && *value ? value : otherwise;
@@ -48,7 +48,7 @@ static const char *wanted(const char *name, const char *otherwise)
 static void give_up(const char *what)
 {
     perror(what);
-    fputs("compare: nothing can be watched\n", stderr);
+    fputs("compare: cannot count\n", stderr);
     exit(125);
 }
 
@@ -67,32 +67,14 @@ static compare_counts_t *counts_map(const char *dir)
     return (compare_counts_t *)mapped;
 }
 
-static void find_hook(const char *name, void *function)
-{
-    void *symbol = dlsym(RTLD_DEFAULT, name);
-    memcpy(function, &symbol, sizeof symbol);
-}
+static uint64_t time_counted; /* of this process's */
 
-/* Which file libccd.so.2 is in this process, told for the screen. */
-static void name_libraries(compare_counts_t *c)
-{
-    const char *(*implementation)(void) = NULL;
-    void *handle = dlopen(getenv("CCD_COMPARE_OURS"), RTLD_NOW | RTLD_NOLOAD);
-    void *symbol = handle ? dlsym(handle, "ccdImplementation") : NULL;
-    memcpy(&implementation, &symbol, sizeof symbol);
-    snprintf(c->ours, sizeof c->ours, "%s", implementation ? implementation() : "?");
-    snprintf(c->theirs, sizeof c->theirs, "%s", wanted("CCD_COMPARE_NAME", "?"));
-    snprintf(c->program, sizeof c->program, "%s", program_invocation_name);
-}
-
-static uint64_t time_told; /* of this process's */
-
-static void forked(void) { time_told = 0; }
+static void forked(void) { time_counted = 0; }
 
 static void start(void)
 {
     const char *const dir = getenv("CCD_COMPARE_DIR"), *const theirs = getenv("CCD_COMPARE_THEIRS"), *const ours = getenv("CCD_COMPARE_OURS");
-    const char *const who = wanted("CCD_COMPARE_BASE", "theirs");
+    const char *const base_name = setting("CCD_COMPARE_BASE", "theirs");
     if (!dir || !theirs || !ours) {
         fputs("compare: to be started by compare.sh\n", stderr);
         exit(125);
@@ -100,25 +82,27 @@ static void start(void)
     if (library_open(&compare.library[COMPARE_THEIRS], theirs, 0) || library_open(&compare.library[COMPARE_OURS], ours, 1))
         exit(125);
     compare.counts = counts_map(dir);
-    compare.base = strcmp(who, "theirs") != 0 ? COMPARE_OURS : COMPARE_THEIRS;
-    compare.timed = strcmp(wanted("CCD_COMPARE_TIMES", "1"), "0") != 0;
-    compare.keep = wanted("CCD_COMPARE_KEEP", NULL);
-    compare.case_source = wanted("CCD_COMPARE_CASE", NULL);
+    compare.base = strcmp(base_name, "theirs") != 0 ? COMPARE_OURS : COMPARE_THEIRS;
+    compare.timed = strcmp(setting("CCD_COMPARE_TIMES", "1"), "0") != 0;
+    compare.keep = setting("CCD_COMPARE_KEEP", NULL);
+    compare.case_source = setting("CCD_COMPARE_CASE", NULL);
     base = &compare.library[compare.base];
-    every = strtoull(wanted("CCD_COMPARE_EVERY", "1"), NULL, 10);
-    find_hook("compare_audit", &ask_audit);
-    find_hook("compare_answered", &answered);
+    every = strtoull(setting("CCD_COMPARE_EVERY", "1"), NULL, 10);
+    find_symbol(RTLD_DEFAULT, "compare_audit", &audit_support);
+    find_symbol(RTLD_DEFAULT, "compare_queried", &queried);
     pthread_atfork(NULL, NULL, forked);
     if (__atomic_fetch_add(&compare.counts->processes, 1, __ATOMIC_RELAXED))
         return;
-    name_libraries(compare.counts);
     compare.counts->base = (uint64_t)compare.base;
+    snprintf(compare.counts->ours, sizeof compare.counts->ours, "%s", compare.library[COMPARE_OURS].implementation());
+    snprintf(compare.counts->theirs, sizeof compare.counts->theirs, "%s", setting("CCD_COMPARE_NAME", "?"));
+    snprintf(compare.counts->program, sizeof compare.counts->program, "%s", program_invocation_name);
 }
 
 static void count_process_time(void)
 {
-    const uint64_t now = clock_now(CLOCK_PROCESS_CPUTIME_ID), told = __atomic_exchange_n(&time_told, now, __ATOMIC_RELAXED);
-    count_add(&compare.counts->process_nanoseconds, now > told ? now - told : 0);
+    const uint64_t now = clock_now(CLOCK_PROCESS_CPUTIME_ID), before = __atomic_exchange_n(&time_counted, now, __ATOMIC_RELAXED);
+    count_add(&compare.counts->process_nanoseconds, now > before ? now - before : 0);
 }
 
 __attribute__((destructor)) static void end(void)
@@ -135,8 +119,8 @@ EXPORT const compare_counts_t *compare_counts(void)
 
 /* --- queries ------------------------------------------------------------------------ */
 
-/* Chosen by the number of the query, scattered: every n-th one of a scene would always be
- * about the same pairs. */
+/* Chooses by a hash of the query's number: every n-th one of a scene would always be
+ * of the same pairs. */
 static int is_sampled(uint64_t number)
 {
     number = (number ^ (number >> 31)) * UINT64_C(0x9E3779B97F4A7C15);
@@ -144,7 +128,7 @@ static int is_sampled(uint64_t number)
     return every == 1 || (every > 1 && (number ^ (number >> 32)) % every == 0);
 }
 
-/* The program's own outputs, NaN where it wants none. */
+/* Reads the program's own outputs, NaN where it wants none. */
 static void read_outputs(const query_t *q, int code, const ccd_real_t *depth, const ccd_vec3_t *dir, answer_t *own)
 {
     const ccd_real_t nan = (ccd_real_t)NAN;
@@ -157,19 +141,14 @@ static void read_outputs(const query_t *q, int code, const ccd_real_t *depth, co
         own->dir = *dir;
 }
 
-static void count_broken(compare_call_t *c, const ccd_real_t *depth, const ccd_vec3_t *dir)
+static int is_broken(const ccd_real_t *depth, const ccd_vec3_t *dir)
 {
-    const double length2 = dir ? (double)ccdVec3Len2(dir) : 1;
-    if (!isfinite(length2) || (depth && !isfinite((double)*depth)))
-        count_add(&c->not_finite, 1);
-    else if (length2 == 0)
-        count_add(&c->zero, 1);
-    else if (fabs(sqrt(length2) - 1) > 1e-9)
-        count_add(&c->not_unit, 1);
+    const double length = dir ? sqrt((double)ccdVec3Len2(dir)) : 1;
+    return !(fabs(length - 1) <= 1e-9) || (depth && !isfinite((double)*depth));
 }
 
-/* After the program's own answer. */
-static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t *depth, const ccd_vec3_t *dir)
+/* Counts the program's own answer and judges a share. */
+static void judge(const query_t *q, uint64_t number, int code, const ccd_real_t *depth, const ccd_vec3_t *dir)
 {
     compare_call_t *c = &compare.counts->call[q->call];
     const int hit = is_hit(q->call, code);
@@ -177,55 +156,52 @@ static void watch(const query_t *q, uint64_t number, int code, const ccd_real_t 
     count_add(&c->returned, 1);
     count_add(&c->hits, (uint64_t)hit);
     if (hit && q->call != CALL_SEPARATE)
-        count_broken(c, depth, dir);
-    if (answered)
-        answered(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
+        count_add(&c->broken, is_broken(depth, dir));
+    if (queried)
+        queried(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
     if (!is_sampled(number))
         return;
     uint64_t start = clock_now(CLOCK_THREAD_CPUTIME_ID);
     read_outputs(q, code, depth, dir, &own);
     if (q->call == CALL_SEPARATE && own.hit && dir)
         answer_by_length(&own);
-    sample_query(&compare, q, &own);
+    judge_query(&compare, q, &own);
     count_process_time();
-    count_add(&compare.counts->watch_nanoseconds, clock_now(CLOCK_THREAD_CPUTIME_ID) - start);
+    count_add(&compare.counts->judge_nanoseconds, clock_now(CLOCK_THREAD_CPUTIME_ID) - start);
 }
 
-/* Through wrappers, for an audit of every point. */
-static int answer_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+/* Queries through callbacks that audit every point. */
+static int query_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
-    asked_t asked;
-    answer_t answer;
-    memset(&asked, 0, sizeof asked);
-    ask_watched(base, q, &asked, &answer);
-    if (!is_hit(q->call, answer.code))
-        return answer.code;
+    request_t r;
+    memset(&r, 0, sizeof r);
+    r.library = base;
+    r.q = q;
+    request_run(&r);
+    if (!r.answer.hit)
+        return r.answer.code;
     if (q->call == CALL_SEPARATE)
-        ccdVec3Scale(&answer.dir, answer.depth);
+        ccdVec3Scale(&r.answer.dir, r.answer.depth);
     if (depth)
-        *depth = answer.depth;
+        *depth = r.answer.depth;
     if (dir)
-        *dir = answer.dir;
+        *dir = r.answer.dir;
     if (pos)
-        *pos = answer.pos;
-    return answer.code;
+        *pos = r.answer.pos;
+    return r.answer.code;
 }
 
 static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
     const call_args_t rest = {.depth = depth, .dir = dir, .pos = pos};
-    query_t q;
+    const query_t q = { call, { obj1, obj2 }, ccd };
     pthread_once(&once, start);
-    q.call = call;
-    q.obj[0] = obj1;
-    q.obj[1] = obj2;
-    q.ccd = ccd;
-    /* a callback that asks while the tool asks it is the tool's doing */
+    /* a nested query, of a callback that the tool called, is not the program's */
     if (guard_active())
-        return ask_call(base, call, obj1, obj2, ccd, &rest);
+        return library_call(base, call, obj1, obj2, ccd, &rest);
     uint64_t number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
-    int code = ask_audit ? answer_audited(&q, depth, dir, pos) : ask_call(base, call, obj1, obj2, ccd, &rest);
-    watch(&q, number, code, depth, dir);
+    int code = audit_support ? query_audited(&q, depth, dir, pos) : library_call(base, call, obj1, obj2, ccd, &rest);
+    judge(&q, number, code, depth, dir);
     return code;
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* One query, asked again: two objects as points, and what is known of the pair. It knows
- * libccd's interface alone, and runs on whichever library it is linked to. */
+/* Replays one query: two objects as support samples, and bounds of their depth. It uses
+ * libccd's interface alone, and runs on the library that it is linked to. */
 
 #ifndef COMPARE_REPLAY_CASE_H
 #define COMPARE_REPLAY_CASE_H
@@ -10,18 +10,18 @@
 #include "harness/verdict.h"
 
 #include <ccd/ccd.h>
+#include <float.h>
 #include <stdio.h>
 #include <string.h>
 
 typedef struct {
-    const char *title; /* what was answered when it was kept, and by whom */
+    const char *title; /* the wrong answer, and whose it is */
     int call;          /* 0 ccdMPRPenetration, 1 ccdMPRIntersect, 2 ccdGJKPenetration, 3 ccdGJKSeparate, 4 ccdGJKIntersect */
-    int rows[2]; /* each a direction and the point that was answered, as they were asked */
-    const double *numbers[2];
-    int centred;
+    int count[2];
+    const double *samples[2]; /* each a direction and the point that was returned, in the order of the calls */
+    int has_centres;
     double centre[2][3], first_dir[3];
     unsigned long max_iterations;
-    double epa_tolerance, mpr_tolerance;
     verdict_truth_t truth;
     double truth_dir[3]; /* along this one obj2 leaves by truth.upper */
 } case_t;
@@ -31,18 +31,17 @@ typedef struct {
     int which, next;
 } case_object_t;
 
-/* What was answered the next time that this direction was asked; where it was not, the farthest
- * of all points. */
+/* Returns the point of the next sample in this direction; without one, the farthest of all points. */
 static inline void case_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *point)
 {
     case_object_t *o = (case_object_t *)obj;
-    const int n = o->of->rows[o->which];
-    const double *found = o->of->numbers[o->which];
+    const int n = o->of->count[o->which];
+    const double x = (double)dir->v[0], y = (double)dir->v[1], z = (double)dir->v[2];
+    const double *found = o->of->samples[o->which];
     double most = -HUGE_VAL;
     for (int i = 0; i < n; i++) {
         const int row = (o->next + i) % n;
-        const double *p = o->of->numbers[o->which] + 6 * row;
-        const double x = (double)dir->v[0], y = (double)dir->v[1], z = (double)dir->v[2];
+        const double *p = o->of->samples[o->which] + 6 * row;
         const double h = p[3] * x + p[4] * y + p[5] * z;
         if (p[0] == x && p[1] == y && p[2] == z) {
             o->next = row + 1;
@@ -81,15 +80,14 @@ static inline void case_prepare(const case_t *c, case_object_t object[2], ccd_t 
     }
     ccd->first_dir = case_first_dir;
     ccd->support1 = ccd->support2 = case_support;
-    ccd->center1 = ccd->center2 = c->centred ? case_center : NULL;
+    ccd->center1 = ccd->center2 = c->has_centres ? case_center : NULL;
     ccd->max_iterations = c->max_iterations;
-    ccd->epa_tolerance = (ccd_real_t)c->epa_tolerance;
-    ccd->mpr_tolerance = (ccd_real_t)c->mpr_tolerance;
+    ccd->epa_tolerance = ccd->mpr_tolerance = (ccd_real_t)c->truth.tolerance;
     ccd->dist_tolerance = (ccd_real_t)1e-6;
 }
 
-#ifndef CASE_KEEPS
-static void case_ask(const case_t *c, verdict_answer_t *answer, ccd_vec3_t *dir)
+#ifndef CASE_WRITER
+static void case_query(const case_t *c, verdict_answer_t *answer, ccd_vec3_t *dir)
 {
     case_object_t object[2];
     ccd_real_t depth = 0;
@@ -114,21 +112,21 @@ static void case_ask(const case_t *c, verdict_answer_t *answer, ccd_vec3_t *dir)
     answer->length2 = c->call == 3 && depth == 0 ? 1 : (double)ccdVec3Len2(dir);
 }
 
-/* Asks, says what came and what is right; returns 1 where the answer is wrong. */
+/* Queries the library and prints its answer and the truth; returns 1 if the answer is wrong. */
 static int case_run(const case_t *c)
 {
     static const char *const name[] = { "ccdMPRPenetration", "ccdMPRIntersect", "ccdGJKPenetration", "ccdGJKSeparate", "ccdGJKIntersect" };
     verdict_answer_t answer;
     ccd_vec3_t dir;
-    case_ask(c, &answer, &dir);
+    case_query(c, &answer, &dir);
     verdict_t v = verdict(&answer, &c->truth);
-    printf("kept:  %s\n", c->title);
+    printf("then:  %s\n", c->title);
     printf("now:   %s: %s", name[c->call], answer.hit ? "hit" : "miss");
     if (answer.hit && answer.has_depth)
         printf(", depth %.9g along (%.6g, %.6g, %.6g)", answer.depth, (double)dir.v[0], (double)dir.v[1], (double)dir.v[2]);
     printf(": %s\n", VERDICT_NAME[v]);
     printf("truth: signed depth at most %.9g (along (%.6g, %.6g, %.6g))", c->truth.upper, c->truth_dir[0], c->truth_dir[1], c->truth_dir[2]);
-    if (c->truth.lower > -HUGE_VAL)
+    if (c->truth.lower > -DBL_MAX)
         printf(", at least %.9g", c->truth.lower);
     printf("; tolerance %.3g\n", c->truth.tolerance);
     return v != VERDICT_RIGHT;

@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The screen at the end: what the watched processes counted.
+/* Prints the counts of all processes at the end of a run.
  *
- * usage: screen DIR EVERY EXIT KEPT   for people; KEPT: where cases were kept, or empty
- *        screen DIR fields            `watched key value key value ...`, for the tables of engines/ */
+ * usage: screen DIR EVERY EXIT KEPT   the screen; KEPT: the folder of wrong answers, or empty
+ *        screen DIR fields            `counted key value key value ...`, for the tables of engines/ */
 
 #include "tools/compare/counts.h"
 
@@ -15,7 +15,7 @@ static const double PICO = 1e-12;
 
 static compare_counts_t all;
 
-/* Both are made of 64-bit numbers alone; the largest error alone is no sum. */
+/* Both consist of 64-bit numbers; only the largest error is no sum. */
 static void add_call(compare_call_t *to, const compare_call_t *from)
 {
     uint64_t most[COMPARE_SIDES];
@@ -73,9 +73,9 @@ static void price(char *out, size_t size, double nanoseconds)
         snprintf(out, size, "%.2f us", nanoseconds / 1000);
 }
 
-/* A query of s support points at p and arithmetic a takes a + s p. The libraries are even at
- * the p where theirs are equal, which is as far from today's as their times are apart: above it
- * the one that asks for fewer is the faster. */
+/* A query of s support points at p nanoseconds and arithmetic a takes a + s p. Both libraries take the same time
+ * at the p for which these are equal: today's plus the difference of times over that of support points. Above it
+ * the one that needs fewer is the faster. */
 static void break_even(const compare_call_t *c, char *out, size_t size)
 {
     const compare_side_t *theirs = &c->side[COMPARE_THEIRS], *ours = &c->side[COMPARE_OURS];
@@ -114,19 +114,19 @@ static void print_wrong(const compare_call_t *c, const char *call)
     printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged), part(c->minimum_nanoseconds, c->timed));
 }
 
-/* Prints what kept queries from being judged, and what the program should know. */
+/* Prints why queries were not judged, and faults of the callbacks. */
 static void print_notes(const compare_call_t *sum)
 {
     if (sum->no_shape)
-        printf("%s queries were about no convex shape (a callback answers a direction with a point that is not the farthest, or the\n"
+        printf("%s queries were about no convex shape (a callback returns a point that is not the farthest in its direction, or the\n"
                "  centre lies outside): no answer can be right there, none was judged\n",
                thousands(sum->no_shape));
     if (sum->memory)
-        printf("%s queries were answered otherwise when asked again: callbacks with memory. The questions asked for this screen may\n"
-               "  have changed the program; `--every 0` asks none\n",
+        printf("%s queries were answered differently when repeated: callbacks with memory. The calls made for this screen may\n"
+               "  have changed the program; `--every 0` makes none\n",
                thousands(sum->memory));
     if (sum->threw)
-        printf("%s queries were not judged: asked again, a callback threw or jumped, or answered with what is no number\n",
+        printf("%s queries were not judged: when repeated, a callback threw or jumped, or returned NaN\n",
                thousands(sum->threw));
     if (sum->endless)
         printf("%s queries were not judged: a library did not end within 100,000 calls of the callbacks\n", thousands(sum->endless));
@@ -135,7 +135,7 @@ static void print_notes(const compare_call_t *sum)
                thousands(sum->contradicted));
 }
 
-/* Which side of the break-even the program is on, and what of its time that is about. */
+/* Prints which library is faster for this program, and the share of queries in its time. */
 static void print_price(const compare_call_t *sum)
 {
     const compare_side_t *theirs = &sum->side[COMPARE_THEIRS], *ours = &sum->side[COMPARE_OURS];
@@ -146,8 +146,8 @@ static void print_price(const compare_call_t *sum)
     price(text, sizeof text, part(all.callback_nanoseconds, all.callback_pairs));
     printf("A support point of both your objects costs %s: this library is the %s one, a query takes %.2f times libccd's time.\n", text,
            ratio < 1 ? "faster" : "slower", ratio);
-    if (all.process_nanoseconds > all.watch_nanoseconds) {
-        const double own = (double)(all.process_nanoseconds - all.watch_nanoseconds), queries = (double)sum->queries;
+    if (all.process_nanoseconds > all.judge_nanoseconds) {
+        const double own = (double)(all.process_nanoseconds - all.judge_nanoseconds), queries = (double)sum->queries;
         const double share = queries * part(sum->side[all.base].nanoseconds, sum->timed) / own;
         const double other = queries * part(sum->side[1 - all.base].nanoseconds, sum->timed) / own;
         printf("  Queries are %.1f %% of this program's %.2f s; on %s the program would take %+.1f %%.\n", 100 * share, 1e-9 * own,
@@ -207,13 +207,13 @@ static void print_screen(const char *every, const char *code)
 
 /* --- for programs --------------------------------------------------------------------- */
 
-/* What follows `before`: names in a struct's order, all of 64 bits. */
-static void print_numbers(const char *before, const char *names, const void *numbers)
+/* Prints the first members of a struct, all of 64 bits, by these names after a prefix. */
+static void print_numbers(const char *prefix, const char *names, const void *numbers)
 {
     const uint64_t *n = (const uint64_t *)numbers;
     while (*names) {
         const size_t length = strcspn(names, " ");
-        printf(" %s%.*s %llu", before, (int)length, names, (unsigned long long)*n++);
+        printf(" %s%.*s %llu", prefix, (int)length, names, (unsigned long long)*n++);
         names += length + (names[length] == ' ');
     }
 }
@@ -224,18 +224,17 @@ static void print_fields(void)
     static const char *const name[COMPARE_SIDES] = { "theirs_", "ours_" };
     for (int i = 0; i < LIBCCD_CALL_COUNT; i++)
         add_call(&sum, &all.call[i]);
-    printf("watched");
-    print_numbers("", "queries returned hits zero not_finite not_unit sampled judged overlaps timed threw endless memory no_shape contradicted",
-                  &sum);
+    printf("counted");
+    print_numbers("", "queries returned hits broken sampled judged overlaps timed threw endless memory no_shape contradicted", &sum);
     for (int i = 0; i < COMPARE_SIDES; i++) {
         const compare_side_t *s = &sum.side[i];
         print_numbers(name[i], "right missed spurious broken deep unsound hits calls slanted aside", s);
         printf(" %ssupports %llu %serror_max %.9g", name[i], (unsigned long long)(s->calls + 1) / 2, name[i], PICO * (double)s->error_max);
     }
-    printf(" minimum_supports %llu\n", (unsigned long long)(sum.minimum_calls + 1) / 2);
+    printf("\n");
 }
 
-/* Exit code 3: nothing was asked. */
+/* Exit code 3: there was no query. */
 int main(int argc, char **argv)
 {
     char path[4096];
