@@ -14,7 +14,7 @@ static unsigned long queries;  /* counted so far */
 static int invalid_support;    /* a callback was wrong in the query that is judged next */
 
 /* A depth or gap below this is neither hit nor miss: ten times ODE's tolerance. */
-static const double TOUCH = 1e-5;
+static const double CONTACT_EPS = 1e-5;
 
 static shape_t shape_of(int i) { return ode_shape(&scene.shape[i], scene.geom[i]); }
 
@@ -47,7 +47,7 @@ static void judge(int a, int b, const dContact *contact, int contacts)
         return;
     const shape_t sa = shape_of(a), sb = shape_of(b);
     const truth_t t = truth_depth_within(&sa, &sb, 1e-7);
-    const verdict_truth_t truth = { t.lower, t.depth, 1e-6, TOUCH };
+    const verdict_truth_t truth = { t.lower, t.depth, 1e-6, CONTACT_EPS };
     for (int i = 0; i < contacts; i++)
         deepest = fmax(deepest, contact[i].geom.depth);
     tally_add(&tally[invalid_support], &truth, contacts > 0, deepest, 1);

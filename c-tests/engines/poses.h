@@ -180,8 +180,8 @@ static long threw; /* queries in which FCL threw */
 static inline void pose_judge(const body_t *a, const body_t *b, const pose_truth_t *pose, int invalid_support, int hit, double depth,
                               double length)
 {
-    const double touch = invalid_support ? 2 * POSE_TOLERANCE : 1e-9 * pose->size;
-    const verdict_truth_t truth = { pose->lower, pose->upper, POSE_TOLERANCE, touch };
+    const double contact_eps = invalid_support ? 2 * POSE_TOLERANCE : 1e-9 * pose->size;
+    const verdict_truth_t truth = { pose->lower, pose->upper, POSE_TOLERANCE, contact_eps };
     const verdict_t v = tally_add(&tally[invalid_support], &truth, hit, depth, length);
     if (v != VERDICT_RIGHT && !invalid_support)
         printf("wrong: %s %s %s, signed depth %.9g to %.9g, returned %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], VERDICT_NAME[v],

@@ -542,7 +542,7 @@ impl Executable {
         swapped
     }
 
-    /// The same program watched by compare.sh, which adds a line `watched key value …` to
+    /// The same program watched by compare.sh, which adds a line `counted key value …` to
     /// what it writes.
     pub fn compared(&self, options: &[&str]) -> Executable {
         let mut compared = self.clone();
