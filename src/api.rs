@@ -329,8 +329,8 @@ where
         return Err(Error::BadInput("a shape's center is not finite"));
     }
     Ok(Pair {
-        md: MinkowskiDifference::new(SupportOf(a), SupportOf(b)),
-        center,
+        difference: MinkowskiDifference::new(SupportOf(a), SupportOf(b)),
+        centers: center,
         first_dir: None,
         keeps_state: has_state,
     })
@@ -380,7 +380,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
         pos: point_if(want.pos, hit.pos),
         point1: point_if(want.points, hit.point1),
         point2: point_if(want.points, hit.point2),
-        support_points: pair.md.supports(),
+        support_points: pair.difference.supports(),
         iterations: hit.iterations,
         limit: hit.limit,
     }))
@@ -435,7 +435,7 @@ query!(
     /// # Errors
     /// A tolerance that is negative or NaN; a point of a shape that is not finite.
     penetration,
-    |pair, state, settings, wants, hit| pair.mpr(state, settings, wants, hit)
+    |pair, state, settings, wants, hit| pair.penetration(state, settings, wants, hit)
 );
 
 /// Reports whether the shapes overlap; a touch within rounding is no overlap.
@@ -507,7 +507,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     let points = settings.want.points;
     let pair = pair(a, b, warm.is_some())?;
     let minimum = |pair: &ShapePair<'_, A, B>, state: &mut WarmStart, settings: &_, hit: &mut _| {
-        pair.minimum(state, settings, &mut Heap::default(), false, hit)
+        pair.proven(state, settings, &mut Heap::default(), false, hit)
     };
     let d = with_state(warm, |state| pair.signed_distance(state, &wanted, minimum))?;
     let point_if_wanted = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };
@@ -517,7 +517,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         normal: to_real(&d.normal),
         point1: point_if_wanted(d.point1),
         point2: point_if_wanted(d.point2),
-        support_points: pair.md.supports(),
+        support_points: pair.difference.supports(),
         iterations: d.iterations,
         limit: d.is_limited,
     })
@@ -610,7 +610,7 @@ query!(
     /// # Errors
     /// As [`penetration`]; a failed allocation.
     penetration_proven,
-    |pair, state, settings, wants, hit| pair.minimum(state, settings, &mut Heap::default(), wants, hit)
+    |pair, state, settings, wants, hit| pair.proven(state, settings, &mut Heap::default(), wants, hit)
 );
 
 query!(

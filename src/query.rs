@@ -1,20 +1,32 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The queries of a pair, and the steps that the queries of the depth share. (The intersection test is
-//! [`crate::gjk::intersect`], the distance [`crate::gjk::signed_distance`].)
+//! The queries of a pair, and the steps that the penetration queries share. (The intersection test is in
+//! [`crate::gjk::intersect`], the signed distance in [`crate::gjk::signed_distance`].)
 //!
-//! 1. *Separating axis*: the axis of the last query is evaluated first. While it separates, one support
-//!    point is the whole query.
-//! 2. *Solver*: starts from the warm state, else from the difference of the centers, else from the caller's
-//!    first direction.
-//! 3. *Overlap*: a local minimum of the support function can be positive though the objects are apart (a
-//!    plate that an object has passed through, seen from the old side). So the origin is shown to be in
-//!    a tetrahedron of points of D ([`contains_origin`]): of known vertices, and of queries where these
-//!    leave a side open. The global search proves its overlaps itself.
-//! 4. *Contact position*: the [`center_of_pressure`]; the middle of the witness points in `along` and
-//!    `planar`, and of queries that did not converge.
-//! 5. *Warm state*: stored in the [`WarmStart`], if the caller keeps one.
+//! 1. *Separating axis*: evaluate the separating axis of the last query. If it still separates, the query
+//!    ends after one support point.
+//! 2. *Solver*: run it from the warm start state, else from the difference of the centers, else from the
+//!    caller's first direction.
+//! 3. *Overlap*: a local minimum of the support function can be positive though the objects are separated,
+//!    e.g. for a thin plate with the object on its far side. Therefore the overlap is proven separately: the
+//!    origin must lie in a tetrahedron of points of D ([`contains_origin`]), known ones first, queried ones
+//!    if needed. The global search proves its overlaps itself.
+//! 4. *Contact position*: compute the [`center_of_pressure`], or take the middle of the witness points.
+//! 5. *Warm start state*: store it in the [`WarmStart`], if the caller keeps one.
+//!
+//! Outputs of an overlap; `limit`: the search ended before the tolerance was met.
+//!
+//! | query | `depth` | `depth_lower` | `pos` |
+//! |---|---|---|---|
+//! | default | global minimum within max(tolerance, 0.1 %); with `limit` an upper bound | proven if the centers lie in their objects | center of pressure; with `limit` the middle of the witness points |
+//! | proven | global minimum within the tolerance; with `limit` an upper bound | proven | as default |
+//! | local | local minimum; with `limit` an upper bound | 0; from the global search without centers: proven | as default |
+//! | incremental | local minimum; with `limit` an upper bound | 0 | as default; in a plane the middle of the witness points |
+//! | directional | depth along the direction; with `limit` an upper bound | proven, along the direction | the middle of the witness points |
+//!
+//! If a support function contradicts itself, the default and the proven query set `limit` and return
+//! `depth_lower` 0; `depth` is then not guaranteed. The witness points are valid in every row.
 
 pub mod warm_start;
 
@@ -33,125 +45,126 @@ use crate::mpr::gao::{self, Until};
 use crate::mpr::{directional, local};
 use warm_start::{WarmKind, WarmStart};
 
-/// A pair and what the caller knows of it besides the state.
+/// The input of a query: two objects, their centers, and the first direction.
 pub struct Pair<A, B> {
-    /// The Minkowski difference.
-    pub md: MinkowskiDifference<A, B>,
-    /// The difference of the centers, where the caller gives them.
-    pub center: Option<SupportPoint>,
-    /// The caller's first direction, where it gives one.
+    /// The Minkowski difference of the objects.
+    pub difference: MinkowskiDifference<A, B>,
+    /// The difference of the callers' centers and the centers themselves, if both are given.
+    pub centers: Option<SupportPoint>,
+    /// The caller's first direction, if given.
     pub first_dir: Option<Vec3>,
-    /// The caller keeps the state.
+    /// True if the caller keeps the state.
     pub keeps_state: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// Runs `solve` if the axis of the last query does not separate, and stores the axis that does.
+    /// Evaluates the separating axis of the last query and, if it does not separate, runs `solve`. Stores the
+    /// separating axis found by either.
     #[inline(always)]
     fn with_separating_axis<R>(
         &self,
         state: &mut WarmStart,
         solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
     ) -> Result<R, Stop> {
-        let mut aim = 0.0;
+        let mut target_separation = 0.0;
         if let Some(mut axis) = state.separating_axis() {
-            let found = axis.test(&mut SupportQuery::new(&self.md, None))?;
-            aim = axis.aim;
+            let found = axis.test(&mut SupportQuery::new(&self.difference, None))?;
+            target_separation = axis.target_separation;
             if let Some(n) = found {
-                *state = WarmStart::apart(axis.dir, aim, state.radius);
+                *state = WarmStart::separated(axis.dir, target_separation, state.radius);
                 return Err(Stop::Separated(n));
             }
         }
         let found = solve(state);
         if let Err(Stop::Separated(n)) = &found {
-            *state = WarmStart::apart(*n, aim, state.radius);
+            *state = WarmStart::separated(*n, target_separation, state.radius);
         }
         found
     }
 
-    /// The way from the center of D through the origin, or the caller's first
-    /// direction, or any.
+    /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else
+    /// the caller's first direction, else x.
     pub fn cold_start(&self) -> Vec3 {
-        let from_center = self.center.and_then(|c| unit(&-c.v));
+        let from_center = self.centers.and_then(|c| unit(&-c.v));
         from_center
             .or_else(|| self.first_dir.and_then(|d| unit(&d)))
             .unwrap_or(Vec3::x())
     }
 
-    /// Proves the overlap of a solver's `hit` from known vertices, and queries where they leave a side open.
-    /// Replaces the witness points of a touch, within the tolerance, that do not meet by those that meet at the
-    /// origin. `is_planar`: D is in a plane.
+    /// Proves the overlap of a solver's `hit`, with the known vertices of `set` first, and queries if needed. If
+    /// the depth is at most the tolerance and the witness points, moved by it, do not coincide, replaces them by
+    /// two coincident points of the objects. `is_planar`: D lies in a plane.
     ///
     /// # Errors
     /// [`Stop::Separated`]: a queried direction separates. [`Fault::NonFinite`].
     #[inline(never)]
-    fn prove(
+    fn prove_overlap(
         &self,
         hit: &mut Penetration,
         set: &mut VertexSet<CAPACITY>,
         settings: &Settings,
         is_planar: bool,
     ) -> Result<(), Stop> {
-        let mut query = SupportQuery::new(&self.md, self.center.as_ref());
-        let met = SupportPoint {
+        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref());
+        let witness = SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
             v2: hit.point2,
         };
-        query.scale.note(&met);
-        // A touch within rounding is a miss, in every query.
+        query.scale.note(&witness);
+        // Objects that touch within rounding count as separated, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > query.scale.contact_eps()) {
             return Err(Stop::Separated(hit.normal));
         }
         if set.len() == 0 {
-            // No support call returned it.
-            set.push(&Vec3::zeros(), &met);
+            // Without a direction: no support call returned this point.
+            set.push(&Vec3::zeros(), &witness);
         }
-        // A depth of a few contact epsilons has no place.
+        // Below a few contact epsilons the witness points are mostly rounding error.
         let tolerance = larger(settings.tolerance, 4.0 * query.scale.contact_eps());
-        let center = self.center.as_ref();
+        let center = self.centers.as_ref();
         let dir = center.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
         let found = contains_origin(&mut query, set, center, &dir, is_planar)?;
-        let apart = hit.point1 - hit.point2 - hit.dir * hit.depth;
-        if hit.depth <= tolerance && apart.norm() > tolerance {
+        let error = hit.point1 - hit.point2 - hit.dir * hit.depth;
+        if hit.depth <= tolerance && error.norm() > tolerance {
             let (p1, p2) = found.witnesses();
-            // The weights are rounded.
-            let rest = (p1 - p2) * 0.5;
-            (hit.point1, hit.point2) = (p1 - rest, p2 + rest);
+            // The weights are rounded: take the midpoint of both.
+            let half = (p1 - p2) * 0.5;
+            (hit.point1, hit.point2) = (p1 - half, p2 + half);
         }
         Ok(())
     }
 
-    /// Returns the state with the direction of the difference of the centers, where they are given.
-    fn facing(&self, mut state: WarmStart) -> WarmStart {
-        if let Some(center) = &self.center {
-            state.set_facing(&center.v);
+    /// Returns the state with the direction of the difference of the centers, if both are given.
+    fn with_centers(&self, mut state: WarmStart) -> WarmStart {
+        if let Some(center) = &self.centers {
+            state.set_center_direction(&center.v);
         }
         state
     }
 
-    /// Queries whether the objects overlap, from a state or cold. [`Stop::Separated`] where they do not.
+    /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not.
     #[inline]
     pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
         let Some(state) = state else {
             let first = self.cold_start();
-            return intersect(&self.md, self.center.as_ref(), &first).map(|_| ());
+            return intersect(&self.difference, self.centers.as_ref(), &first).map(|_| ());
         };
         self.with_separating_axis(state, |state| {
-            let first = match state.kind == WarmKind::Apart {
+            let first = match state.kind == WarmKind::Separated {
                 true => self.cold_start(),
                 false => state.direction().unwrap_or_else(|| self.cold_start()),
             };
-            let dir = intersect(&self.md, self.center.as_ref(), &first)?;
-            // The state of a depth query, which has a depth, is worth more.
+            let dir = intersect(&self.difference, self.centers.as_ref(), &first)?;
+            // A state with a depth, from a penetration query, is more useful: keep it.
             if !(state.is_overlap() && state.depth > 0.0) {
-                *state = self.facing(WarmStart::towards(dir));
+                *state = self.with_centers(WarmStart::towards(dir));
             }
             Ok(())
         })
     }
 
-    /// Computes the signed distance; `minimum` computes the least depth of objects that overlap.
+    /// Computes the signed distance. `minimum` computes the least depth of overlapping objects.
     pub fn signed_distance(
         &self,
         state: &mut WarmStart,
@@ -161,11 +174,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let depth = |state: &mut WarmStart, hit: &mut Penetration| {
             minimum(self, state, &wanted.settings, hit)
         };
-        signed_distance(&self.md, wanted, &self.cold_start(), state, depth)
+        signed_distance(&self.difference, wanted, &self.cold_start(), state, depth)
     }
 
-    /// Finds a local minimum of the depth by a walk on the known vertices; where that ends without one, the
-    /// global minimum, from the direction of the least support value.
+    /// Finds a local minimum of the depth by the local search ([`crate::mpr::local`]). If that ends without one,
+    /// runs the global search from the direction of the upper bound.
     pub fn local(
         &self,
         state: &mut WarmStart,
@@ -173,27 +186,28 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let status = self.walk(state, settings, wants_pos, hit)?;
+        let status = self.run_local(state, settings, wants_pos, hit)?;
         if status == Status::Converged {
             return Ok(());
         }
-        let walked = hit.iterations;
+        let local_iterations = hit.iterations;
         let mut limits = EpaLimits::new(settings, 0.0, MAX_DEFAULT_POINTS);
-        limits.max_iterations -= walked;
-        let is_minimum = self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
-        // No proof is wanted: a walk that ends at its direction is the answer.
+        limits.max_iterations -= local_iterations;
+        let is_minimum =
+            self.run_global(self.centers.as_ref(), state, &limits, None, wants_pos, hit)?;
+        // A local minimum suffices here, so the flag is cleared if the local search confirmed one.
         hit.limit &= !is_minimum;
-        if self.center.is_some() {
-            // The lower bound would rest on the caller's center.
+        if self.centers.is_some() {
+            // The lower bound would depend on the caller's centers.
             hit.depth_lower = 0.0;
         }
-        hit.iterations += walked;
+        hit.iterations += local_iterations;
         Ok(())
     }
 
-    /// Walks to a local minimum. (In a frame of its own: the global query needs its stack.)
+    /// Runs the local search. Not inlined, so that its stack frame is released before the global search runs.
     #[inline(never)]
-    fn walk(
+    fn run_local(
         &self,
         state: &mut WarmStart,
         settings: &Settings,
@@ -201,34 +215,34 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<Status, Stop> {
         self.with_separating_axis(state, |state| {
-            if self.center.is_some_and(|c| state.is_swapped(&c.v)) {
+            if self.centers.is_some_and(|c| state.is_swapped(&c.v)) {
                 *state = WarmStart::COLD;
             }
             let start = state.direction().unwrap_or_else(|| self.cold_start());
-            let mut query = SupportQuery::new(&self.md, self.center.as_ref());
+            let mut query = SupportQuery::new(&self.difference, self.centers.as_ref());
             let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
             let (found, status) = local::penetration(&mut query, &mut set, &start, settings)?;
             *hit = found;
-            *state = self.facing(WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false));
+            *state = self.with_centers(WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false));
             if status == Status::Converged && wants_pos {
-                hit.pos = self.position(&set, hit, settings.tolerance)?;
+                hit.pos = self.contact_position(&set, hit, settings.tolerance)?;
             }
             Ok(status)
         })
     }
 
-    /// Lowers a depth that the global query could not prove. Where minima form a curve or a surface, no polytope
-    /// proves them in the steps there are, and the least depth met need not be theirs to the tolerance. But its
-    /// direction is near them, and a walk from there finds one, to a hundredth of the tolerance.
-    /// Returns whether the depth is that of a local minimum, within the tolerance.
+    /// Improves an uncertified depth by a local search from its direction, to a hundredth of the tolerance. If the
+    /// minimum is not unique, a polytope may not certify it within the limits, and the upper bound may exceed it
+    /// by more than the tolerance; but the direction of the upper bound is close to a minimum.
+    /// Returns whether the depth is a local minimum within the tolerance.
     #[cold]
     #[inline(never)]
-    fn lower(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<bool, Fault> {
+    fn improve_locally(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<bool, Fault> {
         let settings = Settings {
             tolerance: limits.gap.tolerance * 0.01,
             max_iterations: limits.max_iterations.saturating_sub(hit.iterations),
         };
-        let mut query = SupportQuery::new(&self.md, self.center.as_ref());
+        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref());
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         let start = hit.normal;
         let found = local::penetration(&mut query, &mut set, &start, &settings);
@@ -247,9 +261,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(is_minimum)
     }
 
-    /// Finds a local minimum of the depth by the paper's method, shortcut on (Algorithms 4, 5), from the last
-    /// direction, else from the centers. `plane`: among the directions perpendicular to this unit vector; the
-    /// position then is the middle of the witness points.
+    /// Finds a local minimum of the depth by W. Gao's method with the shortcut (Algorithms 4 and 5), from the
+    /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
+    /// perpendicular to it are searched.
     pub fn incremental(
         &self,
         plane: Option<Vec3>,
@@ -260,12 +274,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<(), Stop> {
         self.with_separating_axis(state, |state| {
             let start = state.direction().unwrap_or_else(|| self.cold_start());
-            *hit = gao::penetration(&self.md, start, plane, Until::Shortcut, settings, |_| ())?;
+            let until = Until::Shortcut;
+            *hit = gao::penetration(&self.difference, start, plane, until, settings, |_| ())?;
             let mut set = VertexSet::EMPTY;
-            self.prove(hit, &mut set, settings, plane.is_some())?;
-            *state = self.facing(WarmStart::towards(hit.normal));
+            self.prove_overlap(hit, &mut set, settings, plane.is_some())?;
+            *state = self.with_centers(WarmStart::towards(hit.normal));
             hit.pos = if wants_pos && !hit.limit && plane.is_none() {
-                self.position(&set, hit, settings.tolerance)?
+                self.contact_position(&set, hit, settings.tolerance)?
             } else {
                 hit.middle()
             };
@@ -273,9 +288,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         })
     }
 
-    /// Finds the minimum of the depth at MPR's price: within the tolerance or a thousandth of the depth, in at
-    /// most [`MAX_DEFAULT_POINTS`] support points; where these do not do, a walk lowers the depth. Trusts the center.
-    pub fn mpr(
+    /// Finds the global minimum of the depth within the larger of the tolerance and 0.1 % of it, with at most
+    /// [`MAX_DEFAULT_POINTS`] support points; if these do not suffice, a local search improves the depth. Assumes that
+    /// the centers lie in their objects.
+    pub fn penetration(
         &self,
         state: &mut WarmStart,
         settings: &Settings,
@@ -283,13 +299,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
         let limits = EpaLimits::new(settings, GAP_REL, MAX_DEFAULT_POINTS);
-        self.global(self.center.as_ref(), state, &limits, None, wants_pos, hit)?;
+        self.run_global(self.centers.as_ref(), state, &limits, None, wants_pos, hit)?;
         Ok(())
     }
 
-    /// Finds the global minimum of the depth, proven by support points alone: from the state, else from the
-    /// centers, else from the first direction.
-    pub fn minimum(
+    /// Finds the global minimum of the depth within the tolerance. The proof uses only support points; the
+    /// centers select only where the search starts.
+    pub fn proven(
         &self,
         state: &mut WarmStart,
         settings: &Settings,
@@ -298,16 +314,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
         let limits = EpaLimits::new(settings, 0.0, MAX_PROVEN_POINTS);
-        self.global(None, state, &limits, Some(arena), wants_pos, hit)?;
+        self.run_global(None, state, &limits, Some(arena), wants_pos, hit)?;
         Ok(())
     }
 
-    /// Finds the global minimum of the depth from the state. `apex`: a point that is trusted to be in D.
-    /// Returns whether the depth is that of a minimum, a local one where `limit` is set.
+    /// Finds the global minimum of the depth from the state. `interior`: a point trusted to lie in D. Returns
+    /// whether the depth is a minimum within the tolerance, a local one if `hit.limit`.
     #[inline(never)]
-    fn global(
+    fn run_global(
         &self,
-        apex: Option<&SupportPoint>,
+        interior: Option<&SupportPoint>,
         state: &mut WarmStart,
         limits: &EpaLimits,
         arena: Option<&mut dyn Arena>,
@@ -316,29 +332,29 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<bool, Stop> {
         self.with_separating_axis(state, |state| {
             let request = EpaRequest {
-                center: apex,
+                center: interior,
                 ray: self.cold_start(),
-                // The axis of a state that was apart has been queried.
+                // A separating axis has been evaluated already.
                 warm: match state.kind {
-                    WarmKind::Apart => WarmStart::COLD,
+                    WarmKind::Separated => WarmStart::COLD,
                     _ => *state,
                 },
                 limits: *limits,
             };
-            let mut query = SupportQuery::new(&self.md, apex);
+            let mut query = SupportQuery::new(&self.difference, interior);
             let first = query.evaluate_first(&request.first_dir())?;
-            self.overlap(query, &first, &request, arena, state, wants_pos, hit)
+            self.run_global_from_first(query, &first, &request, arena, state, wants_pos, hit)
         })
     }
 
-    /// Finds the global minimum of a pair whose first direction does not separate it, and the contact
+    /// Continues [`Pair::run_global`] if the first direction does not separate, and computes the contact
     /// position.
     #[inline(never)]
     #[allow(
         clippy::too_many_arguments,
-        reason = "a frame of its own, for the known vertices"
+        reason = "a separate stack frame holds the known vertices"
     )]
-    fn overlap(
+    fn run_global_from_first(
         &self,
         mut query: SupportQuery<'_, A, B>,
         first: &SupportPoint,
@@ -352,33 +368,33 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let (status, warm) =
             epa::penetration::penetration(&mut query, first, request, arena, &mut set, hit)?;
         if self.keeps_state {
-            *state = self.facing(warm);
+            *state = self.with_centers(warm);
         }
         hit.limit = status != Status::Converged;
         if !hit.limit {
             if wants_pos {
-                hit.pos = self.position(&set, hit, request.limits.gap.tolerance)?;
+                hit.pos = self.contact_position(&set, hit, request.limits.gap.tolerance)?;
             }
             return Ok(true);
         }
         let is_minimum =
-            status != Status::InconsistentSupport && self.lower(hit, &request.limits)?;
+            status != Status::InconsistentSupport && self.improve_locally(hit, &request.limits)?;
         hit.pos = hit.middle();
         Ok(is_minimum)
     }
 
-    /// Returns the center of pressure of a hit, from the vertices that its search has found.
+    /// Returns the center of pressure of a hit. `set`: the known vertices of its search.
     #[inline(always)]
-    fn position<const N: usize>(
+    fn contact_position<const N: usize>(
         &self,
         set: &VertexSet<N>,
         hit: &Penetration,
         tolerance: f64,
     ) -> Result<Vec3, Fault> {
-        center_of_pressure(&self.md, set, hit, self.center.as_ref(), tolerance)
+        center_of_pressure(&self.difference, set, hit, self.centers.as_ref(), tolerance)
     }
 
-    /// Computes how far obj2 must move along the unit direction `dir` to be separated.
+    /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
     pub fn along(
         &self,
         dir: Vec3,
@@ -391,14 +407,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 max_iterations: settings.max_iterations.min(MAX_PROVEN_POINTS),
                 ..*settings
             };
-            let (found, portal) = directional::along(&self.md, &dir, &capped)?;
+            let (found, portal) = directional::along(&self.difference, &dir, &capped)?;
             *hit = found;
             let mut set = VertexSet::EMPTY;
             for plane in portal.iter().flat_map(|p| &p.planes) {
                 set.push(&plane.normal, &plane.point);
             }
-            self.prove(hit, &mut set, settings, false)?;
-            *state = self.facing(WarmStart::towards(hit.normal));
+            self.prove_overlap(hit, &mut set, settings, false)?;
+            *state = self.with_centers(WarmStart::towards(hit.normal));
             hit.pos = hit.middle();
             Ok(())
         })
@@ -416,26 +432,26 @@ mod tests {
         max_iterations: 1000,
     };
 
-    /// Returns the support points, the depth and the state of a query from this state.
+    /// Returns the number of support points, the depth and the new state of a query from this state.
     fn local_query<A: SupportMap, B: SupportMap>(
         a: A,
         b: B,
         mut state: WarmStart,
     ) -> (u64, f64, WarmStart) {
         let pair = Pair {
-            md: difference(a, b),
-            center: None,
+            difference: difference(a, b),
+            centers: None,
             first_dir: None,
             keeps_state: true,
         };
         let mut hit = Penetration::default();
         pair.local(&mut state, &SETTINGS, true, &mut hit).unwrap();
         assert!(!hit.limit);
-        (pair.md.supports(), hit.depth, state)
+        (pair.difference.supports(), hit.depth, state)
     }
 
     #[test]
-    fn a_flipped_state_serves_the_swapped_pair() {
+    fn flipped_state_serves_the_swapped_pair() {
         let mut r = Random::new(7);
         for _ in 0..100 {
             let points = placed(
@@ -459,17 +475,17 @@ mod tests {
         }
     }
 
-    /// The overlap may rest on a center, and no bound is proven then.
+    /// Tests that a local query with centers, on which its overlap may depend, returns no lower bound.
     #[test]
-    fn no_bound_leans_on_a_centre() {
+    fn local_query_has_no_lower_bound() {
         let mut r = Random::new(8);
         let a = corners(Vec3::repeat(1.0));
         for _ in 0..100 {
             let b = placed(&a, &r.rotation(), r.vector(1.0));
             let v1 = r.vector(3.0);
             let pair = Pair {
-                md: difference(hull(&a), hull(&b)),
-                center: Some(SupportPoint {
+                difference: difference(hull(&a), hull(&b)),
+                centers: Some(SupportPoint {
                     v: v1,
                     v1,
                     v2: Vec3::zeros(),
@@ -485,10 +501,10 @@ mod tests {
         }
     }
 
-    /// An intersection test replaces the direction of the last one, and a guess: the next takes fewer support
-    /// points than a cold one.
+    /// Tests that an intersection test stores its direction in place of a guess, so that the next test takes fewer
+    /// support points than a cold one.
     #[test]
-    fn an_intersection_leaves_the_direction_of_its_own() {
+    fn intersection_test_stores_its_direction() {
         let mut r = Random::new(9);
         let (mut again, mut cold) = (0, 0);
         for _ in 0..200 {
@@ -500,8 +516,8 @@ mod tests {
                 placed(&plate, &turn, at),
             );
             let pair = Pair {
-                md: difference(hull(&a), hull(&b)),
-                center: Some(SupportPoint {
+                difference: difference(hull(&a), hull(&b)),
+                centers: Some(SupportPoint {
                     v: -at,
                     v1: Vec3::zeros(),
                     v2: at,
@@ -511,11 +527,14 @@ mod tests {
             };
             let mut state = WarmStart::guess(&r.direction());
             if pair.intersect(Some(&mut state)).is_ok() {
-                let before = pair.md.supports();
+                let before = pair.difference.supports();
                 pair.intersect(Some(&mut state)).unwrap();
-                let after = pair.md.supports();
+                let after = pair.difference.supports();
                 pair.intersect(None).unwrap();
-                (again, cold) = (again + after - before, cold + pair.md.supports() - after);
+                (again, cold) = (
+                    again + after - before,
+                    cold + pair.difference.supports() - after,
+                );
             }
         }
         assert!(cold > 300 && 10 * again <= 9 * cold, "{again} {cold}");

@@ -121,7 +121,7 @@ impl EpaRequest<'_> {
     /// Returns the direction to evaluate first, unit.
     #[inline(always)]
     pub fn first_dir(&self) -> Vec3 {
-        if self.warm.kind == WarmKind::Plain {
+        if self.warm.kind == WarmKind::Overlap {
             self.warm.dir
         } else {
             self.ray
@@ -177,7 +177,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let dir = &request.first_dir();
     set.push(dir, first);
     let warm = &request.warm;
-    let is_warm = warm.kind == WarmKind::Plain;
+    let is_warm = warm.kind == WarmKind::Overlap;
     // No start of its own: a guess, or one whose support value is far above the last depth; and of two round objects,
     // where its vertex is a poor corner of a portal. Negated for NaN.
     let is_round = warm.radius[0] * warm.radius[1] > 0.0;

@@ -164,8 +164,8 @@ impl Query {
                 return None;
             }
             Some(Pair {
-                md: MinkowskiDifference::new(obj1, obj2),
-                center,
+                difference: MinkowskiDifference::new(obj1, obj2),
+                centers: center,
                 first_dir,
                 keeps_state: has_state,
             })

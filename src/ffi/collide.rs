@@ -92,7 +92,7 @@ unsafe fn gjk_penetration(
             Kind::Gjk,
             core::ptr::null_mut(),
             |pair, state, settings, hit| {
-                arena::with(|arena| pair.minimum(state, settings, arena, wants_pos, hit))
+                arena::with(|arena| pair.proven(state, settings, arena, wants_pos, hit))
             },
             |hit, _| write_hit(hit),
         )

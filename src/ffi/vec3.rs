@@ -4,7 +4,7 @@
 //! Exports libccd's distances of points from segments and triangles, and its three data objects.
 
 use super::types::ccd_vec3_t;
-use crate::gjk::barycentric::{self, Nearest};
+use crate::gjk::barycentric::{self, ClosestPoint};
 use crate::math::{Real, Vec3};
 
 /// Returns the squared distance, m², of point `p` from segment `ab`, and writes the closest point
@@ -19,7 +19,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
     // SAFETY: [inputs].
     let (p, a, b) = unsafe { (read(p), read(a), read(b)) };
     // SAFETY: [outputs].
-    unsafe { finish(&p, barycentric::segment(&p, &a, &b), witness) }
+    unsafe { write(&p, barycentric::segment(&p, &a, &b), witness) }
 }
 
 /// Returns the squared distance, m², of point `p` from triangle `abc`, and writes the closest point
@@ -35,7 +35,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     // SAFETY: [inputs].
     let (p, a, b, c) = unsafe { (read(p), read(a), read(b), read(c)) };
     // SAFETY: [outputs].
-    unsafe { finish(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
+    unsafe { write(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
 }
 
 #[inline(always)]
@@ -46,8 +46,8 @@ unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
 
 /// Writes the closest point to `witness` unless that is NULL, and returns its squared distance.
 #[inline(always)]
-unsafe fn finish<const N: usize>(p: &Vec3, closest: Nearest<N>, witness: *mut ccd_vec3_t) -> Real {
-    let point = ccd_vec3_t::from(closest.point);
+unsafe fn write<const N: usize>(p: &Vec3, at: ClosestPoint<N>, witness: *mut ccd_vec3_t) -> Real {
+    let point = ccd_vec3_t::from(at.point);
     if !witness.is_null() {
         // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
         unsafe { *witness = point };

@@ -1,44 +1,42 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The point of a segment, a triangle or a tetrahedron nearest to a given point, the
-//! weights of the corners in it, and what points mix to with such weights.
+//! Computes the point of a segment, a triangle or a tetrahedron closest to a given point p, with its
+//! barycentric coordinates (weights), and weighted means of points.
 //!
-//! Projection, then the search of the violated edges or faces only (the regions are those
-//! of Ericson, Real-Time Collision Detection, 5.1.5). libccd calls a triangle degenerate by
-//! an absolute area and then looks at its edges alone; here no triangle is special.
+//! 1. Project p to the line, plane or space of the corners.
+//! 2. If a weight is negative, test only the edges or faces that it violates (the regions of C. Ericson,
+//!    Real-Time Collision Detection, 5.1.5).
 //!
-//! The weights of a sliver are mostly rounding, and any are good that lead to the right
-//! place: here the point is what its weights lead to, and what is compared is where the
-//! points are.
+//! Departures. libccd treats a triangle as degenerate below an absolute area and then tests only its edges;
+//! here no triangle is special. For slivers many weights give nearly the same point. So the point is always
+//! computed from its weights, and candidates are compared by distance, not by weights.
 
 use crate::math::{Vec3, normal};
 use crate::minkowski::support::SupportPoint;
 
-/// The point of a simplex of `N` corners that is nearest to a given one.
+/// The point of a simplex of `N` corners closest to a given point.
 #[derive(Clone, Copy, Debug)]
-pub struct Nearest<const N: usize> {
+pub struct ClosestPoint<const N: usize> {
     /// The closest point.
     pub point: Vec3,
-    /// The square of its distance from the given point, m²; NaN where that holds a
-    /// NaN.
+    /// The square of its distance from the given point, m²; NaN if that contains a NaN.
     pub distance2: f64,
-    /// One for each corner: none is negative, and their sum is 1 to an ulp. Zero exactly
-    /// for the corners of no part in it.
+    /// The barycentric coordinates: one for each corner, none negative, their sum 1 to an ulp; exactly 0 for
+    /// the corners that do not contribute.
     pub weights: [f64; N],
 }
 
-impl<const N: usize> Nearest<N> {
-    /// The same point, of a simplex with more corners: `places` are those of the corners
-    /// that it has.
+impl<const N: usize> ClosestPoint<N> {
+    /// Returns the same point for a simplex of more corners, in which `indices` are the corners of this one.
     #[inline(always)]
-    fn among<const M: usize>(self, places: [usize; N]) -> Nearest<M> {
+    fn with_corners_at<const M: usize>(self, indices: [usize; N]) -> ClosestPoint<M> {
         let mut weights = [0.0; M];
-        for (weight, place) in self.weights.into_iter().zip(places) {
-            // In range for certain, so that no access is checked.
-            weights[place % M] = weight;
+        for (weight, index) in self.weights.into_iter().zip(indices) {
+            // The remainder is always in range, so the access needs no check.
+            weights[index % M] = weight;
         }
-        Nearest {
+        ClosestPoint {
             point: self.point,
             distance2: self.distance2,
             weights,
@@ -48,8 +46,8 @@ impl<const N: usize> Nearest<N> {
 
 /// Returns the weighted mean of points; the weights sum to 1.
 ///
-/// Counted from the first: far from the world's origin weights that miss 1 by a rounding
-/// would move it. Where a weight is 1 it is that point to an ulp.
+/// Computed as an offset from the first point: far from the world's origin, a sum of the weights that differs
+/// from 1 by rounding would move the mean. If a weight is 1, the mean is that point to an ulp.
 #[inline]
 pub fn mix<const N: usize>(weights: &[f64; N], points: [&Vec3; N]) -> Vec3 {
     let mut mixed = *points[0];
@@ -59,8 +57,8 @@ pub fn mix<const N: usize>(weights: &[f64; N], points: [&Vec3; N]) -> Vec3 {
     mixed
 }
 
-/// Returns the weighted means of the points of obj1 and of those of obj2: points of the objects, whose
-/// difference is the weighted mean of the points of D.
+/// Returns the weighted means of the points of obj1 and of those of obj2. Their difference is the weighted mean
+/// of the points of D.
 #[inline]
 pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N]) -> (Vec3, Vec3) {
     (
@@ -69,14 +67,14 @@ pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N])
     )
 }
 
-/// The point of segment `ab` nearest to `p`.
+/// Returns the point of segment `ab` closest to `p`.
 ///
-/// An end that is nearest is returned bit for bit. Equal ends are a point.
+/// If an end is the closest point, it is returned bit for bit. The ends may be equal.
 #[inline]
-pub fn segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Nearest<2> {
+pub fn segment(p: &Vec3, a: &Vec3, b: &Vec3) -> ClosestPoint<2> {
     let ab = b - a;
     let t = (p - a).dot(&ab) / ab.norm_squared();
-    // 0/0 of equal ends is NaN and lands at `a`.
+    // For equal ends t is 0/0, NaN, and the result is `a`.
     let (point, weights) = if t >= 1.0 {
         (*b, [0.0, 1.0])
     } else if t > 0.0 {
@@ -84,51 +82,52 @@ pub fn segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Nearest<2> {
     } else {
         (*a, [1.0, 0.0])
     };
-    Nearest {
+    ClosestPoint {
         point,
         distance2: (point - p).norm_squared(),
         weights,
     }
 }
 
-/// The point of triangle `abc` nearest to `p`.
+/// Returns the point of triangle `abc` closest to `p`.
 ///
-/// The error of the distance is a few ulps of the largest coordinate; where p is as good
-/// as in the triangle's plane, up to 1 / sin a times that, but never above 1000 times (single: 10).
+/// The error of the distance is a few ulps of the largest coordinate; if p is nearly in the triangle's
+/// plane, up to 1 / sin(α) times that, α being the angle between ab and ac, but at most 1000 times
+/// (single: 10).
 ///
 /// The projection of p is a + s·ab + t·ac where s and t solve a least squares problem of
 /// two columns. s, t and 1 − s − t are the weights of b, c and a: the projection is
-/// inside when none is negative, otherwise the nearest point is on the edge opposite
+/// inside if none is negative, otherwise the closest point is on the edge opposite
 /// to a corner of negative weight.
 ///
 /// *Normal equations*, v s + r t = −pb and r s + w t = −pc, unless ab and ac are almost
-/// parallel. They are written as libccd writes them, because FCL's EPA, which runs on
-/// this function, carries a difference in the last bit to one of 1e-5 m in its answer:
-/// with any other order of the operations, one answer in a thousand is another.
+/// parallel. The order of the operations is that of libccd, because FCL's EPA, which calls
+/// this function, amplifies a difference in the last bit to 1e-5 m in its result: any other
+/// order changes one result in a thousand.
 ///
-/// *Modified Gram-Schmidt* where they are: with d = ac − k·ab perpendicular to ab, k = r/v,
+/// *Modified Gram-Schmidt* if they are: with d = ac − k·ab perpendicular to ab, k = r/v,
 /// and rest = (p − a) − x·ab, x = −pb/v,
 ///
 ///   t = rest·d / d²,   s = x − k·t.
 ///
-/// Taking x·ab away *before* the product with d makes the solution that of a triangle
+/// Subtracting x·ab *before* the product with d makes the solution that of a triangle
 /// whose corners are moved by rounding errors only (Björck, Numerical Methods for Least
-/// Squares Problems, 2.4). Where d vanishes against rounding, (s, t) is noise, but still
-/// a point of the plane, and the edges it is outside of cover the collapsed triangle;
-/// where d is 0, NaN makes every edge a candidate.
+/// Squares Problems, 2.4). If d is no more than rounding, (s, t) is noise, but still a point
+/// of the plane, and the edges that it violates cover the collapsed triangle; if d is 0,
+/// NaN makes every edge a candidate.
 ///
-/// The fourth power of the coordinates must be a number (below 1e77; single: 1e9).
+/// The fourth power of the coordinates must not overflow (coordinates below 1e77; single: 1e9).
 #[inline]
-pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> Nearest<3> {
+pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> ClosestPoint<3> {
     let (ab, ac, pa) = (b - a, c - a, a - p);
     let (v, w, r) = (ab.norm_squared(), ac.norm_squared(), ab.dot(&ac));
     let (pb, pc) = (pa.dot(&ab), pa.dot(&ac));
-    // v w sin² of the angle between ab and ac.
+    // v w sin²(α).
     let det = w * v - r * r;
-    let least = PARALLEL * (w * v);
+    let min_det = PARALLEL_SINE2 * (w * v);
     let (s, t);
-    // False for fourth powers of lengths that are not numbers, or too small to be exact.
-    if det > least && least > f64::MIN_POSITIVE {
+    // False if a fourth power of a length overflows or is too small to be exact.
+    if det > min_det && min_det > f64::MIN_POSITIVE {
         s = (pc * r - w * pb) / det;
         t = (-s * r - pc) / w;
     } else {
@@ -143,49 +142,49 @@ pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> Nearest<3> {
     let (in_s, in_t, in_rest) = (s >= 0.0, t >= 0.0, s + t <= 1.0);
     if in_s && in_t && in_rest {
         let point = a + ab * s + ac * t;
-        return Nearest {
+        return ClosestPoint {
             point,
             distance2: (point - p).norm_squared(),
             weights: [1.0 - (s + t), s, t],
         };
     }
-    // NaN: no candidate yet. It stays when the input holds one.
-    let mut best = Nearest {
+    // NaN: no candidate yet. It remains if the input contains a NaN.
+    let mut best = ClosestPoint {
         point: *a,
         distance2: f64::NAN,
         weights: [1.0, 0.0, 0.0],
     };
-    for (inside, (from, to), places) in [
+    for (is_inside, (from, to), indices) in [
         (in_t, (a, b), [0, 1]),
         (in_s, (a, c), [0, 2]),
         (in_rest, (b, c), [1, 2]),
     ] {
-        if !inside {
+        if !is_inside {
             let candidate = segment(p, from, to);
             if best.distance2.is_nan() || candidate.distance2 < best.distance2 {
-                best = candidate.among(places);
+                best = candidate.with_corners_at(indices);
             }
         }
     }
     best
 }
 
-/// The point of tetrahedron `abcd` nearest to `p`: `p` itself, to rounding, where the
-/// tetrahedron holds it.
+/// Returns the point of tetrahedron `abcd` closest to `p`: `p` itself, to rounding, if the tetrahedron
+/// contains it.
 ///
-/// A weight grows linearly from the face, where it is 0, to the corner opposite, where it is 1. Where `p` is
-/// outside, the nearest of the faces' points is the tetrahedron's; and also where it is flat to rounding and
-/// the signs of the weights tell nothing: what is nearest counts.
+/// A weight grows linearly from 0 on a face to 1 at the opposite corner. The closest points of the four faces
+/// are candidates as well: the closest one is the result if `p` is outside, and if the tetrahedron is flat
+/// within rounding, so that the signs of the weights are meaningless.
 #[inline]
-pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
-    // Each face, and the corner opposite.
+pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> ClosestPoint<4> {
+    // Each face, and its opposite corner.
     const FACES: [[usize; 4]; 4] = [[1, 2, 3, 0], [0, 2, 3, 1], [0, 1, 3, 2], [0, 1, 2, 3]];
     let gradients = FACES.map(|face| {
         let [a, b, c, opposite] = face.map(|i| corners[i % 4]);
         let n = normal(a, b, c);
         n / n.dot(&(opposite - a))
     });
-    // From the middle to `p`, and again: where the weights lead is off by ulps over the thickness.
+    // Two iterations, starting at the centroid: the first result is off by ulps / thickness.
     let mut weights = [0.25; 4];
     for _ in 0..2 {
         let missing = p - mix(&weights, corners);
@@ -197,8 +196,8 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
     }
     let point = mix(&weights, corners);
     let is_inside = weights.iter().all(|weight| *weight >= 0.0);
-    // NaN: no candidate yet, as of a flat one.
-    let mut best = Nearest {
+    // NaN: no candidate yet, as for a flat tetrahedron.
+    let mut best = ClosestPoint {
         point,
         distance2: if is_inside {
             (point - p).norm_squared()
@@ -209,7 +208,7 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
     };
     for [i, j, k, _] in FACES {
         let [a, b, c] = [i, j, k].map(|i| corners[i % 4]);
-        let face = triangle(p, a, b, c).among([i, j, k]);
+        let face = triangle(p, a, b, c).with_corners_at([i, j, k]);
         if best.distance2.is_nan() || face.distance2 < best.distance2 {
             best = face;
         }
@@ -217,9 +216,9 @@ pub fn tetrahedron(p: &Vec3, corners: [&Vec3; 4]) -> Nearest<4> {
     best
 }
 
-/// Squared sine of the angle below which two edges are almost parallel: the normal
-/// equations have lost three digits there; in single precision, which has none to spare, one.
-const PARALLEL: f64 = if cfg!(feature = "single") { 1e-2 } else { 1e-6 };
+/// Squared sine of the angle below which two edges count as almost parallel. At that angle the normal
+/// equations have lost three digits; in single precision, one.
+const PARALLEL_SINE2: f64 = if cfg!(feature = "single") { 1e-2 } else { 1e-6 };
 
 #[cfg(test)]
 mod tests {
@@ -227,11 +226,11 @@ mod tests {
     use crate::math::EPSILON;
     use crate::shapes::Random;
 
-    /// Corners of every kind of simplex: solid, flat, a needle, with two corners equal.
+    /// Returns the corners of one kind of simplex: solid, flat, a needle, or with equal corners.
     fn corners(kind: usize, r: &mut Random) -> [Vec3; 4] {
         let mut c = [0; 4].map(|_| r.vector(1.0));
         let thin = [1e-2, 1e-8, 1e-15, 0.0][r.within(0.0, 4.0) as usize];
-        // The truth below is not exact enough for a needle between thin and none.
+        // `distance_bound` is not exact enough for such a needle.
         let thin = if kind == 2 && thin == 1e-8 {
             1e-15
         } else {
@@ -248,51 +247,55 @@ mod tests {
             // Two corners (nearly) equal.
             3 => c[3] = c[0] + r.vector(1.0) * thin,
             4 => c[2] = c[1] + r.vector(1.0) * thin,
-            // All on one spot.
+            // All corners (nearly) equal.
             _ => c = c.map(|p| c[0] + p * thin),
         }
         let rotation = r.rotation();
         c.map(|p| rotation * p)
     }
 
-    /// Returns a lower bound of the distance of the corners from `p`, by planes between: across the normals of
-    /// faces, and across the way to edges and corners, made exact where rounding turns it.
-    fn least(p: &Vec3, corners: &[&Vec3]) -> f64 {
+    /// Returns a lower bound of the distance of the corners from `p`, by separating planes: perpendicular to
+    /// the normals of faces, and to the shortest lines to edges and corners.
+    fn distance_bound(p: &Vec3, corners: &[&Vec3]) -> f64 {
         let c: Vec<Vec3> = corners.iter().map(|c| *c - p).collect();
-        let mut ways = c.clone();
+        let mut axes = c.clone();
         for (i, a) in c.iter().enumerate() {
             for (j, b) in c[..i].iter().enumerate() {
                 let along = (b - a).try_normalize(0.0).unwrap_or_default();
-                let across = |w: Vec3| w - along * w.dot(&along);
-                ways.push(across(across(*a)));
+                // Twice, because the first projection is rounded.
+                let project = |w: Vec3| w - along * w.dot(&along);
+                axes.push(project(project(*a)));
                 for d in &c[..j] {
                     let n = normal(a, b, d);
-                    ways.extend([n, -n]);
+                    axes.extend([n, -n]);
                 }
             }
         }
-        let reach = |n: &Vec3| c.iter().map(|c| n.dot(c)).fold(f64::INFINITY, f64::min);
-        let units = ways.iter().filter_map(|w| w.try_normalize(0.0));
-        units.map(|n| reach(&n)).fold(0.0, f64::max)
+        let distance = |n: &Vec3| c.iter().map(|c| n.dot(c)).fold(f64::INFINITY, f64::min);
+        let units = axes.iter().filter_map(|w| w.try_normalize(0.0));
+        units.map(|n| distance(&n)).fold(0.0, f64::max)
     }
 
-    fn check<const N: usize>(p: &Vec3, corners: [&Vec3; N], found: &Nearest<N>, what: &str) {
+    fn check<const N: usize>(p: &Vec3, corners: [&Vec3; N], found: &ClosestPoint<N>, what: &str) {
         let size = corners.iter().fold(p.norm(), |m, c| m.max(c.norm()));
-        // A few times what the derivation allows where p is as good as in a sliver's plane.
+        // A few times the derived error for a point nearly in a sliver's plane.
         let error = size * EPSILON * if cfg!(feature = "single") { 500.0 } else { 5e4 };
         assert!(found.weights.iter().all(|w| *w >= 0.0), "{what} {found:?}");
         let sum: f64 = found.weights.iter().sum();
         assert!((sum - 1.0).abs() <= 4.0 * EPSILON, "{what} {found:?}");
-        let led = mix(&found.weights, corners);
-        assert!((led - found.point).norm() <= 8.0 * EPSILON * size, "{what}");
+        let mixed = mix(&found.weights, corners);
+        assert!(
+            (mixed - found.point).norm() <= 8.0 * EPSILON * size,
+            "{what}"
+        );
         let distance = (found.point - p).norm();
         assert!((distance * distance - found.distance2).abs() <= 8.0 * EPSILON * size * size);
-        let over = distance - least(p, &corners);
-        assert!(over <= error, "{what} {over} {found:?}");
+        let excess = distance - distance_bound(p, &corners);
+        assert!(excess <= error, "{what} {excess} {found:?}");
     }
 
     #[test]
-    fn no_corner_lies_before_the_nearest_point() {
+    fn no_point_is_closer_than_the_closest_point() {
         let mut r = Random::new(31);
         for kind in 0..6 {
             for round in 0..3000 {
@@ -313,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_inside_is_its_own_nearest() {
+    fn point_inside_is_its_own_closest_point() {
         let mut r = Random::new(32);
         for _ in 0..3000 {
             let corners = [0; 4].map(|_| r.vector(1.0));
@@ -349,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn nan_is_no_distance() {
+    fn nan_input_gives_nan_distance() {
         let nan = Vec3::repeat(f64::NAN);
         let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
         assert!(segment(&nan, &x, &y).distance2.is_nan());

@@ -1,21 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The distance of two objects between two bounds, and their closest points: the GJK algorithm
-//! ([`Simplex`]) on known vertices.
+//! The distance of two objects, with a lower and an upper bound, and their closest points: the GJK algorithm
+//! ([`Simplex`]) on known vertices ([`crate::minkowski`]).
 //!
 //! 1. The closest point of the simplex is an upper bound of the distance; −h(n) is a lower one for every
 //!    unit n, because D is behind the support plane of n.
-//! 2. Take the known difference farthest towards the origin, as long as one is closer than the simplex.
-//! 3. Query towards the origin, or where the sphere fits predict the closest support plane
-//!    ([`SphereFit`]): of balls rolled over a polytope that is the right direction at once.
-//! 4. A direction far from the normal of the best plane found so far is queried only a part of the way: the
-//!    full turn finds the far side of D, and not a corner of the face that is closest.
-//! 5. Stop where the bounds meet, where the origin is inside, or where the distance is known to be larger
-//!    than wanted.
+//! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is closer
+//!    to the origin than the simplex.
+//! 3. Query the direction from the simplex to the origin, or the direction in which the sphere fits
+//!    ([`SphereFit`]) predict the support plane closest to the origin; the prediction is exact at once for
+//!    polytopes rounded by a sphere.
+//! 4. The queried direction is limited to [`MAX_TILT`] from the normal of the best plane found so far: a
+//!    direction farther away returns a vertex on the far side of D instead of a corner of the closest face.
+//! 5. Stop if the bounds meet, if the origin is in the simplex, or if the distance is proven to be larger
+//!    than `max_distance`.
 //!
-//! Outputs: `lower` along `normal` and the points, `upper` apart, are valid for every [`End`];
-//! [`End::Inside`]: the origin is in the simplex, and the points meet.
+//! Outputs, valid for every [`GjkEnd`]: `lower` is a bound along `normal`; `upper` is the distance
+//! of the two points. [`GjkEnd::Inside`]: the origin is in the simplex, and the points coincide.
 
 use crate::gjk::barycentric;
 use crate::gjk::intersect::{CAPACITY, Enclosing};
@@ -27,33 +29,33 @@ use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS};
 
-/// The largest tangent of the angle between a query and the normal of the best plane. Measured on nine sets of
-/// pairs: without, 12 % more support points; insensitive from 0.5 to 0.8.
+/// Largest tangent of the angle between a queried direction and the normal of the best plane. Measured on nine
+/// sets of pairs: 12 % more support points without the limit; insensitive from 0.5 to 0.8.
 const MAX_TILT: f64 = 0.6;
 
 /// Stop criterion of the bounds.
 pub struct Goal {
-    /// Of the gap between them, metres.
+    /// Largest gap between the bounds, metres.
     pub tolerance: f64,
-    /// Taken off the distance, metres: the margins. The tolerance does not tell a touch from a gap, and a
-    /// separating plane is wanted.
+    /// Sum of the margins, subtracted from the distance, metres. If the result is near 0, the search continues
+    /// until a separating plane is found or an overlap of the margins is known.
     pub margin: f64,
-    /// Distances larger than this are not refined, metres.
+    /// The search ends when the distance is proven to be larger than this, metres.
     pub max_distance: f64,
-    /// The largest number of support calls.
+    /// Limit on the support points.
     pub max_samples: u64,
 }
 
-/// Why the search ended.
+/// Cause of the end of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// The goal is met.
+pub enum GjkEnd {
+    /// The criterion of [`Goal`] is met.
     Met,
     /// The simplex contains the origin.
     Inside,
-    /// Nothing is closer than the simplex: what is left is rounding.
+    /// No point of D is closer than the simplex by more than rounding.
     Stalled,
-    /// The support limit is reached.
+    /// The limit on the support points is reached.
     Limit,
 }
 
@@ -68,12 +70,12 @@ pub struct ClosestPoints {
     pub upper: f64,
     pub point1: Vec3,
     pub point2: Vec3,
-    /// Support calls.
+    /// Number of support points.
     pub iterations: u64,
-    pub end: End,
+    pub end: GjkEnd,
 }
 
-/// Finds the closest points, from unit `start`; `fit` may hold the radii of the last query.
+/// Finds the closest points. Starts along unit `start`; `fit` may hold the sphere radii of the last query.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -84,14 +86,14 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
     start: &Vec3,
     goal: &Goal,
 ) -> Result<ClosestPoints, Fault> {
-    let mut search = Search {
+    let mut search = ClosestPointsSearch {
         query,
         fit,
         set: VertexSet::EMPTY,
         simplex: Simplex::EMPTY,
         to_origin: *start,
         upper: f64::INFINITY,
-        has_missed: false,
+        is_prediction_failed: false,
     };
     let before = search.query.support_points();
     let end = search.run(goal, start)?;
@@ -109,8 +111,8 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
     })
 }
 
-/// Two objects on the way to their closest points.
-struct Search<'s, 'q, A, B> {
+/// State of a search.
+struct ClosestPointsSearch<'s, 'q, A, B> {
     query: &'s mut SupportQuery<'q, A, B>,
     fit: &'s mut SphereFit,
     set: VertexSet<CAPACITY>,
@@ -119,15 +121,15 @@ struct Search<'s, 'q, A, B> {
     to_origin: Vec3,
     /// The distance of the simplex, metres.
     upper: f64,
-    /// The last query was a prediction that missed, so the next one is none.
-    has_missed: bool,
+    /// True if the last query was a prediction that failed; the next query is then no prediction.
+    is_prediction_failed: bool,
 }
 
-impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
-    /// Returns the closest points, or points that meet.
-    fn points(&self, end: End) -> (Vec3, Vec3) {
+impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
+    /// Returns the closest points; if the origin is in the simplex, two coincident points of the objects.
+    fn points(&self, end: GjkEnd) -> (Vec3, Vec3) {
         let point = |corner: Vertex| self.set.point(corner.pair);
-        if end == End::Inside {
+        if end == GjkEnd::Inside {
             let corners = self.simplex.tetrahedron().map(point);
             return Enclosing { corners }.witnesses();
         }
@@ -135,23 +137,24 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         barycentric::witnesses(&self.simplex.weights(), corners.each_ref())
     }
 
-    fn run(&mut self, goal: &Goal, start: &Vec3) -> Result<End, Fault> {
+    /// Runs the search.
+    fn run(&mut self, goal: &Goal, start: &Vec3) -> Result<GjkEnd, Fault> {
         let first = self.query.evaluate_signed(&mut self.set, start)?.vertex();
         self.add(first);
         let mut closest = f64::INFINITY;
         let mut stalls = 0;
-        // Of the last query: whether it was to bring the simplex closer, and whether it was tilted.
-        let (mut is_step, mut was_tilted) = (false, false);
+        // The last query was made towards the origin; the last direction towards it was limited.
+        let (mut is_step, mut was_limited) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_STEPS {
                 match self.add_farthest(KNOWN_LEVEL * self.gap(goal)) {
-                    None => return Ok(End::Inside),
+                    None => return Ok(GjkEnd::Inside),
                     Some(true) => (),
                     Some(false) => break,
                 }
             }
-            if self.has_met(goal) {
-                return Ok(End::Met);
+            if self.is_goal_met(goal) {
+                return Ok(GjkEnd::Met);
             }
             if is_step {
                 if !(self.upper < closest) {
@@ -160,94 +163,96 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
                 closest = self.upper;
             }
             let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
-                return Ok(End::Stalled);
+                return Ok(GjkEnd::Stalled);
             };
-            is_step = !self.has_predicted(&dir, self.gap(goal))?;
+            is_step = !self.query_prediction(&dir, self.gap(goal))?;
             if !is_step {
                 continue;
             }
-            let tilted = self.tilted(&dir).filter(|_| !was_tilted);
-            was_tilted = tilted.is_some();
-            if let Some(n) = tilted {
+            let limited = self.limit_tilt(&dir).filter(|_| !was_limited);
+            was_limited = limited.is_some();
+            if let Some(n) = limited {
                 is_step = false;
                 self.query.evaluate_signed(&mut self.set, &n)?;
                 continue;
             }
             let w = self.query.evaluate_signed(&mut self.set, &dir)?.vertex();
             if self.height(&dir, &w.w) > 0.5 * self.query.scale.contact_eps() && !self.add(w) {
-                return Ok(End::Inside);
+                return Ok(GjkEnd::Inside);
             }
         }
-        Ok(if self.has_met(goal) {
-            End::Met
+        Ok(if self.is_goal_met(goal) {
+            GjkEnd::Met
         } else {
-            End::Limit
+            GjkEnd::Limit
         })
     }
 
-    /// Returns how far apart the bounds may be, metres; NaN is infinite.
+    /// Returns the largest accepted gap between the bounds, metres; a NaN tolerance counts as infinite.
     fn gap(&self, goal: &Goal) -> f64 {
         self.query.scale.tolerance(goal.tolerance)
     }
 
-    fn has_met(&self, goal: &Goal) -> bool {
-        let touch = self.query.scale.contact_eps();
+    /// Returns whether the bounds meet the goal.
+    fn is_goal_met(&self, goal: &Goal) -> bool {
+        let contact_eps = self.query.scale.contact_eps();
         let bound = -self.query.upper.depth;
         let (lower, upper) = (bound - goal.margin, self.upper - goal.margin);
-        // A separating plane, of the cores at least where the margins overlap, is wanted even where the gap
-        // is closed without one.
-        let has_plane = |distance: f64| distance >= -touch;
-        let is_told =
-            has_plane(lower) || !(upper > touch) && (self.upper > touch || has_plane(bound));
-        lower > goal.max_distance || is_told && self.upper - bound <= self.gap(goal)
+        // Closed bounds do not suffice: the sign of the result must be decided too. It is if a plane separates
+        // the objects, or if their margins overlap and the cores are known to be separated or to touch.
+        let has_plane = |distance: f64| distance >= -contact_eps;
+        let is_sign_decided = has_plane(lower)
+            || !(upper > contact_eps) && (self.upper > contact_eps || has_plane(bound));
+        lower > goal.max_distance || is_sign_decided && self.upper - bound <= self.gap(goal)
     }
 
-    /// Returns how much farther along `n` a point is than the simplex.
+    /// Returns by how much a point is farther along `n` than the simplex.
     #[inline(always)]
     fn height(&self, n: &Vec3, w: &Vec3) -> f64 {
         n.dot(&(w - self.simplex.corners()[0].w))
     }
 
-    /// Returns the direction [`MAX_TILT`] from the best plane's normal towards unit `dir`, `None` where `dir`
-    /// is as close to it.
-    fn tilted(&self, dir: &Vec3) -> Option<Vec3> {
+    /// Returns the direction [`MAX_TILT`] from the best plane's normal towards unit `dir`; `None` if `dir`
+    /// itself is within that angle.
+    fn limit_tilt(&self, dir: &Vec3) -> Option<Vec3> {
         let best = self.query.upper.dir;
         let along = dir.dot(&best);
-        let across = dir - best * along;
-        let length = across.norm();
+        let perpendicular = dir - best * along;
+        let length = perpendicular.norm();
         if !(length > MAX_TILT * along) || !(length > 0.0) {
             return None;
         }
-        unit(&(best + across * (MAX_TILT / length)))
+        unit(&(best + perpendicular * (MAX_TILT / length)))
     }
 
-    /// Queries where the sphere fits predict the closest plane; returns whether they do. `dir`: the unit
-    /// direction from the simplex to the origin.
-    fn has_predicted(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
+    /// Queries the direction in which the sphere fits predict the closest support plane. Returns whether there
+    /// was a useful prediction. `dir`: unit direction from the simplex to the origin.
+    fn query_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
         if self.set.is_full() {
             compact(self.query, &mut self.set, self.simplex.slots());
             self.fit.restart();
         }
         let bound = self.query.upper;
         self.fit.update(&self.set, bound.index);
-        if core::mem::take(&mut self.has_missed) {
+        if core::mem::take(&mut self.is_prediction_failed) {
             return Ok(false);
         }
         let predicted = self.fit.predict(&self.set, &self.simplex.corners(), dir);
-        // A gain, and no closer than the objects are known to come.
+        // It raises the lower bound, and not above the upper one.
         let is_useful =
             |value: f64| value < bound.depth - MIN_GAIN * gap && -value < self.upper + gap;
         let Some((n, value)) = predicted.filter(|p| is_useful(p.1)) else {
             return Ok(false);
         };
         let sample = self.query.evaluate_signed(&mut self.set, &n)?;
-        self.has_missed = !(sample.h <= value + PREDICTION_REL_TOL * (bound.depth - value));
-        self.fit.is_confirmed = !self.has_missed;
+        self.is_prediction_failed =
+            !(sample.h <= value + PREDICTION_REL_TOL * (bound.depth - value));
+        self.fit.is_confirmed = !self.is_prediction_failed;
         Ok(true)
     }
 
-    /// Adds the known difference farthest towards the origin if it is farther than the simplex by `level`,
-    /// metres. Returns whether it is; `None` where the simplex contains the origin.
+    /// Adds the known difference farthest towards the origin if it is farther than the simplex by more than
+    /// `level`, metres. Returns whether it was added; `None` if the simplex then contains the origin.
     fn add_farthest(&mut self, level: f64) -> Option<bool> {
         let w = self.set.farthest_vertex(&self.to_origin);
         if self.height(&self.to_origin, &w.w) > level * self.to_origin.norm() {
@@ -257,11 +262,11 @@ impl<A: SupportMap, B: SupportMap> Search<'_, '_, A, B> {
         }
     }
 
-    /// Adds a point to the simplex; returns `false` where the simplex contains the origin.
+    /// Adds a point to the simplex. Returns `false` if the simplex then contains the origin.
     fn add(&mut self, w: Vertex) -> bool {
         let scale = &self.query.scale;
-        let (touch, size2) = (scale.contact_eps(), scale.size2());
-        let Some((to_origin, distance2)) = self.simplex.add(w, touch, size2) else {
+        let (contact_eps, size2) = (scale.contact_eps(), scale.size2());
+        let Some((to_origin, distance2)) = self.simplex.add(w, contact_eps, size2) else {
             return false;
         };
         (self.to_origin, self.upper) = (to_origin, larger(distance2, 0.0).sqrt());
@@ -275,8 +280,8 @@ mod tests {
     use crate::math::{EPSILON, from_real, to_real};
     use crate::shapes::{Random, ball, corners, difference, hull, placed};
 
-    /// Boxes face to face and balls: the bounds close around the known distance, the points are that far
-    /// apart, and a distance larger than wanted is not refined.
+    /// Tests boxes face to face and balls: the bounds close around the known distance, which is the distance
+    /// of the points, and the search ends early for a distance larger than `max_distance`.
     #[test]
     fn bounds_meet_at_the_distance() {
         let mut r = Random::new(61);
@@ -305,7 +310,7 @@ mod tests {
                 }
             };
             let found = find(f64::INFINITY).unwrap();
-            assert_eq!(found.end, End::Met);
+            assert_eq!(found.end, GjkEnd::Met);
             assert!((found.lower - gap).abs() <= 1e-5, "round {round}");
             assert!((found.upper - gap).abs() <= 1e-5, "round {round}");
             assert!(found.lower <= gap + 1e-6 && found.upper >= gap - 1e-6);
@@ -316,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn objects_that_intersect_have_the_origin_inside() {
+    fn intersecting_objects_have_the_origin_inside() {
         let mut r = Random::new(62);
         for _ in 0..200 {
             let cube = corners(Vec3::repeat(0.5));
@@ -333,14 +338,15 @@ mod tests {
             let start = r.direction();
             let mut query = SupportQuery::new(&md, None);
             let found = closest_points(&mut query, &mut fit, &start, &goal).unwrap();
-            assert_eq!(found.end, End::Inside);
+            assert_eq!(found.end, GjkEnd::Inside);
             assert!(found.upper < 1e-6 && found.lower < 0.0);
         }
     }
 
-    /// Two polygons as thin as rounding, almost in one plane: the bounds that meet are those of the points.
+    /// Tests two polygons as thin as rounding, almost in one plane: if the bounds are reported to meet, the distance
+    /// of the points is within the bounds.
     #[test]
-    fn plates_that_touch_have_points_within_the_bounds() {
+    fn touching_plates_have_points_within_the_bounds() {
         let mut r = Random::new(63);
         for round in 0..3000 {
             let turn = r.rotation();
@@ -367,7 +373,10 @@ mod tests {
             let gap = found.upper - found.lower;
             // The weights of the corners are rounded too.
             let is_closed = gap <= 16.0 * query.scale.contact_eps();
-            assert!(found.end != End::Met || is_closed, "round {round}: {gap}");
+            assert!(
+                found.end != GjkEnd::Met || is_closed,
+                "round {round}: {gap}"
+            );
         }
     }
 }

@@ -4,20 +4,23 @@
 //! The intersection test, and the proof that D contains the origin: by a portal from an interior point
 //! (G. Snethen, "XenoCollide", Game Programming Gems 7), else by GJK ([`Simplex`]).
 //!
-//! 1. Query the first direction: most pairs that are apart end here.
-//! 2. The interior point is the difference of the centers; where there are none, a point of a chord of D.
-//!    Find a portal of its origin ray, and move it outwards until the origin is on its inner side
-//!    ([`crate::mpr::portal`]).
-//! 3. Where vertices tie: move a simplex towards the origin until it contains it.
-//! 4. Where the origin stays within rounding of the simplex (it is on an edge of known vertices, as in
-//!    stacks of aligned boxes), a portal from a point well inside D decides.
+//! 1. Query the first direction: most separated pairs end here.
+//! 2. The interior point is the difference of the centers; without centers, a point on the segment between
+//!    two opposite support points. Find a portal of its origin ray, and move the portal outwards until the
+//!    origin is on its inner side ([`crate::mpr::portal`]).
+//! 3. If no such portal is found (several vertices are equally far): move a simplex towards the origin until
+//!    the simplex contains it.
+//! 4. If the origin stays on the surface of the simplex within rounding (it is on an edge of known vertices,
+//!    as in stacks of aligned boxes), the case is resolved by a portal from an interior point.
 //!
-//! Departures. A known difference beyond the origin replaces a query: the direction does not separate. The
-//! simplex starts from the interior point where there is one. A touch within the contact epsilon is no
-//! intersection: the origin must be inside by more, and a D without volume has no inside.
+//! Departures. If a known difference is beyond the origin, the direction does not separate and is not
+//! queried. The simplex starts from the interior point if there is one. Objects that touch within the contact
+//! epsilon do not intersect: the origin must be inside D by more. So flat Minkowski differences (both objects
+//! in one plane) do not intersect, except with `is_planar`.
 //!
-//! Outputs: `Err(Stop::Separated(n))`: n is a separating axis, or D reaches no farther along it than the
-//! contact epsilon. `Ok`: D contains the origin, or no queried direction separates.
+//! Outputs: `Err(Stop::Separated(n))`: n is a separating axis, or the support value of n is at most the contact
+//! epsilon. `Ok`: D contains the origin. Limitation: `Ok` is also returned in the undecided case, in which
+//! the origin is within rounding of the surface of D and no queried direction separates.
 
 use crate::gjk::barycentric;
 use crate::gjk::simplex::{MAX_STALLS, Simplex, compact, make_room};
@@ -28,21 +31,21 @@ use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
 
-/// The vertices of an intersection test and of the proof of an overlap: a full set is compacted.
+/// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
-/// The share of a chord that is left at either end of it, so that a point in between is in the interior.
-/// Measured on the recorded contacts: 0.05 takes 7 % more support points of pairs apart, 0.5 takes 10 %.
-const CHORD: f64 = 0.25;
+/// Least distance of the interior point from the ends of its segment, relative to the segment's length.
+/// Measured on the recorded contacts: with 0.05 separated pairs take 7 % more support points, with 0.5 10 %.
+const MIN_CHORD_FRACTION: f64 = 0.25;
 
 /// Points of D whose hull contains the origin, within rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Enclosing {
-    /// The corners, the last one repeated where there are fewer than four.
+    /// The corners, the last one repeated if there are fewer than four.
     pub corners: [SupportPoint; 4],
 }
 
 impl Enclosing {
-    /// Takes the points of known differences and of the interior point.
+    /// Makes the simplex of four corners, which are known differences or the interior point.
     fn new<const N: usize>(
         set: &VertexSet<N>,
         corners: &[Vertex; 4],
@@ -55,7 +58,7 @@ impl Enclosing {
         Self { corners }
     }
 
-    /// Returns a point of obj1 and a point of obj2 that meet, within rounding.
+    /// Returns a point of obj1 and a point of obj2 that coincide within rounding.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
         let corners = self.corners.each_ref();
         let origin = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
@@ -63,8 +66,8 @@ impl Enclosing {
     }
 }
 
-/// Tests whether the objects intersect, from unit `first`. `interior`: the difference of trusted centers.
-/// Returns the direction of the least support value met, from which the next query of the pair starts.
+/// Tests whether the objects intersect. Starts along unit `first`. `interior`: the difference of trusted
+/// centers. Returns the direction of the upper bound, in which the next query of the pair can start.
 ///
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
@@ -80,7 +83,7 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
     Ok(query.upper.dir)
 }
 
-/// As [`intersect`], where the first direction does not separate.
+/// Continues [`intersect`] if the first direction does not separate.
 #[inline(never)]
 fn intersect_after_first<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
@@ -89,16 +92,16 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
 ) -> Result<(), Stop> {
     let mut set = VertexSet::<CAPACITY>::EMPTY;
     set.push(&query.upper.dir, first);
-    let c = match query.interior {
-        Some(c) => c,
+    let inner = match query.interior {
+        Some(point) => point,
         None => {
             let dir = unit(&-first.v).unwrap_or(-query.upper.dir);
             find_interior(query, &mut set, first, &dir)?.v
         }
     };
-    let is_shown = find_enclosing_portal(query, &mut set, &c)?.is_some();
+    let is_proven = find_enclosing_portal(query, &mut set, &inner)?.is_some();
     let has_interior = query.interior.is_some() == interior.is_some();
-    if is_shown && has_interior && !query.is_inconsistent {
+    if is_proven && has_interior && !query.is_inconsistent {
         return Ok(());
     }
     if query.is_inconsistent {
@@ -108,10 +111,11 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     contains_origin(query, &mut set, interior, &dir, false).map(|_| ())
 }
 
-/// Shows that D contains the origin by more than the contact epsilon: from the known vertices of the set,
-/// and from queries where these leave a side open. `interior`, a point in the interior of D, is used while
-/// the query trusts it. `dir`, unit, is where the first vertex is looked for. `is_planar`: D is in a plane,
-/// and a triangle or a segment that contains the origin is enough. A full set is compacted: indices change.
+/// Proves that D contains the origin by more than the contact epsilon (see the limitation at the head): with
+/// the known vertices of the set first, and with queries where these do not suffice. `interior`: a point in
+/// the interior of D, used while the query trusts it. `dir`: unit, the first search direction. `is_planar`:
+/// D lies in a plane, and a triangle or a segment that contains the origin suffices. A full set is compacted:
+/// indices change.
 ///
 /// # Errors
 /// As [`intersect`].
@@ -126,7 +130,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     let interior = interior.filter(|_| query.interior.is_some());
     let was_inconsistent = query.is_inconsistent;
     let found = run_gjk(query, set, interior, dir, is_planar);
-    // Again where a callback has contradicted itself, or the interior point is outside.
+    // Repeat if a support function has contradicted itself, or if the interior point is outside.
     let is_tainted = query.is_inconsistent && !was_inconsistent;
     let is_outside = interior.is_some() && query.interior.is_none();
     if found.is_err() || !is_tainted && !is_outside {
@@ -138,8 +142,9 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     run_gjk(query, set, None, dir, is_planar)
 }
 
-/// Returns a point in the interior of D: on the chord of D from a point along unit `dir`, as close to the origin
-/// as [`CHORD`] allows. Queries the chord's other end, and along the ray from the point through the origin.
+/// Returns a point in the interior of D: on the segment from `from` to the support point along unit `dir`, as
+/// close to the origin as [`MIN_CHORD_FRACTION`] allows. Queries `dir`, and the direction from the point to the
+/// origin.
 #[inline(never)]
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
@@ -150,52 +155,56 @@ fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     let far = query.evaluate(set, dir)?;
     let far = set.point(far.pair);
     let closest = barycentric::segment(&Vec3::zeros(), &from.v, &far.v).weights[1];
-    let mut c = from.towards(&far, lesser(larger(closest, CHORD), 1.0 - CHORD));
-    if !(c.v.norm() > query.scale.contact_eps()) {
-        c = c.towards(&far, 0.5);
+    let t = lesser(
+        larger(closest, MIN_CHORD_FRACTION),
+        1.0 - MIN_CHORD_FRACTION,
+    );
+    let mut inner = from.towards(&far, t);
+    if !(inner.v.norm() > query.scale.contact_eps()) {
+        inner = inner.towards(&far, 0.5);
     }
-    if let Some(ray) = unit(&-c.v) {
+    if let Some(ray) = unit(&-inner.v) {
         query.evaluate(set, &ray)?;
     }
-    Ok(c)
+    Ok(inner)
 }
 
-/// Returns a portal of the ray from the interior point `c` that has the origin on its inner side; `None`
-/// where that is not shown.
+/// Returns a portal of the ray from an interior point through the origin that has the origin on its inner
+/// side; `None` if none is found.
 #[inline(always)]
 fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    c: &Vec3,
+    inner: &Vec3,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
-    let distance = c.norm();
+    let distance = inner.norm();
     if !(distance > query.scale.contact_eps()) {
         return Ok(None);
     }
-    let ray = -c / distance;
+    let ray = -inner / distance;
     let length = distance + query.upper.depth;
     let gap = query.scale.contact_eps();
     let Some(mut portal) = discover(query, set, &ray, length, gap, (2.0 * gap / length).sqrt())?
     else {
         return Ok(None);
     };
-    // Each step replaces a corner by a point beyond the origin, or finds nothing above the portal.
+    // Each step replaces a corner by a point beyond the origin, or finds no point above the portal.
     for _ in 0..MAX_STEPS {
         let [a, b, d] = &portal.each_ref().map(|corner| corner.w);
         let n = normal(a, b, d);
         let length = n.norm();
-        let touch = query.scale.contact_eps() * length;
+        let contact_eps = query.scale.contact_eps() * length;
         let offset = n.dot(a);
-        // The normal of a sliver is rounding.
+        // The normal of a sliver is mostly rounding error.
         let edge2 = larger((b - a).norm_squared(), (d - a).norm_squared());
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * query.scale.size() * edge2;
-        if offset > larger(touch, error) {
+        if offset > larger(contact_eps, error) {
             let is_enclosing =
-                n.dot(c) < 0.0 && is_crossed(&portal, &ray, query.scale.height_eps());
+                n.dot(inner) < 0.0 && is_crossed(&portal, &ray, query.scale.height_eps());
             return Ok(is_enclosing.then_some(portal));
         }
         let mut w = set.farthest_vertex(&n);
-        if !(n.dot(&w.w) > touch) {
+        if !(n.dot(&w.w) > contact_eps) {
             if !(length > 0.0) {
                 return Ok(None);
             }
@@ -210,7 +219,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(None)
 }
 
-/// Moves a simplex towards the origin until it contains it, from this interior point or without one.
+/// Moves a simplex towards the origin until the simplex contains it. Starts from the interior point, if any.
 fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
@@ -221,9 +230,9 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
     const { assert!(N >= CAPACITY) };
     let mut dir = *dir;
     let mut simplex = interior.map_or(Simplex::EMPTY, |point| Simplex::of_interior(&point.v));
-    // The square of the distance from the simplex; and whether points on the other side of it, where it is
-    // a triangle, are known.
-    let (mut closest2, mut is_backed) = (f64::INFINITY, false);
+    // The square of the least distance of the simplex from the origin; and, for a triangle, whether a point
+    // on the side away from the origin is known.
+    let (mut closest2, mut has_point_behind) = (f64::INFINITY, false);
     let mut stalls = 0;
     for _ in 0..MAX_STEPS {
         let mut w = set.farthest_vertex(&dir);
@@ -233,11 +242,12 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
             make_room(query, set, simplex.slots());
             w = query.evaluate(set, &dir)?.vertex();
         }
-        let touch = query.scale.contact_eps();
+        let contact_eps = query.scale.contact_eps();
+        let eps2 = contact_eps * contact_eps;
         let was_triangle = simplex.len() == 3;
-        let Some((to, distance2)) = simplex.add(w, touch, query.scale.size2()) else {
-            if !(closest2 > touch * touch || is_backed || simplex.has_interior()) {
-                // The origin is in the plane of the old face, within rounding: D must have another side.
+        let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
+            if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
+                // The origin is in the plane of the old face within rounding: query the other side of D.
                 make_room(query, set, simplex.slots());
                 query.evaluate(set, &-dir)?;
             }
@@ -245,35 +255,35 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
             if simplex.is_certain() {
                 return Ok(Enclosing::new(set, &corners, interior));
             }
-            return decide(query, set, corners, interior, &dir);
+            return resolve_by_portal(query, set, corners, interior, &dir);
         };
-        // Between a point in the interior and another one, the origin is in the interior.
+        // The origin is in the interior of D if it is between an interior point and another point of D.
         let is_between = simplex.has_interior() && simplex.len() == 2;
-        if (is_planar || is_between) && distance2 <= touch * touch {
+        if (is_planar || is_between) && distance2 <= eps2 {
             let [a, b, c] = simplex.corners();
             return Ok(Enclosing::new(set, &[a, b, c, c], interior));
         }
         // Negated for NaN.
-        if !(distance2 > touch * touch && distance2 < closest2) {
+        if !(distance2 > eps2 && distance2 < closest2) {
             stalls += 1;
             if stalls > MAX_STALLS {
                 break;
             }
         }
-        (closest2, is_backed) = (distance2, was_triangle && simplex.len() == 3);
+        (closest2, has_point_behind) = (distance2, was_triangle && simplex.len() == 3);
         let Some(n) = unit(&to) else { break };
         dir = n;
     }
     let [a, b, c] = simplex.corners();
-    decide(query, set, [a, b, c, c], interior, &dir)
+    resolve_by_portal(query, set, [a, b, c, c], interior, &dir)
 }
 
-/// Decides where the origin is on the surface of a simplex, within rounding: a portal from a point between
-/// the simplex and the far side of D, which is well inside however flat the simplex is. Returns the corners
-/// of the simplex where there is no portal: no direction separates.
+/// Resolves the case of an origin on the surface of a simplex within rounding, by a portal from a point
+/// between the simplex and the opposite side of D: that point is well inside D however flat the simplex is.
+/// Returns the corners of the simplex if no portal is found; no queried direction separates then.
 #[cold]
 #[inline(never)]
-fn decide<A: SupportMap, B: SupportMap, const N: usize>(
+fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     mut corners: [Vertex; 4],
@@ -307,9 +317,9 @@ mod tests {
         intersect(md, None, first)
     }
 
-    /// The portal that decides gives corners around the origin.
+    /// Tests that the corners of the portal and the interior point enclose the origin.
     #[test]
-    fn a_portal_decides_between_points_around_the_origin() {
+    fn portal_and_interior_point_enclose_the_origin() {
         let mut r = Random::new(43);
         let mut found = 0;
         for _ in 0..200 {
@@ -322,22 +332,22 @@ mod tests {
             let mut set = VertexSet::<16>::EMPTY;
             set.push(&n, &point);
             let corners = [set.farthest_vertex(&n); 4];
-            let decided = decide(&mut query, &mut set, corners, None, &n).unwrap();
-            // Without a portal the corners are those of the start: one point.
-            if decided.corners[1] != decided.corners[2] {
+            let resolved = resolve_by_portal(&mut query, &mut set, corners, None, &n).unwrap();
+            // Without a portal the corners are those of the start: all equal.
+            if resolved.corners[1] != resolved.corners[2] {
                 found += 1;
-                let (p, q) = decided.witnesses();
+                let (p, q) = resolved.witnesses();
                 assert!((p - q).norm() <= 64.0 * EPSILON);
             }
         }
         assert!(found > 190, "{found}");
     }
 
-    /// Two frusta as thin as plates, 9e-12 apart at their rims. The first portal is three points that are nearly
-    /// on a line with the origin: the rounding of its normal is larger than the gap.
+    /// Tests two frusta as thin as plates, 9e-12 apart at their rims. The corners of the first portal are nearly on
+    /// a line with the origin: the rounding of its normal is larger than the gap.
     #[test]
     #[cfg(not(feature = "single"))]
-    fn a_sliver_portal_encloses_nothing() {
+    fn sliver_portal_does_not_enclose_the_origin() {
         // The radius and the height of either rim in the body's frame, and its rows.
         let frustum = |rims: [[f64; 2]; 2], rows: [f64; 9], at: Vec3| -> crate::shapes::Shape {
             let turn = nalgebra::Matrix3::from_row_slice(&rows);
@@ -400,7 +410,8 @@ mod tests {
         assert!(matches!(found, Err(Stop::Separated(_))), "{found:?}");
     }
 
-    /// A cube turned anyhow and the same over it, aside, with this gap (less than zero: the depth).
+    /// Returns two equal, randomly rotated boxes, one above the other, offset sideways, with this gap (negative:
+    /// the depth).
     fn cubes(gap: f64, r: &mut Random) -> [Vec<Vec3>; 2] {
         let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
         let turn = r.rotation();
@@ -412,10 +423,10 @@ mod tests {
         [Vec3::zeros(), turn * aside].map(|at| placed(&corners(half), &turn, at))
     }
 
-    /// The same bits at every power of two from a micrometre to 1000 km and beyond; a miss comes with a
-    /// separating axis, and swapped objects give the same answer.
+    /// Tests that the results are the same bits at scales that are powers of two, that a miss has a separating
+    /// axis, and that swapped objects give the same result.
     #[test]
-    fn free_of_scale_and_order() {
+    fn result_is_independent_of_scale_and_order() {
         let mut r = Random::new(2);
         for _ in 0..1000 {
             let gap = r.within(-0.1, 0.1);
@@ -440,8 +451,8 @@ mod tests {
         }
     }
 
-    /// Known vertices do not change the answer, and where they surround the origin no call is made. Points
-    /// of the objects meet.
+    /// Tests that known vertices do not change the result, that no call is made if they enclose the origin, and
+    /// that the witness points coincide.
     #[test]
     fn known_vertices_prove_an_intersection() {
         let mut r = Random::new(6);
@@ -473,9 +484,9 @@ mod tests {
         assert!(without > 1000, "{without}");
     }
 
-    /// From the centers, which are trusted: the same answers, also a few ulps from the touch.
+    /// Tests that the results with trusted centers are the same, also for gaps and depths of a few ulps.
     #[test]
-    fn from_centres() {
+    fn centers_do_not_change_the_result() {
         let mut r = Random::new(7);
         for ulps in [100.0, 1e6, 1e13] {
             for _ in 0..300 {
@@ -490,7 +501,7 @@ mod tests {
                     v1: Vec3::zeros(),
                     v2: at,
                 };
-                // On the line of the centers, beside it, and round.
+                // The upper box on the line of the centers, and beside it; below: balls.
                 let aside = turn * Vec3::x() * (0.3 * size.x);
                 for by in [Vec3::zeros(), aside] {
                     let at = up * (2.0 * size.z + gap) + by;
@@ -506,15 +517,15 @@ mod tests {
                 assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
             }
         }
-        // The same center.
+        // Concentric balls.
         let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
         let found = intersect(&md, Some(&SupportPoint::default()), &Vec3::x());
         assert!(found.is_ok());
     }
 
-    /// A center outside its object costs queries, and changes no answer that a queried plane can correct.
+    /// Tests that a center whose use the query has given up does not change the result.
     #[test]
-    fn a_centre_outside_is_not_used() {
+    fn center_outside_is_not_used() {
         let mut r = Random::new(8);
         for _ in 0..500 {
             let gap = r.within(0.02, 0.3);

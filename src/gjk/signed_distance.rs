@@ -1,22 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The signed distance of two objects: one continuous function through the touch.
+//! The signed distance of two objects with margins: a function that is continuous at contact.
 //!
-//! 1. The signed distance is −min h(n) over unit n. Apart, the minimum is the separating plane farthest
-//!    from both objects; overlapping, it is the penetration depth. −h(n) is a lower bound for every n.
-//! 2. Apart, both bounds come from [`closest_points`]. Overlapping, they are those of the global minimum,
-//!    which the caller provides.
-//! 3. *Margins* are balls added all around: h grows by their radii for every n, so the signed distance is
-//!    that of the cores less both margins, exactly, on both sides of the touch.
+//! 1. The signed distance is −min h(n) over all unit n: the distance of separated objects, minus the
+//!    penetration depth of overlapping ones. −h(n) is a lower bound for every n.
+//! 2. For separated objects both bounds come from [`closest_points`], for overlapping ones from the global
+//!    minimum of the depth, which the caller provides as a function.
+//! 3. A *margin* is a ball added to an object, which is then called the *core*. It increases h(n) by its
+//!    radius for every n, so the signed distance is exactly that of the cores minus both margins, for
+//!    separated and for overlapping objects.
 //!
-//! The state of the last query chooses where the next one starts, and proves nothing.
+//! The state of the last query only selects where the search starts; no bound depends on it.
 //!
-//! Outputs: both bounds are proven, whatever `is_limited` says; the points are on the surfaces with their
-//! margins.
+//! Outputs: both bounds are valid, also if `is_limited`. The points lie on the surfaces of the objects with
+//! their margins.
 
 use crate::contact::{Penetration, Settings};
-use crate::gjk::closest_points::{ClosestPoints, End, Goal, closest_points};
+use crate::gjk::closest_points::{ClosestPoints, GjkEnd, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
 use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::round_fit::SphereFit;
@@ -30,53 +31,54 @@ pub struct Wanted {
     pub margin1: f64,
     /// Radius of the ball around obj2, metres, not negative.
     pub margin2: f64,
-    /// Distances greater than this need not be refined, metres.
+    /// The search ends when the distance is proven to be greater than this, metres.
     pub max_distance: f64,
-    /// The tolerance is that of the gap between the bounds.
+    /// The tolerance (of the gap between the bounds) and the limits.
     pub settings: Settings,
 }
 
 impl Wanted {
+    /// Returns the sum of the margins, metres.
     fn margin(&self) -> f64 {
         self.margin1 + self.margin2
     }
 }
 
-/// A signed distance with its bounds: positive apart, negative overlapping.
+/// A signed distance with its bounds: positive for separated objects, negative for overlapping ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
-    /// −h(normal), metres: proven, apart and overlapping.
+    /// Lower bound: −h(normal), metres.
     pub lower: f64,
-    /// Proven too, metres.
+    /// Upper bound, metres.
     pub upper: f64,
-    /// Unit, the way obj2 moves to be farther.
+    /// Unit; moving obj2 along it increases the distance.
     pub normal: Vec3,
-    /// On the surface of obj1 with its margin.
+    /// Witness point on the surface of obj1 with its margin.
     pub point1: Vec3,
-    /// On the surface of obj2 with its margin.
+    /// Witness point on the surface of obj2 with its margin.
     pub point2: Vec3,
-    /// Of the solver.
+    /// Number of iterations of the solver.
     pub iterations: u64,
-    /// Overlap; a touch within rounding is none, and its distance is 0.
+    /// True if the objects overlap. Objects that touch within rounding do not; their distance is 0.
     pub is_hit: bool,
-    /// The bounds have not met within the support limit.
+    /// True if the gap between the bounds exceeds the tolerance: a limit or rounding ended the search.
     pub is_limited: bool,
 }
 
-/// Computes the signed distance of the objects with their margins, from the state of the last query of the pair, or
-/// unit `cold`. `minimum` computes the penetration depth of the cores from a state; where they are apart, it stores
-/// the axis that separates them.
+/// Computes the signed distance of the objects with their margins. Starts from the state of the pair's last
+/// query, else from unit `cold_dir`. `minimum` computes the penetration depth of the cores from a state; if
+/// they are separated, it stores the separating axis in the state.
 ///
 /// # Errors
 /// [`Fault`].
 pub fn signed_distance<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     wanted: &Wanted,
-    cold: &Vec3,
+    cold_dir: &Vec3,
     state: &mut WarmStart,
     mut minimum: impl FnMut(&mut WarmStart, &mut Penetration) -> Result<(), Stop>,
 ) -> Result<Distance, Fault> {
-    // Returns the answer for cores that overlap, `None` where they are apart.
+    // Returns the result for overlapping cores; `None` if they are separated.
     let mut depth = |state: &mut WarmStart| {
         let mut hit = Penetration::default();
         let found = if_overlapping(minimum(state, &mut hit))?;
@@ -87,31 +89,31 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
             return Ok(distance);
         }
     }
-    let start = state.separating_axis().map_or(*cold, |axis| axis.dir);
-    let (mut cores, radius, mut touch) = find_cores(md, wanted, &start, state.radius)?;
-    // Without a separating plane the proof decides, however close the bounds are.
-    let is_open = cores.end != End::Limit && !(cores.lower >= -touch);
-    if cores.end == End::Inside || is_open {
+    let start = state.separating_axis().map_or(*cold_dir, |axis| axis.dir);
+    let (mut cores, radius, mut contact_eps) = find_cores(md, wanted, &start, state.radius)?;
+    // Without a separating plane the overlap test decides, however close the bounds are.
+    let is_undecided = cores.end != GjkEnd::Limit && !(cores.lower >= -contact_eps);
+    if cores.end == GjkEnd::Inside || is_undecided {
         *state = WarmStart::guess(&cores.normal);
         if let Some(distance) = depth(state)? {
             return Ok(distance);
         }
-        // The proof decides, whatever one support value is. The points stay those where the origin was
-        // met.
+        // The overlap test found no overlap. Use its axis, even if the support value there is positive within
+        // rounding, and keep the witness points.
         let normal = state.dir;
         let h = normal.dot(&md.support(&normal)?.v);
-        touch = larger(touch, h.abs());
+        contact_eps = larger(contact_eps, h.abs());
         (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
-        let is_closed = cores.upper <= larger(touch, wanted.settings.tolerance);
-        cores.end = if is_closed { End::Met } else { End::Limit };
+        let is_met = cores.upper <= larger(contact_eps, wanted.settings.tolerance);
+        cores.end = if is_met { GjkEnd::Met } else { GjkEnd::Limit };
     }
-    let distance = distance_apart(&cores, touch, wanted);
-    *state = WarmStart::apart(cores.normal, larger(distance.lower, 0.0), radius);
+    let distance = distance_apart(&cores, contact_eps, wanted);
+    *state = WarmStart::separated(cores.normal, larger(distance.lower, 0.0), radius);
     Ok(distance)
 }
 
 /// Finds the closest points of the cores. Returns them with the radii of the sphere fits and the contact
-/// epsilon, metres. In a frame of its own, which is left before a minimum is looked for.
+/// epsilon, metres. Not inlined, so that its stack frame is released before `minimum` runs.
 #[inline(never)]
 fn find_cores<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
@@ -131,11 +133,11 @@ fn find_cores<A: SupportMap, B: SupportMap>(
     Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
 }
 
-/// Returns the distance of cores that overlap.
+/// Returns the signed distance of objects with overlapping cores.
 fn overlapping_distance(hit: &Penetration, wanted: &Wanted) -> Distance {
     let n = hit.normal;
     let margin = wanted.margin();
-    // No depth is minus nothing.
+    // Avoids returning -0.0.
     let lower = if hit.depth + margin > 0.0 {
         -hit.depth - margin
     } else {
@@ -153,25 +155,25 @@ fn overlapping_distance(hit: &Penetration, wanted: &Wanted) -> Distance {
     }
 }
 
-/// Returns the distance of cores that are apart, `touch` being rounding, metres.
-fn distance_apart(cores: &ClosestPoints, touch: f64, wanted: &Wanted) -> Distance {
+/// Returns the signed distance of objects with separated cores. `contact_eps`: metres.
+fn distance_apart(cores: &ClosestPoints, contact_eps: f64, wanted: &Wanted) -> Distance {
     let margin = wanted.margin();
-    // Points of the surfaces on the line through the closest points of the cores. Of cores that touch, the
-    // line is rounding.
-    let along = if cores.upper > touch {
+    // The witness points are on the line through the closest points of the cores; if the cores touch, that
+    // line is rounding error, and the normal replaces it.
+    let along = if cores.upper > contact_eps {
         (cores.point2 - cores.point1) / cores.upper
     } else {
         cores.normal
     };
     let (mut lower, mut upper) = (cores.lower - margin, cores.upper - margin);
-    // Of cores that touch within rounding no query tells more.
-    let is_touch = cores.lower >= -touch && cores.upper <= touch;
-    let mut is_limited = cores.end != End::Met && !is_touch;
-    if lower.abs() <= touch + 4.0 * EPSILON * margin {
+    // If the cores touch within rounding, further queries cannot improve the bounds.
+    let is_touch = cores.lower >= -contact_eps && cores.upper <= contact_eps;
+    let mut is_limited = cores.end != GjkEnd::Met && !is_touch;
+    if lower.abs() <= contact_eps + 4.0 * EPSILON * margin {
         lower = 0.0;
         upper = larger(upper, 0.0);
-        // The bounds that are returned decide.
-        is_limited &= !(upper <= larger(touch, wanted.settings.tolerance));
+        // Recompute the flag from the clamped bounds.
+        is_limited &= !(upper <= larger(contact_eps, wanted.settings.tolerance));
     }
     Distance {
         lower,

@@ -1,22 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The simplex of the GJK algorithm: its closest feature to the origin, after each new point (E. Gilbert,
-//! D. Johnson and S. Keerthi, "A Fast Procedure for Computing the Distance between Complex Objects in
-//! Three-Dimensional Space", IEEE J. Robotics and Automation 4(2), 1988).
+//! The simplex of the GJK algorithm: computes its closest feature to the origin after each new point
+//! (E. Gilbert, D. Johnson and S. Keerthi, "A Fast Procedure for Computing the Distance between Complex
+//! Objects in Three-Dimensional Space", IEEE J. Robotics and Automation 4(2), 1988).
 //!
-//! 1. n points from the closest point of the simplex to the origin. The new point w is farther along n
-//!    than the simplex, so that a feature with w is closest.
-//! 2. Of two or three points, the signs of the barycentric coordinates tell the feature; they are the weights of
-//!    the corners in the closest point.
-//! 3. Of four, the origin is on the inner side of face w, a, b when det(w, a, b) > 0 (base abc wound so
-//!    that its normal is n), and inside the tetrahedron when that holds for all three new faces.
+//! 1. Let n be the direction from the closest point of the simplex to the origin. The new point w is farther
+//!    along n than the simplex, so the new closest feature contains w.
+//! 2. Two or three points: the signs of the barycentric coordinates select the feature; the coordinates are
+//!    the weights of the corners in the closest point.
+//! 3. Four points: the origin is on the inner side of face w, a, b if det(w, a, b) > 0 (base abc wound so
+//!    that its normal is n), and inside the tetrahedron if that holds for all three new faces.
 //!
-//! Departures. In a simplex as flat as rounding, the old edge of a new face may be the closest feature. Near
-//! the origin the closest point is mostly rounding error, the normal of a face is not: a face is left along
-//! its normal, and an origin within the contact epsilon of an edge counts as one in the face. No length is
-//! compared with an absolute epsilon. The new point need not be a support point: step 1 holds for any known
-//! difference that is farther along n.
+//! Departures from the paper:
+//! - The old edge of a new face is tested too: in nearly flat simplices it can be the closest feature.
+//! - The search direction of a face is its normal, not the direction from the closest point, which is mostly
+//!   rounding error near the origin.
+//! - An origin within the contact epsilon of an edge counts as inside the face.
+//! - No length is compared with an absolute epsilon.
+//! - The new point need not be a support point: step 1 holds for any known difference farther along n.
 
 use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
 use crate::minkowski::query::SupportQuery;
@@ -24,8 +26,8 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// The steps that bring a simplex no closer to the origin before what is left is rounding. One finds the other side of
-/// a face that the origin is on.
+/// Number of steps without progress towards the origin after which the search stops. One such step is normal
+/// if the origin lies on a face: it finds the other side of that face.
 pub const MAX_STALLS: u32 = 3;
 
 /// A simplex of points of D: at most three corners, and a slot for the next point.
@@ -34,11 +36,11 @@ pub const MAX_STALLS: u32 = 3;
 #[derive(Clone, Copy)]
 pub struct Simplex {
     slots: [Vertex; 4],
-    /// The slots of the corners, the last one repeated where there are fewer. Three are wound so that
-    /// their normal looks to the origin.
+    /// The slots of the corners, the last one repeated if there are fewer than three. Three are wound so that
+    /// their normal points to the origin.
     order: [usize; 3],
     len: usize,
-    /// Those of the corners in the closest point.
+    /// Barycentric coordinates of the closest point.
     weights: [f64; 3],
     /// The slot of the point added last.
     newest: usize,
@@ -50,8 +52,9 @@ struct Feature {
     order: [usize; 3],
     len: usize,
     weights: [f64; 3],
-    /// To the origin, of any length.
+    /// Search direction, towards the origin; of any length.
     dir: Vec3,
+    /// Square of the distance from the origin, m².
     distance2: f64,
 }
 
@@ -68,7 +71,7 @@ impl Simplex {
         newest: 0,
     };
 
-    /// Returns the simplex whose one corner is a point in the interior of D.
+    /// Returns the simplex whose only corner is a point in the interior of D.
     #[inline(always)]
     pub fn of_interior(c: &Vec3) -> Self {
         let mut simplex = Self::EMPTY;
@@ -77,7 +80,7 @@ impl Simplex {
         simplex
     }
 
-    /// Returns the corners, the last one repeated where there are fewer than three.
+    /// Returns the corners, the last one repeated if there are fewer than three.
     #[inline(always)]
     pub fn corners(&self) -> [Vertex; 3] {
         self.order.map(|i| self.slots[i & 3])
@@ -94,16 +97,16 @@ impl Simplex {
         self.len
     }
 
-    /// Returns the corners and the point added last: the tetrahedron where [`Simplex::add`] returned `None`.
+    /// Returns the corners and the point added last: the tetrahedron, if [`Simplex::add`] has returned `None`.
     #[inline(always)]
     pub fn tetrahedron(&self) -> [Vertex; 4] {
         let [a, b, c] = self.corners();
         [a, b, c, self.slots[self.newest & 3]]
     }
 
-    /// Returns whether the origin is on the inner side of the old face by more than rounding, where
-    /// [`Simplex::add`] returned `None`. (The normal of a sliver may look to either side.) A face with the
-    /// interior point is inside D, and rounding there decides nothing.
+    /// Returns whether the origin is on the inner side of the old face by more than rounding, after
+    /// [`Simplex::add`] has returned `None`. (The normal of a sliver may point to either side.) If the interior
+    /// point is a corner, the old face need not be tested: it contains that point and lies inside D.
     pub fn is_certain(&self) -> bool {
         if self.has_interior() {
             return true;
@@ -119,7 +122,7 @@ impl Simplex {
         }
     }
 
-    /// Returns the corners and the points that were corners.
+    /// Returns the storage: the corners and discarded ones.
     #[inline(always)]
     pub fn slots(&mut self) -> &mut [Vertex] {
         &mut self.slots
@@ -135,41 +138,41 @@ impl Simplex {
                 .any(|corner| corner.pair.is_interior())
     }
 
-    /// Adds a point and keeps the feature closest to the origin. `touch`: the distance below which the
-    /// origin is on a feature, metres. `size2`: the square of a length that no corner exceeds.
+    /// Adds a point and keeps the feature closest to the origin. `contact_eps`: distance below which the
+    /// origin counts as on a feature, metres. `size2`: square of an upper bound of the corners' lengths, m².
     ///
-    /// Returns the direction to the origin, of any length, and the square of the distance, m². `None`: the
-    /// origin is inside the tetrahedron, and off its three new faces by more than `touch`; the distance
-    /// from the old face is not tested.
+    /// Returns the search direction, of any length, and the square of the distance, m². `None`: the origin is
+    /// inside the tetrahedron, at least `contact_eps` from its three new faces; the distance from the old face
+    /// is not tested.
     #[inline(always)]
-    pub fn add(&mut self, point: Vertex, touch: f64, size2: f64) -> Option<(Vec3, f64)> {
+    pub fn add(&mut self, point: Vertex, contact_eps: f64, size2: f64) -> Option<(Vec3, f64)> {
         let [i, j, k] = self.order;
         let free = (!(1_u32 << i | 1 << j | 1 << k)).trailing_zeros() as usize & 3;
         self.slots[free] = point;
         self.newest = free;
         let w = point.w;
         let feature = match self.len {
-            0 => self.corner(free, [1.0, 0.0, 0.0]),
-            1 => self.line(i, free, touch),
+            0 => self.corner_feature(free, [1.0, 0.0, 0.0]),
+            1 => self.first_segment(i, free, contact_eps),
             2 => {
                 let [a, b] = [i, j].map(|slot| &self.slots[slot & 3].w);
                 let n = normal(a, b, &w);
-                // NaN, or a flat D: either side.
+                // If n·w is NaN or D is flat, either side will do.
                 if n.dot(&w) > 0.0 {
-                    self.triangle([j, i, free], -n, touch)
+                    self.triangle([j, i, free], -n, contact_eps)
                 } else {
-                    self.triangle([i, j, free], n, touch)
+                    self.triangle([i, j, free], n, contact_eps)
                 }
             }
-            _ => self.faces(free, touch, size2)?,
+            _ => self.closest_new_face(free, contact_eps, size2)?,
         };
         (self.order, self.len, self.weights) = (feature.order, feature.len, feature.weights);
         Some((feature.dir, feature.distance2))
     }
 
-    /// Returns a corner. `weights`: any that sum to 1.
+    /// Returns a corner as a feature. `weights`: any with sum 1, since the feature repeats the corner three times.
     #[inline(always)]
-    fn corner(&self, i: usize, weights: [f64; 3]) -> Feature {
+    fn corner_feature(&self, i: usize, weights: [f64; 3]) -> Feature {
         let w = &self.slots[i & 3].w;
         Feature {
             order: [i; 3],
@@ -187,14 +190,14 @@ impl Simplex {
         let ab = a - b;
         let t = -b.dot(&ab);
         let length2 = ab.norm_squared();
-        // NaN and a segment without length end at a corner.
+        // Negated, so that NaN and a segment of length 0 give a corner.
         if !(t > 0.0) {
-            self.corner(j, [0.0, 1.0, 0.0])
+            self.corner_feature(j, [0.0, 1.0, 0.0])
         } else if !(t < length2) {
-            self.corner(i, [1.0, 0.0, 0.0])
+            self.corner_feature(i, [1.0, 0.0, 0.0])
         } else {
-            // Close to the origin the sum is all rounding error: the part along the segment is taken
-            // away, so that the direction stays perpendicular.
+            // Close to the origin v is mostly rounding error. Its part along the segment is subtracted, so that
+            // the direction stays perpendicular to the segment.
             let t = t / length2;
             let v = b + ab * t;
             let rest = v.dot(&ab) / length2;
@@ -210,21 +213,21 @@ impl Simplex {
         }
     }
 
-    /// As [`Simplex::segment`] for a simplex of two points; where they hold the origin, the direction is any
-    /// across.
+    /// Returns the closest feature of a simplex of two points. If the origin is on the segment, the direction is
+    /// an arbitrary perpendicular.
     #[inline(always)]
-    fn line(&self, i: usize, j: usize, touch: f64) -> Feature {
+    fn first_segment(&self, i: usize, j: usize, contact_eps: f64) -> Feature {
         let mut feature = self.segment(i, j);
-        if !(feature.distance2 > touch * touch) {
+        if !(feature.distance2 > contact_eps * contact_eps) {
             let along = self.slots[j & 3].w - self.slots[i & 3].w;
             feature.dir = perpendicular(&unit(&along).unwrap_or(Vec3::x()));
         }
         feature
     }
 
-    /// Returns the closest feature of a triangle. `n`: its normal, to the origin.
+    /// Returns the closest feature of a triangle. `n`: its normal, pointing to the origin.
     #[inline(always)]
-    fn triangle(&self, order: [usize; 3], n: Vec3, touch: f64) -> Feature {
+    fn triangle(&self, order: [usize; 3], n: Vec3, contact_eps: f64) -> Feature {
         let [i, j, k] = order;
         let [a, b, c] = order.map(|slot| &self.slots[slot & 3].w);
         let face = |order, weights, distance2| Feature {
@@ -234,11 +237,11 @@ impl Simplex {
             dir: n,
             distance2,
         };
-        // The barycentric coordinates, times n². The origin is beyond the edge opposite to a negative one.
+        // The barycentric coordinates, times n². If one is negative, the origin is beyond the opposite edge.
         let coordinates = [(b, c), (c, a), (a, b)].map(|(p, q)| n.dot(&p.cross(q)));
         let (edge, order) = match coordinates.map(|x| !(x > 0.0)) {
             [false, false, false] => {
-                // The point, and not the height of the plane: the normal of a sliver is off along its length.
+                // The distance of the point, not of the plane: the normal of a sliver is inaccurate.
                 let sum: f64 = coordinates.iter().sum();
                 let weights = coordinates.map(|x| x / sum);
                 let point = a * weights[0] + b * weights[1] + c * weights[2];
@@ -256,33 +259,34 @@ impl Simplex {
                 }
             }
         };
-        if edge.distance2 > touch * touch {
+        if edge.distance2 > contact_eps * contact_eps {
             return edge;
         }
         face(order, edge.weights, edge.distance2)
     }
 
-    /// Returns the closest feature of the three new faces; `None` where the origin is inside.
+    /// Returns the closest feature of the three new faces; `None` if the origin is inside the tetrahedron.
     #[inline(always)]
-    fn faces(&self, newest: usize, touch: f64, size2: f64) -> Option<Feature> {
+    fn closest_new_face(&self, newest: usize, contact_eps: f64, size2: f64) -> Option<Feature> {
         let [i, j, k] = self.order;
         let [a, b, c, w] = [i, j, k, newest].map(|slot| &self.slots[slot & 3].w);
         let (wa, wb, wc) = (w.cross(a), w.cross(b), w.cross(c));
         let heights = [wa.dot(b), wb.dot(c), wc.dot(a)];
-        // The normal of a face is at most four squares of the farthest corner long.
-        let least = 8.0 * size2 * touch;
-        // A face with the interior point is inside D, and rounding there decides nothing: the face
-        // opposite to that point does.
+        // The length of a face's normal is at most 4 size2, so heights above this are at least 2 contact_eps.
+        let clear_height = 8.0 * size2 * contact_eps;
+        // Faces that contain the interior point lie inside D: a rounding error there does not affect the
+        // result. Only the face opposite to that point matters.
         let interior = [i, j, k].map(|slot| self.slots[slot & 3].pair.is_interior());
         let has_interior = interior != [false; 3];
-        // NaN is outside.
+        // False for NaN: the origin then counts as outside.
         let is_clear = |height: f64, p: &Vec3, q: &Vec3, is_opposite: bool| {
             let slack = if has_interior && !is_opposite {
-                -touch
+                -contact_eps
             } else {
-                touch
+                contact_eps
             };
-            height > least || height > -least && is_off(height, p, q, w, slack)
+            height > clear_height
+                || height > -clear_height && is_clear_of_face(height, p, q, w, slack)
         };
         let mut best: Option<Feature> = None;
         let corners = [i, j, k, i];
@@ -292,7 +296,7 @@ impl Simplex {
                 continue;
             }
             let order = [corners[s], corners[s + 1], newest];
-            let face = self.triangle(order, normal(p, q, w), touch);
+            let face = self.triangle(order, normal(p, q, w), contact_eps);
             if best.as_ref().is_none_or(|b| face.distance2 < b.distance2) {
                 best = Some(face);
             }
@@ -301,11 +305,11 @@ impl Simplex {
     }
 }
 
-/// Returns whether the origin is off the face of p, q and w by more than twice the slack and by more than
-/// rounding. `height` is the distance times twice the area of the face.
+/// Returns whether the distance of the origin from the face of p, q and w exceeds twice the slack and the
+/// rounding error. `height`: that distance times twice the area of the face.
 #[cold]
-fn is_off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
-    // The product is off by ulps of the corners' lengths, however small the face is.
+fn is_clear_of_face(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
+    // The error of the product is proportional to the corners' lengths, however small the face is.
     let lengths = p.norm() * q.norm() * w.norm();
     let error = if slack > 0.0 {
         TRIPLE_PRODUCT_ULPS * EPSILON * lengths
@@ -315,7 +319,7 @@ fn is_off(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     height > 2.0 * slack * normal(p, q, w).norm() + error
 }
 
-/// Makes room for another entry in a set that is full, as [`compact`] does.
+/// Makes room for another entry: compacts a full set.
 #[inline(always)]
 pub fn make_room<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
@@ -327,7 +331,7 @@ pub fn make_room<A: SupportMap, B: SupportMap, const N: usize>(
     }
 }
 
-/// Keeps the entries of at most four corners and that of the least support value. Their indices change.
+/// Removes all entries except those of the corners, at most four, and that of the upper bound. Indices change.
 #[cold]
 #[inline(never)]
 pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
@@ -366,26 +370,26 @@ mod tests {
     use crate::gjk::barycentric;
     use crate::shapes::Random;
 
-    /// Corners in a plane with the origin, and close to each other.
+    /// Tests corners in a plane with the origin, and close to each other.
     #[test]
-    fn rounding_of_a_small_face_is_no_height() {
+    fn small_coplanar_face_has_zero_height() {
         let mut r = Random::new(41);
         for round in 0..2000 {
-            let apart = [1e-2, 1e-4, 1e-6][round % 3];
+            let distance = [1e-2, 1e-4, 1e-6][round % 3];
             let p = r.direction() * 1e-3;
-            let q = p + r.vector(1e-3 * apart);
+            let q = p + r.vector(1e-3 * distance);
             let w = p * r.within(0.5, 2.0) + q * r.within(-1.0, 1.0);
             let height = p.cross(&q).dot(&w);
-            // Of an object a thousand times as large.
-            assert!(!is_off(height, &p, &q, &w, EPSILON));
-            assert!(is_off(1e3 * EPSILON * 1e-9, &p, &q, &w, EPSILON));
+            // The object is a thousand times as large as the face.
+            assert!(!is_clear_of_face(height, &p, &q, &w, EPSILON));
+            assert!(is_clear_of_face(1e3 * EPSILON * 1e-9, &p, &q, &w, EPSILON));
         }
     }
 
-    /// Points added one after the other, each farther along than the simplex: the distance is that of all
-    /// points, and falls.
+    /// Adds points one after the other, each farther along the search direction than the simplex: the distance
+    /// is that of all corners, and decreases.
     #[test]
-    fn the_closest_feature_is_that_of_the_corners() {
+    fn closest_feature_is_that_of_the_corners() {
         let mut r = Random::new(42);
         let mut met = [0; 4];
         for _ in 0..2000 {
@@ -421,17 +425,21 @@ mod tests {
         assert!(met.iter().all(|n| *n > 100), "{met:?}");
     }
 
-    /// Corners of a plate that is thinner than the contact epsilon: the closest feature lies within it, though
-    /// which side of a face the others are on is rounding.
+    /// Adds corners of a plate thinner than the contact epsilon: the distance is that of the corners within the
+    /// contact epsilon, though the side of a face on which the other corners lie is rounding.
     #[test]
-    fn a_flat_simplex_keeps_no_face_beside_the_origin() {
+    fn flat_simplex_has_the_distance_of_its_corners() {
         let mut r = Random::new(45);
         for _ in 0..5000 {
-            let (turn, touch) = (r.rotation(), 1e-6);
+            let (turn, contact_eps) = (r.rotation(), 1e-6);
             let at = r.vector(1.0);
             let points: Vec<Vec3> = (0..8)
                 .map(|_| {
-                    turn * (at + r.vector(1.0)).component_mul(&Vec3::new(1.0, 1.0, 0.5 * touch))
+                    turn * (at + r.vector(1.0)).component_mul(&Vec3::new(
+                        1.0,
+                        1.0,
+                        0.5 * contact_eps,
+                    ))
                 })
                 .collect();
             let mut simplex = Simplex::EMPTY;
@@ -442,20 +450,21 @@ mod tests {
                     .max_by(|p, q| dir.dot(p).total_cmp(&dir.dot(q)));
                 let w = *farthest.unwrap();
                 let pair = VertexPair::default();
-                let Some((to, distance2)) = simplex.add(Vertex { w, pair }, touch, 10.0) else {
+                let Some((to, distance2)) = simplex.add(Vertex { w, pair }, contact_eps, 10.0)
+                else {
                     break;
                 };
                 dir = to;
                 let [a, b, c] = &simplex.corners().map(|v| v.w);
                 let closest = barycentric::triangle(&Vec3::zeros(), a, b, c);
-                let beside = closest.distance2.sqrt() - distance2.sqrt();
-                assert!(beside <= 2.0 * touch, "{beside}");
+                let error = closest.distance2.sqrt() - distance2.sqrt();
+                assert!(error <= 2.0 * contact_eps, "{error}");
             }
         }
     }
 
     #[test]
-    fn a_compacted_set_keeps_what_is_in_use() {
+    fn compacted_set_keeps_corners_and_upper_bound() {
         let mut r = Random::new(44);
         let md = crate::shapes::difference(
             crate::shapes::ball(Vec3::zeros(), 1.0),

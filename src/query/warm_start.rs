@@ -1,9 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The warm state of a pair, from one query to the next (W. Gao, Sec. III-D): one direction, its depth, the
-//! radii of sphere fits, and a kind; and, rounded, the direction between the centers, which shows a state of the
-//! swapped pair. A random, stale or foreign state costs time; it proves nothing.
+//! The warm start state of a pair, from one query to the next (W. Gao, Sec. III-D). A random, stale or foreign
+//! state costs time, but no proof depends on it.
+//!
+//! | [`WarmKind`] | `dir` | `depth` | `radius` |
+//! |---|---|---|---|
+//! | `Cold` | zero | 0 | 0 |
+//! | `Separated` | the separating axis | the target separation ([`crate::gjk::separating_axis`]) | sphere radii or 0 |
+//! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
+//! | `CurvedOverlap` | the direction of the upper bound | the depth | sphere radii or 0 |
+//!
+//! A radius is 0 unless a prediction of the sphere fits was confirmed. The state also holds the direction of
+//! the difference of the centers, rounded, by which a state of the swapped pair is recognised.
 
 use crate::gjk::separating_axis::SeparatingAxis;
 use crate::math::{EPSILON, Vec3, ZERO, unit};
@@ -14,34 +23,36 @@ pub enum WarmKind {
     /// Nothing is known.
     #[default]
     Cold,
-    /// The pair was apart: the direction is a separating axis.
-    Apart,
-    /// The pair overlapped: the direction is that of the least support value, or a guess.
-    Plain,
-    /// The pair overlapped, and D is round there: the vertex of the direction is a poor corner of a portal.
-    Round,
+    /// The objects were separated: the direction is a separating axis.
+    Separated,
+    /// The objects overlapped: the direction is that of the upper bound, or a guess.
+    Overlap,
+    /// Overlap of curved surfaces: the next query starts along the centers, not along the direction, whose vertex
+    /// is a poor corner of a portal.
+    CurvedOverlap,
 }
 
-/// The warm state of a pair.
+/// The warm start state of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct WarmStart {
-    /// Unit.
+    /// Direction of the last result, unit; zero in a cold state.
     pub dir: Vec3,
-    /// The depth, metres; of a pair that was apart the margin that the axis is to separate it by.
+    /// The depth, metres; for `Separated` the target separation of the axis.
     pub depth: f64,
-    /// The radii of obj1 and obj2 where a prediction of the sphere fits came true, metres; else 0.
+    /// Radii of the sphere fits of obj1 and obj2, metres; 0 unless a prediction was confirmed.
     pub radius: [f64; 2],
     /// Result of the last query.
     pub kind: WarmKind,
-    /// The direction of the difference of the centers, packed; 0 where they are not given.
-    facing: u32,
+    /// Direction of the difference of the centers, packed; 0 without centers.
+    center_direction: u32,
 }
 
-/// The bits of a packed coordinate, and what 0 is packed as.
+/// Number of bits of a packed coordinate.
 const COORDINATE_BITS: u32 = 10;
+/// The packed value of the coordinate 0.
 const COORDINATE_ZERO: u32 = 1 << (COORDINATE_BITS - 1);
 
-/// Packs the direction of a vector into 30 bits; 0 for a vector without one.
+/// Packs the direction of a vector into 30 bits; returns 0 for a vector without a direction.
 fn pack_direction(v: &Vec3) -> u32 {
     let Some(n) = unit(v) else { return 0 };
     let scale = f64::from(COORDINATE_ZERO - 1);
@@ -52,7 +63,7 @@ fn pack_direction(v: &Vec3) -> u32 {
     })
 }
 
-/// Unpacks a direction; not quite unit.
+/// Unpacks a direction; its length is approximately 511, not 1.
 fn unpack_direction(packed: u32) -> Vec3 {
     let coordinate = |i: u32| {
         let x = packed >> (COORDINATE_BITS * i) & (2 * COORDINATE_ZERO - 1);
@@ -68,121 +79,125 @@ impl Default for WarmStart {
 }
 
 impl WarmStart {
-    /// The numbers of a packed state.
+    /// Number of reals in a packed state.
     pub const REALS: usize = 6;
 
-    /// Nothing is known.
+    /// The state of a pair without an earlier query.
     pub const COLD: Self = Self {
         dir: ZERO,
         depth: 0.0,
         radius: [0.0; 2],
         kind: WarmKind::Cold,
-        facing: 0,
+        center_direction: 0,
     };
 
-    /// Makes the state of a pair that overlaps, and whose obj2 leaves along a unit direction.
+    /// Makes the state of an overlap with this penetration direction, unit.
     pub fn towards(dir: Vec3) -> Self {
         Self {
             dir,
-            kind: WarmKind::Plain,
+            kind: WarmKind::Overlap,
             ..Self::COLD
         }
     }
 
-    /// Makes a state that starts from a guess of the direction in which obj2 leaves; cold where it is zero or
-    /// not finite.
+    /// Makes a state from a guess of the penetration direction, of any length; cold if that is zero or not
+    /// finite.
     pub fn guess(dir: &Vec3) -> Self {
         unit(dir).map_or(Self::COLD, Self::towards)
     }
 
-    /// Makes the state of a pair that unit `dir` separates. `aim`: the margin that the axis is to separate it by,
-    /// metres. `radius`: of the objects' spheres, metres.
-    pub fn apart(dir: Vec3, aim: f64, radius: [f64; 2]) -> Self {
+    /// Makes the state of a pair that unit `dir` separates. `target_separation`: metres. `radius`: the radii of
+    /// the sphere fits, metres.
+    pub fn separated(dir: Vec3, target_separation: f64, radius: [f64; 2]) -> Self {
         Self {
             dir,
-            depth: aim,
+            depth: target_separation,
             radius,
-            kind: WarmKind::Apart,
-            facing: 0,
+            kind: WarmKind::Separated,
+            center_direction: 0,
         }
     }
 
-    /// Makes the state of a hit. `is_round`: D is round there.
-    pub fn hit(dir: Vec3, depth: f64, radius: [f64; 2], is_round: bool) -> Self {
+    /// Makes the state of a hit. `is_curved`: D is curved there.
+    pub fn hit(dir: Vec3, depth: f64, radius: [f64; 2], is_curved: bool) -> Self {
         Self {
             dir,
             depth,
             radius,
-            kind: if is_round {
-                WarmKind::Round
+            kind: if is_curved {
+                WarmKind::CurvedOverlap
             } else {
-                WarmKind::Plain
+                WarmKind::Overlap
             },
-            facing: 0,
+            center_direction: 0,
         }
     }
 
     /// Stores the direction of the difference of the centers.
-    pub fn set_facing(&mut self, center: &Vec3) {
-        self.facing = pack_direction(center);
+    pub fn set_center_direction(&mut self, center: &Vec3) {
+        self.center_direction = pack_direction(center);
     }
 
-    /// Returns whether the centers looked the other way when the state was left: it is that of the swapped
-    /// pair.
+    /// Returns whether the state belongs to the swapped pair: its center direction is opposite to that of
+    /// `center`, the difference of the centers.
     pub fn is_swapped(&self, center: &Vec3) -> bool {
-        self.facing != 0 && unpack_direction(self.facing).dot(center) < 0.0
+        self.center_direction != 0 && unpack_direction(self.center_direction).dot(center) < 0.0
     }
 
-    /// Returns whether the pair overlapped.
+    /// Returns whether the objects overlapped.
     pub fn is_overlap(&self) -> bool {
-        matches!(self.kind, WarmKind::Plain | WarmKind::Round)
+        matches!(self.kind, WarmKind::Overlap | WarmKind::CurvedOverlap)
     }
 
-    /// Returns the axis that separated the pair.
+    /// Returns the separating axis; `None` if the objects were not separated.
     pub fn separating_axis(&self) -> Option<SeparatingAxis> {
-        (self.kind == WarmKind::Apart).then_some(SeparatingAxis {
+        (self.kind == WarmKind::Separated).then_some(SeparatingAxis {
             dir: self.dir,
-            aim: self.depth,
+            target_separation: self.depth,
         })
     }
 
-    /// Returns the direction of the last answer. A pair that was apart and is no longer has just met there.
+    /// Returns the direction of the last result; `None` for a cold state. If a pair was separated and now
+    /// overlaps, its separating axis is close to the normal of the new contact.
     pub fn direction(&self) -> Option<Vec3> {
         (self.kind != WarmKind::Cold).then_some(self.dir)
     }
 
-    /// Makes the state of the pair (obj1, obj2) that of (obj2, obj1). Cold stays cold, bit for bit.
+    /// Converts the state of the pair (obj1, obj2) to one of (obj2, obj1). A cold state is unchanged.
     pub fn flip(&mut self) {
         if self.kind != WarmKind::Cold {
             self.dir = -self.dir;
             self.radius.swap(0, 1);
-            if self.facing != 0 {
-                self.facing = pack_direction(&-unpack_direction(self.facing));
+            if self.center_direction != 0 {
+                self.center_direction = pack_direction(&-unpack_direction(self.center_direction));
             }
         }
     }
 
-    /// Packs the state into plain numbers. All zero is cold.
+    /// Packs the state into plain numbers. A cold state is all zeros.
     pub fn pack(&self) -> ([f64; Self::REALS], [u32; 2]) {
         let [x, y, z] = self.dir.into();
         let [radius1, radius2] = self.radius;
         let kind = match self.kind {
             WarmKind::Cold => 0,
-            WarmKind::Apart => 1,
-            WarmKind::Plain => 2,
-            WarmKind::Round => 3,
+            WarmKind::Separated => 1,
+            WarmKind::Overlap => 2,
+            WarmKind::CurvedOverlap => 3,
         };
-        ([x, y, z, self.depth, radius1, radius2], [kind, self.facing])
+        (
+            [x, y, z, self.depth, radius1, radius2],
+            [kind, self.center_direction],
+        )
     }
 
-    /// Unpacks a state; what [`WarmStart::pack`] did not make, and a direction that is not unit, is cold.
-    pub fn unpack(reals: [f64; Self::REALS], [kind, facing]: [u32; 2]) -> Self {
+    /// Unpacks a state; returns a cold one unless the kind is known, the direction unit and each length valid.
+    pub fn unpack(reals: [f64; Self::REALS], [kind, center_direction]: [u32; 2]) -> Self {
         let [x, y, z, depth, radius1, radius2] = reals;
         let dir = Vec3::new(x, y, z);
         let kind = match kind {
-            1 => WarmKind::Apart,
-            2 => WarmKind::Plain,
-            3 => WarmKind::Round,
+            1 => WarmKind::Separated,
+            2 => WarmKind::Overlap,
+            3 => WarmKind::CurvedOverlap,
             _ => WarmKind::Cold,
         };
         let is_length = |x: f64| (0.0..f64::INFINITY).contains(&x);
@@ -201,7 +216,7 @@ impl WarmStart {
             depth,
             radius: [radius1, radius2],
             kind,
-            facing,
+            center_direction,
         }
     }
 }
@@ -211,10 +226,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_state_packed_is_the_same_unpacked() {
-        for is_round in [false, true] {
-            let mut state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5], is_round);
-            state.set_facing(&Vec3::new(3.0, -1.0, 2.0));
+    fn packing_and_unpacking_preserves_a_state() {
+        for is_curved in [false, true] {
+            let mut state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5], is_curved);
+            state.set_center_direction(&Vec3::new(3.0, -1.0, 2.0));
             let (reals, words) = state.pack();
             let again = WarmStart::unpack(reals, words);
             assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
@@ -227,13 +242,13 @@ mod tests {
     }
 
     #[test]
-    fn a_state_of_the_swapped_pair_is_noticed() {
+    fn state_of_the_swapped_pair_is_recognised() {
         let mut r = crate::shapes::Random::new(3);
         for _ in 0..1000 {
             let n = r.direction();
             let mut state = WarmStart::towards(Vec3::x());
             assert!(!state.is_swapped(&n));
-            state.set_facing(&(n * 0.001));
+            state.set_center_direction(&(n * 0.001));
             assert!(!state.is_swapped(&n) && state.is_swapped(&-n));
             state.flip();
             assert!(state.is_swapped(&n) && !state.is_swapped(&-n));
@@ -241,10 +256,10 @@ mod tests {
     }
 
     #[test]
-    fn foreign_numbers_are_cold() {
+    fn invalid_numbers_give_a_cold_state() {
         let good = [1.0, 0.0, 0.0, 0.1, 0.0, 0.0];
         let kind = |reals, kind| WarmStart::unpack(reals, [kind, 0]).kind;
-        assert_eq!(kind(good, 2), WarmKind::Plain);
+        assert_eq!(kind(good, 2), WarmKind::Overlap);
         assert_eq!(kind(good, 4), WarmKind::Cold);
         assert_eq!(kind([0.0; 6], 0), WarmKind::Cold);
         for (i, x) in [

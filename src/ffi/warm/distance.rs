@@ -98,11 +98,11 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
         };
         let minimum =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, hit: &mut _| {
-                arena::with(|arena| pair.minimum(state, settings, arena, false, hit))
+                arena::with(|arena| pair.proven(state, settings, arena, false, hit))
             };
         with_state(warm, |state| {
             let distance = pair.signed_distance(state, &wanted, minimum)?;
-            *out = ccd_distance_t::new(&distance, want, pair.md.supports());
+            *out = ccd_distance_t::new(&distance, want, pair.difference.supports());
             Ok(match (distance.is_limited, distance.is_hit) {
                 (true, _) => CCD_LIMIT,
                 (false, true) => CCD_HIT,

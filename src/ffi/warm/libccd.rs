@@ -73,7 +73,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
             Query { obj1, obj2, ccd },
             Kind::Mpr,
             warm,
-            |pair, state, settings, hit| pair.mpr(state, settings, !pos.is_null(), hit),
+            |pair, state, settings, hit| pair.penetration(state, settings, !pos.is_null(), hit),
             |hit, _| write_outputs(hit, depth, dir, pos),
         )
     })

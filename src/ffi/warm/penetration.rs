@@ -109,7 +109,7 @@ pub(in crate::ffi) unsafe fn run_query(
             if if_overlapping(solve(&pair, state, &settings, &mut hit))?.is_none() {
                 return Ok(CCD_MISS);
             }
-            write_hit(&hit, pair.md.supports());
+            write_hit(&hit, pair.difference.supports());
             Ok(if hit.limit { CCD_LIMIT } else { CCD_HIT })
         })
     }
@@ -172,5 +172,5 @@ pub unsafe extern "C-unwind" fn ccdPenetration(
 ) -> c_int {
     let query = Query { obj1, obj2, ccd };
     // SAFETY: passed on.
-    unsafe { fill(query, Kind::Penetration, warm, want, out, Pair::mpr) }
+    unsafe { fill(query, Kind::Penetration, warm, want, out, Pair::penetration) }
 }

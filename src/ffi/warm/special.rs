@@ -59,7 +59,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     let query = Query { obj1, obj2, ccd };
     let solve =
         |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, wants, hit: &mut _| {
-            arena::with(|arena| pair.minimum(state, settings, arena, wants, hit))
+            arena::with(|arena| pair.proven(state, settings, arena, wants, hit))
         };
     // SAFETY: passed on.
     unsafe { fill(query, Kind::Proven, warm, want, out, solve) }
