@@ -1,9 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The benchmark: `cargo bench -p charts -- charts` measures supports, times and errors beside
-//! system libccd's and other libraries'; `-- instructions` prints those of each query,
-//! beside libccd's; `-- record` writes the support counts of every pair set.
+//! The benchmark (README.md): one runner over one table of methods.
 
 #[path = "figures/mod.rs"]
 mod charts;
@@ -12,7 +10,6 @@ mod harness;
 #[path = "measuring/mod.rs"]
 mod measuring;
 mod peers;
-mod progress;
 
 use clap::{Parser, Subcommand};
 
@@ -22,9 +19,12 @@ use clap::{Parser, Subcommand};
 struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// Cargo says so to every benchmark.
+    /// Passed by cargo to every benchmark.
     #[arg(long, hide = true, global = true)]
     bench: bool,
+    /// Set in the process under callgrind.
+    #[arg(long, hide = true, global = true)]
+    counting: bool,
 }
 
 #[derive(Subcommand)]
@@ -33,7 +33,7 @@ enum Command {
     Record,
     /// Every chart as CSV and SVG.
     Charts(charts::Options),
-    /// The pictures and their page again, from the CSV that is there.
+    /// The pictures and their page from the CSV files that are there.
     Redraw(charts::Options),
     /// This library beside other engines, over the recorded contacts; downloads what it can.
     Engines(charts::engines::Options),
@@ -42,11 +42,12 @@ enum Command {
 }
 
 fn main() {
-    match Arguments::parse().command {
+    let Arguments { command, counting, .. } = Arguments::parse();
+    match command {
         Command::Record => measuring::recorded::record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),
-        Command::Engines(options) => charts::engines::run(&options),
-        Command::Instructions(options) => charts::instructions::run(&options),
+        Command::Engines(options) => charts::engines::run(&options, counting),
+        Command::Instructions(options) => charts::instructions::run(&options, counting),
     }
 }

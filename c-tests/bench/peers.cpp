@@ -1,16 +1,55 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Other libraries' penetration solvers over the benchmark's own support
-// functions. Each part is compiled alone (-DPEER_...), where its Debian package is,
-// or what engines.sh has downloaded. Answers: 0 and depth, dir (the way obj2 moves), or -1.
-// Every engine gets a support function and no more: what it does besides for spheres,
-// capsules and meshes does not take part.
+// Other libraries' penetration solvers over the benchmark's own support functions. Each part is compiled alone
+// (-DPEER_...), with its Debian package or with what engines.sh has downloaded. Every engine gets a support function and
+// no more: what it does besides for spheres, capsules and meshes does not take part.
 
 #include <ccd/ccd.h>
 
+#include <math.h>
+
 extern "C" {
+// Returns 0 with depth and dir, the direction in which b moves, or -1.
 int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
+}
+
+// An object with its callbacks.
+struct Object {
+    const void *obj;
+    ccd_support_fn support;
+    ccd_center_fn center;
+
+    ccd_vec3_t support_point(const ccd_vec3_t &dir) const
+    {
+        ccd_vec3_t out;
+        support(obj, &dir, &out);
+        return out;
+    }
+    ccd_vec3_t center_point() const
+    {
+        ccd_vec3_t out;
+        center(obj, &out);
+        return out;
+    }
+};
+
+// Returns the unit vector that the callbacks require and that some engines' directions are not.
+static inline ccd_vec3_t unit(double x, double y, double z)
+{
+    const double l = sqrt(x * x + y * y + z * z);
+    return {{l > 0 ? x / l : 1, l > 0 ? y / l : 0, l > 0 ? z / l : 0}};
+}
+
+// Writes a hit of this depth along x, y, z, a vector of any length.
+static int hit(double d, double x, double y, double z, double *depth, ccd_vec3_t *dir)
+{
+    const double l = sqrt(x * x + y * y + z * z);
+    if (!(l > 0))
+        return -1;
+    *depth = d;
+    *dir = {{x / l, y / l, z / l}};
+    return 0;
 }
 
 #ifdef PEER_BULLET
@@ -19,21 +58,11 @@ int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *dep
 #define BT_USE_DOUBLE_PRECISION
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa3.h>
 
-struct Convex {
-    const void *obj;
-    ccd_support_fn support;
-    ccd_vec3_t center;
-
+struct Convex : Object {
     btVector3 getLocalSupportWithMargin(const btVector3 &d) const
     {
-        ccd_vec3_t dir, out;
-        // Bullet's directions are not always unit; the callbacks are promised so.
-        btScalar l = d.length();
-        btVector3 u = l > 0 ? d / l : btVector3(1, 0, 0);
-        for (int i = 0; i < 3; i++)
-            dir.v[i] = u[i];
-        support(obj, &dir, &out);
-        return btVector3(out.v[0], out.v[1], out.v[2]);
+        const ccd_vec3_t p = support_point(unit(d[0], d[1], d[2]));
+        return btVector3(p.v[0], p.v[1], p.v[2]);
     }
     btVector3 getLocalSupportWithoutMargin(const btVector3 &d) const { return getLocalSupportWithMargin(d); }
     btTransform getWorldTransform() const { return btTransform::getIdentity(); }
@@ -41,19 +70,15 @@ struct Convex {
 
 int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *depth, ccd_vec3_t *dir, ccd_vec3_t *)
 {
-    Convex ca = {a, ccd->support1, {}}, cb = {b, ccd->support2, {}};
-    ccd->center1(a, &ca.center);
-    ccd->center2(b, &cb.center);
-    btVector3 guess(ca.center.v[0] - cb.center.v[0], ca.center.v[1] - cb.center.v[1], ca.center.v[2] - cb.center.v[2]);
+    const Convex ca = {{a, ccd->support1, ccd->center1}}, cb = {{b, ccd->support2, ccd->center2}};
+    const ccd_vec3_t p = ca.center_point(), q = cb.center_point();
+    btVector3 guess(p.v[0] - q.v[0], p.v[1] - q.v[1], p.v[2] - q.v[2]);
     if (guess.fuzzyZero())
         guess = btVector3(1, 0, 0);
     btGjkEpaSolver3::sResults r;
     if (!btGjkEpaSolver3_Penetration(ca, cb, guess, r))
         return -1;
-    *depth = -r.distance;
-    for (int i = 0; i < 3; i++)
-        dir->v[i] = -r.normal[i];
-    return 0;
+    return hit(-r.distance, -r.normal[0], -r.normal[1], -r.normal[2], depth, dir);
 }
 #endif
 
@@ -67,27 +92,22 @@ int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *dep
     double distance;
     fcl::Vector3d p, q;
     try {
-        // Its answer says "no overlap"; the distance is negative where there is one.
+        // It returns that nothing overlaps; the distance of an overlap is negative.
         fcl::detail::GJKSignedDistance<double>(const_cast<void *>(a), ccd->support1, const_cast<void *>(b),
                                                ccd->support2, 500, ccd->epa_tolerance, &distance, &p, &q);
     } catch (const std::exception &) {
         return -1;
     }
-    fcl::Vector3d n = p - q;
-    double l = n.norm();
-    if (!(distance < 0) || !(l > 0))
+    if (!(distance < 0))
         return -1;
-    *depth = -distance;
-    for (int i = 0; i < 3; i++)
-        dir->v[i] = n[i] / l;
-    return 0;
+    const fcl::Vector3d n = p - q;
+    return hit(-distance, n[0], n[1], n[2], depth, dir);
 }
 #endif
 
 #ifdef PEER_MUJOCO
 // mjc_ccd of MuJoCo 3.12.0, which its wheel exports. Its headers are not in the wheel: these are
 // the structures of src/engine/engine_collision_{convex,gjk}.h, as far as mjc_ccd reads and writes them.
-#include <math.h>
 #include <stddef.h>
 #include <vector>
 
@@ -121,26 +141,16 @@ extern "C" double mjc_ccd(const mjCCDConfig *, mjCCDStatus *, mjCCDObj *, mjCCDO
 
 struct Convex {
     mjCCDObj engine; /* first: the callbacks cast back */
-    const void *obj;
-    ccd_support_fn support;
-    ccd_center_fn center;
+    Object object;
 };
 static void convex_center(double res[3], const mjCCDObj *o)
 {
-    const Convex *c = reinterpret_cast<const Convex *>(o);
-    ccd_vec3_t at;
-    c->center(c->obj, &at);
-    for (int i = 0; i < 3; i++)
-        res[i] = at.v[i];
+    *reinterpret_cast<ccd_vec3_t *>(res) = reinterpret_cast<const Convex *>(o)->object.center_point();
 }
 static void convex_support(double res[3], mjCCDObj *o, const double d[3])
 {
-    const Convex *c = reinterpret_cast<const Convex *>(o);
-    const ccd_vec3_t dir = {{d[0], d[1], d[2]}};
-    ccd_vec3_t out;
-    c->support(c->obj, &dir, &out);
-    for (int i = 0; i < 3; i++)
-        res[i] = out.v[i];
+    const Object &object = reinterpret_cast<const Convex *>(o)->object;
+    *reinterpret_cast<ccd_vec3_t *>(res) = object.support_point({{d[0], d[1], d[2]}});
 }
 
 int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *depth, ccd_vec3_t *dir, ccd_vec3_t *)
@@ -149,7 +159,7 @@ int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *dep
     static std::vector<double> buffer(mjc_ccdSize(0, 0, ITERATIONS) / sizeof(double) + 1);
     const mjCCDConfig config = {ITERATIONS, ccd->epa_tolerance, 1, 0, buffer.data(), 0, 0};
     static mjCCDStatus status;
-    Convex c[2] = {{{}, a, ccd->support1, ccd->center1}, {{}, b, ccd->support2, ccd->center2}};
+    Convex c[2] = {{{}, {a, ccd->support1, ccd->center1}}, {{}, {b, ccd->support2, ccd->center2}}};
     for (Convex &x : c) {
         mjCCDObj &o = x.engine;
         o.geom = o.vertindex = o.meshindex = o.flex = o.elem = o.vert = -1;
@@ -159,39 +169,29 @@ int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *dep
         o.support = convex_support;
     }
     const double distance = mjc_ccd(&config, &status, &c[0].engine, &c[1].engine);
-    double n[3], l = 0;
-    for (int i = 0; i < 3; i++) {
-        n[i] = status.x1[i] - status.x2[i];
-        l += n[i] * n[i];
-    }
-    if (!(distance < 0) || !(l > 0))
+    if (!(distance < 0))
         return -1;
-    *depth = -distance;
-    for (int i = 0; i < 3; i++)
-        dir->v[i] = n[i] / sqrt(l);
-    return 0;
+    const double *p = status.x1, *q = status.x2;
+    return hit(-distance, p[0] - q[0], p[1] - q[1], p[2] - q[2], depth, dir);
 }
 #endif
 
 #ifdef PEER_COAL
-// Coal's GJK and EPA with its defaults, over a Minkowski difference whose support function is ours.
+// Coal's GJK and EPA with its defaults, over a Minkowski difference of these support functions.
 #include <coal/narrowphase/gjk.h>
 
 struct Pair : coal::details::MinkowskiDiff {
-    const void *obj[2];
-    const ccd_t *ccd;
+    Object object[2];
 };
 static void pair_support(const coal::details::MinkowskiDiff &of, const coal::Vec3s &d, coal::Vec3s &p, coal::Vec3s &q,
                          coal::support_func_guess_t &, coal::details::ShapeSupportData *)
 {
     const Pair &pair = static_cast<const Pair &>(of);
-    const coal::Vec3s n = d.normalized();
-    const ccd_vec3_t dir = {{n[0], n[1], n[2]}}, back = {{-n[0], -n[1], -n[2]}};
-    ccd_vec3_t out[2];
-    pair.ccd->support1(pair.obj[0], &dir, &out[0]);
-    pair.ccd->support2(pair.obj[1], &back, &out[1]);
-    p = {out[0].v[0], out[0].v[1], out[0].v[2]};
-    q = {out[1].v[0], out[1].v[1], out[1].v[2]};
+    const ccd_vec3_t n = unit(d[0], d[1], d[2]);
+    const ccd_vec3_t a = pair.object[0].support_point(n);
+    const ccd_vec3_t b = pair.object[1].support_point({{-n.v[0], -n.v[1], -n.v[2]}});
+    p = {a.v[0], a.v[1], a.v[2]};
+    q = {b.v[0], b.v[1], b.v[2]};
 }
 
 int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *depth, ccd_vec3_t *dir, ccd_vec3_t *)
@@ -200,25 +200,19 @@ int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *dep
     static GJK gjk(coal::GJK_DEFAULT_MAX_ITERATIONS, ccd->epa_tolerance);
     static EPA epa(coal::EPA_DEFAULT_MAX_ITERATIONS, ccd->epa_tolerance);
     static Pair pair;
-    ccd_vec3_t at[2];
-    pair.obj[0] = a;
-    pair.obj[1] = b;
-    pair.ccd = ccd;
+    pair.object[0] = {a, ccd->support1, ccd->center1};
+    pair.object[1] = {b, ccd->support2, ccd->center2};
     pair.getSupportFunc = pair_support;
     pair.swept_sphere_radius.setZero();
-    ccd->center1(a, &at[0]);
-    ccd->center2(b, &at[1]);
-    const coal::Vec3s guess(at[0].v[0] - at[1].v[0], at[0].v[1] - at[1].v[1], at[0].v[2] - at[1].v[2]);
+    const ccd_vec3_t p = pair.object[0].center_point(), q = pair.object[1].center_point();
+    const coal::Vec3s guess(p.v[0] - q.v[0], p.v[1] - q.v[1], p.v[2] - q.v[2]);
     gjk.reset(coal::GJK_DEFAULT_MAX_ITERATIONS, ccd->epa_tolerance);
     if (gjk.evaluate(pair, guess) != GJK::Collision)
         return -1;
     epa.reset(coal::EPA_DEFAULT_MAX_ITERATIONS, ccd->epa_tolerance);
     if (!(epa.evaluate(gjk, -guess) & EPA::Valid))
         return -1;
-    *depth = epa.depth;
-    for (int i = 0; i < 3; i++)
-        dir->v[i] = epa.normal[i];
-    return 0;
+    return hit(epa.depth, epa.normal[0], epa.normal[1], epa.normal[2], depth, dir);
 }
 #endif
 
@@ -228,37 +222,25 @@ int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *dep
 #include <Jolt/Jolt.h>
 #include <Jolt/Geometry/EPAPenetrationDepth.h>
 
-struct Convex {
-    const void *obj;
-    ccd_support_fn support;
-    const double *origin;
+struct Convex : Object {
+    ccd_vec3_t origin;
     JPH::Vec3 GetSupport(JPH::Vec3Arg d) const
     {
-        const double x = d.GetX(), y = d.GetY(), z = d.GetZ(), l = sqrt(x * x + y * y + z * z);
-        const ccd_vec3_t dir = {{l > 0 ? x / l : 1, l > 0 ? y / l : 0, l > 0 ? z / l : 0}};
-        ccd_vec3_t out;
-        support(obj, &dir, &out);
-        return JPH::Vec3(float(out.v[0] - origin[0]), float(out.v[1] - origin[1]), float(out.v[2] - origin[2]));
+        const ccd_vec3_t p = support_point(unit(d.GetX(), d.GetY(), d.GetZ()));
+        return JPH::Vec3(float(p.v[0] - origin.v[0]), float(p.v[1] - origin.v[1]), float(p.v[2] - origin.v[2]));
     }
 };
 
 int peer_penetration(const void *a, const void *b, const ccd_t *ccd, double *depth, ccd_vec3_t *dir, ccd_vec3_t *)
 {
-    ccd_vec3_t at[2];
-    ccd->center1(a, &at[0]);
-    ccd->center2(b, &at[1]);
-    const Convex ca = {a, ccd->support1, at[0].v}, cb = {b, ccd->support2, at[0].v};
+    Convex ca = {{a, ccd->support1, ccd->center1}, {}}, cb = {{b, ccd->support2, ccd->center2}, {}};
+    ca.origin = cb.origin = ca.center_point();
     JPH::Vec3 v(1, 0, 0), p, q; /* as Jolt's own collision test starts */
     JPH::EPAPenetrationDepth epa;
     if (!epa.GetPenetrationDepth(ca, ca, 0, cb, cb, 0, 1e-4f, 1e-4f, v, p, q))
         return -1;
-    const double l = (p - q).Length();
-    if (!(l > 0) || !(v.Length() > 0))
+    if (!((p - q).Length() > 0))
         return -1;
-    *depth = l;
-    v = v.Normalized();
-    for (int i = 0; i < 3; i++)
-        dir->v[i] = v[i];
-    return 0;
+    return hit((p - q).Length(), v.GetX(), v.GetY(), v.GetZ(), depth, dir);
 }
 #endif

@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The charts' page: the pictures and the tables behind them, with what a reader
-//! needs to judge them. The page is its own template: a table is written between its marks.
+//! The tables of the charts' page, which is its own template: a table is written between its marks.
 
 use comfy_table::{Table, presets::ASCII_MARKDOWN};
 
 use super::Page;
-use super::instructions::Split;
 use super::paper::{AS_PUBLISHED, PAPER};
 use crate::harness;
 use crate::measuring::measure::Row;
+use crate::measuring::methods::Start;
 
-/// The head's cells are between bars.
+/// Returns a table; `|` separates the cells of its head.
 pub fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
     let mut table = Table::new();
     table.load_style(ASCII_MARKDOWN);
@@ -23,75 +22,72 @@ pub fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [Str
     table.to_string()
 }
 
-fn find<'a>(rows: &'a [Row], set: &str, method: &str, start: &str, tolerance: f64) -> Option<&'a Row> {
-    rows.iter()
-        .find(|r| r.set == set && r.method == method && r.start == start && r.tolerance.is_none_or(|t| t == tolerance))
-}
-
 pub fn times_faster(rows: &[Row]) -> String {
     let lines = PAPER.iter().map(|(set, faster)| {
-        let ns = |m: &str, s: &str, t: f64| find(rows, set, m, s, t).and_then(|r| r.ns);
-        let ratio = |m: &str, s: &str, t: f64| {
-            let own = if m.starts_with("Algorithm") { AS_PUBLISHED } else { 1e-6 };
-            let (epa, mine) = (ns("libccd EPA", "", t), ns(m, s, own));
-            epa.zip(mine).map_or("-".to_owned(), |(e, m)| format!("{:.1}", e / m))
+        let ns = |method: &str, start: Start, tolerance: f64| {
+            let is_wanted =
+                |r: &&Row| (&*r.set, &*r.method, r.start, r.tolerance) == (*set, method, start, Some(tolerance));
+            rows.iter().find(is_wanted).and_then(|r| r.ns)
+        };
+        let ratio = |method: &str, start: Start, tolerance: f64, epa_tolerance: f64| {
+            let epa = ns("libccd ccdGJKPenetration", Start::None, epa_tolerance);
+            let ratio = epa.zip(ns(method, start, tolerance)).map(|(epa, ns)| format!("{:.1}", epa / ns));
+            ratio.unwrap_or("-".to_owned())
         };
         [
             super::kind(set),
-            ratio("local", "5", 1e-6),
-            ratio("local", "5", 1e-10),
-            ratio("minimum", "", 1e-6),
-            ratio("Algorithm 4/5", "5", 1e-6),
-            ratio("Algorithm 4/5", "5", 1e-10),
+            ratio("ccdPenetrationLocal", Start::Guess5, 1e-6, 1e-6),
+            ratio("ccdPenetrationLocal", Start::Guess5, 1e-6, 1e-10),
+            ratio("ccdPenetrationProven", Start::None, 1e-6, 1e-6),
+            ratio("Gao 2023, Algorithm 4/5", Start::Guess5, AS_PUBLISHED, 1e-6),
+            ratio("Gao 2023, Algorithm 4/5", Start::Guess5, AS_PUBLISHED, 1e-10),
             faster.to_string(),
         ]
     });
-    let head = "pair|local, EPA 1e-6|local, EPA 1e-10|minimum, EPA 1e-6|\
+    let head = "pair|local, EPA 1e-6|local, EPA 1e-10|proven, EPA 1e-6|\
                 Algorithm 4/5, EPA 1e-6|Algorithm 4/5, EPA 1e-10|*in the paper*";
     markdown(head, lines)
 }
 
-fn supports(row: Option<&Row>) -> String {
-    row.map_or("-".to_owned(), |r| format!("{:.1}", r.supports))
-}
-
-pub fn coherent(rows: &[Row]) -> String {
-    let at = |set: &str, method: &str, start: &str, x: f64| {
-        supports(rows.iter().find(|r| r.set == set && r.method == method && r.start == start && r.x == Some(x)))
-    };
-    let lines = super::sets(rows).into_iter().map(|set| {
+pub fn coherence(rows: &[Row]) -> String {
+    let mut sets: Vec<&str> = rows.iter().map(|row| &*row.set).collect();
+    sets.dedup();
+    let lines = sets.into_iter().map(|set| {
+        let supports = |method: &str, start: Start, degrees: f64| {
+            let is_wanted = |r: &&Row| (&*r.set, &*r.method, r.start, r.x) == (set, method, start, Some(degrees));
+            rows.iter().find(is_wanted).map_or("-".to_owned(), |r| format!("{:.1}", r.supports))
+        };
         [
             super::kind(set),
-            at(set, "local", "warm", 0.1),
-            at(set, "local", "warm", 0.5),
-            at(set, "local", "warm", 2.0),
-            at(set, "local", "centres", 0.5),
-            at(set, "minimum", "warm", 0.1),
-            at(set, "minimum", "warm", 0.5),
-            at(set, "minimum", "warm", 2.0),
-            at(set, "minimum", "", 0.5),
-            at(set, "libccd EPA", "", 0.5),
+            supports("ccdPenetrationLocal", Start::Warm, 0.1),
+            supports("ccdPenetrationLocal", Start::Warm, 0.5),
+            supports("ccdPenetrationLocal", Start::Warm, 2.0),
+            supports("ccdPenetrationLocal", Start::Cold, 0.5),
+            supports("ccdPenetrationProven", Start::Warm, 0.1),
+            supports("ccdPenetrationProven", Start::Warm, 0.5),
+            supports("ccdPenetrationProven", Start::Warm, 2.0),
+            supports("ccdPenetrationProven", Start::None, 0.5),
+            supports("libccd ccdGJKPenetration", Start::None, 0.5),
         ]
     });
     let head = "pair|local, warm, 0.1°|0.5°|2°|local, cold|\
-                minimum, warm, 0.1°|0.5°|2°|minimum, cold|libccd EPA";
+                proven, warm, 0.1°|0.5°|2°|proven, cold|libccd EPA";
     markdown(head, lines)
 }
 
-pub fn instructions(split: &[Split]) -> String {
-    let lines = split.iter().map(|s| {
-        let total = s.callbacks + s.solver;
+pub fn instructions(rows: &[Row]) -> String {
+    let lines = rows.iter().map(|r| {
+        let [callbacks, solver] = [r.callbacks, r.solver].map(Option::unwrap_or_default);
         [
-            super::kind(&s.set),
-            s.method.clone(),
-            format!("{total:.0}"),
-            format!("{:.0}", s.callbacks),
-            format!("{:.0}", s.solver),
-            format!("{:.0}", 100.0 * s.callbacks / total),
+            super::kind(&r.set),
+            r.label(),
+            format!("{:.0}", r.instructions()),
+            format!("{callbacks:.0}"),
+            format!("{solver:.0}"),
+            format!("{:.0}", 100.0 * callbacks / r.instructions()),
         ]
     });
-    let head = "pair|method|instructions|support functions|solver|support functions, %";
-    markdown(head, lines)
+    markdown("pair|method|instructions|support functions|solver|support functions, %", lines)
 }
 
 /// Writes the page's tables between their marks.
@@ -101,6 +97,6 @@ pub fn write(page: &Page, tables: &[(&str, String)]) {
     for (name, table) in tables {
         text = harness::between_marks(&text, &format!("table {name}"), &format!("{table}\n"));
     }
-    let path = page.file("README.md");
+    let path = page.out.join("README.md");
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
 }

@@ -1,14 +1,11 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The support functions and pair sets of the C tests, as a shared object for the
- * benchmark: every method measured calls these same callbacks. Shapes are opaque
- * to the benchmark; it owns their memory and asks here for their size. */
+/* The support functions and pairs of the C tests, as a shared object for the benchmark: every method measured calls
+ * these same callbacks. Shapes are opaque to the benchmark. */
 
 #include "harness/pairs.h"
 #include "tools/record/recording.h"
-
-size_t bench_shape_size(void) { return sizeof(shape_t); }
 
 void bench_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out) { shape_support(obj, dir, out); }
 
@@ -16,61 +13,84 @@ void bench_center(const void *obj, ccd_vec3_t *out) { shape_center(obj, out); }
 
 unsigned long bench_calls(const shape_t *s) { return s->calls; }
 
-/* Where a shape is: position and rotation, row by row. */
+/* Returns the position of a shape, and its rotation, row by row. */
 void bench_pose(const shape_t *s, double pos[3], double rot[9])
 {
     memcpy(pos, s->pos, sizeof s->pos);
     memcpy(rot, s->rot, sizeof s->rot);
 }
 
-/* A pair set, with how many poses and steps of one motion (0: independent poses); NULL where there
- * is none. It stays: shapes refer to its vertices. */
-pair_set_t *bench_set(const char *path, int *n, int *trajectory)
-{
-    pair_set_t *set = (pair_set_t *)malloc(sizeof *set);
-    if (!set || pair_set_read(path, set) != 0)
-        return NULL;
-    *n = set->n;
-    *trajectory = set->trajectory;
-    return set;
-}
-
-void bench_set_pose(const pair_set_t *set, int i, shape_t *a, shape_t *b, pair_truth_t *truth)
-{
-    pair_set_pose(set, i, a, b, truth);
-}
-
-/* Where a profiler is told to begin and to end a part of its output. */
+/* Mark for a profiler the begin and the end of a part of its output. */
 __attribute__((noinline)) void bench_begin(void) { __asm__ volatile(""); }
 
 __attribute__((noinline)) void bench_end(void) { __asm__ volatile(""); }
 
 typedef struct {
-    unsigned a, b, frame;
-    double lower, upper; /* of the signed depth */
-} bench_recorded_t;
+    shape_t *a, *b;
+    pair_truth_t truth;
+    size_t motion, frame; /* poses of one motion with consecutive frames follow each other */
+} bench_pose_t;
 
-/* How many pairs the first frames of a recording ask about, 0 where there is none; where not NULL, the
- * two shapes of each go to shape and what is known of it to out. */
-size_t bench_recording(const char *path, unsigned frames, shape_t *shape, bench_recorded_t *out)
+/* Returns room for n poses with their shapes, or NULL. */
+static bench_pose_t *new_poses(size_t n)
 {
-    static recording_t r; /* it stays: shapes refer to its vertices */
-    shape_t *body;
+    bench_pose_t *pose = (bench_pose_t *)calloc(n, sizeof *pose);
+    shape_t *shape = (shape_t *)calloc(2 * n, sizeof *shape);
+    for (size_t k = 0; pose && shape && k < n; k++) {
+        pose[k].a = &shape[2 * k];
+        pose[k].b = &shape[2 * k + 1];
+    }
+    return shape ? pose : NULL;
+}
+
+static size_t read_pair_set(const pair_set_t *set, bench_pose_t *pose)
+{
+    for (int i = 0; pose && i < set->n; i++, pose++) {
+        pair_set_pose(set, i, pose->a, pose->b, &pose->truth);
+        pose->motion = (size_t)(set->trajectory > 0 ? i / set->trajectory : i);
+        pose->frame = (size_t)i;
+    }
+    return pose ? (size_t)set->n : 0;
+}
+
+static size_t read_recording(const recording_t *r, bench_pose_t *pose)
+{
     size_t k = 0;
-    if (!r.bytes && recording_read(path, &r) != 0)
-        return 0;
-    body = (shape_t *)malloc(r.bodies * sizeof *body);
-    for (unsigned f = 0; body && f < frames && f < r.frames; f++) {
-        recording_place(&r, f, body);
-        for (unsigned i = 0; i < r.frame_pairs[f]; i++, k++)
-            if (shape) {
-                recording_pair(&r, f, i, &out[k].a, &out[k].b);
-                recording_truth(&r, k, &out[k].lower, &out[k].upper);
-                out[k].frame = f;
-                shape[2 * k] = body[out[k].a];
-                shape[2 * k + 1] = body[out[k].b];
-            }
+    shape_t *body = (shape_t *)malloc(r->bodies * sizeof *body);
+    for (uint32_t f = 0; pose && body && f < r->frames; f++) {
+        recording_place(r, f, body);
+        for (uint32_t i = 0; i < r->frame_pairs[f]; i++, k++, pose++) {
+            unsigned a, b;
+            double lower, upper;
+            ccd_vec3_t center[2], d;
+            recording_pair(r, f, i, &a, &b);
+            recording_truth(r, k, &lower, &upper);
+            *pose->a = body[a];
+            *pose->b = body[b];
+            shape_center(pose->a, &center[0]);
+            shape_center(pose->b, &center[1]);
+            ccdVec3Sub2(&d, &center[1], &center[0]);
+            if (ccdVec3Len2(&d) > 0)
+                ccdVec3Normalize(&d);
+            else
+                ccdVec3Set(&d, 1, 0, 0);
+            memcpy(pose->truth.cold, d.v, sizeof d.v);
+            pose->truth.depth = (lower + upper) / 2;
+            pose->truth.gap = upper - lower;
+            pose->motion = (size_t)a * r->bodies + b;
+            pose->frame = f;
+        }
     }
     free(body);
     return k;
+}
+
+/* Reads the poses of a pair set or of a recording. Returns their number, 0 on failure. Nothing is ever freed. */
+size_t bench_scene(const char *path, bench_pose_t **poses)
+{
+    pair_set_t set;
+    recording_t r;
+    if (pair_set_read(path, &set) == 0)
+        return read_pair_set(&set, *poses = new_poses((size_t)set.n));
+    return recording_read(path, &r) == 0 ? read_recording(&r, *poses = new_poses(r.pairs)) : 0;
 }

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Instructions of a query, counted by callgrind on this very program: in the solver, and in the
-//! callbacks.
+//! Instructions of a query in the solver and in the callbacks, counted by callgrind on this program itself.
 
 use std::process::Command;
 
@@ -15,25 +14,25 @@ use super::scene::Scene;
 pub struct Count {
     pub solver: u64,
     pub callbacks: u64,
-    /// Instructions of the watched program itself.
+    /// Of this program itself.
     pub program: u64,
 }
 
-/// Self cost of a callgrind file written without name compression.
+/// Sums the self cost in a callgrind file written without name compression.
 fn parse(text: &str, program: &str) -> Count {
     let mut count = Count::default();
-    let (mut object, mut called) = ("", false);
+    let (mut object, mut is_callee) = ("", false);
     for line in text.lines() {
         if let Some(name) = line.strip_prefix("ob=") {
             object = name;
         } else if line.starts_with("calls=") {
-            // The next line is the callee's cost, counted where it is spent.
-            called = true;
+            // The next line repeats the cost of the callee.
+            is_callee = true;
         } else if line.starts_with(|c: char| c.is_ascii_digit()) {
             let cost = line.split_whitespace().nth(1);
             let cost = cost.and_then(|c| c.parse::<u64>().ok()).unwrap_or(0);
             match object {
-                _ if std::mem::take(&mut called) => (),
+                _ if std::mem::take(&mut is_callee) => (),
                 _ if object == program => count.program += cost,
                 _ if object.ends_with("callbacks.so") => count.callbacks += cost,
                 _ => count.solver += cost,
@@ -43,27 +42,26 @@ fn parse(text: &str, program: &str) -> Count {
     count
 }
 
-/// Runs the method over the scene once, for callgrind to count.
-pub fn watched(libraries: &Libraries, scene: &Scene, method: &mut Method) {
+/// Runs the method once over every n-th pair of the scene, for callgrind to count.
+pub fn count(libraries: &Libraries, scene: &Scene, method: &mut Method, every: usize) {
     // SAFETY: does nothing.
     unsafe { (libraries.callbacks.begin)() };
-    for pair in &scene.pairs {
+    for pair in scene.pairs.iter().step_by(every) {
         std::hint::black_box(method.query(scene, pair));
     }
     // SAFETY: does nothing.
     unsafe { (libraries.callbacks.end)() };
 }
 
-/// Runs this program with these arguments under callgrind: the counts in the order in which they were made.
-pub fn counts(arguments: &[&str]) -> Result<Vec<Count>, String> {
+/// Runs this program under callgrind with the words of a command and `--counting`. Returns the counts in their order.
+pub fn counts(command: &[String]) -> Result<Vec<Count>, String> {
     let program = std::env::current_exe().map_err(|e| e.to_string())?;
     let mut plain = Command::new(&program);
     let dumps = ["--zero-before=bench_begin", "--dump-after=bench_end"];
-    let (_, texts) = crate::harness::callgrind(plain.args(arguments), &dumps)?;
+    let (_, texts) = crate::harness::callgrind(plain.args(command).arg("--counting"), &dumps)?;
     let program = program.display().to_string();
-    // What came after the last method is in the first.
-    let texts = texts.iter().skip(1);
-    Ok(texts.map(|text| parse(text, &program)).collect())
+    // The first is the end of the program.
+    Ok(texts.iter().skip(1).map(|text| parse(text, &program)).collect())
 }
 
 #[cfg(test)]

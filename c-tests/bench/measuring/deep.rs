@@ -6,27 +6,25 @@
 //! depth estimation between convex polytopes using dual-space expansion", IEEE TVCG 2004). The
 //! baseline of W. Gao's paper (2023), Section IV.
 //!
-//! A vertex hub pair is a vertex a of the first polytope and b of the second whose normal cones,
-//! b's turned around, overlap; a − b is then a vertex of D. The corners of the overlap are the
-//! normals n of D's faces around that vertex, and n·(a − b) their distances from the origin. DEEP
-//! moves to the hubs of the closest of these faces until none of them has a closer one: a local
-//! minimum.
+//! A vertex hub pair is a vertex a of the first polytope and b of the second whose normal cones, that of b reversed,
+//! overlap; a − b is then a vertex of the Minkowski difference D. The corners of the overlap are the normals n of the faces
+//! of D around that vertex, and n·(a − b) their distances from the origin. DEEP moves to the hubs of the closest of these
+//! faces until none of them has a closer one: a local minimum.
 //!
 //! Departure: cones are clipped with the planes n·(b' − b) ≥ 0, not projected to a plane.
 
 use std::ffi::c_void;
 
-use ccd::internals::ffi::{CCD_WANT_POINTS, ccd_penetration_t, ccd_vec3_t};
+use ccd::internals::ffi::{ccd_t, ccd_vec3_t};
 use nalgebra::{Matrix3, Vector3};
 
-use super::libraries::{COLD, Libraries, zeroed};
-use super::methods::{Answer, Method, Start};
+use super::libraries::Libraries;
+use super::methods::{Answer, Entry, Method, Start, find_call, run_call};
 use super::scene::{Pair, Scene};
-use crate::harness;
 
 type V = Vector3<f64>;
 
-/// A vertex with its surroundings.
+/// A vertex with its neighbours and faces.
 struct Corner {
     at: V,
     neighbours: Vec<usize>,
@@ -41,7 +39,7 @@ pub struct Polytope {
 }
 
 impl Polytope {
-    /// From a closed triangle mesh of a convex polytope around its origin.
+    /// Makes a polytope from a closed, convex triangle mesh around its origin.
     fn new(vertices: &[V], triangles: &[[usize; 3]]) -> Self {
         let normal = |t: &[usize; 3]| {
             let [a, b, c] = t.map(|i| vertices[i]);
@@ -49,7 +47,7 @@ impl Polytope {
             if n.dot(&a) < 0.0 { -n } else { n }
         };
         let corner = |v: usize| {
-            // The fan of triangles around v, walked from one shared edge to the next.
+            // The fan of triangles around v, in the order of shared edges.
             let around = triangles.iter().filter_map(|t| {
                 let k = t.iter().position(|&i| i == v)?;
                 Some((t[(k + 1) % 3], t[(k + 2) % 3], normal(t)))
@@ -71,35 +69,28 @@ impl Polytope {
         }
     }
 
-    /// The two polytopes of a pair set (c-tests/bench/pairs/README.md); none where one is no polytope.
+    /// Reads the two polytopes of a pair set (c-tests/bench/pairs/README.md); none if one has no triangles.
     pub fn of_set(name: &str) -> Option<[Self; 2]> {
-        let path = harness::root().join(format!("c-tests/bench/pairs/{name}.bin"));
-        let bytes = std::fs::read(path).ok()?;
-        let words = |at: usize, n: usize| -> Option<Vec<usize>> {
-            let of = |c: &[u8]| c.iter().rev().fold(0, |w, b| w << 8 | usize::from(*b));
-            Some(bytes.get(at..at + 4 * n)?.chunks_exact(4).map(of).collect())
-        };
-        let reals = |at: usize, n: usize| -> Option<Vec<f64>> {
-            let of = |c: &[u8]| c.try_into().map_or(f64::NAN, f64::from_le_bytes);
-            Some(bytes.get(at..at + 8 * n)?.chunks_exact(8).map(of).collect())
-        };
-        let mut at = 16; // behind the magic and two counts
+        let bytes = std::fs::read(Scene::file(name)).ok()?;
+        let real = |b: &[u8]| b.try_into().map_or(f64::NAN, f64::from_le_bytes);
+        let index = |b: &[u8]| b.try_into().map_or(usize::MAX, |b| u32::from_le_bytes(b) as usize);
+        let mut rest = bytes.get(16..)?; // behind the magic and two counts
         let mut shape = || {
-            let [_, corners, sides, _] = words(at, 4)?[..] else {
-                return None;
-            };
-            let vertices = reals(at + 40, 3 * corners)?;
-            let triangles = words(at + 40 + 24 * corners, 3 * sides)?;
-            at += 40 + 24 * corners + 12 * sides;
-            let vertices: Vec<V> = vertices.chunks_exact(3).map(V::from_column_slice).collect();
-            let triangles = triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]);
-            let triangles: Vec<[usize; 3]> = triangles.collect();
-            (sides > 0).then(|| Self::new(&vertices, &triangles))
+            let (head, tail) = rest.split_at_checked(40)?;
+            let (num_vertices, num_triangles) = (index(&head[4..8]), index(&head[8..12]));
+            let (vertices, tail) = tail.split_at_checked(24 * num_vertices)?;
+            let (triangles, tail) = tail.split_at_checked(12 * num_triangles)?;
+            rest = tail;
+            let vertex = |b: &[u8]| V::from_iterator(b.chunks_exact(8).map(real));
+            let triangle = |b: &[u8]| [0, 4, 8].map(|at| index(&b[at..at + 4]));
+            let vertices: Vec<V> = vertices.chunks_exact(24).map(vertex).collect();
+            let triangles: Vec<[usize; 3]> = triangles.chunks_exact(12).map(triangle).collect();
+            (num_triangles > 0).then(|| Self::new(&vertices, &triangles))
         };
         Some([shape()?, shape()?])
     }
 
-    /// The vertex farthest along `dir`, climbing from `from`.
+    /// Returns the vertex farthest along `dir`, climbing from `from`.
     fn extremal(&self, dir: &V, from: usize) -> usize {
         let (mut best, mut value) = (from, self.corners[from].at.dot(dir));
         loop {
@@ -117,11 +108,11 @@ impl Polytope {
     }
 }
 
-/// The second polytope in the first one's frame: x at `turn * x + shift`.
+/// Two polytopes; a point x of the second is at `turn * x + shift` in the frame of the first.
 struct Placed<'a>(&'a Polytope, &'a Polytope, Matrix3<f64>, V);
 
-/// Returns depth and the unit direction in which the second polytope leaves, in the first one's
-/// frame; none when the vertices farthest along `start` have no common normal.
+/// Returns depth and the unit direction in which the second polytope moves, in the frame of the first; none if the
+/// vertices farthest along `start` have no common normal.
 fn penetration(placed: &Placed, start: V, hub: &mut (usize, usize)) -> Option<(f64, V)> {
     let Placed(a, b, turn, _) = *placed;
     let back = turn.transpose() * -start;
@@ -154,8 +145,7 @@ fn penetration(placed: &Placed, start: V, hub: &mut (usize, usize)) -> Option<(f
     }
 }
 
-/// The face of D closest to the origin around a hub: the corners of the overlap of the two normal
-/// cones.
+/// Returns the face of D closest to the origin around a hub, from the corners of the overlap of the two normal cones.
 fn closest_face(placed: &Placed, hub: (usize, usize)) -> Option<(f64, V)> {
     let Placed(a, of_b, turn, shift) = placed;
     let (a, b) = (&a.corners[hub.0], &of_b.corners[hub.1]);
@@ -190,7 +180,7 @@ struct Climber<'a> {
 
 /// `ccd_support_fn` of a `Climber`.
 unsafe extern "C-unwind" fn climb(object: *const c_void, dir: *const ccd_vec3_t, out: *mut ccd_vec3_t) {
-    // SAFETY: queries hand the pointers through that they are given, and no other refers to it.
+    // SAFETY: queries pass on the pointers that they are given, and nothing else refers to the climber.
     let (climber, dir, out) = unsafe { (&mut *object.cast_mut().cast::<Climber>(), &*dir, &mut *out) };
     let local = climber.rotation.transpose() * V::from(dir.v);
     climber.last = climber.of.extremal(&local, climber.last);
@@ -204,46 +194,36 @@ unsafe extern "C-unwind" fn middle(object: *const c_void, out: *mut ccd_vec3_t) 
     unsafe { (*out).v = (*object.cast::<Climber>()).position.into() };
 }
 
-/// DEEP from a guess, and the local query over support functions that climb over the same edges: both
-/// on meshes alone, so neither's support points are counted.
-pub fn methods<'a>(libraries: &'a Libraries, meshes: &'a [Polytope; 2], start: Start) -> [Method<'a>; 2] {
-    let [a, b] = meshes;
+/// Returns DEEP from a guess, and the local query over support functions that climb over the same edges: both on meshes,
+/// so the support points of neither are counted.
+pub fn methods<'a>(libraries: &'a Libraries, [a, b]: &'a [Polytope; 2], start: Start) -> Vec<Method<'a>> {
     let pose = |pair: &Pair| [pair.a, pair.b].map(|shape| libraries.pose(shape));
-    let guess = move |pair: &Pair| start.direction(&pair.truth).unwrap_or(pair.truth.cold);
     let mut hub = (0, 0);
     let deep = move |_: &Scene, pair: &Pair| {
         let [(ra, pa), (rb, pb)] = pose(pair);
         let turn = ra.transpose() * rb;
         let shift = ra.transpose() * (pb - pa);
-        let from = ra.transpose() * V::from(guess(pair));
+        let from = ra.transpose() * V::from(start.guess(&pair.truth).unwrap_or(pair.truth.cold));
         let (depth, n) = penetration(&Placed(a, b, turn, shift), from, &mut hub)?;
         Some(Answer { depth, dir: (ra * n).into() })
     };
-    let mut last = (0, 0);
-    let settings = ccd::internals::ffi::ccd_t {
+    let settings = ccd_t {
         support1: Some(climb),
         support2: Some(climb),
         center1: Some(middle),
         center2: Some(middle),
-        ..libraries.ours.settings(&libraries.callbacks, 1e-6)
+        ..libraries.settings(true, 1e-6)
     };
-    let local = move |_: &Scene, pair: &Pair| {
+    let call = find_call(libraries, Entry::find("ccdPenetrationLocal"));
+    let mut query = run_call(libraries, call, start, settings);
+    let mut last = (0, 0);
+    let local = move |scene: &Scene, pair: &Pair| {
         let [(ra, pa), (rb, pb)] = pose(pair);
-        let climber = |of, rotation, position, last| Climber { of, rotation, position, last };
-        let (mut one, mut two) = (climber(a, ra, pa, last.0), climber(b, rb, pb, last.1));
-        let (one_at, two_at) = ((&raw mut one).cast(), (&raw mut two).cast());
-        let (mut state, toward) = (COLD, ccd_vec3_t { v: guess(pair) });
-        let calls = libraries.extension;
-        // SAFETY: numbers; a query over the callbacks' own objects.
-        let (code, out) = unsafe {
-            let mut out: ccd_penetration_t = zeroed();
-            (calls.guess)(&mut state, &toward);
-            let code = (calls.local)(one_at, two_at, &settings, &mut state, CCD_WANT_POINTS, &mut out);
-            (code, out)
-        };
+        let mut one = Climber { of: a, rotation: ra, position: pa, last: last.0 };
+        let mut two = Climber { of: b, rotation: rb, position: pb, last: last.1 };
+        let answer = query(scene, &Pair { a: (&raw mut one).cast(), b: (&raw mut two).cast(), ..*pair });
         last = (one.last, two.last);
-        (code >= 0).then_some(Answer { depth: out.depth, dir: out.dir.v })
+        answer
     };
-    let [deep, local] = [Method::new("DEEP", deep), Method::new("local, climbing", local).of_ours()];
-    [deep.from(start), local.from(start).within(1e-6)]
+    vec![Method::new("DEEP", start, None, deep), Method::new("ccdPenetrationLocal, climbing", start, Some(1e-6), local)]
 }

@@ -1,31 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Judges a method's answers on a scene by the truth, and measures its cost.
+//! Runs methods over a scene, judges their answers by the truth, and measures their cost.
 //!
-//! Supports and errors are exact and repeatable. Times are medians over
-//! repetitions in which all methods take turns.
+//! Support points and errors are exact and repeatable. Times are medians over repetitions in which all methods take turns.
 
 use std::ffi::{c_int, c_long};
 use std::hint::black_box;
+use std::vec;
 
 use ccd::internals::ffi::ccd_vec3_t;
 use nalgebra::Vector3;
-
 use serde::{Deserialize, Serialize};
 
+use super::callgrind::{self, Count};
 use super::libraries::Libraries;
-use super::methods::Method;
+use super::methods::{Answer, Interface, Method, Start};
 use super::scene::{Pair, Scene};
 
-/// One method on one scene. Lengths in metres.
+/// One method on one scene. Lengths in metres; columns that a file lacks are zero or none.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Row {
     pub set: String,
     pub method: String,
-    /// Where the search starts: `5`, `25`, `45` degrees off the truth, `centres`,
-    /// `warm` (the last frame's state) or nothing.
-    pub start: String,
+    pub start: Start,
     pub tolerance: Option<f64>,
     pub ours: bool,
     /// The variable of a chart: vertices, degrees a frame.
@@ -33,182 +32,261 @@ pub struct Row {
     pub queries: usize,
     /// Of these, overlaps deeper than 1 nm: the ones that are judged.
     pub overlaps: usize,
-    /// Support points of D per query.
+    /// Support points of the Minkowski difference per query.
     pub supports: f64,
-    /// Mean time of a query, of medians over repetitions; none when not timed.
+    /// Mean time of a query, of medians over repetitions.
     pub ns: Option<f64>,
+    /// Instructions of a query in the support functions, and in the solver.
+    pub callbacks: Option<f64>,
+    pub solver: Option<f64>,
     /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
     pub mean_error: f64,
     pub max_error: f64,
     /// Mean over the answers within 1 mm of the truth.
     pub mean_error_1mm: f64,
-    /// Share of answers more than 1 mm too deep (percent).
+    /// Percent of the overlaps: answers more than 1 mm too deep.
     pub nonminimal: f64,
-    /// Share of answers more than 1 mm too shallow (percent).
-    pub shallow: f64,
-    /// Share of overlaps answered by no hit or by a failure (percent).
+    /// No hit, or a failure.
     pub missed: f64,
-    /// Largest h(dir) - depth: how far from separated the shapes may be left.
+    /// Depths more than 1 % and two tolerances above, or below, the least.
+    pub deep: f64,
+    pub shallow: f64,
+    /// Directions along which the depth is so much more than the least.
+    pub wrong_direction: f64,
+    /// Any of the last four.
+    pub wrong: f64,
+    /// Largest h(dir) - depth: overlap that may be left after the move.
     pub unsound: f64,
     /// Widest uncertainty of the truth itself.
     pub truth_gap: f64,
 }
 
-/// The support value of D along `dir`.
-pub fn support_value(libraries: &Libraries, pair: &Pair, dir: &[f64; 3]) -> f64 {
-    let n = Vector3::from(*dir);
-    let at = |shape, d: Vector3<f64>| {
+impl Row {
+    /// Returns the method and its start, as in tables and pictures.
+    pub fn label(&self) -> String {
+        let start = match self.start {
+            Start::None => "",
+            Start::Guess5 => ", guess 5° off",
+            Start::Guess25 => ", guess 25° off",
+            Start::Guess45 => ", guess 45° off",
+            Start::Cold => ", cold",
+            Start::Warm => ", warm",
+        };
+        format!("{}{start}", self.method)
+    }
+
+    /// Returns all instructions of a query.
+    pub fn instructions(&self) -> f64 {
+        self.callbacks.unwrap_or_default() + self.solver.unwrap_or_default()
+    }
+}
+
+/// The one runner of all measurements.
+pub struct Runner<'a> {
+    pub libraries: &'a Libraries,
+    /// Repetitions of which times are medians; 0: no times.
+    repetitions: usize,
+    /// Instructions are counted on every n-th pair.
+    every: usize,
+    /// Counts in the order of the methods, if instructions are counted.
+    counts: Option<vec::IntoIter<Count>>,
+    /// This process is the one under callgrind: it runs the methods and measures nothing itself.
+    is_counting: bool,
+}
+
+impl<'a> Runner<'a> {
+    pub fn new(libraries: &'a Libraries, repetitions: usize) -> Self {
+        Self { libraries, repetitions, every: 1, counts: None, is_counting: false }
+    }
+
+    /// Also counts instructions on every n-th pair, for which it runs this program under callgrind with the words of a
+    /// command and `--counting`; `is_counting` in that process.
+    pub fn with_instructions(mut self, every: usize, command: &[String], is_counting: bool) -> Self {
+        let report = |why: String| println!("instructions not counted: {}", why.lines().last().unwrap_or_default());
+        let count = || callgrind::counts(command).map_err(report);
+        self.counts = if is_counting { None } else { count().ok().map(Vec::into_iter) };
+        Self { every, is_counting, ..self }
+    }
+
+    /// Measures methods on a scene.
+    pub fn rows(&mut self, scene: &Scene, mut methods: Vec<Method>) -> Vec<Row> {
+        if self.is_counting {
+            methods.iter_mut().for_each(|method| callgrind::count(self.libraries, scene, method, self.every));
+            return Vec::new();
+        }
+        let mut times = times(scene, &mut methods, self.repetitions).into_iter();
+        let row = |method: &mut Method| {
+            let mut row = judge(self.libraries, scene, method);
+            row.ns = times.next();
+            if let Some(counts) = &mut self.counts {
+                let count = counts.next().expect("a count for every method");
+                assert!(count.callbacks > 0, "callgrind counted nothing of {}", row.method);
+                let queries = scene.pairs.len().div_ceil(self.every) as f64;
+                let is_inside = matches!(method.entry.interface, Interface::PeerInside);
+                let solver = count.solver + if is_inside { count.program } else { 0 };
+                row.callbacks = Some(count.callbacks as f64 / queries);
+                row.solver = Some(solver as f64 / queries);
+            }
+            row
+        };
+        methods.iter_mut().map(row).collect()
+    }
+}
+
+/// Returns the support value of the Minkowski difference along `dir`.
+fn support_value(libraries: &Libraries, pair: &Pair, dir: &Vector3<f64>) -> f64 {
+    let support = |shape, d: Vector3<f64>| {
         let (d, mut v) = (ccd_vec3_t::from(d), ccd_vec3_t::default());
         // SAFETY: a shape of the scene, a direction and room for a point.
         unsafe { (libraries.callbacks.support)(shape, &d, &mut v) };
         Vector3::from(v.v)
     };
-    n.dot(&(at(pair.a.cast_const(), n) - at(pair.b.cast_const(), -n)))
+    dir.dot(&(support(pair.a.cast_const(), *dir) - support(pair.b.cast_const(), -dir)))
 }
 
-/// 0 of none.
-pub fn mean(values: &[f64]) -> f64 {
+/// Returns the mean; 0 of none.
+fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// NaN of any NaN; 0 of none, and never less.
-fn largest(values: &[f64]) -> f64 {
-    let larger = |m: f64, v: f64| if m >= v || m.is_nan() { m } else { v };
-    values.iter().copied().fold(0.0, larger)
+/// Returns the larger number; NaN if one is.
+fn larger(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
 }
 
-/// 0 of none.
-pub fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let of = |k: usize| sorted.get(k).copied().unwrap_or_default();
-    let half = sorted.len() / 2;
-    if sorted.len() % 2 == 1 { of(half) } else { (of(half.saturating_sub(1)) + of(half)) / 2.0 }
+/// Returns the median; 0 of none.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    let value = |k: usize| values.get(k).copied().unwrap_or_default();
+    let half = values.len() / 2;
+    if values.len() % 2 == 1 { value(half) } else { (value(half.saturating_sub(1)) + value(half)) / 2.0 }
 }
 
-/// Runs the method over the scene and judges every answer. A warm method's first
-/// frame of each motion has no memory yet and is left out.
-pub fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
+/// Tolerance by which methods are judged whose own is built in.
+const DEFAULT_TOLERANCE: f64 = 1e-6;
+
+/// Runs the method over the scene and judges every answer. A warm method's first frame of each motion has no memory yet
+/// and is left out.
+fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
     let calls = |pair: &Pair| {
         // SAFETY: shapes of the scene.
         unsafe { (libraries.callbacks.calls)(pair.a) + (libraries.callbacks.calls)(pair.b) }
     };
-    let (mut errors, mut near) = (vec![], vec![]);
-    let (mut unsound, mut missed, mut nonminimal, mut shallow) = (vec![], 0, 0, 0);
-    let (mut queries, mut hits, mut supports, mut truth_gap) = (0_usize, 0_usize, 0, 0.0_f64);
+    let mut row = Row {
+        set: scene.name.clone(),
+        method: method.entry.name.to_owned(),
+        start: method.start,
+        tolerance: method.tolerance,
+        ours: method.entry.is_ours(),
+        ..Row::default()
+    };
+    let tolerance = 2.0 * method.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+    let (mut errors, mut near, mut num_calls) = (vec![], vec![], 0);
     for pair in &scene.pairs {
         let before = calls(pair);
         let answer = method.query(scene, pair);
-        let asked = calls(pair) - before;
+        let after = calls(pair);
         if method.is_warm() && pair.frame == 0 {
             continue;
         }
-        queries += 1;
-        supports += asked;
-        truth_gap = truth_gap.max(pair.truth.gap);
-        // Pairs apart or touching are asked about, not judged here.
-        if pair.truth.depth <= 1e-9 {
+        row.queries += 1;
+        num_calls += after - before;
+        row.truth_gap = row.truth_gap.max(pair.truth.gap);
+        // Pairs apart or touching are queried, not judged.
+        let truth = pair.truth.depth;
+        if truth <= 1e-9 {
             continue;
         }
-        hits += 1;
-        let Some(answer) = answer else {
+        row.overlaps += 1;
+        let Some(Answer { depth, dir }) = answer else {
             // As if the depth had been 0.
-            errors.push(pair.truth.depth);
-            missed += 1;
+            errors.push(truth);
+            row.missed += 1.0;
+            row.wrong += 1.0;
             continue;
         };
-        let off = answer.depth - pair.truth.depth;
-        errors.push(off.abs());
-        unsound.push(support_value(libraries, pair, &answer.dir) - answer.depth);
-        // Written so that NaN counts as non-minimal.
-        if off < -1e-3 {
-            shallow += 1;
-        } else if off <= 1e-3 {
-            near.push(off.abs());
-        } else {
-            nonminimal += 1;
+        let error = (depth - truth).abs();
+        errors.push(error);
+        row.unsound = larger(row.unsound, support_value(libraries, pair, &dir.into()) - depth);
+        if error <= 1e-3 {
+            near.push(error);
         }
+        // NaN counts as too deep.
+        row.nonminimal += f64::from(depth - truth > 1e-3 || depth.is_nan());
+        let is_deep = |depth: f64| depth > 1.01 * truth + tolerance || depth.is_nan();
+        let faults = [
+            is_deep(depth),
+            depth < 0.99 * truth - tolerance,
+            is_deep(support_value(libraries, pair, &Vector3::from(dir).normalize())),
+        ];
+        row.deep += f64::from(faults[0]);
+        row.shallow += f64::from(faults[1]);
+        row.wrong_direction += f64::from(faults[2]);
+        row.wrong += f64::from(faults.contains(&true));
     }
-    let percent = |k: usize| 100.0 * k as f64 / hits.max(1) as f64;
-    Row {
-        set: scene.name.clone(),
-        method: method.name.clone(),
-        start: method.start.name().to_owned(),
-        tolerance: method.tolerance,
-        ours: method.ours,
-        x: None,
-        queries,
-        overlaps: hits,
-        supports: supports as f64 / 2.0 / queries as f64,
-        ns: None,
-        mean_error: mean(&errors),
-        max_error: largest(&errors),
-        mean_error_1mm: mean(&near),
-        nonminimal: percent(nonminimal),
-        shallow: percent(shallow),
-        missed: percent(missed),
-        unsound: largest(&unsound),
-        truth_gap,
+    for count in [
+        &mut row.nonminimal,
+        &mut row.missed,
+        &mut row.deep,
+        &mut row.shallow,
+        &mut row.wrong_direction,
+        &mut row.wrong,
+    ] {
+        *count = 100.0 * *count / row.overlaps.max(1) as f64;
     }
+    row.supports = num_calls as f64 / 2.0 / row.queries as f64;
+    row.mean_error = mean(&errors);
+    row.max_error = errors.into_iter().fold(0.0, larger);
+    row.mean_error_1mm = mean(&near);
+    row
 }
 
-/// Processor time of this thread, nanoseconds: what other processes do meanwhile does not count.
+/// Returns the processor time of this thread in nanoseconds, which leaves out other processes.
 fn thread_nanoseconds() -> f64 {
     unsafe extern "C" {
         fn clock_gettime(clock: c_int, time: *mut [c_long; 2]) -> c_int;
     }
-    /// Linux' CLOCK_THREAD_CPUTIME_ID.
+    /// CLOCK_THREAD_CPUTIME_ID of Linux.
     const THREAD: c_int = 3;
     let mut time = [0; 2];
-    // SAFETY: a timespec on 64-bit Linux, which this is: the benchmark compares with Debian's libccd.
+    // SAFETY: a timespec of 64-bit Linux: the benchmark compares with Debian's libccd.
     unsafe { clock_gettime(THREAD, &mut time) };
     1e9 * time[0] as f64 + time[1] as f64
 }
 
-/// Poses timed in one go, where they are independent: long against the clock's
-/// resolution, short against a time slice.
+/// Independent poses timed in one go: long against the clock's resolution, short against a time slice.
 const CHUNK: usize = 25;
 
-/// Mean time of a query of each method, ns. All methods take turns over the scene,
-/// `repetitions` times; of every chunk of poses (or motion) the median counts, so that
-/// what else the machine does meanwhile does not.
-pub fn times(scene: &Scene, methods: &mut [Method], repetitions: usize) -> Vec<f64> {
+/// Returns the mean time of a query of each method, ns; none without repetitions. All methods take turns over the scene;
+/// the median of every chunk of poses (or motion) counts, which leaves out what else the machine does meanwhile.
+fn times(scene: &Scene, methods: &mut [Method], repetitions: usize) -> Vec<f64> {
     let mut passes = vec![Vec::with_capacity(repetitions); methods.len()];
     for _ in 0..repetitions {
         for (method, times) in methods.iter_mut().zip(&mut passes) {
             times.push(pass(scene, method));
         }
     }
-    let of = |passes: Vec<Vec<(f64, usize)>>| {
-        let chunks = passes.first().map_or(0, Vec::len);
-        let (mut ns, mut queries) = (0.0, 0);
-        for k in 0..chunks {
-            let chunk: Vec<f64> = passes.iter().map(|p| p[k].0).collect();
-            ns += median(&chunk);
-            queries += passes[0][k].1;
-        }
-        ns / queries as f64
+    let mean_of_medians = |passes: Vec<Vec<(f64, usize)>>| {
+        let first = passes.first()?;
+        let chunks = 0..first.len();
+        let ns: f64 = chunks.map(|k| median(passes.iter().map(|pass| pass[k].0).collect())).sum();
+        Some(ns / first.iter().map(|(_, queries)| queries).sum::<usize>() as f64)
     };
-    passes.into_iter().map(of).collect()
+    passes.into_iter().filter_map(mean_of_medians).collect()
 }
 
-/// Time, ns, and number of the queries of every chunk; a warm method's first frames untimed.
+/// Returns time, ns, and number of the queries of every chunk; a warm method's first frames are not timed.
 fn pass(scene: &Scene, method: &mut Method) -> Vec<(f64, usize)> {
-    let time = |method: &mut Method, pairs: &[Pair]| {
-        let begin = thread_nanoseconds();
-        for pair in pairs {
-            black_box(method.query(scene, pair));
-        }
-        (thread_nanoseconds() - begin, pairs.len())
+    let (chunks, num_untimed): (Vec<&[Pair]>, _) = match method.is_warm() {
+        true => (scene.pairs.chunk_by(|_, next| next.frame > 0).collect(), 1),
+        false => (scene.pairs.chunks(CHUNK).collect(), 0),
     };
-    if !method.is_warm() {
-        return scene.pairs.chunks(CHUNK).map(|c| time(method, c)).collect();
-    }
-    let motions = scene.pairs.chunk_by(|_, next| next.frame > 0);
-    let rests = motions.filter_map(|motion| {
-        let (first, rest) = motion.split_first()?;
-        black_box(method.query(scene, first));
-        Some(time(method, rest))
-    });
-    rests.collect()
+    let time = |chunk: &[Pair]| {
+        let (untimed, timed) = chunk.split_at(num_untimed);
+        untimed.iter().for_each(|pair| _ = black_box(method.query(scene, pair)));
+        let begin = thread_nanoseconds();
+        timed.iter().for_each(|pair| _ = black_box(method.query(scene, pair)));
+        (thread_nanoseconds() - begin, timed.len())
+    };
+    chunks.into_iter().map(time).collect()
 }

@@ -1,110 +1,167 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The methods under measurement, each as a closure over one pair.
+//! Lists the methods under measurement in one table, and runs each as a closure over one pair.
 
-use std::ffi::c_void;
+use std::ffi::{c_int, c_uint, c_void};
 use std::ptr::null_mut;
 
-use ccd::internals::ffi::{CCD_LIMIT, CCD_WANT_POINTS, ccd_penetration_t, ccd_t, ccd_vec3_t};
+use ccd::internals::ffi::{CCD_LIMIT, CCD_WANT_POINTS, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t};
 use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
+use serde::{Deserialize, Serialize};
 
-use super::libraries::{COLD, Classic, Libraries, Query, Truth, zeroed};
-use super::scene::{Pair, Scene};
+use super::libraries::{COLD, Libraries, function};
+use super::scene::{Pair, Scene, Truth};
 
-/// Answer of a query.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Answer {
-    pub depth: f64,
-    /// The way obj2 moves.
-    pub dir: [f64; 3],
+/// Interface of a method: the arguments of a library's call behind the two objects and their settings.
+#[derive(Clone, Copy)]
+pub enum Interface {
+    /// None; the call returns 1 or 0.
+    YesNo,
+    /// Warm state; the call returns 1 or 0.
+    YesNoWarm,
+    /// Depth, direction, position.
+    Depth,
+    /// Warm state, depth, direction, position.
+    DepthWarm,
+    /// Warm state, wanted outputs, result.
+    Full,
+    /// W. Gao's algorithms as published.
+    Gao(Until),
+    /// Another solver, with a closure of its own.
+    Peer,
+    /// A peer compiled into the measuring program, whose instructions are then the solver's.
+    PeerInside,
 }
 
-/// Where a search starts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Mark {
+    Dot,
+    Ring,
+    Triangle,
+    Cross,
+}
+
+/// A row of the table of methods.
+pub struct Entry {
+    /// In tables and pictures; that of a library's call ends with the function.
+    pub name: &'static str,
+    pub interface: Interface,
+    /// Red, green, blue.
+    pub colour: (u8, u8, u8),
+    pub mark: Mark,
+}
+
+impl Entry {
+    /// A call of this library's interface.
+    pub fn is_ours(&self) -> bool {
+        self.name.starts_with("ccd")
+    }
+
+    pub fn find(name: &str) -> &'static Entry {
+        METHODS.iter().find(|entry| entry.name == name).unwrap_or_else(|| panic!("no method {name}"))
+    }
+}
+
+const fn entry(name: &'static str, interface: Interface, colour: (u8, u8, u8), mark: Mark) -> Entry {
+    Entry { name, interface, colour, mark }
+}
+
+const RED: (u8, u8, u8) = (239, 68, 68);
+const DARK_RED: (u8, u8, u8) = (153, 27, 27);
+const BLUE: (u8, u8, u8) = (37, 99, 235);
+const AMBER: (u8, u8, u8) = (217, 119, 6);
+const GREEN: (u8, u8, u8) = (22, 145, 70);
+const PURPLE: (u8, u8, u8) = (147, 51, 234);
+const PINK: (u8, u8, u8) = (219, 39, 119);
+const TEAL: (u8, u8, u8) = (13, 148, 136);
+const GREY: (u8, u8, u8) = (107, 114, 128);
+
+/// Every method.
+const METHODS: [Entry; 21] = [
+    entry("libccd ccdMPRPenetration", Interface::Depth, RED, Mark::Triangle),
+    entry("libccd ccdGJKPenetration", Interface::Depth, DARK_RED, Mark::Dot),
+    entry("libccd ccdMPRIntersect", Interface::YesNo, RED, Mark::Cross),
+    entry("ccdMPRPenetration", Interface::Depth, BLUE, Mark::Triangle),
+    entry("ccdGJKPenetration", Interface::Depth, BLUE, Mark::Dot),
+    entry("ccdMPRIntersect", Interface::YesNo, BLUE, Mark::Cross),
+    entry("ccdMPRPenetrationWarm", Interface::DepthWarm, BLUE, Mark::Triangle),
+    entry("ccdMPRIntersectWarm", Interface::YesNoWarm, BLUE, Mark::Cross),
+    entry("ccdPenetration", Interface::Full, BLUE, Mark::Ring),
+    entry("ccdPenetrationLocal", Interface::Full, AMBER, Mark::Dot),
+    entry("ccdPenetrationProven", Interface::Full, GREEN, Mark::Dot),
+    entry("Gao 2023, Algorithm 4/5", Interface::Gao(Until::Shortcut), PURPLE, Mark::Dot),
+    entry("Gao 2023, Algorithm 3", Interface::Gao(Until::Normal), PURPLE, Mark::Cross),
+    entry("ccdPenetrationLocal, climbing", Interface::Peer, AMBER, Mark::Triangle),
+    entry("DEEP", Interface::Peer, PINK, Mark::Triangle),
+    entry("Bullet EPA", Interface::Peer, GREY, Mark::Dot),
+    entry("FCL EPA", Interface::Peer, GREY, Mark::Ring),
+    entry("parry EPA", Interface::PeerInside, GREY, Mark::Triangle),
+    entry("MuJoCo 3 ccd", Interface::Peer, TEAL, Mark::Dot),
+    entry("Coal 3 EPA", Interface::Peer, TEAL, Mark::Ring),
+    entry("Jolt 5 EPA", Interface::Peer, TEAL, Mark::Cross),
+];
+
+/// Start of a search; in files the degrees by which a guess is off the true direction, `cold` or `warm`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Start {
-    /// The method does not ask.
+    /// The method has none.
+    #[default]
+    #[serde(rename = "")]
     None,
-    /// A guess so many degrees off the true direction.
-    Five,
-    TwentyFive,
-    FortyFive,
-    /// The centre difference.
-    Centres,
-    /// The last frame's state.
+    #[serde(rename = "5")]
+    Guess5,
+    #[serde(rename = "25")]
+    Guess25,
+    #[serde(rename = "45")]
+    Guess45,
+    /// A state that is cold.
+    #[serde(rename = "cold")]
+    Cold,
+    /// The state of the frame before.
+    #[serde(rename = "warm")]
     Warm,
 }
 
 impl Start {
-    pub const GUESSES: [Start; 3] = [Start::Five, Start::TwentyFive, Start::FortyFive];
-
-    pub fn name(self) -> &'static str {
+    /// Returns the guess, if the search starts from one.
+    pub fn guess(self, truth: &Truth) -> Option<[f64; 3]> {
         match self {
-            Start::None => "",
-            Start::Five => "5",
-            Start::TwentyFive => "25",
-            Start::FortyFive => "45",
-            Start::Centres => "centres",
-            Start::Warm => "warm",
+            Start::Guess5 => Some(truth.init5),
+            Start::Guess25 => Some(truth.init25),
+            Start::Guess45 => Some(truth.init45),
+            Start::None | Start::Cold | Start::Warm => None,
         }
     }
+}
 
-    /// The start direction of a pair, where the pair knows it.
-    pub fn direction(self, truth: &Truth) -> Option<[f64; 3]> {
-        match self {
-            Start::None | Start::Warm => None,
-            Start::Five => Some(truth.init5),
-            Start::TwentyFive => Some(truth.init25),
-            Start::FortyFive => Some(truth.init45),
-            Start::Centres => Some(truth.cold),
-        }
-    }
+/// Result of a query.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Answer {
+    pub depth: f64,
+    /// The direction in which obj2 moves.
+    pub dir: [f64; 3],
 }
 
 type Run<'a> = Box<dyn FnMut(&Scene, &Pair) -> Option<Answer> + 'a>;
 
+/// A method with its start and tolerance.
 pub struct Method<'a> {
-    pub name: String,
+    pub entry: &'static Entry,
     pub start: Start,
-    /// As the method is given it; none where it is built in.
+    /// None if it is built in.
     pub tolerance: Option<f64>,
-    /// A call of this library's interface.
-    pub ours: bool,
-    /// Compiled into the measuring program itself: callgrind counts what that spends for it.
-    pub inside: bool,
     run: Run<'a>,
 }
 
 impl<'a> Method<'a> {
-    pub fn new(name: &str, run: impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a) -> Self {
-        Self {
-            name: name.to_owned(),
-            start: Start::None,
-            tolerance: None,
-            ours: false,
-            inside: false,
-            run: Box::new(run),
-        }
-    }
-
-    pub fn from(mut self, start: Start) -> Self {
-        self.start = start;
-        self
-    }
-
-    pub fn within(mut self, tolerance: f64) -> Self {
-        self.tolerance = Some(tolerance);
-        self
-    }
-
-    pub fn of_ours(mut self) -> Self {
-        self.ours = true;
-        self
-    }
-
-    pub fn of_this_program(mut self) -> Self {
-        self.inside = true;
-        self
+    pub fn new(
+        name: &str,
+        start: Start,
+        tolerance: Option<f64>,
+        run: impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a,
+    ) -> Self {
+        Self { entry: Entry::find(name), start, tolerance, run: Box::new(run) }
     }
 
     pub fn is_warm(&self) -> bool {
@@ -117,115 +174,103 @@ impl<'a> Method<'a> {
     }
 }
 
-/// A call of libccd's, without its position where it need not have one: `pos` of this library is
-/// charted beside libccd's by the recorded contacts and the worlds.
-pub fn classic(query: Query, settings: ccd_t, needs_pos: bool) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
-    move |_, pair| {
-        let (mut depth, mut dir, mut pos) = (0.0, ccd_vec3_t::default(), ccd_vec3_t::default());
-        let pos = if needs_pos { &raw mut pos } else { null_mut() };
-        // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
-        let code = unsafe { query(pair.a, pair.b, &settings, &mut depth, &mut dir, pos) };
-        let dir = dir.v;
-        (code == 0).then_some(Answer { depth, dir })
-    }
-}
-
-/// Yes or no by MPR; the answer's numbers say nothing.
-fn intersect(of: &Classic, settings: ccd_t) -> impl FnMut(&Scene, &Pair) -> Option<Answer> {
-    let query = of.mpr_intersect;
-    move |_, pair| {
-        // SAFETY: a query of <ccd/ccd.h> over the callbacks' own shapes.
-        let yes = unsafe { query(pair.a, pair.b, &settings) };
-        (yes == 1).then(Answer::default)
-    }
-}
-
-/// A call of the system's libccd, of this library, or the paper's method from inside it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ask {
-    SystemMpr,
-    SystemEpa,
-    SystemIntersect,
-    Mpr,
-    Gjk,
-    Intersect,
-    MprWarm,
-    IntersectWarm,
-    Local,
-    Minimum,
-    /// `ccdPenetration`, with witness points.
-    Penetration,
-    /// Algorithms 4 and 5, without later improvements.
-    Paper,
-    /// Algorithm 3: without the shortcut.
-    PaperBare,
-}
-
-/// One query of these, from where it starts.
-pub fn of<'a>(libraries: &'a Libraries, ask: Ask, start: Start, tolerance: f64) -> Method<'a> {
-    let (system, ours) = (&libraries.system, &libraries.ours);
-    let settings = |of: &Classic| of.settings(&libraries.callbacks, tolerance);
-    let theirs = |query| classic(query, settings(system), true);
-    let here = |query| classic(query, settings(ours), false);
-    let extension = || extension(libraries, ask, start, settings(ours));
-    let paper = |until| paper(libraries, until, start, tolerance);
-    let method = match ask {
-        Ask::SystemMpr => Method::new("libccd MPR", theirs(system.mpr)),
-        Ask::SystemEpa => Method::new("libccd EPA", theirs(system.gjk)),
-        Ask::SystemIntersect => Method::new("libccd MPR intersect", intersect(system, settings(system))),
-        Ask::Mpr => Method::new("MPR", here(ours.mpr)).of_ours(),
-        Ask::Gjk => Method::new("GJK", here(ours.gjk)).of_ours(),
-        Ask::Intersect => Method::new("MPR intersect", intersect(ours, settings(ours))).of_ours(),
-        Ask::MprWarm => Method::new("MPR warm", extension()).of_ours(),
-        Ask::IntersectWarm => Method::new("MPR intersect", extension()).of_ours(),
-        Ask::Local => Method::new("local", extension()).of_ours(),
-        Ask::Minimum => Method::new("minimum", extension()).of_ours(),
-        Ask::Penetration => Method::new("penetration", extension()).of_ours(),
-        Ask::Paper => Method::new("Algorithm 4/5", paper(Until::Shortcut)),
-        Ask::PaperBare => Method::new("Algorithm 3", paper(Until::Normal)),
+/// Returns methods of the table that are inside the two libraries, by name, start and tolerance.
+pub fn select<'a>(libraries: &'a Libraries, list: &[(&str, Start, f64)]) -> Vec<Method<'a>> {
+    let method = |&(name, start, tolerance): &(&str, Start, f64)| match Entry::find(name).interface {
+        Interface::Gao(until) => Method::new(name, start, Some(tolerance), gao(libraries, until, start, tolerance)),
+        _ => {
+            let call = find_call(libraries, Entry::find(name));
+            let settings = libraries.settings(Entry::find(name).is_ours(), tolerance);
+            Method::new(name, start, Some(tolerance), run_call(libraries, call, start, settings))
+        }
     };
-    method.from(start).within(tolerance)
+    list.iter().map(method).collect()
 }
 
-/// A query of the extension. Guesses are a fresh state each, `Warm` one state a
-/// motion, `Centres` a zero state.
-fn extension<'a>(
-    libraries: &'a Libraries,
-    ask: Ask,
+type Object = *const c_void;
+type Ccd = *const ccd_t;
+type Point = *mut ccd_vec3_t;
+type Warm = *mut ccd_warm_t;
+
+/// The type of `ccdMPRPenetration`.
+pub type Depth = unsafe extern "C-unwind" fn(Object, Object, Ccd, *mut f64, Point, Point) -> c_int;
+
+/// A library's call, whatever its interface.
+pub type Call = Box<dyn Fn(&Pair, &ccd_t, &mut ccd_warm_t, &mut ccd_penetration_t) -> c_int>;
+
+/// Returns a call with the interface of `ccdMPRPenetration`.
+pub fn depth_call(f: Depth, has_pos: bool) -> Call {
+    Box::new(move |pair, ccd, _, out| {
+        let pos = if has_pos { &raw mut out.pos } else { null_mut() };
+        // SAFETY: a query over the callbacks' own shapes.
+        unsafe { f(pair.a, pair.b, ccd, &mut out.depth, &mut out.dir, pos) }
+    })
+}
+
+/// Finds the call of a row of the table. Those of this library compute no position: its cost is compared with libccd's on
+/// the recorded contacts.
+pub fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
+    type YesNo = unsafe extern "C-unwind" fn(Object, Object, Ccd) -> c_int;
+    type YesNoWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm) -> c_int;
+    type DepthWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, *mut f64, Point, Point) -> c_int;
+    type Full = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, c_uint, *mut ccd_penetration_t) -> c_int;
+    let library = if entry.is_ours() { libraries.ours } else { libraries.system };
+    let symbol = entry.name.rsplit(' ').next().unwrap_or_default();
+    // SAFETY: the table's interfaces are those of the C headers; queries over the callbacks' own shapes.
+    unsafe {
+        match entry.interface {
+            Interface::YesNo => {
+                let f: YesNo = function(library, symbol);
+                Box::new(move |pair, ccd, _, _| f(pair.a, pair.b, ccd) - 1)
+            }
+            Interface::YesNoWarm => {
+                let f: YesNoWarm = function(library, symbol);
+                Box::new(move |pair, ccd, warm, _| f(pair.a, pair.b, ccd, warm) - 1)
+            }
+            Interface::Depth => depth_call(function(library, symbol), !entry.is_ours()),
+            Interface::DepthWarm => {
+                let f: DepthWarm = function(library, symbol);
+                Box::new(move |pair, ccd, warm, out| {
+                    f(pair.a, pair.b, ccd, warm, &mut out.depth, &mut out.dir, null_mut())
+                })
+            }
+            Interface::Full => {
+                let f: Full = function(library, symbol);
+                Box::new(move |pair, ccd, warm, out| f(pair.a, pair.b, ccd, warm, CCD_WANT_POINTS, out))
+            }
+            _ => panic!("{} is no library's call", entry.name),
+        }
+    }
+}
+
+/// Runs a library's call. Every guess is a fresh state, `Warm` one state a motion.
+pub fn run_call<'a>(
+    libraries: &Libraries,
+    call: Call,
     start: Start,
     settings: ccd_t,
 ) -> impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a {
-    let calls = libraries.extension;
+    type WarmGuess = unsafe extern "C-unwind" fn(Warm, *const ccd_vec3_t);
+    // SAFETY: the type is that of <ccd/warm.h>.
+    let warm_guess: WarmGuess = unsafe { function(libraries.ours, "ccdWarmGuess") };
     let mut state = COLD;
     move |_, pair| {
-        if let Some(guess) = start.direction(&pair.truth).filter(|_| start != Start::Centres) {
-            let guess = ccd_vec3_t { v: guess };
+        if let Some(v) = start.guess(&pair.truth) {
             // SAFETY: a state and a direction.
-            unsafe { (calls.guess)(&mut state, &guess) };
+            unsafe { warm_guess(&mut state, &ccd_vec3_t { v }) };
         } else if start != Start::Warm || pair.frame == 0 {
             state = COLD;
         }
-        // SAFETY: numbers.
-        let mut out: ccd_penetration_t = unsafe { zeroed() };
-        let (a, b, ccd, warm) = (pair.a, pair.b, &settings, &mut state);
-        // SAFETY: queries of <ccd/warm.h> over the callbacks' own shapes.
-        let code = unsafe {
-            match ask {
-                Ask::Local => (calls.local)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
-                Ask::Penetration => (calls.penetration)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
-                Ask::Minimum => (calls.minimum)(a, b, ccd, warm, CCD_WANT_POINTS, &mut out),
-                // 1 is yes, 0 no.
-                Ask::IntersectWarm => (calls.mpr_intersect)(a, b, ccd, warm) - 1,
-                _ => (calls.mpr)(a, b, ccd, warm, &mut out.depth, &mut out.dir, null_mut()),
-            }
-        };
-        // CCD_HIT, or CCD_LIMIT: the best sound answer at the cap.
+        // SAFETY: numbers, to be filled.
+        let mut out: ccd_penetration_t = unsafe { std::mem::zeroed() };
+        let code = call(pair, &settings, &mut state, &mut out);
+        // A hit; CCD_LIMIT has a sound result too.
         (code == 0 || code == CCD_LIMIT).then_some(Answer { depth: out.depth, dir: out.dir.v })
     }
 }
 
-/// It falls short of the published implementation in nothing, but answers with the portal's normal.
-fn paper<'a>(
+/// Runs the paper's algorithms, which match the published implementation but return the portal's normal.
+fn gao<'a>(
     libraries: &'a Libraries,
     until: Until,
     start: Start,
@@ -245,10 +290,9 @@ fn paper<'a>(
         };
         let md = MinkowskiDifference::new(object(pair.a), object(pair.b));
         let memory = if pair.frame == 0 { None } else { last };
-        let from = start.direction(&pair.truth).map(Vec3::from).or(memory);
+        let from = start.guess(&pair.truth).map(Vec3::from).or(memory);
         let from = from.unwrap_or_else(|| pair.truth.cold.into());
-        let answer = incremental(&md, from, None, until, &settings, |_| ());
-        let found = answer.ok()?;
+        let found = incremental(&md, from, None, until, &settings, |_| ()).ok()?;
         last = Some(found.dir);
         Some(Answer { depth: found.depth, dir: found.dir.into() })
     }

@@ -1,12 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Measuring: libraries side by side, scenes with truth, methods, measurement.
-//! Each module uses those before it alone: `csv`, `libraries`, `scene`,
-//! `methods`, `deep`, `measure`, `recorded`. The benchmark (`c-tests/bench`) and the test of
-//! the figures that a change may not lose (`support_counts.rs`) are made of them.
+//! Libraries side by side, scenes with truth, one table of methods, and one runner. The benchmark (`c-tests/bench`) and the
+//! test of the recorded support counts (`support_counts.rs`) each use a part.
 
-// The benchmark and the test each use a part.
 #![allow(dead_code)]
 
 pub mod callgrind;
